@@ -1,0 +1,60 @@
+#pragma once
+
+#include <algorithm>
+
+namespace vantage::kernels {
+
+/// Lanes of a cell column are padded to a multiple of this many disparities, on every instruction
+/// set: the layout of the disparity space does not depend on the processor.
+inline constexpr int kLaneMultiple = 16;
+
+/// Half-open interval of candidate indices.
+struct CandidateRange {
+  int begin = 0;
+  int end = 0;
+  [[nodiscard]] bool empty() const { return end <= begin; }
+  friend bool operator==(CandidateRange, CandidateRange) = default;
+};
+
+/// The candidates of a disparity space over an image `width` columns wide: index i in
+/// [0, count) stands for disparity_px = disparity_min + i. The partner of reference column x is
+/// x + direction · disparity_px in the other image: direction is −1 when the reference is the left
+/// image and +1 when it is the right one (EQUATIONS §0).
+struct CandidateGeometry {
+  int width = 0;
+  int disparity_min = 0;
+  int count = 0;
+  int direction = -1;
+
+  [[nodiscard]] int lanes() const {
+    return (count + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
+  }
+  [[nodiscard]] int partner(int x, int candidate) const {
+    return x + direction * (disparity_min + candidate);
+  }
+  /// Candidates of column x whose partner lies in columns [margin, width − margin) of the other
+  /// image. (With margin = window radius: those whose whole window has partners.)
+  [[nodiscard]] CandidateRange with_partner(int x, int margin = 0) const {
+    return with_partners(x, x, margin);
+  }
+  /// Candidates for which all columns first..last have a partner inside the other image.
+  [[nodiscard]] CandidateRange with_partners(int first, int last, int margin = 0) const {
+    const int low = margin;
+    const int high = width - 1 - margin;
+    // direction −1: low ≤ first − d and last − d ≤ high; direction +1: likewise with + d.
+    const int least = direction < 0 ? last - high : low - first;
+    const int most = direction < 0 ? first - low : high - last;
+    return {std::clamp(least - disparity_min, 0, count),
+            std::clamp(most - disparity_min + 1, 0, count)};
+  }
+  /// The columns [begin, end) at which every candidate has a partner for all columns within
+  /// `radius` that lie in the reference image (begin may exceed end, both may exceed the image).
+  [[nodiscard]] CandidateRange columns_with_all_partners(int radius = 0) const {
+    // partner = x − shift for shifts in [least, most].
+    const int least = direction < 0 ? disparity_min : -(disparity_min + count - 1);
+    const int most = least + count - 1;
+    return {most > 0 ? most + radius : 0, least < 0 ? width + least - radius : width};
+  }
+};
+
+}  // namespace vantage::kernels

@@ -1,0 +1,38 @@
+// The dispatch tables of this file show which targets the build has and which one is chosen.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/simd_target.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include "kernels/simd_target.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+long long this_target() { return HWY_TARGET; }
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(this_target);
+
+long long built_targets() { return HWY_TARGETS; }
+
+long long available_targets() {
+  hwy::SetSupportedTargetsForTest(0);
+  return hwy::SupportedTargets() & HWY_TARGETS;
+}
+
+long long target_in_use() { return HWY_DYNAMIC_DISPATCH(this_target)(); }
+
+void force_target(long long target) {
+  // Highway has this call for tests; its other one, DisableTargets(), cannot be undone.
+  hwy::SetSupportedTargetsForTest(target);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+std::string_view target_name(long long target) { return hwy::TargetName(target); }
+
+}  // namespace vantage::kernels
+#endif

@@ -1,0 +1,105 @@
+#include "scheduler/openmp_executor.h"
+
+#include <omp.h>
+
+#include <atomic>
+#include <exception>
+#include <vector>
+
+namespace vantage::scheduler {
+namespace {
+
+/// Keeps the first exception of a loop: none may leave an OpenMP region.
+class FirstError {
+ public:
+  [[nodiscard]] bool failed() const { return failed_.load(std::memory_order_relaxed); }
+
+  void run(const std::function<void(int)>& body, int task) {
+    if (failed()) {
+      return;
+    }
+    try {
+      body(task);
+    } catch (...) {
+      if (!failed_.exchange(true)) {
+        error_ = std::current_exception();
+      }
+    }
+  }
+
+  void rethrow() const {
+    if (error_) {
+      std::rethrow_exception(error_);
+    }
+  }
+
+ private:
+  std::atomic<bool> failed_{false};
+  std::exception_ptr error_;
+};
+
+class OpenMpExecutor final : public Executor {
+ public:
+  explicit OpenMpExecutor(int threads) : threads_(threads) {}
+
+  [[nodiscard]] std::string_view name() const override { return "openmp"; }
+  [[nodiscard]] int thread_count() const override { return threads_; }
+
+  void parallel_for(int task_count, const std::function<void(int)>& body) override {
+    FirstError error;
+    if (omp_in_parallel() != 0) {
+      // Inside a frame step: the strips become tasks of the team that runs the frames.
+#pragma omp taskloop grainsize(1) default(none) shared(error, body, task_count)
+      for (int task = 0; task < task_count; ++task) {
+        error.run(body, task);
+      }
+    } else {
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) default(none) \
+    shared(error, body, task_count)
+      for (int task = 0; task < task_count; ++task) {
+        error.run(body, task);
+      }
+    }
+    error.rethrow();
+  }
+
+  void run_frame_steps(int in_flight, const FrameSteps& steps) override {
+    // Tasks are ordered through the addresses they name as dependences: `slots[s]` chains the
+    // frames that share a slot, `writer` chains the deliveries. Reading stays on the thread that
+    // creates the tasks, which first waits for the slot's previous frame.
+    std::vector<char> slots(static_cast<std::size_t>(in_flight));
+    [[maybe_unused]] char* slot_token = slots.data();
+    [[maybe_unused]] char writer = 0;
+#pragma omp parallel num_threads(threads_) default(none) \
+    shared(steps, slot_token, writer, in_flight)
+#pragma omp single
+    {
+      for (int slot = 0;; slot = (slot + 1) % in_flight) {
+#pragma omp taskwait depend(inout : slot_token[slot])
+        if (!steps.read(slot)) {
+          break;
+        }
+#pragma omp task default(none) shared(steps, slot_token) firstprivate(slot) \
+    depend(inout                                                            \
+           : slot_token[slot])
+        steps.compute(slot);
+#pragma omp task default(none) shared(steps, slot_token, writer) firstprivate(slot) \
+    depend(inout                                                                    \
+           : slot_token[slot]) depend(inout                                         \
+                                      : writer)
+        steps.write(slot);
+      }
+    }
+  }
+
+ private:
+  int threads_;
+};
+
+}  // namespace
+
+std::unique_ptr<Executor> make_openmp_executor(int threads) {
+  return std::make_unique<OpenMpExecutor>(threads);
+}
+
+}  // namespace vantage::scheduler

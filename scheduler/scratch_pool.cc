@@ -1,0 +1,52 @@
+#include "scheduler/scratch_pool.h"
+
+#include <algorithm>
+#include <new>
+
+namespace vantage::scheduler {
+
+void ScratchPool::Free::operator()(std::byte* memory) const noexcept {
+  ::operator delete (memory, std::align_val_t{kAlignment});
+}
+
+ScratchPool::Lease ScratchPool::lease(std::size_t bytes) {
+  bytes = std::max<std::size_t>(bytes, kAlignment);
+  std::lock_guard lock(mutex_);
+  // The smallest block that fits; a chain asks for few sizes, so the list stays short.
+  auto best = free_.end();
+  for (auto it = free_.begin(); it != free_.end(); ++it) {
+    if (it->bytes >= bytes && (best == free_.end() || it->bytes < best->bytes)) {
+      best = it;
+    }
+  }
+  if (best != free_.end()) {
+    Block block = std::move(*best);
+    free_.erase(best);
+    return {this, std::move(block)};
+  }
+  if (!free_.empty()) {
+    // Too small for today's tasks (the plan has changed): let it go instead of hoarding both.
+    bytes_held_ -= free_.back().bytes;
+    free_.pop_back();
+    --blocks_;
+  }
+  free_.reserve(blocks_ + 1);  // so that give_back() cannot fail
+  Block block;
+  block.memory.reset(static_cast<std::byte*>(::operator new (bytes, std::align_val_t{kAlignment})));
+  block.bytes = bytes;
+  ++blocks_;
+  bytes_held_ += bytes;
+  return {this, std::move(block)};
+}
+
+void ScratchPool::give_back(Block block) noexcept {
+  std::lock_guard lock(mutex_);
+  free_.push_back(std::move(block));
+}
+
+std::size_t ScratchPool::bytes_held() const {
+  std::lock_guard lock(mutex_);
+  return bytes_held_;
+}
+
+}  // namespace vantage::scheduler

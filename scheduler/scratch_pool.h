@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace vantage::scheduler {
+
+/// Aligned memory that tasks lease and give back, so that a steady stream of equal tasks allocates
+/// nothing. Thread rule: all members may be called concurrently. A lease must not outlive the pool.
+class ScratchPool {
+  struct Free {
+    void operator()(std::byte* memory) const noexcept;
+  };
+  struct Block {
+    std::unique_ptr<std::byte, Free> memory;
+    std::size_t bytes = 0;
+  };
+
+ public:
+  static constexpr std::size_t kAlignment = 64;
+
+  /// Holds memory until it is destroyed or assigned to; a default one holds none.
+  class Lease {
+   public:
+    Lease() = default;
+    Lease(Lease&& other) noexcept { *this = std::move(other); }
+    Lease& operator=(Lease&& other) noexcept {
+      std::swap(pool_, other.pool_);
+      std::swap(block_, other.block_);
+      return *this;
+    }
+    ~Lease() {
+      if (pool_ != nullptr) {
+        pool_->give_back(std::move(block_));
+      }
+    }
+    /// Uninitialised, aligned to kAlignment.
+    [[nodiscard]] std::byte* data() const { return block_.memory.get(); }
+
+   private:
+    friend class ScratchPool;
+    Lease(ScratchPool* pool, Block block) : pool_(pool), block_(std::move(block)) {}
+    ScratchPool* pool_ = nullptr;
+    Block block_;
+  };
+
+  /// At least `bytes` of memory. Throws std::bad_alloc.
+  [[nodiscard]] Lease lease(std::size_t bytes);
+
+  /// All memory this pool holds, leased or not.
+  [[nodiscard]] std::size_t bytes_held() const;
+
+ private:
+  void give_back(Block block) noexcept;
+
+  mutable std::mutex mutex_;
+  std::vector<Block> free_;
+  std::size_t blocks_ = 0;
+  std::size_t bytes_held_ = 0;
+};
+
+}  // namespace vantage::scheduler
