@@ -1,0 +1,47 @@
+#include <cmath>
+
+#include "kernels/column_ssd/column_ssd.h"
+
+namespace vantage::kernels {
+namespace {
+
+int low_half(std::int32_t pair) { return static_cast<std::int16_t>(pair & 0xFFFF); }
+int high_half(std::int32_t pair) { return static_cast<std::int16_t>(pair >> 16); }
+
+std::int32_t rounded_square(const float* reference, const float* partner, int j, int k) {
+  if (reference == nullptr) {
+    return 0;
+  }
+  const float difference = reference[j] - partner[k];
+  return static_cast<std::int32_t>(std::lrint(difference * difference));
+}
+
+}  // namespace
+
+void column_ssd_row_ref(const ColumnSsdPairs& row, const std::int32_t* previous,
+                        std::int32_t* sums) {
+  for (int j = 0; j < row.columns; ++j) {
+    for (int i = 0; i < row.lanes; ++i) {
+      const int k = j * row.partner_step + i;
+      const int entering = low_half(row.reference[j]) - low_half(row.partner[k]);
+      const int leaving = high_half(row.reference[j]) - high_half(row.partner[k]);
+      const int cell = j * row.lanes + i;
+      sums[cell] = previous[cell] + entering * entering - leaving * leaving;
+    }
+  }
+}
+
+void column_ssd_row_ref(const ColumnSsdFloat& row, const std::int32_t* previous,
+                        std::int32_t* sums) {
+  for (int j = 0; j < row.columns; ++j) {
+    for (int i = 0; i < row.lanes; ++i) {
+      const int k = j * row.partner_step + i;
+      const int cell = j * row.lanes + i;
+      sums[cell] = previous[cell] +
+                   rounded_square(row.reference_entering, row.partner_entering, j, k) -
+                   rounded_square(row.reference_leaving, row.partner_leaving, j, k);
+    }
+  }
+}
+
+}  // namespace vantage::kernels

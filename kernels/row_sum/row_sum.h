@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+
+namespace vantage::kernels {
+
+/// One row of sliding sums along x, over cells of `lanes` disparities. Columns are numbered as in
+/// the image; those outside [input_begin, input_end) count as absent.
+struct RowSum {
+  const std::int32_t* input = nullptr;  ///< first cell of input_begin
+  std::int32_t* output = nullptr;       ///< first cell of output_begin
+  int input_begin = 0;                  ///< = max(0, output_begin − radius)
+  int input_end = 0;                    ///< = min(image width, output_end + radius)
+  int output_begin = 0;
+  int output_end = 0;
+  int radius = 0;
+  int lanes = 0;  ///< a multiple of kLaneMultiple
+  /// Adds its number to every lane of the output: the low bits of a cell then name its candidate
+  /// when the inputs are multiples of a power of two that leaves room for it.
+  bool number_lanes = false;
+};
+
+/// output(x, i) = Σ input(x − radius … x + radius, i) [+ i]. Running sums: the work per cell does
+/// not depend on the radius. Exact modulo 2³². Identical on every instruction set.
+void row_sum(const RowSum& row);
+
+/// The same, plainly: each sum anew.
+void row_sum_ref(const RowSum& row);
+
+}  // namespace vantage::kernels

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "kernels/candidates.h"
+
+namespace vantage::kernels {
+
+/// One row of summed costs and what its cells mean.
+///
+/// A cell holds the sum of a cost over the samples of a square window that lie inside both images;
+/// the energy of a candidate is the *mean* over those samples (§1, border `clip`). How many there
+/// are follows from the geometry; the number of rows is the same for all cells of a row and
+/// cancels.
+struct WinnerRow {
+  const std::int32_t* cells = nullptr;  ///< first cell of first_column; geometry.lanes() a column
+  CandidateGeometry geometry;
+  int first_column = 0;
+  int columns = 0;
+  int window_radius = 0;
+  /// Cells are sum · 2^index_bits + candidate index when not 0, plain sums when 0.
+  int index_bits = 0;
+  /// Border `valid`: only candidates whose whole window lies in both images count. (The caller
+  /// leaves out rows whose windows stick out at the top or bottom.)
+  bool whole_windows_only = false;
+
+  /// Candidates that may win at column x.
+  [[nodiscard]] CandidateRange candidates(int x) const {
+    if (!whole_windows_only) {
+      return geometry.with_partner(x);
+    }
+    if (x < window_radius || x >= geometry.width - window_radius) {
+      return {};
+    }
+    return geometry.with_partner(x, window_radius);
+  }
+  /// Those candidates of column x of which no window column lacks a partner.
+  [[nodiscard]] CandidateRange full_window_candidates(int x) const {
+    if (whole_windows_only) {
+      return candidates(x);
+    }
+    return geometry.with_partners(window_begin(x), window_last(x));
+  }
+  /// Window columns inside the reference image: those of full_window_candidates().
+  [[nodiscard]] int full_window_columns(int x) const {
+    return window_last(x) - window_begin(x) + 1;
+  }
+  /// Window columns of a candidate at column x that lie inside both images, ≥ 1 for candidates().
+  [[nodiscard]] int window_columns(int x, int candidate) const {
+    const int shift = x - geometry.partner(x, candidate);
+    return std::min(window_last(x), geometry.width - 1 + shift) - std::max(window_begin(x), shift) +
+           1;
+  }
+  /// The columns [begin, end) of this row at which every candidate has a whole window of partners:
+  /// there cells compare as they are.
+  [[nodiscard]] CandidateRange plain_columns() const {
+    CandidateRange plain = geometry.columns_with_all_partners(window_radius);
+    if (whole_windows_only) {
+      plain = {std::max(plain.begin, window_radius),
+               std::min(plain.end, geometry.width - window_radius)};
+    }
+    const int begin = std::clamp(plain.begin, first_column, first_column + columns);
+    return {begin, std::clamp(plain.end, begin, first_column + columns)};
+  }
+  [[nodiscard]] std::int32_t sum(std::int32_t cell) const { return cell >> index_bits; }
+
+ private:
+  [[nodiscard]] int window_begin(int x) const { return std::max(x - window_radius, 0); }
+  [[nodiscard]] int window_last(int x) const {
+    return std::min(x + window_radius, geometry.width - 1);
+  }
+};
+
+inline constexpr std::int32_t kNoWinner = -1;
+
+/// winners[j] = index of the candidate with the least energy at column first_column + j, the
+/// smallest of equals, or kNoWinner where no candidate counts. Exact: energies are compared as
+/// fractions. Cells of candidates must be ≥ 0. Identical on every instruction set.
+void select_winners_row(const WinnerRow& row, std::int32_t* winners);
+
+/// The same, plainly.
+void select_winners_row_ref(const WinnerRow& row, std::int32_t* winners);
+
+}  // namespace vantage::kernels
