@@ -1,0 +1,46 @@
+#include "engine/execution.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/error.h"
+
+namespace vantage {
+namespace {
+
+// Rows of one task of for_each_band(): enough to hide the cost of a task, few enough to balance.
+constexpr int kBandRows = 16;
+
+void require_positive(const char* field, const std::optional<int>& value) {
+  if (value && *value < 1) {
+    throw UsageError(fmt::format("{} is {}, expected at least 1", field, *value));
+  }
+}
+
+}  // namespace
+
+void ExecutionOptions::validate() const {
+  require_positive("threads", threads);
+  require_positive("strip-width", strip_width_px);
+  require_positive("band-height", band_height_px);
+  if (threads && *threads > 1024) {
+    throw UsageError(fmt::format("threads is {}, expected at most 1024", *threads));
+  }
+}
+
+Execution::Execution(const ExecutionOptions& options)
+    : options_(options), machine_(scheduler::detect_machine()) {
+  options_.validate();
+  executor_ = scheduler::make_executor(options_.executor,
+                                       options_.threads.value_or(machine_.hardware_threads));
+}
+
+void Execution::for_each_band(int rows,
+                              const std::function<void(int first_row, int end_row)>& body) {
+  executor_->parallel_for((rows + kBandRows - 1) / kBandRows, [&](int band) {
+    body(band * kBandRows, std::min((band + 1) * kBandRows, rows));
+  });
+}
+
+}  // namespace vantage

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <variant>
+
+#include "engine/image/image.h"
+
+namespace vantage {
+
+/// A picture as it was read: 8-bit, 16-bit or float values, 1 (grey), 3 (RGB order) or 4 channels
+/// (RGB and alpha). 8-bit values span 0..255, 16-bit 0..65535, float 0..1, all finite.
+struct Photograph {
+  std::variant<Image<std::uint8_t>, Image<std::uint16_t>, Image<float>> pixels;
+
+  [[nodiscard]] int width() const {
+    return std::visit([](const auto& image) { return image.width(); }, pixels);
+  }
+  [[nodiscard]] int height() const {
+    return std::visit([](const auto& image) { return image.height(); }, pixels);
+  }
+  [[nodiscard]] int channels() const {
+    return std::visit([](const auto& image) { return image.channels(); }, pixels);
+  }
+};
+
+/// Grey levels (0..255, EQUATIONS §0) per unit of a stored value.
+template <typename T>
+inline constexpr float kGreyLevelsPerUnit = 1.0F;
+template <>
+inline constexpr float kGreyLevelsPerUnit<std::uint16_t> = 255.0F / 65535.0F;
+template <>
+inline constexpr float kGreyLevelsPerUnit<float> = 255.0F;
+
+}  // namespace vantage

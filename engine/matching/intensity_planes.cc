@@ -1,0 +1,172 @@
+#include "engine/matching/intensity_planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace vantage {
+namespace {
+
+// Rec. 601.
+constexpr float kRed = 0.299F;
+constexpr float kGreen = 0.587F;
+constexpr float kBlue = 0.114F;
+
+bool is_8_bit_grey(const Photograph& photograph) {
+  return photograph.channels() == 1 &&
+         std::holds_alternative<Image<std::uint8_t>>(photograph.pixels);
+}
+
+template <typename T>
+void grey_levels(const T* pixels, int channels, int width, float* grey) {
+  constexpr float unit = kGreyLevelsPerUnit<T>;
+  if (channels < 3) {
+    for (int x = 0; x < width; ++x) {
+      grey[x] = static_cast<float>(pixels[x * channels]) * unit;
+    }
+    return;
+  }
+  for (int x = 0; x < width; ++x) {
+    const T* pixel = pixels + x * channels;
+    grey[x] = (kRed * static_cast<float>(pixel[0]) + kGreen * static_cast<float>(pixel[1]) +
+               kBlue * static_cast<float>(pixel[2])) *
+              unit;
+  }
+}
+
+struct Bounds {
+  float low = std::numeric_limits<float>::max();
+  float high = std::numeric_limits<float>::lowest();
+};
+
+/// Grey levels of the whole photograph into `plane`; returns their bounds.
+Bounds fill_grey(const Photograph& photograph, Execution& execution, IntensityPlane<float>& plane) {
+  std::vector<Bounds> of_row(static_cast<std::size_t>(photograph.height()));
+  std::visit(
+      [&](const auto& image) {
+        execution.for_each_band(image.height(), [&](int first_row, int end_row) {
+          for (int y = first_row; y < end_row; ++y) {
+            float* grey = plane.row(y);
+            grey_levels(image.row(y), image.channels(), image.width(), grey);
+            const auto [low, high] = std::minmax_element(grey, grey + image.width());
+            of_row[static_cast<std::size_t>(y)] = {*low, *high};
+          }
+        });
+      },
+      photograph.pixels);
+  Bounds bounds;
+  for (const Bounds& row : of_row) {
+    bounds.low = std::min(bounds.low, row.low);
+    bounds.high = std::max(bounds.high, row.high);
+  }
+  return bounds;
+}
+
+/// The power of two that intensities with these bounds are multiplied with.
+float cost_scale(const Bounds& bounds, int window_samples) {
+  const double span = static_cast<double>(bounds.high) - bounds.low;
+  if (!(span > 0)) {
+    return 1;
+  }
+  // Each cost may round up by ½; the margin of 1 % covers rounding of the float products.
+  const double most_cost =
+      (std::numeric_limits<std::int32_t>::max() / static_cast<double>(window_samples) - 1) * 0.99;
+  return static_cast<float>(std::exp2(std::floor(std::log2(std::sqrt(most_cost) / span))));
+}
+
+template <typename Pixel>
+void finish_rows(IntensityPlanes<Pixel>& planes, int width, int height, PlanesNeeded needed,
+                 Execution& execution) {
+  execution.for_each_band(height, [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      planes.left.fill_margins(y);
+      if (needed.left_reference) {
+        const Pixel* right = planes.right.row(y);
+        std::reverse_copy(right, right + width, planes.right_mirrored.row(y));
+        planes.right_mirrored.fill_margins(y);
+      }
+    }
+  });
+}
+
+template <typename Pixel>
+void resize_planes(IntensityPlanes<Pixel>& planes, int height,
+                   const kernels::CandidateGeometry& geometry, PlanesNeeded needed) {
+  // Lane i of column x is read at x + disparity_min + i, in the mirrored plane as in the plain one.
+  const int before = std::max(0, -geometry.disparity_min);
+  const int after = std::max(0, geometry.disparity_min + geometry.lanes());
+  planes.left.resize(geometry.width, height, before, after);
+  planes.right.resize(geometry.width, height, 0, 0);
+  if (needed.left_reference) {
+    planes.right_mirrored.resize(geometry.width, height, before, after);
+  }
+}
+
+void copy_8_bit(const Photograph& photograph, Execution& execution,
+                IntensityPlane<std::uint8_t>& plane) {
+  const auto& image = std::get<Image<std::uint8_t>>(photograph.pixels);
+  execution.for_each_band(image.height(), [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      std::copy_n(image.row(y), image.width(), plane.row(y));
+    }
+  });
+}
+
+void scale_rows(float scale, int width, int height, Execution& execution,
+                IntensityPlane<float>& plane) {
+  execution.for_each_band(height, [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      float* row = plane.row(y);
+      for (int x = 0; x < width; ++x) {
+        row[x] *= scale;
+      }
+    }
+  });
+}
+
+}  // namespace
+
+template <typename Pixel>
+void IntensityPlane<Pixel>::resize(int width, int height, int margin_begin, int margin_end) {
+  width_ = width;
+  margin_begin_ = margin_begin;
+  margin_end_ = margin_end;
+  pixels_.resize(margin_begin + width + margin_end, height);
+}
+
+template <typename Pixel>
+void IntensityPlane<Pixel>::fill_margins(int y) {
+  Pixel* first = row(y);
+  std::fill(first - margin_begin_, first, first[0]);
+  std::fill(first + width_, first + width_ + margin_end_, first[width_ - 1]);
+}
+
+template class IntensityPlane<std::uint8_t>;
+template class IntensityPlane<float>;
+
+void prepare_pair(const Photograph& left, const Photograph& right,
+                  const kernels::CandidateGeometry& geometry, int window_samples,
+                  PlanesNeeded needed, Execution& execution, PreparedPair& pair) {
+  const int width = left.width();
+  const int height = left.height();
+  pair.is_8_bit = is_8_bit_grey(left) && is_8_bit_grey(right);
+  if (pair.is_8_bit) {
+    resize_planes(pair.grey_8, height, geometry, needed);
+    copy_8_bit(left, execution, pair.grey_8.left);
+    copy_8_bit(right, execution, pair.grey_8.right);
+    finish_rows(pair.grey_8, width, height, needed, execution);
+    return;
+  }
+  IntensityPlanes<float>& planes = pair.grey_float;
+  resize_planes(planes, height, geometry, needed);
+  const Bounds of_left = fill_grey(left, execution, planes.left);
+  const Bounds of_right = fill_grey(right, execution, planes.right);
+  const float scale = cost_scale(
+      {std::min(of_left.low, of_right.low), std::max(of_left.high, of_right.high)}, window_samples);
+  scale_rows(scale, width, height, execution, planes.left);
+  scale_rows(scale, width, height, execution, planes.right);
+  finish_rows(planes, width, height, needed, execution);
+}
+
+}  // namespace vantage

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <variant>
+
+#include "engine/execution.h"
+#include "engine/image/image.h"
+#include "engine/image/photograph.h"
+#include "kernels/candidates.h"
+
+namespace vantage {
+
+/// One image's intensities as matching costs read them: rows with margins, so that every lane of
+/// every candidate can be loaded, and optionally mirrored, so that the partners of growing
+/// disparities lie at growing addresses. Pixel is uint8_t or float.
+template <typename Pixel>
+class IntensityPlane {
+ public:
+  /// `margin_begin`, `margin_end`: columns before and after the image, filled with the border
+  /// pixel.
+  void resize(int width, int height, int margin_begin, int margin_end);
+  /// Writes the margins of one row whose pixels are in place.
+  void fill_margins(int y);
+  /// The first pixel of row y (of a mirrored plane: the image's last column).
+  [[nodiscard]] Pixel* row(int y) { return pixels_.row(y) + margin_begin_; }
+  [[nodiscard]] const Pixel* row(int y) const { return pixels_.row(y) + margin_begin_; }
+
+ private:
+  Image<Pixel> pixels_;
+  int width_ = 0;
+  int margin_begin_ = 0;
+  int margin_end_ = 0;
+};
+
+/// Both images of a pair, ready for matching costs.
+template <typename Pixel>
+struct IntensityPlanes {
+  IntensityPlane<Pixel> left;
+  IntensityPlane<Pixel> right;
+  IntensityPlane<Pixel> right_mirrored;
+};
+
+/// Which map the planes are for.
+struct PlanesNeeded {
+  bool left_reference = true;
+  bool right_reference = true;
+};
+
+/// Working memory of a pair: 8-bit grey pairs stay 8-bit and are matched in exact integers; all
+/// others become float grey levels (luma of colour, Rec. 601; EQUATIONS §0).
+struct PreparedPair {
+  bool is_8_bit = true;
+  IntensityPlanes<std::uint8_t> grey_8;
+  IntensityPlanes<float> grey_float;
+};
+
+/// Fills `pair` from two photographs of equal size. Float planes hold grey levels times a power of
+/// two, the largest for which the sum of `window_samples` squared differences stays below 2³¹:
+/// costs then become integers with as fine a step as 31 bits allow, sums of them are exact.
+/// Identical for any `execution`.
+void prepare_pair(const Photograph& left, const Photograph& right,
+                  const kernels::CandidateGeometry& geometry, int window_samples,
+                  PlanesNeeded needed, Execution& execution, PreparedPair& pair);
+
+}  // namespace vantage

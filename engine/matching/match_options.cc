@@ -1,0 +1,49 @@
+#include "engine/matching/match_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/error.h"
+
+namespace vantage {
+namespace {
+
+constexpr int kMaxCandidates = 4096;
+constexpr int kMaxDisparity = 65535;
+// 181² · 255² is the largest windowed sum of squares that fits 31 bits.
+constexpr int kMaxWindow = 181;
+
+}  // namespace
+
+void MatchOptions::validate() const {
+  const auto [least, most] = disparities;
+  if (most < least) {
+    throw UsageError(
+        fmt::format("disparities is {}:{}, expected MIN:MAX with MIN <= MAX", least, most));
+  }
+  if (std::abs(static_cast<long>(least)) > kMaxDisparity ||
+      std::abs(static_cast<long>(most)) > kMaxDisparity) {
+    throw UsageError(fmt::format("disparities is {}:{}, expected values within ±{}", least, most,
+                                 kMaxDisparity));
+  }
+  if (disparities.count() > kMaxCandidates) {
+    throw UsageError(fmt::format("disparities is {}:{} ({} candidates), expected at most {}", least,
+                                 most, disparities.count(), kMaxCandidates));
+  }
+  if (window_px < 1 || window_px > kMaxWindow || window_px % 2 == 0) {
+    throw UsageError(
+        fmt::format("window is {}, expected an odd number from 1 to {}", window_px, kMaxWindow));
+  }
+  if (cross_check_px && !(*cross_check_px >= 1 && std::isfinite(*cross_check_px))) {
+    throw UsageError(
+        fmt::format("cross-check is {}, expected a number of at least 1", *cross_check_px));
+  }
+}
+
+double MatchOptions::cross_check_or_default() const {
+  return cross_check_px.value_or(std::max(1.0, disparities.count() / 15.0));
+}
+
+}  // namespace vantage

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace vantage {
+
+/// Lends working memory of type T to calls that run at the same time, and keeps it for the next
+/// ones. Thread rule: borrow() may be called concurrently. Loans must not outlive the pool.
+template <typename T>
+class ObjectPool {
+ public:
+  class Loan {
+   public:
+    Loan(ObjectPool& pool, std::unique_ptr<T> object) : pool_(pool), object_(std::move(object)) {}
+    Loan(const Loan&) = delete;
+    Loan& operator=(const Loan&) = delete;
+    ~Loan() {
+      const std::lock_guard lock(pool_.mutex_);
+      pool_.free_.push_back(std::move(object_));
+    }
+    T& operator*() const { return *object_; }
+    T* operator->() const { return object_.get(); }
+
+   private:
+    ObjectPool& pool_;
+    std::unique_ptr<T> object_;
+  };
+
+  [[nodiscard]] Loan borrow() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) {
+      free_.reserve(++created_);  // giving back cannot fail
+      return {*this, std::make_unique<T>()};
+    }
+    std::unique_ptr<T> object = std::move(free_.back());
+    free_.pop_back();
+    return {*this, std::move(object)};
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<T>> free_;
+  std::size_t created_ = 0;
+};
+
+}  // namespace vantage

@@ -1,0 +1,326 @@
+#include "engine/matching/stereo_matcher.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <string>
+#include <tuple>
+
+#include "engine/error.h"
+#include "engine/matching/match_chain.h"
+#include "engine/simd.h"
+#include "scheduler/whole_image_pipeline.h"
+#include "tests/engine/brute_force_ssd.h"
+
+namespace vantage {
+namespace {
+
+using testing::BruteForceSsd;
+using testing::grey_levels_of;
+using testing::random_grey;
+
+MatchOptions raw_options(DisparityRange range, int window, Border border, Subpixel subpixel) {
+  MatchOptions options;
+  options.disparities = range;
+  options.window_px = window;
+  options.border = border;
+  options.subpixel = subpixel;
+  options.raw = true;
+  return options;
+}
+
+BruteForceSsd brute_force(const Photograph& left, const Photograph& right, Reference reference) {
+  const bool is_left = reference == Reference::kLeft;
+  return {left.width(), left.height(), grey_levels_of(is_left ? left : right),
+          grey_levels_of(is_left ? right : left), is_left ? -1 : 1};
+}
+
+bool has_candidate(const BruteForceSsd& brute, const MatchOptions& options) {
+  for (int y = 0; y < brute.height; ++y) {
+    for (int x = 0; x < brute.width; ++x) {
+      if (!std::isnan(brute.disparity(x, y, options))) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Exact equality, cell for cell; disparities from sub-pixel fits may differ in the last bit of a
+/// float because means are formed in another order.
+void expect_equals_brute_force(const Photograph& left, const Photograph& right,
+                               const MatchOptions& options, Execution& execution) {
+  const StereoMatcher matcher(options, execution);
+  DisparityMaps maps;
+  matcher.match(left, right, {}, maps);
+  for (const Reference reference : {Reference::kLeft, Reference::kRight}) {
+    const BruteForceSsd brute = brute_force(left, right, reference);
+    const DisparityMap& map = reference == Reference::kLeft ? maps.left : maps.right;
+    ASSERT_EQ(map.width(), left.width());
+    ASSERT_EQ(map.height(), left.height());
+    for (int y = 0; y < map.height(); ++y) {
+      for (int x = 0; x < map.width(); ++x) {
+        const double expected = brute.disparity(x, y, options);
+        const double actual = map.at(x, y);
+        if (std::isnan(expected)) {
+          ASSERT_TRUE(std::isnan(actual)) << "at " << x << ", " << y;
+        } else {
+          ASSERT_NEAR(actual, expected, options.subpixel == Subpixel::kNone ? 0 : 1e-4)
+              << "at " << x << ", " << y;
+        }
+      }
+    }
+  }
+}
+
+struct Shape {
+  int width;
+  int height;
+  DisparityRange range;
+  int window;
+};
+
+class SsdShapes : public ::testing::TestWithParam<std::tuple<Shape, Border, Subpixel>> {};
+
+TEST_P(SsdShapes, EqualBruteForce) {
+  const auto& [shape, border, subpixel] = GetParam();
+  const MatchOptions options = raw_options(shape.range, shape.window, border, subpixel);
+  Execution execution({.threads = 2});
+  for (const int levels : {2, 256}) {
+    // With two levels most energies tie: sub-pixel positions then hang on exact zeros.
+    const Photograph left = random_grey(shape.width, shape.height, levels, 1);
+    const Photograph right = random_grey(shape.width, shape.height, levels, 2);
+    if (!has_candidate(brute_force(left, right, Reference::kLeft), options)) {
+      DisparityMaps maps;
+      EXPECT_THROW(StereoMatcher(options, execution).match(left, right, {}, maps), Error);
+      continue;
+    }
+    expect_equals_brute_force(left, right, options, execution);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    AwkwardSizes, SsdShapes,
+    ::testing::Combine(::testing::Values(Shape{1, 1, {0, 0}, 1}, Shape{1, 1, {-3, 3}, 9},
+                                         Shape{1, 7, {0, 3}, 3}, Shape{7, 1, {0, 3}, 3},
+                                         Shape{3, 3, {-2, 2}, 5}, Shape{15, 9, {0, 15}, 3},
+                                         Shape{16, 9, {-16, 16}, 3}, Shape{17, 11, {-8, 7}, 5},
+                                         Shape{31, 13, {3, 40}, 7}, Shape{33, 8, {-40, 33}, 9},
+                                         Shape{47, 6, {-30, -2}, 3}, Shape{61, 19, {0, 63}, 9},
+                                         Shape{64, 12, {0, 64}, 21}, Shape{65, 10, {5, 100}, 1},
+                                         Shape{37, 23, {0, 12}, 101}, Shape{101, 17, {-5, 70}, 11},
+                                         Shape{131, 15, {0, 15}, 13}, Shape{20, 5, {40, 60}, 3}),
+                       ::testing::Values(Border::kClip, Border::kValid),
+                       ::testing::Values(Subpixel::kNone, Subpixel::kParabola)));
+
+TEST(StereoMatcher, EqualsBruteForceOnEveryInstructionSet) {
+  const Photograph left = random_grey(79, 21, 256, 3);
+  const Photograph right = random_grey(79, 21, 256, 4);
+  Execution execution({.threads = 1});
+  for (const std::string& name : available_instruction_sets()) {
+    force_instruction_set(name);
+    ASSERT_EQ(instruction_set_in_use(), name);
+    for (const int window : {3, 9, 33}) {
+      for (const DisparityRange range : {DisparityRange{-9, 37}, DisparityRange{0, 79}}) {
+        expect_equals_brute_force(
+            left, right, raw_options(range, window, Border::kClip, Subpixel::kNone), execution);
+      }
+    }
+  }
+  force_instruction_set("best");
+}
+
+/// Colour, 16-bit and float photographs: costs are rounded to fixed point, so winners may differ
+/// from double arithmetic where energies are as good as equal. That must be rare.
+template <typename T>
+Photograph random_photograph(int width, int height, int channels, double top, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  Image<T> image(width, height, channels);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width * channels; ++x) {
+      image.row(y)[x] = static_cast<T>(top * (static_cast<double>(random()) / 4294967295.0));
+    }
+  }
+  return {std::move(image)};
+}
+
+class SsdDepths : public ::testing::TestWithParam<int> {
+ protected:
+  static Photograph photograph(int kind, std::uint32_t seed) {
+    switch (kind) {
+      case 0:
+        return random_photograph<std::uint8_t>(83, 29, 3, 255.99, seed);
+      case 1:
+        return random_photograph<std::uint16_t>(83, 29, 1, 65535.99, seed);
+      case 2:
+        return random_photograph<std::uint16_t>(83, 29, 3, 600.99, seed);  // dark 10-bit camera
+      case 3:
+        return random_photograph<float>(83, 29, 1, 1.0, seed);
+      default:
+        return random_photograph<std::uint16_t>(83, 29, 4, 65535.99, seed);
+    }
+  }
+};
+
+TEST_P(SsdDepths, AgreeWithDoubleArithmetic) {
+  const Photograph left = photograph(GetParam(), 5);
+  const Photograph right = photograph(GetParam(), 6);
+  Execution execution({.threads = 1});
+  for (const int window : {1, 5, 25}) {
+    const MatchOptions options = raw_options({-4, 30}, window, Border::kClip, Subpixel::kNone);
+    DisparityMaps maps;
+    StereoMatcher(options, execution).match(left, right, {}, maps);
+    const BruteForceSsd brute = brute_force(left, right, Reference::kLeft);
+    int different = 0;
+    for (int y = 0; y < maps.left.height(); ++y) {
+      for (int x = 0; x < maps.left.width(); ++x) {
+        different += brute.disparity(x, y, options) != maps.left.at(x, y) ? 1 : 0;
+      }
+    }
+    EXPECT_LE(different, 2) << "window " << window;  // of 2407: 99.9 %
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, SsdDepths, ::testing::Range(0, 5));
+
+bool identical(const DisparityMap& a, const DisparityMap& b) {
+  if (a.width() != b.width() || a.height() != b.height()) {
+    return false;
+  }
+  for (int y = 0; y < a.height(); ++y) {
+    for (int x = 0; x < a.width(); ++x) {
+      if (std::bit_cast<std::uint32_t>(a.at(x, y)) != std::bit_cast<std::uint32_t>(b.at(x, y))) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+TEST(StereoMatcher, ResultsDoNotDependOnExecution) {
+  using scheduler::ExecutorKind;
+  MatchOptions options;
+  options.disparities = {-3, 40};
+  for (const bool grey : {true, false}) {
+    const Photograph left =
+        grey ? random_grey(97, 61, 256, 7) : random_photograph<std::uint8_t>(97, 61, 3, 255.99, 7);
+    const Photograph right =
+        grey ? random_grey(97, 61, 256, 8) : random_photograph<std::uint8_t>(97, 61, 3, 255.99, 8);
+    DisparityMaps expected;
+    Execution serial({.threads = 1, .executor = ExecutorKind::kSerial});
+    StereoMatcher(options, serial).match(left, right, {}, expected);
+    for (const ExecutorKind kind :
+         {ExecutorKind::kTbb, ExecutorKind::kOpenMp, ExecutorKind::kSerial}) {
+#ifdef __SANITIZE_THREAD__
+      if (kind == ExecutorKind::kOpenMp) {
+        continue;  // libgomp is not instrumented
+      }
+#endif
+      for (const int threads : {1, 2, 5}) {
+        for (const int strip : {1, 13, 500}) {
+          for (const int band : {2, 500}) {
+            Execution execution({.threads = threads,
+                                 .executor = kind,
+                                 .strip_width_px = strip,
+                                 .band_height_px = band});
+            DisparityMaps maps;
+            StereoMatcher(options, execution).match(left, right, {}, maps);
+            ASSERT_TRUE(identical(maps.left, expected.left) &&
+                        identical(maps.right, expected.right))
+                << "executor " << static_cast<int>(kind) << " threads " << threads << " strip "
+                << strip << " band " << band;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(StereoMatcher, ChainEqualsWholeImageOracle) {
+  const Photograph left = random_grey(89, 37, 256, 9);
+  const Photograph right = random_grey(89, 37, 256, 10);
+  const MatchOptions options = raw_options({0, 31}, 7, Border::kClip, Subpixel::kParabola);
+  Execution execution({.threads = 2, .strip_width_px = 11, .band_height_px = 5});
+  DisparityMaps maps;
+  StereoMatcher(options, execution).match(left, right, {}, maps);
+
+  const auto geometry = candidate_geometry(options, Reference::kLeft, 89, 37);
+  PreparedPair pair;
+  prepare_pair(left, right, geometry, options.window_px * options.window_px, {}, execution, pair);
+  DisparityMap whole(89, 37);
+  const MatchChain chain(options, geometry, pair, whole.view());
+  scheduler::run_whole_image(chain.stages());
+  EXPECT_TRUE(identical(maps.left, whole));
+}
+
+TEST(StereoMatcher, FindsAKnownShiftEverywhere) {
+  const int shift = 6;
+  const Photograph wide = random_grey(100 + shift, 40, 256, 11);
+  Image<std::uint8_t> left(100, 40);
+  Image<std::uint8_t> right(100, 40);
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 100; ++x) {
+      // A left pixel x looks at x − shift in the right image.
+      left.at(x, y) = std::get<Image<std::uint8_t>>(wide.pixels).at(x, y);
+      right.at(x, y) = std::get<Image<std::uint8_t>>(wide.pixels).at(x + shift, y);
+    }
+  }
+  MatchOptions options;
+  options.disparities = {0, 15};
+  Execution execution({});
+  DisparityMaps maps;
+  StereoMatcher(options, execution).match({std::move(left)}, {std::move(right)}, {}, maps);
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 100; ++x) {
+      // Columns without a partner in the other image may agree by chance within the tolerance.
+      if (x >= shift) {
+        ASSERT_NEAR(maps.left.at(x, y), shift, 0.2) << x << ", " << y;
+        ASSERT_EQ(maps.left_unmatched.at(x, y), 0) << x << ", " << y;
+      }
+      if (x < 100 - shift) {
+        ASSERT_NEAR(maps.right.at(x, y), shift, 0.2) << x << ", " << y;
+        ASSERT_EQ(maps.right_unmatched.at(x, y), 0) << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST(StereoMatcher, RefinedMapsAreDense) {
+  MatchOptions options;
+  options.disparities = {4, 20};  // the left columns have no candidate at all
+  Execution execution({});
+  DisparityMaps maps;
+  StereoMatcher(options, execution)
+      .match(random_grey(50, 20, 256, 12), random_grey(50, 20, 256, 13), {}, maps);
+  for (int y = 0; y < 20; ++y) {
+    for (int x = 0; x < 50; ++x) {
+      ASSERT_TRUE(std::isfinite(maps.left.at(x, y)));
+      ASSERT_TRUE(std::isfinite(maps.right.at(x, y)));
+    }
+  }
+}
+
+TEST(StereoMatcher, RefusesWhatItCannotDo) {
+  Execution execution({});
+  DisparityMaps maps;
+  const Photograph image = random_grey(20, 10, 256, 14);
+  EXPECT_THROW(StereoMatcher({}, execution).match(image, random_grey(21, 10, 256, 1), {}, maps),
+               Error);
+  MatchOptions options;
+  options.disparities = {20, 30};
+  EXPECT_THROW(StereoMatcher(options, execution).match(image, image, {}, maps), Error);
+  options = {};
+  options.window_px = 8;
+  EXPECT_THROW(StereoMatcher(options, execution), UsageError);
+  options = {};
+  options.disparities = {5, 4};
+  EXPECT_THROW(StereoMatcher(options, execution), UsageError);
+  options = {};
+  options.cross_check_px = std::nan("");
+  EXPECT_THROW(StereoMatcher(options, execution), UsageError);
+}
+
+}  // namespace
+}  // namespace vantage
