@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+
+#include "engine/image/image.h"
+
+namespace vantage {
+
+/// Reads a disparity map, of the format its content says: .pfm (±inf = unknown), 16-bit .png (÷256,
+/// 0 = unknown), .tiff/.exr (float, NaN = unknown), .npy (float32/float64, 2-D), and 8-bit
+/// .png/.pgm (÷scale, 0 = unknown). `scale` (> 0) divides integer values and replaces the 256 of
+/// 16-bit PNG when given; 0 means the format's default (an 8-bit file then needs one: Error).
+/// Unknown becomes NaN. Throws Error naming the file and what is wrong with it, UsageError for a
+/// negative scale. Thread rule: may be called concurrently.
+DisparityMap read_disparity(const std::filesystem::path& path, double scale = 0);
+
+/// Writes by extension: .pfm (little-endian, bottom-up, unknown = +inf), .png (16-bit, ×256,
+/// 0 = unknown; values that do not fit are an Error; the disparity 0 becomes 1/256, as in KITTI's
+/// own files), .tiff/.exr (float, NaN), .npy (float32). NaN and ±inf in memory are unknown. Whole
+/// or not at all. Throws UsageError for another extension, Error when the file cannot be written.
+void write_disparity(const std::filesystem::path& path, ImageView<const float> disparity);
+
+/// True when write_disparity() knows the extension.
+bool is_disparity_extension(const std::filesystem::path& path);
+
+}  // namespace vantage

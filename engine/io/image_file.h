@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "engine/image/photograph.h"
+#include "engine/io/file_bytes.h"
+
+namespace vantage {
+
+/// An image file's values as they are stored: PNM not stretched to its largest value, floats of any
+/// value, NaN too.
+struct StoredImage {
+  Photograph photograph;
+  int max_value = 255;  ///< of integer values
+};
+
+/// Decodes an image of any format that read_photograph() knows. Throws Error.
+StoredImage decode_image(const FileBytes& file);
+
+/// Writes by extension; whole or not at all. Floats of any value. Throws UsageError for an unknown
+/// extension, Error when the format cannot hold the depth or channels or the file not be written.
+void write_image(const std::filesystem::path& path, const Photograph& photograph);
+
+}  // namespace vantage

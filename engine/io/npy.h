@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/image/image.h"
+#include "engine/io/file_bytes.h"
+
+namespace vantage {
+
+/// True when `file` begins like a NumPy array file.
+bool is_npy(const FileBytes& file);
+
+/// Decodes a NumPy array file, format versions 1 to 3, of shape (height, width), type <f4 or <f8
+/// (rounded to float) in C order. Throws Error that names the type, order or shape of any other.
+Image<float> decode_npy(const FileBytes& file);
+
+/// Encodes one channel as <f4 in C order, format version 1.0.
+std::vector<std::uint8_t> encode_npy(ImageView<const float> image);
+
+}  // namespace vantage

@@ -1,0 +1,58 @@
+#include "engine/io/opencv_setup.h"
+
+#include <cstdlib>
+#include <iostream>
+#include <opencv2/core.hpp>
+#include <opencv2/core/utils/logger.hpp>
+#include <streambuf>
+
+namespace vantage {
+namespace {
+
+thread_local int quiet_depth = 0;
+
+/// Passes on to another buffer what threads write that are not quiet.
+class ThreadFilter : public std::streambuf {
+ public:
+  explicit ThreadFilter(std::streambuf* target) : target_(target) {}
+
+ protected:
+  int_type overflow(int_type c) override {
+    if (quiet_depth > 0 || traits_type::eq_int_type(c, traits_type::eof())) {
+      return traits_type::not_eof(c);
+    }
+    return target_->sputc(traits_type::to_char_type(c));
+  }
+  std::streamsize xsputn(const char* text, std::streamsize count) override {
+    return quiet_depth > 0 ? count : target_->sputn(text, count);
+  }
+  int sync() override { return quiet_depth > 0 ? 0 : target_->pubsync(); }
+
+ private:
+  std::streambuf* target_;
+};
+
+}  // namespace
+
+void prepare_opencv() {
+  static const bool prepared = [] {
+    // OpenCV reads these when it first opens such a file. A value that the user set stays.
+    ::setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 0);
+    ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);  // AV_LOG_QUIET
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    // cv::error() would print every exception before throwing it.
+    cv::redirectError([](int, const char*, const char*, const char*, int, void*) { return 0; });
+    cv::setNumThreads(1);
+    if (std::cerr.rdbuf() != nullptr) {
+      // Never freed: std::cerr is used until the very end of the process.
+      std::cerr.rdbuf(new ThreadFilter(std::cerr.rdbuf()));
+    }
+    return true;
+  }();
+  (void)prepared;
+}
+
+QuietOpenCv::QuietOpenCv() { ++quiet_depth; }
+QuietOpenCv::~QuietOpenCv() { --quiet_depth; }
+
+}  // namespace vantage

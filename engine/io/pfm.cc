@@ -1,0 +1,79 @@
+#include "engine/io/pfm.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+
+#include "engine/io/text_header.h"
+
+namespace vantage {
+
+static_assert(std::endian::native == std::endian::little);
+
+Image<float> decode_pfm(const FileBytes& file) {
+  if (!file.has_at(0, "Pf") && !file.has_at(0, "PF")) {
+    file.fail("is not a PFM file, expected it to begin with Pf or PF");
+  }
+  const int channels = file.has_at(0, "PF") ? 3 : 1;
+  TextHeader header(file, 2, TextHeader::Comments::kNone);
+  const int width = header.number("width");
+  const int height = header.number("height");
+  file.check_dimensions(width, height);
+  const std::string scale_text = header.word();
+  char* scale_end = nullptr;
+  const double scale = std::strtod(scale_text.c_str(), &scale_end);
+  if (*scale_end != '\0' || !std::isfinite(scale) || scale == 0) {
+    file.fail("its scale is not a number other than 0 (negative means little-endian)");
+  }
+
+  const std::size_t row_values = static_cast<std::size_t>(width) * channels;
+  const std::size_t row_bytes = row_values * sizeof(float);
+  const std::size_t payload = row_bytes * static_cast<std::size_t>(height);
+  // Some writers put blanks or a carriage return behind the scale: the data begins behind the line
+  // end. It begins behind the first blank where there is no line end among the blanks.
+  std::size_t begin = header.offset();
+  if (!is_blank(file.byte(begin))) {
+    file.fail("its header does not end in a line end");
+  }
+  while (file.byte(begin) != '\n' && begin + 1 < file.size() && is_blank(file.byte(begin + 1)) &&
+         file.size() - (begin + 1) > payload) {
+    ++begin;
+  }
+  ++begin;
+  if (file.size() - begin < payload) {
+    file.fail(fmt::format("is truncated, {}x{} pixels take {} bytes but {} follow the header",
+                          width, height, payload, file.size() - begin));
+  }
+
+  Image<float> image(width, height, channels);
+  for (int y = 0; y < height; ++y) {
+    const auto source =
+        file.part(begin + row_bytes * static_cast<std::size_t>(height - 1 - y), row_bytes);
+    std::memcpy(image.row(y), source.data(), row_bytes);
+    if (scale > 0) {
+      float* row = image.row(y);
+      for (std::size_t i = 0; i < row_values; ++i) {
+        row[i] = std::bit_cast<float>(__builtin_bswap32(std::bit_cast<std::uint32_t>(row[i])));
+      }
+    }
+  }
+  return image;
+}
+
+std::vector<std::uint8_t> encode_pfm(ImageView<const float> image) {
+  const std::string header = fmt::format("{}\n{} {}\n-1.0\n", image.channels() == 3 ? "PF" : "Pf",
+                                         image.width(), image.height());
+  std::vector<std::uint8_t> bytes(header.begin(), header.end());
+  const std::size_t row_bytes =
+      sizeof(float) * static_cast<std::size_t>(image.width()) * image.channels();
+  bytes.reserve(bytes.size() + row_bytes * static_cast<std::size_t>(image.height()));
+  for (int y = image.height() - 1; y >= 0; --y) {
+    const auto* row = reinterpret_cast<const std::uint8_t*>(image.row(y));
+    bytes.insert(bytes.end(), row, row + row_bytes);
+  }
+  return bytes;
+}
+
+}  // namespace vantage

@@ -1,0 +1,70 @@
+#include "engine/io/photograph_io.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <type_traits>
+
+#include "engine/io/file_bytes.h"
+#include "engine/io/image_file.h"
+
+namespace vantage {
+namespace {
+
+void check_finite(const FileBytes& file, const Image<float>& image) {
+  for (int y = 0; y < image.height(); ++y) {
+    const float* row = image.row(y);
+    for (int i = 0; i < image.width() * image.channels(); ++i) {
+      if (!std::isfinite(row[i])) {
+        file.fail(fmt::format("its value at pixel ({}, {}) is {}, expected finite values",
+                              i / image.channels(), y, row[i]));
+      }
+    }
+  }
+}
+
+/// PNM files may say that white is, say, 1023: photographs span their whole type.
+template <typename T>
+void stretch(Image<T>& image, unsigned max_value) {
+  constexpr unsigned kFull = sizeof(T) == 1 ? 255U : 65535U;
+  if (max_value == kFull) {
+    return;
+  }
+  for (int y = 0; y < image.height(); ++y) {
+    T* row = image.row(y);
+    for (int i = 0; i < image.width() * image.channels(); ++i) {
+      row[i] = static_cast<T>((row[i] * kFull + max_value / 2) / max_value);
+    }
+  }
+}
+
+}  // namespace
+
+Photograph read_photograph(const std::filesystem::path& path) {
+  const std::vector<std::uint8_t> bytes = read_file_bytes(path);
+  const FileBytes file(bytes, path.string());
+  StoredImage stored = decode_image(file);
+  std::visit(
+      [&]<typename T>(Image<T>& image) {
+        if constexpr (std::is_same_v<T, float>) {
+          check_finite(file, image);
+        } else {
+          stretch(image, static_cast<unsigned>(stored.max_value));
+        }
+      },
+      stored.photograph.pixels);
+  return std::move(stored.photograph);
+}
+
+void write_photograph(const std::filesystem::path& path, const Photograph& photograph) {
+  write_image(path, photograph);
+}
+
+void write_mask(const std::filesystem::path& path, ImageView<const std::uint8_t> mask) {
+  if (lower_case_extension(path) != ".png") {
+    throw UsageError(fmt::format("cannot write {}: a mask is a .png file", path.string()));
+  }
+  write_image(path, Photograph{Image<std::uint8_t>::copy_of(mask)});
+}
+
+}  // namespace vantage

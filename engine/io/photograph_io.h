@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+
+#include "engine/image/photograph.h"
+
+namespace vantage {
+
+/// Largest accepted width or height, and largest accepted number of pixels of one image: beyond
+/// them a header is taken for damaged before any memory is asked for.
+inline constexpr int kMaxImageSide = 65500;
+inline constexpr long long kMaxImagePixels = 1LL << 28;
+
+/// Reads PNG, JPEG, TIFF, PNM, BMP, WebP, EXR (by OpenCV) and PFM. 8- and 16-bit and float, grey,
+/// RGB or RGBA, as the file's content says, whatever its name; PNM values are stretched from the
+/// file's largest value to the type's. EXIF orientation, gamma and colour profiles are ignored.
+/// Thread rule: may be called concurrently. Throws Error naming the file when it is missing, empty,
+/// truncated, not an image, absurdly large in its header, or float with NaN or infinity.
+Photograph read_photograph(const std::filesystem::path& path);
+
+/// Writes by extension (.png .jpg .tiff .bmp .ppm .pgm .webp .exr .pfm); whole or not at all.
+/// Throws Error when the folder cannot be written or the format cannot hold the depth or channels,
+/// UsageError for an unknown extension. Thread rule: may be called concurrently.
+void write_photograph(const std::filesystem::path& path, const Photograph& photograph);
+
+/// Writes a mask as 8-bit grey PNG; whole or not at all. Throws as write_photograph() does.
+void write_mask(const std::filesystem::path& path, ImageView<const std::uint8_t> mask);
+
+}  // namespace vantage

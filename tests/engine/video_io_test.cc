@@ -1,0 +1,254 @@
+#include "engine/io/video_io.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "engine/io/photograph_io.h"
+#include "tests/engine/io_test_support.h"
+
+namespace vantage {
+namespace {
+
+using test::bytes_of;
+using test::error_of;
+using test::noise;
+using test::put_bytes;
+using test::put_text;
+using test::TemporaryFolder;
+using ::testing::HasSubstr;
+
+/// Left half (200, 60, 30), right half (30, 90, 220); a white square that moves with the frame.
+Photograph test_frame(int width, int height, int index) {
+  Image<std::uint8_t> image(width, height, 3);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const bool left = x < width / 2;
+      const bool square = y < 8 && x / 8 == index;
+      const int colour[3] = {left ? 200 : 30, left ? 60 : 90, left ? 30 : 220};
+      for (int channel = 0; channel < 3; ++channel) {
+        image.at(x, y, channel) = static_cast<std::uint8_t>(square ? 255 : colour[channel]);
+      }
+    }
+  }
+  return {std::move(image)};
+}
+
+void write_video(const std::filesystem::path& path, int width, int height, int frames,
+                 double frames_per_second = 25) {
+  VideoWriter writer(path, width, height, frames_per_second);
+  for (int i = 0; i < frames; ++i) {
+    writer.write(test_frame(width, height, i));
+  }
+  writer.finish();
+}
+
+TEST(VideoIo, ReadsBackCountRateColoursAndOrder) {
+  const TemporaryFolder folder;
+  write_video(folder / "a.mp4", 96, 64, 11, 12.5);
+  EXPECT_EQ(folder.entries(), 1U);
+  VideoReader reader(folder / "a.mp4");
+  EXPECT_EQ(reader.width(), 96);
+  EXPECT_EQ(reader.height(), 64);
+  EXPECT_EQ(reader.frame_count(), 11);
+  EXPECT_NEAR(reader.frames_per_second().value_or(0), 12.5, 1e-6);
+  Photograph frame;
+  for (int i = 0; i < 11; ++i) {
+    ASSERT_TRUE(reader.read(frame));
+    const auto& image = std::get<Image<std::uint8_t>>(frame.pixels);
+    const Photograph expected_frame = test_frame(96, 64, i);
+    const auto& expected = std::get<Image<std::uint8_t>>(expected_frame.pixels);
+    for (const auto& [x, y] : {std::pair{20, 40}, std::pair{80, 40}, std::pair{8 * i + 4, 3}}) {
+      for (int channel = 0; channel < 3; ++channel) {
+        EXPECT_NEAR(image.at(x, y, channel), expected.at(x, y, channel), 14)
+            << "frame " << i << " " << x << "," << y << " channel " << channel;
+      }
+    }
+  }
+  EXPECT_FALSE(reader.read(frame));
+  EXPECT_FALSE(reader.read(frame));
+}
+
+TEST(VideoIo, ReusesTheMemoryOfTheFrame) {
+  const TemporaryFolder folder;
+  write_video(folder / "a.mp4", 32, 32, 3);
+  VideoReader reader(folder / "a.mp4");
+  Photograph frame;
+  ASSERT_TRUE(reader.read(frame));
+  const auto* pixels = std::get<Image<std::uint8_t>>(frame.pixels).row(0);
+  ASSERT_TRUE(reader.read(frame));
+  EXPECT_EQ(std::get<Image<std::uint8_t>>(frame.pixels).row(0), pixels);
+}
+
+TEST(VideoIo, OddSizesArePaddedByTheirLastColumnAndRow) {
+  const TemporaryFolder folder;
+  for (const auto& [width, height] : {std::pair{33, 47}, std::pair{35, 2}, std::pair{3, 3}}) {
+    write_video(folder / "a.mp4", width, height, 2);
+    VideoReader reader(folder / "a.mp4");
+    EXPECT_EQ(reader.width(), (width + 1) / 2 * 2);
+    EXPECT_EQ(reader.height(), (height + 1) / 2 * 2);
+    Photograph frame;
+    ASSERT_TRUE(reader.read(frame));
+    const auto& image = std::get<Image<std::uint8_t>>(frame.pixels);
+    const int last = image.width() - 1;
+    const int bottom = image.height() - 1;
+    EXPECT_NEAR(image.at(last, bottom, 2), height == 47 ? 220 : image.at(last - 1, bottom, 2), 14);
+  }
+}
+
+/// Coding and the conversion to YUV and back cost a flat grey up to 5 levels.
+TEST(VideoIo, TakesEveryDepthAndChannelCount) {
+  const TemporaryFolder folder;
+  Photograph grey{Image<std::uint8_t>(16, 16, 1)};
+  std::get<Image<std::uint8_t>>(grey.pixels).fill(100);
+  Photograph wide{Image<std::uint16_t>(16, 16, 4)};
+  std::get<Image<std::uint16_t>>(wide.pixels).fill(100 * 257);
+  Photograph real{Image<float>(16, 16, 3)};
+  std::get<Image<float>>(real.pixels).fill(100.0F / 255);
+  Photograph bright{Image<float>(16, 16, 1)};
+  std::get<Image<float>>(bright.pixels).fill(7.0F);
+  VideoWriter writer(folder / "a.mp4", 16, 16, 30);
+  for (const Photograph* frame : {&grey, &wide, &real, &bright}) {
+    writer.write(*frame);
+  }
+  writer.finish();
+  VideoReader reader(folder / "a.mp4");
+  Photograph frame;
+  for (const int expected : {100, 100, 100, 255}) {
+    ASSERT_TRUE(reader.read(frame));
+    for (int channel = 0; channel < 3; ++channel) {
+      EXPECT_NEAR(std::get<Image<std::uint8_t>>(frame.pixels).at(8, 8, channel), expected, 6);
+    }
+  }
+}
+
+TEST(VideoIo, IsH264In420InMp4) {
+  const TemporaryFolder folder;
+  write_video(folder / "a.mp4", 32, 32, 2);
+  const auto bytes = bytes_of(folder / "a.mp4");
+  const std::string text(bytes.begin(), bytes.end());
+  EXPECT_EQ(text.substr(4, 4), "ftyp");
+  const std::size_t configuration = text.find("avcC");
+  ASSERT_NE(configuration, std::string::npos);
+  // Of the profiles of H.264, 66, 77 and 100 have 4:2:0 only with 8 bits: what browsers play.
+  const int profile = static_cast<unsigned char>(text[configuration + 5]);
+  EXPECT_TRUE(profile == 66 || profile == 77 || profile == 100) << profile;
+}
+
+TEST(VideoIo, NothingIsLeftWithoutFinish) {
+  const TemporaryFolder folder;
+  put_text(folder / "a.mp4", "old");
+  {
+    VideoWriter writer(folder / "a.mp4", 32, 32, 25);
+    writer.write(test_frame(32, 32, 0));
+  }
+  EXPECT_EQ(folder.entries(), 1U);
+  EXPECT_EQ(bytes_of(folder / "a.mp4").size(), 3U);
+  {
+    VideoWriter writer(folder / "b.mp4", 32, 32, 25);
+    EXPECT_THAT(error_of([&] { writer.finish(); }), HasSubstr("no frames"));
+  }
+  EXPECT_EQ(folder.entries(), 1U);
+}
+
+TEST(VideoIo, WriterRefusesBadNamesSizesRatesAndFrames) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(VideoWriter(folder / "a.avi", 32, 32, 25), UsageError);
+  EXPECT_THROW(VideoWriter(folder / "a.mp4", 1, 32, 25), UsageError);
+  EXPECT_THROW(VideoWriter(folder / "a.mp4", 32, 20000, 25), UsageError);
+  EXPECT_THROW(VideoWriter(folder / "a.mp4", 32, 32, 0), UsageError);
+  EXPECT_THROW(VideoWriter(folder / "a.mp4", 32, 32, std::nan("")), UsageError);
+  EXPECT_THAT(error_of([&] { VideoWriter(folder / "no/a.mp4", 32, 32, 25); }),
+              HasSubstr("no folder"));
+  VideoWriter writer(folder / "a.mp4", 32, 32, 25);
+  EXPECT_THAT(error_of([&] { writer.write(test_frame(32, 30, 0)); }),
+              testing::AllOf(HasSubstr("32x30"), HasSubstr("32x32")));
+}
+
+TEST(VideoIo, ReaderRefusesWhatIsNoVideo) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(error_of([&] { VideoReader(folder / "no.mp4"); }), HasSubstr("no such file"));
+  EXPECT_THAT(error_of([&] { VideoReader(folder.path()); }), HasSubstr("video file"));
+  put_text(folder / "a.mp4", "");
+  EXPECT_THAT(error_of([&] { VideoReader(folder / "a.mp4"); }), HasSubstr("empty"));
+  put_text(folder / "a.mp4", "this is text, and long enough to look at\n");
+  EXPECT_THAT(error_of([&] { VideoReader(folder / "a.mp4"); }), HasSubstr("not a video"));
+}
+
+TEST(VideoIo, TruncatedVideosAreRefusedWhereverTheyEnd) {
+  const TemporaryFolder folder;
+  write_video(folder / "a.mp4", 64, 48, 8);
+  const auto whole = bytes_of(folder / "a.mp4");
+  for (const std::size_t size :
+       {std::size_t{4}, std::size_t{30}, whole.size() / 3, whole.size() / 2, whole.size() - 1}) {
+    put_bytes(folder / "b.mp4", {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
+    const std::string error = error_of([&] { VideoReader(folder / "b.mp4"); });
+    EXPECT_THAT(error, HasSubstr("b.mp4")) << size << " of " << whole.size();
+    EXPECT_EQ(error.find('\n'), std::string::npos);
+  }
+}
+
+/// The container is whole and most of what is in it is not.
+TEST(VideoIo, DamagedFramesAreAnErrorThatNamesTheFrame) {
+  const TemporaryFolder folder;
+  {
+    VideoWriter writer(folder / "a.mp4", 64, 48, 25);
+    for (unsigned i = 0; i < 20; ++i) {
+      writer.write(noise<std::uint8_t>(64, 48, 3, i));
+    }
+    writer.finish();
+  }
+  auto bytes = bytes_of(folder / "a.mp4");
+  const std::string text(bytes.begin(), bytes.end());
+  const std::size_t begin = text.find("mdat") + 4;
+  const std::size_t end = text.find("moov", begin);
+  ASSERT_LT(begin, end);
+  std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(begin + (end - begin) / 4),
+            bytes.begin() + static_cast<std::ptrdiff_t>(end - 4), std::uint8_t{0});
+  put_bytes(folder / "a.mp4", bytes);
+  const std::string error = error_of([&] {
+    VideoReader reader(folder / "a.mp4");
+    Photograph frame;
+    while (reader.read(frame)) {
+    }
+  });
+  EXPECT_THAT(error, testing::AllOf(HasSubstr("frame "), HasSubstr("expected 20")));
+}
+
+TEST(VideoIo, ReadsTheSharedVideoWhichShowsTheSharedFrames) {
+  const std::filesystem::path data = VANTAGE_SHARED_DATA;
+  if (!std::filesystem::is_directory(data / "kitti_seq1")) {
+    GTEST_SKIP() << "no video at " << data / "kitti_seq1";
+  }
+  VideoReader reader(data / "kitti_seq1/kitti_seq1_sbs.mp4");
+  EXPECT_EQ(reader.width(), 2452);
+  EXPECT_EQ(reader.height(), 370);
+  EXPECT_EQ(reader.frame_count(), 51);
+  EXPECT_NEAR(reader.frames_per_second().value_or(0), 10, 1e-6);
+  Photograph frame;
+  int frames = 0;
+  while (reader.read(frame)) {
+    if (frames == 35) {
+      const Photograph left = read_photograph(data / "kitti_seq1/left/000035.png");
+      const auto& expected = std::get<Image<std::uint8_t>>(left.pixels);
+      const auto& image = std::get<Image<std::uint8_t>>(frame.pixels);
+      for (int channel = 0; channel < 3; ++channel) {
+        double sum = 0;
+        for (int y = 0; y < expected.height(); ++y) {
+          for (int x = 0; x < expected.width(); ++x) {
+            sum += std::abs(image.at(x, y, channel) - expected.at(x, y));
+          }
+        }
+        EXPECT_LT(sum / (expected.width() * expected.height()), 3) << channel;
+      }
+    }
+    ++frames;
+  }
+  EXPECT_EQ(frames, 51);
+}
+
+}  // namespace
+}  // namespace vantage
