@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "engine/image/image.h"
+
+namespace vantage {
+
+/// Which pixels of a disparity map are judged.
+struct DisparityEvaluationOptions {
+  /// Of the maps' size; only pixels of value 255 count. Empty: all do.
+  std::optional<ImageView<const std::uint8_t>> mask = std::nullopt;
+  /// Rows and columns left out at each side of the image, ≥ 0.
+  int ignore_border_px = 0;
+};
+
+/// How far a disparity map is from the truth. The *evaluated* pixels are those with finite truth,
+/// inside the mask and not in the ignored border; the *valid* ones are those of them whose
+/// estimate is finite.
+struct DisparityScores {
+  std::int64_t evaluated_pixels = 0;  ///< ≥ 1
+  std::int64_t valid_pixels = 0;
+  double coverage_percent = 0;  ///< 100 · valid / evaluated
+
+  // Percentage of the evaluated pixels whose error exceeds the threshold (strictly) or that have
+  // no valid estimate: leaving a pixel out never improves these.
+  double bad_0_5_percent = 0;
+  double bad_1_percent = 0;
+  double bad_2_percent = 0;
+  double bad_4_percent = 0;
+
+  // Over the valid pixels alone, in pixels; NaN when there is none.
+  double average_px = 0;  ///< mean |error|
+  double rms_px = 0;
+  // Smallest error that is not exceeded by 50, 90, 95 and 99 % of the valid pixels.
+  double a50_px = 0;
+  double a90_px = 0;
+  double a95_px = 0;
+  double a99_px = 0;
+};
+
+/// Compares `disparity` with `truth`, both one channel and of one size, NaN or ±inf = unknown.
+/// Errors: Error when sizes differ or no pixel can be evaluated, UsageError for a negative border.
+/// Thread rule: pure.
+DisparityScores evaluate_disparity(ImageView<const float> disparity, ImageView<const float> truth,
+                                   const DisparityEvaluationOptions& options = {});
+
+}  // namespace vantage

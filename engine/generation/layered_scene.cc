@@ -1,0 +1,265 @@
+#include "engine/generation/layered_scene.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/generation/portable_random.h"
+#include "engine/generation/scene_objects.h"
+
+namespace vantage {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kMaxSidePx = 16384;
+constexpr double kMaxBaselines = 16;
+// A point is hidden when something is met before this share of the way to it; the rest is for the
+// rounding of the two rays.
+constexpr double kVisibleShare = 1 - 1e-7;
+
+void require_between(const char* field, double value, double low, double high) {
+  if (!(value >= low && value <= high)) {
+    throw UsageError(fmt::format("{} is {}, expected {} to {}", field, value, low, high));
+  }
+}
+
+void require_valid(SceneView view) {
+  require_between("view x", view.x, -kMaxBaselines, kMaxBaselines);
+  require_between("view y", view.y, -kMaxBaselines, kMaxBaselines);
+}
+
+// A pinhole camera in the plane Z = 0 that looks along Z.
+struct Camera {
+  Vector3d position;
+  double focal_length_px;
+  Vector2d principal_point;
+
+  // t is the depth of the point along Z.
+  [[nodiscard]] Ray ray_through(double x_px, double y_px) const {
+    return {position,
+            {(x_px - principal_point.x()) / focal_length_px,
+             (y_px - principal_point.y()) / focal_length_px, 1}};
+  }
+  [[nodiscard]] Vector2d project(const Vector3d& point) const {
+    const Vector3d relative = point - position;
+    return principal_point + focal_length_px / relative.z() * relative.head<2>();
+  }
+};
+
+struct Hit {
+  double t = kNoHit;
+  int object = 0;
+};
+
+// Image rectangle outside of which a camera cannot see an object.
+struct Box {
+  Vector2d low, high;
+
+  [[nodiscard]] bool contains(double x_px, double y_px) const {
+    return x_px >= low.x() && x_px <= high.x() && y_px >= low.y() && y_px <= high.y();
+  }
+};
+
+Box box_of(const Ball& ball, const Camera& camera) {
+  if (!(ball.centre.z() > ball.radius)) {
+    return {Vector2d::Constant(-kNoHit), Vector2d::Constant(kNoHit)};
+  }
+  Box box{Vector2d::Constant(kNoHit), Vector2d::Constant(-kNoHit)};
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3d sign((corner & 1) * 2 - 1, (corner & 2) - 1, (corner & 4) / 2 - 1);
+    const Vector2d position = camera.project(ball.centre + ball.radius * sign);
+    box.low = box.low.cwiseMin(position);
+    box.high = box.high.cwiseMax(position);
+  }
+  return box;
+}
+
+// One camera before the scene at one time.
+class Shot {
+ public:
+  Shot(const std::vector<SceneObject>& objects, Camera camera)
+      : objects_(objects), camera_(std::move(camera)) {
+    for (const SceneObject& object : objects_) {
+      boxes_.push_back(box_of(object.surface->bounds(), camera_));
+    }
+  }
+
+  [[nodiscard]] const Camera& camera() const { return camera_; }
+
+  /// `ray` begins at the camera and passes through the image position.
+  [[nodiscard]] Hit first_hit(const Ray& ray, double x_px, double y_px) const {
+    Hit first;
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+      if (!boxes_[i].contains(x_px, y_px)) {
+        continue;
+      }
+      const double t = objects_[i].surface->intersect(ray);
+      if (t < first.t) {
+        first = {t, static_cast<int>(i)};
+      }
+    }
+    return first;
+  }
+
+  [[nodiscard]] bool sees(const Vector3d& point) const {
+    const Vector2d position = camera_.project(point);
+    const Ray ray{camera_.position, point - camera_.position};
+    return first_hit(ray, position.x(), position.y()).t >= kVisibleShare;
+  }
+
+ private:
+  const std::vector<SceneObject>& objects_;
+  Camera camera_;
+  std::vector<Box> boxes_;
+};
+
+}  // namespace
+
+struct LayeredScene::Content {
+  explicit Content(const LayeredSceneOptions& scene_options)
+      : options(scene_options),
+        centre{.focal_length_px =
+                   static_cast<double>(std::max(scene_options.width_px, scene_options.height_px))},
+        texture(scene_options.seed) {}
+
+  [[nodiscard]] std::vector<SceneObject> objects_at(int frame) const {
+    if (frame < 0) {
+      throw UsageError(fmt::format("frame is {}, expected at least 0", frame));
+    }
+    return compose_scene(options, centre, frame);
+  }
+  [[nodiscard]] Camera camera_at(SceneView view) const {
+    require_valid(view);
+    return {Vector3d(view.x, view.y, 0), centre.focal_length_px,
+            Vector2d((options.width_px - 1) / 2.0, (options.height_px - 1) / 2.0)};
+  }
+
+  LayeredSceneOptions options;
+  CentreView centre;
+  SceneTexture texture;
+};
+
+double LayeredSceneOptions::far_disparity_or_default() const {
+  return far_disparity_px.value_or(width_px / 80.0);
+}
+
+double LayeredSceneOptions::near_disparity_or_default() const {
+  return near_disparity_px.value_or(5 * far_disparity_or_default());
+}
+
+void LayeredSceneOptions::validate() const {
+  require_between("width", width_px, 1, kMaxSidePx);
+  require_between("height", height_px, 1, kMaxSidePx);
+  require_between("far disparity", far_disparity_or_default(), 1e-3, kMaxSidePx);
+  require_between("near disparity", near_disparity_or_default(), 1.5 * far_disparity_or_default(),
+                  5.0 * kMaxSidePx);
+  require_between("frames per cycle", frames_per_cycle, 1, 1e9);
+  require_between("samples per side", samples_per_side, 1, 8);
+  require_between("right gain", right_gain, 0.1, 10);
+  require_between("right offset", right_offset, -255, 255);
+  require_between("noise", noise_sigma, 0, 255);
+}
+
+LayeredScene::LayeredScene(const LayeredSceneOptions& options, Execution& execution)
+    : options_(options), execution_(&execution) {
+  options_.validate();
+  content_ = std::make_unique<const Content>(options_);
+}
+
+LayeredScene::~LayeredScene() = default;
+LayeredScene::LayeredScene(LayeredScene&&) noexcept = default;
+
+double LayeredScene::focal_length_px() const { return content_->centre.focal_length_px; }
+
+SceneRendering LayeredScene::render(SceneView view, int frame) const {
+  const std::vector<SceneObject> objects = content_->objects_at(frame);
+  const Shot shot(objects, content_->camera_at(view));
+  const int samples = options_.samples_per_side;
+  const double towards_right = std::clamp(view.x, 0.0, 1.0);
+  const double gain = 1 + towards_right * (options_.right_gain - 1);
+  const double offset = towards_right * options_.right_offset;
+  const std::uint64_t noise_seed =
+      mix_bits(mix_bits(mix_bits(options_.seed + static_cast<std::uint64_t>(frame)) ^
+                        std::bit_cast<std::uint64_t>(view.x)) ^
+               std::bit_cast<std::uint64_t>(view.y));
+
+  const auto colour_at = [&](double x_px, double y_px) {
+    const Ray ray = shot.camera().ray_through(x_px, y_px);
+    const Hit hit = shot.first_hit(ray, x_px, y_px);
+    const SceneObject& object = objects[static_cast<std::size_t>(hit.object)];
+    const Vector3d colour =
+        content_->texture.colour(object.palette, object.surface->detail(ray.at(hit.t)));
+    // A sample is as bright as a sensor can tell, like the pixels it makes up.
+    return Vector3d(colour.cwiseMax(0.0).cwiseMin(255.0));
+  };
+
+  Image<std::uint8_t> image(options_.width_px, options_.height_px, 3);
+  SceneRendering rendering{{}, DisparityMap(options_.width_px, options_.height_px)};
+  execution_->for_each_band(options_.height_px, [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      PortableRandom noise(noise_seed, static_cast<std::uint64_t>(y));
+      for (int x = 0; x < options_.width_px; ++x) {
+        const Hit centre_hit = shot.first_hit(shot.camera().ray_through(x, y), x, y);
+        rendering.disparity.at(x, y) = static_cast<float>(focal_length_px() / centre_hit.t);
+
+        Vector3d sum = Vector3d::Zero();
+        for (int j = 0; j < samples; ++j) {
+          for (int i = 0; i < samples; ++i) {
+            sum += colour_at(x + (i + 0.5) / samples - 0.5, y + (j + 0.5) / samples - 0.5);
+          }
+        }
+        const Vector3d colour = gain / (samples * samples) * sum + Vector3d::Constant(offset);
+        for (int c = 0; c < 3; ++c) {
+          const double noisy = options_.noise_sigma > 0
+                                   ? colour[c] + options_.noise_sigma * noise.normal()
+                                   : colour[c];
+          image.at(x, y, c) =
+              static_cast<std::uint8_t>(std::clamp(std::floor(noisy + 0.5), 0.0, 255.0));
+        }
+      }
+    }
+  });
+  rendering.image.pixels = std::move(image);
+  return rendering;
+}
+
+Mask LayeredScene::occlusion(SceneView from, SceneView in, int frame) const {
+  const std::vector<SceneObject> objects = content_->objects_at(frame);
+  const Shot shot(objects, content_->camera_at(from));
+  const Shot other(objects, content_->camera_at(in));
+  const auto is_in_frame = [&](const Vector2d& position) {
+    return position.x() >= -0.5 && position.x() < options_.width_px - 0.5 && position.y() >= -0.5 &&
+           position.y() < options_.height_px - 0.5;
+  };
+  Mask occluded(options_.width_px, options_.height_px);
+  execution_->for_each_band(options_.height_px, [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      for (int x = 0; x < options_.width_px; ++x) {
+        const Ray ray = shot.camera().ray_through(x, y);
+        const Vector3d point = ray.at(shot.first_hit(ray, x, y).t);
+        const bool visible = is_in_frame(other.camera().project(point)) && other.sees(point);
+        occluded.at(x, y) = visible ? 0 : 255;
+      }
+    }
+  });
+  return occluded;
+}
+
+ScenePoint LayeredScene::point_at(SceneView view, int frame, double x_px, double y_px) const {
+  const std::vector<SceneObject> objects = content_->objects_at(frame);
+  const Shot shot(objects, content_->camera_at(view));
+  const Ray ray = shot.camera().ray_through(x_px, y_px);
+  const Hit hit = shot.first_hit(ray, x_px, y_px);
+  const Vector3d point = ray.at(hit.t);
+  return {point.x(), point.y(), point.z(), hit.object};
+}
+
+}  // namespace vantage

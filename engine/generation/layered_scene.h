@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "engine/execution.h"
+#include "engine/image/image.h"
+#include "engine/image/photograph.h"
+
+namespace vantage {
+
+/// What a layered scene looks like.
+struct LayeredSceneOptions {
+  int width_px = 640;   ///< 1..16384
+  int height_px = 480;  ///< 1..16384
+  /// Disparities of the scene, per baseline, lie within [far, near]: 0 < far, 1.5 · far ≤ near.
+  /// Defaults: width/80 and 5 · far, hence 8 and 40 at 640 pixels.
+  std::optional<double> far_disparity_px = std::nullopt;
+  std::optional<double> near_disparity_px = std::nullopt;
+  int frames_per_cycle = 120;  ///< ≥ 1; after so many frames all movements begin anew
+  int samples_per_side = 3;    ///< 1..8; colour is the mean of its square of samples per pixel
+  /// Of the right camera (view x = 1): it sees gain · I + offset (grey levels), views on the
+  /// baseline the linear interpolation. 0.1..10 and ±255.
+  double right_gain = 1;
+  double right_offset = 0;
+  double noise_sigma = 0;  ///< grey levels, independent per pixel, channel, view, frame; 0..255
+  std::uint64_t seed = 1;  ///< of textures and noise
+
+  /// Throws UsageError naming the field, its value and its limit.
+  void validate() const;
+  [[nodiscard]] double far_disparity_or_default() const;
+  [[nodiscard]] double near_disparity_or_default() const;
+};
+
+/// Where a camera stands, in baselines: (0, 0) is the left camera, (1, 0) the right one, y > 0 is
+/// below. All cameras look along Z and share the focal length and the principal point, so every
+/// pair of them is rectified up to the direction of its baseline.
+struct SceneView {
+  double x = 0;
+  double y = 0;
+};
+
+/// The surface point that a ray through an image position meets. World coordinates: left camera in
+/// the origin, X right, Y down, Z forward, in baselines.
+struct ScenePoint {
+  double x = 0;
+  double y = 0;
+  double z = 0;
+  int surface = 0;  ///< number of the surface; the same in every view and frame
+};
+
+/// What one camera sees at one time.
+struct SceneRendering {
+  Photograph image;        ///< 8-bit RGB
+  DisparityMap disparity;  ///< at pixel centres, per one baseline: focal length / Z; all known
+};
+
+/// A made-up moving scene with exact geometry: a wavy wall, a slanted floor, spheres, a column,
+/// thin bars and floating slanted cards with shaped outlines. All carry colour textures that are
+/// attached to them, so that a surface point has one colour in every view.
+///
+/// A point at image position p in view A lies at p − d · (B − A) in view B (3.5), d its disparity.
+/// Thread rule: all members may be called concurrently. Results do not depend on the executor.
+class LayeredScene {
+ public:
+  /// Throws UsageError for invalid options. `execution` must outlive the scene.
+  LayeredScene(const LayeredSceneOptions& options, Execution& execution);
+  ~LayeredScene();
+  LayeredScene(LayeredScene&&) noexcept;
+  LayeredScene& operator=(LayeredScene&&) = delete;
+
+  [[nodiscard]] const LayeredSceneOptions& options() const { return options_; }
+  /// In pixels, the same in x and y; the principal point is the centre of the image.
+  [[nodiscard]] double focal_length_px() const;
+
+  /// `frame` ≥ 0; view within ±16 baselines in x and y. Throws UsageError otherwise.
+  [[nodiscard]] SceneRendering render(SceneView view, int frame) const;
+
+  /// 255 at the pixels of view `from` whose surface point is hidden in view `in` or falls outside
+  /// its frame (nearest pixel outside the image). Decided by a ray from `in` to the point.
+  [[nodiscard]] Mask occlusion(SceneView from, SceneView in, int frame) const;
+
+  /// The point seen at position (x_px, y_px), which need not be a pixel centre nor in the frame.
+  [[nodiscard]] ScenePoint point_at(SceneView view, int frame, double x_px, double y_px) const;
+
+ private:
+  struct Content;
+  LayeredSceneOptions options_;
+  Execution* execution_;
+  std::unique_ptr<const Content> content_;
+};
+
+}  // namespace vantage

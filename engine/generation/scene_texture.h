@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "engine/generation/gradient_noise.h"
+#include "engine/generation/scene_surface.h"
+
+namespace vantage {
+
+/// Colours of one surface, RGB in grey levels 0..255: noise mixes a with b, and c with d where the
+/// surface's pattern is 1.
+struct Palette {
+  Eigen::Vector3d a, b, c, d;
+};
+
+/// Colours of surface points: matte surfaces under one fixed light, with noise between 5 and 100
+/// pixels of wavelength so that every neighbourhood can be matched. Thread rule: immutable.
+class SceneTexture {
+ public:
+  explicit SceneTexture(std::uint64_t seed) : noise_(seed) {}
+
+  /// RGB in grey levels, not clipped. Does not depend on where the point is seen from.
+  [[nodiscard]] Eigen::Vector3d colour(const Palette& palette, const SurfaceDetail& detail) const;
+
+ private:
+  GradientNoise noise_;
+};
+
+}  // namespace vantage

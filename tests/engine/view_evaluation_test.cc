@@ -1,0 +1,183 @@
+#include "engine/evaluation/view_evaluation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <utility>
+
+#include "engine/error.h"
+
+namespace vantage {
+namespace {
+
+Execution& serial() {
+  static Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
+  return execution;
+}
+
+Photograph picture(int width, int height, int channels,
+                   const std::function<int(int, int, int)>& level) {
+  Image<std::uint8_t> image(width, height, channels);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (int c = 0; c < channels; ++c) {
+        image.at(x, y, c) = static_cast<std::uint8_t>(level(x, y, c));
+      }
+    }
+  }
+  return {std::move(image)};
+}
+
+Photograph random_picture(int width, int height, int channels, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<int> noise(0, 40);
+  return picture(width, height, channels, [&](int x, int y, int c) {
+    return 20 + (x * 7 + y * 3 + c * 11) % 180 + noise(random);
+  });
+}
+
+double luma(const Photograph& photograph, int x, int y) {
+  const auto& image = std::get<Image<std::uint8_t>>(photograph.pixels);
+  if (image.channels() < 3) {
+    return image.at(x, y);
+  }
+  return 0.299 * image.at(x, y, 0) + 0.587 * image.at(x, y, 1) + 0.114 * image.at(x, y, 2);
+}
+
+// Window by window, with two-dimensional weights and central moments.
+double plain_ssim(const Photograph& a, const Photograph& b) {
+  double weights[11][11];
+  double weight_sum = 0;
+  for (int j = 0; j < 11; ++j) {
+    for (int i = 0; i < 11; ++i) {
+      weights[j][i] = std::exp(-((i - 5) * (i - 5) + (j - 5) * (j - 5)) / 4.5);
+      weight_sum += weights[j][i];
+    }
+  }
+  double sum = 0;
+  int windows = 0;
+  for (int y = 0; y + 11 <= a.height(); ++y) {
+    for (int x = 0; x + 11 <= a.width(); ++x, ++windows) {
+      const auto average = [&](const std::function<double(int, int)>& value) {
+        double total = 0;
+        for (int j = 0; j < 11; ++j) {
+          for (int i = 0; i < 11; ++i) {
+            total += weights[j][i] * value(x + i, y + j);
+          }
+        }
+        return total / weight_sum;
+      };
+      const double mean_a = average([&](int u, int v) { return luma(a, u, v); });
+      const double mean_b = average([&](int u, int v) { return luma(b, u, v); });
+      const double variance_a =
+          average([&](int u, int v) { return std::pow(luma(a, u, v) - mean_a, 2); });
+      const double variance_b =
+          average([&](int u, int v) { return std::pow(luma(b, u, v) - mean_b, 2); });
+      const double covariance = average(
+          [&](int u, int v) { return (luma(a, u, v) - mean_a) * (luma(b, u, v) - mean_b); });
+      const double c1 = 2.55 * 2.55;
+      const double c2 = 7.65 * 7.65;
+      sum += (2 * mean_a * mean_b + c1) * (2 * covariance + c2) /
+             ((mean_a * mean_a + mean_b * mean_b + c1) * (variance_a + variance_b + c2));
+    }
+  }
+  return sum / windows;
+}
+
+TEST(ViewEvaluation, SsimAgreesWithPlainTranscription) {
+  for (const auto& [width, height] : {std::pair{11, 11}, {12, 11}, {11, 29}, {37, 23}}) {
+    for (const int channels : {1, 3, 4}) {
+      const Photograph a = random_picture(width, height, channels, 1);
+      const Photograph b = random_picture(width, height, channels, 2);
+      const ViewScores scores = evaluate_view(a, b, serial());
+      ASSERT_TRUE(scores.ssim.has_value());
+      EXPECT_NEAR(*scores.ssim, plain_ssim(a, b), 1e-9);
+      EXPECT_LT(*scores.ssim, 0.99);
+    }
+  }
+}
+
+TEST(ViewEvaluation, SsimIsOneForEqualAndNegativeForInvertedPictures) {
+  const Photograph a = random_picture(20, 20, 1, 3);
+  const Photograph inverted =
+      picture(20, 20, 1, [&](int x, int y, int) { return 255 - static_cast<int>(luma(a, x, y)); });
+  EXPECT_NEAR(evaluate_view(a, a, serial()).ssim.value(), 1, 1e-12);
+  EXPECT_LT(evaluate_view(a, inverted, serial()).ssim.value(), 0);
+  EXPECT_EQ(evaluate_view(a, a, serial()).psnr_db, std::numeric_limits<double>::infinity());
+}
+
+TEST(ViewEvaluation, PsnrOfAConstantDifference) {
+  const Photograph a = picture(5, 3, 3, [](int, int, int) { return 100; });
+  const Photograph b = picture(5, 3, 3, [](int, int, int c) { return c == 1 ? 110 : 100; });
+  const ViewScores scores = evaluate_view(a, b, serial());
+  EXPECT_NEAR(scores.psnr_db, 10 * std::log10(255.0 * 255.0 * 3 / 100), 1e-9);
+  EXPECT_NEAR(scores.mean_absolute_difference, 10.0 / 3, 1e-12);
+  EXPECT_EQ(scores.pixels, 15);
+  EXPECT_FALSE(scores.ssim.has_value());
+}
+
+TEST(ViewEvaluation, MaskSelectsPixels) {
+  const Photograph a = picture(3, 2, 1, [](int, int, int) { return 50; });
+  const Photograph b = picture(3, 2, 1, [](int x, int y, int) { return 50 + 10 * x + y; });
+  Mask mask(3, 2);
+  mask.fill(0);
+  mask.at(2, 0) = 255;
+  mask.at(1, 1) = 254;  // not set
+  const ViewScores scores = evaluate_view(a, b, serial(), mask.view());
+  EXPECT_EQ(scores.pixels, 1);
+  EXPECT_DOUBLE_EQ(scores.mean_absolute_difference, 20);
+  mask.fill(0);
+  EXPECT_THROW((void)evaluate_view(a, b, serial(), mask.view()), Error);
+}
+
+TEST(ViewEvaluation, DepthsShareOneScaleAndAlphaIsLeftOut) {
+  const Photograph a = random_picture(13, 12, 4, 5);
+  const auto& bytes = std::get<Image<std::uint8_t>>(a.pixels);
+  Image<std::uint16_t> deep(13, 12, 3);
+  Image<float> real(13, 12, 4);
+  for (int y = 0; y < 12; ++y) {
+    for (int x = 0; x < 13; ++x) {
+      for (int c = 0; c < 4; ++c) {
+        real.at(x, y, c) = c == 3 ? 0.5F : static_cast<float>(bytes.at(x, y, c)) / 255;
+        if (c < 3) {
+          deep.at(x, y, c) = static_cast<std::uint16_t>(bytes.at(x, y, c) * 257);
+        }
+      }
+    }
+  }
+  const Photograph deep_picture{std::move(deep)};
+  const Photograph real_picture{std::move(real)};
+  EXPECT_LT(evaluate_view(a, deep_picture, serial()).mean_absolute_difference, 1e-4);
+  EXPECT_LT(evaluate_view(deep_picture, real_picture, serial()).mean_absolute_difference, 1e-4);
+}
+
+TEST(ViewEvaluation, GreyIsComparedWithLuma) {
+  const Photograph colour = picture(4, 4, 3, [](int, int, int c) { return c == 0 ? 200 : 0; });
+  const Photograph grey = picture(4, 4, 1, [](int, int, int) { return 0; });
+  EXPECT_NEAR(evaluate_view(colour, grey, serial()).mean_absolute_difference, 0.299 * 200, 1e-9);
+}
+
+TEST(ViewEvaluation, SameForAnyExecution) {
+  const Photograph a = random_picture(61, 53, 3, 8);
+  const Photograph b = random_picture(61, 53, 3, 9);
+  const ViewScores expected = evaluate_view(a, b, serial());
+  for (const int threads : {1, 2, 5}) {
+    Execution execution({.threads = threads});
+    const ViewScores scores = evaluate_view(a, b, execution);
+    EXPECT_EQ(scores.ssim, expected.ssim);
+    EXPECT_EQ(scores.psnr_db, expected.psnr_db);
+  }
+}
+
+TEST(ViewEvaluation, SizesMustAgree) {
+  const Photograph a = random_picture(4, 3, 1, 1);
+  const Photograph b = random_picture(3, 4, 1, 1);
+  const Mask mask(3, 4);
+  EXPECT_THROW((void)evaluate_view(a, b, serial()), Error);
+  EXPECT_THROW((void)evaluate_view(a, a, serial(), mask.view()), Error);
+}
+
+}  // namespace
+}  // namespace vantage
