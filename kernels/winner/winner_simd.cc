@@ -56,29 +56,6 @@ HWY_INLINE Least least_of(const std::int32_t* cells, CandidateRange range) {
   return {hn::GetLane(least), hn::GetLane(hn::MinOfLanes(d32, places))};
 }
 
-// The same for cells that carry their index: the least cell is the first of the least sums.
-HWY_INLINE Least indexed_least_of(const std::int32_t* cells, CandidateRange range, int index_bits) {
-  const Tag32 d32;
-  const int step = static_cast<int>(hn::Lanes(d32));
-  const Vec32 worst = hn::Set(d32, std::numeric_limits<std::int32_t>::max());
-  int i = range.begin / step * step;
-  const Vec32 number = hn::Iota(d32, i);
-  Vec32 least =
-      hn::IfThenElse(hn::Lt(number, hn::Set(d32, range.begin)), worst, hn::LoadU(d32, cells + i));
-  if (i + step > range.end) {
-    least = hn::IfThenElse(hn::Gt(number, hn::Set(d32, range.end - 1)), worst, least);
-  }
-  for (i += step; i + step <= range.end; i += step) {
-    least = hn::Min(least, hn::LoadU(d32, cells + i));
-  }
-  if (i < range.end) {
-    const auto past_end = hn::Gt(hn::Iota(d32, i), hn::Set(d32, range.end - 1));
-    least = hn::Min(least, hn::IfThenElse(past_end, worst, hn::LoadU(d32, cells + i)));
-  }
-  const std::int32_t cell = hn::GetLane(hn::MinOfLanes(d32, least));
-  return {cell, cell & ((1 << index_bits) - 1)};
-}
-
 // Compares fractions sum/count in order of increasing candidates.
 class BestFraction {
  public:
@@ -116,8 +93,7 @@ HWY_INLINE std::int32_t border_winner(const WinnerRow& row, const std::int32_t* 
   for (int i = candidates.begin; i < full.begin; ++i) {
     best.offer(i, row.sum(cells[i]), full_columns - (full.begin - i));
   }
-  const Least least =
-      row.index_bits > 0 ? indexed_least_of(cells, full, row.index_bits) : least_of(cells, full);
+  const Least least = least_of(cells, full);
   best.offer(least.index, row.sum(least.value), full_columns);
   for (int i = full.end; i < candidates.end; ++i) {
     best.offer(i, row.sum(cells[i]), full_columns - (i - full.end + 1));
@@ -125,42 +101,97 @@ HWY_INLINE std::int32_t border_winner(const WinnerRow& row, const std::int32_t* 
   return best.index();
 }
 
-// Lane by lane minimum over the candidates of a column; `padding` masks the lanes behind the last
-// candidate of the last vector.
-template <class Mask>
-HWY_INLINE Vec32 lane_minima(const std::int32_t* cells, int count, Mask padding) {
-  const Tag32 d32;
-  const int step = static_cast<int>(hn::Lanes(d32));
-  Vec32 least = hn::Set(d32, std::numeric_limits<std::int32_t>::max());
-  int i = 0;
-  for (; i + step <= count; i += step) {
-    least = hn::Min(least, hn::LoadU(d32, cells + i));
+void plain_sum_winners(const WinnerRow& row, std::int32_t* HWY_RESTRICT winners) {
+  const std::size_t lanes = static_cast<std::size_t>(row.geometry.lanes());
+  const CandidateRange plain = row.plain_columns();
+  const std::int32_t* cells = row.cells;
+  for (int j = 0; j < row.columns; ++j, cells += lanes) {
+    const int x = row.first_column + j;
+    winners[j] = x >= plain.begin && x < plain.end ? least_of(cells, {0, row.geometry.count}).index
+                                                   : border_winner(row, cells, x);
   }
-  if (i < count) {
-    least = hn::Min(least, hn::IfThenElse(padding, least, hn::LoadU(d32, cells + i)));
-  }
-  return least;
 }
 
-// Cells that carry their index: the least cell names the winner. One vector of columns at a time,
-// whose lane minima are reduced together as in a transposition.
-HWY_INLINE void indexed_winners(const WinnerRow& row, const std::int32_t* cells, int columns,
-                                std::int32_t* HWY_RESTRICT winners) {
-  const Tag32 d32;
-  const int step = static_cast<int>(hn::Lanes(d32));
-  const int count = row.geometry.count;
-  const std::size_t lanes = static_cast<std::size_t>(row.geometry.lanes());
-  const auto padding_lanes = hn::Gt(hn::Iota(d32, 0), hn::Set(d32, count % step - 1));
-  const Vec32 index_mask = hn::Set(d32, (1 << row.index_bits) - 1);
-  HWY_ALIGN std::int32_t least[hn::MaxLanes(d32) * hn::MaxLanes(d32)];
+// Winners of cells that carry their index: the least cell names the winner. One vector of columns
+// at a time, whose lane-by-lane minima are reduced together as in a transposition.
+class IndexedWinners {
+ public:
+  HWY_INLINE explicit IndexedWinners(const WinnerRow& row)
+      : row_(row),
+        lanes_(static_cast<std::size_t>(row.geometry.lanes())),
+        plain_(row.plain_columns()) {}
 
-  int j = 0;
-  for (; j + step <= columns; j += step) {
-    for (int column = 0; column < step; ++column, cells += lanes) {
-      hn::Store(lane_minima(cells, count, padding_lanes), d32, least + column * step);
+  HWY_INLINE void run(std::int32_t* HWY_RESTRICT winners) const {
+    const Tag32 d32;
+    const int step = static_cast<int>(hn::Lanes(d32));
+    HWY_ALIGN std::int32_t least[hn::MaxLanes(d32) * hn::MaxLanes(d32)] = {};
+    for (int j = 0; j < row_.columns; j += step) {
+      const int columns = std::min(step, row_.columns - j);
+      for (int k = 0; k < columns; ++k) {
+        hn::Store(lane_minima(j + k), d32, least + k * step);
+      }
+      reduce(least);
+      if (columns == step) {
+        hn::StoreU(index_of(hn::Load(d32, least)), d32, winners + j);
+      } else {
+        for (int k = 0; k < columns; ++k) {
+          winners[j + k] = least[k] & index_mask();
+        }
+      }
+      if (!is_plain(row_.first_column + j) || !is_plain(row_.first_column + j + columns - 1)) {
+        for (int k = 0; k < columns; ++k) {
+          finish(j + k, least[k], winners[j + k]);
+        }
+      }
     }
+  }
+
+ private:
+  [[nodiscard]] HWY_INLINE bool is_plain(int x) const {
+    return x >= plain_.begin && x < plain_.end;
+  }
+  [[nodiscard]] HWY_INLINE const std::int32_t* cells(int j) const {
+    return row_.cells + static_cast<std::size_t>(j) * lanes_;
+  }
+  [[nodiscard]] HWY_INLINE std::int32_t index_mask() const { return (1 << row_.index_bits) - 1; }
+  [[nodiscard]] HWY_INLINE Vec32 index_of(Vec32 cells) const {
+    const Tag32 d32;
+    return hn::And(cells, hn::Set(d32, index_mask()));
+  }
+
+  // How many candidates, from the first, have a whole window of partners at a column; 0 where
+  // those do not start at the first candidate.
+  [[nodiscard]] HWY_INLINE int leading_full(int x) const {
+    if (is_plain(x)) {
+      return row_.geometry.count;
+    }
+    const CandidateRange full = row_.full_window_candidates(x);
+    return full.begin == 0 ? full.end : 0;
+  }
+
+  [[nodiscard]] HWY_INLINE Vec32 lane_minima(int j) const {
+    const Tag32 d32;
+    const int step = static_cast<int>(hn::Lanes(d32));
+    const std::int32_t* column = cells(j);
+    const int count = leading_full(row_.first_column + j);
+    Vec32 least = hn::Set(d32, std::numeric_limits<std::int32_t>::max());
+    int i = 0;
+    for (; i + step <= count; i += step) {
+      least = hn::Min(least, hn::LoadU(d32, column + i));
+    }
+    if (i < count) {
+      const auto past_end = hn::Gt(hn::Iota(d32, i), hn::Set(d32, count - 1));
+      least = hn::Min(least, hn::IfThenElse(past_end, least, hn::LoadU(d32, column + i)));
+    }
+    return least;
+  }
+
+  // Lane k of the first vector becomes the minimum of vector k. Each round halves the vectors:
+  // neighbouring lanes of two of them are merged into one.
+  static HWY_INLINE void reduce(std::int32_t* least) {
 #if HWY_TARGET != HWY_SCALAR
-    // Each round halves the vectors: neighbouring lanes of two vectors are merged into one.
+    const Tag32 d32;
+    const int step = static_cast<int>(hn::Lanes(d32));
     for (int vectors = step / 2; vectors > 0; vectors /= 2) {
       for (int v = 0; v < vectors; ++v) {
         const Vec32 low = hn::Load(d32, least + 2 * v * step);
@@ -169,34 +200,42 @@ HWY_INLINE void indexed_winners(const WinnerRow& row, const std::int32_t* cells,
                   least + v * step);
       }
     }
+#else
+    (void)least;
 #endif
-    hn::StoreU(hn::And(hn::Load(d32, least), index_mask), d32, winners + j);
   }
-  for (; j < columns; ++j, cells += lanes) {
-    const Vec32 minimum = hn::MinOfLanes(d32, lane_minima(cells, count, padding_lanes));
-    winners[j] = hn::GetLane(hn::And(minimum, index_mask));
+
+  // Lets the candidates with shortened windows compete where there are any.
+  HWY_INLINE void finish(int j, std::int32_t least, std::int32_t& winner) const {
+    const int x = row_.first_column + j;
+    if (is_plain(x)) {
+      return;
+    }
+    const int full_end = leading_full(x);
+    if (full_end == 0) {
+      winner = border_winner(row_, cells(j), x);
+      return;
+    }
+    const int full_columns = row_.full_window_columns(x);
+    BestFraction best;
+    best.offer(winner, row_.sum(least), full_columns);
+    const std::int32_t* column = cells(j);
+    for (int i = full_end, end = row_.candidates(x).end; i < end; ++i) {
+      best.offer(i, row_.sum(column[i]), full_columns - (i - full_end + 1));
+    }
+    winner = best.index();
   }
-}
+
+  const WinnerRow& row_;
+  std::size_t lanes_;
+  CandidateRange plain_;
+};
 
 void select_winners_row_simd(const WinnerRow& row, std::int32_t* HWY_RESTRICT winners) {
-  const std::size_t lanes = static_cast<std::size_t>(row.geometry.lanes());
-  const auto [plain_begin, plain_end] = row.plain_columns();
-  const auto cells_of = [&](int x) {
-    return row.cells + static_cast<std::size_t>(x - row.first_column) * lanes;
-  };
-  for (int x = row.first_column; x < plain_begin; ++x) {
-    winners[x - row.first_column] = border_winner(row, cells_of(x), x);
-  }
   if (row.index_bits > 0) {
-    indexed_winners(row, cells_of(plain_begin), plain_end - plain_begin,
-                    winners + (plain_begin - row.first_column));
+    IndexedWinners(row).run(winners);
   } else {
-    for (int x = plain_begin; x < plain_end; ++x) {
-      winners[x - row.first_column] = least_of(cells_of(x), {0, row.geometry.count}).index;
-    }
-  }
-  for (int x = plain_end; x < row.first_column + row.columns; ++x) {
-    winners[x - row.first_column] = border_winner(row, cells_of(x), x);
+    plain_sum_winners(row, winners);
   }
 }
 

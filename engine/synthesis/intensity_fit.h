@@ -1,0 +1,20 @@
+#pragma once
+
+#include "kernels/intensity_sums/intensity_sums.h"
+
+namespace vantage {
+
+/// I_R ≈ offset + gain · I_L of one channel, in grey levels 0..255 (3.9).
+struct IntensityFit {
+  double offset = 0;
+  double gain = 1;
+};
+
+/// Least squares (3.10) from the sums (3.11) of one channel, whose values are worth
+/// `grey_levels_per_unit` each. The identity where the fit is degenerate: fewer than two pixels, a
+/// left image without contrast, or a gain outside 1/16..16, which includes b ≤ 0 and is no
+/// difference between two cameras of one rig.
+IntensityFit fit_intensities(const kernels::IntensitySums& sums, int channel,
+                             double grey_levels_per_unit);
+
+}  // namespace vantage

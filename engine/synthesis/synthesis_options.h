@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+
+namespace vantage {
+
+/// How positions that neither warped image covers are filled (EQUATIONS §6, hole filling).
+enum class HoleFilling {
+  kMirror,  ///< the background side mirrored along the scanline
+  kSpread,  ///< the background side's border pixel repeated
+  kNone     ///< left black
+};
+
+/// How colour reaches the new view once disparity has been forward-mapped.
+enum class WarpColour {
+  kOnePass,  ///< fetched backward from the source image, one bicubic interpolation (3.2.7)
+  kForward   ///< the source pixel itself, moved to the nearest position: the book's method
+};
+
+struct SynthesisOptions {
+  WarpColour warp = WarpColour::kOnePass;
+  HoleFilling holes = HoleFilling::kMirror;
+  /// γ of (3.12), 0..1: which camera's brightness the view has (1 = left). Empty: γ = α.
+  std::optional<double> gamma = 0.5;
+  /// Neighbours whose disparities differ by at most this are one surface; ≥ 0, in pixels.
+  double disparity_gradient_limit_px = 1.0;
+  /// Regress the right image's intensities on the left's (3.9–3.11); off: a = 0, b = 1.
+  bool match_intensities = true;
+
+  /// Throws UsageError naming the field, its value and its limit.
+  void validate() const;
+};
+
+}  // namespace vantage

@@ -1,0 +1,71 @@
+#include "kernels/hole_fill/hole_fill.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vantage::kernels {
+namespace {
+
+// Pixels from `start` onward in direction `step` that are one surface, at most `wanted`.
+int run_length(const float* disparity_px, int width, int start, int step, int wanted, float limit) {
+  int length = 1;
+  for (int x = start + step; x >= 0 && x < width && length < wanted; x += step, ++length) {
+    // Not "greater than": a NaN on the way, which is another hole, must end the run too.
+    if (!(std::abs(disparity_px[x] - disparity_px[x - step]) <= limit)) {
+      break;
+    }
+  }
+  return length;
+}
+
+template <typename T>
+void fill_hole(const HoleFillRow<T>& row, int begin, int end, bool mirror) {
+  const bool has_left = begin > 0;
+  const bool has_right = end < row.width;
+  const bool from_left =
+      has_left && !(has_right && row.disparity_px[end] < row.disparity_px[begin - 1]);
+  const int start = from_left ? begin - 1 : end;
+  const int step = from_left ? -1 : 1;
+  const int count = end - begin;
+  const int run =
+      mirror ? run_length(row.disparity_px, row.width, start, step, count, row.gradient_limit_px)
+             : 1;
+  int position = 0;  // within s0 … s(run−1), which is walked to and fro
+  int direction = 1;
+  for (int k = 0; k < count; ++k) {
+    const int target = from_left ? begin + k : end - 1 - k;
+    std::copy_n(row.pixels + (start + position * step) * row.channels, row.channels,
+                row.pixels + target * row.channels);
+    position += direction;
+    if (position < 0 || position == run) {
+      position -= direction;
+      direction = -direction;
+    }
+  }
+}
+
+template <typename T>
+void fill_holes(const HoleFillRow<T>& row, bool mirror) {
+  int x = 0;
+  while (x < row.width) {
+    if (!std::isnan(row.disparity_px[x])) {
+      ++x;
+      continue;
+    }
+    const int begin = x;
+    while (x < row.width && std::isnan(row.disparity_px[x])) {
+      ++x;
+    }
+    if (begin > 0 || x < row.width) {
+      fill_hole(row, begin, x, mirror);
+    }
+  }
+}
+
+}  // namespace
+
+void fill_holes_row(const HoleFillRow<std::uint8_t>& row, bool mirror) { fill_holes(row, mirror); }
+void fill_holes_row(const HoleFillRow<std::uint16_t>& row, bool mirror) { fill_holes(row, mirror); }
+void fill_holes_row(const HoleFillRow<float>& row, bool mirror) { fill_holes(row, mirror); }
+
+}  // namespace vantage::kernels

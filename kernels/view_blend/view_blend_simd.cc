@@ -1,0 +1,195 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/view_blend/view_blend_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include <cstring>
+#include <limits>
+#include <type_traits>
+
+#include "kernels/pixel_row/pixel_row.h"
+#include "kernels/view_blend/view_blend.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+#if HWY_TARGET == HWY_SCALAR
+// Has no vector of four lanes to hold a pixel.
+template <typename T>
+int blend_channels(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
+                   const BlendedRow<T>& view) {
+  return blend_row_ref(pair, weights, channels, view);
+}
+#else
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Weights of the left image, 0 at holes, and the outputs that do not depend on colour, for the
+// positions [x, x + lanes). Returns the number of holes.
+template <class D>
+HWY_INLINE int weigh(D d, const WarpedPairRow& pair, float alpha, int x, float* disparity_px,
+                     std::uint8_t* holes, float* HWY_RESTRICT left_weights) {
+  const auto left_d = hn::LoadU(d, pair.left_disparity_px + x);
+  const auto right_d = hn::LoadU(d, pair.right_disparity_px + x);
+  const auto zero = hn::Zero(d);
+  const auto one = hn::Set(d, 1.0F);
+  const auto has_left = hn::Eq(left_d, left_d);
+  const auto has_right = hn::Eq(right_d, right_d);
+  const auto hole = hn::Not(hn::Or(has_left, has_right));
+
+  auto left = hn::Set(d, alpha);
+  if (alpha > 0.0F && alpha < 1.0F) {
+    const auto same_surface =
+        hn::Le(hn::Abs(hn::Sub(left_d, right_d)), hn::Set(d, pair.gradient_limit_px));
+    const auto nearer = hn::IfThenElse(hn::Gt(left_d, right_d), one, zero);
+    left = hn::IfThenElse(same_surface, left, nearer);
+  }
+  left = hn::IfThenElse(has_right, left, one);
+  left = hn::IfThenElse(has_left, left, zero);
+  hn::StoreU(left, d, left_weights);
+
+  const auto disparity =
+      hn::Add(hn::Mul(left, hn::IfThenElseZero(has_left, left_d)),
+              hn::Mul(hn::Sub(one, left), hn::IfThenElseZero(has_right, right_d)));
+  const auto unknown = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
+  hn::StoreU(hn::IfThenElse(hole, unknown, disparity), d, disparity_px + x);
+
+  const hn::Rebind<std::int32_t, D> d32;
+  const hn::Rebind<std::uint8_t, D> d8;
+  const auto hole_values =
+      hn::IfThenElseZero(hn::RebindMask(d32, hole), hn::Set(d32, std::int32_t{255}));
+  hn::StoreU(hn::DemoteTo(d8, hole_values), d8, holes + x);
+  return static_cast<int>(hn::CountTrue(d, hole));
+}
+
+// `room`: whether four values may be written where three are wanted, because later pixels follow.
+template <int kChannels, typename T, class D>
+HWY_INLINE void store_pixel(D d, bool room, hn::VFromD<D> value, hn::VFromD<D> left,
+                            hn::VFromD<D> right, T* pixel) {
+  const auto zero = hn::Zero(d);
+  const auto largest = hn::Set(d, kLargestValue<T>);
+  if constexpr (std::is_same_v<T, float>) {
+    const auto lower = hn::Min(zero, hn::Min(left, right));
+    const auto upper = hn::Max(largest, hn::Max(left, right));
+    float values[4];
+    hn::StoreU(hn::Min(hn::Max(value, lower), upper), d, values);
+    std::memcpy(pixel, values, kChannels * sizeof(T));
+  } else {
+    const hn::Rebind<std::int32_t, D> d32;
+    const hn::Rebind<T, D> d_pixel;
+    const auto rounded =
+        hn::ConvertTo(d32, hn::Add(hn::Min(hn::Max(value, zero), largest), hn::Set(d, 0.5F)));
+    const auto narrow = hn::DemoteTo(d_pixel, rounded);
+    if (kChannels != 3 || room) {
+      hn::StoreU(narrow, d_pixel, pixel);
+    } else {
+      T values[4];
+      hn::StoreU(narrow, d_pixel, values);
+      std::memcpy(pixel, values, kChannels * sizeof(T));
+    }
+  }
+}
+
+// Colours of the positions [x, x + count): one vector is one pixel.
+template <int kChannels, typename T>
+HWY_INLINE void blend_pixels(const WarpedPairRow& pair, const BlendWeights& weights, int x,
+                             int count, const float* HWY_RESTRICT left_weights, T* pixels) {
+  constexpr int kLanes = pixel_lanes(kChannels);
+  const hn::FixedTag<float, kLanes> d;
+  const auto left_scale = hn::LoadU(d, weights.left_scale);
+  const auto left_offset = hn::LoadU(d, weights.left_offset);
+  const auto right_scale = hn::LoadU(d, weights.right_scale);
+  const auto right_offset = hn::LoadU(d, weights.right_offset);
+  const float* left_colours = pair.left_colours + x * kLanes;
+  const float* right_colours = pair.right_colours + x * kLanes;
+  for (int i = 0; i < count; ++i) {
+    const auto left = hn::LoadU(d, left_colours + i * kLanes);
+    const auto right = hn::LoadU(d, right_colours + i * kLanes);
+    // Mul and Add, never MulAdd: results must not depend on the instruction set.
+    const auto left_part =
+        hn::Mul(hn::Set(d, left_weights[i]), hn::Add(hn::Mul(left_scale, left), left_offset));
+    const auto right_part = hn::Mul(hn::Set(d, 1.0F - left_weights[i]),
+                                    hn::Add(hn::Mul(right_scale, right), right_offset));
+    store_pixel<kChannels>(d, x + i + 1 < pair.width, hn::Add(left_part, right_part), left, right,
+                           pixels + (x + i) * kChannels);
+  }
+}
+
+template <int kChannels, typename T>
+HWY_INLINE int blend_any(const WarpedPairRow& pair, const BlendWeights& weights,
+                         const BlendedRow<T>& view) {
+  const hn::ScalableTag<float> d;
+  const hn::FixedTag<float, 1> d_one;
+  const int step = static_cast<int>(hn::Lanes(d));
+  HWY_ALIGN float left_weights[hn::MaxLanes(hn::ScalableTag<float>())];
+  int holes = 0;
+  const auto block = [&](auto tag, int x) HWY_ATTR {
+    const int count = static_cast<int>(hn::Lanes(tag));
+    const int block_holes =
+        weigh(tag, pair, weights.alpha, x, view.disparity_px, view.holes, left_weights);
+    blend_pixels<kChannels>(pair, weights, x, count, left_weights, view.pixels);
+    if (block_holes > 0) {
+      for (int i = x; i < x + count; ++i) {
+        if (view.holes[i] != 0) {
+          std::memset(view.pixels + i * kChannels, 0, kChannels * sizeof(T));
+        }
+      }
+    }
+    holes += block_holes;
+  };
+  int x = 0;
+  for (; x + step <= pair.width; x += step) {
+    block(d, x);
+  }
+  for (; x < pair.width; ++x) {
+    block(d_one, x);
+  }
+  return holes;
+}
+
+template <typename T>
+HWY_INLINE int blend_channels(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
+                              const BlendedRow<T>& view) {
+  if (channels == 1) {
+    return blend_any<1>(pair, weights, view);
+  }
+  return channels == 3 ? blend_any<3>(pair, weights, view) : blend_any<4>(pair, weights, view);
+}
+#endif
+
+int blend_u8(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
+             const BlendedRow<std::uint8_t>& view) {
+  return blend_channels(pair, weights, channels, view);
+}
+int blend_u16(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
+              const BlendedRow<std::uint16_t>& view) {
+  return blend_channels(pair, weights, channels, view);
+}
+int blend_f32(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
+              const BlendedRow<float>& view) {
+  return blend_channels(pair, weights, channels, view);
+}
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(blend_u8);
+HWY_EXPORT(blend_u16);
+HWY_EXPORT(blend_f32);
+
+int blend_row(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
+              const BlendedRow<std::uint8_t>& view) {
+  return HWY_DYNAMIC_DISPATCH(blend_u8)(pair, weights, channels, view);
+}
+int blend_row(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
+              const BlendedRow<std::uint16_t>& view) {
+  return HWY_DYNAMIC_DISPATCH(blend_u16)(pair, weights, channels, view);
+}
+int blend_row(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
+              const BlendedRow<float>& view) {
+  return HWY_DYNAMIC_DISPATCH(blend_f32)(pair, weights, channels, view);
+}
+
+}  // namespace vantage::kernels
+#endif

@@ -1,0 +1,159 @@
+#include "kernels/colour_fetch/colour_fetch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+#include "kernels/forward_warp/forward_warp.h"
+#include "tests/kernels/synthesis_rows.h"
+
+namespace vantage::kernels {
+namespace {
+
+std::vector<float> random_values(std::mt19937& random, int count) {
+  std::vector<float> values(static_cast<std::size_t>(count));
+  for (float& value : values) {
+    value = static_cast<float>(random() % 256);
+  }
+  return values;
+}
+
+struct Scanline {
+  std::vector<float> disparity_px;
+  RowWithMargins source_disparity;
+  RowWithMargins pixels;
+  std::vector<float> warped_disparity_px;
+  std::vector<float> source_column;
+
+  Scanline(const std::vector<float>& disparities, const std::vector<float>& values, int lanes,
+           double s)
+      : disparity_px(disparities),
+        source_disparity(disparities, 1, kUnknownDisparity),
+        pixels(values, lanes, 0),
+        warped_disparity_px(disparities.size()),
+        source_column(disparities.size()) {
+    forward_warp_row({disparity_px.data(), static_cast<int>(disparity_px.size()), s, 1.0F},
+                     warped_disparity_px.data(), source_column.data());
+  }
+
+  [[nodiscard]] BicubicFetchRow bicubic(int lanes, double s, float limit) const {
+    return {.pixels = pixels.row(),
+            .source_disparity_px = source_disparity.row(),
+            .warped_disparity_px = warped_disparity_px.data(),
+            .width = static_cast<int>(disparity_px.size()),
+            .lanes = lanes,
+            .camera_offset = s,
+            .gradient_limit_px = limit,
+            .largest_value = 255};
+  }
+};
+
+// Keys' cubic convolution kernel, a = −½, as the paper defines it.
+double keys(double t) {
+  t = std::abs(t);
+  if (t < 1) {
+    return 1.5 * t * t * t - 2.5 * t * t + 1;
+  }
+  return t < 2 ? -0.5 * t * t * t + 2.5 * t * t - 4 * t + 2 : 0;
+}
+
+TEST(FetchBicubic, EqualOnEveryInstructionSetAndToReference) {
+  std::mt19937 random(4);
+  for (const int width : kAwkwardWidths) {
+    for (const int lanes : {1, 4}) {
+      for (const double s : {-0.7, 0.0, 0.3, 1.0, 2.2}) {
+        const Scanline line(random_disparities(random, width, -5, 20),
+                            random_values(random, width * lanes), lanes, s);
+        for (const float limit : {0.0F, 1.0F}) {
+          const BicubicFetchRow row = line.bicubic(lanes, s, limit);
+          std::vector<float> expected(static_cast<std::size_t>(width * lanes));
+          fetch_bicubic_row_ref(row, expected.data());
+          for_each_target([&] {
+            std::vector<float> colours(expected.size(), -1.0F);
+            fetch_bicubic_row(row, colours.data());
+            ASSERT_EQ(colours, expected) << width << " wide, " << lanes << " lanes, s " << s;
+          });
+        }
+      }
+    }
+  }
+}
+
+TEST(FetchBicubic, IsKeysConvolutionWithReplicatedBorder) {
+  std::mt19937 random(5);
+  for (const int width : {1, 2, 3, 17, 80}) {
+    for (const double s : {-0.5, 0.25, 1.0}) {
+      // One surface whose disparity has a fraction.
+      const std::vector<float> disparities(static_cast<std::size_t>(width), 1.3F);
+      const std::vector<float> values = random_values(random, width);
+      const Scanline line(disparities, values, 1, s);
+      std::vector<float> colours(static_cast<std::size_t>(width));
+      fetch_bicubic_row(line.bicubic(1, s, 1.0F), colours.data());
+      for (int n = 0; n < width; ++n) {
+        if (std::isnan(line.warped_disparity_px[static_cast<std::size_t>(n)])) {
+          EXPECT_EQ(colours[static_cast<std::size_t>(n)], 0);
+          continue;
+        }
+        const double column = n + s * 1.3F;
+        double expected = 0;
+        for (int x = -4; x < width + 4; ++x) {
+          const int inside = std::clamp(x, 0, width - 1);
+          expected += keys(column - x) * values[static_cast<std::size_t>(inside)];
+        }
+        EXPECT_NEAR(colours[static_cast<std::size_t>(n)], std::clamp(expected, 0.0, 255.0), 1e-3);
+      }
+    }
+  }
+}
+
+TEST(FetchBicubic, DoesNotMixSurfaces) {
+  // Foreground of 200 at d = 8.4, background of 50 at d = 0.4: only these two colours may appear.
+  std::vector<float> disparities(60, 0.4F);
+  std::vector<float> values(60, 50.0F);
+  for (std::size_t x = 25; x < 40; ++x) {
+    disparities[x] = 8.4F;
+    values[x] = 200;
+  }
+  for (const double s : {-0.5, 0.3, 0.5}) {
+    const Scanline line(disparities, values, 1, s);
+    std::vector<float> colours(60);
+    fetch_bicubic_row(line.bicubic(1, s, 1.0F), colours.data());
+    for (std::size_t n = 0; n < 60; ++n) {
+      const float d = line.warped_disparity_px[n];
+      EXPECT_NEAR(colours[n], std::isnan(d) ? 0.0F : d > 4 ? 200.0F : 50.0F, 1e-3F) << n;
+    }
+  }
+}
+
+TEST(FetchForward, SourcePixelsAndLinearGaps) {
+  std::mt19937 random(6);
+  for (const int width : kAwkwardWidths) {
+    for (const int lanes : {1, 4}) {
+      const std::vector<float> values = random_values(random, width * lanes);
+      const Scanline line(random_disparities(random, width, -5, 20), values, lanes, -0.6);
+      std::vector<float> colours(values.size());
+      fetch_forward_row({line.pixels.row(), line.source_column.data(), width, lanes},
+                        colours.data());
+      for (int n = 0; n < width; ++n) {
+        const float column = line.source_column[static_cast<std::size_t>(n)];
+        for (int c = 0; c < lanes; ++c) {
+          double expected = 0;
+          if (!std::isnan(column)) {
+            const int x = static_cast<int>(std::floor(column));
+            const int next = std::min(x + 1, width - 1);
+            const double f = static_cast<double>(column) - x;
+            expected = (1 - f) * values[static_cast<std::size_t>(x * lanes + c)] +
+                       f * values[static_cast<std::size_t>(next * lanes + c)];
+          }
+          ASSERT_NEAR(colours[static_cast<std::size_t>(n * lanes + c)], expected, 1e-4);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vantage::kernels

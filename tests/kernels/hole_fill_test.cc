@@ -1,0 +1,120 @@
+#include "kernels/hole_fill/hole_fill.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/kernels/synthesis_rows.h"
+
+namespace vantage::kernels {
+namespace {
+
+// One letter per pixel; disparities as digits, '.' = hole.
+std::string fill(std::string pixels, const std::string& disparities, bool mirror = true) {
+  std::vector<std::uint8_t> values(pixels.begin(), pixels.end());
+  std::vector<float> d;
+  for (const char digit : disparities) {
+    d.push_back(digit == '.' ? kUnknownDisparity : static_cast<float>(digit - '0'));
+  }
+  fill_holes_row(HoleFillRow<std::uint8_t>{.pixels = values.data(),
+                                           .disparity_px = d.data(),
+                                           .width = static_cast<int>(d.size()),
+                                           .channels = 1,
+                                           .gradient_limit_px = 1},
+                 mirror);
+  return {values.begin(), values.end()};
+}
+
+TEST(HoleFill, MirrorsTheBackgroundSide) {
+  EXPECT_EQ(fill("abcd___xyz", "1111...555"), "abcddcbxyz");
+  EXPECT_EQ(fill("abc___wxyz", "555...1111"), "abcyxwwxyz");
+}
+
+TEST(HoleFill, EqualSidesTakeTheLeft) { EXPECT_EQ(fill("abc__xyz", "333..333"), "abccbxyz"); }
+
+TEST(HoleFill, HoleAtTheBorderHasOneSide) {
+  EXPECT_EQ(fill("__abcd", "..9999"), "baabcd");
+  EXPECT_EQ(fill("abcd__", "9999.."), "abcddc");
+}
+
+TEST(HoleFill, ReflectsWhereTheRunEnds) {
+  EXPECT_EQ(fill("ab_____xy", "11.....55"), "abbaabbxy");        // image border
+  EXPECT_EQ(fill("pqab____xy", "7711....55"), "pqabbaabxy");     // disparity jump
+  EXPECT_EQ(fill("pq_ab____xy", "11.11....55"), "pqqabbaabxy");  // another hole
+  EXPECT_EQ(fill("a____", "1...."), "aaaaa");
+}
+
+TEST(HoleFill, ASlopeIsNoJump) { EXPECT_EQ(fill("abcd____", "4321...."), "abcddcba"); }
+
+TEST(HoleFill, SpreadRepeatsTheBorderPixel) {
+  EXPECT_EQ(fill("abcd___xyz", "1111...555", false), "abcddddxyz");
+}
+
+TEST(HoleFill, NothingToCopyFrom) { EXPECT_EQ(fill("___", "..."), "___"); }
+
+// The definition, as an index computed for each hole position by itself.
+TEST(HoleFill, EqualsPlainDefinitionOnRandomRows) {
+  std::mt19937 random(11);
+  for (const int width : kAwkwardWidths) {
+    for (int repeat = 0; repeat < 20; ++repeat) {
+      std::vector<float> d(static_cast<std::size_t>(width));
+      bool hole = false;
+      for (float& value : d) {
+        hole = random() % 3 == 0 ? !hole : hole;
+        value = hole ? kUnknownDisparity : static_cast<float>(random() % 4);
+      }
+      std::vector<std::uint16_t> pixels;
+      for (int k = 0; k < 3 * width; ++k) {
+        pixels.push_back(static_cast<std::uint16_t>(k));
+      }
+      const auto at = [&](int x) { return d[static_cast<std::size_t>(x)]; };
+      const auto known = [&](int x) { return x >= 0 && x < width && !std::isnan(at(x)); };
+      std::vector<std::uint16_t> expected = pixels;
+      for (int x = 0; x < width; ++x) {
+        if (known(x)) {
+          continue;
+        }
+        int left = x;
+        int right = x;
+        while (left >= 0 && !known(left)) {
+          --left;
+        }
+        while (right < width && !known(right)) {
+          ++right;
+        }
+        if (left < 0 && right == width) {
+          continue;
+        }
+        const bool use_left = right == width || (left >= 0 && at(left) <= at(right));
+        const int border = use_left ? left : right;
+        const int step = use_left ? -1 : 1;
+        int run = 1;
+        while (known(border + run * step) &&
+               std::abs(at(border + run * step) - at(border + (run - 1) * step)) <= 1) {
+          ++run;
+        }
+        const int k = (std::abs(x - border) - 1) % (2 * run);
+        const int source = border + (k < run ? k : 2 * run - 1 - k) * step;
+        for (int c = 0; c < 3; ++c) {
+          expected[static_cast<std::size_t>(3 * x + c)] =
+              pixels[static_cast<std::size_t>(3 * source + c)];
+        }
+      }
+      fill_holes_row(HoleFillRow<std::uint16_t>{.pixels = pixels.data(),
+                                                .disparity_px = d.data(),
+                                                .width = width,
+                                                .channels = 3,
+                                                .gradient_limit_px = 1},
+                     true);
+      ASSERT_EQ(pixels, expected);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vantage::kernels
