@@ -95,9 +95,10 @@ void resize_planes(IntensityPlanes<Pixel>& planes, int height,
                    const kernels::CandidateGeometry& geometry, PlanesNeeded needed) {
   // Lane i of column x is read at x + disparity_min + i, in the mirrored plane as in the plain one.
   const int before = std::max(0, -geometry.disparity_min);
-  const int after = std::max(0, geometry.disparity_min + geometry.lanes());
+  // Kernels read whole vectors: up to a lane multiple past the last pixel that matters.
+  const int after = std::max(0, geometry.disparity_min + geometry.lanes()) + kernels::kLaneMultiple;
   planes.left.resize(geometry.width, height, before, after);
-  planes.right.resize(geometry.width, height, 0, 0);
+  planes.right.resize(geometry.width, height, 0, kernels::kLaneMultiple);
   if (needed.left_reference) {
     planes.right_mirrored.resize(geometry.width, height, before, after);
   }

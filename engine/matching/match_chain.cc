@@ -8,8 +8,7 @@
 
 #include "engine/error.h"
 #include "engine/matching/stage_column_ssd.h"
-#include "engine/matching/stage_row_sum.h"
-#include "engine/matching/stage_selection.h"
+#include "engine/matching/stage_window_selection.h"
 
 namespace vantage {
 
@@ -67,9 +66,8 @@ MatchChain::MatchChain(const MatchOptions& options, const kernels::CandidateGeom
                               left ? planes.right_mirrored : planes.left, geometry, height,
                               radius));
   }
-  add(make_row_sum_stage(radius, geometry.lanes(), shift > 0, {geometry.width, height}));
-  add(make_selection_stage(geometry, {radius, 2 * shift, options.border, options.subpixel},
-                           disparity_px));
+  add(make_window_selection_stage(geometry, {radius, 2 * shift, options.border, options.subpixel},
+                                  disparity_px));
 }
 
 void MatchChain::add(std::unique_ptr<scheduler::RowStage> stage) {

@@ -8,9 +8,8 @@ namespace vantage::kernels {
 /// the image; those outside [input_begin, input_end) count as absent.
 struct RowSum {
   const std::int32_t* input = nullptr;  ///< first cell of input_begin
-  std::int32_t* output = nullptr;       ///< first cell of output_begin
-  int input_begin = 0;                  ///< = max(0, output_begin − radius)
-  int input_end = 0;                    ///< = min(image width, output_end + radius)
+  int input_begin = 0;                  ///< ≤ max(0, output_begin − radius)
+  int input_end = 0;                    ///< ≥ min(image width, output_end + radius)
   int output_begin = 0;
   int output_end = 0;
   int radius = 0;
@@ -18,6 +17,12 @@ struct RowSum {
   /// Adds its number to every lane of the output: the low bits of a cell then name its candidate
   /// when the inputs are multiples of a power of two that leaves room for it.
   bool number_lanes = false;
+
+  std::int32_t* output = nullptr;  ///< first cell of output_begin; null when only minima are wanted
+  /// When not null: one value per output column, the least of its cells [0, candidates).
+  std::int32_t* minima = nullptr;
+  int candidates = 0;                   ///< 1..lanes; for minima only
+  std::int32_t* minima_work = nullptr;  ///< kLaneMultiple values per output column, for minima only
 };
 
 /// output(x, i) = Σ input(x − radius … x + radius, i) [+ i]. Running sums: the work per cell does

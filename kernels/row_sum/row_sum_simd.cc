@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 
+#include "kernels/candidates.h"
 #include "kernels/row_sum/row_sum.h"
+#include "kernels/winner/lane_minima-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
@@ -16,78 +19,158 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag32 = hn::ScalableTag<std::int32_t>;
 using Vec32 = hn::VFromD<Tag32>;
 
+// What a block of lanes contributes to the minima: nothing, the first or a further part.
+enum class Minima { kNone, kBegin, kContinue };
+
 // kVectors vectors of neighbouring lanes over all columns: the running sums stay in registers from
 // column to column, and a column's lanes are touched in whole cache lines.
-template <int kVectors>
-HWY_INLINE void sum_lanes(const RowSum& row, int first_lane) {
-  const Tag32 d32;
-  const int step = static_cast<int>(hn::Lanes(d32));
-  const std::ptrdiff_t lanes = row.lanes;
-  const std::int32_t* const input = row.input + first_lane;
-  std::int32_t* output = row.output + first_lane;
-  const int input_begin = row.input_begin;
-  const int radius = row.radius;
+template <int kVectors, bool kStore, Minima kMinima, bool kPadded>
+class LaneBlock {
+ public:
+  HWY_INLINE LaneBlock(const RowSum& row, int first_lane)
+      : row_(row),
+        lanes_(row.lanes),
+        output_(kStore ? row.output + first_lane : nullptr),
+        minima_(row.minima_work) {
+    const Tag32 d32;
+    const int window_begin = std::max(row.output_begin - row.radius, row.input_begin);
+    entering_ = row.input + first_lane +
+                static_cast<std::ptrdiff_t>(window_begin - row.input_begin) * lanes_;
+    leaving_ = entering_;
+    for (int v = 0; v < kVectors; ++v) {
+      const int lane = first_lane + v * kStep;
+      sum_[v] = row.number_lanes ? hn::Iota(d32, lane) : hn::Zero(d32);
+      // Lanes behind the last candidate are lifted above all others, the rest left as they are.
+      const auto is_candidate = hn::Lt(hn::Iota(d32, lane), hn::Set(d32, row.candidates));
+      floor_[v] =
+          hn::IfThenElse(is_candidate, hn::Set(d32, std::numeric_limits<std::int32_t>::min()),
+                         hn::Set(d32, std::numeric_limits<std::int32_t>::max()));
+    }
+  }
 
-  Vec32 sum[kVectors];
-  for (int v = 0; v < kVectors; ++v) {
-    sum[v] = row.number_lanes ? hn::Iota(d32, first_lane + v * step) : hn::Zero(d32);
+  HWY_INLINE void run() {
+    const int radius = row_.radius;
+    const int window_begin = std::max(row_.output_begin - radius, row_.input_begin);
+    const int window_end = std::min(row_.output_begin + radius, row_.input_end);
+    // Four stretches without a branch in them: growing windows at the left border of the image (in
+    // a strip inside it: its first column), windows wider than the image, full windows, and
+    // shrinking ones at the right border.
+    const int leave_from = std::min(window_begin + radius + 1, row_.output_end);
+    const int enter_until = std::clamp(row_.input_end - radius, row_.output_begin, row_.output_end);
+    stretch<true, false, false>(window_end - window_begin);
+    stretch<true, false, true>(std::min(leave_from, enter_until) - row_.output_begin);
+    stretch<false, false, true>(leave_from - std::min(leave_from, enter_until));
+    stretch<true, true, true>(enter_until - std::min(leave_from, enter_until));
+    stretch<false, true, true>(row_.output_end - std::max(leave_from, enter_until));
   }
-  const auto enter = [&](int column) HWY_ATTR {
-    const std::int32_t* cell = input + (column - input_begin) * lanes;
-    for (int v = 0; v < kVectors; ++v) {
-      sum[v] = hn::Add(sum[v], hn::LoadU(d32, cell + v * step));
-    }
-  };
-  const auto leave = [&](int column) HWY_ATTR {
-    const std::int32_t* cell = input + (column - input_begin) * lanes;
-    for (int v = 0; v < kVectors; ++v) {
-      sum[v] = hn::Sub(sum[v], hn::LoadU(d32, cell + v * step));
-    }
-  };
-  const auto store = [&]() HWY_ATTR {
-    for (int v = 0; v < kVectors; ++v) {
-      hn::StoreU(sum[v], d32, output + v * step);
-    }
-    output += lanes;
-  };
 
-  for (int column = input_begin; column < std::min(row.output_begin + radius, row.input_end);
-       ++column) {
-    enter(column);
+ private:
+  static constexpr int kStep = static_cast<int>(hn::MaxLanes(Tag32()));
+
+  template <bool kEnter, bool kLeave, bool kDeliver>
+  HWY_INLINE void stretch(int columns) {
+    const Tag32 d32;
+    const std::ptrdiff_t lanes = lanes_;
+    const std::int32_t* entering = entering_;
+    const std::int32_t* leaving = leaving_;
+    std::int32_t* output = output_;
+    std::int32_t* minima = minima_;
+    Vec32 sum[kVectors];
+    for (int v = 0; v < kVectors; ++v) {
+      sum[v] = sum_[v];
+    }
+    for (int column = 0; column < columns; ++column) {
+      Vec32 least = hn::Zero(d32);
+#pragma GCC unroll 4
+      for (int v = 0; v < kVectors; ++v) {
+        if constexpr (kEnter) {
+          sum[v] = hn::Add(sum[v], hn::LoadU(d32, entering + v * kStep));
+        }
+        if constexpr (kLeave) {
+          sum[v] = hn::Sub(sum[v], hn::LoadU(d32, leaving + v * kStep));
+        }
+        if constexpr (kDeliver && kStore) {
+          hn::StoreU(sum[v], d32, output + v * kStep);
+        }
+        if constexpr (kDeliver && kMinima != Minima::kNone) {
+          const Vec32 cells = kPadded ? hn::Max(sum[v], floor_[v]) : sum[v];
+          least = v == 0 ? cells : hn::Min(least, cells);
+        }
+      }
+      entering += kEnter ? lanes : 0;
+      leaving += kLeave ? lanes : 0;
+      output += kDeliver && kStore ? lanes : 0;
+      if constexpr (kDeliver && kMinima != Minima::kNone) {
+        if constexpr (kMinima == Minima::kContinue) {
+          least = hn::Min(least, hn::LoadU(d32, minima));
+        }
+        hn::StoreU(least, d32, minima);
+        minima += kLaneMultiple;
+      }
+    }
+    for (int v = 0; v < kVectors; ++v) {
+      sum_[v] = sum[v];
+    }
+    entering_ = entering;
+    leaving_ = leaving;
+    output_ = output;
+    minima_ = minima;
   }
-  // Four stretches without a branch in them: growing windows at the left border of the image (in a
-  // strip inside it: its first column), windows wider than the image, full windows, and shrinking
-  // ones at the right border.
-  const int leave_from = std::min(input_begin + radius + 1, row.output_end);
-  const int enter_until = std::min(row.input_end - radius, row.output_end);
-  int x = row.output_begin;
-  for (; x < std::min(leave_from, enter_until); ++x) {
-    enter(x + radius);
-    store();
+
+  const RowSum& row_;
+  const std::ptrdiff_t lanes_;
+  const std::int32_t* entering_;
+  const std::int32_t* leaving_;
+  std::int32_t* output_;
+  std::int32_t* minima_;
+  Vec32 sum_[kVectors];
+  Vec32 floor_[kVectors];
+};
+
+template <int kVectors, bool kStore, Minima kMinima>
+HWY_INLINE void lane_block(const RowSum& row, int lane) {
+  const int end = lane + kVectors * static_cast<int>(hn::Lanes(Tag32()));
+  if (kMinima == Minima::kNone || end <= row.candidates) {
+    LaneBlock<kVectors, kStore, kMinima, false>(row, lane).run();
+  } else {
+    LaneBlock<kVectors, kStore, kMinima, true>(row, lane).run();
   }
-  for (; x < leave_from; ++x) {
-    store();
+}
+
+template <bool kStore, bool kMinima>
+HWY_INLINE void all_lanes(const RowSum& row) {
+  constexpr Minima begin = kMinima ? Minima::kBegin : Minima::kNone;
+  constexpr Minima go_on = kMinima ? Minima::kContinue : Minima::kNone;
+  const int step = static_cast<int>(hn::Lanes(Tag32()));
+  int lane = 0;
+  if (row.lanes >= 4 * step) {
+    lane_block<4, kStore, begin>(row, 0);
+    for (lane = 4 * step; lane + 4 * step <= row.lanes; lane += 4 * step) {
+      lane_block<4, kStore, go_on>(row, lane);
+    }
+  } else {
+    lane_block<1, kStore, begin>(row, 0);
+    lane = step;
   }
-  for (; x < enter_until; ++x) {
-    enter(x + radius);
-    leave(x - radius - 1);
-    store();
-  }
-  for (; x < row.output_end; ++x) {
-    leave(x - radius - 1);
-    store();
+  for (; lane < row.lanes; lane += step) {
+    lane_block<1, kStore, go_on>(row, lane);
   }
 }
 
 void row_sum_simd(const RowSum& row) {
-  const int step = static_cast<int>(hn::Lanes(Tag32()));
-  int lane = 0;
-  for (; lane + 4 * step <= row.lanes; lane += 4 * step) {
-    sum_lanes<4>(row, lane);
+  if (row.output_end <= row.output_begin) {
+    return;
   }
-  for (; lane < row.lanes; lane += step) {
-    sum_lanes<1>(row, lane);
+  if (row.minima == nullptr) {
+    all_lanes<true, false>(row);
+    return;
   }
+  if (row.output != nullptr) {
+    all_lanes<true, true>(row);
+  } else {
+    all_lanes<false, true>(row);
+  }
+  reduce_minima(row.minima_work, row.output_end - row.output_begin, row.minima);
 }
 
 }  // namespace vantage::kernels::HWY_NAMESPACE

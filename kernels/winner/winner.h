@@ -79,7 +79,14 @@ inline constexpr std::int32_t kNoWinner = -1;
 /// fractions. Cells of candidates must be ≥ 0. Identical on every instruction set.
 void select_winners_row(const WinnerRow& row, std::int32_t* winners);
 
+/// winners[j] = the first candidate of column j whose cell equals minima[j], the least of the
+/// column's candidates: for cells that compare as they are and do not carry their index.
+void locate_minima_row(const std::int32_t* cells, const std::int32_t* minima, int lanes,
+                       int columns, std::int32_t* winners);
+
 /// The same, plainly.
+void locate_minima_row_ref(const std::int32_t* cells, const std::int32_t* minima, int lanes,
+                           int columns, std::int32_t* winners);
 void select_winners_row_ref(const WinnerRow& row, std::int32_t* winners);
 
 }  // namespace vantage::kernels

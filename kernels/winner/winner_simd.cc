@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "kernels/winner/lane_minima-inl.h"
 #include "kernels/winner/winner.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -56,186 +57,189 @@ HWY_INLINE Least least_of(const std::int32_t* cells, CandidateRange range) {
   return {hn::GetLane(least), hn::GetLane(hn::MinOfLanes(d32, places))};
 }
 
-// Compares fractions sum/count in order of increasing candidates.
+// Compares fractions sum/count in order of increasing candidates. Without branches: near a border
+// which candidate wins is as good as random.
 class BestFraction {
  public:
+  HWY_INLINE BestFraction(std::int32_t index, std::int64_t sum, std::int64_t count)
+      : index_(index), sum_(sum), count_(count) {}
   HWY_INLINE void offer(std::int32_t index, std::int64_t sum, std::int64_t count) {
-    if (index_ == kNoWinner || sum * count_ < sum_ * count) {
-      index_ = index;
-      sum_ = sum;
-      count_ = count;
-    }
+    const bool wins = sum * count_ < sum_ * count;
+    index_ = wins ? index : index_;
+    sum_ = wins ? sum : sum_;
+    count_ = wins ? count : count_;
   }
   [[nodiscard]] std::int32_t index() const { return index_; }
 
  private:
-  std::int32_t index_ = kNoWinner;
-  std::int64_t sum_ = 0;
-  std::int64_t count_ = 1;
+  std::int32_t index_;
+  std::int64_t sum_;
+  std::int64_t count_;
 };
 
-// A column near a border of the image, where candidates lack partners or part of their windows.
-HWY_INLINE std::int32_t border_winner(const WinnerRow& row, const std::int32_t* cells, int x) {
+// Any column, also near a border of the image, where candidates lack partners or part of their
+// windows.
+std::int32_t winner_of(const WinnerRow& row, const std::int32_t* cells, int x) {
   const CandidateRange candidates = row.candidates(x);
   if (candidates.empty()) {
     return kNoWinner;
   }
-  BestFraction best;
   const CandidateRange full = row.full_window_candidates(x);
-  if (full.empty()) {
-    for (int i = candidates.begin; i < candidates.end; ++i) {
+  const auto fraction = [&](int i) HWY_ATTR {
+    return BestFraction(i, row.sum(cells[i]), row.window_columns(x, i));
+  };
+  BestFraction best = fraction(candidates.begin);
+  const auto offer = [&](int begin, int end) HWY_ATTR {
+    for (int i = begin; i < end; ++i) {
       best.offer(i, row.sum(cells[i]), row.window_columns(x, i));
     }
+  };
+  if (full.empty()) {
+    offer(candidates.begin, candidates.end);
     return best.index();
   }
-  // Outwards from the full windows each candidate loses one more column.
-  const int full_columns = row.full_window_columns(x);
-  for (int i = candidates.begin; i < full.begin; ++i) {
-    best.offer(i, row.sum(cells[i]), full_columns - (full.begin - i));
-  }
+  offer(candidates.begin, full.begin);
   const Least least = least_of(cells, full);
-  best.offer(least.index, row.sum(least.value), full_columns);
-  for (int i = full.end; i < candidates.end; ++i) {
-    best.offer(i, row.sum(cells[i]), full_columns - (i - full.end + 1));
+  if (full == candidates) {
+    return least.index;
   }
+  best.offer(least.index, row.sum(least.value), row.full_window_columns(x));
+  offer(full.end, candidates.end);
   return best.index();
 }
 
-void plain_sum_winners(const WinnerRow& row, std::int32_t* HWY_RESTRICT winners) {
-  const std::size_t lanes = static_cast<std::size_t>(row.geometry.lanes());
-  const CandidateRange plain = row.plain_columns();
-  const std::int32_t* cells = row.cells;
-  for (int j = 0; j < row.columns; ++j, cells += lanes) {
-    const int x = row.first_column + j;
-    winners[j] = x >= plain.begin && x < plain.end ? least_of(cells, {0, row.geometry.count}).index
-                                                   : border_winner(row, cells, x);
+// True when a candidate of `range`, whose windows lose one more column from one to the next, may
+// beat sum/columns. Rarely true without being right: floats decide, with a margin.
+HWY_INLINE bool shortened_may_win(const WinnerRow& row, const std::int32_t* cells,
+                                  CandidateRange range, std::int64_t sum, int columns) {
+  const Tag32 d32;
+  const hn::ScalableTag<float> df;
+  constexpr float kMargin = 1.00001F;
+  const int step = static_cast<int>(hn::Lanes(d32));
+  const auto limit = hn::Set(df, static_cast<float>(sum) / static_cast<float>(columns) * kMargin);
+  for (int i = range.begin; i < range.end; i += step) {
+    if (i + step > row.geometry.lanes()) {
+      return true;  // not a whole vector left to load
+    }
+    const auto sums =
+        hn::ConvertTo(df, hn::ShiftRightSame(hn::LoadU(d32, cells + i), row.index_bits));
+    const auto counts =
+        hn::ConvertTo(df, hn::Sub(hn::Set(d32, columns - 1 - (i - range.begin)), hn::Iota(d32, 0)));
+    // Lanes behind the range have any count: at worst they cause a needless exact comparison.
+    if (!hn::AllFalse(df, hn::Le(sums, hn::Mul(limit, counts)))) {
+      return true;
+    }
   }
+  return false;
 }
 
-// Winners of cells that carry their index: the least cell names the winner. One vector of columns
-// at a time, whose lane-by-lane minima are reduced together as in a transposition.
+// Columns of cells that carry their index, one vector of columns at a time: their lane-by-lane
+// minima are reduced together.
 class IndexedWinners {
  public:
   HWY_INLINE explicit IndexedWinners(const WinnerRow& row)
-      : row_(row),
-        lanes_(static_cast<std::size_t>(row.geometry.lanes())),
-        plain_(row.plain_columns()) {}
+      : row_(row), lanes_(static_cast<std::size_t>(row.geometry.lanes())) {}
 
   HWY_INLINE void run(std::int32_t* HWY_RESTRICT winners) const {
     const Tag32 d32;
     const int step = static_cast<int>(hn::Lanes(d32));
-    HWY_ALIGN std::int32_t least[hn::MaxLanes(d32) * hn::MaxLanes(d32)] = {};
+    HWY_ALIGN std::int32_t lane_least[hn::MaxLanes(d32) * kLaneMultiple] = {};
+    HWY_ALIGN std::int32_t least[hn::MaxLanes(d32)];
+    int full_end[hn::MaxLanes(d32)];
     for (int j = 0; j < row_.columns; j += step) {
       const int columns = std::min(step, row_.columns - j);
       for (int k = 0; k < columns; ++k) {
-        hn::Store(lane_minima(j + k), d32, least + k * step);
+        full_end[k] = leading_full(row_.first_column + j + k);
+        hn::Store(lane_minima(cells(j + k), full_end[k]), d32, lane_least + k * kLaneMultiple);
       }
-      reduce(least);
-      if (columns == step) {
-        hn::StoreU(index_of(hn::Load(d32, least)), d32, winners + j);
-      } else {
-        for (int k = 0; k < columns; ++k) {
-          winners[j + k] = least[k] & index_mask();
-        }
-      }
-      if (!is_plain(row_.first_column + j) || !is_plain(row_.first_column + j + columns - 1)) {
-        for (int k = 0; k < columns; ++k) {
-          finish(j + k, least[k], winners[j + k]);
-        }
+      reduce_minima(lane_least, columns, least);
+      for (int k = 0; k < columns; ++k) {
+        winners[j + k] = winner(j + k, least[k], full_end[k]);
       }
     }
   }
 
  private:
-  [[nodiscard]] HWY_INLINE bool is_plain(int x) const {
-    return x >= plain_.begin && x < plain_.end;
-  }
   [[nodiscard]] HWY_INLINE const std::int32_t* cells(int j) const {
     return row_.cells + static_cast<std::size_t>(j) * lanes_;
-  }
-  [[nodiscard]] HWY_INLINE std::int32_t index_mask() const { return (1 << row_.index_bits) - 1; }
-  [[nodiscard]] HWY_INLINE Vec32 index_of(Vec32 cells) const {
-    const Tag32 d32;
-    return hn::And(cells, hn::Set(d32, index_mask()));
   }
 
   // How many candidates, from the first, have a whole window of partners at a column; 0 where
   // those do not start at the first candidate.
   [[nodiscard]] HWY_INLINE int leading_full(int x) const {
-    if (is_plain(x)) {
-      return row_.geometry.count;
-    }
     const CandidateRange full = row_.full_window_candidates(x);
     return full.begin == 0 ? full.end : 0;
   }
 
-  [[nodiscard]] HWY_INLINE Vec32 lane_minima(int j) const {
+  [[nodiscard]] static HWY_INLINE Vec32 lane_minima(const std::int32_t* cells, int count) {
     const Tag32 d32;
     const int step = static_cast<int>(hn::Lanes(d32));
-    const std::int32_t* column = cells(j);
-    const int count = leading_full(row_.first_column + j);
     Vec32 least = hn::Set(d32, std::numeric_limits<std::int32_t>::max());
     int i = 0;
     for (; i + step <= count; i += step) {
-      least = hn::Min(least, hn::LoadU(d32, column + i));
+      least = hn::Min(least, hn::LoadU(d32, cells + i));
     }
     if (i < count) {
       const auto past_end = hn::Gt(hn::Iota(d32, i), hn::Set(d32, count - 1));
-      least = hn::Min(least, hn::IfThenElse(past_end, least, hn::LoadU(d32, column + i)));
+      least = hn::Min(least, hn::IfThenElse(past_end, least, hn::LoadU(d32, cells + i)));
     }
     return least;
   }
 
-  // Lane k of the first vector becomes the minimum of vector k. Each round halves the vectors:
-  // neighbouring lanes of two of them are merged into one.
-  static HWY_INLINE void reduce(std::int32_t* least) {
-#if HWY_TARGET != HWY_SCALAR
-    const Tag32 d32;
-    const int step = static_cast<int>(hn::Lanes(d32));
-    for (int vectors = step / 2; vectors > 0; vectors /= 2) {
-      for (int v = 0; v < vectors; ++v) {
-        const Vec32 low = hn::Load(d32, least + 2 * v * step);
-        const Vec32 high = hn::Load(d32, least + (2 * v + 1) * step);
-        hn::Store(hn::Min(hn::ConcatEven(d32, high, low), hn::ConcatOdd(d32, high, low)), d32,
-                  least + v * step);
-      }
-    }
-#else
-    (void)least;
-#endif
-  }
-
-  // Lets the candidates with shortened windows compete where there are any.
-  HWY_INLINE void finish(int j, std::int32_t least, std::int32_t& winner) const {
+  // The least cell of the full windows against the candidates whose windows are shortened: each
+  // loses one more column than the one before.
+  [[nodiscard]] HWY_INLINE std::int32_t winner(int j, std::int32_t least, int full_end) const {
     const int x = row_.first_column + j;
-    if (is_plain(x)) {
-      return;
-    }
-    const int full_end = leading_full(x);
+    const std::int32_t* column = cells(j);
     if (full_end == 0) {
-      winner = border_winner(row_, cells(j), x);
-      return;
+      return winner_of(row_, column, x);
     }
     const int full_columns = row_.full_window_columns(x);
-    BestFraction best;
-    best.offer(winner, row_.sum(least), full_columns);
-    const std::int32_t* column = cells(j);
-    for (int i = full_end, end = row_.candidates(x).end; i < end; ++i) {
-      best.offer(i, row_.sum(column[i]), full_columns - (i - full_end + 1));
+    const int end = row_.candidates(x).end;
+    const std::int64_t least_sum = row_.sum(least);
+    BestFraction best(least & ((1 << row_.index_bits) - 1), least_sum, full_columns);
+    if (end - full_end < kManyCandidates ||
+        shortened_may_win(row_, column, {full_end, end}, least_sum, full_columns)) {
+      for (int i = full_end; i < end; ++i) {
+        best.offer(i, row_.sum(column[i]), full_columns - (i - full_end + 1));
+      }
     }
-    winner = best.index();
+    return best.index();
   }
+
+  // From so many candidates on a look at all of them together saves time.
+  static constexpr int kManyCandidates = 12;
 
   const WinnerRow& row_;
   std::size_t lanes_;
-  CandidateRange plain_;
 };
 
 void select_winners_row_simd(const WinnerRow& row, std::int32_t* HWY_RESTRICT winners) {
   if (row.index_bits > 0) {
     IndexedWinners(row).run(winners);
-  } else {
-    plain_sum_winners(row, winners);
+    return;
+  }
+  const std::size_t lanes = static_cast<std::size_t>(row.geometry.lanes());
+  for (int j = 0; j < row.columns; ++j) {
+    winners[j] =
+        winner_of(row, row.cells + static_cast<std::size_t>(j) * lanes, row.first_column + j);
+  }
+}
+
+void locate_minima_row_simd(const std::int32_t* cells, const std::int32_t* minima, int lanes,
+                            int columns, std::int32_t* HWY_RESTRICT winners) {
+  const Tag32 d32;
+  const int step = static_cast<int>(hn::Lanes(d32));
+  for (int j = 0; j < columns; ++j, cells += lanes) {
+    const Vec32 minimum = hn::Set(d32, minima[j]);
+    int winner = 0;
+    // From the last vector to the first, without leaving early: where the winner is, is as good as
+    // random, and a wrongly predicted branch costs more than all vectors.
+    for (int i = lanes - step; i >= 0; i -= step) {
+      const auto place = hn::FindFirstTrue(d32, hn::Eq(hn::LoadU(d32, cells + i), minimum));
+      winner = place >= 0 ? i + static_cast<int>(place) : winner;
+    }
+    winners[j] = winner;
   }
 }
 
@@ -245,9 +249,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vantage::kernels {
 HWY_EXPORT(select_winners_row_simd);
+HWY_EXPORT(locate_minima_row_simd);
 
 void select_winners_row(const WinnerRow& row, std::int32_t* winners) {
   HWY_DYNAMIC_DISPATCH(select_winners_row_simd)(row, winners);
+}
+
+void locate_minima_row(const std::int32_t* cells, const std::int32_t* minima, int lanes,
+                       int columns, std::int32_t* winners) {
+  HWY_DYNAMIC_DISPATCH(locate_minima_row_simd)(cells, minima, lanes, columns, winners);
 }
 
 }  // namespace vantage::kernels

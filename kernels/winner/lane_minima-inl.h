@@ -1,0 +1,56 @@
+// Reduces lane-by-lane minima of cell columns; included by dispatched files, once per target.
+
+#if defined(VANTAGE_KERNELS_LANE_MINIMA_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VANTAGE_KERNELS_LANE_MINIMA_INL_H_
+#undef VANTAGE_KERNELS_LANE_MINIMA_INL_H_
+#else
+#define VANTAGE_KERNELS_LANE_MINIMA_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+#include "kernels/candidates.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+
+#if HWY_TARGET != HWY_SCALAR
+// Minima of kColumns work columns, as in a transposition: neighbouring lanes of two vectors are
+// merged into one, until lane k of the last vector belongs to column k.
+template <int kColumns>
+HWY_INLINE auto minima_of(const std::int32_t* work) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::ScalableTag<std::int32_t> d32;
+  if constexpr (kColumns == 1) {
+    return hn::LoadU(d32, work);
+  } else {
+    const auto low = minima_of<kColumns / 2>(work);
+    const auto high = minima_of<kColumns / 2>(work + kColumns / 2 * kLaneMultiple);
+    return hn::Min(hn::ConcatEven(d32, high, low), hn::ConcatOdd(d32, high, low));
+  }
+}
+#endif
+
+// minima[j] = the least of the first Lanes(int32) values of work column j; columns are
+// kLaneMultiple values apart.
+HWY_INLINE void reduce_minima(const std::int32_t* work, int columns, std::int32_t* minima) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::ScalableTag<std::int32_t> d32;
+  int j = 0;
+#if HWY_TARGET != HWY_SCALAR
+  constexpr int step = static_cast<int>(hn::MaxLanes(d32));
+  for (; j + step <= columns; j += step, work += step * kLaneMultiple) {
+    hn::StoreU(minima_of<step>(work), d32, minima + j);
+  }
+#endif
+  for (; j < columns; ++j, work += kLaneMultiple) {
+    minima[j] = hn::GetLane(hn::MinOfLanes(d32, hn::LoadU(d32, work)));
+  }
+}
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace vantage::perf {
+
+/// One side of a comparison.
+struct Contender {
+  std::string name;
+  std::function<void()> run;
+};
+
+/// Seconds of all rounds of one contender, sorted.
+struct Timing {
+  std::string name;
+  std::vector<double> seconds;
+
+  [[nodiscard]] double least() const { return seconds.front(); }
+  [[nodiscard]] double median() const { return seconds[seconds.size() / 2]; }
+  [[nodiscard]] double most() const { return seconds.back(); }
+};
+
+/// Runs all contenders in turn, `rounds` times after one warm-up round, so that a machine that
+/// slows down or speeds up meanwhile does so for all of them.
+inline std::vector<Timing> time_interleaved(const std::vector<Contender>& contenders, int rounds) {
+  std::vector<Timing> timings;
+  for (const Contender& contender : contenders) {
+    timings.push_back({contender.name, {}});
+    contender.run();
+  }
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+      const auto begin = std::chrono::steady_clock::now();
+      contenders[i].run();
+      const auto end = std::chrono::steady_clock::now();
+      timings[i].seconds.push_back(std::chrono::duration<double>(end - begin).count());
+    }
+  }
+  for (Timing& timing : timings) {
+    std::sort(timing.seconds.begin(), timing.seconds.end());
+  }
+  return timings;
+}
+
+}  // namespace vantage::perf

@@ -1,0 +1,142 @@
+// Google Benchmark of the matching kernels, once per instruction set this machine has, with the
+// data in the level-1 cache: a strip of 64 columns and 64 disparities.
+// Figures per cell: "items" are cells.
+
+#include <benchmark/benchmark.h>
+
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "kernels/column_ssd/column_ssd.h"
+#include "kernels/parabola/parabola.h"
+#include "kernels/row_sum/row_sum.h"
+#include "kernels/simd_target.h"
+#include "kernels/winner/winner.h"
+
+namespace vantage::kernels {
+namespace {
+
+constexpr int kColumns = 64;
+constexpr int kLanes = 64;
+constexpr int kRadius = 4;
+constexpr int kInputColumns = kColumns + 2 * kRadius;
+constexpr int kIndexBits = 6;
+
+struct Rows {
+  std::vector<std::uint8_t> entering = random_pixels<std::uint8_t>();
+  std::vector<std::uint8_t> leaving = random_pixels<std::uint8_t>();
+  std::vector<float> entering_float = random_pixels<float>();
+  std::vector<float> leaving_float = random_pixels<float>();
+  std::vector<std::int32_t> reference_pairs = std::vector<std::int32_t>(kPixels);
+  std::vector<std::int32_t> partner_pairs = std::vector<std::int32_t>(kPixels);
+  std::vector<std::int32_t> column_sums = std::vector<std::int32_t>(kInputColumns * kLanes);
+  std::vector<std::int32_t> sums = std::vector<std::int32_t>(kColumns * kLanes);
+  std::vector<std::int32_t> winners = std::vector<std::int32_t>(kColumns);
+  std::vector<float> disparity_px = std::vector<float>(kColumns);
+
+  static constexpr int kPixels = 512;
+
+  template <typename Pixel>
+  static std::vector<Pixel> random_pixels() {
+    std::mt19937 random(1);
+    std::vector<Pixel> pixels(kPixels);
+    for (Pixel& pixel : pixels) {
+      pixel = static_cast<Pixel>(random() % 256);
+    }
+    return pixels;
+  }
+
+  void interleave() {
+    interleave_rows(entering.data(), leaving.data(), kIndexBits / 2, kInputColumns,
+                    reference_pairs.data());
+    interleave_rows(leaving.data(), entering.data(), kIndexBits / 2, kInputColumns + kLanes,
+                    partner_pairs.data());
+  }
+  void column_ssd_8_bit() {
+    column_ssd_row(ColumnSsdPairs{reference_pairs.data(), partner_pairs.data() + kInputColumns, -1,
+                                  kInputColumns, kLanes},
+                   column_sums.data(), column_sums.data());
+  }
+  void column_ssd_float() {
+    column_ssd_row(ColumnSsdFloat{entering_float.data(), leaving_float.data(),
+                                  leaving_float.data() + kInputColumns,
+                                  entering_float.data() + kInputColumns, -1, kInputColumns, kLanes},
+                   column_sums.data(), column_sums.data());
+  }
+  void sum_rows() {
+    row_sum({column_sums.data(), sums.data(), 0, kInputColumns, kRadius, kRadius + kColumns,
+             kRadius, kLanes, true});
+  }
+  [[nodiscard]] WinnerRow winner_row(int index_bits) const {
+    WinnerRow row;
+    row.cells = sums.data();
+    row.geometry = {1000, 0, kLanes, -1};
+    row.first_column = 500;
+    row.columns = kColumns;
+    row.window_radius = kRadius;
+    row.index_bits = index_bits;
+    return row;
+  }
+  void select(int index_bits) { select_winners_row(winner_row(index_bits), winners.data()); }
+  void parabola() {
+    parabola_disparity_row(winner_row(kIndexBits), winners.data(), disparity_px.data());
+  }
+};
+
+using Kernel = std::function<void(Rows&)>;
+
+void run(benchmark::State& state, long long target, const Kernel& kernel) {
+  force_target(target);
+  Rows rows;
+  rows.interleave();
+  rows.column_ssd_8_bit();
+  rows.sum_rows();
+  rows.select(kIndexBits);
+  for (auto _ : state) {
+    kernel(rows);
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * kColumns * kLanes);
+  force_target(0);
+}
+
+void register_all() {
+  const std::vector<std::pair<std::string, Kernel>> kernels = {
+      {"interleave_rows", [](Rows& rows) { rows.interleave(); }},
+      {"column_ssd_row/8-bit", [](Rows& rows) { rows.column_ssd_8_bit(); }},
+      {"column_ssd_row/float", [](Rows& rows) { rows.column_ssd_float(); }},
+      {"row_sum", [](Rows& rows) { rows.sum_rows(); }},
+      {"select_winners_row/indexed", [](Rows& rows) { rows.select(kIndexBits); }},
+      {"select_winners_row/plain", [](Rows& rows) { rows.select(0); }},
+      {"parabola_disparity_row", [](Rows& rows) { rows.parabola(); }},
+  };
+  const long long targets = available_targets();
+  for (int bit = 0; bit < 63; ++bit) {
+    const long long target = 1LL << bit;
+    if ((targets & target) == 0) {
+      continue;
+    }
+    for (const auto& [name, kernel] : kernels) {
+      benchmark::RegisterBenchmark(
+          (name + "/" + std::string(target_name(target))).c_str(),
+          [target, kernel = kernel](benchmark::State& state) { run(state, target, kernel); });
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vantage::kernels
+
+int main(int argc, char** argv) {
+  vantage::kernels::register_all();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) {
+    return 2;
+  }
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}

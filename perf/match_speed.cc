@@ -1,0 +1,201 @@
+// Speed of SSD matching against OpenCV's matchers, against itself on two threads, and over windows:
+// all contenders of a table interleaved in one run. Prints tables; --json FILE writes the figures.
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "engine/generation/layered_scene.h"
+#include "engine/matching/match_chain.h"
+#include "engine/matching/stereo_matcher.h"
+#include "engine/simd.h"
+#include "perf/interleaved.h"
+#include "perf/peers.h"
+#include "scheduler/whole_image_pipeline.h"
+
+namespace vantage::perf {
+namespace {
+
+struct Pair {
+  Photograph left;
+  Photograph right;
+  Photograph left_grey;
+  Photograph right_grey;
+};
+
+Pair make_pair(int width, int height, int disparities) {
+  LayeredSceneOptions options;
+  options.width_px = width;
+  options.height_px = height;
+  options.samples_per_side = 2;
+  options.near_disparity_px = disparities * 0.9;
+  options.far_disparity_px = disparities * 0.1;
+  Execution execution({});
+  const LayeredScene scene(options, execution);
+  Pair pair{scene.render({0, 0}, 0).image, scene.render({1, 0}, 0).image, {}, {}};
+  pair.left_grey = to_grey(pair.left);
+  pair.right_grey = to_grey(pair.right);
+  return pair;
+}
+
+/// A matcher of one map on its own threads.
+class OneMap {
+ public:
+  OneMap(int disparities, int window, Subpixel subpixel, int threads)
+      : execution_({.threads = threads}),
+        matcher_(options(disparities, window, subpixel), execution_) {}
+  void run(const Photograph& left, const Photograph& right) {
+    matcher_.match(left, right, {.left = true, .right = false}, maps_, &report_);
+  }
+  [[nodiscard]] const MatchReport& report() const { return report_; }
+
+  static MatchOptions options(int disparities, int window, Subpixel subpixel) {
+    MatchOptions result;
+    result.disparities = {0, disparities - 1};
+    result.window_px = window;
+    result.subpixel = subpixel;
+    result.raw = true;
+    return result;
+  }
+
+ private:
+  Execution execution_;
+  StereoMatcher matcher_;
+  DisparityMaps maps_;
+  MatchReport report_;
+};
+
+/// The same chain by the whole-image executor: pass by pass, every row of every stage stored.
+void run_whole_image_chain(const Photograph& left, const Photograph& right,
+                           const MatchOptions& options, Execution& execution) {
+  const auto geometry = candidate_geometry(options, Reference::kLeft, left.width(), left.height());
+  PreparedPair pair;
+  prepare_pair(left, right, geometry, options.window_px * options.window_px, {true, false},
+               execution, pair);
+  DisparityMap map(left.width(), left.height());
+  const MatchChain chain(options, geometry, pair, map.view());
+  scheduler::run_whole_image(chain.stages());
+}
+
+nlohmann::json print_table(const std::string& title, const std::vector<Timing>& timings,
+                           double cells) {
+  fmt::print("\n{}\n{:<34} {:>9} {:>9} {:>9} {:>9} {:>7}\n", title, "", "min ms", "median ms",
+             "max ms", "ns/cell", "ratio");
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Timing& timing : timings) {
+    const double ratio = timing.median() / timings.front().median();
+    fmt::print("{:<34} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.4f} {:>7.3f}\n", timing.name,
+               timing.least() * 1e3, timing.median() * 1e3, timing.most() * 1e3,
+               timing.median() / cells * 1e9, ratio);
+    rows.push_back({{"name", timing.name},
+                    {"min_seconds", timing.least()},
+                    {"median_seconds", timing.median()},
+                    {"max_seconds", timing.most()},
+                    {"ns_per_cell", timing.median() / cells * 1e9},
+                    {"ratio_to_first", ratio}});
+  }
+  return {{"title", title}, {"cells", cells}, {"rows", rows}};
+}
+
+nlohmann::json against_peers(int rounds) {
+  constexpr int width = 450;
+  constexpr int height = 375;
+  constexpr int disparities = 64;
+  const Pair pair = make_pair(width, height, disparities);
+  const cv::Mat left = to_opencv(pair.left_grey);
+  const cv::Mat right = to_opencv(pair.right_grey);
+  cv::Mat result;
+  const auto bm = make_bm({0, disparities - 1}, 9);
+  const auto bm_winner_only = make_bm({0, disparities - 1}, 9);
+  bm_winner_only->setUniquenessRatio(0);
+  bm_winner_only->setTextureThreshold(0);
+  const auto sgbm = make_sgbm({0, disparities - 1}, 5, 1, cv::StereoSGBM::MODE_SGBM_3WAY);
+  OneMap winner(disparities, 9, Subpixel::kNone, 1);
+  OneMap parabola(disparities, 9, Subpixel::kParabola, 1);
+  OneMap colour(disparities, 9, Subpixel::kNone, 1);
+  Execution serial({.threads = 1});
+  const MatchOptions options = OneMap::options(disparities, 9, Subpixel::kNone);
+  const auto timings = time_interleaved(
+      {{"StereoBM, block 9, its defaults", [&] { bm->compute(left, right, result); }},
+       {"StereoBM, winner only", [&] { bm_winner_only->compute(left, right, result); }},
+       {"StereoSGBM 3-way, block 5", [&] { sgbm->compute(left, right, result); }},
+       {"Vantage SSD 9x9, winner only", [&] { winner.run(pair.left_grey, pair.right_grey); }},
+       {"Vantage SSD 9x9, parabola", [&] { parabola.run(pair.left_grey, pair.right_grey); }},
+       {"Vantage SSD 9x9, colour input", [&] { colour.run(pair.left, pair.right); }},
+       {"Vantage SSD 9x9, whole-image executor",
+        [&] { run_whole_image_chain(pair.left_grey, pair.right_grey, options, serial); }}},
+      rounds);
+  return print_table("450x375, 64 disparities, one thread, one map", timings,
+                     static_cast<double>(width) * height * disparities);
+}
+
+nlohmann::json over_threads(int rounds) {
+  constexpr int width = 1282;
+  constexpr int height = 1110;
+  constexpr int disparities = 256;
+  const Pair pair = make_pair(width, height, disparities);
+  std::vector<std::unique_ptr<OneMap>> maps;
+  std::vector<Contender> contenders;
+  const int hardware = scheduler::detect_machine().hardware_threads;
+  for (int threads = 1; threads <= hardware; threads *= 2) {
+    maps.push_back(std::make_unique<OneMap>(disparities, 9, Subpixel::kNone, threads));
+    contenders.push_back(
+        {fmt::format("{} thread{}", threads, threads > 1 ? "s" : ""),
+         [&pair, map = maps.back().get()] { map->run(pair.left_grey, pair.right_grey); }});
+  }
+  return print_table("1282x1110, 256 disparities, SSD 9x9, winner only",
+                     time_interleaved(contenders, rounds),
+                     static_cast<double>(width) * height * disparities);
+}
+
+nlohmann::json over_windows(int rounds) {
+  constexpr int width = 640;
+  constexpr int height = 480;
+  constexpr int disparities = 64;
+  const Pair pair = make_pair(width, height, disparities);
+  std::vector<std::unique_ptr<OneMap>> maps;
+  std::vector<Contender> contenders;
+  for (const int window : {3, 5, 9, 15, 21, 31, 51, 101}) {
+    maps.push_back(std::make_unique<OneMap>(disparities, window, Subpixel::kNone, 1));
+    contenders.push_back({fmt::format("window {}", window), [&pair, map = maps.back().get()] {
+                            map->run(pair.left_grey, pair.right_grey);
+                          }});
+  }
+  return print_table("640x480, 64 disparities, one thread, over windows",
+                     time_interleaved(contenders, rounds),
+                     static_cast<double>(width) * height * disparities);
+}
+
+}  // namespace
+}  // namespace vantage::perf
+
+int main(int argc, char** argv) {
+  using namespace vantage::perf;
+  cv::setNumThreads(1);
+  std::optional<std::string> json_path;
+  int rounds = 15;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string option = argv[i];
+    if (option == "--json") {
+      json_path = argv[i + 1];
+    } else if (option == "--rounds") {
+      rounds = std::max(1, std::atoi(argv[i + 1]));
+    } else {
+      fmt::print(stderr, "match_speed [--json FILE] [--rounds N]\n");
+      return 2;
+    }
+  }
+  fmt::print("instruction set {}, {} hardware threads\n", vantage::instruction_set_in_use(),
+             vantage::scheduler::detect_machine().hardware_threads);
+  nlohmann::json tables = nlohmann::json::array();
+  tables.push_back(against_peers(rounds));
+  tables.push_back(over_threads(std::max(3, rounds / 3)));
+  tables.push_back(over_windows(rounds));
+  if (json_path) {
+    std::ofstream(*json_path) << tables.dump(2) << '\n';
+  }
+  return 0;
+}

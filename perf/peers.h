@@ -1,0 +1,102 @@
+#pragma once
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include "engine/image/image.h"
+#include "engine/image/photograph.h"
+#include "engine/matching/match_options.h"
+
+namespace vantage::perf {
+
+/// The photograph as OpenCV wants it: BGR or grey, 8 bits. Throws std::bad_variant_access else.
+inline cv::Mat to_opencv(const Photograph& photograph) {
+  const auto& image = std::get<Image<std::uint8_t>>(photograph.pixels);
+  cv::Mat mat(image.height(), image.width(), CV_8UC(image.channels()));
+  for (int y = 0; y < image.height(); ++y) {
+    std::memcpy(mat.ptr(y), image.row(y), mat.cols * mat.elemSize());
+  }
+  if (image.channels() == 3) {
+    cv::cvtColor(mat, mat, cv::COLOR_RGB2BGR);
+  }
+  return mat;
+}
+
+/// 8-bit grey, by OpenCV's conversion.
+inline Photograph to_grey(const Photograph& photograph) {
+  cv::Mat mat = to_opencv(photograph);
+  if (mat.channels() == 3) {
+    cv::cvtColor(mat, mat, cv::COLOR_BGR2GRAY);
+  }
+  Image<std::uint8_t> image(mat.cols, mat.rows);
+  for (int y = 0; y < mat.rows; ++y) {
+    std::memcpy(image.row(y), mat.ptr(y), static_cast<std::size_t>(mat.cols));
+  }
+  return {std::move(image)};
+}
+
+/// OpenCV's matchers want a multiple of 16 candidates.
+inline int opencv_candidates(DisparityRange range) { return (range.count() + 15) / 16 * 16; }
+
+inline cv::Ptr<cv::StereoBM> make_bm(DisparityRange range, int window_px) {
+  cv::Ptr<cv::StereoBM> bm = cv::StereoBM::create(opencv_candidates(range), window_px);
+  bm->setMinDisparity(range.min);
+  return bm;
+}
+
+/// The parameters OpenCV's documentation and samples recommend.
+inline cv::Ptr<cv::StereoSGBM> make_sgbm(DisparityRange range, int block, int channels, int mode) {
+  return cv::StereoSGBM::create(range.min, opencv_candidates(range), block,
+                                8 * channels * block * block, 32 * channels * block * block, 1, 63,
+                                10, 100, 32, mode);
+}
+
+/// OpenCV's 16ths of pixels as a disparity map; what it calls invalid becomes NaN.
+inline DisparityMap to_map(const cv::Mat& sixteenths, int min_disparity) {
+  DisparityMap map(sixteenths.cols, sixteenths.rows);
+  for (int y = 0; y < sixteenths.rows; ++y) {
+    for (int x = 0; x < sixteenths.cols; ++x) {
+      const float value = static_cast<float>(sixteenths.at<short>(y, x)) / 16.0F;
+      map.at(x, y) = value < static_cast<float>(min_disparity)
+                         ? std::numeric_limits<float>::quiet_NaN()
+                         : value;
+    }
+  }
+  return map;
+}
+
+/// StereoSGBM's left and right maps: the right one from the mirrored, exchanged images. The images
+/// are padded on the left as far as the range reaches, because it leaves those columns out.
+struct SgbmMaps {
+  DisparityMap left;
+  DisparityMap right;
+};
+
+inline SgbmMaps sgbm_maps(const cv::Mat& left, const cv::Mat& right, DisparityRange range,
+                          int block, int mode) {
+  const cv::Ptr<cv::StereoSGBM> sgbm = make_sgbm(range, block, left.channels(), mode);
+  const int pad = range.min + opencv_candidates(range);
+  const auto one_map = [&](const cv::Mat& reference, const cv::Mat& other) {
+    cv::Mat padded_reference;
+    cv::Mat padded_other;
+    cv::Mat disparity;
+    cv::copyMakeBorder(reference, padded_reference, 0, 0, pad, 0, cv::BORDER_REPLICATE);
+    cv::copyMakeBorder(other, padded_other, 0, 0, pad, 0, cv::BORDER_REPLICATE);
+    sgbm->compute(padded_reference, padded_other, disparity);
+    return cv::Mat(disparity.colRange(pad, disparity.cols));
+  };
+  cv::Mat left_flipped;
+  cv::Mat right_flipped;
+  cv::flip(left, left_flipped, 1);
+  cv::flip(right, right_flipped, 1);
+  cv::Mat right_disparity;
+  cv::flip(one_map(right_flipped, left_flipped), right_disparity, 1);
+  return {to_map(one_map(left, right), range.min), to_map(right_disparity, range.min)};
+}
+
+}  // namespace vantage::perf
