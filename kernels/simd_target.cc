@@ -20,8 +20,12 @@ HWY_EXPORT(this_target);
 long long built_targets() { return HWY_TARGETS; }
 
 long long available_targets() {
+  // Highway only tells after giving up its choice.
+  const long long in_use = target_in_use();
   hwy::SetSupportedTargetsForTest(0);
-  return hwy::SupportedTargets() & HWY_TARGETS;
+  const long long available = hwy::SupportedTargets() & HWY_TARGETS;
+  force_target(in_use);
+  return available;
 }
 
 long long target_in_use() { return HWY_DYNAMIC_DISPATCH(this_target)(); }

@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "kernels/column_ssd/column_ssd.h"
+
 namespace vantage {
 namespace {
 
@@ -69,9 +71,12 @@ float cost_scale(const Bounds& bounds, int window_samples) {
   if (!(span > 0)) {
     return 1;
   }
-  // Each cost may round up by ½; the margin of 1 % covers rounding of the float products.
-  const double most_cost =
-      (std::numeric_limits<std::int32_t>::max() / static_cast<double>(window_samples) - 1) * 0.99;
+  // Each cost may round up by ½; the margin covers rounding of the float products
+  // and still lets the span of 255 grey levels have the scale 8.
+  const double most_cost = 0.995 * std::min<double>(kernels::kFloatSquareLimit,
+                                                    std::numeric_limits<std::int32_t>::max() /
+                                                            static_cast<double>(window_samples) -
+                                                        1);
   return static_cast<float>(std::exp2(std::floor(std::log2(std::sqrt(most_cost) / span))));
 }
 

@@ -55,8 +55,9 @@ struct PreparedPair {
 };
 
 /// Fills `pair` from two photographs of equal size. Float planes hold grey levels times a power of
-/// two, the largest for which the sum of `window_samples` squared differences stays below 2³¹:
-/// costs then become integers with as fine a step as 31 bits allow, sums of them are exact.
+/// two, the largest for which squared differences stay below kernels::kFloatSquareLimit and the sum
+/// of `window_samples` of them below 2³¹: costs then become integers with as fine a step as there
+/// is room for, and sums of them are exact.
 /// Identical for any `execution`.
 void prepare_pair(const Photograph& left, const Photograph& right,
                   const kernels::CandidateGeometry& geometry, int window_samples,

@@ -11,8 +11,8 @@ namespace vantage::kernels {
 
 /// Interleaves two rows of 8-bit pixels, multiplied by 2^shift (0 ≤ shift ≤ 6), into `count` pairs
 /// of 16-bit numbers: entering in the low half of 32 bits, leaving in the high half. Either row may
-/// be null: its halves are then 0. Writes round `count` up to a multiple of kLaneMultiple; the
-/// inputs need to be readable as far.
+/// be null: its halves are then 0. May write behind them, up to the next multiple of kLaneMultiple;
+/// the inputs need to be readable as far.
 void interleave_rows(const std::uint8_t* entering, const std::uint8_t* leaving, int shift,
                      int count, std::int32_t* pairs);
 
@@ -32,6 +32,9 @@ struct ColumnSsdPairs {
 void column_ssd_row(const ColumnSsdPairs& row, const std::int32_t* previous, std::int32_t* sums);
 void column_ssd_row_ref(const ColumnSsdPairs& row, const std::int32_t* previous,
                         std::int32_t* sums);
+
+/// Squares of float differences must stay below this.
+inline constexpr float kFloatSquareLimit = 4194304.0F;  // 2²²
 
 /// The same for float images, scaled by the caller so that no square exceeds 2³¹ − 1; each square
 /// is rounded to the nearest integer (ties to even), so sums stay exact.

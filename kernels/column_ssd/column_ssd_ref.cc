@@ -16,6 +16,13 @@ std::int32_t rounded_square(const float* reference, const float* partner, int j,
   return static_cast<std::int32_t>(std::lrint(difference * difference));
 }
 
+// Modulo 2³²: the row that enters may carry a sum past 2³¹ before the other one leaves.
+std::int32_t changed(std::int32_t sum, std::int32_t enters, std::int32_t leaves) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(sum) +
+                                   static_cast<std::uint32_t>(enters) -
+                                   static_cast<std::uint32_t>(leaves));
+}
+
 }  // namespace
 
 void column_ssd_row_ref(const ColumnSsdPairs& row, const std::int32_t* previous,
@@ -26,7 +33,7 @@ void column_ssd_row_ref(const ColumnSsdPairs& row, const std::int32_t* previous,
       const int entering = low_half(row.reference[j]) - low_half(row.partner[k]);
       const int leaving = high_half(row.reference[j]) - high_half(row.partner[k]);
       const int cell = j * row.lanes + i;
-      sums[cell] = previous[cell] + entering * entering - leaving * leaving;
+      sums[cell] = changed(previous[cell], entering * entering, leaving * leaving);
     }
   }
 }
@@ -37,9 +44,9 @@ void column_ssd_row_ref(const ColumnSsdFloat& row, const std::int32_t* previous,
     for (int i = 0; i < row.lanes; ++i) {
       const int k = j * row.partner_step + i;
       const int cell = j * row.lanes + i;
-      sums[cell] = previous[cell] +
-                   rounded_square(row.reference_entering, row.partner_entering, j, k) -
-                   rounded_square(row.reference_leaving, row.partner_leaving, j, k);
+      sums[cell] = changed(previous[cell],
+                           rounded_square(row.reference_entering, row.partner_entering, j, k),
+                           rounded_square(row.reference_leaving, row.partner_leaving, j, k));
     }
   }
 }

@@ -90,9 +90,15 @@ void column_ssd_pairs(const ColumnSsdPairs& row, const std::int32_t* previous, s
   }
 }
 
-HWY_INLINE Vec32 rounded_square(hn::VFromD<TagFloat> reference, const float* partner) {
-  const auto difference = hn::Sub(reference, hn::LoadU(TagFloat(), partner));
-  return hn::NearestInt(hn::Mul(difference, difference));
+// A float between 2²³ and 2²⁴ is an integer and its bits grow by one from each to the next: adding
+// this rounds a square to an integer, and differences of bits are differences of rounded squares.
+constexpr float kRounder = 12582912.0F;  // 1.5 · 2²³
+
+HWY_INLINE Vec32 square_bits(hn::VFromD<TagFloat> reference, const float* partner) {
+  const TagFloat df;
+  const auto difference = hn::Sub(reference, hn::LoadU(df, partner));
+  const auto square = hn::Mul(difference, difference);
+  return hn::BitCast(Tag32(), hn::Add(square, hn::Set(df, kRounder)));
 }
 
 template <int kVectors, bool kEntering, bool kLeaving>
@@ -113,13 +119,10 @@ HWY_INLINE void float_lanes(const ColumnSsdFloat& row, const std::int32_t* previ
     const auto leaving_pixel = hn::Set(df, kLeaving ? row.reference_leaving[j] : 0.0F);
 #pragma GCC unroll 4
     for (int v = 0; v < kVectors; ++v) {
-      Vec32 sum = hn::LoadU(d32, previous + v * step);
-      if constexpr (kEntering) {
-        sum = hn::Add(sum, rounded_square(entering_pixel, entering + v * step));
-      }
-      if constexpr (kLeaving) {
-        sum = hn::Sub(sum, rounded_square(leaving_pixel, leaving + v * step));
-      }
+      const Vec32 zero_bits = hn::BitCast(d32, hn::Set(df, kRounder));
+      const Vec32 enters = kEntering ? square_bits(entering_pixel, entering + v * step) : zero_bits;
+      const Vec32 leaves = kLeaving ? square_bits(leaving_pixel, leaving + v * step) : zero_bits;
+      const Vec32 sum = hn::Add(hn::LoadU(d32, previous + v * step), hn::Sub(enters, leaves));
       hn::StoreU(sum, d32, sums + v * step);
     }
     entering += kEntering ? partner_step : 0;

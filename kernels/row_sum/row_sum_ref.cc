@@ -10,10 +10,12 @@ void row_sum_ref(const RowSum& row) {
     const int last = std::min(x + row.radius, row.input_end - 1);
     const int j = x - row.output_begin;
     for (int i = 0; i < row.lanes; ++i) {
-      std::int32_t sum = row.number_lanes ? i : 0;
+      std::uint32_t modulo_sum = row.number_lanes ? static_cast<std::uint32_t>(i) : 0;
       for (int column = first; column <= last; ++column) {
-        sum += row.input[(column - row.input_begin) * row.lanes + i];
+        modulo_sum +=
+            static_cast<std::uint32_t>(row.input[(column - row.input_begin) * row.lanes + i]);
       }
+      const auto sum = static_cast<std::int32_t>(modulo_sum);
       if (row.output != nullptr) {
         row.output[j * row.lanes + i] = sum;
       }

@@ -176,10 +176,20 @@ TEST_P(SsdDepths, AgreeWithDoubleArithmetic) {
     int different = 0;
     for (int y = 0; y < maps.left.height(); ++y) {
       for (int x = 0; x < maps.left.width(); ++x) {
-        different += brute.disparity(x, y, options) != maps.left.at(x, y) ? 1 : 0;
+        const double expected = brute.disparity(x, y, options);
+        const double actual = maps.left.at(x, y);
+        if (actual != expected) {
+          ++different;
+          const auto energy = [&](double d) {
+            return brute.energy(x, y, static_cast<int>(d), window, Border::kClip);
+          };
+          // Means of costs that are rounded to at most 1/64 of a squared grey level.
+          EXPECT_NEAR(energy(actual), energy(expected), 1.0 / 64) << x << ", " << y;
+        }
       }
     }
-    EXPECT_LE(different, 2) << "window " << window;  // of 2407: 99.9 %
+    // Of 2407 pixels. Single samples of noise come within the rounding of each other more often.
+    EXPECT_LE(different, window == 1 ? 7 : 2) << "window " << window;
   }
 }
 
