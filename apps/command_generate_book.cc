@@ -1,0 +1,111 @@
+#include <fmt/format.h>
+
+#include "apps/commands.h"
+#include "apps/generated_files.h"
+#include "apps/option_groups.h"
+#include "apps/outputs.h"
+#include "apps/run_report.h"
+#include "apps/settings.h"
+#include "engine/generation/book_pairs.h"
+#include "engine/simd.h"
+
+namespace vantage::apps {
+namespace {
+
+struct BookJob {
+  BookPairOptions pair;
+  CommonOptions common;
+  std::string output;
+};
+
+void add_book_settings(Settings& settings, BookJob& job) {
+  settings.begin_group("Files");
+  Setting& output = settings.text("output", job.output, "DIR", "Folder to write to");
+  output.short_name = 'o';
+  output.required = true;
+
+  settings.begin_group("Pair");
+  BookPairOptions& pair = job.pair;
+  std::string names;
+  for (const std::string_view name : kBookPairNames) {
+    names += (names.empty() ? "" : "|") + std::string(name);
+  }
+  Setting& pattern = settings.add("pattern", names, "Texture and shapes");
+  pattern.set = [&pair, names](const SettingValue& value) {
+    for (const std::string_view name : kBookPairNames) {
+      if (value == name) {
+        const BookPairOptions named = book_pair_options(name);
+        pair.pattern = named.pattern;
+        pair.shape = named.shape;
+        return;
+      }
+    }
+    reject_value(value, "one of " + names);
+  };
+  pattern.get = [&pair]() -> SettingValue {
+    for (const std::string_view name : kBookPairNames) {
+      const BookPairOptions named = book_pair_options(name);
+      if (named.pattern == pair.pattern && named.shape == pair.shape) {
+        return name;
+      }
+    }
+    return nullptr;
+  };
+  settings.integer("width", pair.width_px, "PX", "Width of the images");
+  settings.integer("height", pair.height_px, "PX", "Height of the images");
+  settings.integer("background-disparity", pair.background_disparity_px, "PX",
+                   "Disparity of the background");
+  settings.integer("front-disparity", pair.front_disparity_px, "PX",
+                   "Disparity of the square or the rectangle; auto: 6 and 7");
+  settings.integer("narrow-disparity", pair.narrow_disparity_px, "PX",
+                   "Disparity of the narrow bar; auto: 16");
+  settings.number("noise", pair.noise_sigma, "SIGMA",
+                  "Noise in both images, grey levels; gives float images");
+  settings.flag("float", pair.float_pixels, "Write float images (PFM) without noise too");
+  settings.choice<Reference>("reference", pair.reference,
+                             {{"left", Reference::kLeft}, {"right", Reference::kRight}},
+                             "Image on whose grid the shapes are placed");
+  add_seed_setting(settings, pair.seed);
+}
+
+}  // namespace
+
+int command_generate_book(const Arguments& arguments) {
+  BookJob job;
+  Settings settings("generate book", "Writes a synthetic pair of the book with its truth.");
+  add_book_settings(settings, job);
+  add_common_settings(settings, job.common);
+  if (!settings.read(arguments)) {
+    return kExitDone;
+  }
+  job.pair.validate();
+  job.common.execution.validate();
+  FileChecks checks;
+  checks.add_output(job.common.report, "--report", OutputKind::kText);
+  RunReport report(settings.command(), settings.values());
+  force_instruction_set(job.common.isa);
+  Execution execution(job.common.execution);
+  report.set_execution(execution);
+
+  const BookPair pair = report.timed_compute("generate", [&] { return make_book_pair(job.pair); });
+  report.timed_file_access("write", [&] {
+    const GeneratedFiles files(job.output, false);
+    files.write("left", 0, pair.left);
+    files.write("right", 0, pair.right);
+    files.write("left-disparity", 0, pair.left_disparity);
+    files.write("right-disparity", 0, pair.right_disparity);
+    files.write("left-occluded", 0, pair.left_occluded);
+    files.write("right-occluded", 0, pair.right_occluded);
+  });
+
+  report.set_results({{"disparities", fmt::format("{}:{}", pair.search.min, pair.search.max)}});
+  report.write(job.common.report);
+  if (!job.common.quiet) {
+    fmt::print(stderr, "generate book: {}x{} pixels, search with --disparities={}:{} -> {}\n",
+               pair.left.width(), pair.left.height(), pair.search.min, pair.search.max, job.output);
+    report.print_summary();
+  }
+  return kExitDone;
+}
+
+}  // namespace vantage::apps

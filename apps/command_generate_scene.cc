@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/commands.h"
+#include "apps/generated_files.h"
+#include "apps/interrupt.h"
+#include "apps/option_groups.h"
+#include "apps/outputs.h"
+#include "apps/progress.h"
+#include "apps/run_report.h"
+#include "apps/settings.h"
+#include "engine/error.h"
+#include "engine/generation/layered_scene.h"
+#include "engine/simd.h"
+
+namespace vantage::apps {
+namespace {
+
+struct SceneJob {
+  LayeredSceneOptions scene;
+  CommonOptions common;
+  std::string output;
+  std::optional<int> frames;
+  std::vector<double> views_x;
+};
+
+constexpr int kMaxFrames = 1000000;
+constexpr SceneView kLeftCamera{0, 0};
+constexpr SceneView kRightCamera{1, 0};
+
+void add_scene_settings(Settings& settings, SceneJob& job) {
+  settings.begin_group("Files");
+  Setting& output = settings.text("output", job.output, "DIR", "Folder to write to");
+  output.short_name = 'o';
+  output.required = true;
+  settings.integer("frames", job.frames, "N",
+                   "Write a sequence of N frames (DIR/left/000000.png …); single: one pair "
+                   "(DIR/left.png …)",
+                   "single");
+  add_view_setting(settings, job.views_x);
+
+  settings.begin_group("Scene");
+  LayeredSceneOptions& scene = job.scene;
+  settings.integer("width", scene.width_px, "PX", "Width of the images");
+  settings.integer("height", scene.height_px, "PX", "Height of the images");
+  settings.number("far", scene.far_disparity_px, "PX",
+                  "Least disparity of the scene; auto: width / 80");
+  settings.number("near", scene.near_disparity_px, "PX",
+                  "Largest disparity of the scene; auto: width / 16");
+  settings.integer("frames-per-cycle", scene.frames_per_cycle, "N",
+                   "Frames after which all movements begin anew");
+  settings.integer("samples", scene.samples_per_side, "N",
+                   "Colour of a pixel is the mean of N x N samples");
+  settings.number("right-gain", scene.right_gain, "G", "Brightness of the right camera: G I + O");
+  settings.number("right-offset", scene.right_offset, "O", "In grey levels, see --right-gain");
+  settings.number("noise", scene.noise_sigma, "SIGMA", "Noise in all images, grey levels");
+  add_seed_setting(settings, scene.seed);
+}
+
+void check(const SceneJob& job) {
+  job.scene.validate();
+  job.common.execution.validate();
+  if (job.frames && (*job.frames < 1 || *job.frames > kMaxFrames)) {
+    throw UsageError(
+        fmt::format("--frames is {}, expected a number from 1 to {}", *job.frames, kMaxFrames));
+  }
+  for (auto view = job.views_x.begin(); view != job.views_x.end(); ++view) {
+    if (std::abs(*view) > 16 || std::find(job.views_x.begin(), view, *view) != view) {
+      throw UsageError(fmt::format("--view is {}, expected different numbers within ±16", *view));
+    }
+  }
+  FileChecks checks;
+  checks.add_output(job.common.report, "--report", OutputKind::kText);
+}
+
+/// Views are named as those of 'vantage run' are, so that they can be compared file by file.
+std::string view_name(const SceneJob& job, double view_x) {
+  if (!job.frames) {
+    return fmt::format("view-{}", view_x);
+  }
+  return job.views_x.size() == 1 ? "views" : fmt::format("views/{}", view_x);
+}
+
+void make_frame(const SceneJob& job, const LayeredScene& scene, int frame,
+                const GeneratedFiles& files, RunReport& report) {
+  const auto make_camera = [&](const std::string& name, SceneView camera, SceneView other) {
+    const SceneRendering rendering =
+        report.timed_compute("render", [&] { return scene.render(camera, frame); });
+    const Mask occluded =
+        report.timed_compute("occlusion", [&] { return scene.occlusion(camera, other, frame); });
+    report.timed_file_access("write", [&] {
+      files.write(name, frame, rendering.image);
+      files.write(name + "-disparity", frame, rendering.disparity);
+      files.write(name + "-occluded", frame, occluded);
+    });
+  };
+  make_camera("left", kLeftCamera, kRightCamera);
+  make_camera("right", kRightCamera, kLeftCamera);
+  for (const double view_x : job.views_x) {
+    const SceneRendering rendering = report.timed_compute("render", [&] {
+      return scene.render({view_x, 0}, frame);
+    });
+    report.timed_file_access("write",
+                             [&] { files.write(view_name(job, view_x), frame, rendering.image); });
+  }
+}
+
+}  // namespace
+
+int command_generate_scene(const Arguments& arguments) {
+  SceneJob job;
+  Settings settings("generate scene",
+                    "Renders a made-up moving scene for both cameras, with its truth.");
+  add_scene_settings(settings, job);
+  add_common_settings(settings, job.common);
+  if (!settings.read(arguments)) {
+    return kExitDone;
+  }
+  check(job);
+  RunReport report(settings.command(), settings.values());
+  force_instruction_set(job.common.isa);
+  Execution execution(job.common.execution);
+  report.set_execution(execution);
+  const LayeredScene scene(job.scene, execution);
+  const GeneratedFiles files(job.output, job.frames.has_value());
+
+  const std::atomic<bool>& interrupted = interrupt_flag();
+  const int frames = job.frames.value_or(1);
+  int frames_done = 0;
+  {
+    Progress progress("generate scene", "frames", job.common.quiet || frames == 1);
+    while (frames_done < frames && !interrupted.load()) {
+      make_frame(job, scene, frames_done, files, report);
+      progress.update(++frames_done, frames, 0);
+    }
+  }
+  const int least = static_cast<int>(std::floor(job.scene.far_disparity_or_default()));
+  const int most = static_cast<int>(std::ceil(job.scene.near_disparity_or_default()));
+  report.set_results({{"frames", frames_done}, {"disparities", fmt::format("{}:{}", least, most)}});
+  report.write(job.common.report);
+  if (!job.common.quiet) {
+    fmt::print(
+        stderr,
+        "generate scene: {} frame{} of {}x{} pixels, search with --disparities={}:{} -> {}\n",
+        frames_done, frames_done == 1 ? "" : "s", job.scene.width_px, job.scene.height_px, least,
+        most, job.output);
+    report.print_summary();
+  }
+  return frames_done < frames ? kExitInterrupted : kExitDone;
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,22 @@
+#include <array>
+
+#include "apps/commands.h"
+
+namespace vantage::apps {
+namespace {
+
+constexpr std::array kCommands = {
+    Command{"match", "Disparity maps of a rectified pair", command_match},
+    Command{"synth", "New views of a rectified pair", command_synth},
+    Command{"run", "Disparity maps and new views of a sequence of pairs", command_run},
+    Command{"eval", "Errors of a disparity map or a view against the truth", command_eval},
+    Command{"generate book", "The synthetic pairs of the book, with truth", command_generate_book},
+    Command{"generate scene", "Views of a made-up moving scene, with truth",
+            command_generate_scene},
+    Command{"info", "Version, instruction sets, threads and caches", command_info}};
+
+}  // namespace
+
+std::span<const Command> commands() { return kCommands; }
+
+}  // namespace vantage::apps

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vantage::apps {
+
+/// The arguments after the command's name.
+using Arguments = std::vector<std::string>;
+
+/// A subcommand. `run` returns the exit code for what is not an error (0, or 130 for a run that was
+/// interrupted cleanly) and throws UsageError (exit 2) or anything else (exit 1).
+struct Command {
+  std::string_view name;  ///< one word, or two: "generate scene"
+  std::string_view summary;
+  int (*run)(const Arguments& arguments);
+};
+
+inline constexpr int kExitDone = 0;
+inline constexpr int kExitFailed = 1;
+inline constexpr int kExitUsage = 2;
+inline constexpr int kExitInterrupted = 130;
+
+/// All subcommands, in the order of --help.
+std::span<const Command> commands();
+
+int command_match(const Arguments& arguments);
+int command_synth(const Arguments& arguments);
+int command_run(const Arguments& arguments);
+int command_eval(const Arguments& arguments);
+int command_generate_book(const Arguments& arguments);
+int command_generate_scene(const Arguments& arguments);
+int command_info(const Arguments& arguments);
+
+}  // namespace vantage::apps

@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "apps/commands.h"
+#include "apps/setting_value.h"
+#include "engine/build_info.h"
+#include "engine/error.h"
+
+namespace {
+
+using vantage::apps::Arguments;
+using vantage::apps::Command;
+using vantage::apps::commands;
+
+std::string help() {
+  std::string text =
+      "Vantage: disparity maps and new views of stereo pairs and sequences\n\n"
+      "Usage: vantage COMMAND [OPTIONS]\n\n";
+  for (const Command& command : commands()) {
+    text += fmt::format("  {:<15} {}\n", command.name, command.summary);
+  }
+  return text +
+         "\n'vantage COMMAND --help' lists its options; --version tells the version.\n"
+         "Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted.\n";
+}
+
+/// The command that the arguments begin with; its words are taken off. Null if there is none.
+const Command* take_command(Arguments& arguments) {
+  for (const Command& command : commands()) {
+    const Arguments words = vantage::apps::split(command.name, ' ');
+    if (arguments.size() >= words.size() &&
+        std::equal(words.begin(), words.end(), arguments.begin())) {
+      arguments.erase(arguments.begin(), arguments.begin() + static_cast<long>(words.size()));
+      return &command;
+    }
+  }
+  return nullptr;
+}
+
+std::string unknown_command(const Arguments& arguments) {
+  Arguments names;
+  std::string kinds;
+  for (const Command& command : commands()) {
+    names.emplace_back(command.name);
+    const Arguments words = vantage::apps::split(command.name, ' ');
+    if (words.size() > 1 && words.front() == arguments.front()) {
+      kinds += (kinds.empty() ? "" : " or ") + fmt::format("'vantage {}'", command.name);
+    }
+  }
+  if (!kinds.empty()) {
+    return fmt::format("expected {}", kinds);
+  }
+  return fmt::format("unknown command '{}', the nearest known one is '{}'", arguments.front(),
+                     vantage::apps::nearest_name(arguments.front(), names));
+}
+
+/// One line on stderr, whatever the message holds.
+int fail(const std::string& command, std::string message, int exit_code) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  std::replace(message.begin(), message.end(), '\r', ' ');
+  const std::string line =
+      fmt::format("vantage{}{}: {}\n", command.empty() ? "" : " ", command, message);
+  std::fputs(line.c_str(), stderr);
+  return exit_code;
+}
+
+int run(Arguments arguments, std::string& name) {
+  if (arguments.empty()) {
+    throw vantage::UsageError("a command is missing; see 'vantage --help'");
+  }
+  if (arguments.front() == "--help" || arguments.front() == "-h") {
+    std::fputs(help().c_str(), stdout);
+    return vantage::apps::kExitDone;
+  }
+  if (arguments.front() == "--version") {
+    fmt::print("vantage {}\n", vantage::build_info().version);
+    return vantage::apps::kExitDone;
+  }
+  const Command* command = take_command(arguments);
+  if (command == nullptr) {
+    throw vantage::UsageError(unknown_command(arguments));
+  }
+  name = command->name;
+  return command->run(arguments);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string command;
+  int exit_code = vantage::apps::kExitDone;
+  try {
+    exit_code = run(Arguments(argv + 1, argv + argc), command);
+  } catch (const vantage::UsageError& error) {
+    return fail(command, error.what(), vantage::apps::kExitUsage);
+  } catch (const std::bad_alloc&) {
+    return fail(command, "out of memory", vantage::apps::kExitFailed);
+  } catch (const std::exception& error) {
+    return fail(command, error.what(), vantage::apps::kExitFailed);
+  } catch (...) {
+    return fail(command, "unknown error", vantage::apps::kExitFailed);
+  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    return fail(command, "standard output cannot be written", vantage::apps::kExitFailed);
+  }
+  return exit_code;
+}

@@ -1,0 +1,148 @@
+#include "apps/option_groups.h"
+
+#include <fmt/format.h>
+
+#include "engine/error.h"
+
+namespace vantage::apps {
+namespace {
+
+DisparityRange to_disparity_range(const SettingValue& value) {
+  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ':');
+  try {
+    if (parts.size() == 2) {
+      return {to_integer(parts[0]), to_integer(parts[1])};
+    }
+  } catch (const UsageError&) {  // the message below says more
+  }
+  reject_value(value, "MIN:MAX in whole pixels, such as 0:63 or -16:15");
+}
+
+}  // namespace
+
+void add_common_settings(Settings& settings, CommonOptions& options) {
+  using scheduler::ExecutorKind;
+  settings.begin_group("Execution (never changes a result)");
+  settings.integer("threads", options.execution.threads, "N",
+                   "Threads, 1 to 1024; auto: all this process may use");
+  settings.choice<ExecutorKind>("executor", options.execution.executor,
+                                {{"tbb", ExecutorKind::kTbb},
+                                 {"openmp", ExecutorKind::kOpenMp},
+                                 {"serial", ExecutorKind::kSerial}},
+                                "What runs the threads");
+  settings.integer("strip-width", options.execution.strip_width_px, "PX",
+                   "Columns of a strip; auto: from the cache sizes");
+  settings.integer("band-height", options.execution.band_height_px, "PX",
+                   "Rows of a band; auto: from the cache sizes");
+  settings.text("isa", options.isa, "NAME",
+                "Instruction set of the kernels; best, or a name of 'vantage info'");
+  settings.begin_group("Messages");
+  settings.text("report", options.report, "FILE", "Write a JSON report of the run to FILE");
+  settings.flag("quiet", options.quiet, "Print errors only");
+}
+
+void add_match_settings(Settings& settings, MatchOptions& options) {
+  settings.begin_group("Matching");
+  Setting& disparities = settings.add(
+      "disparities", "MIN:MAX", "Candidate disparities x_left - x_right in pixels, both inclusive");
+  disparities.set = [&options](const SettingValue& value) {
+    options.disparities = to_disparity_range(value);
+  };
+  disparities.get = [&options] {
+    return fmt::format("{}:{}", options.disparities.min, options.disparities.max);
+  };
+  settings.choice<MatchMethod>("method", options.method, {{"ssd", MatchMethod::kSsd}},
+                               "How costs are made and aggregated");
+  settings.integer("window", options.window_px, "PX", "Side of the square window, odd");
+  settings.choice<Subpixel>("subpixel", options.subpixel,
+                            {{"parabola", Subpixel::kParabola}, {"none", Subpixel::kNone}},
+                            "Refinement of the winner between candidates");
+  settings.choice<Border>(
+      "border", options.border, {{"clip", Border::kClip}, {"valid", Border::kValid}},
+      "clip: use the part of a window inside both images; valid: whole windows");
+  settings.flag("raw", options.raw, "Winner-take-all only: no cross-check, no filling");
+  settings.number("cross-check", options.cross_check_px, "PX",
+                  "Left and right disparities agree if they differ by less, at least 1; auto: the "
+                  "number of candidates / 15");
+}
+
+void add_reference_setting(Settings& settings, MatchOptions& options) {
+  settings.choice<Reference>("reference", options.reference,
+                             {{"left", Reference::kLeft}, {"right", Reference::kRight}},
+                             "The image whose grid the disparity map is on");
+}
+
+void add_synthesis_settings(Settings& settings, SynthesisOptions& options) {
+  settings.begin_group("View synthesis");
+  settings.choice<WarpColour>(
+      "warp", options.warp, {{"one-pass", WarpColour::kOnePass}, {"forward", WarpColour::kForward}},
+      "one-pass: one bicubic interpolation of the photograph; forward: moves whole pixels");
+  settings.choice<HoleFilling>(
+      "holes", options.holes,
+      {{"mirror", HoleFilling::kMirror},
+       {"spread", HoleFilling::kSpread},
+       {"none", HoleFilling::kNone}},
+      "What fills places that no image shows: the background mirrored, spread, or nothing");
+  settings.number("gamma", options.gamma, "G",
+                  "Whose brightness a view has, 1 left to 0 right; alpha: moves with the view",
+                  "alpha");
+  settings.number("gradient-limit", options.disparity_gradient_limit_px, "PX",
+                  "Neighbours whose disparities differ by no more are one surface");
+  Setting& no_matching = settings.add("no-intensity-matching", "",
+                                      "Do not adapt the brightness of the images to each other");
+  no_matching.flag = true;
+  no_matching.set = [&options](const SettingValue& value) {
+    options.match_intensities = !to_truth(value);
+  };
+  no_matching.get = [&options] { return !options.match_intensities; };
+}
+
+double to_view_x(const SettingValue& value) {
+  if (value.is_number()) {
+    return to_number(value);
+  }
+  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ',');
+  double view_y = 0;
+  double view_x = 0;
+  try {
+    view_x = to_number(parts[0]);
+    view_y = parts.size() > 1 ? to_number(parts[1]) : 0;
+  } catch (const UsageError&) {
+    reject_value(value, "a position on the baseline such as 0.5");
+  }
+  if (view_y != 0 || parts.size() > 2) {
+    reject_value(value, "XS or XS,0: views off the baseline are not available");
+  }
+  return view_x;
+}
+
+void add_view_setting(Settings& settings, std::vector<double>& views_x) {
+  Setting& view =
+      settings.add("view", "XS",
+                   "Position of a new view in baselines: 0 left camera, 1 right camera, "
+                   "0.5 between them; repeatable");
+  view.list = true;
+  view.set = [&views_x](const SettingValue& value) {
+    std::vector<double> views;
+    for (const SettingValue& member : to_list(value)) {
+      views.push_back(to_view_x(member));
+    }
+    views_x = std::move(views);
+  };
+  view.get = [&views_x] { return views_x; };
+}
+
+void add_seed_setting(Settings& settings, std::uint64_t& seed) {
+  Setting& setting =
+      settings.add("seed", "N", "Of the random numbers; equal seeds, equal pictures");
+  setting.set = [&seed](const SettingValue& value) {
+    const int number = to_integer(value);
+    if (number < 0) {
+      reject_value(value, "a whole number of at least 0");
+    }
+    seed = static_cast<std::uint64_t>(number);
+  };
+  setting.get = [&seed] { return seed; };
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,123 @@
+#include "apps/run_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+
+#include "engine/build_info.h"
+#include "engine/io/atomic_file.h"
+#include "engine/simd.h"
+
+namespace vantage::apps {
+namespace {
+
+/// Most memory this process has had resident; 0 where the system does not tell. Not getrusage():
+/// its figure starts with that of the process that started this one.
+long long peak_memory_bytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    long long kib = 0;
+    if (std::sscanf(line.c_str(), "VmHWM: %lld kB", &kib) == 1) {
+      return kib * 1024;
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+RunReport::RunReport(std::string command, SettingValue settings)
+    : command_(std::move(command)), settings_(std::move(settings)) {}
+
+double RunReport::seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double RunReport::cells_per_second() const {
+  return compute_seconds_ > 0 ? cells_ / compute_seconds_ : 0;
+}
+
+void RunReport::add_stage(std::string_view name, double seconds) {
+  const auto known = std::ranges::find(stages_, name, &std::pair<std::string, double>::first);
+  if (known != stages_.end()) {
+    known->second += seconds;
+  } else {
+    stages_.emplace_back(name, seconds);
+  }
+}
+
+void RunReport::add_match(const MatchReport& match) {
+  for (const StageTime& stage : match.stages) {
+    add_stage(stage.name, stage.seconds);
+  }
+  cells_ += match.cells;
+  set_plan(match.plan);
+}
+
+void RunReport::set_plan(const scheduler::ChainPlan& plan) {
+  SettingValue passes = SettingValue::array();
+  for (const scheduler::PassPlan& pass : plan.passes) {
+    passes.push_back({{"first_stage", pass.first_stage},
+                      {"end_stage", pass.end_stage},
+                      {"strip_width_px", pass.strip_columns},
+                      {"band_height_px", pass.band_rows},
+                      {"strips", pass.strips},
+                      {"bands", pass.bands},
+                      {"scratch_bytes", pass.scratch_bytes},
+                      {"work_ratio", pass.work_ratio}});
+  }
+  plan_ = {{"passes", passes}, {"stored_bytes", plan.stored_bytes}};
+}
+
+void RunReport::set_execution(Execution& execution) {
+  isa_ = instruction_set_in_use();
+  threads_ = execution.executor().thread_count();
+}
+
+SettingValue RunReport::json() const {
+  SettingValue stages = SettingValue::object();
+  for (const auto& [name, seconds] : stages_) {
+    stages[name] = seconds;
+  }
+  SettingValue document = {
+      {"command", command_},
+      {"version", build_info().version},
+      {"settings", settings_},
+      {"plan", plan_},
+      {"isa", isa_},
+      {"threads", threads_},
+      {"seconds",
+       {{"wall", seconds_since(start_)}, {"compute", compute_seconds_}, {"stages", stages}}},
+      {"cells", cells_},
+      {"cells_per_second", cells_per_second()},
+      {"peak_memory_bytes", peak_memory_bytes()}};
+  if (!results_.is_null()) {
+    document["results"] = results_;
+  }
+  return document;
+}
+
+void RunReport::write(const std::string& path) const {
+  if (!path.empty()) {
+    // File names need not be UTF-8, JSON must be.
+    write_text_file(path,
+                    json().dump(2, ' ', false, SettingValue::error_handler_t::replace) + "\n");
+  }
+}
+
+void RunReport::print_summary() const {
+  std::string line =
+      fmt::format("{}: {} thread{}, {};", command_, threads_, threads_ == 1 ? "" : "s", isa_);
+  for (const auto& [name, seconds] : stages_) {
+    line += fmt::format(" {} {:.1f} ms,", name, seconds * 1e3);
+  }
+  line += fmt::format(" total {:.1f} ms", seconds_since(start_) * 1e3);
+  if (cells_ > 0) {
+    line += fmt::format("; {:.0f} million cells/s", cells_per_second() * 1e-6);
+  }
+  fmt::print(stderr, "{}\n", line);
+}
+
+}  // namespace vantage::apps

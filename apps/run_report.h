@@ -1,0 +1,91 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "apps/setting_value.h"
+#include "engine/execution.h"
+#include "engine/matching/stereo_matcher.h"
+#include "scheduler/strip_plan.h"
+
+namespace vantage::apps {
+
+/// What a command did and how long it took: the JSON of --report and the summary on stderr.
+/// Created when the command starts: wall time counts from there.
+class RunReport {
+ public:
+  RunReport(std::string command, SettingValue settings);
+
+  /// Runs `work` as a stage of compute time and returns what it returns.
+  template <typename Work>
+  auto timed_compute(std::string_view name, const Work& work) {
+    return timed(work, [&](double seconds) {
+      add_stage(name, seconds);
+      add_compute_seconds(seconds);
+    });
+  }
+  /// Runs `work`, which reports its stages itself.
+  template <typename Work>
+  auto timed_compute(const Work& work) {
+    return timed(work, [&](double seconds) { add_compute_seconds(seconds); });
+  }
+  /// Runs `work` as a stage that is not compute time because it reads or writes files.
+  template <typename Work>
+  auto timed_file_access(std::string_view name, const Work& work) {
+    return timed(work, [&](double seconds) { add_stage(name, seconds); });
+  }
+
+  /// Adds up when the name has been there before.
+  void add_stage(std::string_view name, double seconds);
+  void add_compute_seconds(double seconds) { compute_seconds_ += seconds; }
+  void add_cells(double cells) { cells_ += cells; }
+  /// Stages, cells and plan of a match; its compute time is not added.
+  void add_match(const MatchReport& match);
+  void set_plan(const scheduler::ChainPlan& plan);
+  /// Threads and instruction set.
+  void set_execution(Execution& execution);
+  /// Command-specific findings under the key `results`.
+  void set_results(SettingValue results) { results_ = std::move(results); }
+
+  /// The JSON document of DESIGN §6.
+  [[nodiscard]] SettingValue json() const;
+  /// Writes json() to `path`, whole or not at all; nothing for an empty path.
+  void write(const std::string& path) const;
+  /// One line per stage and one with the totals, on stderr.
+  void print_summary() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  template <typename Work, typename Record>
+  static auto timed(const Work& work, const Record& record) {
+    const Clock::time_point start = Clock::now();
+    if constexpr (std::is_void_v<decltype(work())>) {
+      work();
+      record(seconds_since(start));
+    } else {
+      auto result = work();
+      record(seconds_since(start));
+      return result;
+    }
+  }
+  [[nodiscard]] static double seconds_since(Clock::time_point start);
+  [[nodiscard]] double cells_per_second() const;
+
+  std::string command_;
+  SettingValue settings_;
+  Clock::time_point start_ = Clock::now();
+  SettingValue plan_;
+  SettingValue results_;
+  std::string isa_;
+  int threads_ = 0;
+  double compute_seconds_ = 0;
+  double cells_ = 0;
+  std::vector<std::pair<std::string, double>> stages_;
+};
+
+}  // namespace vantage::apps

@@ -1,0 +1,280 @@
+#include "apps/settings.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+
+#include "apps/toml_file.h"
+#include "engine/error.h"
+
+namespace vantage::apps {
+namespace {
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+std::string upper_case(std::string text) {
+  for (char& letter : text) {
+    letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  }
+  return text;
+}
+
+std::string shown_default(const SettingValue& value) {
+  if (value.is_string()) {
+    return value.get<std::string>();
+  }
+  return value.is_null() || value.is_array() || value.is_boolean() ? "" : value.dump();
+}
+
+std::string option_names(const Setting& setting) {
+  if (setting.positional) {
+    return setting.value_name;
+  }
+  const std::string short_name =
+      setting.short_name == 0 ? "" : fmt::format("-{},", setting.short_name);
+  return short_name + "--" + setting.name;
+}
+
+CLI::Option* add_option(CLI::App& app, const Setting& setting) {
+  CLI::Option* option = nullptr;
+  if (setting.flag) {
+    option = app.add_flag(option_names(setting), setting.help);
+  } else {
+    // Texts are only collected here: they are applied after the configuration file.
+    option = app.add_option(
+        option_names(setting), [](const CLI::results_t&) { return true; }, setting.help);
+    option->type_name(setting.positional ? "" : setting.value_name);
+    option->default_str(shown_default(setting.get()));
+  }
+  option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->group(setting.group);
+  return option;
+}
+
+void require_known(const std::vector<std::string>& leftovers,
+                   const std::vector<std::string>& known) {
+  for (const std::string& argument : leftovers) {
+    if (argument.size() > 1 && argument[0] == '-') {
+      const std::string name = argument.substr(0, argument.find('='));
+      throw UsageError(fmt::format("unknown option '{}', the nearest known one is '{}'", name,
+                                   nearest_name(name, known)));
+    }
+  }
+  if (!leftovers.empty()) {
+    throw UsageError(fmt::format("unexpected argument '{}'", leftovers.front()));
+  }
+}
+
+void set_value(const Setting& setting, const SettingValue& value, const std::string& shown_name) {
+  try {
+    setting.set(value);
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{} {}", shown_name, error.what()));
+  }
+}
+
+bool is_unset(const SettingValue& value) {
+  return value.is_null() || (value.is_array() && value.empty());
+}
+
+}  // namespace
+
+Settings::Settings(std::string command, std::string summary)
+    : command_(std::move(command)), summary_(std::move(summary)) {}
+
+Setting& Settings::add(std::string name, std::string value_name, std::string help) {
+  Setting setting;
+  setting.name = std::move(name);
+  setting.value_name = std::move(value_name);
+  setting.help = std::move(help);
+  setting.group = group_;
+  return settings_.emplace_back(std::move(setting));
+}
+
+Setting& Settings::flag(std::string name, bool& field, std::string help) {
+  Setting& setting = add(std::move(name), "", std::move(help));
+  setting.flag = true;
+  setting.set = [&field](const SettingValue& value) { field = to_truth(value); };
+  setting.get = [&field] { return field; };
+  return setting;
+}
+
+Setting& Settings::integer(std::string name, int& field, std::string value_name, std::string help) {
+  Setting& setting = add(std::move(name), std::move(value_name), std::move(help));
+  setting.set = [&field](const SettingValue& value) { field = to_integer(value); };
+  setting.get = [&field] { return field; };
+  return setting;
+}
+
+Setting& Settings::number(std::string name, double& field, std::string value_name,
+                          std::string help) {
+  Setting& setting = add(std::move(name), std::move(value_name), std::move(help));
+  setting.set = [&field](const SettingValue& value) { field = to_number(value); };
+  setting.get = [&field] { return field; };
+  return setting;
+}
+
+namespace {
+
+template <typename T, typename Parse>
+void bind_optional(Setting& setting, std::optional<T>& field, const std::string& unset_name,
+                   const Parse& parse) {
+  setting.set = [&field, unset_name, parse](const SettingValue& value) {
+    if (value.is_string() && value.get_ref<const std::string&>() == unset_name) {
+      field.reset();
+      return;
+    }
+    field = parse(value);
+  };
+  setting.get = [&field, unset_name]() -> SettingValue {
+    return field ? SettingValue(*field) : SettingValue(unset_name);
+  };
+}
+
+}  // namespace
+
+Setting& Settings::integer(std::string name, std::optional<int>& field, std::string value_name,
+                           std::string help, const std::string& unset_name) {
+  Setting& setting = add(std::move(name), std::move(value_name), std::move(help));
+  bind_optional(setting, field, unset_name, to_integer);
+  return setting;
+}
+
+Setting& Settings::number(std::string name, std::optional<double>& field, std::string value_name,
+                          std::string help, const std::string& unset_name) {
+  Setting& setting = add(std::move(name), std::move(value_name), std::move(help));
+  bind_optional(setting, field, unset_name, to_number);
+  return setting;
+}
+
+Setting& Settings::text(std::string name, std::string& field, std::string value_name,
+                        std::string help) {
+  Setting& setting = add(std::move(name), std::move(value_name), std::move(help));
+  setting.set = [&field](const SettingValue& value) { field = to_text(value); };
+  setting.get = [&field]() -> SettingValue {
+    return field.empty() ? SettingValue() : SettingValue(field);
+  };
+  return setting;
+}
+
+Setting& Settings::positional(std::string name, std::string& field, std::string help) {
+  Setting& setting = text(std::move(name), field, "", std::move(help));
+  setting.value_name = upper_case(setting.name);
+  setting.positional = true;
+  return setting;
+}
+
+SettingValue Settings::values() const {
+  SettingValue values = SettingValue::object();
+  for (const Setting& setting : settings_) {
+    values[setting.name] = setting.get();
+  }
+  return values;
+}
+
+bool Settings::read(const std::vector<std::string>& arguments) {
+  CLI::App app(summary_, "vantage " + command_);
+  app.allow_extras();
+  std::string config_path;
+  bool print_config = false;
+  std::vector<std::string> known = {"--help", "--config", "--print-config"};
+  std::vector<CLI::Option*> options;
+  for (const Setting& setting : settings_) {
+    options.push_back(add_option(app, setting));
+    if (!setting.positional) {
+      known.push_back("--" + setting.name);
+    }
+  }
+  app.add_option("--config", config_path, "Read settings from this TOML file; options override it")
+      ->type_name("FILE.toml")
+      ->group("Settings");
+  app.add_flag("--print-config", print_config, "Write all settings in effect as TOML and stop")
+      ->group("Settings");
+
+  std::vector<std::string> reversed = arguments;  // as CLI11 wants them
+  std::reverse(reversed.begin(), reversed.end());
+  try {
+    app.parse(std::move(reversed));
+  } catch (const CLI::CallForHelp&) {
+    std::fputs(app.help().c_str(), stdout);
+    return false;
+  } catch (const CLI::ParseError& error) {
+    // An unknown option is the likelier cause of whatever CLI11 stumbled over.
+    require_known(app.remaining(), known);
+    throw UsageError(first_line(error.what()));
+  }
+  require_known(app.remaining(), known);
+
+  if (!config_path.empty()) {
+    apply_config(config_path);
+  }
+  for (std::size_t i = 0; i < settings_.size(); ++i) {
+    const Setting& setting = settings_[i];
+    const std::vector<std::string>& texts = options[i]->results();
+    if (texts.empty()) {
+      continue;
+    }
+    const std::string shown_name = setting.positional ? setting.value_name : "--" + setting.name;
+    if (!setting.list && texts.size() > 1) {
+      throw UsageError(
+          fmt::format("{} is given {} times, expected once", shown_name, texts.size()));
+    }
+    set_value(setting, setting.list ? SettingValue(texts) : SettingValue(texts.front()),
+              shown_name);
+    given_.insert(setting.name);
+  }
+
+  if (print_config) {
+    std::fputs(toml().c_str(), stdout);
+    return false;
+  }
+  require_complete();
+  return true;
+}
+
+void Settings::apply_config(const std::string& path) {
+  std::vector<std::string> names;
+  for (const Setting& setting : settings_) {
+    names.push_back(setting.name);
+  }
+  const SettingValue values = read_toml(path);
+  for (const auto& [key, value] : values.items()) {
+    const auto setting = std::ranges::find(settings_, key, &Setting::name);
+    if (setting == settings_.end()) {
+      throw UsageError(fmt::format("{}: unknown key '{}', the nearest known one is '{}'", path, key,
+                                   nearest_name(key, names)));
+    }
+    set_value(*setting, value, fmt::format("{}: {}", path, key));
+  }
+}
+
+void Settings::require_complete() const {
+  for (const Setting& setting : settings_) {
+    if (setting.required && is_unset(setting.get())) {
+      throw UsageError(
+          setting.positional
+              ? fmt::format("{} is missing; see 'vantage {} --help'", setting.value_name, command_)
+              : fmt::format("--{} is missing, expected --{} {}", setting.name, setting.name,
+                            setting.value_name));
+    }
+  }
+}
+
+std::string Settings::toml() const {
+  std::string text = fmt::format("# Settings of 'vantage {}'; use with --config.\n", command_);
+  const std::string* group = nullptr;
+  for (const Setting& setting : settings_) {
+    if (group == nullptr || *group != setting.group) {
+      text += fmt::format("\n# {}\n", setting.group);
+      group = &setting.group;
+    }
+    const SettingValue value = setting.get();
+    text += value.is_null() ? fmt::format("# {} is not set\n", setting.name)
+                            : fmt::format("{} = {}\n", setting.name, to_toml(value));
+  }
+  return text;
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "apps/setting_value.h"
+
+namespace vantage::apps {
+
+/// One thing a user can set: an option of the command line, a key of the TOML file and an entry of
+/// the report, bound to a field of an option struct.
+struct Setting {
+  std::string name;        ///< long option and TOML key, without dashes
+  std::string value_name;  ///< what --help calls the value; empty for a flag
+  std::string help;
+  std::string group;
+  char short_name = 0;
+  bool positional = false;
+  bool required = false;
+  bool flag = false;
+  bool list = false;  ///< may be given several times; an array in TOML
+  /// Takes a value of the TOML file or a text (list: texts) of the command line. Throws UsageError
+  /// "is …, expected …" without the name.
+  std::function<void(const SettingValue&)> set;
+  /// The present value; null when the setting has none.
+  std::function<SettingValue()> get;
+};
+
+/// All settings of a command, and the one way from argv and --config to option structs: struct
+/// defaults, then the file, then the command line. Fields are bound by reference and must outlive
+/// this object.
+class Settings {
+ public:
+  Settings(std::string command, std::string summary);
+
+  /// Settings added from now on appear under `title` in --help and --print-config.
+  void begin_group(std::string title) { group_ = std::move(title); }
+
+  Setting& flag(std::string name, bool& field, std::string help);
+  Setting& integer(std::string name, int& field, std::string value_name, std::string help);
+  Setting& number(std::string name, double& field, std::string value_name, std::string help);
+  /// The field is empty for the text `unset_name`.
+  Setting& integer(std::string name, std::optional<int>& field, std::string value_name,
+                   std::string help, const std::string& unset_name = "auto");
+  Setting& number(std::string name, std::optional<double>& field, std::string value_name,
+                  std::string help, const std::string& unset_name = "auto");
+  /// An empty text counts as not set.
+  Setting& text(std::string name, std::string& field, std::string value_name, std::string help);
+  Setting& positional(std::string name, std::string& field, std::string help);
+  /// One of the names of an enumeration.
+  template <typename Enum>
+  Setting& choice(std::string name, Enum& field,
+                  std::vector<std::pair<std::string_view, Enum>> names, std::string help);
+  /// Anything else: the caller fills in the rest.
+  Setting& add(std::string name, std::string value_name, std::string help);
+
+  /// Reads the command line and --config. Returns false when there is nothing left to do, because
+  /// --help or --print-config has been answered on stdout. Throws UsageError, and Error when the
+  /// file of --config cannot be read.
+  [[nodiscard]] bool read(const std::vector<std::string>& arguments);
+
+  /// Whether the command line (not the file) named the setting.
+  [[nodiscard]] bool given_on_command_line(const std::string& name) const {
+    return given_.contains(name);
+  }
+  /// Name → present value, in order of registration.
+  [[nodiscard]] SettingValue values() const;
+  [[nodiscard]] const std::string& command() const { return command_; }
+
+ private:
+  void apply_config(const std::string& path);
+  void require_complete() const;
+  [[nodiscard]] std::string toml() const;
+
+  std::string command_;
+  std::string summary_;
+  std::string group_ = "Options";
+  std::deque<Setting> settings_;  // deque: add() hands out references
+  std::set<std::string> given_;
+};
+
+template <typename Enum>
+Setting& Settings::choice(std::string name, Enum& field,
+                          std::vector<std::pair<std::string_view, Enum>> names, std::string help) {
+  std::string value_name;
+  for (const auto& [text, value] : names) {
+    value_name += (value_name.empty() ? "" : "|") + std::string(text);
+  }
+  Setting& setting = add(std::move(name), value_name, std::move(help));
+  setting.set = [&field, names, value_name](const SettingValue& value) {
+    for (const auto& [text, choice] : names) {
+      if (value.is_string() && value.get_ref<const std::string&>() == text) {
+        field = choice;
+        return;
+      }
+    }
+    reject_value(value, "one of " + value_name);
+  };
+  setting.get = [&field, names]() -> SettingValue {
+    for (const auto& [text, choice] : names) {
+      if (choice == field) {
+        return std::string(text);
+      }
+    }
+    return nullptr;
+  };
+  return setting;
+}
+
+}  // namespace vantage::apps

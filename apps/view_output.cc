@@ -1,0 +1,59 @@
+#include "apps/view_output.h"
+
+#include <fmt/format.h>
+
+#include "engine/error.h"
+#include "engine/io/photograph_io.h"
+
+namespace vantage::apps {
+namespace {
+
+bool is_video(const std::string& path) { return has_extension(path, {".mp4"}); }
+
+}  // namespace
+
+ViewOutput::ViewOutput(const std::string& path, int views) : path_(path), views_(views) {
+  if (is_pattern(path)) {
+    expand_pattern(path, 0);  // throws for a malformed one
+    if (is_video(path)) {
+      throw UsageError(fmt::format("'{}' is a pattern for videos, expected one video name", path));
+    }
+  } else if (views > 1 && !is_video(path)) {
+    throw UsageError(fmt::format(
+        "'{}' names one file for {} views, expected a pattern such as views/%03d.png, or an .mp4",
+        path, views));
+  }
+}
+
+std::string ViewOutput::file(int index) const {
+  return is_pattern(path_) ? expand_pattern(path_, index) : path_;
+}
+
+void ViewOutput::check(FileChecks& checks, const std::string& option) const {
+  if (is_video(path_)) {
+    checks.add_output(path_, option, OutputKind::kVideo);
+    return;
+  }
+  for (int index = 0; index < views_; ++index) {
+    checks.add_output(file(index), option, OutputKind::kPhotograph);
+  }
+}
+
+void ViewOutput::write(int index, const Photograph& image, double frames_per_second) {
+  if (!is_video(path_)) {
+    write_photograph(file(index), image);
+    return;
+  }
+  if (video_ == nullptr) {
+    video_ = std::make_unique<VideoWriter>(path_, image.width(), image.height(), frames_per_second);
+  }
+  video_->write(image);
+}
+
+void ViewOutput::finish() {
+  if (video_ != nullptr) {
+    video_->finish();
+  }
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "apps/outputs.h"
+#include "engine/image/photograph.h"
+#include "engine/io/video_io.h"
+
+namespace vantage::apps {
+
+/// Where rendered views go: one image file, numbered image files (a printf pattern) or a video.
+class ViewOutput {
+ public:
+  /// `views` is how many there will be. Throws UsageError when several should go to a plain name.
+  ViewOutput(const std::string& path, int views);
+
+  /// Adds every file to be written to `checks`. `option` names the setting in messages.
+  void check(FileChecks& checks, const std::string& option) const;
+
+  /// View `index`, in order.
+  void write(int index, const Photograph& image, double frames_per_second);
+  /// Call it after the last view; without it no video is left.
+  void finish();
+
+ private:
+  [[nodiscard]] std::string file(int index) const;
+
+  std::string path_;
+  int views_;
+  std::unique_ptr<VideoWriter> video_;
+};
+
+}  // namespace vantage::apps

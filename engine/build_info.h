@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+namespace vantage {
+
+/// What this library was built from and with. Thread rule: pure.
+struct BuildInfo {
+  std::string version;   ///< of Vantage, "1.2.3"
+  std::string compiler;  ///< "GCC 12.2.0"
+  std::string opencv;    ///< version in use
+  std::string tbb;       ///< version in use
+};
+
+BuildInfo build_info();
+
+}  // namespace vantage

@@ -1,0 +1,109 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/apps/pair_fixture.h"
+
+namespace vantage {
+namespace {
+
+using testing::HasSubstr;
+
+using BadInput = PairTest;
+
+/// Bytes of a 2×1 float image whose first pixel is `value`.
+std::string pfm_of(const std::string& header, float value) {
+  std::string bytes = header;
+  const float pixels[2] = {value, 0.5F};
+  bytes.append(reinterpret_cast<const char*>(pixels), sizeof pixels);
+  return bytes;
+}
+
+TEST_F(BadInput, ImagesThatCannotBeMatched) {
+  const std::string png = read_file(left_);
+  const float nan = std::nanf("");
+  const float infinity = HUGE_VALF;
+  std::string zero_size = png;
+  zero_size.replace(16, 8, std::string(8, '\0'));
+  std::string huge = png;
+  huge.replace(16, 8, std::string("\x7f\xff\xff\xff\x7f\xff\xff\xff", 8));
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"empty.png", ""},
+      {"half.png", png.substr(0, png.size() / 2)},
+      {"header.png", png.substr(0, 33)},
+      {"zero.png", zero_size},
+      {"huge.png", huge},
+      {"text.png", "This is no picture.\n"},
+      {"nan.pfm", pfm_of("Pf\n2 1\n-1.0\n", nan)},
+      {"inf.pfm", pfm_of("Pf\n2 1\n-1.0\n", infinity)},
+      {"short.pfm", pfm_of("Pf\n200 100\n-1.0\n", 0)},
+      {"zero.pfm", pfm_of("Pf\n0 0\n-1.0\n", 0)},
+      {"huge.pfm", pfm_of("Pf\n2000000000 2000000000\n-1.0\n", 0)},
+      {"negative.pfm", pfm_of("Pf\n-2 -1\n-1.0\n", 0)}};
+  for (const auto& [name, content] : files) {
+    const std::string file = folder_ / name;
+    write_file(file, content);
+    const auto before = files_below(folder_.path());
+    const ProcessResult result =
+        run_vantage({"match", file, file, "-o", folder_ / "out.pfm", "--preview",
+                     folder_ / "preview.png", "--report", folder_ / "report.json"});
+    EXPECT_EQ(result.exit_code, 1) << name;
+    EXPECT_TRUE(is_one_line(result, "match")) << name;
+    EXPECT_THAT(result.err, HasSubstr(name));
+    EXPECT_EQ(files_below(folder_.path()), before);
+  }
+}
+
+TEST_F(BadInput, PairsThatDoNotGoTogether) {
+  write_photograph(folder_ / "small.png", {Image<std::uint8_t>(3, 3)});
+  const std::vector<std::vector<std::string>> cases = {
+      {"match", left_, folder_ / "none.png"},
+      {"match", left_, folder_.path().string()},
+      {"match", left_, folder_ / "small.png"},
+      {"match", left_, right_, "--disparities=71:90"},  // no pixel has a candidate
+      {"match", left_, right_, "--disparities=-90:-71"},
+      {"synth", left_, folder_ / "small.png", "--view", "0.5"}};
+  const auto before = files_below(folder_.path());
+  for (std::vector<std::string> arguments : cases) {
+    const std::string command = arguments.front();
+    arguments.insert(arguments.end(),
+                     {"-o", folder_ / (command == "match" ? "out.pfm" : "out.png")});
+    const ProcessResult result = run_vantage(arguments);
+    EXPECT_EQ(result.exit_code, 1) << arguments[2];
+    EXPECT_TRUE(is_one_line(result, command));
+  }
+  EXPECT_EQ(files_below(folder_.path()), before);
+}
+
+TEST_F(BadInput, OutputsThatCannotBeWritten) {
+  std::filesystem::create_directory(folder_ / "folder.pfm");
+  const auto before = files_below(folder_.path());
+  const std::vector<std::vector<std::string>> cases = {
+      {"-o", folder_ / "none/out.pfm"},
+      {"-o", folder_ / "folder.pfm"},
+      {"-o", left_ + "/out.pfm"},
+      {"-o", "/proc/out.pfm"},
+      {"-o", folder_ / "out.pfm", "--report", folder_ / "none/report.json"},
+      {"-o", folder_ / "out.pfm", "--preview", folder_ / "none/preview.png"}};
+  for (const auto& outputs : cases) {
+    std::vector<std::string> arguments = {"match", left_, right_, "--disparities=0:9"};
+    arguments.insert(arguments.end(), outputs.begin(), outputs.end());
+    const ProcessResult result = run_vantage(arguments);
+    EXPECT_EQ(result.exit_code, 1) << outputs.back();
+    EXPECT_TRUE(is_one_line(result, "match"));
+    EXPECT_THAT(result.err, HasSubstr(outputs.back()));
+    EXPECT_EQ(files_below(folder_.path()), before);
+  }
+}
+
+TEST_F(BadInput, OnePixelPairsWork) {
+  Image<std::uint8_t> pixel(1, 1);
+  pixel.fill(77);
+  write_photograph(folder_ / "pixel.png", {std::move(pixel)});
+  const ProcessResult result =
+      run_vantage({"match", folder_ / "pixel.png", folder_ / "pixel.png", "-o", folder_ / "o.pfm"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(read_disparity(folder_ / "o.pfm").at(0, 0), 0);
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,105 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/pair_fixture.h"
+
+namespace vantage {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(GenerateCommand, BookPairsWithTruth) {
+  const TemporaryFolder folder;
+  for (const std::string_view name : kBookPairNames) {
+    const std::string out = folder / std::string(name);
+    const ProcessResult result =
+        run_vantage({"generate", "book", "--pattern", std::string(name), "-o", out});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(files_below(out),
+                ElementsAre("left-disparity.pfm", "left-occluded.png", "left.png",
+                            "right-disparity.pfm", "right-occluded.png", "right.png"));
+    const BookPair pair = make_book_pair(book_pair_options(name));
+    const DisparityMap truth = read_disparity(out + "/left-disparity.pfm");
+    ASSERT_EQ(truth.width(), pair.left_disparity.width());
+    for (int x = 0; x < truth.width(); ++x) {
+      EXPECT_EQ(truth.at(x, 50), pair.left_disparity.at(x, 50)) << name << ' ' << x;
+    }
+  }
+}
+
+TEST(GenerateCommand, NoiseGivesFloatImagesThatMatchReads) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "noisy";
+  ASSERT_EQ(run_vantage({"generate", "book", "--noise", "2", "--width", "40", "-o", out}).exit_code,
+            0);
+  const ProcessResult result = run_vantage({"match", out + "/left.pfm", out + "/right.pfm", "-o",
+                                            folder / "map.pfm", "--disparities=0:9"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
+TEST(GenerateCommand, ScenesAsPairsAndSequences) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> scene = {"generate",  "scene", "--width", "33",  "--height", "21",
+                                          "--samples", "1",     "--view",  "0.5", "--view",   "-1"};
+  auto single = scene;
+  single.insert(single.end(), {"-o", folder / "single"});
+  ProcessResult result = run_vantage(single);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("--disparities="));
+  EXPECT_THAT(
+      files_below(folder / "single"),
+      ElementsAre("left-disparity.pfm", "left-occluded.png", "left.png", "right-disparity.pfm",
+                  "right-occluded.png", "right.png", "view--1.png", "view-0.5.png"));
+
+  auto sequence = scene;
+  sequence.insert(sequence.end(), {"--frames", "3", "-o", folder / "sequence"});
+  result = run_vantage(sequence);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(files_below(folder / "sequence").size(), 3U * 8);
+  EXPECT_EQ(read_file(folder / "sequence/left/000000.png"), read_file(folder / "single/left.png"));
+  EXPECT_EQ(read_file(folder / "sequence/views/0.5/000000.png"),
+            read_file(folder / "single/view-0.5.png"));
+  EXPECT_NE(read_file(folder / "sequence/left/000002.png"),
+            read_file(folder / "sequence/left/000000.png"));
+  // What it writes is what the other commands read.
+  result = run_vantage({"run", "--left", folder / "sequence/left", "--right",
+                        folder / "sequence/right", "-o", folder / "out", "--disparities=0:3"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
+TEST(GenerateCommand, WrongUsageIsOneLineAndExit2) {
+  const TemporaryFolder folder;
+  const std::vector<std::vector<std::string>> misuses = {
+      {"book", "-o", folder / "o", "--pattern", "stripes"},
+      {"book", "-o", folder / "o", "--width", "0"},
+      {"book", "-o", folder / "o", "--seed", "-1"},
+      {"book"},
+      {"scene", "-o", folder / "o", "--frames", "0"},
+      {"scene", "-o", folder / "o", "--view", "99"},
+      {"scene", "-o", folder / "o", "--near", "1", "--far", "2"}};
+  for (const auto& misuse : misuses) {
+    std::vector<std::string> arguments = {"generate"};
+    arguments.insert(arguments.end(), misuse.begin(), misuse.end());
+    const ProcessResult result = run_vantage(arguments);
+    EXPECT_EQ(result.exit_code, 2) << misuse.back();
+    EXPECT_TRUE(is_one_line(result, "generate " + misuse.front()));
+  }
+  EXPECT_THAT(files_below(folder.path()), IsEmpty());
+}
+
+TEST(InfoCommand, TellsTheVersionAndTheInstructionSets) {
+  const ProcessResult table = run_vantage({"info"});
+  EXPECT_EQ(table.exit_code, 0);
+  EXPECT_THAT(table.out, HasSubstr("instruction sets"));
+  const auto info = nlohmann::json::parse(run_vantage({"info", "--json"}).out);
+  EXPECT_GE(info["isa_built"].size(), info["isa_available"].size());
+  EXPECT_EQ(info["isa"], info["isa_available"][0]);
+  EXPECT_GE(info["hardware_threads"], 1);
+}
+
+}  // namespace
+}  // namespace vantage

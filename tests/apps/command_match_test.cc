@@ -1,0 +1,206 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/matching/stereo_matcher.h"
+#include "tests/apps/pair_fixture.h"
+
+namespace vantage {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+using MatchCommand = PairTest;
+
+TEST_F(MatchCommand, FindsTheTruth) {
+  const ProcessResult result = match(folder_ / "map.pfm", {"--window", "5"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_THAT(result.err, HasSubstr("71x53"));
+  EXPECT_LT(
+      bad_share(read_disparity(folder_ / "map.pfm"), pair_.left_disparity, pair_.left_occluded),
+      0.05);
+}
+
+TEST_F(MatchCommand, WritesEverythingAskedFor) {
+  const ProcessResult result =
+      match(folder_ / "l.pfm",
+            {"--output-right", folder_ / "r.npy", "--unmatched", folder_ / "mask.png", "--preview",
+             folder_ / "view.jpg", "--report", folder_ / "report.json", "--quiet"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, IsEmpty());
+  EXPECT_THAT(files_below(folder_.path()), ElementsAre("l.pfm", "left.png", "mask.png", "r.npy",
+                                                       "report.json", "right.png", "view.jpg"));
+  EXPECT_LT(
+      bad_share(read_disparity(folder_ / "r.npy"), pair_.right_disparity, pair_.right_occluded),
+      0.1);
+  const Photograph preview = read_photograph(folder_ / "view.jpg");
+  EXPECT_EQ(preview.channels(), 3);
+  EXPECT_EQ(preview.width(), 71);
+  const Photograph mask = read_photograph(folder_ / "mask.png");
+  EXPECT_EQ(mask.channels(), 1);
+}
+
+TEST_F(MatchCommand, EqualsTheLibrary) {
+  ASSERT_EQ(match(folder_ / "map.pfm", {"--window=3", "--raw", "--border", "valid"}).exit_code, 0);
+  MatchOptions options;
+  options.disparities = {0, 9};
+  options.window_px = 3;
+  options.raw = true;
+  options.border = Border::kValid;
+  Execution execution({});
+  DisparityMaps maps;
+  StereoMatcher(options, execution).match(pair_.left, pair_.right, {true, false}, maps);
+  const DisparityMap map = read_disparity(folder_ / "map.pfm");
+  int unknown = 0;
+  for (int y = 0; y < map.height(); ++y) {
+    for (int x = 0; x < map.width(); ++x) {
+      const float expected = maps.left.at(x, y);
+      unknown += std::isnan(expected) ? 1 : 0;
+      EXPECT_TRUE(map.at(x, y) == expected || (std::isnan(map.at(x, y)) && std::isnan(expected)));
+    }
+  }
+  EXPECT_GT(unknown, 0);  // the frame that border valid leaves
+}
+
+TEST_F(MatchCommand, ReferenceRightWritesTheRightMap) {
+  ASSERT_EQ(match(folder_ / "a.pfm", {"--output-right", folder_ / "b.pfm"}).exit_code, 0);
+  ASSERT_EQ(match(folder_ / "c.pfm", {"--reference", "right"}).exit_code, 0);
+  EXPECT_EQ(read_file(folder_ / "b.pfm"), read_file(folder_ / "c.pfm"));
+  EXPECT_NE(read_file(folder_ / "a.pfm"), read_file(folder_ / "c.pfm"));
+}
+
+TEST_F(MatchCommand, SignedRangesInBothSpellings) {
+  // With the images swapped every disparity changes its sign.
+  const std::vector<std::string> swapped = {"match", right_, left_, "--window", "5", "-o"};
+  auto joined = swapped;
+  joined.insert(joined.end(), {folder_ / "joined.pfm", "--disparities=-9:0"});
+  auto apart = swapped;
+  apart.insert(apart.end(), {folder_ / "apart.pfm", "--disparities", "-9:0"});
+  ASSERT_EQ(run_vantage(joined).exit_code, 0);
+  ASSERT_EQ(run_vantage(apart).exit_code, 0);
+  EXPECT_EQ(read_file(folder_ / "joined.pfm"), read_file(folder_ / "apart.pfm"));
+  const DisparityMap map = read_disparity(folder_ / "apart.pfm");
+  DisparityMap negated = pair_.right_disparity.copy();
+  for (int y = 0; y < negated.height(); ++y) {
+    for (int x = 0; x < negated.width(); ++x) {
+      negated.at(x, y) = -negated.at(x, y);
+    }
+  }
+  EXPECT_LT(bad_share(map, negated, pair_.right_occluded), 0.1);
+}
+
+TEST_F(MatchCommand, ReportHasTheKeysOfTheContract) {
+  ASSERT_EQ(
+      match(folder_ / "map.pfm", {"--report", folder_ / "r.json", "--threads", "2"}).exit_code, 0);
+  const auto report = nlohmann::ordered_json::parse(read_file(folder_ / "r.json"));
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : report.items()) {
+    keys.push_back(key);
+  }
+  EXPECT_THAT(keys, ElementsAre("command", "version", "settings", "plan", "isa", "threads",
+                                "seconds", "cells", "cells_per_second", "peak_memory_bytes"));
+  EXPECT_EQ(report["command"], "match");
+  EXPECT_EQ(report["settings"]["disparities"], "0:9");
+  EXPECT_EQ(report["threads"], 2);
+  EXPECT_EQ(report["cells"], 71.0 * 53 * 10 * 2);
+  EXPECT_GT(report["peak_memory_bytes"], 1 << 20);
+  EXPECT_GE(report["plan"]["passes"].size(), 1U);
+  const auto& seconds = report["seconds"];
+  EXPECT_TRUE(seconds["stages"].contains("read"));
+  EXPECT_TRUE(seconds["stages"].contains("write"));
+  EXPECT_GT(seconds["compute"], 0);
+  EXPECT_GE(seconds["wall"].get<double>(),
+            seconds["compute"].get<double>() + seconds["stages"]["read"].get<double>());
+}
+
+TEST_F(MatchCommand, ResultsDoNotDependOnExecution) {
+  ASSERT_EQ(match(folder_ / "a.pfm", {"--executor", "serial"}).exit_code, 0);
+  const std::string expected = read_file(folder_ / "a.pfm");
+  const std::vector<std::vector<std::string>> ways = {
+      {"--executor", "tbb", "--threads", "3", "--strip-width", "7", "--band-height", "5"},
+      {"--executor", "openmp", "--threads", "2"},
+      {"--isa", "SSE4"}};
+  for (const auto& way : ways) {
+    const ProcessResult result = match(folder_ / "b.pfm", way);
+    if (result.exit_code == 2 && way.front() == "--isa") {
+      continue;  // not an x86 machine: the message lists what there is
+    }
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(read_file(folder_ / "b.pfm"), expected) << way.front() << ' ' << way[1];
+  }
+}
+
+TEST_F(MatchCommand, IsaIsTheOneThatRan) {
+  const auto info = nlohmann::json::parse(run_vantage({"info", "--json"}).out);
+  for (const std::string name : info["isa_available"]) {
+    ASSERT_EQ(match(folder_ / "a.pfm", {"--isa", name, "--report", folder_ / "r.json"}).exit_code,
+              0);
+    EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "r.json"))["isa"], name);
+  }
+}
+
+struct Misuse {
+  std::vector<std::string> arguments;  ///< after match LEFT RIGHT
+  std::string says;
+};
+
+TEST_F(MatchCommand, WrongUsageIsOneLineAndExit2) {
+  const std::string out = folder_ / "out.pfm";
+  const std::vector<Misuse> misuses = {
+      {{}, "--output"},
+      {{"-o", out, "--window", "8"}, "window is 8"},
+      {{"-o", out, "--window", "wide"}, "--window is 'wide', expected a whole number"},
+      {{"-o", out, "--window", "3", "--window", "5"}, "--window is given 2 times"},
+      {{"-o", out, "--disparities", "9"}, "--disparities is '9', expected MIN:MAX"},
+      {{"-o", out, "--disparities", "9:1"}, "9:1"},
+      {{"-o", out, "--method", "magic"}, "--method is 'magic', expected one of ssd"},
+      {{"-o", out, "--isa", "Z80"}, "isa is 'Z80'"},
+      {{"-o", out, "--threads", "0"}, "threads is 0"},
+      {{"-o", out, "--iterations-per-pass", "2"}, "unknown option '--iterations-per-pass'"},
+      {{"-o", out, "--windw=5"}, "'--windw', the nearest known one is '--window'"},
+      {{"-o", out, "-7"}, "unknown option '-7'"},
+      {{"-o", out, "third.png"}, "unexpected argument 'third.png'"},
+      {{"-o", folder_ / "out.xyz"}, "out.xyz"},
+      {{"-o", left_}, "which is an input as well"},
+      {{"-o", folder_ / "../" + folder_.path().filename().string() + "/left.png"},
+       "which is an input as well"},
+      {{"-o", out, "--output-right", out}, "the same file"},
+      {{"-o", out, "--reference", "right", "--output-right", folder_ / "r.pfm"}, "--output-right"},
+      {{"-o", out, "--window"}, "--window"}};
+  const auto before = files_below(folder_.path());
+  for (const Misuse& misuse : misuses) {
+    std::vector<std::string> arguments = {"match", left_, right_};
+    arguments.insert(arguments.end(), misuse.arguments.begin(), misuse.arguments.end());
+    const ProcessResult result = run_vantage(arguments);
+    EXPECT_EQ(result.exit_code, 2) << misuse.says;
+    EXPECT_TRUE(is_one_line(result, "match"));
+    EXPECT_THAT(result.err, HasSubstr(misuse.says));
+  }
+  EXPECT_EQ(files_below(folder_.path()), before);
+}
+
+TEST(Vantage, UnknownCommandsAndHelp) {
+  ProcessResult result = run_vantage({"mach"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.err, "vantage: unknown command 'mach', the nearest known one is 'match'\n");
+  result = run_vantage({"generate"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("'vantage generate scene'"));
+  EXPECT_EQ(run_vantage({}).exit_code, 2);
+  result = run_vantage({"--help"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, HasSubstr("generate book"));
+  result = run_vantage({"match", "--help"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, HasSubstr("--disparities MIN:MAX"));
+  EXPECT_THAT(result.out, Not(HasSubstr("--trace")));  // options that do nothing are not there
+  EXPECT_EQ(run_vantage({"--version"}).out.rfind("vantage ", 0), 0U);
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,163 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <variant>
+
+#include "engine/io/video_io.h"
+#include "tests/apps/pair_fixture.h"
+
+namespace vantage {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class SynthCommand : public PairTest {
+ protected:
+  SynthCommand() {
+    write_disparity(left_map_, pair_.left_disparity.view());
+    write_disparity(right_map_, pair_.right_disparity.view());
+    outputs_ = folder_ / "out";
+    std::filesystem::create_directory(outputs_);
+  }
+
+  [[nodiscard]] ProcessResult synth(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {"synth", left_, right_, "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_vantage(arguments);
+  }
+  [[nodiscard]] ProcessResult synth_from_maps(std::vector<std::string> more) const {
+    more.insert(more.end(), {"--left-disparity", left_map_, "--right-disparity", right_map_});
+    return synth(more);
+  }
+
+  std::string left_map_ = folder_ / "left.pfm";
+  std::string right_map_ = folder_ / "right.npy";
+  std::string outputs_;
+};
+
+TEST_F(SynthCommand, TheViewAtTheLeftCameraIsTheLeftImage) {
+  const ProcessResult result =
+      synth_from_maps({"-o", outputs_ + "/v.png", "--view", "0", "--gamma", "1"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Photograph view = read_photograph(outputs_ + "/v.png");
+  const auto& pixels = std::get<Image<std::uint8_t>>(view.pixels);
+  const auto& left = std::get<Image<std::uint8_t>>(pair_.left.pixels);
+  int different = 0;
+  for (int y = 0; y < left.height(); ++y) {
+    for (int x = 0; x < left.width(); ++x) {
+      different += pixels.at(x, y) == left.at(x, y) ? 0 : 1;
+    }
+  }
+  EXPECT_EQ(different, 0);
+}
+
+TEST_F(SynthCommand, SeveralViewsNeedAPattern) {
+  const std::vector<std::string> views = {"--view", "0.25", "--view", "-0.5", "--view=0.75,0"};
+  auto arguments = views;
+  arguments.insert(arguments.end(), {"-o", outputs_ + "/v%02d.png", "--hole-mask",
+                                     outputs_ + "/m%d.png", "--report", folder_ / "r.json"});
+  const ProcessResult result = synth_from_maps(arguments);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(files_below(outputs_),
+              ElementsAre("m0.png", "m1.png", "m2.png", "v00.png", "v01.png", "v02.png"));
+  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  EXPECT_EQ(report["results"]["views"].size(), 3U);
+  EXPECT_EQ(report["results"]["views"][1]["view_x"], -0.5);
+  EXPECT_TRUE(report["plan"].is_null());  // the maps were given
+
+  arguments = views;
+  arguments.insert(arguments.end(), {"-o", outputs_ + "/plain.png"});
+  const ProcessResult plain = synth_from_maps(arguments);
+  EXPECT_EQ(plain.exit_code, 2);
+  EXPECT_TRUE(is_one_line(plain, "synth"));
+  EXPECT_THAT(plain.err, HasSubstr("expected a pattern such as views/%03d.png"));
+}
+
+TEST_F(SynthCommand, MatchesThePairWithoutMaps) {
+  const ProcessResult result = synth({"-o", outputs_ + "/v.png", "--view", "0.5", "--disparities",
+                                      "0:9", "--window", "5", "--report", folder_ / "r.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  EXPECT_EQ(report["cells"], 71.0 * 53 * 10 * 2);
+  EXPECT_TRUE(report["seconds"]["stages"].contains("views"));
+}
+
+TEST_F(SynthCommand, SweepsBecomeVideosAndEqualTheirViews) {
+  const ProcessResult video =
+      synth_from_maps({"-o", outputs_ + "/v.mp4", "--sweep", "-0.5:1:4", "--fps", "10"});
+  ASSERT_EQ(video.exit_code, 0) << video.err;
+  VideoReader reader(outputs_ + "/v.mp4");
+  Photograph frame;
+  int frames = 0;
+  while (reader.read(frame)) {
+    ++frames;
+  }
+  EXPECT_EQ(frames, 4);
+  EXPECT_NEAR(reader.frames_per_second().value_or(0), 10, 1e-6);
+
+  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/s%d.png", "--sweep", "-0.5:1:4"}).exit_code, 0);
+  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/half.png", "--view", "0.5"}).exit_code, 0);
+  EXPECT_EQ(read_file(outputs_ + "/s2.png"), read_file(outputs_ + "/half.png"));
+  EXPECT_THAT(files_below(outputs_),
+              ElementsAre("half.png", "s0.png", "s1.png", "s2.png", "s3.png", "v.mp4"));
+}
+
+TEST_F(SynthCommand, OptionsReachTheSynthesis) {
+  const auto view = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {"-o", outputs_ + "/v.png", "--view", "3"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProcessResult result = synth_from_maps(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return read_file(outputs_ + "/v.png");
+  };
+  const std::string mirrored = view({});
+  EXPECT_NE(view({"--holes", "spread"}), mirrored);
+  EXPECT_NE(view({"--holes", "none"}), mirrored);
+  EXPECT_EQ(view({"--holes", "mirror", "--warp", "one-pass", "--gamma", "0.5"}), mirrored);
+}
+
+TEST_F(SynthCommand, WrongUsageIsOneLineAndExit2) {
+  const std::string out = outputs_ + "/v.png";
+  const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {
+      {{"-o", out}, "no view is given"},
+      {{"-o", out, "--view", "0.5,0.25"}, "views off the baseline are not available"},
+      {{"-o", out, "--view", "middle"}, "--view is"},
+      {{"-o", out, "--view", "17"}, "view is 17"},
+      {{"-o", out, "--view", "0.5", "--sweep", "0:1:3"}, "expected one of them"},
+      {{"-o", out, "--sweep", "0:1"}, "--sweep is '0:1'"},
+      {{"-o", out, "--sweep", "0:1:1"}, "--sweep is '0:1:1'"},
+      {{"-o", outputs_ + "/%s.png", "--sweep", "0:1:3"}, "expected one %d"},
+      {{"-o", outputs_ + "/%d%d.png", "--sweep", "0:1:3"}, "expected one %d"},
+      {{"-o", outputs_ + "/%d.mp4", "--sweep", "0:1:3"}, "expected one video name"},
+      {{"-o", outputs_ + "/v.gif", "--view", "0.5"}, "v.gif"},
+      {{"-o", out, "--view", "0.5", "--left-disparity", left_map_}, "--right-disparity is missing"},
+      {{"-o", out, "--view", "0.5", "--left-disparity", left_map_, "--right-disparity", right_map_,
+        "--window", "5"},
+       "--window has no effect"},
+      {{"-o", out, "--view", "0.5", "--gamma", "2"}, "gamma"},
+      {{"-o", out, "--view", "0.5", "--gradient-limit", "-1"}, "gradient"},
+      {{"-o", out, "--view", "0.5", "--calibration", "c.yml"}, "unknown option '--calibration'"}};
+  for (const auto& [arguments, says] : misuses) {
+    const ProcessResult result = synth(arguments);
+    EXPECT_EQ(result.exit_code, 2) << says;
+    EXPECT_TRUE(is_one_line(result, "synth"));
+    EXPECT_THAT(result.err, HasSubstr(says));
+  }
+  EXPECT_THAT(files_below(outputs_), IsEmpty());
+}
+
+TEST_F(SynthCommand, MapsOfAnotherSizeAreAnError) {
+  DisparityMap small(3, 3);
+  small.fill(1);
+  write_disparity(left_map_, small.view());
+  const ProcessResult result = synth_from_maps({"-o", outputs_ + "/v.mp4", "--sweep", "0:1:3"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(is_one_line(result, "synth"));
+  EXPECT_THAT(files_below(outputs_), IsEmpty());
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,125 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "tests/apps/pair_fixture.h"
+
+namespace vantage {
+namespace {
+
+using testing::HasSubstr;
+
+using Config = PairTest;
+
+TEST_F(Config, PrintedSettingsFedBackAreTheSame) {
+  const std::vector<std::vector<std::string>> commands = {
+      {"match", "a 'quoted'.png", "b\"\\.png", "-o", "o.pfm", "--disparities=-16:15", "--raw",
+       "--cross-check", "1.25", "--threads", "3", "--reference=right"},
+      {"synth", "a.png", "b.png", "-o", "v%03d.png", "--view", "0.1", "--view=-0.3,0", "--gamma",
+       "alpha", "--no-intensity-matching", "--holes", "spread"},
+      {"synth", "a.png", "b.png", "-o", "v.mp4", "--sweep", "-1:2:7", "--disparity-scale", "4"},
+      {"run", "--left", "l", "--right", "r", "-o", "d", "--save", "preview,disparity", "--save",
+       "views", "--view", "0.5", "--in-flight", "3", "--format", "npy"},
+      {"run", "--left", "l", "--right", "r", "-o", "d", "--view", "0.5"},
+      {"generate", "book", "-o", "d", "--pattern", "real-bars", "--noise", "0.25", "--seed", "7"},
+      {"generate", "scene", "-o", "d", "--frames", "9", "--near", "33.5"},
+      {"eval", "a.pfm", "b.pfm", "--scale", "4", "--ignore-border", "3"},
+      {"match"}};
+  for (auto arguments : commands) {
+    const bool two_words = arguments.front() == "generate";
+    arguments.push_back("--print-config");
+    const ProcessResult first = run_vantage(arguments);
+    ASSERT_EQ(first.exit_code, 0) << first.err;
+    write_file(folder_ / "config.toml", first.out);
+    std::vector<std::string> again(arguments.begin(), arguments.begin() + (two_words ? 2 : 1));
+    again.insert(again.end(), {"--config", folder_ / "config.toml", "--print-config"});
+    const ProcessResult second = run_vantage(again);
+    EXPECT_EQ(second.exit_code, 0) << second.err;
+    EXPECT_EQ(second.out, first.out);
+  }
+}
+
+TEST_F(Config, EveryOptionOfTheHelpIsPrinted) {
+  const std::vector<std::vector<std::string>> commands = {
+      {"match"}, {"synth"}, {"run"}, {"eval"}, {"generate", "book"}, {"generate", "scene"}};
+  const std::regex option("(^|\\n)  (-.,)?--([a-z-]+)");
+  for (auto arguments : commands) {
+    arguments.push_back("--help");
+    const std::string help = run_vantage(arguments).out;
+    arguments.back() = "--print-config";
+    const std::string config = run_vantage(arguments).out;
+    int options = 0;
+    for (std::sregex_iterator it(help.begin(), help.end(), option), end; it != end; ++it) {
+      const std::string name = (*it)[3];
+      if (name != "help" && name != "config" && name != "print-config") {
+        ++options;
+        EXPECT_TRUE(config.find("\n" + name + " = ") != std::string::npos ||
+                    config.find("\n# " + name + " is not set\n") != std::string::npos)
+            << arguments.front() << ' ' << name;
+      }
+    }
+    EXPECT_GT(options, 8);
+  }
+}
+
+TEST_F(Config, CommandLineOverridesFileOverridesDefault) {
+  write_file(folder_ / "config.toml",
+             "window = 5\ndisparities = \"0:9\"\nraw = true\nthreads = 2\ncross-check = 2\n");
+  const ProcessResult result =
+      run_vantage({"match", "--config", folder_ / "config.toml", "--window", "7", "--raw=false",
+                   "--threads", "auto", "--print-config"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("\nwindow = 7\n"));
+  EXPECT_THAT(result.out, HasSubstr("\ndisparities = '0:9'\n"));
+  EXPECT_THAT(result.out, HasSubstr("\nraw = false\n"));
+  EXPECT_THAT(result.out, HasSubstr("\nthreads = 'auto'\n"));
+  EXPECT_THAT(result.out, HasSubstr("\ncross-check = 2.0\n"));
+  EXPECT_THAT(result.out, HasSubstr("\nsubpixel = 'parabola'\n"));
+}
+
+TEST_F(Config, AFileCanHoldTheWholeJob) {
+  ASSERT_EQ(match(folder_ / "a.pfm", {"--window", "5"}).exit_code, 0);
+  write_file(folder_ / "job.toml", "left = '" + left_ + "'\nright = '" + right_ + "'\noutput = '" +
+                                       folder_ / "b.pfm" + "'\nwindow = 5\ndisparities = '0:9'\n");
+  const ProcessResult result = run_vantage({"match", "--config", folder_ / "job.toml"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(read_file(folder_ / "a.pfm"), read_file(folder_ / "b.pfm"));
+}
+
+TEST_F(Config, BadFilesAreOneLine) {
+  struct Case {
+    std::string content;
+    std::string says;
+  };
+  const std::vector<Case> cases = {
+      {"windoe = 5\n", "unknown key 'windoe', the nearest known one is 'window'"},
+      {"window = \"wide\"\n", "window is 'wide', expected a whole number"},
+      {"window = 5.5\n", "window is 5.5, expected a whole number"},
+      {"window = [5, 7]\n", "window is [5,7], expected a whole number"},
+      {"raw = 1\n", "raw is 1, expected true or false"},
+      {"cross-check = inf\n", "cross-check is"},
+      {"left = 3\n", "left is 3, expected a text"},
+      {"window = 99999999999\n", "expected a whole number"},
+      {"[match]\nwindow = 5\n", "'match' is a table"},
+      {"window = = 5\n", ":1: not TOML"},
+      {std::string("\0\xff\xfe", 3), "not TOML"}};
+  for (const Case& bad : cases) {
+    write_file(folder_ / "bad.toml", bad.content);
+    const ProcessResult result = match(folder_ / "out.pfm", {"--config", folder_ / "bad.toml"});
+    EXPECT_EQ(result.exit_code, 2) << bad.content;
+    EXPECT_TRUE(is_one_line(result, "match"));
+    EXPECT_THAT(result.err, HasSubstr("bad.toml"));
+    EXPECT_THAT(result.err, HasSubstr(bad.says));
+  }
+  for (const std::string& missing : {folder_ / "none.toml", folder_.path().string()}) {
+    const ProcessResult result = match(folder_ / "out.pfm", {"--config", missing});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_TRUE(is_one_line(result, "match"));
+  }
+  write_file(folder_ / "empty.toml", "");
+  EXPECT_EQ(match(folder_ / "out.pfm", {"--config", folder_ / "empty.toml"}).exit_code, 0);
+}
+
+}  // namespace
+}  // namespace vantage

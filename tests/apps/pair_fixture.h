@@ -1,0 +1,70 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "engine/generation/book_pairs.h"
+#include "engine/io/disparity_io.h"
+#include "engine/io/photograph_io.h"
+#include "tests/apps/temporary_folder.h"
+#include "tests/apps/vantage_process.h"
+
+namespace vantage {
+
+/// A random-dot square of known disparity as left.png and right.png in a folder of its own.
+class PairTest : public testing::Test {
+ protected:
+  PairTest() {
+    BookPairOptions options;
+    options.width_px = 71;
+    options.height_px = 53;
+    pair_ = make_book_pair(options);
+    write_photograph(left_, pair_.left);
+    write_photograph(right_, pair_.right);
+  }
+
+  /// `match LEFT RIGHT -o OUT --disparities=0:9 …`
+  [[nodiscard]] ProcessResult match(const std::string& out,
+                                    const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"match", left_, right_, "-o", out, "--disparities=0:9"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_vantage(arguments);
+  }
+
+  /// Share of the pixels that are not occluded and are off by more than half a pixel.
+  static double bad_share(const DisparityMap& map, const DisparityMap& truth,
+                          const Mask& occluded) {
+    int bad = 0;
+    int all = 0;
+    for (int y = 0; y < truth.height(); ++y) {
+      for (int x = 0; x < truth.width(); ++x) {
+        if (occluded.at(x, y) == 0) {
+          ++all;
+          bad += std::abs(map.at(x, y) - truth.at(x, y)) <= 0.5F ? 0 : 1;
+        }
+      }
+    }
+    return static_cast<double>(bad) / all;
+  }
+
+  TemporaryFolder folder_;
+  BookPair pair_;
+  std::string left_ = folder_ / "left.png";
+  std::string right_ = folder_ / "right.png";
+};
+
+/// One line on stderr that begins with "vantage COMMAND: ".
+inline testing::AssertionResult is_one_line(const ProcessResult& result,
+                                            const std::string& command) {
+  const std::string& err = result.err;
+  const std::string begin = command.empty() ? "vantage: " : "vantage " + command + ": ";
+  if (err.rfind(begin, 0) == 0 && err.find('\n') == err.size() - 1) {
+    return testing::AssertionSuccess();
+  }
+  return testing::AssertionFailure()
+         << "stderr is not one line that begins with '" << begin << "': " << err;
+}
+
+}  // namespace vantage
