@@ -3,10 +3,12 @@
 #include "scheduler/openmp_executor.h"
 #include "scheduler/serial_executor.h"
 #include "scheduler/tbb_executor.h"
+#include "scheduler/thread_sanitizer.h"
 
 namespace vantage::scheduler {
+namespace {
 
-std::unique_ptr<Executor> make_executor(ExecutorKind kind, int threads) {
+std::unique_ptr<Executor> make_plain_executor(ExecutorKind kind, int threads) {
   switch (kind) {
     case ExecutorKind::kTbb:
       return make_tbb_executor(threads);
@@ -16,6 +18,16 @@ std::unique_ptr<Executor> make_executor(ExecutorKind kind, int threads) {
       break;
   }
   return std::make_unique<SerialExecutor>();
+}
+
+}  // namespace
+
+std::unique_ptr<Executor> make_executor(ExecutorKind kind, int threads) {
+#ifdef VANTAGE_THREAD_SANITIZER
+  return with_declared_order(make_plain_executor(kind, threads));
+#else
+  return make_plain_executor(kind, threads);
+#endif
 }
 
 }  // namespace vantage::scheduler

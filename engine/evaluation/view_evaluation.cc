@@ -71,7 +71,8 @@ std::array<double, kWindow> gaussian_window() {
   std::array<double, kWindow> weights{};
   double sum = 0;
   for (int i = 0; i < kWindow; ++i) {
-    const double distance = i - kWindow / 2;
+    const int offset = i - kWindow / 2;
+    const double distance = offset;
     weights[i] = std::exp(-distance * distance / (2 * kWindowSigma * kWindowSigma));
     sum += weights[i];
   }

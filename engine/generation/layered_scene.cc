@@ -74,7 +74,7 @@ Box box_of(const Ball& ball, const Camera& camera) {
   }
   Box box{Vector2d::Constant(kNoHit), Vector2d::Constant(-kNoHit)};
   for (int corner = 0; corner < 8; ++corner) {
-    const Vector3d sign((corner & 1) * 2 - 1, (corner & 2) - 1, (corner & 4) / 2 - 1);
+    const Vector3d sign((corner & 1) * 2 - 1, (corner & 2) - 1, ((corner >> 1) & 2) - 1);
     const Vector2d position = camera.project(ball.centre + ball.radius * sign);
     box.low = box.low.cwiseMin(position);
     box.high = box.high.cwiseMax(position);

@@ -9,7 +9,7 @@
 namespace vantage {
 namespace {
 
-thread_local int quiet_depth = 0;
+thread_local int quiet_depth = 0;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 /// Passes on to another buffer what threads write that are not quiet.
 class ThreadFilter : public std::streambuf {

@@ -1,0 +1,51 @@
+# shellcheck shell=bash
+# Shell functions to be sourced: the Debian packages that Vantage is built from.
+
+# What building, testing and the demo need. An installed package is never touched.
+# shellcheck disable=SC2034  # used by whoever sources this
+readonly BUILD_PACKAGES=(
+  g++ cmake ninja-build pkg-config
+  libtbb-dev libopencv-dev libeigen3-dev libhwy-dev libhwloc-dev
+  libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libfmt-dev
+  libgtest-dev libgmock-dev libbenchmark-dev
+  python3
+)
+
+can_be_root() {
+  [[ $(id -u) -eq 0 ]] || command -v sudo >/dev/null
+}
+
+as_root() {
+  if [[ $(id -u) -eq 0 ]]; then
+    "$@"
+  else
+    sudo "$@"
+  fi
+}
+
+package_is_installed() {
+  [[ $(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
+}
+
+# install_packages PACKAGE...: installs those that are missing; asks no server when none is.
+install_packages() {
+  local missing=() package
+  if ! command -v dpkg-query >/dev/null; then
+    echo "error: no dpkg-query here; Vantage's scripts expect Debian 12 (packages: $*)" >&2
+    return 1
+  fi
+  for package in "$@"; do
+    package_is_installed "$package" || missing+=("$package")
+  done
+  if [[ ${#missing[@]} -eq 0 ]]; then
+    return 0
+  fi
+  if ! can_be_root; then
+    echo "error: missing packages and neither root nor sudo to install them: ${missing[*]}" >&2
+    return 1
+  fi
+  echo "== installing ${#missing[@]} missing packages: ${missing[*]}"
+  as_root apt-get update -q
+  as_root env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -q -y --no-install-recommends "${missing[@]}"
+}

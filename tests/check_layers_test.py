@@ -1,0 +1,81 @@
+"""Plants one violation at a time in a small tree and expects check_layers to name it."""
+
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+CHECK_LAYERS = Path(__file__).parent / "check_layers"
+
+CLEAN_TREE = {
+    "kernels/box.h": "#pragma once\n#include <cstddef>\n",
+    "kernels/box.cc": '#include "kernels/box.h"\n#include <hwy/highway.h>\n',
+    "scheduler/pool.cc": "#include <hwloc.h>\n#include <oneapi/tbb/task_arena.h>\n#include <omp.h>\n",
+    "engine/io.cc": '#include <opencv2/imgcodecs.hpp>\n#include <unistd.h>\n#include "kernels/box.h"\n',
+    "apps/main.cc": '#include <CLI/CLI.hpp>\n#include "engine/io.h"\n',
+    "tests/engine/io_test.cc": "#include <gtest/gtest.h>\n#include <thread>\n",
+}
+
+
+def run(tree):
+    with tempfile.TemporaryDirectory() as root:
+        for name, text in tree.items():
+            file = Path(root) / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text, encoding="utf-8")
+        return subprocess.run([sys.executable, "-B", str(CHECK_LAYERS), root],
+                              capture_output=True, text=True, check=False)
+
+
+class CheckLayersTest(unittest.TestCase):
+    def expect_violation(self, name, text, expected_line):
+        result = run({**CLEAN_TREE, name: text})
+        self.assertEqual(result.returncode, 1, result.stdout)
+        self.assertEqual(len(result.stdout.splitlines()), 2, result.stdout)
+        self.assertIn(expected_line, result.stdout)
+
+    def test_accepts_a_clean_tree(self):
+        result = run(CLEAN_TREE)
+        self.assertEqual(result.returncode, 0, result.stdout)
+
+    def test_rejects_a_tree_that_is_not_there(self):
+        self.assertNotEqual(run({"other/file": ""}).returncode, 0)
+
+    def test_includes_that_cross_layers(self):
+        for name, include in [
+                ("kernels/a.cc", '"scheduler/executor.h"'), ("kernels/a.cc", '"engine/image.h"'),
+                ("kernels/a.cc", "<unistd.h>"), ("kernels/a.cc", "<opencv2/core.hpp>"),
+                ("scheduler/a.cc", '"kernels/box.h"'), ("scheduler/a.cc", '"engine/image.h"'),
+                ("scheduler/a.cc", "<fmt/format.h>"),
+                ("engine/a.cc", '"apps/command.h"'), ("engine/a.cc", "<tbb/parallel_for.h>"),
+                ("engine/a.cc", "<omp.h>"), ("engine/deep/a.cc", "<hwloc.h>"),
+                ("engine/a.cc", "<CLI/CLI.hpp>"),
+                ("apps/a.cc", '"kernels/box.h"'), ("apps/a.cc", "<opencv2/core.hpp>"),
+                ("apps/a.cc", "<oneapi/tbb/task_arena.h>")]:
+            with self.subTest(name=name, include=include):
+                self.expect_violation(name, f"// text\n#  include {include}\n", f"{name}:2: ")
+
+    def test_what_kernels_do_without(self):
+        for header in ["thread", "vector", "fstream", "iostream", "memory", "cstdio"]:
+            with self.subTest(header=header):
+                self.expect_violation("kernels/a.cc", f"#include <{header}>\n", "kernels/a.cc:1: ")
+
+    def test_opencv_in_a_public_header(self):
+        self.expect_violation("engine/a.h", "#pragma once\n#include <opencv2/core.hpp>\n",
+                              "engine/a.h:2: ")
+
+    def test_header_without_pragma_once(self):
+        self.expect_violation("tests/engine/a.h", "int a();\n", "tests/engine/a.h:1: ")
+
+    def test_length(self):
+        self.assertEqual(run({**CLEAN_TREE, "apps/a.cc": "\n" * 600}).returncode, 0)
+        self.expect_violation("apps/a.cc", "\n" * 601, "apps/a.cc:601: ")
+
+    def test_native_instructions(self):
+        self.expect_violation("engine/CMakeLists.txt", "target_compile_options(e -march=native)\n",
+                              "engine/CMakeLists.txt:1: ")
+
+
+if __name__ == "__main__":
+    unittest.main()
