@@ -1,0 +1,109 @@
+#include "kernels/fill_unmatched/fill_unmatched.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "tests/kernels/kernel_test_utils.h"
+
+namespace vantage::kernels {
+namespace {
+
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
+/// EQUATIONS §5.4 for one pixel: the nearest matched pixel on the background's side, else on the
+/// other one.
+std::optional<std::size_t> source_of(const std::vector<std::uint8_t>& unmatched,
+                                     BackgroundSide side, std::size_t x) {
+  std::optional<std::size_t> left;
+  std::optional<std::size_t> right;
+  for (std::size_t i = 0; i < unmatched.size(); ++i) {
+    if (unmatched[i] != 0) {
+      continue;
+    }
+    if (i <= x) {
+      left = i;
+    }
+    if (i >= x && !right) {
+      right = i;
+    }
+  }
+  return side == BackgroundSide::kLeft ? (left ? left : right) : (right ? right : left);
+}
+
+/// Bits, so that unknown values compare.
+std::vector<std::uint32_t> bits(const std::vector<float>& values) {
+  std::vector<std::uint32_t> result;
+  for (const float value : values) {
+    result.push_back(std::bit_cast<std::uint32_t>(value));
+  }
+  return result;
+}
+
+TEST(FillUnmatched, EqualsPlainTranscription) {
+  std::mt19937 random(61);
+  for (int width = 1; width <= 70; ++width) {
+    for (unsigned sparsity = 1; sparsity <= 6; ++sparsity) {
+      for (const BackgroundSide side : {BackgroundSide::kLeft, BackgroundSide::kRight}) {
+        std::vector<std::uint8_t> unmatched(static_cast<std::size_t>(width));
+        std::vector<float> disparity_px(unmatched.size());
+        for (std::size_t x = 0; x < unmatched.size(); ++x) {
+          // Runs, at the borders too; any value but 0 marks.
+          const bool repeats = x > 0 && random() % 3 != 0;
+          unmatched[x] =
+              repeats
+                  ? unmatched[x - 1]
+                  : static_cast<std::uint8_t>(random() % sparsity == 0 ? 1 + random() % 255 : 0);
+          disparity_px[x] = unmatched[x] != 0 && random() % 2 == 0
+                                ? kUnknown
+                                : static_cast<float>(random() % 1000) / 4;
+        }
+        bool any = false;
+        std::vector<float> expected = disparity_px;
+        for (std::size_t x = 0; x < unmatched.size(); ++x) {
+          if (const auto source = source_of(unmatched, side, x)) {
+            any = true;
+            expected[x] = disparity_px[*source];
+          }
+        }
+        ASSERT_EQ(fill_unmatched_row(unmatched.data(), side, width, disparity_px.data()), any);
+        ASSERT_EQ(bits(disparity_px), bits(expected)) << "width " << width;
+      }
+    }
+  }
+}
+
+std::vector<float> filled(const std::vector<std::uint8_t>& unmatched, BackgroundSide side,
+                          std::vector<float> disparity_px) {
+  EXPECT_TRUE(fill_unmatched_row(unmatched.data(), side, static_cast<int>(unmatched.size()),
+                                 disparity_px.data()));
+  return disparity_px;
+}
+
+TEST(FillUnmatched, TakesTheBackgroundsSideAndTheOtherAtTheBorder) {
+  using Row = std::vector<float>;
+  const std::vector<std::uint8_t> unmatched = {255, 255, 0, 255, 255, 0, 255};
+  const Row row = {kUnknown, 9, 3, kUnknown, 9, 5, kUnknown};
+  EXPECT_EQ(filled(unmatched, BackgroundSide::kLeft, row), (Row{3, 3, 3, 3, 3, 5, 5}));
+  EXPECT_EQ(filled(unmatched, BackgroundSide::kRight, row), (Row{3, 3, 3, 5, 5, 5, 5}));
+  EXPECT_EQ(filled({0}, BackgroundSide::kRight, {4}), Row{4});
+}
+
+TEST(FillUnmatched, RowWithoutAMatchStaysAsItIs) {
+  for (const BackgroundSide side : {BackgroundSide::kLeft, BackgroundSide::kRight}) {
+    std::vector<float> disparity_px = {kUnknown, 2, 7};
+    const std::vector<float> before = disparity_px;
+    EXPECT_FALSE(
+        fill_unmatched_row(std::vector<std::uint8_t>(3, 255).data(), side, 3, disparity_px.data()));
+    EXPECT_EQ(bits(disparity_px), bits(before));
+  }
+}
+
+}  // namespace
+}  // namespace vantage::kernels

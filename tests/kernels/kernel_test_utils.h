@@ -1,0 +1,111 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "kernels/simd_target.h"
+
+namespace vantage::kernels {
+
+/// The instruction sets of this build and machine, one bit each.
+inline std::vector<long long> each_target() {
+  std::vector<long long> targets;
+  const long long all = available_targets();
+  for (int bit = 0; bit < 63; ++bit) {
+    if (const long long target = 1LL << bit; (all & target) != 0) {
+      targets.push_back(target);
+    }
+  }
+  return targets;
+}
+
+/// Runs a test on one instruction set and proves that it stayed on it.
+class EveryTarget : public testing::TestWithParam<long long> {
+ protected:
+  void SetUp() override {
+    force_target(GetParam());
+    ASSERT_EQ(target_in_use(), GetParam());
+  }
+  void TearDown() override {
+    EXPECT_EQ(target_in_use(), GetParam());
+    force_target(0);
+  }
+};
+
+inline std::string target_test_name(const testing::TestParamInfo<long long>& info) {
+  return std::string(target_name(info.param));
+}
+
+/// Values that start `offset` elements behind an aligned address and end where the allocation ends,
+/// so that the address sanitizer sees any access beyond them.
+template <typename T>
+class UnalignedRow {
+ public:
+  UnalignedRow(std::size_t size, std::size_t offset) : memory_(offset + size), offset_(offset) {}
+
+  [[nodiscard]] T* data() { return memory_.data() + offset_; }
+  [[nodiscard]] const T* data() const { return memory_.data() + offset_; }
+  [[nodiscard]] std::size_t size() const { return memory_.size() - offset_; }
+  T& operator[](std::size_t i) { return data()[i]; }
+  const T& operator[](std::size_t i) const { return data()[i]; }
+
+ private:
+  std::vector<T> memory_;
+  std::size_t offset_;
+};
+
+/// A row that a kernel writes, between sentinels that it must leave alone.
+template <typename T>
+class GuardedRow {
+ public:
+  GuardedRow(std::size_t size, std::size_t offset, T sentinel)
+      : memory_(offset + size + kBehind, sentinel),
+        size_(size),
+        offset_(offset),
+        sentinel_(sentinel) {}
+
+  [[nodiscard]] T* data() { return memory_.data() + offset_; }
+  [[nodiscard]] std::vector<T> values() const {
+    const auto begin = memory_.begin() + static_cast<std::ptrdiff_t>(offset_);
+    return {begin, begin + static_cast<std::ptrdiff_t>(size_)};
+  }
+  [[nodiscard]] bool intact() const {
+    const auto is_sentinel = [&](T value) { return value == sentinel_; };
+    const auto begin = memory_.begin() + static_cast<std::ptrdiff_t>(offset_);
+    return std::all_of(memory_.begin(), begin, is_sentinel) &&
+           std::all_of(begin + static_cast<std::ptrdiff_t>(size_), memory_.end(), is_sentinel);
+  }
+
+ private:
+  static constexpr std::size_t kBehind = 67;
+  std::vector<T> memory_;
+  std::size_t size_;
+  std::size_t offset_;
+  T sentinel_;
+};
+
+/// Lane counts below, at and beyond the blocks of vectors that kernels work in.
+inline constexpr int kLaneCounts[] = {16, 32, 48, 64, 80, 256};
+
+/// The low 32 bits: what arithmetic "exact modulo 2³²" leaves of `value`.
+inline std::int32_t modulo_32_bits(std::int64_t value) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(value));
+}
+
+/// An integer in [least, most]. Unlike the standard distributions, the same with every library.
+inline int random_int(std::mt19937& random, int least, int most) {
+  return least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1));
+}
+
+}  // namespace vantage::kernels
+
+/// Runs the tests of `suite`, a fixture derived from EveryTarget, on every instruction set.
+#define VANTAGE_ON_EVERY_TARGET(suite)                                                           \
+  INSTANTIATE_TEST_SUITE_P(Targets, suite, testing::ValuesIn(::vantage::kernels::each_target()), \
+                           ::vantage::kernels::target_test_name)

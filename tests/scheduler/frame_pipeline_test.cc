@@ -1,0 +1,283 @@
+#include "scheduler/frame_pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "tests/scheduler/executor_cases.h"
+
+namespace vantage::scheduler {
+namespace {
+
+enum class Step { kRead, kCompute, kWrite };
+constexpr Step kSteps[] = {Step::kRead, Step::kCompute, Step::kWrite};
+
+std::string message(int frame, Step step) {
+  constexpr std::string_view names[] = {"read", "compute", "write"};
+  return "frame " + std::to_string(frame) + " " +
+         std::string(names[static_cast<std::size_t>(step)]);
+}
+
+struct Failure {
+  int frame;
+  Step step;
+};
+
+/// A sequence of frames that watches how it is run.
+class Sequence {
+ public:
+  Sequence(Executor& executor, int frames, int in_flight, std::vector<Failure> failures = {})
+      : executor_(executor),
+        frames_(frames),
+        in_flight_(in_flight),
+        failures_(std::move(failures)),
+        slot_frame_(static_cast<std::size_t>(in_flight), kFree) {}
+
+  FrameOutcome run(const std::atomic<bool>* stop = nullptr) {
+    FrameSteps steps;
+    steps.read = [this](int slot) { return read(slot); };
+    steps.compute = [this](int slot) { compute(slot); };
+    steps.write = [this](int slot) { write(slot); };
+    return run_frames(executor_, in_flight_, steps, stop);
+  }
+
+  /// The frames that were written, in the order of writing.
+  [[nodiscard]] const std::vector<int>& written() const { return written_; }
+  [[nodiscard]] int frames_read() const { return next_frame_; }
+  [[nodiscard]] int frames_computed() const { return computed_; }
+  /// Called with the number of a frame just written.
+  std::function<void(int)> after_write = [](int) {};
+
+ private:
+  static constexpr int kFree = -1;
+  static constexpr int kNestedTasks = 5;
+
+  bool read(int slot) {
+    const Alone alone(reading_);
+    EXPECT_GE(slot, 0);
+    EXPECT_LT(slot, in_flight_);
+    if (next_frame_ == frames_) {
+      return false;
+    }
+    const int frame = next_frame_++;
+    fail_if_due(frame, Step::kRead);
+    EXPECT_EQ(frame_in(slot), kFree) << "slot " << slot << " is in use";
+    frame_in(slot) = frame;
+    EXPECT_LE(++under_way_, in_flight_);
+    nested_loop();
+    return true;
+  }
+  void compute(int slot) {
+    const int frame = frame_in(slot);
+    // Frames overtake each other: the first of each three takes longest.
+    std::this_thread::sleep_for(std::chrono::microseconds(frame % 3 == 0 ? 300 : 0));
+    fail_if_due(frame, Step::kCompute);
+    nested_loop();
+    EXPECT_EQ(frame_in(slot), frame);
+    ++computed_;
+  }
+  void write(int slot) {
+    const Alone alone(writing_);
+    const int frame = frame_in(slot);
+    fail_if_due(frame, Step::kWrite);
+    nested_loop();
+    written_.push_back(frame);
+    --under_way_;
+    frame_in(slot) = kFree;
+    after_write(frame);
+  }
+
+  /// Finds two threads in a step that is for one at a time.
+  class Alone {
+   public:
+    explicit Alone(std::atomic<int>& inside) : inside_(inside) { EXPECT_EQ(++inside_, 1); }
+    Alone(const Alone&) = delete;
+    Alone& operator=(const Alone&) = delete;
+    ~Alone() { --inside_; }
+
+   private:
+    std::atomic<int>& inside_;
+  };
+
+  int& frame_in(int slot) { return slot_frame_.at(static_cast<std::size_t>(slot)); }
+
+  void nested_loop() {
+    std::array<std::atomic<int>, kNestedTasks> calls{};
+    executor_.parallel_for(kNestedTasks,
+                           [&](int task) { ++calls.at(static_cast<std::size_t>(task)); });
+    for (const std::atomic<int>& count : calls) {
+      EXPECT_EQ(count, 1);
+    }
+  }
+  void fail_if_due(int frame, Step step) const {
+    for (const Failure& failure : failures_) {
+      if (failure.frame == frame && failure.step == step) {
+        throw std::runtime_error(message(frame, step));
+      }
+    }
+  }
+
+  Executor& executor_;
+  int frames_;
+  int in_flight_;
+  std::vector<Failure> failures_;
+  int next_frame_ = 0;
+  std::vector<int> slot_frame_;
+  std::vector<int> written_;
+  std::atomic<int> computed_{0};
+  std::atomic<int> under_way_{0};
+  std::atomic<int> reading_{0};
+  std::atomic<int> writing_{0};
+};
+
+std::vector<int> first_frames(int count) {
+  std::vector<int> frames;
+  for (int frame = 0; frame < count; ++frame) {
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+constexpr int kInFlight[] = {1, 2, 5};
+
+class FramePipeline : public testing::TestWithParam<ExecutorCase> {
+ protected:
+  [[nodiscard]] Executor& executor() { return *executor_; }
+
+  /// The frame that fails first in the order of frames must be the one that ends the run.
+  void expect_first_failure(int frames, const std::vector<Failure>& failures) {
+    const Failure first =
+        *std::min_element(failures.begin(), failures.end(), [](const Failure& a, const Failure& b) {
+          return std::pair(a.frame, a.step) < std::pair(b.frame, b.step);
+        });
+    for (const int in_flight : kInFlight) {
+      Sequence sequence(executor(), frames, in_flight, failures);
+      try {
+        sequence.run();
+        FAIL() << "nothing was thrown, expected " << message(first.frame, first.step);
+      } catch (const std::runtime_error& error) {
+        EXPECT_EQ(error.what(), message(first.frame, first.step)) << in_flight << " in flight";
+      }
+      EXPECT_EQ(sequence.written(), first_frames(first.frame)) << in_flight << " in flight";
+      // Reading ends soon: nothing is read once the failure has been delivered.
+      EXPECT_LE(sequence.frames_read(), first.frame + in_flight + 1);
+    }
+  }
+
+ private:
+  std::unique_ptr<Executor> executor_ = GetParam().make();
+};
+INSTANTIATE_TEST_SUITE_P(Kinds, FramePipeline, testing::ValuesIn(executor_cases()),
+                         executor_test_name);
+
+TEST_P(FramePipeline, WritesAllFramesInOrder) {
+  for (const int in_flight : kInFlight) {
+    for (const int frames : {0, 1, 2, 23}) {
+      Sequence sequence(executor(), frames, in_flight);
+      const FrameOutcome outcome = sequence.run();
+      EXPECT_EQ(outcome.frames_written, frames);
+      EXPECT_FALSE(outcome.interrupted);
+      EXPECT_EQ(sequence.written(), first_frames(frames)) << in_flight << " in flight";
+      EXPECT_EQ(sequence.frames_computed(), frames);
+    }
+  }
+}
+
+TEST_P(FramePipeline, AnyFailingStepEndsTheRunAtItsFrame) {
+  for (const Step step : kSteps) {
+    for (const int frame : {0, 1, 4, 11}) {
+      expect_first_failure(12, {{frame, step}});
+    }
+  }
+}
+
+TEST_P(FramePipeline, FirstFailingFrameWinsWhateverStepsFail) {
+  for (const Step first : kSteps) {
+    for (const Step second : kSteps) {
+      for (const int distance : {1, 2, 4}) {
+        expect_first_failure(12, {{3 + distance, second}, {3, first}});
+      }
+      // A frame that is computed for long fails behind one that fails at once.
+      expect_first_failure(12, {{0, Step::kCompute}, {1, first}, {2, second}});
+    }
+  }
+}
+
+TEST_P(FramePipeline, FailureOfTheOnlyFrame) {
+  for (const Step step : kSteps) {
+    expect_first_failure(1, {{0, step}});
+  }
+}
+
+TEST_P(FramePipeline, RunsAgainAfterAFailure) {
+  for (int round = 0; round < 3; ++round) {
+    expect_first_failure(6, {{2, Step::kCompute}});
+    Sequence sequence(executor(), 6, 2);
+    EXPECT_EQ(sequence.run().frames_written, 6);
+  }
+}
+
+TEST_P(FramePipeline, StopWritesWhatIsUnderWayAndReadsNoMore) {
+  for (const int in_flight : kInFlight) {
+    for (const int last : {0, 3}) {
+      std::atomic<bool> stop{false};
+      Sequence sequence(executor(), 100, in_flight);
+      sequence.after_write = [&](int frame) {
+        if (frame == last) {
+          stop = true;
+        }
+      };
+      const FrameOutcome outcome = sequence.run(&stop);
+      EXPECT_TRUE(outcome.interrupted);
+      EXPECT_EQ(outcome.frames_written, sequence.frames_read());
+      EXPECT_EQ(sequence.written(), first_frames(sequence.frames_read()));
+      EXPECT_GT(sequence.frames_read(), last);
+      // Those under way at that moment, and one that was just being read.
+      EXPECT_LE(sequence.frames_read(), last + 1 + in_flight);
+    }
+  }
+}
+
+TEST_P(FramePipeline, StopBeforeTheStartReadsNothing) {
+  const std::atomic<bool> stop{true};
+  Sequence sequence(executor(), 5, 2);
+  const FrameOutcome outcome = sequence.run(&stop);
+  EXPECT_TRUE(outcome.interrupted);
+  EXPECT_EQ(outcome.frames_written, 0);
+  EXPECT_EQ(sequence.frames_read(), 0);
+}
+
+TEST_P(FramePipeline, StopThatIsNotRaisedChangesNothing) {
+  const std::atomic<bool> stop{false};
+  Sequence sequence(executor(), 5, 2);
+  const FrameOutcome outcome = sequence.run(&stop);
+  EXPECT_FALSE(outcome.interrupted);
+  EXPECT_EQ(outcome.frames_written, 5);
+}
+
+TEST_P(FramePipeline, FailureWhileStoppingIsStillReported) {
+  std::atomic<bool> stop{false};
+  Sequence sequence(executor(), 100, 2, {{3, Step::kWrite}});
+  sequence.after_write = [&](int frame) { stop = frame == 2; };
+  // Frame 3 may have been read before `stop` was raised, or not.
+  try {
+    EXPECT_EQ(sequence.run(&stop).frames_written, 3);
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), message(3, Step::kWrite));
+  }
+  EXPECT_EQ(sequence.written(), first_frames(3));
+}
+
+}  // namespace
+}  // namespace vantage::scheduler
