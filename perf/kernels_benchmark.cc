@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/candidates.h"
 #include "kernels/column_ssd/column_ssd.h"
 #include "kernels/parabola/parabola.h"
 #include "kernels/row_sum/row_sum.h"
@@ -34,6 +35,8 @@ struct Rows {
   std::vector<std::int32_t> partner_pairs = std::vector<std::int32_t>(kPixels);
   std::vector<std::int32_t> column_sums = std::vector<std::int32_t>(kInputColumns * kLanes);
   std::vector<std::int32_t> sums = std::vector<std::int32_t>(kColumns * kLanes);
+  std::vector<std::int32_t> least = std::vector<std::int32_t>(kColumns);
+  std::vector<std::int32_t> work = std::vector<std::int32_t>(kColumns * kLaneMultiple);
   std::vector<std::int32_t> winners = std::vector<std::int32_t>(kColumns);
   std::vector<float> disparity_px = std::vector<float>(kColumns);
 
@@ -66,23 +69,38 @@ struct Rows {
                                   entering_float.data() + kInputColumns, -1, kInputColumns, kLanes},
                    column_sums.data(), column_sums.data());
   }
-  void sum_rows() {
-    row_sum({column_sums.data(), sums.data(), 0, kInputColumns, kRadius, kRadius + kColumns,
-             kRadius, kLanes, true});
+  /// Sums, and the least of each column, with or without storing the sums.
+  void sum_rows(bool minima, bool store) {
+    RowSum row;
+    row.input = column_sums.data();
+    row.input_end = kInputColumns;
+    row.output_begin = kRadius;
+    row.output_end = kRadius + kColumns;
+    row.radius = kRadius;
+    row.lanes = kLanes;
+    row.number_lanes = true;
+    row.output = store ? sums.data() : nullptr;
+    if (minima) {
+      row.minima = least.data();
+      row.minima_work = work.data();
+      row.candidates = kLanes;
+    }
+    row_sum(row);
   }
-  [[nodiscard]] WinnerRow winner_row(int index_bits) const {
+  [[nodiscard]] WinnerRow winner_row(int index_bits, int first_column) const {
     WinnerRow row;
     row.cells = sums.data();
     row.geometry = {1000, 0, kLanes, -1};
-    row.first_column = 500;
+    row.first_column = first_column;
     row.columns = kColumns;
     row.window_radius = kRadius;
     row.index_bits = index_bits;
     return row;
   }
-  void select(int index_bits) { select_winners_row(winner_row(index_bits), winners.data()); }
+  void select(int index_bits) { select_winners_row(winner_row(index_bits, 0), winners.data()); }
+  void locate() { locate_minima_row(sums.data(), least.data(), kLanes, kColumns, winners.data()); }
   void parabola() {
-    parabola_disparity_row(winner_row(kIndexBits), winners.data(), disparity_px.data());
+    parabola_disparity_row(winner_row(kIndexBits, 500), winners.data(), disparity_px.data());
   }
 };
 
@@ -93,7 +111,7 @@ void run(benchmark::State& state, long long target, const Kernel& kernel) {
   Rows rows;
   rows.interleave();
   rows.column_ssd_8_bit();
-  rows.sum_rows();
+  rows.sum_rows(true, true);
   rows.select(kIndexBits);
   for (auto _ : state) {
     kernel(rows);
@@ -108,9 +126,12 @@ void register_all() {
       {"interleave_rows", [](Rows& rows) { rows.interleave(); }},
       {"column_ssd_row/8-bit", [](Rows& rows) { rows.column_ssd_8_bit(); }},
       {"column_ssd_row/float", [](Rows& rows) { rows.column_ssd_float(); }},
-      {"row_sum", [](Rows& rows) { rows.sum_rows(); }},
-      {"select_winners_row/indexed", [](Rows& rows) { rows.select(kIndexBits); }},
-      {"select_winners_row/plain", [](Rows& rows) { rows.select(0); }},
+      {"row_sum/sums", [](Rows& rows) { rows.sum_rows(false, true); }},
+      {"row_sum/minima", [](Rows& rows) { rows.sum_rows(true, false); }},
+      {"row_sum/both", [](Rows& rows) { rows.sum_rows(true, true); }},
+      {"locate_minima_row", [](Rows& rows) { rows.locate(); }},
+      {"select_winners_row/indexed, border", [](Rows& rows) { rows.select(kIndexBits); }},
+      {"select_winners_row/plain, border", [](Rows& rows) { rows.select(0); }},
       {"parabola_disparity_row", [](Rows& rows) { rows.parabola(); }},
   };
   const long long targets = available_targets();

@@ -47,7 +47,7 @@ struct RowTask {
   bool sweep_begins = false;
   InputRows input;              ///< empty for the first stage of a chain
   Range columns;                ///< the columns to make
-  std::byte* output = nullptr;  ///< first cell of column columns.begin; null for a last stage
+  std::byte* output = nullptr;  ///< first cell of column columns.begin; unused by a last stage
   /// The row this stage made just before in this sweep, for running sums; null when sweep_begins.
   /// May be the same memory as `output`: a cell must be read before it is written.
   const std::byte* previous = nullptr;
@@ -105,6 +105,7 @@ class RowStage {
   }
   /// The row ≤ y at which a sweep must begin so that row y comes out the same as in a sweep from
   /// the top of the image. Stages with inexact running sums begin at anchored rows.
+  /// Not for a last stage: the rows before its band, which it would write, belong to other tasks.
   [[nodiscard]] virtual int sweep_start(int y) const { return y; }
 
   virtual void make_row(const RowTask& task) const = 0;

@@ -9,9 +9,10 @@
 namespace vantage::scheduler {
 namespace {
 
-// Share of a cache that the rings and states of one strip may fill; the rest is for image rows,
-// results and whatever else runs on the core.
-constexpr double kLevel1Share = 0.9;
+// How many times the rings and states of one strip may fill a cache. Level 1: stages stream through
+// them, so a little too much still hits mostly. Level 2: the rest is for image rows, results and
+// whatever else runs on the core.
+constexpr double kLevel1Share = 1.2;
 constexpr double kLevel2Share = 0.5;
 // Time per cell while the strip lives in the level-2 cache or beyond, level 1 being 1.
 constexpr double kLevel2Time = 1.35;

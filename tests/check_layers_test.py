@@ -11,6 +11,7 @@ CHECK_LAYERS = Path(__file__).parent / "check_layers"
 CLEAN_TREE = {
     "kernels/box.h": "#pragma once\n#include <cstddef>\n",
     "kernels/box.cc": '#include "kernels/box.h"\n#include <hwy/highway.h>\n',
+    "kernels/lanes-inl.h": "int per_target();\n",
     "scheduler/pool.cc": "#include <hwloc.h>\n#include <oneapi/tbb/task_arena.h>\n#include <omp.h>\n",
     "engine/io.cc": '#include <opencv2/imgcodecs.hpp>\n#include <unistd.h>\n#include "kernels/box.h"\n',
     "apps/main.cc": '#include <CLI/CLI.hpp>\n#include "engine/io.h"\n',

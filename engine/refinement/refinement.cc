@@ -30,8 +30,9 @@ void mark_unknown(ImageView<const float> map_px, Execution& execution, Mask& unk
   execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
       const float* values = map_px.row(y);
+      std::uint8_t* is_unknown = unknown.row(y);
       for (int x = 0; x < map_px.width(); ++x) {
-        unknown.at(x, y) = std::isnan(values[x]) ? 255 : 0;
+        is_unknown[x] = std::isnan(values[x]) ? 255 : 0;
       }
     }
   });

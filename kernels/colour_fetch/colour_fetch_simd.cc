@@ -74,7 +74,8 @@ HWY_INLINE void weigh_taps(D64 d64, const BicubicFetchRow& row, int begin, int f
   for (int i = first; i + step <= count; i += step) {
     const auto read = hn::LoadU(d32, row.warped_disparity_px + begin + i);
     const auto d = hn::IfThenElseZero(hn::Eq(read, read), read);
-    const auto position = hn::Iota(d64, begin + i);
+    // Not Iota(d64, begin + i): only a constant start avoids a detour through memory.
+    const auto position = hn::Add(hn::Iota(d64, 0), hn::Set(d64, begin + i));
     const auto exact = hn::Add(position, hn::Mul(offset, hn::PromoteTo(d64, d)));
     const auto column = hn::Min(hn::Max(exact, least), most);
     const auto whole = hn::Floor(column);

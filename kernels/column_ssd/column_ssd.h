@@ -36,8 +36,8 @@ void column_ssd_row_ref(const ColumnSsdPairs& row, const std::int32_t* previous,
 /// Squares of float differences must stay below this.
 inline constexpr float kFloatSquareLimit = 4194304.0F;  // 2²²
 
-/// The same for float images, scaled by the caller so that no square exceeds 2³¹ − 1; each square
-/// is rounded to the nearest integer (ties to even), so sums stay exact.
+/// The same for float images, scaled by the caller so that squares stay below kFloatSquareLimit;
+/// each square is rounded to the nearest integer (ties to even), so sums stay exact.
 struct ColumnSsdFloat {
   const float* reference_entering = nullptr;  ///< of the first column; null with partner_entering
   const float* reference_leaving = nullptr;

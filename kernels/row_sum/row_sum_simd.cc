@@ -39,9 +39,9 @@ class LaneBlock {
     leaving_ = entering_;
     for (int v = 0; v < kVectors; ++v) {
       const int lane = first_lane + v * kStep;
-      sum_[v] = row.number_lanes ? hn::Iota(d32, lane) : hn::Zero(d32);
+      sum_[v] = row.number_lanes ? lane_numbers(lane) : hn::Zero(d32);
       // Lanes behind the last candidate are lifted above all others, the rest left as they are.
-      const auto is_candidate = hn::Lt(hn::Iota(d32, lane), hn::Set(d32, row.candidates));
+      const auto is_candidate = hn::Lt(lane_numbers(lane), hn::Set(d32, row.candidates));
       floor_[v] =
           hn::IfThenElse(is_candidate, hn::Set(d32, std::numeric_limits<std::int32_t>::min()),
                          hn::Set(d32, std::numeric_limits<std::int32_t>::max()));

@@ -16,6 +16,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
+// first, first + 1, … per lane. Highway's Iota is a constant only for a constant start; else it
+// goes through memory, value by value.
+HWY_INLINE auto lane_numbers(int first) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::ScalableTag<std::int32_t> d32;
+  return hn::Add(hn::Iota(d32, 0), hn::Set(d32, first));
+}
+
 #if HWY_TARGET != HWY_SCALAR
 // Minima of kColumns work columns, as in a transposition: neighbouring lanes of two vectors are
 // merged into one, until lane k of the last vector belongs to column k.

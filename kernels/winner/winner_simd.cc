@@ -133,35 +133,62 @@ HWY_INLINE bool shortened_may_win(const WinnerRow& row, const std::int32_t* cell
   return false;
 }
 
-// Columns of cells that carry their index, one vector of columns at a time: their lane-by-lane
-// minima are reduced together.
-class IndexedWinners {
+// Lane by lane, the first of `lanes` cells that equals `value`, as a candidate number; lanes
+// without any hold a large number. Without leaving early: where the winner is, is as good as
+// random, and a wrongly predicted branch costs more than all vectors.
+HWY_INLINE Vec32 lane_places(const std::int32_t* cells, int lanes, std::int32_t value) {
+  const Tag32 d32;
+  const int step = static_cast<int>(hn::Lanes(d32));
+  const Vec32 wanted = hn::Set(d32, value);
+  Vec32 place = hn::Set(d32, std::numeric_limits<std::int32_t>::max());
+  // From the last vector to the first, so that the first place stays.
+  for (int i = lanes - step; i >= 0; i -= step) {
+    const auto is_wanted = hn::Eq(hn::LoadU(d32, cells + i), wanted);
+    place = hn::IfThenElse(is_wanted, lane_numbers(i), place);
+  }
+  return place;
+}
+
+// Columns near a border of the image, one vector of columns at a time: their lane-by-lane minima
+// are reduced together.
+class BorderWinners {
  public:
-  HWY_INLINE explicit IndexedWinners(const WinnerRow& row)
-      : row_(row), lanes_(static_cast<std::size_t>(row.geometry.lanes())) {}
+  HWY_INLINE explicit BorderWinners(const WinnerRow& row)
+      : row_(row), lanes_(row.geometry.lanes()) {}
 
   HWY_INLINE void run(std::int32_t* HWY_RESTRICT winners) const {
     const Tag32 d32;
     const int step = static_cast<int>(hn::Lanes(d32));
-    HWY_ALIGN std::int32_t lane_least[hn::MaxLanes(d32) * kLaneMultiple] = {};
+    HWY_ALIGN std::int32_t per_lane[hn::MaxLanes(d32) * kLaneMultiple] = {};
     HWY_ALIGN std::int32_t least[hn::MaxLanes(d32)];
+    HWY_ALIGN std::int32_t place[hn::MaxLanes(d32)];
     int full_end[hn::MaxLanes(d32)];
     for (int j = 0; j < row_.columns; j += step) {
       const int columns = std::min(step, row_.columns - j);
       for (int k = 0; k < columns; ++k) {
         full_end[k] = leading_full(row_.first_column + j + k);
-        hn::Store(lane_minima(cells(j + k), full_end[k]), d32, lane_least + k * kLaneMultiple);
+        hn::Store(lane_minima(cells(j + k), full_end[k]), d32, per_lane + k * kLaneMultiple);
       }
-      reduce_minima(lane_least, columns, least);
+      reduce_minima(per_lane, columns, least);
+      if (row_.index_bits > 0) {
+        for (int k = 0; k < columns; ++k) {
+          place[k] = least[k] & ((1 << row_.index_bits) - 1);
+        }
+      } else {
+        for (int k = 0; k < columns; ++k) {
+          hn::Store(lane_places(cells(j + k), lanes_, least[k]), d32, per_lane + k * kLaneMultiple);
+        }
+        reduce_minima(per_lane, columns, place);
+      }
       for (int k = 0; k < columns; ++k) {
-        winners[j + k] = winner(j + k, least[k], full_end[k]);
+        winners[j + k] = winner(j + k, least[k], place[k], full_end[k]);
       }
     }
   }
 
  private:
   [[nodiscard]] HWY_INLINE const std::int32_t* cells(int j) const {
-    return row_.cells + static_cast<std::size_t>(j) * lanes_;
+    return row_.cells + static_cast<std::ptrdiff_t>(j) * lanes_;
   }
 
   // How many candidates, from the first, have a whole window of partners at a column; 0 where
@@ -171,24 +198,25 @@ class IndexedWinners {
     return full.begin == 0 ? full.end : 0;
   }
 
-  [[nodiscard]] static HWY_INLINE Vec32 lane_minima(const std::int32_t* cells, int count) {
+  // Lane by lane minimum of the first `count` cells. All lanes are looked at: a loop whose length
+  // changes from column to column costs more in wrongly predicted branches.
+  [[nodiscard]] HWY_INLINE Vec32 lane_minima(const std::int32_t* cells, int count) const {
     const Tag32 d32;
     const int step = static_cast<int>(hn::Lanes(d32));
-    Vec32 least = hn::Set(d32, std::numeric_limits<std::int32_t>::max());
-    int i = 0;
-    for (; i + step <= count; i += step) {
-      least = hn::Min(least, hn::LoadU(d32, cells + i));
-    }
-    if (i < count) {
-      const auto past_end = hn::Gt(hn::Iota(d32, i), hn::Set(d32, count - 1));
-      least = hn::Min(least, hn::IfThenElse(past_end, least, hn::LoadU(d32, cells + i)));
+    const Vec32 worst = hn::Set(d32, std::numeric_limits<std::int32_t>::max());
+    const Vec32 end = hn::Set(d32, count);
+    Vec32 least = worst;
+    for (int i = 0; i < lanes_; i += step) {
+      const auto is_candidate = hn::Lt(lane_numbers(i), end);
+      least = hn::Min(least, hn::IfThenElse(is_candidate, hn::LoadU(d32, cells + i), worst));
     }
     return least;
   }
 
   // The least cell of the full windows against the candidates whose windows are shortened: each
   // loses one more column than the one before.
-  [[nodiscard]] HWY_INLINE std::int32_t winner(int j, std::int32_t least, int full_end) const {
+  [[nodiscard]] HWY_INLINE std::int32_t winner(int j, std::int32_t least, std::int32_t place,
+                                               int full_end) const {
     const int x = row_.first_column + j;
     const std::int32_t* column = cells(j);
     if (full_end == 0) {
@@ -197,7 +225,7 @@ class IndexedWinners {
     const int full_columns = row_.full_window_columns(x);
     const int end = row_.candidates(x).end;
     const std::int64_t least_sum = row_.sum(least);
-    BestFraction best(least & ((1 << row_.index_bits) - 1), least_sum, full_columns);
+    BestFraction best(place, least_sum, full_columns);
     if (end - full_end < kManyCandidates ||
         shortened_may_win(row_, column, {full_end, end}, least_sum, full_columns)) {
       for (int i = full_end; i < end; ++i) {
@@ -211,35 +239,24 @@ class IndexedWinners {
   static constexpr int kManyCandidates = 12;
 
   const WinnerRow& row_;
-  std::size_t lanes_;
+  int lanes_;
 };
 
 void select_winners_row_simd(const WinnerRow& row, std::int32_t* HWY_RESTRICT winners) {
-  if (row.index_bits > 0) {
-    IndexedWinners(row).run(winners);
-    return;
-  }
-  const std::size_t lanes = static_cast<std::size_t>(row.geometry.lanes());
-  for (int j = 0; j < row.columns; ++j) {
-    winners[j] =
-        winner_of(row, row.cells + static_cast<std::size_t>(j) * lanes, row.first_column + j);
-  }
+  BorderWinners(row).run(winners);
 }
 
 void locate_minima_row_simd(const std::int32_t* cells, const std::int32_t* minima, int lanes,
                             int columns, std::int32_t* HWY_RESTRICT winners) {
   const Tag32 d32;
   const int step = static_cast<int>(hn::Lanes(d32));
-  for (int j = 0; j < columns; ++j, cells += lanes) {
-    const Vec32 minimum = hn::Set(d32, minima[j]);
-    int winner = 0;
-    // From the last vector to the first, without leaving early: where the winner is, is as good as
-    // random, and a wrongly predicted branch costs more than all vectors.
-    for (int i = lanes - step; i >= 0; i -= step) {
-      const auto place = hn::FindFirstTrue(d32, hn::Eq(hn::LoadU(d32, cells + i), minimum));
-      winner = place >= 0 ? i + static_cast<int>(place) : winner;
+  HWY_ALIGN std::int32_t per_lane[hn::MaxLanes(d32) * kLaneMultiple] = {};
+  for (int j = 0; j < columns; j += step) {
+    const int count = std::min(step, columns - j);
+    for (int k = 0; k < count; ++k, cells += lanes) {
+      hn::Store(lane_places(cells, lanes, minima[j + k]), d32, per_lane + k * kLaneMultiple);
     }
-    winners[j] = winner;
+    reduce_minima(per_lane, count, winners + j);
   }
 }
 

@@ -30,10 +30,8 @@ inline std::vector<ExecutorCase> executor_cases() {
   for (const int threads : {1, 2, 5}) {
     cases.push_back(
         {"tbb", threads, [threads] { return make_executor(ExecutorKind::kTbb, threads); }});
-#ifndef __SANITIZE_THREAD__  // which knows nothing of libgomp's barriers
     cases.push_back(
         {"openmp", threads, [threads] { return make_executor(ExecutorKind::kOpenMp, threads); }});
-#endif
   }
   return cases;
 }

@@ -168,15 +168,25 @@ TEST(StripPlan, RingsStayInTheLevelTwoCache) {
 }
 
 TEST(StripPlan, LongChainsWithWideHalosAreSplit) {
-  PlanRequest request;
-  const GeometryChain wide({450, 375}, 50, 4, 1024);
-  const ChainPlan split = plan_chain(wide.stages(), Machine{}, request);
-  expect_sound(split, wide.stages());
+  const PlanRequest request;
+  // Strips that stay in the cache have halos worth two thirds of their width.
+  const GeometryChain longer({3840, 2160}, 20, 1, 64);
+  const ChainPlan split = plan_chain(longer.stages(), Machine{}, request);
+  expect_sound(split, longer.stages());
   EXPECT_GT(split.passes.size(), 1U);
   EXPECT_GT(split.stored_bytes, 0U);
-  const GeometryChain narrow({450, 375}, 3, 0);
-  EXPECT_EQ(plan_chain(narrow.stages(), Machine{}, request).passes.size(), 1U);
-  EXPECT_EQ(plan_chain(narrow.stages(), Machine{}, request).stored_bytes, 0U);
+  double split_work = 0;
+  for (const PassPlan& pass : split.passes) {
+    split_work += pass.work_ratio * (pass.end_stage - pass.first_stage);
+  }
+  PlanRequest in_one_pass;
+  in_one_pass.pass_ends = std::vector<int>{};
+  const PassPlan whole = plan_chain(longer.stages(), Machine{}, in_one_pass).passes.front();
+  EXPECT_LT(split_work, whole.work_ratio * longer.size());
+
+  const GeometryChain shorter({3840, 2160}, 3, 0, 64);
+  EXPECT_EQ(plan_chain(shorter.stages(), Machine{}, request).passes.size(), 1U);
+  EXPECT_EQ(plan_chain(shorter.stages(), Machine{}, request).stored_bytes, 0U);
 }
 
 TEST(StripPlan, StoredBytesCoverInputAndOutputOfAPass) {
