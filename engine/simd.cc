@@ -39,10 +39,7 @@ std::vector<std::string> names_of(long long targets) {
 std::vector<std::string> built_instruction_sets() { return names_of(kernels::built_targets()); }
 
 std::vector<std::string> available_instruction_sets() {
-  const long long in_use = kernels::target_in_use();
-  const long long available = kernels::available_targets();
-  kernels::force_target(in_use);
-  return names_of(available);
+  return names_of(kernels::available_targets());
 }
 
 void force_instruction_set(const std::string& name) {

@@ -27,6 +27,8 @@ constexpr int kLeastStripColumns = 16;
 constexpr double kStripWidthStep = 0.8;
 // Storing a state between two passes and loading it again, in units of one stage's work.
 constexpr double kPassCost = 3.0;
+// A plan of our own making stores no more than this between passes.
+constexpr std::size_t kMostStoredBytes = std::size_t{1} << 30;
 
 std::size_t aligned(std::size_t bytes) {
   constexpr std::size_t step = ScratchPool::kAlignment;
@@ -68,6 +70,7 @@ class PassPlanner {
                                      lay_out_sweep(pass_, input_, columns, middle_row(), sweep_));
     }
     plan_.work_ratio = work_ratio(plan_.strip_columns, plan_.band_rows);
+    plan_.cache_time = cache_time(plan_.scratch_bytes);
     return plan_;
   }
 
@@ -175,7 +178,7 @@ ChainPlan plan_passes(Chain chain, const std::vector<int>& pass_ends, const Mach
 double cost(const ChainPlan& plan) {
   double total = kPassCost * static_cast<double>(plan.passes.size() - 1);
   for (const PassPlan& pass : plan.passes) {
-    total += pass.work_ratio * (pass.end_stage - pass.first_stage);
+    total += pass.work_ratio * pass.cache_time * (pass.end_stage - pass.first_stage);
   }
   return total;
 }
@@ -214,7 +217,7 @@ ChainPlan plan_chain(Chain chain, const Machine& machine, const PlanRequest& req
     return plan_passes(chain, *request.pass_ends, machine, request);
   }
   // Long chains have wide cumulative halos and many rings. Cut them into equal passes for as long
-  // as that saves more halo work than storing the state costs.
+  // as that saves more than storing the state costs.
   ChainPlan best = plan_passes(chain, {}, machine, request);
   const int stages = static_cast<int>(chain.size());
   for (int passes = 2; passes <= stages; ++passes) {
@@ -223,7 +226,7 @@ ChainPlan plan_chain(Chain chain, const Machine& machine, const PlanRequest& req
       ends.push_back(static_cast<int>(std::lround(static_cast<double>(i) * stages / passes)));
     }
     ChainPlan candidate = plan_passes(chain, ends, machine, request);
-    if (cost(candidate) < cost(best)) {
+    if (candidate.stored_bytes <= kMostStoredBytes && cost(candidate) < cost(best)) {
       best = std::move(candidate);
     } else if (kPassCost * (passes - 1) > cost(best)) {
       break;

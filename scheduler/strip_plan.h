@@ -33,6 +33,7 @@ struct PassPlan {
   int bands = 0;
   std::size_t scratch_bytes = 0;  ///< most that one task needs: rings and states
   double work_ratio = 1;          ///< cells computed ÷ cells delivered, halo columns and rows in
+  double cache_time = 1;  ///< expected time per cell, 1 where a strip's scratch is in level 1
 };
 
 struct ChainPlan {

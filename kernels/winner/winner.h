@@ -76,7 +76,8 @@ inline constexpr std::int32_t kNoWinner = -1;
 
 /// winners[j] = index of the candidate with the least energy at column first_column + j, the
 /// smallest of equals, or kNoWinner where no candidate counts. Exact: energies are compared as
-/// fractions. Cells of candidates must be ≥ 0. Identical on every instruction set.
+/// fractions. Cells of candidates must be in
+/// [0, 2³¹ − 2]. Identical on every instruction set.
 void select_winners_row(const WinnerRow& row, std::int32_t* winners);
 
 /// winners[j] = the first candidate of column j whose cell equals minima[j], the least of the
