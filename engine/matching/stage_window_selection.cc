@@ -29,10 +29,10 @@ class WindowSelectionStage final : public scheduler::RowStage {
   [[nodiscard]] Range input_columns(Range columns, Extent input) const override {
     return columns.widened(settings_.radius, input.all_columns());
   }
-  /// Sums, lane-by-lane minima, minima and winners of one row.
-  [[nodiscard]] std::size_t state_bytes(Range columns, Extent /*input*/) const override {
-    return sizeof(std::int32_t) * static_cast<std::size_t>(columns.size()) *
-           (lanes_ + kernels::kLaneMultiple + 2);
+  /// Of one block of columns: sums, lane-by-lane minima, minima and winners; and the window's sums
+  /// from block to block.
+  [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
+    return sizeof(std::int32_t) * (kBlockColumns * (lanes_ + kernels::kLaneMultiple + 2) + lanes_);
   }
 
   void make_row(const scheduler::RowTask& task) const override {
@@ -57,19 +57,25 @@ class WindowSelectionStage final : public scheduler::RowStage {
   }
 
  private:
+  /// Columns whose sums are kept at a time: few enough for the level-1 cache beside the input row.
+  static constexpr int kBlockColumns = 32;
+
   /// Makes `columns` of the row, all of them plain (every candidate has its whole window) or none.
-  void select(const scheduler::RowTask& task, kernels::WinnerRow row, Range columns,
+  void select(const scheduler::RowTask& task, const kernels::WinnerRow& row, Range columns,
               bool plain) const {
-    if (columns.empty()) {
-      return;
+    for (int x = columns.begin; x < columns.end; x += kBlockColumns) {
+      select_block(task, row, {x, std::min(x + kBlockColumns, columns.end)}, plain);
     }
+  }
+
+  void select_block(const scheduler::RowTask& task, kernels::WinnerRow row, Range columns,
+                    bool plain) const {
     const bool parabola = settings_.subpixel == Subpixel::kParabola;
     const bool indexed = settings_.index_bits > 0;
     auto* cells = reinterpret_cast<std::int32_t*>(task.state);
-    std::int32_t* work = cells + lanes_ * static_cast<std::size_t>(task.columns.size());
-    std::int32_t* minima =
-        work + kernels::kLaneMultiple * static_cast<std::size_t>(task.columns.size());
-    std::int32_t* winners = minima + task.columns.size();
+    std::int32_t* work = cells + kBlockColumns * lanes_;
+    std::int32_t* minima = work + kBlockColumns * kernels::kLaneMultiple;
+    std::int32_t* winners = minima + kBlockColumns;
 
     kernels::RowSum sum;
     sum.input = task.input.row<std::int32_t>(task.y);
@@ -80,6 +86,8 @@ class WindowSelectionStage final : public scheduler::RowStage {
     sum.radius = settings_.radius;
     sum.lanes = geometry_.lanes();
     sum.number_lanes = indexed;
+    sum.window_sums = winners + kBlockColumns;
+    sum.continues = columns.begin > task.columns.begin;
     sum.output = plain && indexed && !parabola ? nullptr : cells;
     if (plain) {
       sum.minima = minima;

@@ -18,6 +18,11 @@ struct RowSum {
   /// when the inputs are multiples of a power of two that leaves room for it.
   bool number_lanes = false;
 
+  /// When not null: the window's sums of the last output column, `lanes` values, for a call that
+  /// goes on at the next column. Read when `continues`, written in any case.
+  std::int32_t* window_sums = nullptr;
+  bool continues = false;  ///< the call before ended at output_begin
+
   std::int32_t* output = nullptr;  ///< first cell of output_begin; null when only minima are wanted
   /// When not null: one value per output column, the least of its cells [0, candidates).
   std::int32_t* minima = nullptr;

@@ -19,6 +19,9 @@ void row_sum_ref(const RowSum& row) {
       if (row.output != nullptr) {
         row.output[j * row.lanes + i] = sum;
       }
+      if (row.window_sums != nullptr) {
+        row.window_sums[i] = sum;  // the last column's stay
+      }
       if (row.minima != nullptr && i < row.candidates) {
         row.minima[j] = i == 0 ? sum : std::min(row.minima[j], sum);
       }

@@ -29,17 +29,16 @@ class LaneBlock {
  public:
   HWY_INLINE LaneBlock(const RowSum& row, int first_lane)
       : row_(row),
+        first_lane_(first_lane),
         lanes_(row.lanes),
         output_(kStore ? row.output + first_lane : nullptr),
         minima_(row.minima_work) {
     const Tag32 d32;
-    const int window_begin = std::max(row.output_begin - row.radius, row.input_begin);
-    entering_ = row.input + first_lane +
-                static_cast<std::ptrdiff_t>(window_begin - row.input_begin) * lanes_;
-    leaving_ = entering_;
     for (int v = 0; v < kVectors; ++v) {
       const int lane = first_lane + v * kStep;
-      sum_[v] = row.number_lanes ? lane_numbers(lane) : hn::Zero(d32);
+      sum_[v] = row.continues      ? hn::LoadU(d32, row.window_sums + lane)
+                : row.number_lanes ? lane_numbers(lane)
+                                   : hn::Zero(d32);
       // Lanes behind the last candidate are lifted above all others, the rest left as they are.
       const auto is_candidate = hn::Lt(lane_numbers(lane), hn::Set(d32, row.candidates));
       floor_[v] =
@@ -50,22 +49,43 @@ class LaneBlock {
 
   HWY_INLINE void run() {
     const int radius = row_.radius;
-    const int window_begin = std::max(row_.output_begin - radius, row_.input_begin);
-    const int window_end = std::min(row_.output_begin + radius, row_.input_end);
+    const int begin = row_.output_begin;
+    const int end = row_.output_end;
+    // The columns of the first window, but for the last of them, are added before it is delivered.
+    const int window_begin = std::max(begin - radius, row_.input_begin);
+    const int window_end = std::min(begin + radius, row_.input_end);
+    // From here on a column leaves: the first one added for a new window, or the one before it.
+    const int leave_from = row_.continues ? std::clamp(row_.input_begin + radius + 1, begin, end)
+                                          : std::min(window_begin + radius + 1, end);
+    const int enter_until = std::clamp(row_.input_end - radius, begin, end);
+    leaving_ = cell(leave_from - radius - 1);
+    if (row_.continues) {
+      entering_ = cell(window_end);
+    } else {
+      entering_ = cell(window_begin);
+      stretch<true, false, false>(window_end - window_begin);
+    }
     // Four stretches without a branch in them: growing windows at the left border of the image (in
     // a strip inside it: its first column), windows wider than the image, full windows, and
     // shrinking ones at the right border.
-    const int leave_from = std::min(window_begin + radius + 1, row_.output_end);
-    const int enter_until = std::clamp(row_.input_end - radius, row_.output_begin, row_.output_end);
-    stretch<true, false, false>(window_end - window_begin);
-    stretch<true, false, true>(std::min(leave_from, enter_until) - row_.output_begin);
+    stretch<true, false, true>(std::min(leave_from, enter_until) - begin);
     stretch<false, false, true>(leave_from - std::min(leave_from, enter_until));
     stretch<true, true, true>(enter_until - std::min(leave_from, enter_until));
-    stretch<false, true, true>(row_.output_end - std::max(leave_from, enter_until));
+    stretch<false, true, true>(end - std::max(leave_from, enter_until));
+    if (row_.window_sums != nullptr) {
+      for (int v = 0; v < kVectors; ++v) {
+        hn::StoreU(sum_[v], Tag32(), row_.window_sums + first_lane_ + v * kStep);
+      }
+    }
   }
 
  private:
   static constexpr int kStep = static_cast<int>(hn::MaxLanes(Tag32()));
+
+  [[nodiscard]] HWY_INLINE const std::int32_t* cell(int column) const {
+    return row_.input + first_lane_ +
+           static_cast<std::ptrdiff_t>(column - row_.input_begin) * lanes_;
+  }
 
   template <bool kEnter, bool kLeave, bool kDeliver>
   HWY_INLINE void stretch(int columns) {
@@ -118,9 +138,10 @@ class LaneBlock {
   }
 
   const RowSum& row_;
+  const int first_lane_;
   const std::ptrdiff_t lanes_;
-  const std::int32_t* entering_;
-  const std::int32_t* leaving_;
+  const std::int32_t* entering_ = nullptr;
+  const std::int32_t* leaving_ = nullptr;
   std::int32_t* output_;
   std::int32_t* minima_;
   Vec32 sum_[kVectors];

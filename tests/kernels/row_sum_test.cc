@@ -146,6 +146,50 @@ VANTAGE_ON_EVERY_TARGET(RowSumOn);
 
 TEST_P(RowSumOn, SumsWindowsCutToTheImage) { sweep(row_sum); }
 
+// A row made in blocks, each of which goes on with the window of the one before, also in a strip
+// whose input begins and ends inside the image.
+TEST_P(RowSumOn, BlocksGoOnWhereTheOneBeforeEnded) {
+  std::mt19937 random(22);
+  for (const int lanes : {16, 80}) {
+    for (const int width : {1, 2, 7, 16, 31, 40}) {
+      const WholeRow whole(random, width, lanes, false);
+      for (const int radius : kRadii) {
+        for (const int block : {1, 2, 5, 16}) {
+          const int begin = random_int(random, 0, width - 1);
+          const int end = random_int(random, begin + 1, width);
+          const int input_begin = std::max(0, begin - radius);
+          const int input_end = std::min(width, end + radius);
+          std::vector<std::int32_t> window_sums(static_cast<std::size_t>(lanes));
+          for (int x = begin; x < end; x += block) {
+            std::vector<std::int32_t> output(whole.size(std::min(block, end - x)));
+            RowSum row;
+            row.input = whole.cells.data() + whole.size(input_begin);
+            row.input_begin = input_begin;
+            row.input_end = input_end;
+            row.output_begin = x;
+            row.output_end = std::min(x + block, end);
+            row.radius = radius;
+            row.lanes = lanes;
+            row.number_lanes = true;
+            row.window_sums = window_sums.data();
+            row.continues = x > begin;
+            row.output = output.data();
+            row_sum(row);
+            for (int column = x; column < row.output_end; ++column) {
+              for (int i = 0; i < lanes; ++i) {
+                ASSERT_EQ(output[whole.size(column - x) + static_cast<std::size_t>(i)],
+                          whole.window_sum(column, radius, i) + i)
+                    << lanes << " lanes, width " << width << ", radius " << radius << ", block "
+                    << block << ", strip " << begin << " to " << end << ", column " << column;
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST_P(RowSumOn, MakesNothingOfNoColumns) {
   GuardedRow<std::int32_t> output(0, 0, kSentinel);
   const std::vector<std::int32_t> input(16 * 3, 1);
