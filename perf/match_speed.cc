@@ -48,7 +48,8 @@ class OneMap {
       : execution_({.threads = threads}),
         matcher_(options(disparities, window, subpixel), execution_) {}
   void run(const Photograph& left, const Photograph& right) {
-    matcher_.match(left, right, {.left = true, .right = false}, maps_, &report_);
+    matcher_.match(left, right, {.left = true, .right = false, .unmatched = false}, maps_,
+                   &report_);
   }
   [[nodiscard]] const MatchReport& report() const { return report_; }
 

@@ -80,19 +80,16 @@ float cost_scale(const Bounds& bounds, int window_samples) {
   return static_cast<float>(std::exp2(std::floor(std::log2(std::sqrt(most_cost) / span))));
 }
 
+/// Fills the margins of one row of the left plane and mirrors the pixels of the right image, once
+/// they are in place.
 template <typename Pixel>
-void finish_rows(IntensityPlanes<Pixel>& planes, int width, int height, PlanesNeeded needed,
-                 Execution& execution) {
-  execution.for_each_band(height, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      planes.left.fill_margins(y);
-      if (needed.left_reference) {
-        const Pixel* right = planes.right.row(y);
-        std::reverse_copy(right, right + width, planes.right_mirrored.row(y));
-        planes.right_mirrored.fill_margins(y);
-      }
-    }
-  });
+void finish_row(IntensityPlanes<Pixel>& planes, const Pixel* right, int width, int y,
+                PlanesNeeded needed) {
+  planes.left.fill_margins(y);
+  if (needed.left_reference) {
+    std::reverse_copy(right, right + width, planes.right_mirrored.row(y));
+    planes.right_mirrored.fill_margins(y);
+  }
 }
 
 template <typename Pixel>
@@ -109,26 +106,10 @@ void resize_planes(IntensityPlanes<Pixel>& planes, int height,
   }
 }
 
-void copy_8_bit(const Photograph& photograph, Execution& execution,
-                IntensityPlane<std::uint8_t>& plane) {
-  const auto& image = std::get<Image<std::uint8_t>>(photograph.pixels);
-  execution.for_each_band(image.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      std::copy_n(image.row(y), image.width(), plane.row(y));
-    }
-  });
-}
-
-void scale_rows(float scale, int width, int height, Execution& execution,
-                IntensityPlane<float>& plane) {
-  execution.for_each_band(height, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      float* row = plane.row(y);
-      for (int x = 0; x < width; ++x) {
-        row[x] *= scale;
-      }
-    }
-  });
+void scale_row(float scale, int width, float* row) {
+  for (int x = 0; x < width; ++x) {
+    row[x] *= scale;
+  }
 }
 
 }  // namespace
@@ -158,10 +139,19 @@ void prepare_pair(const Photograph& left, const Photograph& right,
   const int height = left.height();
   pair.is_8_bit = is_8_bit_grey(left) && is_8_bit_grey(right);
   if (pair.is_8_bit) {
-    resize_planes(pair.grey_8, height, geometry, needed);
-    copy_8_bit(left, execution, pair.grey_8.left);
-    copy_8_bit(right, execution, pair.grey_8.right);
-    finish_rows(pair.grey_8, width, height, needed, execution);
+    IntensityPlanes<std::uint8_t>& planes = pair.grey_8;
+    resize_planes(planes, height, geometry, needed);
+    const auto& left_pixels = std::get<Image<std::uint8_t>>(left.pixels);
+    const auto& right_pixels = std::get<Image<std::uint8_t>>(right.pixels);
+    execution.for_each_band(height, [&](int first_row, int end_row) {
+      for (int y = first_row; y < end_row; ++y) {
+        std::copy_n(left_pixels.row(y), width, planes.left.row(y));
+        if (needed.right_reference) {
+          std::copy_n(right_pixels.row(y), width, planes.right.row(y));
+        }
+        finish_row(planes, right_pixels.row(y), width, y, needed);
+      }
+    });
     return;
   }
   IntensityPlanes<float>& planes = pair.grey_float;
@@ -170,9 +160,13 @@ void prepare_pair(const Photograph& left, const Photograph& right,
   const Bounds of_right = fill_grey(right, execution, planes.right);
   const float scale = cost_scale(
       {std::min(of_left.low, of_right.low), std::max(of_left.high, of_right.high)}, window_samples);
-  scale_rows(scale, width, height, execution, planes.left);
-  scale_rows(scale, width, height, execution, planes.right);
-  finish_rows(planes, width, height, needed, execution);
+  execution.for_each_band(height, [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      scale_row(scale, width, planes.left.row(y));
+      scale_row(scale, width, planes.right.row(y));
+      finish_row(planes, planes.right.row(y), width, y, needed);
+    }
+  });
 }
 
 }  // namespace vantage

@@ -72,15 +72,17 @@ class ColumnSsdStage : public scheduler::RowStage {
   [[nodiscard]] int lanes() const { return lanes_; }
 
  private:
-  /// Only columns near the borders have such cells.
+  /// Only columns near the borders have such cells. Of their cells without a partner, those within
+  /// the radius of the last one with a partner are all that a window of candidates reaches.
   void clear_without_partner(Range columns, std::int32_t* sums) const {
     const auto [inner_begin, inner_end] = geometry_.columns_with_all_partners();
     const auto clear = [&](int x) {
       const kernels::CandidateRange inside = geometry_.with_partner(x);
+      const int inside_end = std::max(inside.begin, inside.end);
       std::int32_t* cells =
           sums + static_cast<std::size_t>(x - columns.begin) * static_cast<std::size_t>(lanes_);
-      std::fill(cells, cells + inside.begin, 0);
-      std::fill(cells + std::max(inside.begin, inside.end), cells + lanes_, 0);
+      std::fill(cells + std::max(0, inside.begin - radius_), cells + inside.begin, 0);
+      std::fill(cells + inside_end, cells + std::min(lanes_, inside_end + radius_), 0);
     };
     int x = columns.begin;
     for (; x < std::min(columns.end, inner_begin); ++x) {

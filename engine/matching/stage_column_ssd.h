@@ -16,7 +16,8 @@ namespace vantage {
 /// which is cheaper than loading its costs.
 ///
 /// Output cells are int32_t, geometry.lanes() a column: the sum times 4^shift for 8-bit images, in
-/// the unit of prepare_pair() for float ones. A cell whose partner is outside the other image is 0.
+/// the unit of prepare_pair() for float ones. A cell whose partner is outside the other image is 0
+/// if a candidate's window of `radius` columns reaches it, and undefined farther out.
 /// `partner` is mirrored for a left reference (geometry.direction = −1), plain for a right one; its
 /// margins are those of prepare_pair(). Both planes must outlive the stage.
 std::unique_ptr<scheduler::RowStage> make_column_ssd_stage(

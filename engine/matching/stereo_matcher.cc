@@ -66,8 +66,10 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   }
 
   if (options_.raw) {
-    mark_unknown(maps.left.view(), execution_, maps.left_unmatched);
-    mark_unknown(maps.right.view(), execution_, maps.right_unmatched);
+    if (request.unmatched) {
+      mark_unknown(maps.left.view(), execution_, maps.left_unmatched);
+      mark_unknown(maps.right.view(), execution_, maps.right_unmatched);
+    }
     return;
   }
   cross_check(maps.left.view(), maps.right.view(), options_.cross_check_or_default(), execution_,

@@ -22,10 +22,11 @@ struct DisparityMaps {
   Mask right_unmatched;
 };
 
-/// Which maps the caller wants. With refinement (options.raw == false) both are computed anyway.
+/// What the caller wants. With refinement (options.raw == false) all of it is computed anyway.
 struct MatchRequest {
   bool left = true;
   bool right = true;
+  bool unmatched = true;  ///< the masks of the maps
 };
 
 /// Seconds spent per part, in the order they ran.

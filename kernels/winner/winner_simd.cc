@@ -159,15 +159,14 @@ class BorderWinners {
   HWY_INLINE void run(std::int32_t* HWY_RESTRICT winners) const {
     const Tag32 d32;
     const int step = static_cast<int>(hn::Lanes(d32));
-    HWY_ALIGN std::int32_t per_lane[hn::MaxLanes(d32) * kLaneMultiple] = {};
-    HWY_ALIGN std::int32_t least[hn::MaxLanes(d32)];
-    HWY_ALIGN std::int32_t place[hn::MaxLanes(d32)];
-    int full_end[hn::MaxLanes(d32)];
+    HWY_ALIGN std::int32_t per_lane[kMost * kLaneMultiple] = {};
+    HWY_ALIGN std::int32_t least[kMost];
+    HWY_ALIGN std::int32_t place[kMost];
     for (int j = 0; j < row_.columns; j += step) {
       const int columns = std::min(step, row_.columns - j);
+      const Columns shape = shape_of(row_.first_column + j);
       for (int k = 0; k < columns; ++k) {
-        full_end[k] = leading_full(row_.first_column + j + k);
-        hn::Store(lane_minima(cells(j + k), full_end[k]), d32, per_lane + k * kLaneMultiple);
+        hn::Store(lane_minima(cells(j + k), shape.full_end[k]), d32, per_lane + k * kLaneMultiple);
       }
       reduce_minima(per_lane, columns, least);
       if (row_.index_bits > 0) {
@@ -181,21 +180,53 @@ class BorderWinners {
         reduce_minima(per_lane, columns, place);
       }
       for (int k = 0; k < columns; ++k) {
-        winners[j + k] = winner(j + k, least[k], place[k], full_end[k]);
+        winners[j + k] = shape.full_end[k] == 0
+                             ? winner_of(row_, cells(j + k), row_.first_column + j + k)
+                             : winner(cells(j + k), least[k], place[k], shape.full_end[k],
+                                      shape.candidates_end[k], shape.full_columns[k]);
       }
     }
   }
 
  private:
+  static constexpr std::size_t kMost = hn::MaxLanes(Tag32());
+
+  /// Of a vector of columns: how many candidates, from the first, have a whole window of partners
+  /// (0 where those do not begin at the first candidate), how many have a partner, and how many
+  /// columns a whole window has.
+  struct Columns {
+    int full_end[kMost];
+    int candidates_end[kMost];
+    int full_columns[kMost];
+  };
+
   [[nodiscard]] HWY_INLINE const std::int32_t* cells(int j) const {
     return row_.cells + static_cast<std::ptrdiff_t>(j) * lanes_;
   }
 
-  // How many candidates, from the first, have a whole window of partners at a column; 0 where
-  // those do not start at the first candidate.
-  [[nodiscard]] HWY_INLINE int leading_full(int x) const {
-    const CandidateRange full = row_.full_window_candidates(x);
-    return full.begin == 0 ? full.end : 0;
+  // CandidateGeometry::with_partners() for neighbouring columns, in a form that vectorises.
+  [[nodiscard]] HWY_INLINE Columns shape_of(int first_x) const {
+    const CandidateGeometry& geometry = row_.geometry;
+    const int radius = row_.window_radius;
+    const int last_column = geometry.width - 1;
+    const bool left = geometry.direction < 0;
+    const int least = geometry.disparity_min;
+    const int count = geometry.count;
+    const bool whole_only = row_.whole_windows_only;
+    Columns shape;
+    for (std::size_t k = 0; k < kMost; ++k) {
+      const int x = std::min(first_x + static_cast<int>(k), last_column);
+      const int begin = std::max(x - radius, 0);
+      const int last = std::min(x + radius, last_column);
+      // Columns of the other image in the direction of growing and of falling disparities.
+      const int room = left ? begin : last_column - last;
+      const int room_behind = left ? last_column - last : begin;
+      const int full_end = std::clamp(room - least + 1, 0, count);
+      shape.full_end[k] = whole_only || room_behind < -least ? 0 : full_end;
+      shape.candidates_end[k] = std::clamp((left ? x : last_column - x) - least + 1, 0, count);
+      shape.full_columns[k] = last - begin + 1;
+    }
+    return shape;
   }
 
   // Lane by lane minimum of the first `count` cells. All lanes are looked at: a loop whose length
@@ -215,15 +246,9 @@ class BorderWinners {
 
   // The least cell of the full windows against the candidates whose windows are shortened: each
   // loses one more column than the one before.
-  [[nodiscard]] HWY_INLINE std::int32_t winner(int j, std::int32_t least, std::int32_t place,
-                                               int full_end) const {
-    const int x = row_.first_column + j;
-    const std::int32_t* column = cells(j);
-    if (full_end == 0) {
-      return winner_of(row_, column, x);
-    }
-    const int full_columns = row_.full_window_columns(x);
-    const int end = row_.candidates(x).end;
+  [[nodiscard]] HWY_INLINE std::int32_t winner(const std::int32_t* column, std::int32_t least,
+                                               std::int32_t place, int full_end, int end,
+                                               int full_columns) const {
     const std::int64_t least_sum = row_.sum(least);
     BestFraction best(place, least_sum, full_columns);
     if (end - full_end < kManyCandidates ||
