@@ -64,6 +64,9 @@ void add_match_settings(Settings& settings, MatchOptions& options) {
   settings.number("cross-check", options.cross_check_px, "PX",
                   "Left and right disparities agree if they differ by less, at least 1; auto: the "
                   "number of candidates / 15");
+  settings.integer(
+      "speckle-size", options.speckle_size_px, "PX",
+      "Regions of fewer pixels that passed the cross-check count as unmatched; 0: none");
 }
 
 void add_reference_setting(Settings& settings, MatchOptions& options) {

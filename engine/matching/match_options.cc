@@ -36,6 +36,10 @@ void MatchOptions::validate() const {
     throw UsageError(
         fmt::format("window is {}, expected an odd number from 1 to {}", window_px, kMaxWindow));
   }
+  if (speckle_size_px < 0) {
+    throw UsageError(fmt::format("speckle-size is {}, expected a number of pixels, at least 0",
+                                 speckle_size_px));
+  }
   if (cross_check_px && !(*cross_check_px >= 1 && std::isfinite(*cross_check_px))) {
     throw UsageError(
         fmt::format("cross-check is {}, expected a number of at least 1", *cross_check_px));

@@ -31,6 +31,8 @@ struct MatchOptions {
   bool raw = false;
   /// Largest |d_left − d_right| that still counts as agreement, ≥ 1 (5.13); default max(1, D/15).
   std::optional<double> cross_check_px;
+  /// Matched regions of fewer pixels than this count as unmatched; ≥ 0, 0 and 1: none do.
+  int speckle_size_px = 0;
 
   /// Throws UsageError naming the field, its value and its limit.
   void validate() const;

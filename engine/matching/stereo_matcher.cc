@@ -75,6 +75,15 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   cross_check(maps.left.view(), maps.right.view(), options_.cross_check_or_default(), execution_,
               maps.left_unmatched, maps.right_unmatched);
   clock.record("cross-check");
+  if (options_.speckle_size_px > 1) {
+    execution_.executor().parallel_for(2, [&](int side) {
+      const auto work = speckle_works_.borrow();
+      const DisparityMap& map = side == 0 ? maps.left : maps.right;
+      mark_speckles(map.view(), options_.speckle_size_px, *work,
+                    side == 0 ? maps.left_unmatched : maps.right_unmatched);
+    });
+    clock.record("speckles");
+  }
   fill_unmatched(maps.left_unmatched, MapSide::kLeft, execution_, maps.left);
   fill_unmatched(maps.right_unmatched, MapSide::kRight, execution_, maps.right);
   clock.record("fill");

@@ -9,6 +9,7 @@
 #include "engine/matching/intensity_planes.h"
 #include "engine/matching/match_options.h"
 #include "engine/object_pool.h"
+#include "engine/refinement/speckles.h"
 #include "scheduler/strip_plan.h"
 
 namespace vantage {
@@ -64,6 +65,7 @@ class StereoMatcher {
   MatchOptions options_;
   Execution& execution_;
   mutable ObjectPool<PreparedPair> prepared_pairs_;
+  mutable ObjectPool<SpeckleWork> speckle_works_;
 };
 
 }  // namespace vantage

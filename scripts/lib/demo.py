@@ -20,6 +20,7 @@ SEQUENCE_FRAMES = 30
 SEQUENCE_SIZE = (512, 384)
 WINDOW = 13
 CROSS_CHECK_PX = 1
+SPECKLE_SIZE_PX = 100
 JUDGED_FRAMES = [0, 10, 20]
 # The picture of the errors ends here; larger ones look the same.
 LARGE_ERROR_PX = 8
@@ -110,7 +111,7 @@ def match_and_synthesise(demo, scene):
     for folder in ["maps", "views", "pictures"]:
         (demo.out / folder).mkdir()
     matching = ["--disparities", scene.disparities, "--window", WINDOW,
-                "--cross-check", CROSS_CHECK_PX]
+                "--cross-check", CROSS_CHECK_PX, "--speckle-size", SPECKLE_SIZE_PX]
     demo.run("match", "match: both disparity maps", "match", scene.left, scene.right,
              "-o", "maps/left.pfm", "--output-right", "maps/right.pfm",
              "--unmatched", "maps/unmatched.png", "--preview", "maps/preview.png", *matching)
@@ -154,7 +155,8 @@ def run_sequence(demo):
     demo.run("run", "run: maps and the view half-way of every frame", "run",
              "--left", "sequence/scene/left", "--right", "sequence/scene/right",
              "-o", "sequence/results", "--save", "disparity,preview,views", "--view", "0.5",
-             "--disparities", report["results"]["disparities"], "--cross-check", CROSS_CHECK_PX)
+             "--disparities", report["results"]["disparities"], "--cross-check", CROSS_CHECK_PX,
+             "--speckle-size", SPECKLE_SIZE_PX)
     for frame in JUDGED_FRAMES:
         name = f"{frame:06}"
         demo.run(f"eval-{name}", f"eval: map of frame {frame} against the truth", "eval",
