@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cmath>
+#include <ostream>
 #include <string>
 #include <tuple>
 
@@ -81,6 +82,12 @@ struct Shape {
   DisparityRange range;
   int window;
 };
+
+/// What test runners print of a shape instead of its bytes.
+void PrintTo(const Shape& shape, std::ostream* stream) {
+  *stream << shape.width << "x" << shape.height << ", disparities " << shape.range.min << ":"
+          << shape.range.max << ", window " << shape.window;
+}
 
 class SsdShapes : public ::testing::TestWithParam<std::tuple<Shape, Border, Subpixel>> {};
 

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,11 @@ struct ExecutorCase {
   std::function<std::unique_ptr<Executor>()> make;
   bool from_many_threads = true;  ///< may be called by several threads at a time
 };
+
+/// What test runners print of a case instead of its bytes.
+inline void PrintTo(const ExecutorCase& executor, std::ostream* stream) {
+  *stream << executor.name << " with " << executor.threads << " threads";
+}
 
 inline std::string executor_test_name(const testing::TestParamInfo<ExecutorCase>& info) {
   return info.param.name + std::to_string(info.param.threads);
