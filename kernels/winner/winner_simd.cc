@@ -108,29 +108,37 @@ std::int32_t winner_of(const WinnerRow& row, const std::int32_t* cells, int x) {
   return best.index();
 }
 
-// True when a candidate of `range`, whose windows lose one more column from one to the next, may
-// beat sum/columns. Rarely true without being right: floats decide, with a margin.
-HWY_INLINE bool shortened_may_win(const WinnerRow& row, const std::int32_t* cells,
-                                  CandidateRange range, std::int64_t sum, int columns) {
-  const Tag32 d32;
-  const hn::ScalableTag<float> df;
-  constexpr float kMargin = 1.00001F;
-  const int step = static_cast<int>(hn::Lanes(d32));
-  const auto limit = hn::Set(df, static_cast<float>(sum) / static_cast<float>(columns) * kMargin);
-  for (int i = range.begin; i < range.end; i += step) {
-    if (i + step > row.geometry.lanes()) {
-      return true;  // not a whole vector left to load
-    }
+// Offers the candidates of `range`, whose windows lose one more column from one to the next, the
+// first having `columns` − 1. As quotients in double: sums below 2³¹ over fewer than 2⁹ columns are
+// equal as doubles only if they are equal, so the order of fractions is kept.
+HWY_INLINE void offer_shortened(const WinnerRow& row, const std::int32_t* cells,
+                                CandidateRange range, int columns, BestFraction& best) {
+  const hn::ScalableTag<double> d64;
+  const hn::Rebind<std::int32_t, decltype(d64)> d32;
+  const int step = static_cast<int>(hn::Lanes(d64));
+  const auto none = hn::Set(d64, std::numeric_limits<double>::infinity());
+  const auto lane = hn::Iota(d64, 0);
+  auto least = none;
+  auto place = hn::Zero(d64);
+  int i = range.begin;
+  for (; i + step <= range.end; i += step) {
     const auto sums =
-        hn::ConvertTo(df, hn::ShiftRightSame(hn::LoadU(d32, cells + i), row.index_bits));
-    const auto counts =
-        hn::ConvertTo(df, hn::Sub(hn::Set(d32, columns - 1 - (i - range.begin)), hn::Iota(d32, 0)));
-    // Lanes behind the range have any count: at worst they cause a needless exact comparison.
-    if (!hn::AllFalse(df, hn::Le(sums, hn::Mul(limit, counts)))) {
-      return true;
-    }
+        hn::PromoteTo(d64, hn::ShiftRightSame(hn::LoadU(d32, cells + i), row.index_bits));
+    const auto counts = hn::Sub(hn::Set(d64, columns - 1 - (i - range.begin)), lane);
+    const auto quotient = hn::Div(sums, counts);
+    const auto wins = hn::Lt(quotient, least);
+    least = hn::IfThenElse(wins, quotient, least);
+    place = hn::IfThenElse(wins, hn::Add(hn::Set(d64, i), lane), place);
   }
-  return false;
+  if (i > range.begin) {
+    const auto is_least = hn::Eq(least, hn::MinOfLanes(d64, least));
+    const auto first = hn::MinOfLanes(d64, hn::IfThenElse(is_least, place, none));
+    const int index = static_cast<int>(hn::GetLane(first));
+    best.offer(index, row.sum(cells[index]), columns - (index - range.begin + 1));
+  }
+  for (; i < range.end; ++i) {
+    best.offer(i, row.sum(cells[i]), columns - (i - range.begin + 1));
+  }
 }
 
 // Lane by lane, the first of `lanes` cells that equals `value`, as a candidate number; lanes
@@ -140,13 +148,13 @@ HWY_INLINE Vec32 lane_places(const std::int32_t* cells, int lanes, std::int32_t 
   const Tag32 d32;
   const int step = static_cast<int>(hn::Lanes(d32));
   const Vec32 wanted = hn::Set(d32, value);
-  Vec32 place = hn::Set(d32, std::numeric_limits<std::int32_t>::max());
+  Vec32 place = hn::Set(d32, 1 << 30);
   // From the last vector to the first, so that the first place stays.
   for (int i = lanes - step; i >= 0; i -= step) {
     const auto is_wanted = hn::Eq(hn::LoadU(d32, cells + i), wanted);
-    place = hn::IfThenElse(is_wanted, lane_numbers(i), place);
+    place = hn::IfThenElse(is_wanted, hn::Set(d32, i), place);
   }
-  return place;
+  return hn::Add(place, hn::Iota(d32, 0));
 }
 
 // Columns near a border of the image, one vector of columns at a time: their lane-by-lane minima
@@ -251,16 +259,17 @@ class BorderWinners {
                                                int full_columns) const {
     const std::int64_t least_sum = row_.sum(least);
     BestFraction best(place, least_sum, full_columns);
-    if (end - full_end < kManyCandidates ||
-        shortened_may_win(row_, column, {full_end, end}, least_sum, full_columns)) {
-      for (int i = full_end; i < end; ++i) {
-        best.offer(i, row_.sum(column[i]), full_columns - (i - full_end + 1));
-      }
+    if (end - full_end >= kManyCandidates) {
+      offer_shortened(row_, column, {full_end, end}, full_columns, best);
+      return best.index();
+    }
+    for (int i = full_end; i < end; ++i) {
+      best.offer(i, row_.sum(column[i]), full_columns - (i - full_end + 1));
     }
     return best.index();
   }
 
-  // From so many candidates on a look at all of them together saves time.
+  // From so many candidates on vectors of quotients are faster.
   static constexpr int kManyCandidates = 12;
 
   const WinnerRow& row_;

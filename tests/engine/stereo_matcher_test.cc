@@ -118,7 +118,8 @@ INSTANTIATE_TEST_SUITE_P(
                                          Shape{47, 6, {-30, -2}, 3}, Shape{61, 19, {0, 63}, 9},
                                          Shape{64, 12, {0, 64}, 21}, Shape{65, 10, {5, 100}, 1},
                                          Shape{37, 23, {0, 12}, 101}, Shape{101, 17, {-5, 70}, 11},
-                                         Shape{131, 15, {0, 15}, 13}, Shape{20, 5, {40, 60}, 3}),
+                                         Shape{131, 15, {0, 15}, 13}, Shape{61, 9, {0, 15}, 31},
+                                         Shape{20, 5, {40, 60}, 3}),
                        ::testing::Values(Border::kClip, Border::kValid),
                        ::testing::Values(Subpixel::kNone, Subpixel::kParabola)));
 
