@@ -8,8 +8,8 @@
 #include "engine/generation/book_pairs.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/photograph_io.h"
-#include "tests/apps/temporary_folder.h"
 #include "tests/apps/vantage_process.h"
+#include "tests/temporary_folder.h"
 
 namespace vantage {
 

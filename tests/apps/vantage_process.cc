@@ -11,7 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "tests/apps/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace vantage {
 

@@ -20,7 +20,6 @@ using test::error_of;
 using test::noise;
 using test::put_bytes;
 using test::put_text;
-using test::TemporaryFolder;
 using ::testing::HasSubstr;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();

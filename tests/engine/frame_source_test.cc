@@ -17,7 +17,6 @@ namespace {
 
 using test::error_of;
 using test::put_text;
-using test::TemporaryFolder;
 using ::testing::HasSubstr;
 
 /// A 2×1 image whose value tells it from the others.
@@ -47,7 +46,7 @@ TEST(FrameSource, AFolderIsReadInNaturalOrder) {
   std::filesystem::create_directory(folder / "frame5.png");
   const auto source = open_frame_source(folder.path().string());
   EXPECT_EQ(source->frame_count(), 5);
-  EXPECT_EQ(source->describe(1), (folder / "frame9.png").string());
+  EXPECT_EQ(source->describe(1), folder / "frame9.png");
   EXPECT_EQ(source->frames_per_second(), std::nullopt);
   EXPECT_EQ(values_of(*source), (std::vector<int>{2, 9, 10, 11, 100}));
 }
@@ -62,9 +61,9 @@ TEST(FrameSource, APatternBeginsAtTheSmallestNumber) {
   put_image(folder / "l12.png", 12);     // too few digits
   put_image(folder / "l00013.png", 13);  // too many
   put_image(folder / "r0001.png", 1);
-  const auto source = open_frame_source((folder / "l%04d.png").string());
+  const auto source = open_frame_source(folder / "l%04d.png");
   EXPECT_EQ(source->frame_count(), 4);
-  EXPECT_EQ(source->describe(0), (folder / "l0008.png").string());
+  EXPECT_EQ(source->describe(0), folder / "l0008.png");
   EXPECT_EQ(values_of(*source), (std::vector<int>{8, 9, 10, 11}));
 }
 
@@ -72,7 +71,7 @@ TEST(FrameSource, APatternWithoutWidthAndWithAPercentSign) {
   const TemporaryFolder folder;
   put_image(folder / "5%9_a.png", 9);
   put_image(folder / "5%10_a.png", 10);
-  const auto source = open_frame_source((folder / "5%%%d_a.png").string());
+  const auto source = open_frame_source(folder / "5%%%d_a.png");
   EXPECT_EQ(values_of(*source), (std::vector<int>{9, 10}));
 }
 
@@ -80,7 +79,7 @@ TEST(FrameSource, AMissingNumberIsABadFrameAndTheNextOneFollows) {
   const TemporaryFolder folder;
   put_image(folder / "0.png", 50);
   put_image(folder / "2.png", 52);
-  const auto source = open_frame_source((folder / "%d.png").string());
+  const auto source = open_frame_source(folder / "%d.png");
   EXPECT_EQ(source->frame_count(), 3);
   Photograph frame;
   EXPECT_TRUE(source->next(frame));
@@ -95,19 +94,16 @@ TEST(FrameSource, AGlobTakesWhatMatchesInNaturalOrder) {
     put_image(folder / ("a" + std::to_string(i) + ".png"), i);
     put_image(folder / ("b" + std::to_string(i) + ".png"), 0);
   }
-  EXPECT_EQ(values_of(*open_frame_source((folder / "a*.png").string())),
-            (std::vector<int>{3, 20, 100}));
-  EXPECT_EQ(values_of(*open_frame_source((folder / "a[3]*.png").string())), (std::vector<int>{3}));
+  EXPECT_EQ(values_of(*open_frame_source(folder / "a*.png")), (std::vector<int>{3, 20, 100}));
+  EXPECT_EQ(values_of(*open_frame_source(folder / "a[3]*.png")), (std::vector<int>{3}));
 }
 
 TEST(FrameSource, ANameThatExistsIsNoPattern) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "take[1] 50%");
   put_image(folder / "take[1] 50%/a.png", 7);
-  EXPECT_EQ(values_of(*open_frame_source((folder / "take[1] 50%").string())),
-            (std::vector<int>{7}));
-  EXPECT_EQ(values_of(*open_frame_source((folder / "take[1] 50%/a.png").string())),
-            (std::vector<int>{7}));
+  EXPECT_EQ(values_of(*open_frame_source(folder / "take[1] 50%")), (std::vector<int>{7}));
+  EXPECT_EQ(values_of(*open_frame_source(folder / "take[1] 50%/a.png")), (std::vector<int>{7}));
 }
 
 TEST(FrameSource, AVideoGivesItsFramesAndItsRate) {
@@ -119,10 +115,10 @@ TEST(FrameSource, AVideoGivesItsFramesAndItsRate) {
     writer.write(frame);
   }
   writer.finish();
-  const auto source = open_frame_source((folder / "v.mp4").string());
+  const auto source = open_frame_source(folder / "v.mp4");
   EXPECT_EQ(source->frame_count(), 3);
   EXPECT_NEAR(source->frames_per_second().value_or(0), 24, 1e-6);
-  EXPECT_EQ(source->describe(2), (folder / "v.mp4").string() + " frame 2");
+  EXPECT_EQ(source->describe(2), folder / "v.mp4" + " frame 2");
   const std::vector<int> values = values_of(*source);
   ASSERT_EQ(values.size(), 3U);
   EXPECT_NEAR(values[0], 20, 4);
@@ -156,7 +152,7 @@ TEST(FrameSource, RefusesWhatMatchesNothing) {
   refuse(folder / "notes.txt", "not a video");
   for (const char* bad :
        {"%s.png", "%d_%d.png", "%", "%6d.png", "%012d.png", "a%%.png", "%0d.png"}) {
-    EXPECT_THROW(open_frame_source((folder / bad).string()), UsageError) << bad;
+    EXPECT_THROW(open_frame_source(folder / bad), UsageError) << bad;
   }
 }
 

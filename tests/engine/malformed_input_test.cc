@@ -17,7 +17,6 @@ namespace {
 using test::bytes_of;
 using test::noise;
 using test::put_bytes;
-using test::TemporaryFolder;
 
 /// Calls `read` with the file cut at every place and with bytes changed at random. It must return
 /// or throw an Error of one line that names the file; anything else ends the test, or the process.

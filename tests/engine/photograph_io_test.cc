@@ -18,7 +18,6 @@ using test::noise;
 using test::put_bytes;
 using test::put_text;
 using test::same;
-using test::TemporaryFolder;
 using ::testing::HasSubstr;
 
 constexpr std::pair<int, int> kSizes[] = {{1, 1}, {1, 7}, {13, 1}, {3, 5}, {31, 17}, {67, 19}};
@@ -88,7 +87,7 @@ TEST(PhotographIo, JpegKeepsSmoothColoursAndTheirOrder) {
 TEST(PhotographIo, ColoursComeOutInRgbOrder) {
   const TemporaryFolder folder;
   for (const char* name : {"a.png", "a.bmp", "a.ppm", "a.tiff"}) {
-    cv::imwrite((folder / name).string(), cv::Mat(2, 3, CV_8UC3, cv::Scalar(10, 20, 30)));
+    cv::imwrite(folder / name, cv::Mat(2, 3, CV_8UC3, cv::Scalar(10, 20, 30)));
     const Photograph read = read_photograph(folder / name);
     const auto& image = std::get<Image<std::uint8_t>>(read.pixels);
     EXPECT_EQ(image.at(2, 1, 0), 30) << name;
@@ -103,7 +102,7 @@ TEST(PhotographIo, WritesWhatOpenCvReadsTheSame) {
   const auto& image = std::get<Image<std::uint8_t>>(photograph.pixels);
   for (const char* name : {"a.png", "a.bmp", "a.ppm", "a.tiff", "a.webp"}) {
     write_photograph(folder / name, photograph);
-    const cv::Mat read = cv::imread((folder / name).string(), cv::IMREAD_UNCHANGED);
+    const cv::Mat read = cv::imread(folder / name, cv::IMREAD_UNCHANGED);
     ASSERT_EQ(read.type(), CV_8UC3) << name;
     for (int x = 0; x < 9; ++x) {
       const auto bgr = read.at<cv::Vec3b>(2, x);

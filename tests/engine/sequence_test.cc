@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdlib>
 #include <chrono>
 #include <filesystem>
 
@@ -14,6 +13,7 @@
 #include "engine/io/disparity_io.h"
 #include "engine/io/photograph_io.h"
 #include "engine/sequence/busy_clock.h"
+#include "tests/temporary_folder.h"
 
 namespace vantage {
 namespace {
@@ -64,17 +64,9 @@ class MadeUpSource : public FrameSource {
 class SequenceTest : public testing::Test {
  protected:
   SequenceTest() {
-    std::string name = (std::filesystem::temp_directory_path() / "vantage-XXXXXX").string();
-    EXPECT_NE(::mkdtemp(name.data()), nullptr);
-    folder_ = name;
     options_.match.disparities = {0, 9};
     options_.match.window_px = 5;
   }
-  ~SequenceTest() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-
   [[nodiscard]] std::vector<std::string> written() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_)) {
@@ -99,7 +91,8 @@ class SequenceTest : public testing::Test {
     return "";
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder temporary_;
+  const std::filesystem::path& folder_ = temporary_.path();
   SequenceOptions options_;
 };
 

@@ -12,6 +12,7 @@
 #include "engine/error.h"
 #include "engine/matching/match_chain.h"
 #include "engine/simd.h"
+#include "scheduler/strip_pipeline.h"
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/brute_force_ssd.h"
 
@@ -271,6 +272,19 @@ TEST(StereoMatcher, ChainEqualsWholeImageOracle) {
   const MatchChain chain(options, geometry, pair, whole.view());
   scheduler::run_whole_image(chain.stages());
   EXPECT_TRUE(identical(maps.left, whole));
+
+  // The column sums stored as a whole image between two passes.
+  DisparityMap in_passes(89, 37);
+  const MatchChain split(options, geometry, pair, in_passes.view());
+  scheduler::PlanRequest request;
+  request.threads = 2;
+  request.strip_columns = 13;
+  request.band_rows = 7;
+  request.pass_ends = std::vector<int>{1};
+  const auto plan = scheduler::plan_chain(split.stages(), execution.machine(), request);
+  ASSERT_EQ(plan.passes.size(), 2U);
+  scheduler::run_strips(split.stages(), plan, execution.executor(), execution.scratch());
+  EXPECT_TRUE(identical(in_passes, whole));
 }
 
 TEST(StereoMatcher, FindsAKnownShiftEverywhere) {

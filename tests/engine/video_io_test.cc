@@ -18,7 +18,6 @@ using test::error_of;
 using test::noise;
 using test::put_bytes;
 using test::put_text;
-using test::TemporaryFolder;
 using ::testing::HasSubstr;
 
 /// Left half (200, 60, 30), right half (30, 90, 220); a white square that moves with the frame.
