@@ -53,19 +53,19 @@ void add_match_settings(Settings& settings, MatchOptions& options) {
   };
   settings.choice<MatchMethod>("method", options.method, {{"ssd", MatchMethod::kSsd}},
                                "How costs are made and aggregated");
-  settings.integer("window", options.window_px, "PX", "Side of the square window, odd");
-  settings.choice<Subpixel>("subpixel", options.subpixel,
+  settings.integer("window", options.parameters.window_px, "PX", "Side of the square window, odd");
+  settings.choice<Subpixel>("subpixel", options.parameters.subpixel,
                             {{"parabola", Subpixel::kParabola}, {"none", Subpixel::kNone}},
                             "Refinement of the winner between candidates");
   settings.choice<Border>(
-      "border", options.border, {{"clip", Border::kClip}, {"valid", Border::kValid}},
+      "border", options.parameters.border, {{"clip", Border::kClip}, {"valid", Border::kValid}},
       "clip: use the part of a window inside both images; valid: whole windows");
   settings.flag("raw", options.raw, "Winner-take-all only: no cross-check, no filling");
-  settings.number("cross-check", options.cross_check_px, "PX",
+  settings.number("cross-check", options.refinement.cross_check_px, "PX",
                   "Left and right disparities agree if they differ by less, at least 1; auto: the "
                   "number of candidates / 15");
   settings.integer(
-      "speckle-size", options.speckle_size_px, "PX",
+      "speckle-size", options.refinement.speckle_size_px, "PX",
       "Regions of fewer pixels that passed the cross-check count as unmatched; 0: none");
 }
 

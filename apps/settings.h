@@ -57,6 +57,11 @@ class Settings {
   template <typename Enum>
   Setting& choice(std::string name, Enum& field,
                   std::vector<std::pair<std::string_view, Enum>> names, std::string help);
+  /// The same; the field is empty for the text `unset_name`.
+  template <typename Enum>
+  Setting& choice(std::string name, std::optional<Enum>& field,
+                  std::vector<std::pair<std::string_view, Enum>> names, std::string help,
+                  const std::string& unset_name = "auto");
   /// Anything else: the caller fills in the rest.
   Setting& add(std::string name, std::string value_name, std::string help);
 
@@ -74,6 +79,10 @@ class Settings {
   [[nodiscard]] const std::string& command() const { return command_; }
 
  private:
+  template <typename Enum>
+  Setting& add_choice(std::string name, std::vector<std::pair<std::string_view, Enum>> names,
+                      std::string help, std::function<void(Enum)> assign,
+                      std::function<std::optional<Enum>()> present);
   void apply_config(const std::string& path);
   void require_complete() const;
   [[nodiscard]] std::string toml() const;
@@ -88,23 +97,55 @@ class Settings {
 template <typename Enum>
 Setting& Settings::choice(std::string name, Enum& field,
                           std::vector<std::pair<std::string_view, Enum>> names, std::string help) {
+  return add_choice<Enum>(
+      std::move(name), std::move(names), std::move(help), [&field](Enum value) { field = value; },
+      [&field] { return std::optional<Enum>(field); });
+}
+
+template <typename Enum>
+Setting& Settings::choice(std::string name, std::optional<Enum>& field,
+                          std::vector<std::pair<std::string_view, Enum>> names, std::string help,
+                          const std::string& unset_name) {
+  Setting& setting = add_choice<Enum>(
+      std::move(name), std::move(names), std::move(help), [&field](Enum value) { field = value; },
+      [&field] { return field; });
+  const auto set_name = std::move(setting.set);
+  const auto get_name = std::move(setting.get);
+  setting.set = [&field, set_name, unset_name](const SettingValue& value) {
+    if (value.is_string() && value.get_ref<const std::string&>() == unset_name) {
+      field.reset();
+    } else {
+      set_name(value);
+    }
+  };
+  setting.get = [&field, get_name, unset_name] {
+    return field ? get_name() : SettingValue(unset_name);
+  };
+  return setting;
+}
+
+template <typename Enum>
+Setting& Settings::add_choice(std::string name,
+                              std::vector<std::pair<std::string_view, Enum>> names,
+                              std::string help, std::function<void(Enum)> assign,
+                              std::function<std::optional<Enum>()> present) {
   std::string value_name;
   for (const auto& [text, value] : names) {
     value_name += (value_name.empty() ? "" : "|") + std::string(text);
   }
   Setting& setting = add(std::move(name), value_name, std::move(help));
-  setting.set = [&field, names, value_name](const SettingValue& value) {
+  setting.set = [assign, names, value_name](const SettingValue& value) {
     for (const auto& [text, choice] : names) {
       if (value.is_string() && value.get_ref<const std::string&>() == text) {
-        field = choice;
+        assign(choice);
         return;
       }
     }
     reject_value(value, "one of " + value_name);
   };
-  setting.get = [&field, names]() -> SettingValue {
+  setting.get = [present, names]() -> SettingValue {
     for (const auto& [text, choice] : names) {
-      if (choice == field) {
+      if (choice == present()) {
         return std::string(text);
       }
     }

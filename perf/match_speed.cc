@@ -56,8 +56,8 @@ class OneMap {
   static MatchOptions options(int disparities, int window, Subpixel subpixel) {
     MatchOptions result;
     result.disparities = {0, disparities - 1};
-    result.window_px = window;
-    result.subpixel = subpixel;
+    result.parameters.window_px = window;
+    result.parameters.subpixel = subpixel;
     result.raw = true;
     return result;
   }
@@ -74,7 +74,7 @@ void run_whole_image_chain(const Photograph& left, const Photograph& right,
                            const MatchOptions& options, Execution& execution) {
   const auto geometry = candidate_geometry(options, Reference::kLeft, left.width(), left.height());
   PreparedPair pair;
-  prepare_pair(left, right, geometry, options.window_px * options.window_px, {true, false},
+  prepare_pair(left, right, geometry, options.resolved().window_px * options.resolved().window_px, {true, false},
                execution, pair);
   DisparityMap map(left.width(), left.height());
   const MatchChain chain(options, geometry, pair, map.view());

@@ -99,8 +99,8 @@ Maps strict_ssd_maps(const Photograph& left, const Photograph& right, DisparityR
                      Execution& execution) {
   MatchOptions options;
   options.disparities = range;
-  options.cross_check_px = 1;
-  options.speckle_size_px = 100;
+  options.refinement.cross_check_px = 1;
+  options.refinement.speckle_size_px = 100;
   DisparityMaps maps;
   StereoMatcher(options, execution).match(left, right, {}, maps);
   return {"Vantage SSD strict", std::move(maps.left), std::move(maps.right)};

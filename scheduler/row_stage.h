@@ -46,6 +46,7 @@ struct RowTask {
   /// for y + 1, y + 2, … with the same state.
   bool sweep_begins = false;
   InputRows input;              ///< empty for the first stage of a chain
+  InputRows source;             ///< see RowStage::reads_source(); else empty
   Range columns;                ///< the columns to make
   std::byte* output = nullptr;  ///< first cell of column columns.begin; unused by a last stage
   /// The row this stage made just before in this sweep, for running sums; null when sweep_begins.
@@ -90,6 +91,11 @@ class RowStage {
   [[nodiscard]] virtual Range input_columns(Range columns, Extent input) const {
     return columns.widened(0, input.all_columns());
   }
+  /// Whether this stage looks, beside its input, at row y of the chain's first stage once more, in
+  /// the columns it makes. That stage must have the same extent as this one and those between.
+  /// Executors keep those rows along the way; where a chain is cut into passes, each pass makes them
+  /// anew, which costs less than storing and loading them.
+  [[nodiscard]] virtual bool reads_source() const { return false; }
   /// Most rows that input_rows() can span: the rows kept between this stage and the one before.
   [[nodiscard]] virtual int window_rows() const { return 1; }
 

@@ -12,8 +12,6 @@ namespace {
 
 constexpr int kMaxCandidates = 4096;
 constexpr int kMaxDisparity = 65535;
-// 181² · 255² is the largest windowed sum of squares that fits 31 bits.
-constexpr int kMaxWindow = 181;
 
 }  // namespace
 
@@ -32,22 +30,21 @@ void MatchOptions::validate() const {
     throw UsageError(fmt::format("disparities is {}:{} ({} candidates), expected at most {}", least,
                                  most, disparities.count(), kMaxCandidates));
   }
-  if (window_px < 1 || window_px > kMaxWindow || window_px % 2 == 0) {
-    throw UsageError(
-        fmt::format("window is {}, expected an odd number from 1 to {}", window_px, kMaxWindow));
-  }
-  if (speckle_size_px < 0) {
+  vantage::validate(resolved());
+  if (refinement.speckle_size_px < 0) {
     throw UsageError(fmt::format("speckle-size is {}, expected a number of pixels, at least 0",
-                                 speckle_size_px));
+                                 refinement.speckle_size_px));
   }
-  if (cross_check_px && !(*cross_check_px >= 1 && std::isfinite(*cross_check_px))) {
+  if (refinement.cross_check_px && !(*refinement.cross_check_px >= 1 && std::isfinite(*refinement.cross_check_px))) {
     throw UsageError(
-        fmt::format("cross-check is {}, expected a number of at least 1", *cross_check_px));
+        fmt::format("cross-check is {}, expected a number of at least 1", *refinement.cross_check_px));
   }
 }
 
+MethodParameters MatchOptions::resolved() const { return resolve(method, parameters); }
+
 double MatchOptions::cross_check_or_default() const {
-  return cross_check_px.value_or(std::max(1.0, disparities.count() / 15.0));
+  return refinement.cross_check_px.value_or(std::max(1.0, disparities.count() / 15.0));
 }
 
 }  // namespace vantage

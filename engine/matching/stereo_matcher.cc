@@ -47,10 +47,11 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   times = {};
   StageClock clock(times);
   const PlanesNeeded needed{request.left || !options_.raw, request.right || !options_.raw};
+  const int window_px = options_.resolved().window_px;
   const auto pair = prepared_pairs_.borrow();
   prepare_pair(left, right,
                candidate_geometry(options_, Reference::kLeft, left.width(), left.height()),
-               options_.window_px * options_.window_px, needed, execution_, *pair);
+               window_px * window_px, needed, execution_, *pair);
   clock.record("prepare");
   maps.left.resize(0, 0);
   maps.right.resize(0, 0);
@@ -75,11 +76,11 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   cross_check(maps.left.view(), maps.right.view(), options_.cross_check_or_default(), execution_,
               maps.left_unmatched, maps.right_unmatched);
   clock.record("cross-check");
-  if (options_.speckle_size_px > 1) {
+  if (options_.refinement.speckle_size_px > 1) {
     execution_.executor().parallel_for(2, [&](int side) {
       const auto work = speckle_works_.borrow();
       const DisparityMap& map = side == 0 ? maps.left : maps.right;
-      mark_speckles(map.view(), options_.speckle_size_px, *work,
+      mark_speckles(map.view(), options_.refinement.speckle_size_px, *work,
                     side == 0 ? maps.left_unmatched : maps.right_unmatched);
     });
     clock.record("speckles");

@@ -49,9 +49,9 @@ TEST_F(MatchCommand, EqualsTheLibrary) {
   ASSERT_EQ(match(folder_ / "map.pfm", {"--window=3", "--raw", "--border", "valid"}).exit_code, 0);
   MatchOptions options;
   options.disparities = {0, 9};
-  options.window_px = 3;
+  options.parameters.window_px = 3;
   options.raw = true;
-  options.border = Border::kValid;
+  options.parameters.border = Border::kValid;
   Execution execution({});
   DisparityMaps maps;
   StereoMatcher(options, execution).match(pair_.left, pair_.right, {true, false}, maps);

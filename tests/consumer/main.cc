@@ -34,7 +34,7 @@ int main() {
 
   vantage::MatchOptions options;
   options.disparities = {0, 15};
-  options.window_px = 7;
+  options.parameters.window_px = 7;
   const vantage::StereoMatcher matcher(options, execution);
 
   vantage::DisparityMaps maps;

@@ -77,7 +77,7 @@ struct BruteForceSsd {
     const auto energy_at = [&](int d) {
       return d < options.disparities.min || d > options.disparities.max
                  ? std::numeric_limits<double>::quiet_NaN()
-                 : energy(x, y, d, options.window_px, options.border);
+                 : energy(x, y, d, options.resolved().window_px, options.resolved().border);
     };
     double best_energy = std::numeric_limits<double>::infinity();
     int best = 0;
@@ -90,7 +90,7 @@ struct BruteForceSsd {
     if (std::isinf(best_energy)) {
       return std::numeric_limits<double>::quiet_NaN();
     }
-    if (options.subpixel == Subpixel::kParabola) {
+    if (options.resolved().subpixel == Subpixel::kParabola) {
       const double below = energy_at(best - 1);
       const double above = energy_at(best + 1);
       const double curvature = below - 2 * best_energy + above;

@@ -65,7 +65,7 @@ class SequenceTest : public testing::Test {
  protected:
   SequenceTest() {
     options_.match.disparities = {0, 9};
-    options_.match.window_px = 5;
+    options_.match.parameters.window_px = 5;
   }
   [[nodiscard]] std::vector<std::string> written() const {
     std::vector<std::string> names;
@@ -229,7 +229,7 @@ TEST_F(SequenceTest, OptionsAreChecked) {
   wrong.disparity_format = "bmp";
   EXPECT_TRUE(is_refused(wrong));
   wrong = options_;
-  wrong.match.window_px = 4;
+  wrong.match.parameters.window_px = 4;
   EXPECT_TRUE(is_refused(wrong));
 }
 

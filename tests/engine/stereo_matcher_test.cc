@@ -26,9 +26,9 @@ using testing::random_grey;
 MatchOptions raw_options(DisparityRange range, int window, Border border, Subpixel subpixel) {
   MatchOptions options;
   options.disparities = range;
-  options.window_px = window;
-  options.border = border;
-  options.subpixel = subpixel;
+  options.parameters.window_px = window;
+  options.parameters.border = border;
+  options.parameters.subpixel = subpixel;
   options.raw = true;
   return options;
 }
@@ -69,7 +69,7 @@ void expect_equals_brute_force(const Photograph& left, const Photograph& right,
         if (std::isnan(expected)) {
           ASSERT_TRUE(std::isnan(actual)) << "at " << x << ", " << y;
         } else {
-          ASSERT_NEAR(actual, expected, options.subpixel == Subpixel::kNone ? 0 : 1e-4)
+          ASSERT_NEAR(actual, expected, options.resolved().subpixel == Subpixel::kNone ? 0 : 1e-4)
               << "at " << x << ", " << y;
         }
       }
@@ -267,7 +267,7 @@ TEST(StereoMatcher, ChainEqualsWholeImageOracle) {
 
   const auto geometry = candidate_geometry(options, Reference::kLeft, 89, 37);
   PreparedPair pair;
-  prepare_pair(left, right, geometry, options.window_px * options.window_px, {}, execution, pair);
+  prepare_pair(left, right, geometry, options.resolved().window_px * options.resolved().window_px, {}, execution, pair);
   DisparityMap whole(89, 37);
   const MatchChain chain(options, geometry, pair, whole.view());
   scheduler::run_whole_image(chain.stages());
@@ -344,13 +344,13 @@ TEST(StereoMatcher, RefusesWhatItCannotDo) {
   options.disparities = {20, 30};
   EXPECT_THROW(StereoMatcher(options, execution).match(image, image, {}, maps), Error);
   options = {};
-  options.window_px = 8;
+  options.parameters.window_px = 8;
   EXPECT_THROW(StereoMatcher(options, execution), UsageError);
   options = {};
   options.disparities = {5, 4};
   EXPECT_THROW(StereoMatcher(options, execution), UsageError);
   options = {};
-  options.cross_check_px = std::nan("");
+  options.refinement.cross_check_px = std::nan("");
   EXPECT_THROW(StereoMatcher(options, execution), UsageError);
 }
 

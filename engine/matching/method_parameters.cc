@@ -1,0 +1,165 @@
+#include "engine/matching/method_parameters.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string_view>
+
+#include "engine/error.h"
+
+namespace vantage {
+namespace {
+
+// 181² · 255² is the largest windowed sum of squares that fits 31 bits.
+constexpr int kMaxWindow = 181;
+constexpr int kMaxIterations = 10000;
+constexpr double kMaxAggregationSigma = 16;
+
+constexpr MethodParameters kCommon{
+    .cost = MatchCost::kSquared,
+    .aggregation = Aggregation::kBox,
+    .colour = ColourUse::kLuma,
+    .subpixel = Subpixel::kParabola,
+    .border = Border::kClip,
+    .window_px = 9,
+    .aggregation_sigma_px = 2,
+    .iterations = 10,
+    .lambda = 0.15,
+    .beta = 0.5,
+    .certainty = Certainty::kMargin,
+    .mu = 0.5,
+    .sigma_prior = 0.4,
+    .epsilon_prior = 0.01,
+    .sigma_measurement = 5,
+    .epsilon_measurement = 0.1,
+    .truncation = 20,
+    .alpha = 1,
+    .norm = GradientNorm::kL2,
+    .gradient = GradientFilter::kCentral,
+    .prefilter = true,
+};
+
+MatchCost natural_cost(Aggregation aggregation) {
+  return aggregation == Aggregation::kBayes ? MatchCost::kContaminated : MatchCost::kSquared;
+}
+
+void require(bool holds, std::string_view field, double value, std::string_view expected) {
+  if (!holds) {
+    throw UsageError(fmt::format("{} is {}, expected {}", field, value, expected));
+  }
+}
+
+bool is_probability(double value) { return value > 0 && value < 1; }
+
+bool is_positive(double value) { return value > 0 && std::isfinite(value); }
+
+void validate_diffusion(const MethodParameters& parameters) {
+  require(parameters.iterations >= 0 && parameters.iterations <= kMaxIterations, "iterations",
+          parameters.iterations, fmt::format("a number from 0 to {}", kMaxIterations));
+  if (parameters.aggregation == Aggregation::kMembrane) {
+    require(parameters.beta >= 0 && std::isfinite(parameters.beta), "beta", parameters.beta,
+            "a number of at least 0");
+    const double most = 1 / (4 + parameters.beta);
+    require(parameters.lambda > 0 && parameters.lambda <= most, "lambda", parameters.lambda,
+            fmt::format("a number above 0 and at most 1/(4 + beta) = {:.4g}: larger steps of the "
+                        "membrane are unstable",
+                        most));
+  } else if (parameters.aggregation != Aggregation::kBayes) {
+    require(parameters.lambda > 0 && parameters.lambda < 0.25, "lambda", parameters.lambda,
+            "a number above 0 and below 0.25: larger steps of diffusion are unstable");
+  }
+}
+
+void validate_bayes(const MethodParameters& parameters) {
+  require(parameters.mu > 0 && parameters.mu <= 1, "mu", parameters.mu,
+          "a number above 0 and at most 1: larger weights of the neighbours are unstable");
+  require(is_positive(parameters.sigma_prior), "sigma-prior", parameters.sigma_prior,
+          "a number of pixels above 0");
+  require(is_probability(parameters.epsilon_prior), "epsilon-prior", parameters.epsilon_prior,
+          "a number between 0 and 1, both excluded");
+}
+
+}  // namespace
+
+MethodParameters book_parameters(MatchMethod method) {
+  MethodParameters parameters = kCommon;
+  switch (method) {
+    case MatchMethod::kSsd:
+      break;
+    case MatchMethod::kGradient:
+      parameters.cost = MatchCost::kGradient;
+      parameters.aggregation = Aggregation::kBoxCascade;
+      break;
+    case MatchMethod::kDiffusion:
+      parameters.aggregation = Aggregation::kDiffusion;
+      break;
+    case MatchMethod::kMembrane:
+      parameters.aggregation = Aggregation::kMembrane;
+      break;
+    case MatchMethod::kLocalStopping:
+      parameters.aggregation = Aggregation::kLocalStopping;
+      break;
+    case MatchMethod::kBayes:
+      parameters.cost = MatchCost::kContaminated;
+      parameters.aggregation = Aggregation::kBayes;
+      break;
+  }
+  return parameters;
+}
+
+MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides) {
+  MethodParameters result = book_parameters(method);
+  if (overrides.aggregation && *overrides.aggregation != result.aggregation &&
+      result.cost == natural_cost(result.aggregation)) {
+    result.cost = natural_cost(*overrides.aggregation);
+  }
+  const auto take = [](auto& field, const auto& override_value) {
+    if (override_value) {
+      field = *override_value;
+    }
+  };
+  take(result.cost, overrides.cost);
+  take(result.aggregation, overrides.aggregation);
+  take(result.colour, overrides.colour);
+  take(result.subpixel, overrides.subpixel);
+  take(result.border, overrides.border);
+  take(result.window_px, overrides.window_px);
+  take(result.aggregation_sigma_px, overrides.aggregation_sigma_px);
+  take(result.iterations, overrides.iterations);
+  take(result.lambda, overrides.lambda);
+  take(result.beta, overrides.beta);
+  take(result.certainty, overrides.certainty);
+  take(result.mu, overrides.mu);
+  take(result.sigma_prior, overrides.sigma_prior);
+  take(result.epsilon_prior, overrides.epsilon_prior);
+  take(result.sigma_measurement, overrides.sigma_measurement);
+  take(result.epsilon_measurement, overrides.epsilon_measurement);
+  take(result.truncation, overrides.truncation);
+  take(result.alpha, overrides.alpha);
+  take(result.norm, overrides.norm);
+  take(result.gradient, overrides.gradient);
+  take(result.prefilter, overrides.prefilter);
+  return result;
+}
+
+void validate(const MethodParameters& parameters) {
+  const int window = parameters.window_px;
+  require(window >= 1 && window <= kMaxWindow && window % 2 == 1, "window", window,
+          fmt::format("an odd number from 1 to {}", kMaxWindow));
+  require(parameters.aggregation_sigma_px >= 0.5 &&
+              parameters.aggregation_sigma_px <= kMaxAggregationSigma,
+          "aggregation-sigma", parameters.aggregation_sigma_px,
+          fmt::format("a number of pixels from 0.5 to {}", kMaxAggregationSigma));
+  require(is_positive(parameters.sigma_measurement), "sigma-measurement",
+          parameters.sigma_measurement, "a number of grey levels above 0");
+  require(is_probability(parameters.epsilon_measurement), "epsilon-measurement",
+          parameters.epsilon_measurement, "a number between 0 and 1, both excluded");
+  require(is_positive(parameters.truncation), "truncation", parameters.truncation,
+          "a number of grey levels above 0");
+  require(parameters.alpha >= 0 && std::isfinite(parameters.alpha), "alpha", parameters.alpha,
+          "a number of at least 0");
+  validate_diffusion(parameters);
+  validate_bayes(parameters);
+}
+
+}  // namespace vantage

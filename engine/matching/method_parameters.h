@@ -1,0 +1,100 @@
+#pragma once
+
+#include <optional>
+#include <type_traits>
+
+namespace vantage {
+
+/// Named combinations of cost, aggregation and parameters, as the book uses them.
+enum class MatchMethod { kSsd, kGradient, kDiffusion, kMembrane, kLocalStopping, kBayes };
+/// Combinations for real photographs, chosen by measurement (docs/QUALITY.md).
+enum class MatchPreset { kFast, kBalanced, kQuality };
+
+/// What a cell of the disparity space starts from: the dissimilarity of a pixel and its partner.
+enum class MatchCost {
+  kSquared,             ///< ΔI² (6.2)
+  kAbsolute,            ///< |ΔI|
+  kTruncated,           ///< min(|ΔI|, truncation)
+  kBirchfieldTomasi,    ///< |ΔI| insensitive to sampling: least over half a pixel either way
+  kGradient,            ///< −evidence (5.5)
+  kContaminated,        ///< −log[(1−ε) exp(−ΔI²/2σ²) + ε], contaminated Gaussian (6.26 ff.)
+  kCensus,              ///< Hamming distance of 9×7 census codes
+};
+/// How cells gather support from their neighbours.
+enum class Aggregation {
+  kNone,
+  kBox,            ///< square window (Fig. 1.11)
+  kGaussian,       ///< sampled Gaussian, radius 4σ
+  kBoxCascade,     ///< four box filters of the Gaussian's variance (Wells)
+  kDiffusion,      ///< (6.7)
+  kMembrane,       ///< (6.9)
+  kLocalStopping,  ///< diffusion that stops where it would cost certainty (6.4)
+  kBayes,          ///< (6.25)–(6.37)
+};
+enum class Subpixel { kParabola, kNone };
+enum class Border { kValid, kClip };
+/// What costs compare of colour images.
+enum class ColourUse {
+  kLuma,      ///< Rec. 601
+  kChannels,  ///< mean of the costs of the channels
+};
+enum class Certainty {
+  kMargin,   ///< winner margin (6.13)
+  kEntropy,  ///< negative entropy (6.15)
+};
+enum class GradientFilter { kCentral, kSobel, kSimoncelli3, kSimoncelli5 };
+enum class GradientNorm { kL2, kOctagon };
+
+/// Everything that decides how costs are made, aggregated and selected. With Field = std::optional:
+/// what a user sets; with Field = std::type_identity_t: what is in force.
+template <template <typename> class Field>
+struct MethodParametersOf {
+  Field<MatchCost> cost;
+  Field<Aggregation> aggregation;
+  Field<ColourUse> colour;
+  Field<Subpixel> subpixel;
+  Field<Border> border;  ///< of box aggregation
+
+  Field<int> window_px;                ///< box: side of the square window, odd, 1..181
+  Field<double> aggregation_sigma_px;  ///< Gaussian, box cascade: σ, 0.5..16
+  Field<int> iterations;               ///< of diffusion, membrane, local stopping, Bayes: 0..10000
+  Field<double> lambda;                ///< step: 0 < λ < ¼; membrane: λ ≤ 1/(4+β)
+  Field<double> beta;                  ///< membrane: pull towards the first cost, ≥ 0
+  Field<Certainty> certainty;          ///< local stopping
+  Field<double> mu;                    ///< Bayes: weight of the neighbours, 0 < μ ≤ 1
+  Field<double> sigma_prior;           ///< Bayes: σP in pixels of disparity, > 0
+  Field<double> epsilon_prior;         ///< Bayes: εP, inside (0, 1)
+  Field<double> sigma_measurement;     ///< σM in grey levels, > 0: contaminated cost, Bayes, entropy
+  Field<double> epsilon_measurement;   ///< εM, inside (0, 1): contaminated cost, Bayes
+
+  Field<double> truncation;  ///< truncated cost: grey levels, > 0
+  Field<double> alpha;       ///< gradient evidence: weight of the gradients' difference, ≥ 0
+  Field<GradientNorm> norm;
+  Field<GradientFilter> gradient;
+  Field<bool> prefilter;  ///< gradient evidence: Gaussian σ = ½ first
+
+  friend bool operator==(const MethodParametersOf&, const MethodParametersOf&) = default;
+};
+
+template <typename T>
+using OptionalField = std::optional<T>;
+/// Empty fields take what the preset, then the method says.
+using MethodOverrides = MethodParametersOf<OptionalField>;
+using MethodParameters = MethodParametersOf<std::type_identity_t>;
+
+/// The book's parameters of a method.
+MethodParameters book_parameters(MatchMethod method);
+
+/// `overrides`, then the book's parameters of `method`, whose cost is adapted to the aggregation
+/// where only the aggregation was overridden.
+MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides);
+
+/// Throws UsageError naming field, value and limit, or why a combination makes no sense.
+void validate(const MethodParameters& parameters);
+
+/// Whether cells hold −evidence, which is compared with 0 and has no scale of its own.
+inline bool is_evidence(const MethodParameters& parameters) {
+  return parameters.cost == MatchCost::kGradient;
+}
+
+}  // namespace vantage
