@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "apps/automatic_disparities.h"
 #include "apps/commands.h"
 #include "apps/interrupt.h"
 #include "apps/option_groups.h"
@@ -34,6 +35,7 @@ constexpr std::string_view kAutomatic = "auto";
 constexpr std::pair<std::string_view, SequenceOutput> kOutputNames[] = {
     {"disparity", SequenceOutput::kDisparity},
     {"right-disparity", SequenceOutput::kRightDisparity},
+    {"confidence", SequenceOutput::kConfidence},
     {"unmatched", SequenceOutput::kUnmatched},
     {"preview", SequenceOutput::kPreview},
     {"views", SequenceOutput::kViews}};
@@ -45,7 +47,8 @@ std::vector<SequenceOutput> to_outputs(const SettingValue& value) {
       const auto known = std::ranges::find(kOutputNames, name,
                                            &std::pair<std::string_view, SequenceOutput>::first);
       if (known == std::end(kOutputNames)) {
-        reject_value(name, "a list of disparity, right-disparity, unmatched, preview, views");
+        reject_value(name,
+                     "a list of disparity, right-disparity, confidence, unmatched, preview, views");
       }
       if (std::ranges::find(outputs, known->second) == outputs.end()) {
         outputs.push_back(known->second);
@@ -79,7 +82,7 @@ void add_sequence_settings(Settings& settings, RunJob& job) {
   settings.begin_group("Sequence");
   Setting& save =
       settings.add("save", "LIST",
-                   "What to write of each frame, from disparity,right-disparity,"
+                   "What to write of each frame, from disparity,right-disparity,confidence,"
                    "unmatched,preview,views; auto: disparity, and views if there are any");
   save.list = true;
   save.set = [&job](const SettingValue& value) {
@@ -126,6 +129,26 @@ void check(const RunJob& job) {
   files.add_output(job.common.report, "--report", OutputKind::kText);
 }
 
+/// Opens the sources once more: a frame that has been read from them is gone.
+void choose_disparities_of_first_pair(RunJob& job, const Settings& settings, Execution& execution,
+                                      RunReport& report) {
+  if (!job.sequence.match.disparities_auto) {
+    return;
+  }
+  Photograph left;
+  Photograph right;
+  const auto read_first = [&](const std::string& source, Photograph& frame) {
+    if (!open_frame_source(source)->next(frame)) {
+      throw Error(fmt::format("{} has no frame", source));
+    }
+  };
+  report.timed_file_access("read", [&] {
+    read_first(job.left, left);
+    read_first(job.right, right);
+  });
+  choose_disparities(settings, job.common, left, right, job.sequence.match, execution, report);
+}
+
 void fill_report(const SequenceReport& sequence, RunReport& report) {
   for (const SequenceStage& stage : sequence.stages) {
     report.add_stage(stage.name, stage.seconds);
@@ -147,8 +170,8 @@ int command_run(const Arguments& arguments) {
   Settings settings("run",
                     "Computes disparity maps and new views of a sequence of rectified pairs.");
   add_sequence_settings(settings, job);
-  add_match_settings(settings, job.sequence.match);
   add_reference_setting(settings, job.sequence.match);
+  add_match_settings(settings, job.sequence.match);
   add_synthesis_settings(settings, job.sequence.synthesis);
   add_common_settings(settings, job.common);
   if (!settings.read(arguments)) {
@@ -160,10 +183,11 @@ int command_run(const Arguments& arguments) {
     job.sequence.save.push_back(SequenceOutput::kViews);
   }
   check(job);
-  RunReport report(settings.command(), settings.values());
+  RunReport report(settings.command(), reported_settings(settings, job.sequence.match));
   force_instruction_set(job.common.isa);
   Execution execution(job.common.execution);
   report.set_execution(execution);
+  choose_disparities_of_first_pair(job, settings, execution, report);
   const SequenceRunner runner(job.sequence, execution);
   const std::unique_ptr<FrameSource> left = open_frame_source(job.left);
   const std::unique_ptr<FrameSource> right = open_frame_source(job.right);

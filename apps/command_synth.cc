@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "apps/automatic_disparities.h"
 #include "apps/commands.h"
 #include "apps/interrupt.h"
 #include "apps/option_groups.h"
@@ -150,6 +151,9 @@ void check(const SynthJob& job, const Settings& settings, const ViewOutput& outp
     refuse_idle_match_options(settings);
   } else {
     job.match.validate();
+    if (job.match.disparities_y) {
+      throw UsageError("--disparities-y has no use here: views come from rectified pairs");
+    }
     if (job.disparity_scale) {
       throw UsageError("--disparity-scale has no effect without --left-disparity");
     }
@@ -216,7 +220,8 @@ int command_synth(const Arguments& arguments) {
     hole_mask.emplace(job.hole_mask, views);
   }
   check(job, settings, output, hole_mask);
-  RunReport report(settings.command(), settings.values());
+  RunReport report(settings.command(),
+                   job.has_maps() ? settings.values() : reported_settings(settings, job.match));
   force_instruction_set(job.common.isa);
   Execution execution(job.common.execution);
   report.set_execution(execution);
@@ -227,6 +232,9 @@ int command_synth(const Arguments& arguments) {
   };
   const Photograph left = read(job.left);
   const Photograph right = read(job.right);
+  if (!job.has_maps()) {
+    choose_disparities(settings, job.common, left, right, job.match, execution, report);
+  }
   const DisparityMaps maps = maps_of(job, left, right, execution, report);
 
   const std::atomic<bool>& interrupted = interrupt_flag();

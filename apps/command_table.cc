@@ -13,6 +13,8 @@ constexpr std::array kCommands = {
     Command{"generate book", "The synthetic pairs of the book, with truth", command_generate_book},
     Command{"generate scene", "Views of a made-up moving scene, with truth",
             command_generate_scene},
+    Command{"response", "Evidence of a pair for a range of displacements", command_response},
+    Command{"experiment", "Figures of the book, computed anew", command_experiment},
     Command{"info", "Version, instruction sets, threads and caches", command_info}};
 
 }  // namespace

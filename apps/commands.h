@@ -32,6 +32,8 @@ int command_run(const Arguments& arguments);
 int command_eval(const Arguments& arguments);
 int command_generate_book(const Arguments& arguments);
 int command_generate_scene(const Arguments& arguments);
+int command_response(const Arguments& arguments);
+int command_experiment(const Arguments& arguments);
 int command_info(const Arguments& arguments);
 
 }  // namespace vantage::apps

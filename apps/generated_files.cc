@@ -10,7 +10,6 @@
 #include "engine/io/photograph_io.h"
 
 namespace vantage::apps {
-namespace {
 
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
@@ -20,8 +19,6 @@ void make_folder(const std::filesystem::path& folder) {
                             error ? error.message() : ""));
   }
 }
-
-}  // namespace
 
 GeneratedFiles::GeneratedFiles(std::filesystem::path folder, bool sequence)
     : folder_(std::move(folder)), sequence_(sequence) {

@@ -8,6 +8,9 @@
 
 namespace vantage::apps {
 
+/// Makes a folder and those above it, unless they are there. Throws Error.
+void make_folder(const std::filesystem::path& folder);
+
 /// Where generated pictures go: DIR/left.png for a single frame, DIR/left/000000.png for a
 /// sequence. Folders are made when the first file is written to them.
 class GeneratedFiles {

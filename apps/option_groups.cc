@@ -5,21 +5,6 @@
 #include "engine/error.h"
 
 namespace vantage::apps {
-namespace {
-
-DisparityRange to_disparity_range(const SettingValue& value) {
-  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ':');
-  try {
-    if (parts.size() == 2) {
-      return {to_integer(parts[0]), to_integer(parts[1])};
-    }
-  } catch (const UsageError&) {  // the message below says more
-  }
-  reject_value(value, "MIN:MAX in whole pixels, such as 0:63 or -16:15");
-}
-
-}  // namespace
-
 void add_common_settings(Settings& settings, CommonOptions& options) {
   using scheduler::ExecutorKind;
   settings.begin_group("Execution (never changes a result)");
@@ -34,45 +19,13 @@ void add_common_settings(Settings& settings, CommonOptions& options) {
                    "Columns of a strip; auto: from the cache sizes");
   settings.integer("band-height", options.execution.band_height_px, "PX",
                    "Rows of a band; auto: from the cache sizes");
+  settings.integer("iterations-per-pass", options.execution.iterations_per_pass, "K",
+                   "Iterations between two stores of their state; auto: from the cache sizes");
   settings.text("isa", options.isa, "NAME",
                 "Instruction set of the kernels; best, or a name of 'vantage info'");
   settings.begin_group("Messages");
   settings.text("report", options.report, "FILE", "Write a JSON report of the run to FILE");
   settings.flag("quiet", options.quiet, "Print errors only");
-}
-
-void add_match_settings(Settings& settings, MatchOptions& options) {
-  settings.begin_group("Matching");
-  Setting& disparities = settings.add(
-      "disparities", "MIN:MAX", "Candidate disparities x_left - x_right in pixels, both inclusive");
-  disparities.set = [&options](const SettingValue& value) {
-    options.disparities = to_disparity_range(value);
-  };
-  disparities.get = [&options] {
-    return fmt::format("{}:{}", options.disparities.min, options.disparities.max);
-  };
-  settings.choice<MatchMethod>("method", options.method, {{"ssd", MatchMethod::kSsd}},
-                               "How costs are made and aggregated");
-  settings.integer("window", options.parameters.window_px, "PX", "Side of the square window, odd");
-  settings.choice<Subpixel>("subpixel", options.parameters.subpixel,
-                            {{"parabola", Subpixel::kParabola}, {"none", Subpixel::kNone}},
-                            "Refinement of the winner between candidates");
-  settings.choice<Border>(
-      "border", options.parameters.border, {{"clip", Border::kClip}, {"valid", Border::kValid}},
-      "clip: use the part of a window inside both images; valid: whole windows");
-  settings.flag("raw", options.raw, "Winner-take-all only: no cross-check, no filling");
-  settings.number("cross-check", options.refinement.cross_check_px, "PX",
-                  "Left and right disparities agree if they differ by less, at least 1; auto: the "
-                  "number of candidates / 15");
-  settings.integer(
-      "speckle-size", options.refinement.speckle_size_px, "PX",
-      "Regions of fewer pixels that passed the cross-check count as unmatched; 0: none");
-}
-
-void add_reference_setting(Settings& settings, MatchOptions& options) {
-  settings.choice<Reference>("reference", options.reference,
-                             {{"left", Reference::kLeft}, {"right", Reference::kRight}},
-                             "The image whose grid the disparity map is on");
 }
 
 void add_synthesis_settings(Settings& settings, SynthesisOptions& options) {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/match_settings.h"
 #include "apps/settings.h"
 #include "engine/execution.h"
-#include "engine/matching/match_options.h"
 #include "engine/synthesis/synthesis_options.h"
 
 namespace vantage::apps {
@@ -21,9 +21,6 @@ struct CommonOptions {
 
 // Each binds the fields of one option struct to its settings: the only list of them.
 void add_common_settings(Settings& settings, CommonOptions& options);
-/// All of MatchOptions but `reference`.
-void add_match_settings(Settings& settings, MatchOptions& options);
-void add_reference_setting(Settings& settings, MatchOptions& options);
 void add_synthesis_settings(Settings& settings, SynthesisOptions& options);
 
 /// XS of a view given as a number or as "XS,YS". Throws UsageError unless YS is 0: views off the

@@ -18,6 +18,10 @@ std::vector<std::string> extensions_of(OutputKind kind) {
   switch (kind) {
     case OutputKind::kDisparity:
       return {".pfm", ".png", ".tiff", ".tif", ".exr", ".npy"};
+    case OutputKind::kDisplacements:
+      return {".flo", ".npy", ".tiff", ".tif", ".exr"};
+    case OutputKind::kConfidence:
+      return {".pfm", ".tiff", ".tif", ".exr", ".npy"};
     case OutputKind::kPhotograph:
       return {".png", ".jpg", ".jpeg", ".tiff", ".tif", ".bmp",
               ".ppm", ".pgm", ".webp", ".exr",  ".pfm"};
@@ -25,6 +29,10 @@ std::vector<std::string> extensions_of(OutputKind kind) {
       return {".png"};
     case OutputKind::kVideo:
       return {".mp4"};
+    case OutputKind::kTable:
+      return {".csv", ".npy"};
+    case OutputKind::kPlot:
+      return {".svg", ".png", ".jpg", ".jpeg", ".tiff", ".tif", ".bmp", ".ppm", ".webp"};
     case OutputKind::kText:
       break;
   }

@@ -8,7 +8,17 @@
 namespace vantage::apps {
 
 /// What kinds of files an output option can write.
-enum class OutputKind { kDisparity, kPhotograph, kMask, kVideo, kText };
+enum class OutputKind {
+  kDisparity,
+  kDisplacements,  ///< both components of a two-dimensional search
+  kConfidence,
+  kPhotograph,
+  kMask,
+  kVideo,
+  kTable,  ///< numbers: .csv or .npy
+  kPlot,   ///< a chart: .svg or a picture
+  kText
+};
 
 /// The outputs and inputs of a command, checked before any work starts.
 class FileChecks {

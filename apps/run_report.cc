@@ -65,10 +65,17 @@ void RunReport::set_plan(const scheduler::ChainPlan& plan) {
                       {"band_height_px", pass.band_rows},
                       {"strips", pass.strips},
                       {"bands", pass.bands},
+                      {"lag_rows", pass.lag_rows},
+                      {"stored_rows", pass.stored_rows},
+                      {"source_rows", pass.source_rows},
                       {"scratch_bytes", pass.scratch_bytes},
-                      {"work_ratio", pass.work_ratio}});
+                      {"work_ratio", pass.work_ratio},
+                      {"expected_time", pass.expected_time}});
   }
-  plan_ = {{"passes", passes}, {"stored_bytes", plan.stored_bytes}};
+  plan_ = {{"steps", plan.steps},
+           {"step_rows", plan.step_rows},
+           {"stored_bytes", plan.stored_bytes},
+           {"passes", passes}};
 }
 
 void RunReport::set_execution(Execution& execution) {

@@ -19,6 +19,8 @@ namespace vantage::apps {
 class RunReport {
  public:
   RunReport(std::string command, SettingValue settings);
+  /// Replaces the settings, where some follow from what has been read since.
+  void set_settings(SettingValue settings) { settings_ = std::move(settings); }
 
   /// Runs `work` as a stage of compute time and returns what it returns.
   template <typename Work>

@@ -48,6 +48,9 @@ CLI::Option* add_option(CLI::App& app, const Setting& setting) {
         option_names(setting), [](const CLI::results_t&) { return true; }, setting.help);
     option->type_name(setting.positional ? "" : setting.value_name);
     option->default_str(shown_default(setting.get()));
+    if (setting.positional && setting.list) {
+      option->expected(-1);  // all that follow
+    }
   }
   option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->group(setting.group);
   return option;

@@ -24,6 +24,7 @@ void ExecutionOptions::validate() const {
   require_positive("threads", threads);
   require_positive("strip-width", strip_width_px);
   require_positive("band-height", band_height_px);
+  require_positive("iterations-per-pass", iterations_per_pass);
   if (threads && *threads > 1024) {
     throw UsageError(fmt::format("threads is {}, expected at most 1024", *threads));
   }

@@ -18,6 +18,8 @@ struct ExecutionOptions {
   scheduler::ExecutorKind executor = scheduler::ExecutorKind::kTbb;
   std::optional<int> strip_width_px = std::nullopt;  ///< ≥ 1; default from the cost model
   std::optional<int> band_height_px = std::nullopt;  ///< ≥ 1; default from the cost model
+  /// Iterations between two stores of the whole state, ≥ 1; default from the cost model.
+  std::optional<int> iterations_per_pass = std::nullopt;
 
   /// Throws UsageError naming the field, its value and its limit.
   void validate() const;

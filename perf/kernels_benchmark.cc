@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "kernels/candidates.h"
+#include "kernels/cell_winner/cell_winner.h"
 #include "kernels/column_ssd/column_ssd.h"
+#include "kernels/mean_energy/mean_energy.h"
 #include "kernels/parabola/parabola.h"
 #include "kernels/row_sum/row_sum.h"
 #include "kernels/simd_target.h"
@@ -39,6 +41,9 @@ struct Rows {
   std::vector<std::int32_t> work = std::vector<std::int32_t>(kColumns * kLaneMultiple);
   std::vector<std::int32_t> winners = std::vector<std::int32_t>(kColumns);
   std::vector<float> disparity_px = std::vector<float>(kColumns);
+  std::vector<float> cells = random_cells();
+  std::vector<float> best = std::vector<float>(kColumns);
+  std::vector<float> confidence = std::vector<float>(kColumns);
 
   static constexpr int kPixels = 512;
 
@@ -50,6 +55,16 @@ struct Rows {
       pixel = static_cast<Pixel>(random() % 256);
     }
     return pixels;
+  }
+
+  /// In (0, 1]: energies or probabilities.
+  static std::vector<float> random_cells() {
+    std::mt19937 random(2);
+    std::vector<float> cells(kColumns * kLanes);
+    for (float& cell : cells) {
+      cell = static_cast<float>(random() % 65536 + 1) / 65536.0F;
+    }
+    return cells;
   }
 
   void interleave() {
@@ -99,6 +114,18 @@ struct Rows {
   }
   void select(int index_bits) { select_winners_row(winner_row(index_bits, 0), winners.data()); }
   void locate() { locate_minima_row(sums.data(), least.data(), kLanes, kColumns, winners.data()); }
+  [[nodiscard]] CellRow cell_row(int first_column, bool probabilities) const {
+    return {cells.data(), {1000, 0, kLanes, -1}, first_column, kColumns, 0, probabilities};
+  }
+  void select_cells(int first_column, bool probabilities, bool margin) {
+    select_cell_winners_row(cell_row(first_column, probabilities),
+                            {winners.data(), best.data(), margin ? confidence.data() : nullptr});
+  }
+  void entropy() { cell_entropy_row(cell_row(500, false), best.data(), 9.0F, confidence.data()); }
+  void parabola_cells(bool probabilities) {
+    parabola_disparity_row(cell_row(500, probabilities), winners.data(), disparity_px.data());
+  }
+  void mean_energies() { mean_energy_row(winner_row(kIndexBits, 500), {9, 0.5, 3}, cells.data()); }
   void parabola() {
     parabola_disparity_row(winner_row(kIndexBits, 500), winners.data(), disparity_px.data());
   }
@@ -132,7 +159,18 @@ void register_all() {
       {"locate_minima_row", [](Rows& rows) { rows.locate(); }},
       {"select_winners_row/indexed, border", [](Rows& rows) { rows.select(kIndexBits); }},
       {"select_winners_row/plain, border", [](Rows& rows) { rows.select(0); }},
-      {"parabola_disparity_row", [](Rows& rows) { rows.parabola(); }},
+      {"parabola_disparity_row/sums", [](Rows& rows) { rows.parabola(); }},
+      {"parabola_disparity_row/energies", [](Rows& rows) { rows.parabola_cells(false); }},
+      {"parabola_disparity_row/probabilities", [](Rows& rows) { rows.parabola_cells(true); }},
+      {"select_cell_winners_row/energies",
+       [](Rows& rows) { rows.select_cells(500, false, false); }},
+      {"select_cell_winners_row/probabilities",
+       [](Rows& rows) { rows.select_cells(500, true, false); }},
+      {"select_cell_winners_row/energies, border",
+       [](Rows& rows) { rows.select_cells(0, false, false); }},
+      {"select_cell_winners_row/margin", [](Rows& rows) { rows.select_cells(500, false, true); }},
+      {"cell_entropy_row", [](Rows& rows) { rows.entropy(); }},
+      {"mean_energy_row", [](Rows& rows) { rows.mean_energies(); }},
   };
   const long long targets = available_targets();
   for (int bit = 0; bit < 63; ++bit) {

@@ -8,38 +8,17 @@
 #include <optional>
 #include <string>
 
-#include "engine/generation/layered_scene.h"
 #include "engine/matching/match_chain.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/simd.h"
+#include "perf/bench_pair.h"
 #include "perf/interleaved.h"
 #include "perf/peers.h"
+#include "perf/tables.h"
 #include "scheduler/whole_image_pipeline.h"
 
 namespace vantage::perf {
 namespace {
-
-struct Pair {
-  Photograph left;
-  Photograph right;
-  Photograph left_grey;
-  Photograph right_grey;
-};
-
-Pair make_pair(int width, int height, int disparities) {
-  LayeredSceneOptions options;
-  options.width_px = width;
-  options.height_px = height;
-  options.samples_per_side = 2;
-  options.near_disparity_px = disparities * 0.9;
-  options.far_disparity_px = disparities * 0.1;
-  Execution execution({});
-  const LayeredScene scene(options, execution);
-  Pair pair{scene.render({0, 0}, 0).image, scene.render({1, 0}, 0).image, {}, {}};
-  pair.left_grey = to_grey(pair.left);
-  pair.right_grey = to_grey(pair.right);
-  return pair;
-}
 
 /// A matcher of one map on its own threads.
 class OneMap {
@@ -73,32 +52,13 @@ class OneMap {
 void run_whole_image_chain(const Photograph& left, const Photograph& right,
                            const MatchOptions& options, Execution& execution) {
   const auto geometry = candidate_geometry(options, Reference::kLeft, left.width(), left.height());
+  const MethodParameters parameters = options.resolved();
   PreparedPair pair;
-  prepare_pair(left, right, geometry, options.resolved().window_px * options.resolved().window_px, {true, false},
+  prepare_pair(left, right, geometry, parameters.window_px * parameters.window_px, {true, false},
                execution, pair);
   DisparityMap map(left.width(), left.height());
-  const MatchChain chain(options, geometry, pair, map.view());
+  const MatchChain chain(parameters, geometry, {.pair = &pair}, {.disparity_px = map.view()});
   scheduler::run_whole_image(chain.stages());
-}
-
-nlohmann::json print_table(const std::string& title, const std::vector<Timing>& timings,
-                           double cells) {
-  fmt::print("\n{}\n{:<34} {:>9} {:>9} {:>9} {:>9} {:>7}\n", title, "", "min ms", "median ms",
-             "max ms", "ns/cell", "ratio");
-  nlohmann::json rows = nlohmann::json::array();
-  for (const Timing& timing : timings) {
-    const double ratio = timing.median() / timings.front().median();
-    fmt::print("{:<34} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.4f} {:>7.3f}\n", timing.name,
-               timing.least() * 1e3, timing.median() * 1e3, timing.most() * 1e3,
-               timing.median() / cells * 1e9, ratio);
-    rows.push_back({{"name", timing.name},
-                    {"min_seconds", timing.least()},
-                    {"median_seconds", timing.median()},
-                    {"max_seconds", timing.most()},
-                    {"ns_per_cell", timing.median() / cells * 1e9},
-                    {"ratio_to_first", ratio}});
-  }
-  return {{"title", title}, {"cells", cells}, {"rows", rows}};
 }
 
 nlohmann::json against_peers(int rounds) {

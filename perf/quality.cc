@@ -79,10 +79,10 @@ void refine(Maps& maps, DisparityRange range, Execution& execution) {
   options.disparities = range;
   Mask left_unmatched;
   Mask right_unmatched;
-  cross_check(maps.left.view(), maps.right.view(), options.cross_check_or_default(), execution,
-              left_unmatched, right_unmatched);
-  fill_unmatched(left_unmatched, MapSide::kLeft, execution, maps.left);
-  fill_unmatched(right_unmatched, MapSide::kRight, execution, maps.right);
+  cross_check(maps.left.view(), maps.right.view(), options.resolved_refinement().cross_check_px,
+              execution, left_unmatched, right_unmatched);
+  fill_unmatched(left_unmatched, MapSide::kLeft, Fill::kConstant, execution, maps.left);
+  fill_unmatched(right_unmatched, MapSide::kRight, Fill::kConstant, execution, maps.right);
 }
 
 Maps ssd_maps(const Photograph& left, const Photograph& right, DisparityRange range,

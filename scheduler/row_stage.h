@@ -92,9 +92,10 @@ class RowStage {
     return columns.widened(0, input.all_columns());
   }
   /// Whether this stage looks, beside its input, at row y of the chain's first stage once more, in
-  /// the columns it makes. That stage must have the same extent as this one and those between.
-  /// Executors keep those rows along the way; where a chain is cut into passes, each pass makes them
-  /// anew, which costs less than storing and loading them.
+  /// the columns it makes. That stage must have the same extent as this one and those between; all
+  /// but the first must look at row y of their input to make row y. Executors keep those rows along
+  /// the way; where a chain is cut into passes, each pass makes them anew, which costs less than
+  /// storing and loading them.
   [[nodiscard]] virtual bool reads_source() const { return false; }
   /// Most rows that input_rows() can span: the rows kept between this stage and the one before.
   [[nodiscard]] virtual int window_rows() const { return 1; }

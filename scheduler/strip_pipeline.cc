@@ -2,125 +2,184 @@
 
 #include <algorithm>
 
+#include "scheduler/sweep_layout.h"
+
 namespace vantage::scheduler {
 namespace {
 
-/// The state between two passes, as a whole image of cell rows.
+/// The state between two passes: all its rows, or a ring of the newest ones.
 struct StoredRows {
   std::byte* base = nullptr;
   std::size_t row_bytes = 0;
-  Extent extent;
+  int capacity_rows = 1;
+  Range columns;
+
+  [[nodiscard]] std::byte* row(int y) const {
+    return base + row_bytes * static_cast<std::size_t>(y % capacity_rows);
+  }
 };
 
 /// The sweep of one pass down one strip and band.
 class Sweep {
  public:
-  Sweep(Chain pass, const std::vector<StageSweep>& layout, std::byte* scratch, Range rows,
+  Sweep(const PassStages& pass, const SweepLayout& layout, std::byte* scratch, Range rows,
         const StoredRows& input, const StoredRows& output)
       : pass_(pass),
-        layout_(layout),
+        layout_(layout.parts),
+        first_(pass.source == nullptr ? 0 : 1),
+        last_(layout.parts.size() - 1),
         scratch_(scratch),
         rows_(rows),
         input_(input),
         output_(output),
-        next_row_(pass.size()) {
-    for (std::size_t k = 0; k < pass.size(); ++k) {
-      next_row_[k] = layout[k].first_row;
+        progress_(layout.parts.size()) {
+    for (std::size_t k = 0; k <= last_; ++k) {
+      progress_[k].next_row = layout_[k].first_row;
+      progress_[k].window = window(k, layout_[k].first_row);
     }
   }
 
-  void run() { make_rows_until(pass_.size() - 1, rows_.end); }
+  /// The wavefront: a stage whose next row needs input that is not there yet lets the stage before
+  /// it make that first. A loop, as a chain may be longer than a stack is deep.
+  void run() {
+    std::size_t k = last_;
+    while (progress_[last_].next_row < rows_.end) {
+      if (k > first_ && progress_[k - 1].next_row < progress_[k].window.end) {
+        --k;
+        continue;
+      }
+      if (first_ == 1 && layout_[k].reads_source) {
+        while (progress_[0].next_row <= progress_[k].next_row) {
+          make_row(0);
+        }
+      }
+      make_row(k);
+      k = std::min(k + 1, last_);
+    }
+  }
 
  private:
-  /// Brings stage k to row `end`, and the stages before it as far as that needs: the wavefront.
-  void make_rows_until(std::size_t k, int end) {
-    while (next_row_[k] < end) {
-      const int y = next_row_[k];
-      RowTask task;
-      task.y = y;
-      task.sweep_begins = y == layout_[k].first_row;
-      task.columns = layout_[k].columns;
-      task.state = scratch_ + layout_[k].state_offset;
-      task.output = output_row(k, y);
-      task.previous = task.sweep_begins ? nullptr : output_row(k, y - 1);
-      task.input = input_rows(k, y);
-      pass_[k]->make_row(task);
-      ++next_row_[k];
+  struct Progress {
+    int next_row = 0;
+    Range window;  ///< rows of the input that it needs
+  };
+
+  void make_row(std::size_t k) {
+    Progress& progress = progress_[k];
+    const StageSweep& part = layout_[k];
+    const int y = progress.next_row;
+    RowTask task;
+    task.y = y;
+    task.sweep_begins = y == part.first_row;
+    task.columns = part.columns;
+    task.state = scratch_ + part.state_offset;
+    task.output = output_row(k, y);
+    task.previous = task.sweep_begins ? nullptr : output_row(k, y - 1);
+    if (k > first_) {
+      task.input = ring(k - 1, progress.window);
+    } else if (k == first_ && input_.base != nullptr) {
+      task.input = {input_.base, input_.row_bytes, input_.capacity_rows, progress.window,
+                    input_.columns};
     }
+    if (part.reads_source) {
+      task.source = ring(0, {y, y + 1});
+    }
+    part.stage->make_row(task);
+    ++progress.next_row;
+    progress.window = window(k, progress.next_row);
   }
 
-  InputRows input_rows(std::size_t k, int y) {
-    if (k == 0) {
-      return input_.base == nullptr
-                 ? InputRows()
-                 : InputRows(input_.base, input_.row_bytes, input_.extent.rows,
-                             pass_[0]->input_rows(y, input_.extent), input_.extent.all_columns());
+  [[nodiscard]] Range window(std::size_t k, int y) const {
+    if (k < first_ || y >= layout_[k].stage->extent().rows) {
+      return {};
     }
-    const StageSweep& source = layout_[k - 1];
-    const Range window = pass_[k]->input_rows(y, pass_[k - 1]->extent());
-    make_rows_until(k - 1, window.end);
-    return {scratch_ + source.ring_offset, source.row_bytes, source.ring_rows, window,
-            source.columns};
+    return layout_[k].stage->input_rows(y,
+                                        k > first_ ? layout_[k - 1].stage->extent() : pass_.input);
   }
 
-  std::byte* output_row(std::size_t k, int y) const {
+  [[nodiscard]] InputRows ring(std::size_t k, Range rows) const {
+    const StageSweep& part = layout_[k];
+    return {scratch_ + part.ring_offset, part.row_bytes, part.ring_rows, rows, part.columns};
+  }
+
+  [[nodiscard]] std::byte* output_row(std::size_t k, int y) const {
     const StageSweep& part = layout_[k];
     // Rows that only warm up the state of a pass's last stage belong to another band: they go to
     // this task's own row.
-    if (k + 1 == pass_.size() && output_.base != nullptr && y >= rows_.begin) {
-      return output_.base + output_.row_bytes * static_cast<std::size_t>(y) +
-             pass_[k]->bytes_per_column() * static_cast<std::size_t>(part.columns.begin);
+    if (k == last_ && output_.base != nullptr && y >= rows_.begin) {
+      return output_.row(y) +
+             part.stage->bytes_per_column() * static_cast<std::size_t>(part.columns.begin);
     }
     return scratch_ + part.ring_offset +
            part.row_bytes * static_cast<std::size_t>(y % part.ring_rows);
   }
 
-  Chain pass_;
+  const PassStages& pass_;
   const std::vector<StageSweep>& layout_;
+  std::size_t first_;  ///< part that is the first stage of the pass
+  std::size_t last_;
   std::byte* scratch_;
   Range rows_;
   const StoredRows& input_;
   const StoredRows& output_;
-  std::vector<int> next_row_;
+  std::vector<Progress> progress_;
 };
 
-void run_pass(Chain pass, const PassPlan& plan, const StoredRows& input, const StoredRows& output,
-              Executor& executor, ScratchPool& scratch) {
-  const Extent extent = pass.back()->extent();
-  executor.parallel_for(plan.strips * plan.bands, [&](int task) {
+/// Makes `rows` of the pass's output.
+void run_pass(const PassStages& pass, const PassPlan& plan, Range rows, const StoredRows& input,
+              const StoredRows& output, std::size_t scratch_bytes, Executor& executor,
+              ScratchPool& scratch) {
+  const int all_columns = pass.stages.back()->extent().columns;
+  const int bands = (rows.size() + plan.band_rows - 1) / plan.band_rows;
+  executor.parallel_for(plan.strips * bands, [&](int task) {
     const int strip = task % plan.strips;
-    const int band = task / plan.strips;
+    const int band_begin = rows.begin + task / plan.strips * plan.band_rows;
     const Range columns{strip * plan.strip_columns,
-                        std::min((strip + 1) * plan.strip_columns, extent.columns)};
-    const Range rows{band * plan.band_rows, std::min((band + 1) * plan.band_rows, extent.rows)};
-    std::vector<StageSweep> layout;
-    const std::size_t bytes = lay_out_sweep(pass, input.extent, columns, rows, layout);
-    const ScratchPool::Lease lease = scratch.lease(std::max(bytes, plan.scratch_bytes));
-    Sweep(pass, layout, lease.data(), rows, input, output).run();
+                        std::min((strip + 1) * plan.strip_columns, all_columns)};
+    const Range band{band_begin, std::min(band_begin + plan.band_rows, rows.end)};
+    SweepLayout layout;
+    lay_out_sweep(pass, columns, band, layout);
+    const ScratchPool::Lease lease = scratch.lease(std::max(layout.scratch_bytes, scratch_bytes));
+    Sweep(pass, layout, lease.data(), band, input, output).run();
   });
 }
 
 }  // namespace
 
 void run_strips(Chain chain, const ChainPlan& plan, Executor& executor, ScratchPool& scratch) {
-  StoredRows input;
-  ScratchPool::Lease input_memory;
-  for (const PassPlan& pass_plan : plan.passes) {
-    const Chain pass =
-        chain.subspan(static_cast<std::size_t>(pass_plan.first_stage),
-                      static_cast<std::size_t>(pass_plan.end_stage - pass_plan.first_stage));
+  struct PassRun {
+    PassStages stages;
     StoredRows output;
     ScratchPool::Lease output_memory;
-    if (const RowStage& last = *pass.back(); last.bytes_per_column() > 0) {
-      output.extent = last.extent();
-      output.row_bytes = last.bytes_per_column() * static_cast<std::size_t>(output.extent.columns);
-      output_memory =
-          scratch.lease(output.row_bytes * static_cast<std::size_t>(output.extent.rows));
-      output.base = output_memory.data();
+  };
+  std::vector<PassRun> runs;
+  std::size_t scratch_bytes = 0;  // one size for all passes, so that their tasks share leases
+  for (const PassPlan& pass : plan.passes) {
+    runs.push_back(
+        {pass_stages(chain, pass.first_stage, pass.end_stage, pass.source_rows), {}, {}});
+    scratch_bytes = std::max(scratch_bytes, pass.scratch_bytes);
+  }
+  for (int step = 0; step < plan.steps; ++step) {
+    for (std::size_t p = 0; p < runs.size(); ++p) {
+      const PassPlan& pass = plan.passes[p];
+      PassRun& run = runs[p];
+      const RowStage& last = *run.stages.stages.back();
+      if (step == 0 && pass.stored_rows > 0) {
+        const Extent extent = last.extent();
+        run.output.row_bytes = last.bytes_per_column() * static_cast<std::size_t>(extent.columns);
+        run.output.capacity_rows = pass.stored_rows;
+        run.output.columns = extent.all_columns();
+        run.output_memory =
+            scratch.lease(run.output.row_bytes * static_cast<std::size_t>(pass.stored_rows));
+        run.output.base = run.output_memory.data();
+      }
+      const Range rows = rows_of_step(plan, pass, step, last.extent().rows);
+      run_pass(run.stages, pass, rows, p == 0 ? StoredRows() : runs[p - 1].output, run.output,
+               scratch_bytes, executor, scratch);
+      if (p > 0 && step + 1 == plan.steps) {
+        runs[p - 1].output_memory = {};  // so that whole images are no more than two at a time
+      }
     }
-    run_pass(pass, pass_plan, input, output, executor, scratch);
-    input = output;
-    input_memory = std::move(output_memory);
   }
 }
 

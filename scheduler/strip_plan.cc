@@ -1,235 +1,257 @@
 #include "scheduler/strip_plan.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
+#include <map>
+#include <utility>
 
-#include "scheduler/scratch_pool.h"
+#include "scheduler/pass_planner.h"
 
 namespace vantage::scheduler {
 namespace {
 
-// How many times the rings and states of one strip may fill a cache. Level 1: stages stream through
-// them, so a little too much still hits mostly. Level 2: the rest is for image rows, results and
-// whatever else runs on the core.
-constexpr double kLevel1Share = 1.2;
-constexpr double kLevel2Share = 0.5;
-// Time per cell while the strip lives in the level-2 cache or beyond, level 1 being 1.
-constexpr double kLevel2Time = 1.35;
-constexpr double kBeyondTime = 2.5;
-// Tasks per thread that keep the last tasks from leaving threads idle.
-constexpr int kTasksPerThread = 4;
-// A band repeats the rows that warm up the chain; below this many times their work it is too low.
-constexpr int kLeastBandPerWarmUp = 12;
-// Narrower strips spend more time on starting rows than on cells.
-constexpr int kLeastStripColumns = 16;
-// Each candidate strip width is about this part of the one before.
-constexpr double kStripWidthStep = 0.8;
 // Storing a state between two passes and loading it again, in units of one stage's work.
 constexpr double kPassCost = 3.0;
-// A plan of our own making stores no more than this between passes.
-constexpr std::size_t kMostStoredBytes = std::size_t{1} << 30;
-
-std::size_t aligned(std::size_t bytes) {
-  constexpr std::size_t step = ScratchPool::kAlignment;
-  return (bytes + step - 1) / step * step;
-}
+// Numbers of passes to try: all up to kFewPasses, then each about this times the last.
+constexpr int kFewPasses = 12;
+constexpr double kPassesStep = 1.15;
+// Passes of more stages are only made when they are asked for.
+constexpr int kMostStages = 64;
 
 int divide_up(int total, int part) { return (total + part - 1) / part; }
 
-Extent input_extent(Chain chain, int stage) {
-  return stage == 0 ? Extent{} : chain[static_cast<std::size_t>(stage) - 1]->extent();
-}
-
-/// One pass of a chain and the plans that can be made for it.
-class PassPlanner {
+/// Plans a chain in passes, with what is the same for every way to cut it.
+class ChainPlanner {
  public:
-  PassPlanner(Chain chain, int first, int end, const Machine& machine, const PlanRequest& request)
-      : pass_(
-            chain.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(end - first))),
-        input_(input_extent(chain, first)),
-        output_(pass_.back()->extent()),
+  ChainPlanner(Chain chain, const Machine& machine, const PlanRequest& request)
+      : chain_(chain),
         machine_(machine),
-        request_(request) {
-    plan_.first_stage = first;
-    plan_.end_stage = end;
+        request_(request),
+        memory_bytes_(request.memory_bytes.value_or(kDefaultMemoryBytes)),
+        reaches_(row_reaches(chain)),
+        run_begin_(chain.size()) {
+    for (int k = 1; k < static_cast<int>(chain.size()); ++k) {
+      run_begin_[at(k)] = like_the_one_before(k) ? run_begin_[at(k - 1)] : k;
+    }
   }
 
-  PassPlan plan() {
-    plan_.strip_columns =
-        std::clamp(request_.strip_columns ? *request_.strip_columns : best_width(), 1,
-                   std::max(1, output_.columns));
-    plan_.strips = std::max(1, divide_up(output_.columns, plan_.strip_columns));
-    plan_.band_rows = std::clamp(request_.band_rows ? *request_.band_rows : best_height(), 1,
-                                 std::max(1, output_.rows));
-    plan_.bands = std::max(1, divide_up(output_.rows, plan_.band_rows));
-    for (int strip = 0; strip < plan_.strips; ++strip) {
-      const int begin = strip * plan_.strip_columns;
-      const Range columns{begin, std::min(begin + plan_.strip_columns, output_.columns)};
-      plan_.scratch_bytes = std::max(plan_.scratch_bytes,
-                                     lay_out_sweep(pass_, input_, columns, middle_row(), sweep_));
+  /// `ends`: stage counts after which the chain is cut. Steps of all rows if the memory allows it.
+  ChainPlan plan(const std::vector<int>& ends) {
+    const int rows = chain_.back()->extent().rows;
+    ChainPlan whole = plan_steps(ends, rows, 1);
+    if (ends.empty() || fits(whole) || !can_be_skewed(ends)) {
+      return whole;
     }
-    plan_.work_ratio = work_ratio(plan_.strip_columns, plan_.band_rows);
-    plan_.cache_time = cache_time(plan_.scratch_bytes);
-    return plan_;
+    const int all_rows = rows + whole.passes.back().lag_rows;
+    ChainPlan best = whole;
+    for (int step_rows = rows; step_rows > 1 && !fits(best);) {
+      // Strips, and with them the scratch, depend on the height of a step: never try one twice.
+      const int wanted = std::clamp(rows_that_fit(best), 1, step_rows - 1);
+      const int steps = divide_up(all_rows, wanted);
+      step_rows = divide_up(all_rows, steps);
+      best = plan_steps(ends, step_rows, steps);
+    }
+    // Rings as high as the lag of the last of many passes may take more than two images.
+    return fits(best) || best.stored_bytes < whole.stored_bytes ? best : whole;
+  }
+
+  [[nodiscard]] bool fits(const ChainPlan& plan) const {
+    return plan.stored_bytes + scratch_bytes(plan) <= memory_bytes_;
+  }
+
+  /// Whether `a` is to be preferred: it fits and `b` does not, or both or neither do and it is
+  /// faster.
+  [[nodiscard]] bool is_better(const ChainPlan& a, const ChainPlan& b) const {
+    return fits(a) != fits(b) ? fits(a) : cost(a) < cost(b);
+  }
+
+  static double cost(const ChainPlan& plan) {
+    double total = kPassCost * static_cast<double>(plan.passes.size() - 1);
+    for (const PassPlan& pass : plan.passes) {
+      total += pass.expected_time;
+    }
+    return total;
   }
 
  private:
-  [[nodiscard]] Range middle_row() const {
-    return {output_.rows / 2, std::min(output_.rows, output_.rows / 2 + 1)};
+  static std::size_t at(int stage) { return static_cast<std::size_t>(stage); }
+
+  /// Whether passes that differ only in having stage k − 1 or k can have the same plan.
+  [[nodiscard]] bool like_the_one_before(int k) const {
+    const RowStage& a = *chain_[at(k - 1)];
+    const RowStage& b = *chain_[at(k)];
+    const Extent input = input_extent(chain_, k);
+    const int middle = input.columns / 2;
+    return k > 1 && input_extent(chain_, k - 1) == input && a.extent() == b.extent() &&
+           a.bytes_per_column() == b.bytes_per_column() && a.reads_source() == b.reads_source() &&
+           a.window_rows() == b.window_rows() && a.first_row_work() == b.first_row_work() &&
+           a.input_columns({middle, middle + 1}, input) ==
+               b.input_columns({middle, middle + 1}, input) &&
+           a.state_bytes(input.all_columns(), input) == b.state_bytes(input.all_columns(), input) &&
+           reaches_[at(k - 1)].above == reaches_[at(k)].above &&
+           reaches_[at(k - 1)].below == reaches_[at(k)].below;
   }
 
-  std::size_t lay_out_middle_strip(int width, Range rows) {
-    const int begin = std::max(0, (output_.columns - width) / 2);
-    return lay_out_sweep(pass_, input_, {begin, std::min(output_.columns, begin + width)}, rows,
-                         sweep_);
-  }
-
-  /// Cells computed ÷ cells delivered, for a strip and band inside the image.
-  double work_ratio(int width, int height) {
-    const int top = std::max(0, (output_.rows - height) / 2);
-    const Range rows{top, std::min(output_.rows, top + height)};
-    lay_out_middle_strip(width, rows);
-    double computed = 0;
-    for (std::size_t k = 0; k < sweep_.size(); ++k) {
-      // Rows below the band are needed as far as the rows above it: the halo is symmetric.
-      const int halo = std::max(0, rows.begin - sweep_[k].first_row);
-      const int all_rows = std::min(rows.size() + 2 * halo, pass_[k]->extent().rows);
-      computed += static_cast<double>(sweep_[k].columns.size()) *
-                  (all_rows + pass_[k]->first_row_work() - 1);
-    }
-    const double delivered =
-        static_cast<double>(sweep_.size()) * std::min(width, output_.columns) * rows.size();
-    return delivered > 0 ? computed / delivered : 1;
-  }
-
-  [[nodiscard]] double cache_time(std::size_t scratch_bytes) const {
-    const auto bytes = static_cast<double>(scratch_bytes);
-    if (bytes <= kLevel1Share * static_cast<double>(machine_.l1_data_bytes)) {
-      return 1;
-    }
-    return bytes <= kLevel2Share * static_cast<double>(machine_.l2_bytes) ? kLevel2Time
-                                                                          : kBeyondTime;
-  }
-
-  /// Wide strips compute few halo columns, narrow ones stay in a fast cache.
-  int best_width() {
-    int best = output_.columns;
-    double best_time = std::numeric_limits<double>::max();
-    for (double wanted = output_.columns; wanted >= 1; wanted *= kStripWidthStep) {
-      // Strips of equal width.
-      const int width =
-          divide_up(output_.columns, divide_up(output_.columns, static_cast<int>(wanted)));
-      if (width < kLeastStripColumns && best_time < std::numeric_limits<double>::max()) {
-        break;
+  /// Strips and bands of the stages [first, end): planned once for passes of equal stages.
+  PassPlan plan_pass(int first, int end, int step_rows) {
+    const int source_rows = source_rows_to_keep(chain_, reaches_, first, end);
+    const auto make = [&] {
+      return PassPlanner(pass_stages(chain_, first, end, source_rows), machine_, request_)
+          .plan(step_rows);
+    };
+    PassPlan plan;
+    if (run_begin_[at(first)] == run_begin_[at(end - 1)]) {
+      const auto [known, is_new] =
+          known_.try_emplace({run_begin_[at(first)], end - first, step_rows});
+      if (is_new) {
+        known->second = make();
       }
-      const double time =
-          cache_time(lay_out_middle_strip(width, middle_row())) * work_ratio(width, output_.rows);
-      if (time < best_time) {
-        best_time = time;
-        best = width;
+      plan = known->second;
+    } else {
+      plan = make();
+    }
+    plan.first_stage = first;
+    plan.end_stage = end;
+    plan.source_rows = source_rows;
+    return plan;
+  }
+
+  ChainPlan plan_steps(const std::vector<int>& ends, int step_rows, int steps) {
+    ChainPlan plan;
+    plan.steps = steps;
+    plan.step_rows = step_rows;
+    int first = 0;
+    for (std::size_t i = 0; i <= ends.size(); ++i) {
+      const int end = i < ends.size() ? ends[i] : static_cast<int>(chain_.size());
+      const Extent extent = chain_[at(end - 1)]->extent();
+      plan.passes.push_back(plan_pass(first, end, steps == 1 ? extent.rows : step_rows));
+      PassPlan& pass = plan.passes.back();
+      if (i > 0) {
+        pass.lag_rows = plan.passes[i - 1].lag_rows + reach(first, end).below;
+        PassPlan& before = plan.passes[i - 1];
+        before.stored_rows = chain_[at(first - 1)]->extent().rows;
+        if (steps > 1) {
+          before.stored_rows = std::min(before.stored_rows, step_rows + halo_rows(first, end));
+        }
       }
+      first = end;
     }
-    return best;
+    plan.stored_bytes = stored_bytes(plan);
+    return plan;
   }
 
-  /// As many bands as threads need beyond the strips, as long as they are worth their warm-up.
-  int best_height() {
-    const int wanted =
-        request_.threads > 1 ? divide_up(kTasksPerThread * request_.threads, plan_.strips) : 1;
-    lay_out_middle_strip(plan_.strip_columns, middle_row());
-    int warm_up = 0;
-    for (std::size_t k = 0; k < sweep_.size(); ++k) {
-      warm_up = std::max(warm_up,
-                         middle_row().begin - sweep_[k].first_row + pass_[k]->first_row_work() - 1);
+  /// Rows of its input that the stages [first, end) together look up and down.
+  [[nodiscard]] RowReach reach(int first, int end) const {
+    RowReach sum;
+    for (int k = first; k < end; ++k) {
+      sum.above += reaches_[at(k)].above;
+      sum.below += reaches_[at(k)].below;
     }
-    const int most = std::max(1, output_.rows / std::max(1, kLeastBandPerWarmUp * warm_up));
-    return divide_up(output_.rows, std::clamp(wanted, 1, most));
+    return sum;
+  }
+  [[nodiscard]] int halo_rows(int first, int end) const {
+    const RowReach sum = reach(first, end);
+    return sum.above + sum.below;
   }
 
-  Chain pass_;
-  Extent input_;
-  Extent output_;
+  [[nodiscard]] std::size_t row_bytes(const PassPlan& pass) const {
+    const RowStage& last = *chain_[at(pass.end_stage - 1)];
+    return last.bytes_per_column() * static_cast<std::size_t>(last.extent().columns);
+  }
+
+  /// Rings live together; of whole images only a pass's input and output do.
+  [[nodiscard]] std::size_t stored_bytes(const ChainPlan& plan) const {
+    std::size_t all = 0;
+    std::size_t most_of_two = 0;
+    std::size_t before = 0;
+    for (const PassPlan& pass : plan.passes) {
+      const std::size_t bytes = row_bytes(pass) * static_cast<std::size_t>(pass.stored_rows);
+      all += bytes;
+      most_of_two = std::max(most_of_two, before + bytes);
+      before = bytes;
+    }
+    return plan.steps > 1 ? all : most_of_two;
+  }
+
+  [[nodiscard]] std::size_t scratch_bytes(const ChainPlan& plan) const {
+    std::size_t most = 0;
+    for (const PassPlan& pass : plan.passes) {
+      most = std::max(most, pass.scratch_bytes);
+    }
+    return most * static_cast<std::size_t>(std::max(1, request_.threads));
+  }
+
+  /// The largest steps whose rings fit beside the scratch of `plan`; 0 if none do.
+  [[nodiscard]] int rows_that_fit(const ChainPlan& plan) const {
+    double per_row = 0;
+    double halos = 0;
+    for (std::size_t i = 1; i < plan.passes.size(); ++i) {
+      const auto bytes = static_cast<double>(row_bytes(plan.passes[i - 1]));
+      per_row += bytes;
+      halos += bytes * halo_rows(plan.passes[i].first_stage, plan.passes[i].end_stage);
+    }
+    const double room =
+        static_cast<double>(memory_bytes_) - static_cast<double>(scratch_bytes(plan)) - halos;
+    return std::max(0, static_cast<int>(std::min(room / per_row, 1e9)));
+  }
+
+  /// Whether all passes after the first work row for row on grids of one size.
+  [[nodiscard]] bool can_be_skewed(const std::vector<int>& ends) const {
+    const int rows = chain_.back()->extent().rows;
+    return std::all_of(chain_.begin() + ends.front() - 1, chain_.end(),
+                       [&](const RowStage* stage) { return stage->extent().rows == rows; });
+  }
+
+  Chain chain_;
   const Machine& machine_;
   const PlanRequest& request_;
-  PassPlan plan_;
-  std::vector<StageSweep> sweep_;
+  std::size_t memory_bytes_;
+  std::vector<RowReach> reaches_;
+  std::vector<int> run_begin_;  ///< the first of the like stages that each stage is among
+  std::map<std::array<int, 3>, PassPlan> known_;  ///< by run, number of stages, rows of a step
 };
-
-ChainPlan plan_passes(Chain chain, const std::vector<int>& pass_ends, const Machine& machine,
-                      const PlanRequest& request) {
-  ChainPlan plan;
-  std::size_t stored_before = 0;
-  int first = 0;
-  for (std::size_t i = 0; i <= pass_ends.size(); ++i) {
-    const int end = i < pass_ends.size() ? pass_ends[i] : static_cast<int>(chain.size());
-    plan.passes.push_back(PassPlanner(chain, first, end, machine, request).plan());
-    const RowStage& last = *chain[static_cast<std::size_t>(end) - 1];
-    const std::size_t stored = last.bytes_per_column() *
-                               static_cast<std::size_t>(last.extent().columns) *
-                               static_cast<std::size_t>(last.extent().rows);
-    plan.stored_bytes = std::max(plan.stored_bytes, stored_before + stored);
-    stored_before = stored;
-    first = end;
-  }
-  return plan;
-}
-
-double cost(const ChainPlan& plan) {
-  double total = kPassCost * static_cast<double>(plan.passes.size() - 1);
-  for (const PassPlan& pass : plan.passes) {
-    total += pass.work_ratio * pass.cache_time * (pass.end_stage - pass.first_stage);
-  }
-  return total;
-}
 
 }  // namespace
 
-std::size_t lay_out_sweep(Chain pass, Extent pass_input, Range columns, Range rows,
-                          std::vector<StageSweep>& sweep) {
-  sweep.assign(pass.size(), {});
-  std::size_t bytes = 0;
-  Range wanted_columns = columns;
-  int wanted_row = rows.begin;
-  int ring_rows = 1;  // of the stage at hand: what the stage after it looks at together
-  for (std::size_t k = pass.size(); k-- > 0;) {
-    const RowStage& stage = *pass[k];
-    const Extent input = k > 0 ? pass[k - 1]->extent() : pass_input;
-    StageSweep& part = sweep[k];
-    part.columns = wanted_columns;
-    part.first_row = stage.sweep_start(wanted_row);
-    part.row_bytes =
-        aligned(stage.bytes_per_column() * static_cast<std::size_t>(wanted_columns.size()));
-    part.ring_rows = ring_rows;
-    part.ring_offset = bytes;
-    bytes += part.row_bytes * static_cast<std::size_t>(part.ring_rows);
-    part.state_offset = bytes;
-    bytes += aligned(stage.state_bytes(wanted_columns, input));
-    wanted_columns = stage.input_columns(wanted_columns, input);
-    wanted_row = stage.input_rows(part.first_row, input).begin;
-    ring_rows = stage.window_rows();
+Range rows_of_step(const ChainPlan& plan, const PassPlan& pass, int step, int rows) {
+  if (plan.steps == 1) {
+    return {0, rows};
   }
-  return bytes;
+  const auto end_of = [&](int steps) {
+    return std::clamp(steps * plan.step_rows - pass.lag_rows, 0, rows);
+  };
+  return {end_of(step), end_of(step + 1)};
 }
 
 ChainPlan plan_chain(Chain chain, const Machine& machine, const PlanRequest& request) {
+  check_source_readers(chain);
+  ChainPlanner planner(chain, machine, request);
   if (request.pass_ends) {
-    return plan_passes(chain, *request.pass_ends, machine, request);
+    return planner.plan(*request.pass_ends);
   }
   // Long chains have wide cumulative halos and many rings. Cut them into equal passes for as long
   // as that saves more than storing the state costs.
-  ChainPlan best = plan_passes(chain, {}, machine, request);
   const int stages = static_cast<int>(chain.size());
-  for (int passes = 2; passes <= stages; ++passes) {
+  const auto equal_passes = [&](int passes) {
     std::vector<int> ends;
     for (int i = 1; i < passes; ++i) {
       ends.push_back(static_cast<int>(std::lround(static_cast<double>(i) * stages / passes)));
     }
-    ChainPlan candidate = plan_passes(chain, ends, machine, request);
-    if (candidate.stored_bytes <= kMostStoredBytes && cost(candidate) < cost(best)) {
-      best = std::move(candidate);
-    } else if (kPassCost * (passes - 1) > cost(best)) {
+    return planner.plan(ends);
+  };
+  const int least = divide_up(stages, kMostStages);
+  const auto next = [](int passes) {
+    return passes < kFewPasses ? passes + 1 : static_cast<int>(passes * kPassesStep);
+  };
+  ChainPlan best = equal_passes(least);
+  for (int passes = next(least); passes <= stages; passes = next(passes)) {
+    if (planner.fits(best) && kPassCost * (passes - 1) > ChainPlanner::cost(best)) {
       break;
+    }
+    ChainPlan candidate = equal_passes(passes);
+    if (planner.is_better(candidate, best)) {
+      best = std::move(candidate);
     }
   }
   return best;

@@ -2,64 +2,63 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <vector>
 
+#include "scheduler/chain_geometry.h"
 #include "scheduler/machine.h"
-#include "scheduler/row_stage.h"
 
 namespace vantage::scheduler {
 
-/// A chain of stages in order; the stages belong to the caller.
-using Chain = std::span<const RowStage* const>;
+/// Most memory that a plan takes unless the request says otherwise.
+inline constexpr std::size_t kDefaultMemoryBytes = std::size_t{1} << 30;
 
 /// What users tune; what is not set comes from the cost model.
 struct PlanRequest {
   int threads = 1;
   std::optional<int> strip_columns;  ///< ≥ 1
   std::optional<int> band_rows;      ///< ≥ 1
-  /// Stage counts after which the chain is cut and the state stored as a whole image, increasing,
-  /// each in [1, stages − 1]. Empty list: one pass.
+  /// Stage counts after which the chain is cut and the state stored, increasing, each in
+  /// [1, stages − 1]. Empty list: one pass.
   std::optional<std::vector<int>> pass_ends;
+  /// For the rows stored between passes and the scratch of all threads, as far as it can be kept:
+  /// kDefaultMemoryBytes when not set.
+  std::optional<std::size_t> memory_bytes;
 };
 
-/// One pass: stages [first, end) swept strip by strip, band by band.
+/// One pass: stages [first, end) swept strip by strip, band by band, step by step.
 struct PassPlan {
   int first_stage = 0;
   int end_stage = 0;
   int strip_columns = 0;
   int band_rows = 0;
   int strips = 0;
-  int bands = 0;
+  int bands = 0;        ///< of a step
+  int lag_rows = 0;     ///< that this pass stays behind the first one when there are several steps
+  int stored_rows = 0;  ///< rows of its output kept for the next pass; 0 for the last pass
+  int source_rows = 0;  ///< see PassStages
   std::size_t scratch_bytes = 0;  ///< most that one task needs: rings and states
   double work_ratio = 1;          ///< cells computed ÷ cells delivered, halo columns and rows in
-  double cache_time = 1;  ///< expected time per cell, 1 where a strip's scratch is in level 1
+  double expected_time = 0;  ///< in units of one stage over the image, in level 1 on all threads
 };
 
+/// With several passes whose stored state must not be whole images, the image is worked off in
+/// steps: in each, one pass after the other makes up to `step_rows` rows, each pass staying behind
+/// the one before by the rows it looks down, so that a ring of rows is all that is stored.
 struct ChainPlan {
   std::vector<PassPlan> passes;
-  std::size_t stored_bytes = 0;  ///< whole-image state between passes, most at any one time
+  int steps = 1;
+  int step_rows = 0;             ///< all rows where there is one step
+  std::size_t stored_bytes = 0;  ///< rows stored between passes, most at any one time
 };
+
+/// The rows of its output, which has `rows` rows, that `pass` of `plan` makes in `step`; may be
+/// empty.
+Range rows_of_step(const ChainPlan& plan, const PassPlan& pass, int step, int rows);
 
 /// Cuts `chain` into passes, strips and bands so that the rings of a strip stay in the level-2
 /// cache and there are enough tasks for the threads. Strip and band sizes beyond the image are cut
-/// to it. The plan never changes results, only speed.
+/// to it. The plan never changes results, only speed. Throws std::logic_error for a chain that
+/// breaks the rules of RowStage::reads_source().
 ChainPlan plan_chain(Chain chain, const Machine& machine, const PlanRequest& request);
-
-/// How one stage takes part in the sweep of a strip: what it makes, where it starts, what it keeps.
-struct StageSweep {
-  Range columns;
-  int first_row = 0;
-  std::size_t ring_offset =
-      0;  ///< of its output rows in the scratch; unused by a pass's last stage
-  std::size_t row_bytes = 0;
-  int ring_rows = 0;
-  std::size_t state_offset = 0;
-};
-
-/// The stages of `pass` (a part of a chain) for one strip and band: cumulative halo, first rows and
-/// scratch layout. Appends into `sweep` (cleared first) and returns the scratch bytes needed.
-std::size_t lay_out_sweep(Chain pass, Extent pass_input, Range columns, Range rows,
-                          std::vector<StageSweep>& sweep);
 
 }  // namespace vantage::scheduler

@@ -7,6 +7,7 @@
 namespace vantage::scheduler {
 
 void run_whole_image(Chain chain) {
+  check_source_readers(chain);
   ScratchPool memory;
   std::vector<ScratchPool::Lease> outputs;
   Extent input_extent;
@@ -30,6 +31,14 @@ void run_whole_image(Chain chain) {
         const std::byte* input = outputs[outputs.size() - 2].data();
         task.input = InputRows(input, input_row_bytes, input_extent.rows,
                                stage->input_rows(y, input_extent), input_extent.all_columns());
+      }
+      if (stage->reads_source()) {
+        const RowStage& source = *chain.front();
+        const Range columns = source.extent().all_columns();
+        task.source =
+            InputRows(outputs.front().data(),
+                      source.bytes_per_column() * static_cast<std::size_t>(columns.size()),
+                      source.extent().rows, {y, y + 1}, columns);
       }
       stage->make_row(task);
     }

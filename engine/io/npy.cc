@@ -159,10 +159,12 @@ Image<float> decode_npy(const FileBytes& file) {
   return image;
 }
 
-std::vector<std::uint8_t> encode_npy(ImageView<const float> image) {
+namespace {
+
+/// Everything before the values; `shape` as Python writes tuples, without the parentheses.
+std::vector<std::uint8_t> npy_header(std::string_view type, std::string_view shape) {
   std::string header =
-      fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}), }}", image.height(),
-                  image.width());
+      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
   // The data begins at a multiple of 64 bytes: magic, version and length are ten bytes.
   header.append(63 - (10 + header.size()) % 64, ' ');
   header.push_back('\n');
@@ -172,12 +174,33 @@ std::vector<std::uint8_t> encode_npy(ImageView<const float> image) {
     bytes.push_back(static_cast<std::uint8_t>(byte));
   }
   bytes.insert(bytes.end(), header.begin(), header.end());
-  const std::size_t row_bytes = sizeof(float) * static_cast<std::size_t>(image.width());
+  return bytes;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> encode_npy(ImageView<const float> image) {
+  const std::string channels = image.channels() == 1 ? "" : fmt::format(", {}", image.channels());
+  std::vector<std::uint8_t> bytes =
+      npy_header("<f4", fmt::format("{}, {}{}", image.height(), image.width(), channels));
+  const std::size_t row_bytes =
+      sizeof(float) * static_cast<std::size_t>(image.width()) * image.channels();
   bytes.reserve(bytes.size() + row_bytes * static_cast<std::size_t>(image.height()));
   for (int y = 0; y < image.height(); ++y) {
     const auto* row = reinterpret_cast<const std::uint8_t*>(image.row(y));
     bytes.insert(bytes.end(), row, row + row_bytes);
   }
+  return bytes;
+}
+
+std::vector<std::uint8_t> encode_npy(std::span<const double> values, std::span<const int> shape) {
+  std::string sides;
+  for (const int side : shape) {
+    sides += fmt::format("{},", side);
+  }
+  std::vector<std::uint8_t> bytes = npy_header("<f8", sides);
+  const auto* begin = reinterpret_cast<const std::uint8_t*>(values.data());
+  bytes.insert(bytes.end(), begin, begin + values.size_bytes());
   return bytes;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/image/image.h"
@@ -15,7 +16,11 @@ bool is_npy(const FileBytes& file);
 /// (rounded to float) in C order. Throws Error that names the type, order or shape of any other.
 Image<float> decode_npy(const FileBytes& file);
 
-/// Encodes one channel as <f4 in C order, format version 1.0.
+/// Encodes as <f4 in C order, format version 1.0; of shape (height, width), or (height, width,
+/// channels) where there are several.
 std::vector<std::uint8_t> encode_npy(ImageView<const float> image);
+
+/// Encodes numbers as <f8 in C order, of any shape whose sides multiply to their count.
+std::vector<std::uint8_t> encode_npy(std::span<const double> values, std::span<const int> shape);
 
 }  // namespace vantage

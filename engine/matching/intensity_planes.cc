@@ -5,36 +5,15 @@
 #include <limits>
 #include <vector>
 
+#include "engine/image/grey_levels.h"
 #include "kernels/column_ssd/column_ssd.h"
 
 namespace vantage {
 namespace {
 
-// Rec. 601.
-constexpr float kRed = 0.299F;
-constexpr float kGreen = 0.587F;
-constexpr float kBlue = 0.114F;
-
 bool is_8_bit_grey(const Photograph& photograph) {
   return photograph.channels() == 1 &&
          std::holds_alternative<Image<std::uint8_t>>(photograph.pixels);
-}
-
-template <typename T>
-void grey_levels(const T* pixels, int channels, int width, float* grey) {
-  constexpr float unit = kGreyLevelsPerUnit<T>;
-  if (channels < 3) {
-    for (int x = 0; x < width; ++x) {
-      grey[x] = static_cast<float>(pixels[x * channels]) * unit;
-    }
-    return;
-  }
-  for (int x = 0; x < width; ++x) {
-    const T* pixel = pixels + x * channels;
-    grey[x] = (kRed * static_cast<float>(pixel[0]) + kGreen * static_cast<float>(pixel[1]) +
-               kBlue * static_cast<float>(pixel[2])) *
-              unit;
-  }
 }
 
 struct Bounds {
@@ -45,18 +24,14 @@ struct Bounds {
 /// Grey levels of the whole photograph into `plane`; returns their bounds.
 Bounds fill_grey(const Photograph& photograph, Execution& execution, IntensityPlane<float>& plane) {
   std::vector<Bounds> of_row(static_cast<std::size_t>(photograph.height()));
-  std::visit(
-      [&](const auto& image) {
-        execution.for_each_band(image.height(), [&](int first_row, int end_row) {
-          for (int y = first_row; y < end_row; ++y) {
-            float* grey = plane.row(y);
-            grey_levels(image.row(y), image.channels(), image.width(), grey);
-            const auto [low, high] = std::minmax_element(grey, grey + image.width());
-            of_row[static_cast<std::size_t>(y)] = {*low, *high};
-          }
-        });
-      },
-      photograph.pixels);
+  execution.for_each_band(photograph.height(), [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      float* grey = plane.row(y);
+      grey_levels_row(photograph, y, grey);
+      const auto [low, high] = std::minmax_element(grey, grey + photograph.width());
+      of_row[static_cast<std::size_t>(y)] = {*low, *high};
+    }
+  });
   Bounds bounds;
   for (const Bounds& row : of_row) {
     bounds.low = std::min(bounds.low, row.low);
@@ -130,6 +105,7 @@ void IntensityPlane<Pixel>::fill_margins(int y) {
 }
 
 template class IntensityPlane<std::uint8_t>;
+template class IntensityPlane<std::uint32_t>;
 template class IntensityPlane<float>;
 
 void prepare_pair(const Photograph& left, const Photograph& right,
@@ -160,6 +136,7 @@ void prepare_pair(const Photograph& left, const Photograph& right,
   const Bounds of_right = fill_grey(right, execution, planes.right);
   const float scale = cost_scale(
       {std::min(of_left.low, of_right.low), std::max(of_left.high, of_right.high)}, window_samples);
+  pair.cost_unit = 1 / (scale * scale);
   execution.for_each_band(height, [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
       scale_row(scale, width, planes.left.row(y));

@@ -12,7 +12,7 @@ namespace vantage {
 
 /// One image's intensities as matching costs read them: rows with margins, so that every lane of
 /// every candidate can be loaded, and optionally mirrored, so that the partners of growing
-/// disparities lie at growing addresses. Pixel is uint8_t or float.
+/// disparities lie at growing addresses. Pixel is uint8_t or float, or uint32_t for census codes.
 template <typename Pixel>
 class IntensityPlane {
  public:
@@ -50,6 +50,7 @@ struct PlanesNeeded {
 /// others become float grey levels (luma of colour, Rec. 601; EQUATIONS §0).
 struct PreparedPair {
   bool is_8_bit = true;
+  float cost_unit = 1;  ///< grey levels² of a unit of squared differences of the float planes
   IntensityPlanes<std::uint8_t> grey_8;
   IntensityPlanes<float> grey_float;
 };

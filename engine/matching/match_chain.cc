@@ -3,11 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "engine/error.h"
+#include "engine/matching/cost_bounds.h"
+#include "engine/matching/stage_bayes.h"
 #include "engine/matching/stage_column_ssd.h"
+#include "engine/matching/stage_column_sum.h"
+#include "engine/matching/stage_diffusion.h"
+#include "engine/matching/stage_smoothing.h"
 #include "engine/matching/stage_window_selection.h"
 
 namespace vantage {
@@ -32,6 +39,11 @@ kernels::CandidateGeometry candidate_geometry(const MatchOptions& options, Refer
   return {width, least, most - least + 1, reference == Reference::kLeft ? -1 : 1};
 }
 
+bool uses_column_ssd(const MethodParameters& parameters) {
+  return parameters.cost == MatchCost::kSquared && parameters.aggregation == Aggregation::kBox &&
+         parameters.colour == ColourUse::kLuma;
+}
+
 namespace {
 
 /// Half the bits of a candidate's index that fit below the sums of an 8-bit window without leaving
@@ -42,39 +54,151 @@ int index_shift(int window_px, const kernels::CandidateGeometry& geometry) {
   while ((1 << (2 * shift)) < geometry.lanes()) {
     ++shift;
   }
-  const double largest_cell =
-      (window_px * window_px * largest_square + 1) * (1 << (2 * shift));
+  const double largest_cell = (window_px * window_px * largest_square + 1) * (1 << (2 * shift));
   return largest_cell < std::numeric_limits<std::int32_t>::max() ? shift : 0;
+}
+
+double entropy_scale(const MethodParameters& parameters) {
+  return 1 / (2 * parameters.sigma_measurement * parameters.sigma_measurement);
+}
+
+ConfidenceMeasure confidence_measure(const MethodParameters& parameters) {
+  switch (parameters.aggregation) {
+    case Aggregation::kBayes:
+      return ConfidenceMeasure::kProbability;
+    case Aggregation::kLocalStopping:
+      return parameters.certainty == Certainty::kMargin ? ConfidenceMeasure::kMargin
+                                                        : ConfidenceMeasure::kEntropy;
+    default:
+      return is_evidence(parameters) ? ConfidenceMeasure::kEvidence : ConfidenceMeasure::kMargin;
+  }
+}
+
+WindowSelectionSettings window_selection(const MethodParameters& parameters) {
+  WindowSelectionSettings settings;
+  settings.radius = parameters.window_px / 2;
+  settings.border = parameters.border;
+  settings.subpixel = parameters.subpixel;
+  settings.confidence = confidence_measure(parameters);
+  settings.entropy_scale = entropy_scale(parameters);
+  return settings;
 }
 
 }  // namespace
 
-MatchChain::MatchChain(const MatchOptions& options, const kernels::CandidateGeometry& geometry,
-                       const PreparedPair& pair, ImageView<float> disparity_px) {
-  const bool left = geometry.direction < 0;
-  const int height = disparity_px.height();
-  const MethodParameters parameters = options.resolved();
-  const int radius = parameters.window_px / 2;
-  int shift = 0;
-  if (pair.is_8_bit) {
-    shift = index_shift(parameters.window_px, geometry);
-    const auto& planes = pair.grey_8;
-    add(make_column_ssd_stage(left ? planes.left : planes.right,
-                              left ? planes.right_mirrored : planes.left, geometry, height, radius,
-                              shift));
-  } else {
-    const auto& planes = pair.grey_float;
-    add(make_column_ssd_stage(left ? planes.left : planes.right,
-                              left ? planes.right_mirrored : planes.left, geometry, height,
-                              radius));
+MatchChain::MatchChain(const MethodParameters& parameters,
+                       const kernels::CandidateGeometry& geometry, const ChainInput& input,
+                       const MapOutputs& outputs)
+    : geometry_(geometry), outputs_(outputs) {
+  if (input.pair != nullptr) {
+    add_column_ssd(parameters, *input.pair);
+    return;
   }
-  add(make_window_selection_stage(geometry, {radius, 2 * shift, parameters.border, parameters.subpixel},
-                                  disparity_px));
+  const int height = outputs_.disparity_px.height();
+  add(make_cost_stage(parameters, geometry_, *input.reference, input.partners,
+                      parameters.aggregation == Aggregation::kBayes ? CellMeaning::kLikelihood
+                                                                    : CellMeaning::kEnergy,
+                      height));
+  if (parameters.aggregation == Aggregation::kBox) {
+    add_box(parameters, input);
+    return;
+  }
+  add_aggregation(parameters);
+  add_selection(parameters);
+}
+
+std::vector<int> MatchChain::pass_ends(int iterations) const {
+  std::vector<int> ends;
+  for (int done = iterations; done < iterations_; done += iterations) {
+    ends.push_back(first_iteration_ + done);
+  }
+  return ends;
 }
 
 void MatchChain::add(std::unique_ptr<scheduler::RowStage> stage) {
   pointers_.push_back(stage.get());
   stages_.push_back(std::move(stage));
+}
+
+void MatchChain::add_column_ssd(const MethodParameters& parameters, const PreparedPair& pair) {
+  const bool left = geometry_.direction < 0;
+  const int height = outputs_.disparity_px.height();
+  WindowSelectionSettings settings = window_selection(parameters);
+  const auto add_stages = [&](const auto& planes, auto... shift) {
+    add(make_column_ssd_stage(left ? planes.left : planes.right,
+                              left ? planes.right_mirrored : planes.left, geometry_, height,
+                              settings.radius, shift...));
+  };
+  if (pair.is_8_bit) {
+    const int shift = index_shift(parameters.window_px, geometry_);
+    settings.index_bits = 2 * shift;
+    add_stages(pair.grey_8, shift);
+  } else {
+    settings.energy_scale = pair.cost_unit;
+    add_stages(pair.grey_float);
+  }
+  add(make_window_selection_stage(geometry_, settings, outputs_));
+}
+
+void MatchChain::add_box(const MethodParameters& parameters, const ChainInput& input) {
+  const CostBounds bounds = cost_bounds(parameters, static_cast<int>(input.partners.size()));
+  const ColumnSumScale quantised =
+      column_sum_scale(bounds.least, bounds.largest, parameters.window_px);
+  WindowSelectionSettings settings = window_selection(parameters);
+  settings.energy_scale = 1.0F / quantised.scale;
+  settings.energy_offset = quantised.offset;
+  add(make_column_sum_stage(geometry_, outputs_.disparity_px.height(), settings.radius,
+                            quantised.offset, quantised.scale));
+  add(make_window_selection_stage(geometry_, settings, outputs_));
+}
+
+void MatchChain::add_aggregation(const MethodParameters& parameters) {
+  const int height = outputs_.disparity_px.height();
+  const auto add_all = [this](std::vector<std::unique_ptr<scheduler::RowStage>> stages) {
+    for (auto& stage : stages) {
+      add(std::move(stage));
+    }
+  };
+  first_iteration_ = static_cast<int>(stages_.size());
+  switch (parameters.aggregation) {
+    case Aggregation::kNone:
+    case Aggregation::kBox:
+      break;
+    case Aggregation::kGaussian:
+      add_all(make_gaussian_stages(geometry_, height, parameters.aggregation_sigma_px));
+      break;
+    case Aggregation::kBoxCascade:
+      add_all(make_box_cascade_stages(geometry_, height, parameters.aggregation_sigma_px));
+      break;
+    case Aggregation::kDiffusion:
+    case Aggregation::kMembrane:
+      iterations_ = parameters.iterations;
+      for (int i = 0; i < iterations_; ++i) {
+        add(make_diffusion_stage(parameters, geometry_, height));
+      }
+      break;
+    case Aggregation::kLocalStopping:
+      iterations_ = parameters.iterations;
+      for (int i = 0; i < iterations_; ++i) {
+        add(make_local_stopping_stage(parameters, geometry_, height,
+                                      {.is_first = i == 0, .is_last = i + 1 == iterations_}));
+      }
+      break;
+    case Aggregation::kBayes:
+      iterations_ = parameters.iterations;
+      add_all(make_bayes_stages(parameters, geometry_, height));
+      ++first_iteration_;  // behind the start
+      break;
+  }
+}
+
+void MatchChain::add_selection(const MethodParameters& parameters) {
+  CellSelectionSettings settings;
+  settings.cells_are_probabilities = parameters.aggregation == Aggregation::kBayes;
+  settings.subpixel = parameters.subpixel;
+  settings.confidence = confidence_measure(parameters);
+  settings.entropy_scale = static_cast<float>(entropy_scale(parameters));
+  add(make_cell_selection_stage(geometry_, settings, outputs_));
 }
 
 }  // namespace vantage

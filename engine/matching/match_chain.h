@@ -1,11 +1,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/image/image.h"
 #include "engine/matching/intensity_planes.h"
 #include "engine/matching/match_options.h"
+#include "engine/matching/stage_cell_selection.h"
+#include "engine/matching/stage_cost.h"
 #include "scheduler/strip_plan.h"
 
 namespace vantage {
@@ -15,19 +18,40 @@ namespace vantage {
 kernels::CandidateGeometry candidate_geometry(const MatchOptions& options, Reference reference,
                                               int width, int height);
 
+/// Whether box sums of squared differences of luma can be made by the column SSD stage, which is
+/// faster than making costs first and summing them: the maps are the same.
+bool uses_column_ssd(const MethodParameters& parameters);
+
+/// What a chain compares: the pair, for the column SSD stage, or a reference and its partners.
+struct ChainInput {
+  const PreparedPair* pair = nullptr;  ///< else the rest counts
+  const CostImage* reference = nullptr;
+  std::vector<CostPartner> partners;
+};
+
 /// The stages that compute one disparity map: cost → aggregation → selection.
 class MatchChain {
  public:
-  /// `pair` as filled by prepare_pair() for the same geometry; it and `disparity_px` must outlive
-  /// the chain.
-  MatchChain(const MatchOptions& options, const kernels::CandidateGeometry& geometry,
-             const PreparedPair& pair, ImageView<float> disparity_px);
+  /// `parameters` must be valid. What `input` points at and the outputs must outlive the chain.
+  MatchChain(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
+             const ChainInput& input, const MapOutputs& outputs);
 
   [[nodiscard]] scheduler::Chain stages() const { return pointers_; }
+  /// Stage counts after which to cut the chain so that each pass holds `iterations`, see
+  /// scheduler::PlanRequest.
+  [[nodiscard]] std::vector<int> pass_ends(int iterations) const;
 
  private:
   void add(std::unique_ptr<scheduler::RowStage> stage);
+  void add_column_ssd(const MethodParameters& parameters, const PreparedPair& pair);
+  void add_box(const MethodParameters& parameters, const ChainInput& input);
+  void add_aggregation(const MethodParameters& parameters);
+  void add_selection(const MethodParameters& parameters);
 
+  kernels::CandidateGeometry geometry_;
+  MapOutputs outputs_;
+  int first_iteration_ = 0;
+  int iterations_ = 0;
   std::vector<std::unique_ptr<scheduler::RowStage>> stages_;
   std::vector<const scheduler::RowStage*> pointers_;
 };

@@ -4,47 +4,147 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string_view>
 
 #include "engine/error.h"
+#include "engine/matching/match_presets.h"
 
 namespace vantage {
 namespace {
 
 constexpr int kMaxCandidates = 4096;
 constexpr int kMaxDisparity = 65535;
+constexpr int kMaxEdgeSnapping = 16;
+constexpr double kNoThreshold = -std::numeric_limits<double>::infinity();
 
-}  // namespace
+PresetSettings settings_of(const std::optional<MatchPreset>& preset) {
+  return preset ? preset_settings(*preset) : PresetSettings{};
+}
 
-void MatchOptions::validate() const {
-  const auto [least, most] = disparities;
-  if (most < least) {
+/// Gives `target` the fields that `overrides` have.
+void take_over(const RefinementOverrides& overrides, RefinementOptions& target) {
+  const auto take = [](const auto& override_value, auto& field) {
+    if (override_value) {
+      field = *override_value;
+    }
+  };
+  take(overrides.edge_snapping_px, target.edge_snapping_px);
+  take(overrides.cross_check, target.cross_check);
+  take(overrides.cross_check_px, target.cross_check_px);
+  take(overrides.confidence_threshold, target.confidence_threshold);
+  take(overrides.speckle_size_px, target.speckle_size_px);
+  take(overrides.fill, target.fill);
+}
+
+void validate_range(std::string_view field, DisparityRange range) {
+  if (range.max < range.min) {
     throw UsageError(
-        fmt::format("disparities is {}:{}, expected MIN:MAX with MIN <= MAX", least, most));
+        fmt::format("{} is {}:{}, expected MIN:MAX with MIN <= MAX", field, range.min, range.max));
   }
-  if (std::abs(static_cast<long>(least)) > kMaxDisparity ||
-      std::abs(static_cast<long>(most)) > kMaxDisparity) {
-    throw UsageError(fmt::format("disparities is {}:{}, expected values within ±{}", least, most,
-                                 kMaxDisparity));
+  if (range.min < -kMaxDisparity || range.max > kMaxDisparity) {
+    throw UsageError(fmt::format("{} is {}:{}, expected values within ±{}", field, range.min,
+                                 range.max, kMaxDisparity));
   }
-  if (disparities.count() > kMaxCandidates) {
-    throw UsageError(fmt::format("disparities is {}:{} ({} candidates), expected at most {}", least,
-                                 most, disparities.count(), kMaxCandidates));
+}
+
+void validate_candidates(DisparityRange x, const std::optional<DisparityRange>& y) {
+  validate_range("disparities", x);
+  if (x.count() > kMaxCandidates) {
+    throw UsageError(fmt::format("disparities is {}:{} ({} candidates), expected at most {}", x.min,
+                                 x.max, x.count(), kMaxCandidates));
   }
-  vantage::validate(resolved());
+  if (!y) {
+    return;
+  }
+  validate_range("disparities-y", *y);
+  const long long pairs = static_cast<long long>(x.count()) * y->count();
+  if (pairs > kMaxCandidates) {
+    throw UsageError(fmt::format(
+        "disparities-y is {}:{} ({} candidates with disparities {}:{}), expected at most {}",
+        y->min, y->max, pairs, x.min, x.max, kMaxCandidates));
+  }
+}
+
+void validate_refinement(const RefinementOptions& refinement, bool is_two_dimensional) {
+  if (refinement.edge_snapping_px < 0 || refinement.edge_snapping_px > kMaxEdgeSnapping) {
+    throw UsageError(fmt::format("edge-snapping is {}, expected a number of pixels from 0 to {}",
+                                 refinement.edge_snapping_px, kMaxEdgeSnapping));
+  }
+  if (refinement.edge_snapping_px > 0 && is_two_dimensional) {
+    throw UsageError(fmt::format(
+        "edge-snapping is {}, expected 0 with disparities-y: it moves discontinuities of "
+        "horizontal disparities only",
+        refinement.edge_snapping_px));
+  }
+  if (!(refinement.cross_check_px >= 1 && std::isfinite(refinement.cross_check_px))) {
+    throw UsageError(fmt::format("cross-check is {}, expected a number of at least 1",
+                                 refinement.cross_check_px));
+  }
+  if (!(refinement.confidence_threshold < std::numeric_limits<double>::infinity())) {
+    throw UsageError(fmt::format("confidence-threshold is {}, expected a finite number",
+                                 refinement.confidence_threshold));
+  }
   if (refinement.speckle_size_px < 0) {
     throw UsageError(fmt::format("speckle-size is {}, expected a number of pixels, at least 0",
                                  refinement.speckle_size_px));
   }
-  if (refinement.cross_check_px && !(*refinement.cross_check_px >= 1 && std::isfinite(*refinement.cross_check_px))) {
-    throw UsageError(
-        fmt::format("cross-check is {}, expected a number of at least 1", *refinement.cross_check_px));
-  }
 }
 
-MethodParameters MatchOptions::resolved() const { return resolve(method, parameters); }
+}  // namespace
 
-double MatchOptions::cross_check_or_default() const {
-  return refinement.cross_check_px.value_or(std::max(1.0, disparities.count() / 15.0));
+bool uses_confidence(const RefinementOptions& refinement) {
+  return refinement.confidence_threshold > kNoThreshold;
+}
+
+void MatchOptions::validate() const {
+  if (method && preset) {
+    throw UsageError("method and preset are both set, expected one of them: a preset has a method");
+  }
+  if (disparities_auto && disparities_y) {
+    throw UsageError(
+        "disparities is auto, expected MIN:MAX beside disparities-y: the range is estimated for "
+        "rectified pairs only");
+  }
+  validate_candidates(disparities, disparities_y);
+  vantage::validate(resolved());
+  validate_refinement(resolved_refinement(), disparities_y.has_value());
+}
+
+MethodParameters MatchOptions::resolved() const {
+  const PresetSettings settings = settings_of(preset);
+  return resolve(method.value_or(settings.method), merge(settings.parameters, parameters));
+}
+
+RefinementOptions MatchOptions::resolved_refinement() const {
+  RefinementOptions result{
+      .edge_snapping_px = 0,
+      .cross_check = true,
+      .cross_check_px = std::max(1.0, disparities.count() / 15.0),
+      .confidence_threshold = is_evidence(resolved()) ? 0 : kNoThreshold,
+      .speckle_size_px = 0,
+      .fill = Fill::kConstant,
+  };
+  take_over(settings_of(preset).refinement, result);
+  take_over(refinement, result);
+  return result;
+}
+
+MatchOptions MatchOptions::spelled_out() const {
+  MatchOptions result = *this;
+  result.method = method.value_or(settings_of(preset).method);
+  result.preset.reset();
+  result.parameters = as_overrides(resolved());
+  const RefinementOptions in_force = resolved_refinement();
+  result.refinement = {
+      .edge_snapping_px = in_force.edge_snapping_px,
+      .cross_check = in_force.cross_check,
+      .cross_check_px = in_force.cross_check_px,
+      .confidence_threshold = in_force.confidence_threshold,
+      .speckle_size_px = in_force.speckle_size_px,
+      .fill = in_force.fill,
+  };
+  return result;
 }
 
 }  // namespace vantage

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <optional>
-#include <string_view>
+#include <type_traits>
 
 #include "engine/matching/method_parameters.h"
 
@@ -24,40 +24,62 @@ enum class Fill {
   kNone,      ///< unknown
 };
 
-/// What is done to maps after the winners are chosen (EQUATIONS §5), in this order.
-struct RefinementOptions {
+/// What is done to maps after the winners are chosen (EQUATIONS §5), in this order. With Field =
+/// std::optional: what a user sets; with Field = std::type_identity_t: what is in force.
+template <template <typename> class Field>
+struct RefinementOptionsOf {
   /// Moves discontinuities to intensity edges at most this far away; 0: leaves them; 0..16.
-  int edge_snapping_px = 0;
-  bool cross_check = true;
-  /// Largest |d_left − d_right| that still counts as agreement, ≥ 1 (5.13); default max(1, D/15).
-  std::optional<double> cross_check_px;
-  /// Pixels with a confidence of at most this are unmatched (5.14); empty: 0 for gradient
-  /// evidence, none otherwise. In the unit of the method's confidence.
-  std::optional<double> confidence_threshold;
+  Field<int> edge_snapping_px;
+  Field<bool> cross_check;
+  /// Left and right disparities agree if they differ by less, ≥ 1 (5.13).
+  Field<double> cross_check_px;
+  /// Pixels with a confidence of at most this are unmatched (5.14), in the unit of the method's
+  /// confidence; −infinity: none are.
+  Field<double> confidence_threshold;
   /// Matched regions of fewer pixels than this count as unmatched; ≥ 0, 0 and 1: none do.
-  int speckle_size_px = 0;
-  Fill fill = Fill::kConstant;
+  Field<int> speckle_size_px;
+  Field<Fill> fill;
+
+  friend bool operator==(const RefinementOptionsOf&, const RefinementOptionsOf&) = default;
 };
+
+/// Empty fields take what the preset says, then the defaults.
+using RefinementOverrides = RefinementOptionsOf<OptionalField>;
+using RefinementOptions = RefinementOptionsOf<std::type_identity_t>;
+
+/// Whether refinement looks at the confidence of the maps.
+bool uses_confidence(const RefinementOptions& refinement);
 
 /// Everything that decides what a pair's disparity maps are. Defaults are the command line's.
 struct MatchOptions {
-  MatchMethod method = MatchMethod::kSsd;
-  /// Replaces `method` and the defaults of everything else that is not set.
+  /// Empty: the preset's, without one SSD. Not both.
+  std::optional<MatchMethod> method;
+  /// Chooses the method and the defaults of everything that is not set.
   std::optional<MatchPreset> preset;
-  DisparityRange disparities;  ///< at most 4096 candidates
+  /// At most 4096 candidates; of a two-dimensional search the pairs of both components count.
+  DisparityRange disparities;
+  /// `disparities` is still to be replaced by what estimate_disparity_range() says: whoever reads
+  /// the images does that. Matchers refuse it.
+  bool disparities_auto = false;
   /// Vertical component of a two-dimensional search, y_left − y_right (5.5.3); empty: 0 only.
   std::optional<DisparityRange> disparities_y;
   MethodOverrides parameters;
   Reference reference = Reference::kLeft;
   /// Winner-take-all only: no refinement (sub-pixel stays as set above).
   bool raw = false;
-  RefinementOptions refinement;
+  RefinementOverrides refinement;
 
   /// What is in force: the fields of `parameters`, else the preset's, else the method's.
   [[nodiscard]] MethodParameters resolved() const;
-  /// Throws UsageError naming the field, its value and its limit.
+  /// What is in force unless `raw`: the fields of `refinement`, else the preset's, else: no
+  /// snapping, a cross-check within max(1, D/15) px, a confidence above 0 for gradient evidence
+  /// and any for the others, speckles kept, fill at constant depth.
+  [[nodiscard]] RefinementOptions resolved_refinement() const;
+  /// The same options with every field set to what is in force, without the preset.
+  [[nodiscard]] MatchOptions spelled_out() const;
+  /// Throws UsageError naming the field, its value and its limit, or why options do not go
+  /// together.
   void validate() const;
-  [[nodiscard]] double cross_check_or_default() const;
 };
 
 }  // namespace vantage

@@ -43,6 +43,43 @@ MatchCost natural_cost(Aggregation aggregation) {
   return aggregation == Aggregation::kBayes ? MatchCost::kContaminated : MatchCost::kSquared;
 }
 
+template <typename T, typename Target>
+void take(const std::optional<T>& override_value, Target& field) {
+  if (override_value) {
+    field = *override_value;
+  }
+}
+template <typename T>
+void take(const T& value, std::optional<T>& field) {
+  field = value;
+}
+
+/// Gives `target` the fields that `overrides` have.
+template <template <typename> class From, template <typename> class To>
+void take_over(const MethodParametersOf<From>& overrides, MethodParametersOf<To>& target) {
+  take(overrides.cost, target.cost);
+  take(overrides.aggregation, target.aggregation);
+  take(overrides.colour, target.colour);
+  take(overrides.subpixel, target.subpixel);
+  take(overrides.border, target.border);
+  take(overrides.window_px, target.window_px);
+  take(overrides.aggregation_sigma_px, target.aggregation_sigma_px);
+  take(overrides.iterations, target.iterations);
+  take(overrides.lambda, target.lambda);
+  take(overrides.beta, target.beta);
+  take(overrides.certainty, target.certainty);
+  take(overrides.mu, target.mu);
+  take(overrides.sigma_prior, target.sigma_prior);
+  take(overrides.epsilon_prior, target.epsilon_prior);
+  take(overrides.sigma_measurement, target.sigma_measurement);
+  take(overrides.epsilon_measurement, target.epsilon_measurement);
+  take(overrides.truncation, target.truncation);
+  take(overrides.alpha, target.alpha);
+  take(overrides.norm, target.norm);
+  take(overrides.gradient, target.gradient);
+  take(overrides.prefilter, target.prefilter);
+}
+
 void require(bool holds, std::string_view field, double value, std::string_view expected) {
   if (!holds) {
     throw UsageError(fmt::format("{} is {}, expected {}", field, value, expected));
@@ -79,6 +116,21 @@ void validate_bayes(const MethodParameters& parameters) {
           "a number between 0 and 1, both excluded");
 }
 
+void validate_combination(const MethodParameters& parameters) {
+  if (parameters.border == Border::kValid && parameters.aggregation != Aggregation::kBox &&
+      parameters.aggregation != Aggregation::kNone) {
+    throw UsageError(
+        "border is valid, which asks for whole windows, but only the aggregation box has windows; "
+        "expected border clip");
+  }
+  if (parameters.aggregation == Aggregation::kLocalStopping &&
+      parameters.certainty == Certainty::kMargin && is_evidence(parameters)) {
+    throw UsageError(
+        "certainty margin divides by the sum of a pixel's costs, which for the cost gradient have "
+        "both signs; expected certainty entropy");
+  }
+}
+
 }  // namespace
 
 MethodParameters book_parameters(MatchMethod method) {
@@ -107,38 +159,25 @@ MethodParameters book_parameters(MatchMethod method) {
   return parameters;
 }
 
+MethodOverrides merge(const MethodOverrides& defaults, const MethodOverrides& overrides) {
+  MethodOverrides result = defaults;
+  take_over(overrides, result);
+  return result;
+}
+
+MethodOverrides as_overrides(const MethodParameters& parameters) {
+  MethodOverrides result;
+  take_over(parameters, result);
+  return result;
+}
+
 MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides) {
   MethodParameters result = book_parameters(method);
   if (overrides.aggregation && *overrides.aggregation != result.aggregation &&
       result.cost == natural_cost(result.aggregation)) {
     result.cost = natural_cost(*overrides.aggregation);
   }
-  const auto take = [](auto& field, const auto& override_value) {
-    if (override_value) {
-      field = *override_value;
-    }
-  };
-  take(result.cost, overrides.cost);
-  take(result.aggregation, overrides.aggregation);
-  take(result.colour, overrides.colour);
-  take(result.subpixel, overrides.subpixel);
-  take(result.border, overrides.border);
-  take(result.window_px, overrides.window_px);
-  take(result.aggregation_sigma_px, overrides.aggregation_sigma_px);
-  take(result.iterations, overrides.iterations);
-  take(result.lambda, overrides.lambda);
-  take(result.beta, overrides.beta);
-  take(result.certainty, overrides.certainty);
-  take(result.mu, overrides.mu);
-  take(result.sigma_prior, overrides.sigma_prior);
-  take(result.epsilon_prior, overrides.epsilon_prior);
-  take(result.sigma_measurement, overrides.sigma_measurement);
-  take(result.epsilon_measurement, overrides.epsilon_measurement);
-  take(result.truncation, overrides.truncation);
-  take(result.alpha, overrides.alpha);
-  take(result.norm, overrides.norm);
-  take(result.gradient, overrides.gradient);
-  take(result.prefilter, overrides.prefilter);
+  take_over(overrides, result);
   return result;
 }
 
@@ -160,6 +199,7 @@ void validate(const MethodParameters& parameters) {
           "a number of at least 0");
   validate_diffusion(parameters);
   validate_bayes(parameters);
+  validate_combination(parameters);
 }
 
 }  // namespace vantage

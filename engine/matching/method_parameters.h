@@ -12,13 +12,13 @@ enum class MatchPreset { kFast, kBalanced, kQuality };
 
 /// What a cell of the disparity space starts from: the dissimilarity of a pixel and its partner.
 enum class MatchCost {
-  kSquared,             ///< ΔI² (6.2)
-  kAbsolute,            ///< |ΔI|
-  kTruncated,           ///< min(|ΔI|, truncation)
-  kBirchfieldTomasi,    ///< |ΔI| insensitive to sampling: least over half a pixel either way
-  kGradient,            ///< −evidence (5.5)
-  kContaminated,        ///< −log[(1−ε) exp(−ΔI²/2σ²) + ε], contaminated Gaussian (6.26 ff.)
-  kCensus,              ///< Hamming distance of 9×7 census codes
+  kSquared,           ///< ΔI² (6.2)
+  kAbsolute,          ///< |ΔI|
+  kTruncated,         ///< min(|ΔI|, truncation)
+  kBirchfieldTomasi,  ///< |ΔI| insensitive to sampling: least over half a pixel either way
+  kGradient,          ///< −evidence (5.5)
+  kContaminated,  ///< −log[(1−ε) exp(−ΔI²/2σ²) + ε], contaminated Gaussian (6.26 ff.)
+  kCensus,        ///< Hamming distance of 9×7 census codes
 };
 /// How cells gather support from their neighbours.
 enum class Aggregation {
@@ -64,8 +64,8 @@ struct MethodParametersOf {
   Field<double> mu;                    ///< Bayes: weight of the neighbours, 0 < μ ≤ 1
   Field<double> sigma_prior;           ///< Bayes: σP in pixels of disparity, > 0
   Field<double> epsilon_prior;         ///< Bayes: εP, inside (0, 1)
-  Field<double> sigma_measurement;     ///< σM in grey levels, > 0: contaminated cost, Bayes, entropy
-  Field<double> epsilon_measurement;   ///< εM, inside (0, 1): contaminated cost, Bayes
+  Field<double> sigma_measurement;  ///< σM in grey levels, > 0: contaminated cost, Bayes, entropy
+  Field<double> epsilon_measurement;  ///< εM, inside (0, 1): contaminated cost, Bayes
 
   Field<double> truncation;  ///< truncated cost: grey levels, > 0
   Field<double> alpha;       ///< gradient evidence: weight of the gradients' difference, ≥ 0
@@ -81,6 +81,12 @@ using OptionalField = std::optional<T>;
 /// Empty fields take what the preset, then the method says.
 using MethodOverrides = MethodParametersOf<OptionalField>;
 using MethodParameters = MethodParametersOf<std::type_identity_t>;
+
+/// `overrides`, and where they are empty `defaults`.
+MethodOverrides merge(const MethodOverrides& defaults, const MethodOverrides& overrides);
+
+/// Overrides that leave nothing to preset or method.
+MethodOverrides as_overrides(const MethodParameters& parameters);
 
 /// The book's parameters of a method.
 MethodParameters book_parameters(MatchMethod method);

@@ -18,17 +18,18 @@ enum class ConfidenceMeasure {
 };
 
 /// Where a selection stage writes; views of the size of the reference image that outlive it. NaN
-/// where there is no candidate. Views that are not wanted are empty.
+/// where there is no candidate. Disparities are always wanted; other views are empty if not.
 struct MapOutputs {
   ImageView<float> disparity_px;
-  ImageView<float> confidence;
-  ImageView<float> energy;  ///< of the winner: E, or −log p
+  ImageView<float> confidence = {};
+  ImageView<float> energy = {};  ///< of the winner: E, or −log p
 };
 
 struct CellSelectionSettings {
   /// Cells are probabilities that sum to 1 over a column's candidates and lanes; else energies.
   bool cells_are_probabilities = false;
   Subpixel subpixel = Subpixel::kParabola;
+  /// kProbability of probabilities, another of energies.
   ConfidenceMeasure confidence = ConfidenceMeasure::kMargin;
   /// Of the entropy: p ∝ exp(−scale · (E − Emin)), 1/(2σM²).
   float entropy_scale = 1;
@@ -36,7 +37,9 @@ struct CellSelectionSettings {
 
 /// Last stage: chooses in each column the candidate with a partner whose cell is best (least
 /// energy, largest probability), the smallest of equals, and optionally refines it by a parabola
-/// (§3; through −log p for probabilities). Input cells are float, geometry.lanes() a column.
+/// (§3; through −log p for probabilities). Input cells are float, geometry.lanes() a column, finite
+/// where a candidate has a partner; what other lanes hold does not matter. Throws Error for a wanted
+/// confidence that such cells do not have.
 std::unique_ptr<scheduler::RowStage> make_cell_selection_stage(
     const kernels::CandidateGeometry& geometry, const CellSelectionSettings& settings,
     const MapOutputs& outputs);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "engine/matching/cells_without_partner.h"
 #include "kernels/column_ssd/column_ssd.h"
 
 namespace vantage {
@@ -47,7 +48,7 @@ class ColumnSsdStage : public scheduler::RowStage {
       add_rows(task, enters < extent().rows ? enters : kNoRow, leaves >= 0 ? leaves : kNoRow,
                previous, sums);
     }
-    clear_without_partner(task.columns, sums);
+    clear_without_partner(geometry_, radius_, task.columns, sums);
   }
 
  protected:
@@ -72,27 +73,6 @@ class ColumnSsdStage : public scheduler::RowStage {
   [[nodiscard]] int lanes() const { return lanes_; }
 
  private:
-  /// Only columns near the borders have such cells. Of their cells without a partner, those within
-  /// the radius of the last one with a partner are all that a window of candidates reaches.
-  void clear_without_partner(Range columns, std::int32_t* sums) const {
-    const auto [inner_begin, inner_end] = geometry_.columns_with_all_partners();
-    const auto clear = [&](int x) {
-      const kernels::CandidateRange inside = geometry_.with_partner(x);
-      const int inside_end = std::max(inside.begin, inside.end);
-      std::int32_t* cells =
-          sums + static_cast<std::size_t>(x - columns.begin) * static_cast<std::size_t>(lanes_);
-      std::fill(cells + std::max(0, inside.begin - radius_), cells + inside.begin, 0);
-      std::fill(cells + inside_end, cells + std::min(lanes_, inside_end + radius_), 0);
-    };
-    int x = columns.begin;
-    for (; x < std::min(columns.end, inner_begin); ++x) {
-      clear(x);
-    }
-    for (x = std::max(x, inner_end); x < columns.end; ++x) {
-      clear(x);
-    }
-  }
-
   const IntensityPlane<Pixel>& reference_;
   const IntensityPlane<Pixel>& partner_;
   CandidateGeometry geometry_;

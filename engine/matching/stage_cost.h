@@ -46,10 +46,11 @@ class CostImage {
 struct CostPartner {
   const CostImage* image = nullptr;
   /// The partner of column x is x + direction · disparity · baseline_ratio, interpolated linearly
-  /// where it lies between pixels (6.6; Okutomi & Kanade). ≠ 0; negative: a camera on the other
-  /// side.
+  /// where it lies between pixels (6.6; Okutomi & Kanade). ≠ 0, of magnitude ≤ 1000; negative: a
+  /// camera on the other side, whose image must be prepared as a partner of the other direction.
   double baseline_ratio = 1;
-  /// The partner's row is y + direction · disparity_y_px (5.5.3); rows outside replicate the border.
+  /// The partner's row is y + direction · disparity_y_px (5.5.3). Partners in rows outside are
+  /// outside like those in columns outside.
   int disparity_y_px = 0;
 };
 
@@ -61,16 +62,22 @@ enum class CellMeaning {
 
 /// Source stage: the disparity space E0 of (6.1), or the likelihood that Bayesian diffusion starts
 /// from. Output cells are float, geometry.lanes() a column; the lanes beyond geometry.count are
-/// finite (energies) or 0 (likelihoods). With several partners: the sum of their costs.
+/// finite (energies) or 0 (likelihoods).
 ///
 /// Energies: the costs of MatchCost in grey levels (of 0..255) to the power the cost has; evidence
-/// is negated. A cell whose partner is outside has the cost of the clamped coordinate; evidence has
-/// 0, the contaminated Gaussian −log ε.
-/// Likelihoods: (1−ε) exp(−r²/2σ²) + ε, with r² = ΔI² for the squared and contaminated costs,
-/// r = the cost for the others, and for evidence (1−ε) exp((E − max over the column)/σ) + ε, E of
-/// the cells with a partner; ε where the partner is outside. With several partners: the product.
+/// is negated. Of colour channels: the mean of their costs. A cell whose partner is outside has the
+/// cost of the clamped coordinate; evidence has 0, the contaminated Gaussian −log ε. With several
+/// partners: the sum of their costs.
+/// Likelihoods: (1−ε) exp(−r²/2σ²) + ε, with r² = ΔI² (of channels: its mean) for the squared and
+/// contaminated costs, r = the cost for the others, and for evidence
+/// (1−ε) exp((E − max over the column)/σ) + ε, E of the cells with a partner; ε where the partner
+/// is outside. With several partners: the product.
 ///
-/// `reference`, `partners` and their planes must outlive the stage.
+/// `reference`, prepared as a reference, `partners` (at least one), prepared as partners of this
+/// direction, and their planes must outlive the stage; all prepared with `parameters`, this range
+/// and equal sizes. A grey image beside a colour one has the same level in all channels. Throws
+/// UsageError for a baseline ratio out of range, and for one not ±1 with a cost that compares more
+/// than grey levels: Birchfield–Tomasi, gradient, census.
 std::unique_ptr<scheduler::RowStage> make_cost_stage(const MethodParameters& parameters,
                                                      const kernels::CandidateGeometry& geometry,
                                                      const CostImage& reference,

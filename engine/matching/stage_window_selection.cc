@@ -1,9 +1,13 @@
 #include "engine/matching/stage_window_selection.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 
+#include "engine/error.h"
+#include "kernels/cell_winner/cell_winner.h"
+#include "kernels/mean_energy/mean_energy.h"
 #include "kernels/parabola/parabola.h"
 #include "kernels/row_sum/row_sum.h"
 #include "kernels/winner/winner.h"
@@ -17,30 +21,41 @@ using scheduler::Range;
 class WindowSelectionStage final : public scheduler::RowStage {
  public:
   WindowSelectionStage(const kernels::CandidateGeometry& geometry,
-                       const WindowSelectionSettings& settings, ImageView<float> disparity_px)
-      : RowStage({geometry.width, disparity_px.height()}),
+                       const WindowSelectionSettings& settings, const MapOutputs& outputs)
+      : RowStage({geometry.width, outputs.disparity_px.height()}),
         geometry_(geometry),
         settings_(settings),
         lanes_(static_cast<std::size_t>(geometry.lanes())),
-        disparity_px_(disparity_px) {}
+        outputs_(outputs) {
+    if (wants_confidence() && settings.confidence == ConfidenceMeasure::kProbability) {
+      throw Error(
+          "confidence is a probability, expected a measure of energies: evidence, margin "
+          "or entropy");
+    }
+  }
 
   [[nodiscard]] std::string_view name() const override { return "window selection"; }
   [[nodiscard]] std::size_t bytes_per_column() const override { return 0; }
   [[nodiscard]] Range input_columns(Range columns, Extent input) const override {
     return columns.widened(settings_.radius, input.all_columns());
   }
-  /// Of one block of columns: sums, lane-by-lane minima, minima and winners; and the window's sums
-  /// from block to block.
+  /// Of one block of columns: sums, lane-by-lane minima, minima and winners; the window's sums from
+  /// block to block; and the mean energies of a block where all are wanted.
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
-    return sizeof(std::int32_t) * (kBlockColumns * (lanes_ + kernels::kLaneMultiple + 2) + lanes_);
+    return sizeof(std::int32_t) * (kBlockColumns * (lanes_ + kernels::kLaneMultiple + 2) + lanes_) +
+           (compares_energies() ? sizeof(float) * kBlockColumns * lanes_ : 0);
   }
 
   void make_row(const scheduler::RowTask& task) const override {
-    float* disparity_px = disparity_px_.row(task.y) + task.columns.begin;
     const bool whole_windows = settings_.border == Border::kValid;
     if (whole_windows &&
         (task.y < settings_.radius || task.y >= extent().rows - settings_.radius)) {
-      std::fill_n(disparity_px, task.columns.size(), std::numeric_limits<float>::quiet_NaN());
+      for (const auto& map : {outputs_.disparity_px, outputs_.confidence, outputs_.energy}) {
+        if (!map.empty()) {
+          std::fill_n(map.row(task.y) + task.columns.begin, task.columns.size(),
+                      std::numeric_limits<float>::quiet_NaN());
+        }
+      }
       return;
     }
     kernels::WinnerRow row;
@@ -60,6 +75,12 @@ class WindowSelectionStage final : public scheduler::RowStage {
   /// Columns whose sums are kept at a time: few enough for the level-1 cache beside the input row.
   static constexpr int kBlockColumns = 32;
 
+  [[nodiscard]] bool wants_confidence() const { return !outputs_.confidence.empty(); }
+  /// Whether the confidence looks at the energies of all candidates.
+  [[nodiscard]] bool compares_energies() const {
+    return wants_confidence() && settings_.confidence != ConfidenceMeasure::kEvidence;
+  }
+
   /// Makes `columns` of the row, all of them plain (every candidate has its whole window) or none.
   void select(const scheduler::RowTask& task, const kernels::WinnerRow& row, Range columns,
               bool plain) const {
@@ -72,6 +93,7 @@ class WindowSelectionStage final : public scheduler::RowStage {
                     bool plain) const {
     const bool parabola = settings_.subpixel == Subpixel::kParabola;
     const bool indexed = settings_.index_bits > 0;
+    const bool energies = wants_confidence() || !outputs_.energy.empty();
     auto* cells = reinterpret_cast<std::int32_t*>(task.state);
     std::int32_t* work = cells + kBlockColumns * lanes_;
     std::int32_t* minima = work + kBlockColumns * kernels::kLaneMultiple;
@@ -88,7 +110,7 @@ class WindowSelectionStage final : public scheduler::RowStage {
     sum.number_lanes = indexed;
     sum.window_sums = winners + kBlockColumns;
     sum.continues = columns.begin > task.columns.begin;
-    sum.output = plain && indexed && !parabola ? nullptr : cells;
+    sum.output = plain && indexed && !parabola && !energies ? nullptr : cells;
     if (plain) {
       sum.minima = minima;
       sum.minima_work = work;
@@ -109,26 +131,65 @@ class WindowSelectionStage final : public scheduler::RowStage {
     } else {
       kernels::locate_minima_row(cells, minima, geometry_.lanes(), columns.size(), winners);
     }
-    float* disparity_px = disparity_px_.row(task.y) + columns.begin;
+    float* disparity_px = outputs_.disparity_px.row(task.y) + columns.begin;
     if (parabola) {
       kernels::parabola_disparity_row(row, winners, disparity_px);
     } else {
       kernels::integer_disparity_row(row, winners, disparity_px);
+    }
+    if (energies) {
+      write_energies(row, task.y, winners,
+                     reinterpret_cast<float*>(winners + kBlockColumns + lanes_));
+    }
+  }
+
+  /// Energy and confidence of a block, through `mean_energies` where all candidates are compared.
+  void write_energies(const kernels::WinnerRow& row, int y, const std::int32_t* winners,
+                      float* mean_energies) const {
+    const Range window_rows = Range{y, y + 1}.widened(settings_.radius, extent().all_rows());
+    const kernels::EnergyUnit unit{window_rows.size(), settings_.energy_scale,
+                                   settings_.energy_offset};
+    std::array<float, kBlockColumns> best;
+    kernels::winner_energy_row(row, unit, winners, best.data());
+    if (!outputs_.energy.empty()) {
+      std::copy_n(best.data(), row.columns, outputs_.energy.row(y) + row.first_column);
+    }
+    if (!wants_confidence()) {
+      return;
+    }
+    float* confidence = outputs_.confidence.row(y) + row.first_column;
+    if (!compares_energies()) {
+      std::transform(best.begin(), best.begin() + row.columns, confidence,
+                     [](float energy) { return -energy; });
+      return;
+    }
+    kernels::mean_energy_row(row, unit, mean_energies);
+    kernels::CellRow cells;
+    cells.cells = mean_energies;
+    cells.geometry = geometry_;
+    cells.first_column = row.first_column;
+    cells.columns = row.columns;
+    cells.margin = row.whole_windows_only ? settings_.radius : 0;
+    if (settings_.confidence == ConfidenceMeasure::kMargin) {
+      kernels::select_cell_winners_row(cells, {nullptr, nullptr, confidence});
+    } else {
+      kernels::cell_entropy_row(cells, best.data(), static_cast<float>(settings_.entropy_scale),
+                                confidence);
     }
   }
 
   kernels::CandidateGeometry geometry_;
   WindowSelectionSettings settings_;
   std::size_t lanes_;
-  ImageView<float> disparity_px_;
+  MapOutputs outputs_;
 };
 
 }  // namespace
 
 std::unique_ptr<scheduler::RowStage> make_window_selection_stage(
     const kernels::CandidateGeometry& geometry, const WindowSelectionSettings& settings,
-    ImageView<float> disparity_px) {
-  return std::make_unique<WindowSelectionStage>(geometry, settings, disparity_px);
+    const MapOutputs& outputs) {
+  return std::make_unique<WindowSelectionStage>(geometry, settings, outputs);
 }
 
 }  // namespace vantage

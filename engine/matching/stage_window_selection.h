@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "engine/image/image.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/method_parameters.h"
+#include "engine/matching/stage_cell_selection.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
 
@@ -17,6 +17,13 @@ struct WindowSelectionSettings {
   int index_bits = 0;
   Border border = Border::kClip;
   Subpixel subpixel = Subpixel::kParabola;
+
+  /// What sums mean: energy = mean over the samples · energy_scale − energy_offset, the mean being
+  /// that of a window's sum freed of index bits. energy_scale > 0.
+  double energy_scale = 1;
+  double energy_offset = 0;
+  ConfidenceMeasure confidence = ConfidenceMeasure::kMargin;  ///< not kProbability
+  double entropy_scale = 1;                                   ///< see CellSelectionSettings
 };
 
 /// Last stage: sums column sums over 2·radius + 1 columns, cut to the image, chooses the candidate
@@ -24,9 +31,10 @@ struct WindowSelectionSettings {
 /// parabola (§1, §3); NaN where there is no candidate. Input cells are int32_t ≥ 0,
 /// geometry.lanes() a column. Sum and selection are one stage because for a winner alone the sums
 /// need never leave the registers.
-/// Writes into `disparity_px` (geometry.width wide), which must outlive the stage.
+/// Energy and confidence, computed only if wanted, are those of mean costs over the candidates that
+/// may win. Throws Error for a confidence that energies do not have.
 std::unique_ptr<scheduler::RowStage> make_window_selection_stage(
     const kernels::CandidateGeometry& geometry, const WindowSelectionSettings& settings,
-    ImageView<float> disparity_px);
+    const MapOutputs& outputs);
 
 }  // namespace vantage

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
+#include <limits>
 
 #include "engine/error.h"
-#include "engine/matching/match_chain.h"
-#include "engine/refinement/refinement.h"
 #include "scheduler/strip_pipeline.h"
 
 namespace vantage {
@@ -28,43 +28,127 @@ class StageClock {
   Clock::time_point last_ = Clock::now();
 };
 
+void require_equal_sizes(const Photograph& first, std::string_view first_name,
+                         const Photograph& second, std::string_view second_name) {
+  if (first.width() != second.width() || first.height() != second.height()) {
+    throw Error(fmt::format("{} is {}x{} but {} is {}x{}, expected equal sizes", first_name,
+                            first.width(), first.height(), second_name, second.width(),
+                            second.height()));
+  }
+}
+
+void require_different_baselines(std::span<const OtherView> others) {
+  if (others.empty()) {
+    throw UsageError("there is no image beside the reference, expected at least one");
+  }
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const double baseline = others[i].baseline;
+    if (!(std::isfinite(baseline) && baseline != 0)) {
+      throw UsageError(
+          fmt::format("baseline {} is {}, expected a finite number other than 0", i + 1, baseline));
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      if (baseline == others[j].baseline) {
+        throw UsageError(fmt::format("baselines {} and {} are both {}, expected different ones",
+                                     j + 1, i + 1, baseline));
+      }
+    }
+  }
+}
+
+/// Keeps for each pixel the better of the winners found so far and those of one more vertical
+/// disparity; the earlier of equals.
+struct WinnerMerge {
+  ImageView<const float> candidate_disparity_px;
+  ImageView<const float> candidate_confidence = {};  ///< empty: not wanted
+  ImageView<const float> candidate_energy;
+  int disparity_y_px = 0;
+  ImageView<float> disparity_px;
+  ImageView<float> disparity_y;
+  ImageView<float> confidence = {};
+  ImageView<float> energy;
+
+  void merge_row(int y) const {
+    for (int x = 0; x < energy.width(); ++x) {
+      // NaN where the row has no candidate: not less than anything.
+      if (!(candidate_energy.at(x, y) < energy.at(x, y))) {
+        continue;
+      }
+      energy.at(x, y) = candidate_energy.at(x, y);
+      disparity_px.at(x, y) = candidate_disparity_px.at(x, y);
+      disparity_y.at(x, y) = static_cast<float>(disparity_y_px);
+      if (!confidence.empty()) {
+        confidence.at(x, y) = candidate_confidence.at(x, y);
+      }
+    }
+  }
+};
+
 }  // namespace
 
 StereoMatcher::StereoMatcher(const MatchOptions& options, Execution& execution)
     : options_(options), execution_(execution) {
   options_.validate();
+  if (options_.disparities_auto) {
+    throw UsageError("disparities is auto, expected the range that the images suggest");
+  }
+  parameters_ = options_.resolved();
+}
+
+bool StereoMatcher::wants_confidence(const MatchRequest& request) const {
+  return request.confidence || (!options_.raw && uses_confidence(options_.resolved_refinement()));
 }
 
 void StereoMatcher::match(const Photograph& left, const Photograph& right,
                           const MatchRequest& request, DisparityMaps& maps,
                           MatchReport* report) const {
-  if (left.width() != right.width() || left.height() != right.height()) {
-    throw Error(fmt::format("left image is {}x{} but right image is {}x{}, expected equal sizes",
-                            left.width(), left.height(), right.width(), right.height()));
-  }
+  require_equal_sizes(left, "left image", right, "right image");
   MatchReport own_report;
   MatchReport& times = report != nullptr ? *report : own_report;
   times = {};
   StageClock clock(times);
-  const PlanesNeeded needed{request.left || !options_.raw, request.right || !options_.raw};
-  const int window_px = options_.resolved().window_px;
-  const auto pair = prepared_pairs_.borrow();
-  prepare_pair(left, right,
-               candidate_geometry(options_, Reference::kLeft, left.width(), left.height()),
-               window_px * window_px, needed, execution_, *pair);
+  const bool needs_left = request.left || !options_.raw;
+  const bool needs_right = request.right || !options_.raw;
+  const auto geometry = candidate_geometry(options_, Reference::kLeft, left.width(), left.height());
+  const auto prepared = prepared_.borrow();
+  ChainInput left_input;
+  ChainInput right_input;
+  if (uses_column_ssd(parameters_) && !options_.disparities_y) {
+    prepare_pair(left, right, geometry, parameters_.window_px * parameters_.window_px,
+                 {needs_left, needs_right}, execution_, prepared->pair);
+    left_input.pair = right_input.pair = &prepared->pair;
+  } else {
+    prepared->images.resize(2);
+    CostImage& left_image = prepared->images[0];
+    CostImage& right_image = prepared->images[1];
+    left_image.prepare(left, parameters_, geometry, {needs_left, false, needs_right}, execution_);
+    right_image.prepare(right, parameters_, geometry, {needs_right, needs_left, false}, execution_);
+    left_input = {nullptr, &left_image, {CostPartner{&right_image}}};
+    right_input = {nullptr, &right_image, {CostPartner{&left_image}}};
+  }
   clock.record("prepare");
-  maps.left.resize(0, 0);
-  maps.right.resize(0, 0);
-  if (needed.left_reference) {
-    maps.left.resize(left.width(), left.height());
-    compute_map(Reference::kLeft, *pair, maps.left, times);
-    clock.record("match left");
-  }
-  if (needed.right_reference) {
-    maps.right.resize(left.width(), left.height());
-    compute_map(Reference::kRight, *pair, maps.right, times);
-    clock.record("match right");
-  }
+
+  const bool confidence = wants_confidence(request);
+  const auto compute = [&](bool needed, Reference reference, const ChainInput& input,
+                           DisparityMap& map, Image<float>& map_confidence, DisparityMap& map_y,
+                           std::string_view name) {
+    const bool two_dimensional = options_.disparities_y.has_value();
+    const int width = needed ? left.width() : 0;
+    const int height = needed ? left.height() : 0;
+    map.resize(width, height);
+    map_confidence.resize(confidence ? width : 0, confidence ? height : 0);
+    map_y.resize(two_dimensional ? width : 0, two_dimensional ? height : 0);
+    if (needed) {
+      compute_map(reference, input, *prepared,
+                  {map, confidence ? &map_confidence : nullptr, two_dimensional ? &map_y : nullptr},
+                  times);
+      clock.record(name);
+    }
+  };
+  compute(needs_left, Reference::kLeft, left_input, maps.left, maps.left_confidence,
+          maps.left_disparity_y, "match left");
+  compute(needs_right, Reference::kRight, right_input, maps.right, maps.right_confidence,
+          maps.right_disparity_y, "match right");
 
   if (options_.raw) {
     if (request.unmatched) {
@@ -73,35 +157,162 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     }
     return;
   }
-  cross_check(maps.left.view(), maps.right.view(), options_.cross_check_or_default(), execution_,
-              maps.left_unmatched, maps.right_unmatched);
-  clock.record("cross-check");
-  if (options_.refinement.speckle_size_px > 1) {
-    execution_.executor().parallel_for(2, [&](int side) {
-      const auto work = speckle_works_.borrow();
-      const DisparityMap& map = side == 0 ? maps.left : maps.right;
-      mark_speckles(map.view(), options_.refinement.speckle_size_px, *work,
-                    side == 0 ? maps.left_unmatched : maps.right_unmatched);
-    });
-    clock.record("speckles");
-  }
-  fill_unmatched(maps.left_unmatched, MapSide::kLeft, execution_, maps.left);
-  fill_unmatched(maps.right_unmatched, MapSide::kRight, execution_, maps.right);
-  clock.record("fill");
+  const auto work = refinement_works_.borrow();
+  const MapToRefine left_map{
+      .side = MapSide::kLeft,
+      .image = &left,
+      .disparity_px = &maps.left,
+      .disparity_y_px = options_.disparities_y ? &maps.left_disparity_y : nullptr,
+      .confidence = &maps.left_confidence,
+      .unmatched = &maps.left_unmatched};
+  const MapToRefine right_map{
+      .side = MapSide::kRight,
+      .image = &right,
+      .disparity_px = &maps.right,
+      .disparity_y_px = options_.disparities_y ? &maps.right_disparity_y : nullptr,
+      .confidence = &maps.right_confidence,
+      .unmatched = &maps.right_unmatched};
+  refine_maps(options_.resolved_refinement(), left_map, &right_map, execution_, *work,
+              [&](std::string_view step) { clock.record(step); });
 }
 
-void StereoMatcher::compute_map(Reference reference, const PreparedPair& pair, DisparityMap& map_px,
+void StereoMatcher::match_several(const Photograph& reference, std::span<const OtherView> others,
+                                  const MatchRequest& request, DisparityMaps& maps,
+                                  MatchReport* report) const {
+  require_different_baselines(others);
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    require_equal_sizes(reference, "reference image", *others[k].photograph,
+                        fmt::format("image {}", k + 1));
+  }
+  MatchReport own_report;
+  MatchReport& times = report != nullptr ? *report : own_report;
+  times = {};
+  StageClock clock(times);
+  const bool is_left = others.front().baseline > 0;
+  const Reference side = is_left ? Reference::kLeft : Reference::kRight;
+  const int width = reference.width();
+  const int height = reference.height();
+  const auto geometry = candidate_geometry(options_, Reference::kLeft, width, height);
+  const auto prepared = prepared_.borrow();
+  prepared->images.resize(others.size() + 1);
+  prepared->images[0].prepare(reference, parameters_, geometry, {true, false, false}, execution_);
+  ChainInput input{nullptr, prepared->images.data(), {}};
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    CostImage& image = prepared->images[k + 1];
+    const double ratio = others[k].baseline / others.front().baseline;
+    image.prepare(*others[k].photograph, parameters_, geometry, {false, true, true}, execution_);
+    input.partners.push_back({&image, ratio});
+  }
+  clock.record("prepare");
+
+  const bool confidence = wants_confidence(request);
+  const bool two_dimensional = options_.disparities_y.has_value();
+  maps = {};
+  DisparityMap& map = is_left ? maps.left : maps.right;
+  Image<float>& map_confidence = is_left ? maps.left_confidence : maps.right_confidence;
+  DisparityMap& map_y = is_left ? maps.left_disparity_y : maps.right_disparity_y;
+  Mask& unmatched = is_left ? maps.left_unmatched : maps.right_unmatched;
+  map.resize(width, height);
+  map_confidence.resize(confidence ? width : 0, confidence ? height : 0);
+  map_y.resize(two_dimensional ? width : 0, two_dimensional ? height : 0);
+  compute_map(side, input, *prepared,
+              {map, confidence ? &map_confidence : nullptr, two_dimensional ? &map_y : nullptr},
+              times);
+  clock.record("match");
+
+  if (options_.raw) {
+    if (request.unmatched) {
+      mark_unknown(map.view(), execution_, unmatched);
+    }
+    return;
+  }
+  const auto work = refinement_works_.borrow();
+  const MapToRefine to_refine{.side = is_left ? MapSide::kLeft : MapSide::kRight,
+                              .image = &reference,
+                              .disparity_px = &map,
+                              .disparity_y_px = two_dimensional ? &map_y : nullptr,
+                              .confidence = &map_confidence,
+                              .unmatched = &unmatched};
+  refine_maps(options_.resolved_refinement(), to_refine, nullptr, execution_, *work,
+              [&](std::string_view step) { clock.record(step); });
+}
+
+void StereoMatcher::compute_map(Reference reference, const ChainInput& input, Prepared& prepared,
+                                const Result& result, MatchReport& report) const {
+  const auto geometry = candidate_geometry(options_, reference, result.disparity_px.width(),
+                                           result.disparity_px.height());
+  if (options_.disparities_y) {
+    search_rows(geometry, input, prepared, result, report);
+    return;
+  }
+  MapOutputs outputs{.disparity_px = result.disparity_px.view()};
+  if (result.confidence != nullptr) {
+    outputs.confidence = result.confidence->view();
+  }
+  run_chain(geometry, input, outputs, report);
+}
+
+/// Vertical disparities one after the other, each like a search along rows between shifted images;
+/// of the winners the best is kept (5.5.3).
+void StereoMatcher::search_rows(const kernels::CandidateGeometry& geometry, const ChainInput& input,
+                                Prepared& prepared, const Result& result,
                                 MatchReport& report) const {
-  const auto geometry = candidate_geometry(options_, reference, map_px.width(), map_px.height());
-  const MatchChain chain(options_, geometry, pair, map_px.view());
+  const int width = result.disparity_px.width();
+  const int height = result.disparity_px.height();
+  constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
+  result.disparity_px.fill(nothing);
+  result.disparity_y_px->fill(nothing);
+  prepared.energy.resize(width, height);
+  prepared.energy.fill(std::numeric_limits<float>::infinity());
+  prepared.candidate_energy.resize(width, height);
+  prepared.candidate_disparity_px.resize(width, height);
+  MapOutputs outputs{.disparity_px = prepared.candidate_disparity_px.view(),
+                     .energy = prepared.candidate_energy.view()};
+  WinnerMerge merge{.candidate_disparity_px = prepared.candidate_disparity_px.view(),
+                    .candidate_energy = prepared.candidate_energy.view(),
+                    .disparity_px = result.disparity_px.view(),
+                    .disparity_y = result.disparity_y_px->view(),
+                    .energy = prepared.energy.view()};
+  if (result.confidence != nullptr) {
+    result.confidence->fill(nothing);
+    prepared.candidate_confidence.resize(width, height);
+    outputs.confidence = prepared.candidate_confidence.view();
+    merge.candidate_confidence = prepared.candidate_confidence.view();
+    merge.confidence = result.confidence->view();
+  }
+  ChainInput shifted = input;
+  for (int d = options_.disparities_y->min; d <= options_.disparities_y->max; ++d) {
+    for (CostPartner& partner : shifted.partners) {
+      partner.disparity_y_px = d;
+    }
+    run_chain(geometry, shifted, outputs, report);
+    merge.disparity_y_px = d;
+    execution_.for_each_band(height, [&](int first_row, int end_row) {
+      for (int y = first_row; y < end_row; ++y) {
+        const int partner_row = y + geometry.direction * d;
+        if (partner_row >= 0 && partner_row < height) {
+          merge.merge_row(y);
+        }
+      }
+    });
+  }
+}
+
+void StereoMatcher::run_chain(const kernels::CandidateGeometry& geometry, const ChainInput& input,
+                              const MapOutputs& outputs, MatchReport& report) const {
+  const MatchChain chain(parameters_, geometry, input, outputs);
+  const ExecutionOptions& execution = execution_.options();
   scheduler::PlanRequest request;
   request.threads = execution_.executor().thread_count();
-  request.strip_columns = execution_.options().strip_width_px;
-  request.band_rows = execution_.options().band_height_px;
+  request.strip_columns = execution.strip_width_px;
+  request.band_rows = execution.band_height_px;
+  if (execution.iterations_per_pass) {
+    request.pass_ends = chain.pass_ends(*execution.iterations_per_pass);
+  }
   report.plan = scheduler::plan_chain(chain.stages(), execution_.machine(), request);
   scheduler::run_strips(chain.stages(), report.plan, execution_.executor(), execution_.scratch());
-  report.cells +=
-      static_cast<double>(map_px.width()) * map_px.height() * options_.disparities.count();
+  report.cells += static_cast<double>(geometry.width) * outputs.disparity_px.height() *
+                  options_.disparities.count();
 }
 
 }  // namespace vantage

@@ -1,15 +1,16 @@
 #pragma once
 
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/intensity_planes.h"
+#include "engine/matching/match_chain.h"
 #include "engine/matching/match_options.h"
 #include "engine/object_pool.h"
-#include "engine/refinement/speckles.h"
+#include "engine/refinement/refine_maps.h"
 #include "scheduler/strip_plan.h"
 
 namespace vantage {
@@ -19,15 +20,29 @@ namespace vantage {
 struct DisparityMaps {
   DisparityMap left;    ///< on the left grid
   DisparityMap right;   ///< on the right grid
-  Mask left_unmatched;  ///< 255 where cross-check or border left the pixel without a match
+  Mask left_unmatched;  ///< 255 where refinement or border left the pixel without a match
   Mask right_unmatched;
+  /// How sure the winners are: M = max Ê for evidence (5.12), max p for Bayes, the certainty in use
+  /// for local stopping, the winner margin (6.13) otherwise. As it was before refinement.
+  Image<float> left_confidence;
+  Image<float> right_confidence;
+  DisparityMap left_disparity_y;  ///< y_left − y_right of a two-dimensional search, else empty
+  DisparityMap right_disparity_y;
 };
 
 /// What the caller wants. With refinement (options.raw == false) all of it is computed anyway.
 struct MatchRequest {
   bool left = true;
   bool right = true;
-  bool unmatched = true;  ///< the masks of the maps
+  bool unmatched = true;    ///< the masks of the maps
+  bool confidence = false;  ///< the confidence of the maps
+};
+
+/// One more image of a camera on the baseline of the reference (6.6).
+struct OtherView {
+  const Photograph* photograph = nullptr;
+  /// Where its camera stands, from the reference's, to the right positive; in any unit, not 0.
+  double baseline = 1;
 };
 
 /// Seconds spent per part, in the order they ran.
@@ -56,16 +71,47 @@ class StereoMatcher {
   void match(const Photograph& left, const Photograph& right, const MatchRequest& request,
              DisparityMaps& maps, MatchReport* report = nullptr) const;
 
+  /// The map of `reference` from all of `others` at once (6.6): the partner of column x in the
+  /// k-th of them is x − d · baseline_k / |baseline_1|, so that candidates are the disparities
+  /// between the reference and the first. The map is maps.left where the first stands to the right
+  /// of the reference, maps.right where it stands to the left. At least one other; all images of
+  /// equal size; baselines that differ from each other and from 0. Errors as match().
+  void match_several(const Photograph& reference, std::span<const OtherView> others,
+                     const MatchRequest& request, DisparityMaps& maps,
+                     MatchReport* report = nullptr) const;
+
   [[nodiscard]] const MatchOptions& options() const { return options_; }
 
  private:
-  void compute_map(Reference reference, const PreparedPair& pair, DisparityMap& map_px,
-                   MatchReport& report) const;
+  /// What a pair or several images become before they are matched.
+  struct Prepared {
+    PreparedPair pair;
+    std::vector<CostImage> images;
+    DisparityMap candidate_disparity_px;  ///< of one vertical disparity
+    Image<float> candidate_confidence;
+    Image<float> candidate_energy;
+    Image<float> energy;
+  };
+  /// One map and what goes with it; confidence and disparity_y_px null where not wanted.
+  struct Result {
+    DisparityMap& disparity_px;
+    Image<float>* confidence;
+    DisparityMap* disparity_y_px;
+  };
+
+  [[nodiscard]] bool wants_confidence(const MatchRequest& request) const;
+  void compute_map(Reference reference, const ChainInput& input, Prepared& prepared,
+                   const Result& result, MatchReport& report) const;
+  void search_rows(const kernels::CandidateGeometry& geometry, const ChainInput& input,
+                   Prepared& prepared, const Result& result, MatchReport& report) const;
+  void run_chain(const kernels::CandidateGeometry& geometry, const ChainInput& input,
+                 const MapOutputs& outputs, MatchReport& report) const;
 
   MatchOptions options_;
+  MethodParameters parameters_;
   Execution& execution_;
-  mutable ObjectPool<PreparedPair> prepared_pairs_;
-  mutable ObjectPool<SpeckleWork> speckle_works_;
+  mutable ObjectPool<Prepared> prepared_;
+  mutable ObjectPool<RefinementWork> refinement_works_;
 };
 
 }  // namespace vantage

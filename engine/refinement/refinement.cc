@@ -2,12 +2,50 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "kernels/cross_check/cross_check.h"
 #include "kernels/fill_unmatched/fill_unmatched.h"
 
 namespace vantage {
+namespace {
+
+// Neighbours whose disparities differ by no more are one surface (EQUATIONS §6).
+constexpr float kSurfaceStepPx = 1;
+
+/// Whether the displacement of (x, y) leads to a pixel of `other` that has nearly the same.
+/// `direction` is −1 from the left map to the right one, +1 from right to left.
+bool agrees(const DisplacementView& own, const DisplacementView& other, int direction,
+            double tolerance_px, int x, int y) {
+  const double own_x = own.x_px.at(x, y);
+  const double own_y = own.y_px.at(x, y);
+  const double partner_x = std::floor(x + direction * own_x + 0.5);
+  const double partner_y = std::floor(y + direction * own_y + 0.5);
+  if (!(partner_x >= 0 && partner_x < own.x_px.width() && partner_y >= 0 &&
+        partner_y < own.x_px.height())) {  // true for NaN
+    return false;
+  }
+  const int column = static_cast<int>(partner_x);
+  const int row = static_cast<int>(partner_y);
+  return std::abs(own_x - other.x_px.at(column, row)) < tolerance_px &&
+         std::abs(own_y - other.y_px.at(column, row)) < tolerance_px;
+}
+
+/// Unknown instead of unmatched.
+void erase_unmatched(const Mask& unmatched, Execution& execution, DisparityMap& map_px) {
+  execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      for (int x = 0; x < map_px.width(); ++x) {
+        if (unmatched.at(x, y) != 0) {
+          map_px.at(x, y) = std::numeric_limits<float>::quiet_NaN();
+        }
+      }
+    }
+  });
+}
+
+}  // namespace
 
 void cross_check(ImageView<const float> left_px, ImageView<const float> right_px,
                  double tolerance_px, Execution& execution, Mask& left_unmatched,
@@ -25,6 +63,22 @@ void cross_check(ImageView<const float> left_px, ImageView<const float> right_px
   });
 }
 
+void cross_check(const DisplacementView& left, const DisplacementView& right, double tolerance_px,
+                 Execution& execution, Mask& left_unmatched, Mask& right_unmatched) {
+  const int width = left.x_px.width();
+  const int height = left.x_px.height();
+  left_unmatched.resize(width, height);
+  right_unmatched.resize(width, height);
+  execution.for_each_band(height, [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      for (int x = 0; x < width; ++x) {
+        left_unmatched.at(x, y) = agrees(left, right, -1, tolerance_px, x, y) ? 0 : 255;
+        right_unmatched.at(x, y) = agrees(right, left, +1, tolerance_px, x, y) ? 0 : 255;
+      }
+    }
+  });
+}
+
 void mark_unknown(ImageView<const float> map_px, Execution& execution, Mask& unknown) {
   unknown.resize(map_px.width(), map_px.height());
   execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
@@ -38,16 +92,38 @@ void mark_unknown(ImageView<const float> map_px, Execution& execution, Mask& unk
   });
 }
 
-void fill_unmatched(const Mask& unmatched, MapSide side, Execution& execution,
+void mark_unsure(ImageView<const float> confidence, double threshold, Execution& execution,
+                 Mask& unmatched) {
+  execution.for_each_band(confidence.height(), [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      for (int x = 0; x < confidence.width(); ++x) {
+        if (!(confidence.at(x, y) > threshold)) {  // true for NaN
+          unmatched.at(x, y) = 255;
+        }
+      }
+    }
+  });
+}
+
+void fill_unmatched(const Mask& unmatched, MapSide side, Fill fill, Execution& execution,
                     DisparityMap& map_px) {
+  if (fill == Fill::kNone) {
+    erase_unmatched(unmatched, execution, map_px);
+    return;
+  }
   const int height = map_px.height();
   const auto background =
       side == MapSide::kLeft ? kernels::BackgroundSide::kLeft : kernels::BackgroundSide::kRight;
   std::vector<char> has_match(static_cast<std::size_t>(height));
   execution.for_each_band(height, [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
+      const std::uint8_t* mask = unmatched.row(y);
+      float* row = map_px.row(y);
       has_match[static_cast<std::size_t>(y)] =
-          kernels::fill_unmatched_row(unmatched.row(y), background, map_px.width(), map_px.row(y));
+          fill == Fill::kLinear
+              ? kernels::fill_unmatched_row_linearly(mask, background, kSurfaceStepPx,
+                                                     map_px.width(), row)
+              : kernels::fill_unmatched_row(mask, background, map_px.width(), row);
     }
   });
 

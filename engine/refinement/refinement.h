@@ -2,6 +2,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
+#include "engine/matching/match_options.h"
 
 namespace vantage {
 
@@ -11,16 +12,33 @@ void cross_check(ImageView<const float> left_px, ImageView<const float> right_px
                  double tolerance_px, Execution& execution, Mask& left_unmatched,
                  Mask& right_unmatched);
 
+/// Both components of the displacements of a two-dimensional search, on one image's grid.
+struct DisplacementView {
+  ImageView<const float> x_px;  ///< d = x_left − x_right
+  ImageView<const float> y_px;  ///< y_left − y_right
+};
+
+/// The same for two components: a pixel is matched if its partner in both directions (rounded) is
+/// inside, known, and both components agree.
+void cross_check(const DisplacementView& left, const DisplacementView& right, double tolerance_px,
+                 Execution& execution, Mask& left_unmatched, Mask& right_unmatched);
+
 /// Marks the pixels without a disparity.
 void mark_unknown(ImageView<const float> map_px, Execution& execution, Mask& unknown);
+
+/// Marks as unmatched (255), beside those that are, the pixels whose confidence is at most
+/// `threshold` or unknown (5.14). Views of equal size. Identical for any `execution`.
+void mark_unsure(ImageView<const float> confidence, double threshold, Execution& execution,
+                 Mask& unmatched);
 
 /// Which camera a map belongs to: the side of an occlusion on which the background lies.
 enum class MapSide { kLeft, kRight };
 
-/// Fills unmatched pixels at constant depth (EQUATIONS §5.4). A row without any matched pixel
-/// copies the nearest row that has one, the upper of two as near; a map without any keeps its
-/// values. Identical for any `execution`.
-void fill_unmatched(const Mask& unmatched, MapSide side, Execution& execution,
+/// Fills unmatched pixels (EQUATIONS §5.4): at constant depth, with Fill::kLinear along a line
+/// where the disparities at both ends of a run differ by at most 1 px, with Fill::kNone as unknown
+/// (NaN). Unless none, a row without any matched pixel copies the nearest row that has one, the
+/// upper of two as near; a map without any keeps its values. Identical for any `execution`.
+void fill_unmatched(const Mask& unmatched, MapSide side, Fill fill, Execution& execution,
                     DisparityMap& map_px);
 
 }  // namespace vantage

@@ -10,8 +10,9 @@ constexpr float kSurfaceStepPx = 1.0F;
 /// Collects regions of one map by flooding.
 class Flood {
  public:
-  Flood(ImageView<const float> map_px, SpeckleWork& work, Mask& unmatched)
-      : map_px_(map_px), work_(work), unmatched_(unmatched) {
+  Flood(ImageView<const float> map_px, ImageView<const float> map_y_px, SpeckleWork& work,
+        Mask& unmatched)
+      : map_px_(map_px), map_y_px_(map_y_px), work_(work), unmatched_(unmatched) {
     work_.visited.assign(
         static_cast<std::size_t>(map_px.width()) * static_cast<std::size_t>(map_px.height()), 0);
   }
@@ -24,21 +25,25 @@ class Flood {
     for (std::size_t next = 0; next < region.size(); ++next) {
       const int column = region[next] % map_px_.width();
       const int row = region[next] / map_px_.width();
-      const float disparity_px = map_px_.at(column, row);
-      spread(column - 1, row, disparity_px);
-      spread(column + 1, row, disparity_px);
-      spread(column, row - 1, disparity_px);
-      spread(column, row + 1, disparity_px);
+      spread(column, row, column - 1, row);
+      spread(column, row, column + 1, row);
+      spread(column, row, column, row - 1);
+      spread(column, row, column, row + 1);
     }
     return region;
   }
 
  private:
-  void spread(int x, int y, float disparity_px) {
+  void spread(int from_x, int from_y, int x, int y) {
     if (x >= 0 && x < map_px_.width() && y >= 0 && y < map_px_.height() &&
-        std::abs(map_px_.at(x, y) - disparity_px) <= kSurfaceStepPx) {
+        is_near(map_px_, from_x, from_y, x, y) &&
+        (map_y_px_.empty() || is_near(map_y_px_, from_x, from_y, x, y))) {
       visit(x, y);
     }
+  }
+
+  static bool is_near(ImageView<const float> map, int from_x, int from_y, int x, int y) {
+    return std::abs(map.at(x, y) - map.at(from_x, from_y)) <= kSurfaceStepPx;
   }
 
   void visit(int x, int y) {
@@ -51,15 +56,16 @@ class Flood {
   }
 
   ImageView<const float> map_px_;
+  ImageView<const float> map_y_px_;
   SpeckleWork& work_;
   const Mask& unmatched_;
 };
 
 }  // namespace
 
-void mark_speckles(ImageView<const float> map_px, int least_pixels, SpeckleWork& work,
-                   Mask& unmatched) {
-  Flood flood(map_px, work, unmatched);
+void mark_speckles(ImageView<const float> map_px, ImageView<const float> map_y_px, int least_pixels,
+                   SpeckleWork& work, Mask& unmatched) {
+  Flood flood(map_px, map_y_px, work, unmatched);
   for (int y = 0; y < map_px.height(); ++y) {
     for (int x = 0; x < map_px.width(); ++x) {
       const std::vector<std::int32_t>& region = flood.collect(x, y);

@@ -17,8 +17,10 @@ struct SpeckleWork {
 /// `least_pixels`. A region is connected over its 4-neighbours whose disparities differ by at most
 /// 1 px, one surface in the sense of the gradient limit (EQUATIONS §6). Wrong matches that the
 /// cross-check lets through are small islands; constant-depth fill would draw them out into
-/// streaks. map_px and unmatched have the same size; pixels with unmatched = 0 are finite.
-void mark_speckles(ImageView<const float> map_px, int least_pixels, SpeckleWork& work,
-                   Mask& unmatched);
+/// streaks. map_px and unmatched have the same size; pixels with unmatched = 0 are finite. Of a
+/// two-dimensional search map_y_px holds the second component, in which neighbours must agree as
+/// well; else it is empty.
+void mark_speckles(ImageView<const float> map_px, ImageView<const float> map_y_px, int least_pixels,
+                   SpeckleWork& work, Mask& unmatched);
 
 }  // namespace vantage

@@ -23,6 +23,9 @@ bool SequenceOptions::saves(SequenceOutput output) const {
 void SequenceOptions::validate() const {
   match.validate();
   synthesis.validate();
+  if (match.disparities_y) {
+    throw UsageError("disparities-y is set, expected none: sequences are of rectified pairs");
+  }
   if (save.empty()) {
     throw UsageError("save is empty, expected at least one output");
   }
@@ -45,6 +48,11 @@ void SequenceOptions::validate() const {
     throw UsageError(
         fmt::format("format is '{}', expected pfm, png, tiff, exr or npy", disparity_format));
   }
+  if (saves(SequenceOutput::kConfidence) && disparity_format == "png") {
+    throw UsageError(
+        "format is png, which holds no floats, but save has confidence; expected pfm, tiff, exr or "
+        "npy");
+  }
   if (in_flight && (*in_flight < 1 || *in_flight > kMaxInFlight)) {
     throw UsageError(
         fmt::format("in-flight is {}, expected a number from 1 to {}", *in_flight, kMaxInFlight));
@@ -60,6 +68,8 @@ std::filesystem::path SequenceLayout::folder_of(SequenceOutput output, int view)
       return folder_ / "disparity";
     case SequenceOutput::kRightDisparity:
       return folder_ / "right-disparity";
+    case SequenceOutput::kConfidence:
+      return folder_ / "confidence";
     case SequenceOutput::kUnmatched:
       return folder_ / "unmatched";
     case SequenceOutput::kPreview:

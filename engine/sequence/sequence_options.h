@@ -11,16 +11,24 @@
 namespace vantage {
 
 /// What a sequence run writes for each frame.
-enum class SequenceOutput { kDisparity, kRightDisparity, kUnmatched, kPreview, kViews };
+enum class SequenceOutput {
+  kDisparity,
+  kRightDisparity,
+  kConfidence,
+  kUnmatched,
+  kPreview,
+  kViews
+};
 
 /// Everything that decides which files a sequence run writes and what is in them.
 struct SequenceOptions {
-  MatchOptions match;
+  MatchOptions match;  ///< without disparities_y
   SynthesisOptions synthesis;
   std::vector<SequenceOutput> save = {SequenceOutput::kDisparity};  ///< at least one
   /// Positions XS of the new views in baselines, within ±16; exactly when kViews is saved.
   std::vector<double> views_x;
-  /// Extension of the disparity files without the dot: pfm, png, tiff, exr or npy.
+  /// Extension of the disparity and confidence files without the dot: pfm, png (not with
+  /// kConfidence), tiff, exr or npy.
   std::string disparity_format = "pfm";
   /// Frames under way at the same time, 1..64; default min(threads + 1, 8).
   std::optional<int> in_flight;
@@ -30,8 +38,9 @@ struct SequenceOptions {
   [[nodiscard]] bool saves(SequenceOutput output) const;
 };
 
-/// Where the files of a run are: DIR/disparity/000000.pfm, DIR/right-disparity/…, DIR/unmatched/,
-/// DIR/preview/, DIR/views/000000.png (one view) or DIR/views/0.25/000000.png (several).
+/// Where the files of a run are: DIR/disparity/000000.pfm, DIR/right-disparity/…,
+/// DIR/confidence/, DIR/unmatched/, DIR/preview/, DIR/views/000000.png (one view) or
+/// DIR/views/0.25/000000.png (several).
 class SequenceLayout {
  public:
   SequenceLayout(std::filesystem::path folder, const SequenceOptions& options);

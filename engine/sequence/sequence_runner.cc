@@ -156,8 +156,9 @@ class Run {
     const bool right_is_primary = options_.match.reference == Reference::kRight;
     const bool needs_views = !options_.views_x.empty();
     const MatchRequest request{
-        !right_is_primary || needs_views,
-        right_is_primary || needs_views || options_.saves(SequenceOutput::kRightDisparity)};
+        .left = !right_is_primary || needs_views,
+        .right = right_is_primary || needs_views || options_.saves(SequenceOutput::kRightDisparity),
+        .confidence = options_.saves(SequenceOutput::kConfidence)};
     matcher_.match(slot.left, slot.right, request, slot.maps, &slot.match);
   }
 
@@ -182,6 +183,10 @@ class Run {
   [[nodiscard]] const DisparityMap& primary_map(const FrameSlot& slot) const {
     return options_.match.reference == Reference::kLeft ? slot.maps.left : slot.maps.right;
   }
+  [[nodiscard]] const Image<float>& primary_confidence(const FrameSlot& slot) const {
+    return options_.match.reference == Reference::kLeft ? slot.maps.left_confidence
+                                                        : slot.maps.right_confidence;
+  }
   [[nodiscard]] const Mask& primary_unmatched(const FrameSlot& slot) const {
     return options_.match.reference == Reference::kLeft ? slot.maps.left_unmatched
                                                         : slot.maps.right_unmatched;
@@ -201,6 +206,11 @@ class Run {
         case SequenceOutput::kRightDisparity:
           add_file(slot, output, map_extension,
                    [&](const auto& path) { write_disparity(path, slot.maps.right.view()); });
+          break;
+        case SequenceOutput::kConfidence:
+          add_file(slot, output, map_extension, [&](const auto& path) {
+            write_disparity(path, primary_confidence(slot).view());
+          });
           break;
         case SequenceOutput::kUnmatched:
           add_file(slot, output, "png",

@@ -1,11 +1,29 @@
 #include "kernels/fill_unmatched/fill_unmatched.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace vantage::kernels {
+namespace {
+
+void interpolate(int begin, int end, float* disparity_px) {
+  const float before = disparity_px[begin - 1];
+  const float slope = (disparity_px[end] - before) / static_cast<float>(end - begin + 1);
+  for (int x = begin; x < end; ++x) {
+    disparity_px[x] = before + slope * static_cast<float>(x - begin + 1);
+  }
+}
+
+}  // namespace
 
 bool fill_unmatched_row(const std::uint8_t* unmatched, BackgroundSide side, int width,
                         float* disparity_px) {
+  constexpr float kNoStep = -1;
+  return fill_unmatched_row_linearly(unmatched, side, kNoStep, width, disparity_px);
+}
+
+bool fill_unmatched_row_linearly(const std::uint8_t* unmatched, BackgroundSide side, float step_px,
+                                 int width, float* disparity_px) {
   bool any_matched = false;
   for (int begin = 0; begin < width;) {
     if (unmatched[begin] == 0) {
@@ -20,9 +38,14 @@ bool fill_unmatched_row(const std::uint8_t* unmatched, BackgroundSide side, int 
     if (begin == 0 && end == width) {
       return false;
     }
-    const bool from_left = end == width || (side == BackgroundSide::kLeft && begin > 0);
-    const float background = from_left ? disparity_px[begin - 1] : disparity_px[end];
-    std::fill(disparity_px + begin, disparity_px + end, background);
+    if (begin > 0 && end < width &&
+        std::abs(disparity_px[end] - disparity_px[begin - 1]) <= step_px) {
+      interpolate(begin, end, disparity_px);
+    } else {
+      const bool from_left = end == width || (side == BackgroundSide::kLeft && begin > 0);
+      const float background = from_left ? disparity_px[begin - 1] : disparity_px[end];
+      std::fill(disparity_px + begin, disparity_px + end, background);
+    }
     begin = end;
   }
   return any_matched;

@@ -14,4 +14,9 @@ enum class BackgroundSide { kLeft, kRight };
 bool fill_unmatched_row(const std::uint8_t* unmatched, BackgroundSide side, int width,
                         float* disparity_px);
 
+/// The same, but runs between two matched pixels whose disparities differ by at most `step_px` are
+/// taken for a part of one surface and interpolated linearly between them (4.6).
+bool fill_unmatched_row_linearly(const std::uint8_t* unmatched, BackgroundSide side, float step_px,
+                                 int width, float* disparity_px);
+
 }  // namespace vantage::kernels

@@ -65,7 +65,7 @@ TEST(Speckles, AreTheRegionsBelowTheLimit) {
       }
       const std::vector<int> sizes = region_sizes(map, unmatched);
       const Mask before = unmatched.copy();
-      mark_speckles(map.view(), least, work, unmatched);
+      mark_speckles(map.view(), {}, least, work, unmatched);
       for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
           const bool small = sizes[static_cast<std::size_t>(y * width + x)] < least;

@@ -105,5 +105,29 @@ TEST(FillUnmatched, RowWithoutAMatchStaysAsItIs) {
   }
 }
 
+TEST(FillUnmatchedLinearly, InterpolatesWhereBothSidesAreOneSurface) {
+  using Row = std::vector<float>;
+  const auto linear = [](std::vector<std::uint8_t> unmatched, BackgroundSide side, Row row) {
+    EXPECT_TRUE(fill_unmatched_row_linearly(unmatched.data(), side, 1,
+                                            static_cast<int>(unmatched.size()), row.data()));
+    return row;
+  };
+  for (const BackgroundSide side : {BackgroundSide::kLeft, BackgroundSide::kRight}) {
+    EXPECT_EQ(linear({0, 255, 255, 255, 0}, side, {4, kUnknown, 9, 9, 5}),
+              (Row{4, 4.25F, 4.5F, 4.75F, 5}));
+    EXPECT_EQ(linear({0, 1, 0}, side, {4, 0, 3}), (Row{4, 3.5F, 3}));
+    EXPECT_EQ(linear({0, 1, 0}, side, {4, 0, 4}), (Row{4, 4, 4}));
+    // Runs at the border have one side only.
+    EXPECT_EQ(linear({255, 0, 255}, side, {9, 4, 9}), (Row{4, 4, 4}));
+  }
+  // Different surfaces: constant depth.
+  EXPECT_EQ(linear({0, 255, 0}, BackgroundSide::kLeft, {4, 9, 5.25F}), (Row{4, 4, 5.25F}));
+  EXPECT_EQ(linear({0, 255, 0}, BackgroundSide::kRight, {4, 9, 5.25F}), (Row{4, 5.25F, 5.25F}));
+  Row row = {1, 2};
+  EXPECT_FALSE(fill_unmatched_row_linearly(std::vector<std::uint8_t>(2, 255).data(),
+                                           BackgroundSide::kLeft, 1, 2, row.data()));
+  EXPECT_EQ(row, (Row{1, 2}));
+}
+
 }  // namespace
 }  // namespace vantage::kernels

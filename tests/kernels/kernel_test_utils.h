@@ -26,7 +26,7 @@ inline std::vector<long long> each_target() {
 }
 
 /// Runs a test on one instruction set and proves that it stayed on it.
-class EveryTarget : public testing::TestWithParam<long long> {
+class EveryTarget : public ::testing::TestWithParam<long long> {
  protected:
   void SetUp() override {
     force_target(GetParam());
@@ -38,7 +38,7 @@ class EveryTarget : public testing::TestWithParam<long long> {
   }
 };
 
-inline std::string target_test_name(const testing::TestParamInfo<long long>& info) {
+inline std::string target_test_name(const ::testing::TestParamInfo<long long>& info) {
   return std::string(target_name(info.param));
 }
 
@@ -106,6 +106,6 @@ inline int random_int(std::mt19937& random, int least, int most) {
 }  // namespace vantage::kernels
 
 /// Runs the tests of `suite`, a fixture derived from EveryTarget, on every instruction set.
-#define VANTAGE_ON_EVERY_TARGET(suite)                                                           \
-  INSTANTIATE_TEST_SUITE_P(Targets, suite, testing::ValuesIn(::vantage::kernels::each_target()), \
+#define VANTAGE_ON_EVERY_TARGET(suite)                                                             \
+  INSTANTIATE_TEST_SUITE_P(Targets, suite, ::testing::ValuesIn(::vantage::kernels::each_target()), \
                            ::vantage::kernels::target_test_name)

@@ -38,7 +38,7 @@ std::vector<Cut> cuts_of(const TestChain& chain) {
   splits.push_back(every);
   std::vector<Cut> cuts;
   for (const std::vector<int>& split : splits) {
-    for (const int strip_columns : {1, 2, 5, 16, kAll}) {
+    for (const int strip_columns : {1, 2, 7, 16, kAll}) {
       for (const int band_rows : {1, 3, kAll}) {
         cuts.push_back({strip_columns, band_rows, split});
       }
@@ -88,7 +88,9 @@ std::string describe(Extent extent, const Cut& cut, const Executor& executor) {
 
 class StripPipeline : public testing::TestWithParam<ChainCase> {};
 INSTANTIATE_TEST_SUITE_P(Chains, StripPipeline,
-                         testing::Values(kHashed, kDiffusion, kBoxes, kRunning, kAnchored, kScales),
+                         testing::Values(kHashed, kDiffusion, kBoxes, kRunning, kAnchored, kScales,
+                                         kSourceNext, kSourceTwice, kSourceEachTime,
+                                         kSourceAfterSmoothing, kSourceAnchored),
                          [](const auto& test) { return test.param.name; });
 
 TEST_P(StripPipeline, EqualsTheWholeImageBitForBit) {
@@ -148,6 +150,27 @@ TEST_P(StripPipeline, EqualsTheWholeImageOnEveryExecutor) {
   }
 }
 
+TEST(StripPipelineSteps, EqualTheWholeImageAsTheCostModelChoosesThem) {
+  const Extent extent{97, 61};
+  TestChain chain(extent);
+  kSourceEachTime.build(chain);
+  chain.finish();
+  const std::vector<std::byte> expected = whole_image_result(chain);
+  Machine tiny;
+  tiny.l1_data_bytes = 1024;
+  tiny.l2_bytes = 64 * 1024;
+  PlanRequest request;
+  request.threads = 2;
+  request.memory_bytes = 350 * 1024;  // a state is 370 KiB
+  const ChainPlan plan = plan_chain(chain.stages(), tiny, request);
+  ASSERT_GT(plan.passes.size(), 1U);
+  ASSERT_GT(plan.steps, 1);
+  for (const ExecutorCase& executor_case : executor_cases()) {
+    const auto executor = executor_case.make();
+    EXPECT_TRUE(strip_result(chain, plan, *executor) == expected) << executor_case.name;
+  }
+}
+
 TEST_P(StripPipeline, AllocatesNothingInSteadyState) {
   TestChain chain({40, 20});
   GetParam().build(chain);
@@ -163,6 +186,143 @@ TEST_P(StripPipeline, AllocatesNothingInSteadyState) {
       run_strips(chain.stages(), plan, *executor, pool);
       ASSERT_EQ(pool.bytes_held(), held);
     }
+  }
+}
+
+// ---- Passes and steps.
+
+class SourceReaders : public testing::TestWithParam<ChainCase> {};
+INSTANTIATE_TEST_SUITE_P(Chains, SourceReaders,
+                         testing::Values(kSourceNext, kSourceTwice, kSourceEachTime,
+                                         kSourceAfterSmoothing, kSourceAnchored),
+                         [](const auto& test) { return test.param.name; });
+
+TEST_P(SourceReaders, MayBeCutIntoPassesAnywhere) {
+  const auto executor = make_shuffled_executor(3);
+  for (const Extent extent : {Extent{1, 1}, Extent{5, 2}, Extent{3, 19}, Extent{17, 13}}) {
+    TestChain chain(extent);
+    GetParam().build(chain);
+    chain.finish();
+    const std::vector<std::byte> expected = whole_image_result(chain);
+    for (int first = 1; first < chain.size(); ++first) {
+      for (int second = first; second < chain.size(); ++second) {
+        std::vector<int> ends = {first};
+        if (second > first) {
+          ends.push_back(second);
+        }
+        const Cut cut{7, 5, ends};
+        ASSERT_TRUE(strip_result(chain, plan_of(chain, cut), *executor) == expected)
+            << describe(extent, cut, *executor) << ": " << first << ", " << second;
+      }
+    }
+  }
+}
+
+bool fits(const ChainPlan& plan, const PlanRequest& request) {
+  std::size_t scratch = 0;
+  for (const PassPlan& pass : plan.passes) {
+    scratch = std::max(scratch, pass.scratch_bytes);
+  }
+  return plan.stored_bytes + scratch * static_cast<std::size_t>(request.threads) <=
+         request.memory_bytes.value_or(kDefaultMemoryBytes);
+}
+
+TEST_P(StripPipeline, EqualsTheWholeImageInStepsOfFewRows) {
+  if (GetParam().name == kScales.name) {
+    GTEST_SKIP() << "the number of rows changes: " << GetParam().name << " has whole-image steps";
+  }
+  const Extent extent{13, 61};
+  TestChain chain(extent);
+  GetParam().build(chain);
+  chain.finish();
+  const std::vector<std::byte> expected = whole_image_result(chain);
+  std::vector<int> every;
+  for (int stage = 1; stage < chain.size(); ++stage) {
+    every.push_back(stage);
+  }
+  std::vector<std::unique_ptr<Executor>> executors;
+  for (const ExecutorCase& executor_case : executor_cases()) {
+    executors.push_back(executor_case.make());
+  }
+  std::size_t turn = 0;
+  std::vector<std::vector<int>> splits = {every, {chain.size() / 2}};
+  if (chain.size() > 3) {
+    splits.push_back({1, chain.size() - 1});
+  }
+  for (const std::vector<int>& split : splits) {
+    for (const int strip_columns : {4, kAll}) {
+      const int band_rows = strip_columns == kAll ? kAll : 2;
+      PlanRequest request;
+      request.threads = 2;
+      request.strip_columns = strip_columns;
+      request.band_rows = band_rows;
+      request.pass_ends = split;
+      const ChainPlan whole = plan_chain(chain.stages(), Machine{}, request);
+      ASSERT_EQ(whole.steps, 1);
+      EXPECT_EQ(whole.step_rows, extent.rows);
+      std::vector<int> all_step_rows;
+      // From hardly too little to far too little.
+      for (const double part : {0.999, 0.7, 0.4, 0.0}) {
+        std::size_t scratch = 0;
+        for (const PassPlan& pass : whole.passes) {
+          scratch = std::max(scratch, pass.scratch_bytes);
+        }
+        request.memory_bytes =
+            2 * scratch + static_cast<std::size_t>(part * static_cast<double>(whole.stored_bytes));
+        const ChainPlan plan = plan_chain(chain.stages(), Machine{}, request);
+        ASSERT_GT(plan.steps, 1);
+        ASSERT_LT(plan.step_rows, extent.rows);
+        EXPECT_TRUE(fits(plan, request) || plan.step_rows == 1);
+        all_step_rows.push_back(plan.step_rows);
+        Executor& executor = *executors[turn++ % executors.size()];
+        ASSERT_TRUE(strip_result(chain, plan, executor) == expected)
+            << describe(extent, {strip_columns, band_rows, split}, executor) << ", steps of "
+            << plan.step_rows;
+      }
+      EXPECT_EQ(all_step_rows.back(), 1);
+      EXPECT_TRUE(std::is_sorted(all_step_rows.rbegin(), all_step_rows.rend()));
+    }
+  }
+}
+
+TEST(StripPipelineSteps, StoredRowsStayWithinTheMemoryGiven) {
+  const Extent extent{16, 211};
+  TestChain chain(extent);
+  kSourceEachTime.build(chain);
+  chain.finish();
+  const std::vector<std::byte> expected = whole_image_result(chain);
+  const auto executor = make_executor(ExecutorKind::kSerial, 1);
+  PlanRequest request;
+  request.pass_ends = std::vector<int>{4, 8};
+  request.strip_columns = 16;
+  // Rows of 1 KiB: whole images are 2 · 211 KiB, the scratch of a strip about 30 KiB.
+  for (const std::size_t memory_bytes : {400U << 10U, 200U << 10U, 100U << 10U, 80U << 10U}) {
+    request.memory_bytes = memory_bytes;
+    const ChainPlan plan = plan_chain(chain.stages(), Machine{}, request);
+    EXPECT_GT(plan.steps, 1);
+    ASSERT_TRUE(fits(plan, request)) << memory_bytes;
+    ScratchPool pool;
+    chain.sink().forget();
+    run_strips(chain.stages(), plan, *executor, pool);
+    EXPECT_TRUE(chain.sink().cells() == expected);
+    EXPECT_LE(pool.bytes_held(), memory_bytes);
+  }
+}
+
+TEST(StripPipelineSteps, ChainsThatChangeTheNumberOfRowsTakeWholeImages) {
+  TestChain chain({29, 23});
+  kScales.build(chain);
+  chain.finish();
+  const std::vector<std::byte> expected = whole_image_result(chain);
+  const auto executor = make_executor(ExecutorKind::kSerial, 1);
+  PlanRequest request;
+  request.memory_bytes = 1000;
+  for (int end = 1; end < chain.size(); ++end) {
+    request.pass_ends = std::vector<int>{end};
+    const ChainPlan plan = plan_chain(chain.stages(), Machine{}, request);
+    // The last stages keep the size: they can be cut into steps whatever is before them.
+    EXPECT_EQ(plan.steps == 1, end < chain.size() - 2) << end;
+    EXPECT_TRUE(strip_result(chain, plan, *executor) == expected) << end;
   }
 }
 
@@ -209,6 +369,66 @@ TEST(StripPipelineErrors, ErrorOfAStageArrivesAndTheExecutorGoesOn) {
       }
     }
   }
+}
+
+/// Passes its input on a row late.
+class Late final : public CellStage {
+ public:
+  explicit Late(Extent extent) : CellStage("late", extent) {}
+  [[nodiscard]] Range input_rows(int y, Extent /*input*/) const override {
+    return {std::max(0, y - 1), std::max(1, y)};
+  }
+  void make_row(const RowTask& /*task*/) const override {}
+};
+
+TEST(StripPipelineErrors, SourceCanOnlyBeReadOnItsOwnGrid) {
+  const Extent extent{20, 12};
+  const auto expect_refused = [](TestChain& chain, const std::string& why) {
+    chain.finish();
+    for (const bool whole_image : {true, false}) {
+      try {
+        if (whole_image) {
+          run_whole_image(chain.stages());
+        } else {
+          plan_chain(chain.stages(), Machine{}, {});
+        }
+        ADD_FAILURE() << "expected an error: " << why;
+      } catch (const std::logic_error& error) {
+        EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+      }
+    }
+  };
+  TestChain reads_itself(extent);
+  reads_itself.add<PullToSource>(extent);
+  expect_refused(reads_itself, "pull to source: is the source");
+
+  TestChain smaller(extent);
+  smaller.add<FloatSource>(extent);
+  smaller.add<Reduction>(extent);
+  smaller.add<PullToSource>(smaller.extent());
+  expect_refused(smaller, "reduction: has another extent");
+
+  TestChain there_and_back(extent);
+  there_and_back.add<FloatSource>(extent);
+  there_and_back.add<Reduction>(extent);
+  there_and_back.add<Expansion>(extent);
+  there_and_back.add<PullToSource>(extent);
+  expect_refused(there_and_back, "reduction: has another extent");
+
+  TestChain late(extent);
+  late.add<FloatSource>(extent);
+  late.add<Late>(extent);
+  late.add<PullToSource>(extent);
+  expect_refused(late, "late: does not look at the row");
+
+  // Behind the last reader everything goes.
+  TestChain sound(extent);
+  sound.add<FloatSource>(extent);
+  sound.add<PullToSource>(extent);
+  sound.add<Reduction>(extent);
+  sound.add<Late>(sound.extent());
+  sound.finish();
+  EXPECT_NO_THROW(plan_chain(sound.stages(), Machine{}, {}));
 }
 
 // ---- Rows before the band.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scheduler/machine.h"
+#include "scheduler/sweep_layout.h"
 
 namespace vantage::scheduler {
 namespace {
@@ -16,11 +17,13 @@ namespace {
 /// A stage that is all geometry: `halo` rows and columns around each cell.
 class Geometry final : public RowStage {
  public:
-  Geometry(Extent extent, int halo, std::size_t bytes_per_column, int first_row_work = 1)
+  Geometry(Extent extent, int halo, std::size_t bytes_per_column, int first_row_work = 1,
+           bool reads_source = false)
       : RowStage(extent),
         halo_(halo),
         bytes_per_column_(bytes_per_column),
-        first_row_work_(first_row_work) {}
+        first_row_work_(first_row_work),
+        reads_source_(reads_source) {}
   [[nodiscard]] std::string_view name() const override { return "geometry"; }
   [[nodiscard]] std::size_t bytes_per_column() const override { return bytes_per_column_; }
   [[nodiscard]] Range input_rows(int y, Extent input) const override {
@@ -31,6 +34,7 @@ class Geometry final : public RowStage {
   }
   [[nodiscard]] int window_rows() const override { return 2 * halo_ + 1; }
   [[nodiscard]] int first_row_work() const override { return first_row_work_; }
+  [[nodiscard]] bool reads_source() const override { return reads_source_; }
   [[nodiscard]] std::size_t state_bytes(Range columns, Extent /*input*/) const override {
     return static_cast<std::size_t>(columns.size());
   }
@@ -40,30 +44,54 @@ class Geometry final : public RowStage {
   int halo_;
   std::size_t bytes_per_column_;
   int first_row_work_;
+  bool reads_source_;
 };
 
 /// A source, `steps` stages with `halo`, and a last stage without output.
 class GeometryChain {
  public:
   GeometryChain(Extent extent, int steps, int halo, std::size_t bytes_per_column = 256,
-                int first_row_work = 1) {
-    add(extent, 0, bytes_per_column, first_row_work);
+                int first_row_work = 1, bool steps_read_source = false) {
+    add(extent, 0, bytes_per_column, first_row_work, false);
     for (int step = 0; step < steps; ++step) {
-      add(extent, halo, bytes_per_column, 1);
+      add(extent, halo, bytes_per_column, 1, steps_read_source);
     }
-    add(extent, 0, 0, 1);
+    add(extent, 0, 0, 1, false);
   }
   [[nodiscard]] Chain stages() const { return chain_; }
   [[nodiscard]] int size() const { return static_cast<int>(chain_.size()); }
 
  private:
-  void add(Extent extent, int halo, std::size_t bytes_per_column, int first_row_work) {
-    stages_.push_back(std::make_unique<Geometry>(extent, halo, bytes_per_column, first_row_work));
+  void add(Extent extent, int halo, std::size_t bytes_per_column, int first_row_work,
+           bool reads_source) {
+    stages_.push_back(
+        std::make_unique<Geometry>(extent, halo, bytes_per_column, first_row_work, reads_source));
     chain_.push_back(stages_.back().get());
   }
   std::vector<std::unique_ptr<Geometry>> stages_;
   std::vector<const RowStage*> chain_;
 };
+
+/// Iterations of a diffusion that also look at the matching cost.
+GeometryChain iterations(Extent extent, int count, std::size_t bytes_per_column) {
+  return {extent, count, 1, bytes_per_column, 1, true};
+}
+
+std::size_t bytes_taken(const ChainPlan& plan, int threads) {
+  std::size_t scratch = 0;
+  for (const PassPlan& pass : plan.passes) {
+    scratch = std::max(scratch, pass.scratch_bytes);
+  }
+  return plan.stored_bytes + scratch * static_cast<std::size_t>(threads);
+}
+
+double expected_time(const ChainPlan& plan) {
+  double time = 0;
+  for (const PassPlan& pass : plan.passes) {
+    time += pass.expected_time;
+  }
+  return time;
+}
 
 /// Passes follow each other through the chain; each cuts its grid into parts that cover it once.
 void expect_sound(const ChainPlan& plan, Chain chain) {
@@ -81,8 +109,9 @@ void expect_sound(const ChainPlan& plan, Chain chain) {
     // The last part begins inside the image and reaches its end.
     EXPECT_LT((pass.strips - 1) * pass.strip_columns, extent.columns);
     EXPECT_GE(pass.strips * pass.strip_columns, extent.columns);
-    EXPECT_LT((pass.bands - 1) * pass.band_rows, extent.rows);
-    EXPECT_GE(pass.bands * pass.band_rows, extent.rows);
+    const int rows = plan.steps == 1 ? extent.rows : plan.step_rows;
+    EXPECT_LT((pass.bands - 1) * pass.band_rows, rows);
+    EXPECT_GE(pass.bands * pass.band_rows, rows);
     EXPECT_GE(pass.work_ratio, 1.0);
   }
   EXPECT_EQ(next_stage, static_cast<int>(chain.size()));
@@ -198,6 +227,126 @@ TEST(StripPlan, StoredBytesCoverInputAndOutputOfAPass) {
   EXPECT_EQ(plan_chain(chain.stages(), Machine{}, request).stored_bytes, 2 * 100U * 50U * 256U);
 }
 
+TEST(StripPlan, FewTasksKeepAllThreadsBusy) {
+  for (const int columns : {383, 450, 640, 800, 1282}) {
+    for (const int count : {1, 3, 6, 10}) {
+      for (const int threads : {2, 3, 4}) {
+        const GeometryChain chain = iterations({columns, 375}, count, 256);
+        PlanRequest request;
+        request.threads = threads;
+        for (const PassPlan& pass : plan_chain(chain.stages(), Machine{}, request).passes) {
+          const int rounds = (tasks(pass) + threads - 1) / threads;
+          EXPECT_LE(rounds * threads, 1.2 * tasks(pass))
+              << columns << " columns, " << count << " iterations, " << threads
+              << " threads: " << pass.strips << " x " << pass.bands;
+        }
+      }
+    }
+  }
+}
+
+TEST(StripPlan, IterationsCostTheSameHoweverManyThereAre) {
+  Machine machine;
+  machine.l2_bytes = 1024 * 1024;
+  const auto plan_of = [&](int count, int threads) {
+    PlanRequest request;
+    request.threads = threads;
+    const GeometryChain chain = iterations({450, 375}, count, 256);
+    ChainPlan plan = plan_chain(chain.stages(), machine, request);
+    expect_sound(plan, chain.stages());
+    return plan;
+  };
+  for (const int threads : {1, 2}) {
+    const ChainPlan ten = plan_of(10, threads);
+    ASSERT_EQ(ten.passes.size(), 1U);
+    EXPECT_GT(ten.passes[0].scratch_bytes, machine.l2_bytes / 4);
+    EXPECT_LE(ten.passes[0].scratch_bytes, machine.l2_bytes * 3 / 4);
+    EXPECT_EQ(ten.passes[0].source_rows, 11);
+    for (const int count : {50, 200}) {
+      const ChainPlan plan = plan_of(count, threads);
+      EXPECT_EQ(plan.steps, 1);
+      EXPECT_GE(plan.passes.size(), static_cast<std::size_t>(count / 20));
+      EXPECT_LE(plan.passes.size(), static_cast<std::size_t>(count / 5));
+      EXPECT_LE(expected_time(plan) / count, 1.1 * expected_time(ten) / 10);
+      for (const PassPlan& pass : plan.passes) {
+        EXPECT_LE(pass.scratch_bytes, machine.l2_bytes * 3 / 4);
+      }
+    }
+  }
+}
+
+TEST(StripPlan, ShortPassesRunVeryLongChainsToo) {
+  for (const Extent extent : {Extent{1, 1}, Extent{20, 15}, Extent{200, 100}}) {
+    const GeometryChain chain = iterations(extent, 1000, 64);
+    const ChainPlan plan = plan_chain(chain.stages(), Machine{}, {});
+    expect_sound(plan, chain.stages());
+    EXPECT_GE(plan.passes.size(), 10U);
+    EXPECT_LE(plan.passes.size(), 500U);
+  }
+}
+
+TEST(StripPlan, KeepsWithinTheMemoryGiven) {
+  PlanRequest request;
+  request.threads = 2;
+  // A state is 43 MB. The default allows two of them.
+  const GeometryChain small = iterations({450, 375}, 50, 256);
+  EXPECT_EQ(plan_chain(small.stages(), Machine{}, request).steps, 1);
+  for (const std::size_t megabytes : {1000, 100, 80, 40, 20, 10}) {
+    request.memory_bytes = megabytes << 20U;
+    const ChainPlan plan = plan_chain(small.stages(), Machine{}, request);
+    expect_sound(plan, small.stages());
+    EXPECT_LE(bytes_taken(plan, request.threads), *request.memory_bytes) << megabytes;
+    EXPECT_EQ(plan.steps > 1, plan.passes.size() > 1 && megabytes < 86) << megabytes;
+  }
+  // A state is 2.1 GB: more than the default.
+  request.memory_bytes.reset();
+  for (const int count : {10, 50, 200}) {
+    const GeometryChain large = iterations({1920, 1080}, count, 1024);
+    const ChainPlan plan = plan_chain(large.stages(), Machine{}, request);
+    expect_sound(plan, large.stages());
+    EXPECT_GT(plan.steps, 1);
+    EXPECT_LE(bytes_taken(plan, request.threads), kDefaultMemoryBytes);
+    for (const PassPlan& pass : plan.passes) {
+      EXPECT_LT(pass.work_ratio, count <= 50 ? 2.0 : 4.0);
+    }
+  }
+}
+
+TEST(StripPlan, StepsMakeEachRowOnceAndFindTheRowsTheyNeed) {
+  const Extent extent{30, 101};
+  for (const int halo : {0, 1, 4}) {
+    const GeometryChain chain(extent, 11, halo, 64, 1, true);
+    PlanRequest request;
+    request.pass_ends = std::vector<int>{1, 4, 9, 12};
+    for (const std::size_t kilobytes : {900, 500, 300, 200, 1}) {
+      request.memory_bytes = kilobytes << 10U;
+      const ChainPlan plan = plan_chain(chain.stages(), Machine{}, request);
+      std::vector<int> made(plan.passes.size());
+      for (int step = 0; step < plan.steps; ++step) {
+        for (std::size_t p = 0; p < plan.passes.size(); ++p) {
+          const PassPlan& pass = plan.passes[p];
+          const Range rows = rows_of_step(plan, pass, step, extent.rows);
+          EXPECT_EQ(rows.begin, made[p]);
+          EXPECT_GE(rows.size(), 0);
+          EXPECT_LE(rows.size(), plan.step_rows);
+          made[p] = rows.end;
+          if (p > 0 && !rows.empty()) {
+            // Of the steps of a pass only the sink has no halo.
+            const int stages = pass.end_stage - pass.first_stage;
+            const int reach = halo * (stages - (pass.end_stage == chain.size() ? 1 : 0));
+            const Range needed = rows.widened(reach, extent.all_rows());
+            EXPECT_LE(needed.end, made[p - 1]);
+            EXPECT_GE(needed.begin, made[p - 1] - plan.passes[p - 1].stored_rows);
+          }
+        }
+      }
+      for (const int end : made) {
+        EXPECT_EQ(end, extent.rows);
+      }
+    }
+  }
+}
+
 TEST(StripPlan, WorkRatioIsWhatASweepComputes) {
   // Two steps of halo 1 on strips of 10: 10 + 12 + 14 columns, and the sink's 10.
   const GeometryChain chain({100, 80}, 2, 1);
@@ -217,10 +366,12 @@ TEST(StripPlan, WorkRatioIsWhatASweepComputes) {
 TEST(SweepLayout, AddsUpHalosAndKeepsPartsApart) {
   const Extent extent{100, 80};
   const GeometryChain chain(extent, 3, 2, 128);
-  std::vector<StageSweep> sweep;
+  const PassStages pass = pass_stages(chain.stages(), 0, chain.size(), 0);
+  SweepLayout layout;
   for (const Range columns : {Range{0, 1}, Range{40, 47}, Range{96, 100}, Range{0, 100}}) {
     for (const Range rows : {Range{0, 1}, Range{30, 33}, Range{79, 80}}) {
-      const std::size_t bytes = lay_out_sweep(chain.stages(), {}, columns, rows, sweep);
+      lay_out_sweep(pass, columns, rows, layout);
+      const std::vector<StageSweep>& sweep = layout.parts;
       ASSERT_EQ(sweep.size(), 5U);
       for (std::size_t k = 0; k < 5; ++k) {
         const int halo = k == 4 ? 0 : static_cast<int>(3 - k) * 2;
@@ -243,7 +394,7 @@ TEST(SweepLayout, AddsUpHalosAndKeepsPartsApart) {
                          static_cast<int>(part.state_offset) + part.columns.size()});
       }
       for (std::size_t a = 0; a < parts.size(); ++a) {
-        EXPECT_LE(parts[a].end, static_cast<int>(bytes));
+        EXPECT_LE(parts[a].end, static_cast<int>(layout.scratch_bytes));
         for (std::size_t b = 0; b < a; ++b) {
           EXPECT_TRUE(parts[a].empty() || parts[b].empty() || parts[a].end <= parts[b].begin ||
                       parts[b].end <= parts[a].begin);
@@ -251,6 +402,41 @@ TEST(SweepLayout, AddsUpHalosAndKeepsPartsApart) {
       }
     }
   }
+}
+
+TEST(SweepLayout, SourceIsKeptForItsLastReader) {
+  const Extent extent{100, 80};
+  const GeometryChain chain(extent, 6, 2, 128, 1, true);
+  const std::vector<RowReach> reaches = row_reaches(chain.stages());
+  EXPECT_EQ(reaches[0].below, 0);
+  EXPECT_EQ(reaches[1].above, 2);
+  EXPECT_EQ(reaches[1].below, 2);
+  const auto source_rows = [&](int first, int end) {
+    return source_rows_to_keep(chain.stages(), reaches, first, end);
+  };
+  EXPECT_EQ(source_rows(0, 1), 0);
+  EXPECT_EQ(source_rows(0, 2), 3);
+  EXPECT_EQ(source_rows(0, 8), 13);
+  EXPECT_EQ(source_rows(1, 2), 1);  // beside the pass it waits for its first reader
+  EXPECT_EQ(source_rows(3, 8), 7);
+  EXPECT_EQ(source_rows(7, 8), 0);
+
+  SweepLayout layout;
+  lay_out_sweep(pass_stages(chain.stages(), 3, 8, 7), {40, 50}, {40, 45}, layout);
+  ASSERT_EQ(layout.parts.size(), 6U);
+  EXPECT_EQ(layout.parts[0].stage, chain.stages()[0]);
+  EXPECT_EQ(layout.parts[0].ring_rows, 7);
+  EXPECT_EQ(layout.parts[0].columns, layout.parts[1].columns);
+  EXPECT_EQ(layout.parts[0].columns, (Range{34, 56}));
+  EXPECT_EQ(layout.parts[0].first_row, layout.parts[1].first_row);
+  lay_out_sweep(pass_stages(chain.stages(), 0, 8, 13), {40, 50}, {40, 45}, layout);
+  ASSERT_EQ(layout.parts.size(), 8U);
+  EXPECT_EQ(layout.parts[0].ring_rows, 13);
+  EXPECT_EQ(layout.parts[0].columns, (Range{28, 62}));
+
+  // No more rows than there are.
+  const GeometryChain low({100, 5}, 6, 2, 128, 1, true);
+  EXPECT_EQ(source_rows_to_keep(low.stages(), row_reaches(low.stages()), 0, 8), 5);
 }
 
 TEST(Machine, IsDescribedSensibly) {

@@ -91,6 +91,46 @@ inline const ChainCase kScales{"scales", [](TestChain& chain) {
                                  chain.add<Diffusion>(full);
                                }};
 
+inline const ChainCase kSourceNext{"source_next", [](TestChain& chain) {
+                                     const Extent extent = chain.extent();
+                                     chain.add<RunningSum>(1, extent);
+                                     chain.add<Mixture>(0, 0, true, extent);
+                                   }};
+inline const ChainCase kSourceTwice{"source_twice", [](TestChain& chain) {
+                                      const Extent extent = chain.extent();
+                                      chain.add<RunningSum>(1, extent);
+                                      chain.add<Mixture>(1, 1, false, extent);
+                                      chain.add<Mixture>(0, 2, true, extent);
+                                      chain.add<Mixture>(1, 0, false, extent);
+                                      chain.add<Mixture>(2, 3, true, extent);
+                                      chain.add<Mixture>(1, 1, false, extent);
+                                    }};
+inline const ChainCase kSourceEachTime{"source_each_time", [](TestChain& chain) {
+                                         const Extent extent = chain.extent();
+                                         chain.add<RunningSum>(2, extent);
+                                         for (int iteration = 0; iteration < 10; ++iteration) {
+                                           chain.add<Mixture>(1, 1, true, extent);
+                                         }
+                                       }};
+inline const ChainCase kSourceAfterSmoothing{"source_after_smoothing", [](TestChain& chain) {
+                                               const Extent extent = chain.extent();
+                                               chain.add<RunningSum>(2, extent);
+                                               chain.add<Mixture>(5, 5, false, extent);
+                                               chain.add<Mixture>(1, 1, false, extent);
+                                               for (int iteration = 0; iteration < 4; ++iteration) {
+                                                 chain.add<Mixture>(1, 1, true, extent);
+                                               }
+                                             }};
+inline const ChainCase kSourceAnchored{"source_anchored", [](TestChain& chain) {
+                                         const Extent extent = chain.extent();
+                                         chain.add<FloatSource>(extent);
+                                         chain.add<AnchoredSum>(3, extent);
+                                         chain.add<PullToSource>(extent);
+                                         chain.add<Diffusion>(extent);
+                                         chain.add<AnchoredSum>(1, extent);
+                                         chain.add<PullToSource>(extent);
+                                       }};
+
 inline constexpr Extent kSizes[] = {{1, 1}, {1, 7}, {7, 1}, {13, 11}, {64, 3}, {97, 61}};
 
 /// What the oracle makes of `chain`.

@@ -54,6 +54,10 @@ class CellStage : public RowStage {
   static const Cell& in(const RowTask& task, int x, int y) {
     return task.input.row<Cell>(y)[x - task.input.columns().begin];
   }
+  template <typename Cell>
+  static const Cell& source(const RowTask& task, int x) {
+    return task.source.row<Cell>(task.y)[x - task.source.columns().begin];
+  }
 
  private:
   std::string name_;
@@ -272,7 +276,66 @@ class Expansion final : public CellStage {
   }
 };
 
-/// (g) A last stage: stores the rows it gets and counts how often each cell came.
+/// (g) A sum of all cells at most `above` rows up, `below` rows down and a column aside, and of the
+/// source if it is read, each with an odd factor of its own place, modulo 2³²: one wrong cell
+/// anywhere, and everything that hangs on it comes out wrong.
+class Mixture final : public CellStage {
+ public:
+  Mixture(int above, int below, bool reads_source, Extent extent)
+      : CellStage("mixture", extent), above_(above), below_(below), reads_source_(reads_source) {}
+  [[nodiscard]] Range input_rows(int y, Extent input) const override {
+    return {std::max(0, y - above_), std::min(input.rows, y + below_ + 1)};
+  }
+  [[nodiscard]] Range input_columns(Range columns, Extent input) const override {
+    return columns.widened(1, input.all_columns());
+  }
+  [[nodiscard]] int window_rows() const override { return above_ + below_ + 1; }
+  [[nodiscard]] bool reads_source() const override { return reads_source_; }
+  void make_row(const RowTask& task) const override {
+    for (int x = task.columns.begin; x < task.columns.end; ++x) {
+      const Range columns = Range{x, x + 1}.widened(1, extent().all_columns());
+      std::uint32_t sum[kCellLanes] = {};
+      for (int i = 0; reads_source_ && i < kCellLanes; ++i) {
+        sum[i] = 101U * unsigned_cell(source<IntCell>(task, x)[i]);
+      }
+      for (int row = task.input.rows().begin; row < task.input.rows().end; ++row) {
+        for (int column = columns.begin; column < columns.end; ++column) {
+          const std::uint32_t weight = factor(column - x, row - task.y);
+          for (int i = 0; i < kCellLanes; ++i) {
+            sum[i] += weight * unsigned_cell(in<IntCell>(task, column, row)[i]);
+          }
+        }
+      }
+      std::memcpy(out<IntCell>(task, x), sum, sizeof(sum));
+    }
+  }
+  static std::uint32_t factor(int dx, int dy) { return hash(dx, dy, 0) | 1U; }
+  static std::uint32_t unsigned_cell(std::int32_t value) {
+    return static_cast<std::uint32_t>(value);
+  }
+
+ private:
+  int above_;
+  int below_;
+  bool reads_source_;
+};
+
+/// (h) Half way between its input and the source, in floats.
+class PullToSource final : public CellStage {
+ public:
+  explicit PullToSource(Extent extent) : CellStage("pull to source", extent) {}
+  [[nodiscard]] bool reads_source() const override { return true; }
+  void make_row(const RowTask& task) const override {
+    for (int x = task.columns.begin; x < task.columns.end; ++x) {
+      for (int i = 0; i < kCellLanes; ++i) {
+        out<FloatCell>(task, x)[i] =
+            0.5F * in<FloatCell>(task, x, task.y)[i] + 0.5F * source<FloatCell>(task, x)[i];
+      }
+    }
+  }
+};
+
+/// (i) A last stage: stores the rows it gets and counts how often each cell came.
 class Sink final : public RowStage {
  public:
   explicit Sink(Extent extent)
@@ -323,6 +386,7 @@ class Supervised final : public RowStage {
     return inner_.input_columns(columns, input);
   }
   [[nodiscard]] int window_rows() const override { return inner_.window_rows(); }
+  [[nodiscard]] bool reads_source() const override { return inner_.reads_source(); }
   [[nodiscard]] int first_row_work() const override { return inner_.first_row_work(); }
   [[nodiscard]] int sweep_start(int y) const override { return inner_.sweep_start(y); }
   [[nodiscard]] std::size_t state_bytes(Range columns, Extent input) const override {
@@ -351,6 +415,11 @@ class Supervised final : public RowStage {
       for (int y = rows.begin; y < rows.end; ++y) {
         require(aligned(task.input.row<std::byte>(y)), "input row is not aligned");
       }
+    }
+    if (inner_.reads_source()) {
+      require(task.source.rows() == Range{task.y, task.y + 1}, "another row of the source");
+      require(task.source.columns().contains(task.columns), "source columns are missing");
+      require(aligned(task.source.row<std::byte>(task.y)), "source row is not aligned");
     }
     inner_.make_row(task);
   }

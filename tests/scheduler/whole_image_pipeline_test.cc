@@ -114,5 +114,42 @@ TEST(WholeImagePipeline, SumsBoxesLikePlainLoops) {
   }
 }
 
+TEST(WholeImagePipeline, MixesTheSourceLikePlainLoops) {
+  for (const Extent extent : kSizes) {
+    std::vector<std::uint32_t> source(cell_index(extent, 0, extent.rows));
+    for (int y = 0; y < extent.rows; ++y) {
+      for (int x = 0; x < extent.columns; ++x) {
+        for (int i = 0; i < kCellLanes; ++i) {
+          for (int row = std::max(0, y - 2); row <= std::min(extent.rows - 1, y + 2); ++row) {
+            source[cell_index(extent, x, y) + static_cast<std::size_t>(i)] +=
+                static_cast<std::uint32_t>(hashed_int(x, row, i));
+          }
+        }
+      }
+    }
+    std::vector<std::uint32_t> plane = source;
+    for (int iteration = 0; iteration < 10; ++iteration) {
+      std::vector<std::uint32_t> next = source;
+      for (int y = 0; y < extent.rows; ++y) {
+        for (int x = 0; x < extent.columns; ++x) {
+          for (std::size_t i = 0; i < kCellLanes; ++i) {
+            std::uint32_t& sum = next[cell_index(extent, x, y) + i];
+            sum *= 101U;
+            for (int dy = -1; dy <= 1; ++dy) {
+              for (int dx = -1; dx <= 1; ++dx) {
+                if (x + dx >= 0 && x + dx < extent.columns && y + dy >= 0 && y + dy < extent.rows) {
+                  sum += Mixture::factor(dx, dy) * plane[cell_index(extent, x + dx, y + dy) + i];
+                }
+              }
+            }
+          }
+        }
+      }
+      plane = next;
+    }
+    EXPECT_TRUE(whole_image_values<std::uint32_t>(kSourceEachTime, extent) == plane);
+  }
+}
+
 }  // namespace
 }  // namespace vantage::scheduler

@@ -1,0 +1,249 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+#include "apps/commands.h"
+#include "apps/option_groups.h"
+#include "apps/outputs.h"
+#include "apps/run_report.h"
+#include "apps/settings.h"
+#include "engine/error.h"
+#include "engine/evaluation/cumulative_response.h"
+#include "engine/io/atomic_file.h"
+#include "engine/io/npy.h"
+#include "engine/io/photograph_io.h"
+#include "engine/plot/heat_map.h"
+#include "engine/plot/line_plot.h"
+#include "engine/simd.h"
+
+namespace vantage::apps {
+namespace {
+
+struct ResponseJob {
+  MethodOverrides parameters;
+  std::optional<DisparityRange> displacements_x;  ///< default: −16 to a quarter of the width
+  DisparityRange displacements_y = {0, 0};
+  CommonOptions common;
+  std::string left;
+  std::string right;
+  std::string output;
+  std::string plot;
+};
+
+constexpr const char* kAutomatic = "auto";
+constexpr int kParts = static_cast<int>(kImagePartNames.size());
+
+void add_response_settings(Settings& settings, ResponseJob& job) {
+  settings.begin_group("Files");
+  settings.positional("left", job.left, "Left image").required = true;
+  settings.positional("right", job.right, "Right image of the same size").required = true;
+  Setting& output = settings.text(
+      "output", job.output, "FILE",
+      "Sums to write: .csv, one row per displacement, or .npy of shape (5, y, x): whole image, "
+      "top left, top right, bottom left and bottom right quadrant");
+  output.short_name = 'o';
+  output.required = true;
+  settings.text(
+      "plot", job.plot, "FILE",
+      "Draw the sums per pixel: curves over one range, heat maps over two: .svg .png .jpg ...");
+
+  settings.begin_group("Displacements");
+  Setting& x = settings.add("displacements-x", "MIN:MAX",
+                            "x_left - x_right in pixels, both inclusive; auto: -16 to a quarter of "
+                            "the width");
+  x.set = [&job](const SettingValue& value) {
+    job.displacements_x = value == kAutomatic
+                              ? std::nullopt
+                              : std::optional(to_disparity_range(value,
+                                                                 "MIN:MAX in whole pixels, such as "
+                                                                 "-16:63, or auto"));
+  };
+  x.get = [&job]() -> SettingValue {
+    return job.displacements_x ? to_text(*job.displacements_x) : kAutomatic;
+  };
+  Setting& y = settings.add("displacements-y", "MIN:MAX", "y_left - y_right, likewise");
+  y.set = [&job](const SettingValue& value) {
+    job.displacements_y = to_disparity_range(value, "MIN:MAX in whole pixels, such as -4:4");
+  };
+  y.get = [&job] { return to_text(job.displacements_y); };
+
+  settings.begin_group("Evidence");
+  add_gradient_settings(settings, job.parameters);
+}
+
+CumulativeResponseOptions options_of(const ResponseJob& job, int width) {
+  constexpr int kLeast = -16;
+  return {.displacements_x =
+              job.displacements_x.value_or(DisparityRange{kLeast, std::max(0, width / 4)}),
+          .displacements_y = job.displacements_y,
+          .parameters = resolve(MatchMethod::kGradient, job.parameters)};
+}
+
+void check(const ResponseJob& job) {
+  options_of(job, 0).validate();
+  job.common.execution.validate();
+  FileChecks files;
+  files.add_input(job.left);
+  files.add_input(job.right);
+  files.add_output(job.output, "--output", OutputKind::kTable);
+  files.add_output(job.plot, "--plot", OutputKind::kPlot);
+  files.add_output(job.common.report, "--report", OutputKind::kText);
+}
+
+std::string csv(const CumulativeResponse& response) {
+  std::string text = "dx_px,dy_px";
+  for (const std::string_view name : kImagePartNames) {
+    text += fmt::format(",{}", name);
+  }
+  text += '\n';
+  std::size_t index = 0;
+  for (int dy = response.displacements_y.min; dy <= response.displacements_y.max; ++dy) {
+    for (int dx = response.displacements_x.min; dx <= response.displacements_x.max; ++dx) {
+      text += fmt::format("{},{}", dx, dy);
+      for (const std::vector<double>& surface : response.surfaces) {
+        text += fmt::format(",{}", surface[index]);
+      }
+      text += '\n';
+      ++index;
+    }
+  }
+  return text;
+}
+
+void write_data(const std::string& path, const CumulativeResponse& response) {
+  if (has_extension(path, {".csv"})) {
+    write_text_file(path, csv(response));
+    return;
+  }
+  std::vector<double> values;
+  for (const std::vector<double>& surface : response.surfaces) {
+    values.insert(values.end(), surface.begin(), surface.end());
+  }
+  const int shape[] = {kParts, response.displacements_y.count(), response.displacements_x.count()};
+  write_binary_file(path, encode_npy(values, shape));
+}
+
+Drawing draw_curves(const CumulativeResponse& response) {
+  const bool along_x = response.displacements_y.count() == 1;
+  const DisparityRange range = along_x ? response.displacements_x : response.displacements_y;
+  LinePlot plot{.title = along_x ? fmt::format("dy = {}", response.displacements_y.min)
+                                 : fmt::format("dx = {}", response.displacements_x.min),
+                .x_axis = {.title = along_x ? "dx = x_left - x_right, pixels"
+                                            : "dy = y_left - y_right, pixels"},
+                .y_axis = {.title = "evidence per pixel, grey levels"},
+                .markers = false,
+                .series = {}};
+  for (int part = 0; part < kParts; ++part) {
+    const auto index = static_cast<std::size_t>(part);
+    PlotSeries series{std::string(kImagePartNames[index]), {}, {}};
+    const double pixels = response.pixels(static_cast<ImagePart>(part));
+    for (int i = 0; i < range.count(); ++i) {
+      series.x.push_back(range.min + i);
+      series.y.push_back(response.surfaces[index][static_cast<std::size_t>(i)] / pixels);
+    }
+    plot.series.push_back(std::move(series));
+  }
+  return draw_line_plots("Cumulative response", {plot}, 1);
+}
+
+Drawing draw_surfaces(const CumulativeResponse& response) {
+  std::vector<HeatMap> maps;
+  for (int part = 0; part < kParts; ++part) {
+    const auto index = static_cast<std::size_t>(part);
+    const double pixels = response.pixels(static_cast<ImagePart>(part));
+    HeatMap map{
+        .title = std::string(kImagePartNames[index]),
+        .x_title = "dx = x_left - x_right, pixels",
+        .y_title = "dy = y_left - y_right, pixels; colour: evidence per pixel",
+        .x_first = response.displacements_x.min,
+        .y_first = response.displacements_y.min,
+        .values = Image<float>(response.displacements_x.count(), response.displacements_y.count())};
+    auto value = response.surfaces[index].begin();
+    for (int y = 0; y < map.values.height(); ++y) {
+      for (int x = 0; x < map.values.width(); ++x) {
+        map.values.at(x, y) = static_cast<float>(*value++ / pixels);
+      }
+    }
+    if (const auto dominant = response.dominant(static_cast<ImagePart>(part))) {
+      map.marked = {dominant->x_px, dominant->y_px};
+      map.title += fmt::format(": largest at {}, {}", dominant->x_px, dominant->y_px);
+    }
+    maps.push_back(std::move(map));
+  }
+  constexpr int kColumns = 3;
+  return draw_heat_maps("Cumulative response", maps, kColumns);
+}
+
+void write_plot(const std::string& path, const CumulativeResponse& response) {
+  const bool one_range =
+      response.displacements_x.count() == 1 || response.displacements_y.count() == 1;
+  write_drawing(path, one_range ? draw_curves(response) : draw_surfaces(response));
+}
+
+/// The table on stdout; returns the same for the report.
+SettingValue print_dominant(const CumulativeResponse& response) {
+  SettingValue results = SettingValue::object();
+  fmt::print("{:<14}{:>6}{:>6}{:>16}{:>12}\n", "part", "dx", "dy", "response", "per pixel");
+  for (int part = 0; part < kParts; ++part) {
+    const auto image_part = static_cast<ImagePart>(part);
+    const std::string name(kImagePartNames[static_cast<std::size_t>(part)]);
+    if (const auto dominant = response.dominant(image_part)) {
+      const double sum = response.at(image_part, *dominant);
+      fmt::print("{:<14}{:>6}{:>6}{:>16.1f}{:>12.4f}\n", name, dominant->x_px, dominant->y_px, sum,
+                 sum / response.pixels(image_part));
+      results[name] = {{"dx_px", dominant->x_px}, {"dy_px", dominant->y_px}, {"response", sum}};
+    } else {
+      fmt::print("{:<14}  none: no evidence for any displacement\n", name);
+      results[name] = nullptr;
+    }
+  }
+  return results;
+}
+
+}  // namespace
+
+int command_response(const Arguments& arguments) {
+  ResponseJob job;
+  Settings settings("response",
+                    "Sums the gradient evidence of a pair for a range of displacements, over the "
+                    "image and its quadrants, and prints where it is largest.");
+  add_response_settings(settings, job);
+  add_common_settings(settings, job.common);
+  if (!settings.read(arguments)) {
+    return kExitDone;
+  }
+  check(job);
+  RunReport report(settings.command(), settings.values());
+  force_instruction_set(job.common.isa);
+  Execution execution(job.common.execution);
+  report.set_execution(execution);
+
+  const auto read = [&](const std::string& path) {
+    return report.timed_file_access("read", [&] { return read_photograph(path); });
+  };
+  const Photograph left = read(job.left);
+  const Photograph right = read(job.right);
+  const CumulativeResponseOptions options = options_of(job, left.width());
+  const CumulativeResponse response = report.timed_compute(
+      "response", [&] { return cumulative_response(left, right, options, execution); });
+  report.timed_file_access("write", [&] {
+    write_data(job.output, response);
+    if (!job.plot.empty()) {
+      write_plot(job.plot, response);
+    }
+  });
+
+  report.set_results({{"dominant", print_dominant(response)}});
+  report.write(job.common.report);
+  if (!job.common.quiet) {
+    fmt::print(stderr, "response: {}x{} pixels, displacements {} x {} -> {}\n", left.width(),
+               left.height(), to_text(options.displacements_x), to_text(options.displacements_y),
+               job.output);
+    report.print_summary();
+  }
+  return kExitDone;
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,351 @@
+#include "apps/match_settings.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "engine/error.h"
+#include "engine/matching/match_presets.h"
+
+namespace vantage::apps {
+namespace {
+
+constexpr double kNoThreshold = -std::numeric_limits<double>::infinity();
+
+template <typename Enum>
+using Names = std::vector<std::pair<std::string_view, Enum>>;
+
+const Names<MatchMethod>& method_names() {
+  static const Names<MatchMethod> names = {{"ssd", MatchMethod::kSsd},
+                                           {"gradient", MatchMethod::kGradient},
+                                           {"diffusion", MatchMethod::kDiffusion},
+                                           {"membrane", MatchMethod::kMembrane},
+                                           {"local-stopping", MatchMethod::kLocalStopping},
+                                           {"bayes", MatchMethod::kBayes}};
+  return names;
+}
+
+const Names<MatchPreset>& preset_names() {
+  static const Names<MatchPreset> names = {{"fast", MatchPreset::kFast},
+                                           {"balanced", MatchPreset::kBalanced},
+                                           {"quality", MatchPreset::kQuality}};
+  return names;
+}
+
+const Names<MatchCost>& cost_names() {
+  static const Names<MatchCost> names = {
+      {"squared", MatchCost::kSquared},     {"absolute", MatchCost::kAbsolute},
+      {"truncated", MatchCost::kTruncated}, {"birchfield-tomasi", MatchCost::kBirchfieldTomasi},
+      {"gradient", MatchCost::kGradient},   {"contaminated", MatchCost::kContaminated},
+      {"census", MatchCost::kCensus}};
+  return names;
+}
+
+const Names<Aggregation>& aggregation_names() {
+  static const Names<Aggregation> names = {{"none", Aggregation::kNone},
+                                           {"box", Aggregation::kBox},
+                                           {"gaussian", Aggregation::kGaussian},
+                                           {"box-cascade", Aggregation::kBoxCascade},
+                                           {"diffusion", Aggregation::kDiffusion},
+                                           {"membrane", Aggregation::kMembrane},
+                                           {"local-stopping", Aggregation::kLocalStopping},
+                                           {"bayes", Aggregation::kBayes}};
+  return names;
+}
+
+template <typename Enum>
+std::string name_of(Enum value, const Names<Enum>& names) {
+  for (const auto& [name, named] : names) {
+    if (named == value) {
+      return std::string(name);
+    }
+  }
+  return "";
+}
+
+/// "auto: squared; gradient for gradient, …": a default that depends on the method. The rule is
+/// what most methods have.
+template <typename Enum>
+std::string by_method(const Names<Enum>& names, Enum MethodParameters::*field, Enum rule) {
+  std::string text = fmt::format("auto: {}", name_of(rule, names));
+  std::string separator = "; ";
+  for (const auto& [method_name, method] : method_names()) {
+    if (const Enum value = book_parameters(method).*field; value != rule) {
+      text += fmt::format("{}{} for {}", separator, name_of(value, names), method_name);
+      separator = ", ";
+    }
+  }
+  return text;
+}
+
+/// "auto: 9": a default that all methods share.
+std::string shared(double value) { return fmt::format("auto: {}", value); }
+
+bool is_word(const SettingValue& value, std::string_view word) {
+  return value.is_string() && value.get_ref<const std::string&>() == word;
+}
+
+void add_cost_settings(Settings& settings, MethodOverrides& parameters) {
+  const MethodParameters book = book_parameters(MatchMethod::kSsd);
+  settings.begin_group("Matching: cost");
+  settings.choice("cost", parameters.cost, cost_names(),
+                  "How unlike a pixel and its partner are; " +
+                      by_method(cost_names(), &MethodParameters::cost, MatchCost::kSquared));
+  settings.choice<ColourUse>("colour", parameters.colour,
+                             {{"luma", ColourUse::kLuma}, {"channels", ColourUse::kChannels}},
+                             "What is compared of colour images: their luma, or each channel, of "
+                             "which the costs are averaged; auto: luma");
+  settings.number("truncation", parameters.truncation, "T",
+                  "Cost truncated: its most, in grey levels, above 0; " + shared(book.truncation));
+  settings.number("sigma-measurement", parameters.sigma_measurement, "S",
+                  "Cost contaminated, aggregation bayes, certainty entropy: the noise in grey "
+                  "levels, above 0; " +
+                      shared(book.sigma_measurement));
+  settings.number("epsilon-measurement", parameters.epsilon_measurement, "E",
+                  "Cost contaminated, aggregation bayes: the share of outliers, between 0 and 1; " +
+                      shared(book.epsilon_measurement));
+  add_gradient_settings(settings, parameters);
+}
+
+void add_aggregation_settings(Settings& settings, MethodOverrides& parameters) {
+  const MethodParameters book = book_parameters(MatchMethod::kSsd);
+  settings.begin_group("Matching: aggregation");
+  settings.choice(
+      "aggregate", parameters.aggregation, aggregation_names(),
+      "How costs gather support from their neighbours; " +
+          by_method(aggregation_names(), &MethodParameters::aggregation, Aggregation::kBox));
+  settings.integer("window", parameters.window_px, "PX",
+                   "box: side of the square window, odd, 1 to 181; " + shared(book.window_px));
+  settings.choice<Border>("border", parameters.border,
+                          {{"clip", Border::kClip}, {"valid", Border::kValid}},
+                          "box: clip uses the part of a window inside both images, valid takes "
+                          "whole windows only; auto: clip");
+  settings.number(
+      "aggregation-sigma", parameters.aggregation_sigma_px, "PX",
+      "gaussian, box-cascade: standard deviation, 0.5 to 16; " + shared(book.aggregation_sigma_px));
+  settings.integer("iterations", parameters.iterations, "N",
+                   "diffusion, membrane, local-stopping, bayes: how many, 0 to 10000; " +
+                       shared(book.iterations));
+  settings.number("lambda", parameters.lambda, "L",
+                  "diffusion, local-stopping: step, above 0 and below 0.25; membrane: at most "
+                  "1/(4 + beta); " +
+                      shared(book.lambda));
+  settings.number("beta", parameters.beta, "B",
+                  "membrane: pull towards the first costs, at least 0; " + shared(book.beta));
+  settings.choice<Certainty>(
+      "certainty", parameters.certainty,
+      {{"margin", Certainty::kMargin}, {"entropy", Certainty::kEntropy}},
+      "local-stopping: what must not fall, the winner's margin or the negative entropy; auto: "
+      "margin");
+  settings.number("mu", parameters.mu, "M",
+                  "bayes: weight of the neighbours, above 0 and at most 1; " + shared(book.mu));
+  settings.number("sigma-prior", parameters.sigma_prior, "S",
+                  "bayes: how much neighbours differ, in pixels of disparity, above 0; " +
+                      shared(book.sigma_prior));
+  settings.number("epsilon-prior", parameters.epsilon_prior, "E",
+                  "bayes: the share of neighbours of any disparity, between 0 and 1; " +
+                      shared(book.epsilon_prior));
+}
+
+void add_selection_settings(Settings& settings, MatchOptions& options) {
+  settings.begin_group("Matching: selection");
+  settings.choice<Subpixel>("subpixel", options.parameters.subpixel,
+                            {{"parabola", Subpixel::kParabola}, {"none", Subpixel::kNone}},
+                            "Refinement of the winner between candidates; auto: parabola");
+}
+
+void add_edge_snapping_setting(Settings& settings, RefinementOverrides& refinement) {
+  constexpr int kUsualPx = 4;
+  Setting& setting = settings.add(
+      "edge-snapping", "PX|on",
+      fmt::format("Move discontinuities to intensity edges at most PX columns away, 0 to 16; on: "
+                  "{}; auto: 0, which leaves them",
+                  kUsualPx));
+  std::optional<int>& field = refinement.edge_snapping_px;
+  setting.set = [&field](const SettingValue& value) {
+    if (is_word(value, "auto")) {
+      field.reset();
+    } else {
+      field = is_word(value, "on") ? kUsualPx : to_integer(value);
+    }
+  };
+  setting.get = [&field] { return field ? SettingValue(*field) : SettingValue("auto"); };
+}
+
+void add_cross_check_setting(Settings& settings, RefinementOverrides& refinement) {
+  Setting& setting = settings.add("cross-check", "PX|none",
+                                  "Left and right disparities agree if they differ by less, at "
+                                  "least 1; none: no check; auto: the number of candidates / 15");
+  setting.set = [&refinement](const SettingValue& value) {
+    const bool is_number = !is_word(value, "auto") && !is_word(value, "none");
+    refinement.cross_check_px = is_number ? std::optional(to_number(value)) : std::nullopt;
+    refinement.cross_check = is_word(value, "auto") ? std::nullopt : std::optional(is_number);
+  };
+  setting.get = [&refinement]() -> SettingValue {
+    if (refinement.cross_check == false) {
+      return "none";
+    }
+    return refinement.cross_check_px ? SettingValue(*refinement.cross_check_px)
+                                     : SettingValue("auto");
+  };
+}
+
+void add_confidence_setting(Settings& settings, RefinementOverrides& refinement) {
+  Setting& setting =
+      settings.add("confidence-threshold", "X|none",
+                   "Pixels of no more confidence (see --confidence of match) count as unmatched; "
+                   "none: all may match; auto: 0 for cost gradient, none for others");
+  std::optional<double>& field = refinement.confidence_threshold;
+  setting.set = [&field](const SettingValue& value) {
+    if (is_word(value, "auto")) {
+      field.reset();
+    } else {
+      field = is_word(value, "none") ? kNoThreshold : to_number(value);
+    }
+  };
+  setting.get = [&field]() -> SettingValue {
+    if (field == kNoThreshold) {
+      return "none";
+    }
+    return field ? SettingValue(*field) : SettingValue("auto");
+  };
+}
+
+void add_refinement_settings(Settings& settings, MatchOptions& options) {
+  settings.begin_group("Refinement");
+  settings.flag("raw", options.raw, "Winner-take-all only: nothing of this group");
+  add_edge_snapping_setting(settings, options.refinement);
+  add_cross_check_setting(settings, options.refinement);
+  add_confidence_setting(settings, options.refinement);
+  settings.integer("speckle-size", options.refinement.speckle_size_px, "PX",
+                   "Matched regions of fewer pixels count as unmatched; auto: 0, which keeps them");
+  settings.choice<Fill>(
+      "fill", options.refinement.fill,
+      {{"constant", Fill::kConstant}, {"linear", Fill::kLinear}, {"none", Fill::kNone}},
+      "What unmatched pixels become: the depth of the background beside them, a line where both "
+      "sides are one surface, unknown; auto: constant");
+}
+
+void add_parameter_settings(Settings& settings, MatchOptions& options) {
+  add_cost_settings(settings, options.parameters);
+  add_aggregation_settings(settings, options.parameters);
+  add_selection_settings(settings, options);
+  add_refinement_settings(settings, options);
+}
+
+/// The command line that `preset` stands for.
+std::string describe(MatchPreset preset) {
+  const PresetSettings preset_values = preset_settings(preset);
+  MatchOptions options;
+  Settings settings("", "");
+  add_parameter_settings(settings, options);
+  const SettingValue unset = settings.values();
+  options.parameters = preset_values.parameters;
+  options.refinement = preset_values.refinement;
+  std::string text = name_of(preset_values.method, method_names());
+  const SettingValue values = settings.values();
+  for (const auto& [name, value] : values.items()) {
+    if (value != unset[name]) {
+      text += fmt::format(" --{} {}", name,
+                          value.is_string() ? value.get<std::string>() : value.dump());
+    }
+  }
+  return text;
+}
+
+void add_method_settings(Settings& settings, MatchOptions& options) {
+  settings.choice("method", options.method, method_names(),
+                  "Combination of cost, aggregation and their parameters; auto: the preset's, "
+                  "without one ssd");
+  std::string help = "For real photographs, instead of --method; what it sets goes before auto";
+  for (const auto& [name, preset] : preset_names()) {
+    help += fmt::format("; {}: {}", name, describe(preset));
+  }
+  settings.choice("preset", options.preset, preset_names(), help, "none");
+}
+
+}  // namespace
+
+DisparityRange to_disparity_range(const SettingValue& value, std::string_view expected) {
+  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ':');
+  try {
+    if (parts.size() == 2) {
+      return {to_integer(parts[0]), to_integer(parts[1])};
+    }
+  } catch (const UsageError&) {  // the message below says more
+  }
+  reject_value(value, expected);
+}
+
+std::string to_text(DisparityRange range) { return fmt::format("{}:{}", range.min, range.max); }
+
+void add_gradient_settings(Settings& settings, MethodOverrides& parameters) {
+  settings.number("alpha", parameters.alpha, "A",
+                  "Cost gradient: weight of the difference of the gradients, at least 0; " +
+                      shared(book_parameters(MatchMethod::kGradient).alpha));
+  settings.choice<GradientNorm>("norm", parameters.norm,
+                                {{"l2", GradientNorm::kL2}, {"octagon", GradientNorm::kOctagon}},
+                                "Cost gradient: length of gradients; auto: l2");
+  settings.choice<GradientFilter>("gradient", parameters.gradient,
+                                  {{"central", GradientFilter::kCentral},
+                                   {"sobel", GradientFilter::kSobel},
+                                   {"simoncelli3", GradientFilter::kSimoncelli3},
+                                   {"simoncelli5", GradientFilter::kSimoncelli5}},
+                                  "Cost gradient: filter; --confidence-threshold depends on its "
+                                  "gain; auto: central");
+  settings.choice<bool>("prefilter", parameters.prefilter, {{"gaussian", true}, {"none", false}},
+                        "Cost gradient: what smooths the images first, a Gaussian of 0.5 px; "
+                        "auto: gaussian");
+}
+
+void add_match_settings(Settings& settings, MatchOptions& options) {
+  settings.begin_group("Matching");
+  Setting& disparities = settings.add(
+      "disparities", "MIN:MAX|auto",
+      "Candidate disparities x_left - x_right in pixels, both inclusive; auto: what the (first) "
+      "pair suggests");
+  disparities.set = [&options](const SettingValue& value) {
+    options.disparities_auto = is_word(value, "auto");
+    if (!options.disparities_auto) {
+      options.disparities =
+          to_disparity_range(value, "MIN:MAX in whole pixels, such as 0:63 or -16:15, or auto");
+    }
+  };
+  disparities.get = [&options] {
+    return options.disparities_auto ? "auto" : to_text(options.disparities);
+  };
+  Setting& disparities_y = settings.add(
+      "disparities-y", "MIN:MAX",
+      "Candidates y_left - y_right of a search in two dimensions; none: 0 only, as of rectified "
+      "pairs");
+  disparities_y.set = [&options](const SettingValue& value) {
+    if (is_word(value, "none")) {
+      options.disparities_y.reset();
+    } else {
+      options.disparities_y = to_disparity_range(value, "MIN:MAX in whole pixels, such as -2:2");
+    }
+  };
+  disparities_y.get = [&options] {
+    return options.disparities_y ? to_text(*options.disparities_y) : "none";
+  };
+  add_method_settings(settings, options);
+  add_parameter_settings(settings, options);
+}
+
+void add_reference_setting(Settings& settings, MatchOptions& options) {
+  settings.begin_group("Matching");
+  settings.choice<Reference>("reference", options.reference,
+                             {{"left", Reference::kLeft}, {"right", Reference::kRight}},
+                             "The image whose grid the disparity map is on");
+}
+
+SettingValue reported_settings(const Settings& settings, const MatchOptions& options) {
+  MatchOptions in_force = options.spelled_out();
+  Settings resolved("", "");
+  add_match_settings(resolved, in_force);
+  SettingValue values = settings.values();
+  values["resolved"] = resolved.values();
+  return values;
+}
+
+}  // namespace vantage::apps

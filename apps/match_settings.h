@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "apps/settings.h"
+#include "engine/matching/match_options.h"
+
+namespace vantage::apps {
+
+/// A range given as "MIN:MAX"; throws UsageError that says what was expected.
+DisparityRange to_disparity_range(const SettingValue& value, std::string_view expected);
+std::string to_text(DisparityRange range);
+
+/// All of MatchOptions but `reference`.
+void add_match_settings(Settings& settings, MatchOptions& options);
+/// Those of them that say what gradient evidence is.
+void add_gradient_settings(Settings& settings, MethodOverrides& parameters);
+void add_reference_setting(Settings& settings, MatchOptions& options);
+
+/// What a report shows: the values of `settings` and, under `resolved`, those of
+/// add_match_settings() that are in force after preset and method have filled in what is not set.
+SettingValue reported_settings(const Settings& settings, const MatchOptions& options);
+
+}  // namespace vantage::apps

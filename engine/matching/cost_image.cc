@@ -1,0 +1,195 @@
+#include <algorithm>
+
+#include "engine/image/grey_levels.h"
+#include "engine/matching/cost_planes.h"
+#include "engine/matching/image_gradient.h"
+#include "engine/matching/stage_cost.h"
+#include "kernels/census/census.h"
+#include "kernels/evidence/evidence.h"
+#include "kernels/pixel_cost/pixel_cost.h"
+
+namespace vantage {
+namespace {
+
+/// Columns before and after the image.
+struct Margins {
+  int before = 0;
+  int after = 0;
+};
+
+Margins margins_of(const kernels::CandidateGeometry& geometry) {
+  // Lane i of column x is read at x + disparity_min + i, in the mirrored plane as in the plain one.
+  // Kernels write whole vectors: up to a lane multiple past the last pixel that matters.
+  return {std::max(kFilterMarginBefore, -geometry.disparity_min),
+          std::max(kFilterMarginBehind,
+                   geometry.disparity_min + geometry.lanes() + kernels::kLaneMultiple)};
+}
+
+template <typename T>
+void resize(FeaturePlane<T>& plane, const CostImage::Planes& planes, Margins margins) {
+  plane.plain.resize(planes.width, planes.height, margins.before, margins.after);
+  if (planes.has_mirrored) {
+    plane.mirrored.resize(planes.width, planes.height, margins.before, margins.after);
+  }
+}
+
+/// The grey levels of one channel, or luma.
+void level_row(const Photograph& photograph, const CostImage::Planes& planes, std::size_t channel,
+               int y, float* levels) {
+  if (planes.channels == 1) {
+    grey_levels_row(photograph, y, levels);
+    return;
+  }
+  std::visit(
+      [&]<typename T>(const Image<T>& image) {
+        const T* pixel = image.row(y) + channel;
+        for (int x = 0; x < image.width(); ++x) {
+          levels[x] = static_cast<float>(pixel[x * image.channels()]) * kGreyLevelsPerUnit<T>;
+        }
+      },
+      photograph.pixels);
+}
+
+/// Calls body(channel) for every channel.
+template <typename Body>
+void for_each_channel(const CostImage::Planes& planes, const Body& body) {
+  for (int c = 0; c < planes.channels; ++c) {
+    body(static_cast<std::size_t>(c));
+  }
+}
+
+/// Calls body(channel, y) for every row of every channel, in parallel.
+template <typename Body>
+void for_each_row(const CostImage::Planes& planes, Execution& execution, const Body& body) {
+  execution.for_each_band(planes.height, [&](int first_row, int end_row) {
+    for_each_channel(planes, [&](std::size_t c) {
+      for (int y = first_row; y < end_row; ++y) {
+        body(c, y);
+      }
+    });
+  });
+}
+
+void prepare_grey(const Photograph& photograph, Margins margins, Execution& execution,
+                  CostImage::Planes& planes) {
+  for_each_channel(planes, [&](std::size_t c) { resize(planes.features[c][0], planes, margins); });
+  for_each_row(planes, execution, [&](std::size_t c, int y) {
+    FeaturePlane<float>& grey = planes.features[c][0];
+    level_row(photograph, planes, c, y, grey.plain.row(y));
+    grey.finish_row(planes.width, y, planes.has_mirrored);
+  });
+}
+
+void prepare_sampling_bounds(Margins margins, Execution& execution, CostImage::Planes& planes) {
+  for_each_channel(planes, [&](std::size_t c) {
+    resize(planes.features[c][1], planes, margins);
+    resize(planes.features[c][2], planes, margins);
+  });
+  for_each_row(planes, execution, [&](std::size_t c, int y) {
+    auto& [grey, least, most] = planes.features[c];
+    kernels::sampling_bounds_row(grey.plain.row(y), planes.width, least.plain.row(y),
+                                 most.plain.row(y));
+    least.finish_row(planes.width, y, planes.has_mirrored);
+    most.finish_row(planes.width, y, planes.has_mirrored);
+  });
+}
+
+/// Grey levels that features are made of, but that are none themselves.
+void prepare_levels(const Photograph& photograph, Execution& execution, CostImage::Planes& planes) {
+  for_each_channel(planes, [&](std::size_t c) {
+    planes.levels[c].resize(planes.width, planes.height, kFilterMarginBefore, kFilterMarginBehind);
+  });
+  for_each_row(planes, execution, [&](std::size_t c, int y) {
+    level_row(photograph, planes, c, y, planes.levels[c].row(y));
+    planes.levels[c].fill_margins(y);
+  });
+}
+
+void prepare_gradients(const MethodParameters& parameters, Margins margins, Execution& execution,
+                       CostImage::Planes& planes) {
+  const int width = planes.width;
+  const int height = planes.height;
+  for_each_channel(planes, [&](std::size_t c) {
+    for (FeaturePlane<float>& plane : planes.features[c]) {
+      resize(plane, planes, margins);
+    }
+    if (parameters.prefilter) {
+      IntensityPlane<float>& smooth = planes.smooth_levels[c];
+      smooth.resize(width, height, kFilterMarginBefore, kFilterMarginBehind);
+      smooth_levels(planes.levels[c], width, height, execution, smooth);
+    }
+  });
+  const auto alpha = static_cast<float>(parameters.alpha);
+  const bool octagon = parameters.norm == GradientNorm::kOctagon;
+  for_each_row(planes, execution, [&](std::size_t c, int y) {
+    const auto work = execution.scratch().lease(sizeof(float) * filter_work_floats(width));
+    auto& [gx, gy, half_norm] = planes.features[c];
+    gradient_row(parameters.prefilter ? planes.smooth_levels[c] : planes.levels[c], width, height,
+                 y, parameters.gradient, reinterpret_cast<float*>(work.data()), gx.plain.row(y),
+                 gy.plain.row(y));
+    kernels::evidence_planes_row({gx.plain.row(y), gy.plain.row(y), half_norm.plain.row(y), width},
+                                 alpha, octagon);
+    for (FeaturePlane<float>& plane : planes.features[c]) {
+      plane.finish_row(width, y, planes.has_mirrored);
+    }
+  });
+}
+
+void prepare_census(Margins margins, Execution& execution, CostImage::Planes& planes) {
+  for_each_channel(planes, [&](std::size_t c) {
+    for (FeaturePlane<std::uint32_t>& half : planes.codes[c]) {
+      resize(half, planes, margins);
+    }
+  });
+  for_each_row(planes, execution, [&](std::size_t c, int y) {
+    kernels::CensusRows rows{};
+    for (int v = -kernels::kCensusRadiusY; v <= kernels::kCensusRadiusY; ++v) {
+      rows[static_cast<std::size_t>(v + kernels::kCensusRadiusY)] =
+          planes.levels[c].row(std::clamp(y + v, 0, planes.height - 1));
+    }
+    auto& [first_half, second_half] = planes.codes[c];
+    kernels::census_code_row(rows, planes.width, first_half.plain.row(y), second_half.plain.row(y));
+    first_half.finish_row(planes.width, y, planes.has_mirrored);
+    second_half.finish_row(planes.width, y, planes.has_mirrored);
+  });
+}
+
+}  // namespace
+
+CostImage::CostImage() : planes_(std::make_unique<Planes>()) {}
+CostImage::CostImage(CostImage&&) noexcept = default;
+CostImage& CostImage::operator=(CostImage&&) noexcept = default;
+CostImage::~CostImage() = default;
+
+void CostImage::prepare(const Photograph& photograph, const MethodParameters& parameters,
+                        const kernels::CandidateGeometry& geometry, CostImageUse use,
+                        Execution& execution) {
+  Planes& planes = *planes_;
+  planes.width = photograph.width();
+  planes.height = photograph.height();
+  planes.channels = parameters.colour == ColourUse::kChannels && photograph.channels() >= 3 ? 3 : 1;
+  planes.has_mirrored = use.as_partner_of_left;
+  const Margins margins = margins_of(geometry);
+  switch (parameters.cost) {
+    case MatchCost::kSquared:
+    case MatchCost::kAbsolute:
+    case MatchCost::kTruncated:
+    case MatchCost::kContaminated:
+      prepare_grey(photograph, margins, execution, planes);
+      break;
+    case MatchCost::kBirchfieldTomasi:
+      prepare_grey(photograph, margins, execution, planes);
+      prepare_sampling_bounds(margins, execution, planes);
+      break;
+    case MatchCost::kGradient:
+      prepare_levels(photograph, execution, planes);
+      prepare_gradients(parameters, margins, execution, planes);
+      break;
+    case MatchCost::kCensus:
+      prepare_levels(photograph, execution, planes);
+      prepare_census(margins, execution, planes);
+      break;
+  }
+}
+
+}  // namespace vantage

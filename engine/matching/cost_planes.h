@@ -1,0 +1,47 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "engine/matching/intensity_planes.h"
+#include "engine/matching/stage_cost.h"
+
+namespace vantage {
+
+/// One quantity of every pixel, and the same with mirrored rows where the image is the partner of a
+/// left reference.
+template <typename T>
+struct FeaturePlane {
+  IntensityPlane<T> plain;
+  IntensityPlane<T> mirrored;
+
+  /// Writes the margins of plain row y, whose pixels are in place, and, if wanted, the mirrored
+  /// row.
+  void finish_row(int width, int y, bool mirror) {
+    plain.fill_margins(y);
+    if (mirror) {
+      std::reverse_copy(plain.row(y), plain.row(y) + width, mirrored.row(y));
+      mirrored.fill_margins(y);
+    }
+  }
+};
+
+/// What the costs of one image's channels look up. `features[channel]` holds
+///   squared, absolute, truncated, contaminated:  grey levels
+///   Birchfield–Tomasi:  grey levels, their least and largest values within half a pixel
+///   gradient:           α·gx, α·gy, |g|/2
+/// and `codes[channel]` the two halves of census codes.
+struct CostImage::Planes {
+  int width = 0;
+  int height = 0;
+  int channels = 1;  ///< 1 or 3
+  bool has_mirrored = false;
+  std::array<std::array<FeaturePlane<float>, 3>, 3> features;
+  std::array<std::array<FeaturePlane<std::uint32_t>, 2>, 3> codes;
+  /// What features are made of where they are not the grey levels themselves.
+  std::array<IntensityPlane<float>, 3> levels;
+  std::array<IntensityPlane<float>, 3> smooth_levels;
+};
+
+}  // namespace vantage

@@ -1,0 +1,118 @@
+#include "engine/matching/stage_bayes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/image/image.h"
+#include "engine/matching/star_stage.h"
+#include "kernels/bayes_step/bayes_step.h"
+
+namespace vantage {
+namespace {
+
+using kernels::BayesState;
+
+// Below this the product of five floors of the prior is no normal float.
+constexpr double kLeastEpsilonOfProductForm = 1e-7;
+// Taps of the prior this much smaller than its floor are left out: σP = 0.1 needs none beside the
+// centre, 0.4 one on each side.
+constexpr double kNegligibleTap = 1e-3;
+
+/// Taps (1−ε) exp(−k²/2σ²) of the prior, as many as matter.
+std::vector<float> prior_taps(const MethodParameters& parameters, int count) {
+  std::vector<float> taps;
+  for (int k = 0; k < count; ++k) {
+    const double tap = (1 - parameters.epsilon_prior) *
+                       std::exp(-k * k / (2 * parameters.sigma_prior * parameters.sigma_prior));
+    if (k > 0 && tap < kNegligibleTap * parameters.epsilon_prior) {
+      break;
+    }
+    taps.push_back(static_cast<float>(tap));
+  }
+  return taps;
+}
+
+enum class Form { kStart, kHalf, kGeneral };
+
+class BayesStage final : public StarStage {
+ public:
+  BayesStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
+             int height, Form form, BayesState state)
+      : StarStage(geometry, height),
+        form_(form),
+        state_(state),
+        mu_(static_cast<float>(parameters.mu)),
+        taps_(prior_taps(parameters, geometry.count)),
+        floor_(static_cast<float>(parameters.epsilon_prior)),
+        neutral_(lanes(), 1) {
+    neutral_.fill(form == Form::kHalf ? 1.0F : 0.0F);
+  }
+
+  [[nodiscard]] std::string_view name() const override {
+    return form_ == Form::kStart ? "Bayes start" : "Bayes iteration";
+  }
+  [[nodiscard]] bool reads_source() const override { return form_ != Form::kStart; }
+  [[nodiscard]] scheduler::Range input_rows(int y, scheduler::Extent input) const override {
+    return form_ == Form::kStart ? RowStage::input_rows(y, input) : StarStage::input_rows(y, input);
+  }
+  [[nodiscard]] scheduler::Range input_columns(scheduler::Range columns,
+                                               scheduler::Extent input) const override {
+    return form_ == Form::kStart ? RowStage::input_columns(columns, input)
+                                 : StarStage::input_columns(columns, input);
+  }
+  [[nodiscard]] int window_rows() const override { return form_ == Form::kStart ? 1 : 3; }
+  [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
+                                        scheduler::Extent /*input*/) const override {
+    return sizeof(float) * static_cast<std::size_t>(kernels::bayes_work_floats(lanes(), radius()));
+  }
+
+  void make_row(const scheduler::RowTask& task) const override {
+    kernels::BayesRow row;
+    row.star = star(task, lanes(), neutral_.row(0));
+    row.prior = {taps_.data(), radius(), floor_};
+    row.state = state_;
+    row.mu = mu_;
+    row.count = count();
+    row.output = reinterpret_cast<float*>(task.output);
+    row.work = reinterpret_cast<float*>(task.state);
+    switch (form_) {
+      case Form::kStart:
+        row.star.source = row.star.centre;
+        kernels::bayes_start_row(row);
+        break;
+      case Form::kHalf:
+        kernels::bayes_half_row(row);
+        break;
+      case Form::kGeneral:
+        kernels::bayes_general_row(row);
+        break;
+    }
+  }
+
+ private:
+  [[nodiscard]] int radius() const { return static_cast<int>(taps_.size()) - 1; }
+
+  Form form_;
+  BayesState state_;
+  float mu_;
+  std::vector<float> taps_;
+  float floor_;
+  Image<float> neutral_;  ///< stands for the neighbours outside the image
+};
+
+}  // namespace
+
+std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
+    const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height) {
+  const bool half = parameters.mu == 0.5 && parameters.epsilon_prior >= kLeastEpsilonOfProductForm;
+  const BayesState between = half ? BayesState::kSmoothed : BayesState::kLogSmoothed;
+  std::vector<std::unique_ptr<scheduler::RowStage>> stages;
+  for (int i = 0; i <= parameters.iterations; ++i) {
+    const Form form = i == 0 ? Form::kStart : half ? Form::kHalf : Form::kGeneral;
+    const BayesState state = i == parameters.iterations ? BayesState::kProbability : between;
+    stages.push_back(std::make_unique<BayesStage>(parameters, geometry, height, form, state));
+  }
+  return stages;
+}
+
+}  // namespace vantage

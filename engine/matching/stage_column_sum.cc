@@ -1,0 +1,105 @@
+#include "engine/matching/stage_column_sum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+#include "engine/matching/cells_without_partner.h"
+#include "kernels/column_sum/column_sum.h"
+
+namespace vantage {
+namespace {
+
+using scheduler::Extent;
+using scheduler::Range;
+
+class ColumnSumStage final : public scheduler::RowStage {
+ public:
+  ColumnSumStage(const kernels::CandidateGeometry& geometry, int height, int radius, float offset,
+                 float scale)
+      : RowStage({geometry.width, height}),
+        geometry_(geometry),
+        radius_(radius),
+        offset_(offset),
+        scale_(scale) {}
+
+  [[nodiscard]] std::string_view name() const override { return "column sum"; }
+  [[nodiscard]] std::size_t bytes_per_column() const override {
+    return sizeof(std::int32_t) * static_cast<std::size_t>(geometry_.lanes());
+  }
+  /// The window and the row that has just left it.
+  [[nodiscard]] Range input_rows(int y, Extent input) const override {
+    return {std::max(0, y - radius_ - 1), std::min(input.rows, y + radius_ + 1)};
+  }
+  [[nodiscard]] int window_rows() const override { return 2 * radius_ + 2; }
+  [[nodiscard]] int first_row_work() const override {
+    return std::min(2 * radius_ + 1, extent().rows);
+  }
+
+  void make_row(const scheduler::RowTask& task) const override {
+    auto* sums = reinterpret_cast<std::int32_t*>(task.output);
+    kernels::ColumnSum row;
+    row.offset = offset_;
+    row.scale = scale_;
+    row.count = task.columns.size() * geometry_.lanes();
+    if (task.sweep_begins) {
+      std::memset(sums, 0, bytes_per_column() * static_cast<std::size_t>(task.columns.size()));
+      for (int y = std::max(0, task.y - radius_); y < task.input.rows().end; ++y) {
+        row.entering = input_row(task, y);
+        kernels::column_sum_row(row, sums, sums);
+      }
+    } else {
+      row.entering = input_row(task, task.y + radius_);
+      row.leaving = input_row(task, task.y - radius_ - 1);
+      kernels::column_sum_row(row, reinterpret_cast<const std::int32_t*>(task.previous), sums);
+    }
+    clear_without_partner(geometry_, radius_, task.columns, sums);
+  }
+
+ private:
+  /// The columns to be made of input row y; null outside the image.
+  [[nodiscard]] const float* input_row(const scheduler::RowTask& task, int y) const {
+    if (y < 0 || y >= extent().rows) {
+      return nullptr;
+    }
+    return task.input.row<float>(y) +
+           static_cast<std::ptrdiff_t>(task.columns.begin - task.input.columns().begin) *
+               geometry_.lanes();
+  }
+
+  kernels::CandidateGeometry geometry_;
+  int radius_;
+  float offset_;
+  float scale_;
+};
+
+}  // namespace
+
+ColumnSumScale column_sum_scale(float least, float largest, int window_px) {
+  const float offset = -least;
+  const double cost_range = largest + offset;  // as the kernel rounds it
+  if (!(cost_range > 0)) {
+    return {offset, 1};
+  }
+  // A rounded cost may be half a unit larger.
+  const double samples = static_cast<double>(window_px) * window_px;
+  const double limit = std::min(static_cast<double>(kernels::kColumnSumCellLimit),
+                                std::numeric_limits<std::int32_t>::max() / samples) -
+                       0.5;
+  // Beyond 2^100 a scale would only resolve rounding errors, and leave the range of floats.
+  int exponent = std::min(100, std::ilogb(limit / cost_range));
+  if (std::ldexp(cost_range, exponent) >= limit) {
+    --exponent;
+  }
+  return {offset, static_cast<float>(std::ldexp(1.0, exponent))};
+}
+
+std::unique_ptr<scheduler::RowStage> make_column_sum_stage(
+    const kernels::CandidateGeometry& geometry, int height, int radius, float offset, float scale) {
+  return std::make_unique<ColumnSumStage>(geometry, height, radius, offset, scale);
+}
+
+}  // namespace vantage

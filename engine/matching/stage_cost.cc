@@ -1,0 +1,233 @@
+#include "engine/matching/stage_cost.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/matching/partner_rows.h"
+#include "kernels/census/census.h"
+#include "kernels/evidence/evidence.h"
+#include "kernels/pixel_cost/pixel_cost.h"
+
+namespace vantage {
+namespace {
+
+using kernels::CandidateRange;
+using scheduler::Extent;
+using scheduler::Range;
+
+class CostStage final : public scheduler::RowStage {
+ public:
+  CostStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
+            std::vector<PartnerRows> partners, CellMeaning meaning, int height)
+      : RowStage({geometry.width, height}),
+        parameters_(parameters),
+        measurement_(kernels::ContaminatedGaussian::of(parameters.sigma_measurement,
+                                                       parameters.epsilon_measurement)),
+        lanes_(geometry.lanes()),
+        count_(geometry.count),
+        partners_(std::move(partners)),
+        meaning_(meaning),
+        without_partner_(value_without_partner()) {}
+
+  [[nodiscard]] std::string_view name() const override { return "cost"; }
+  [[nodiscard]] std::size_t bytes_per_column() const override { return sizeof(float) * lanes(); }
+  /// The cells of one block for the partners after the first, and what interpolation needs.
+  [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
+    return in_one_go() ? 0 : sizeof(float) * (kBlockColumns * lanes() + most_work_floats());
+  }
+
+  void make_row(const scheduler::RowTask& task) const override {
+    auto* cells = reinterpret_cast<float*>(task.output);
+    if (in_one_go()) {
+      compare(partners_.front(), task.y, task.columns, nullptr, cells);
+      return;
+    }
+    auto* of_partner = reinterpret_cast<float*>(task.state);
+    float* work = of_partner + kBlockColumns * lanes();
+    for (int x = task.columns.begin; x < task.columns.end; x += kBlockColumns) {
+      const Range block = Range{x, x + kBlockColumns}.widened(0, task.columns);
+      compare(partners_.front(), task.y, block, work, cells);
+      for (std::size_t k = 1; k < partners_.size(); ++k) {
+        compare(partners_[k], task.y, block, work, of_partner);
+        if (meaning_ == CellMeaning::kEnergy) {
+          kernels::add_cells(of_partner, block.size() * lanes_, cells);
+        } else {
+          kernels::multiply_cells(of_partner, block.size() * lanes_, cells);
+        }
+      }
+      cells += static_cast<std::size_t>(block.size()) * lanes();
+    }
+  }
+
+ private:
+  static constexpr int kBlockColumns = 16;
+  /// So that differences of evidence over σ stay finite.
+  static constexpr double kLeastSigma = 1e-30;
+
+  [[nodiscard]] std::size_t lanes() const { return static_cast<std::size_t>(lanes_); }
+  [[nodiscard]] bool in_one_go() const {
+    return partners_.size() == 1 && !partners_.front().is_interpolated();
+  }
+  [[nodiscard]] std::size_t most_work_floats() const {
+    std::size_t floats = 0;
+    for (const PartnerRows& partner : partners_) {
+      floats = std::max(floats, partner.work_floats(kBlockColumns));
+    }
+    return floats;
+  }
+
+  /// Of cells whose partner is outside, unless they have the cost of the border.
+  [[nodiscard]] std::optional<float> value_without_partner() const {
+    if (meaning_ == CellMeaning::kLikelihood) {
+      return measurement_.likelihood_without_partner();
+    }
+    switch (parameters_.cost) {
+      case MatchCost::kGradient:
+        return 0.0F;
+      case MatchCost::kContaminated:
+        return measurement_.energy_without_partner();
+      default:
+        return std::nullopt;
+    }
+  }
+
+  /// The cells of one partner.
+  void compare(const PartnerRows& partner, int y, Range columns, float* work, float* cells) const {
+    if (without_partner_ && !partner.has_row(y)) {
+      for (int j = 0; j < columns.size(); ++j, cells += lanes_) {
+        std::fill(cells, cells + count_, *without_partner_);
+        std::fill(cells + count_, cells + lanes_, 0.0F);
+      }
+      return;
+    }
+    if (meaning_ == CellMeaning::kEnergy) {
+      energies(partner, y, columns, work, cells);
+    } else {
+      likelihoods(partner, y, columns, work, cells);
+    }
+    fill_without_partner(partner, columns, cells);
+  }
+
+  void energies(const PartnerRows& partner, int y, Range columns, float* work, float* cells) const {
+    switch (parameters_.cost) {
+      case MatchCost::kSquared:
+        kernels::squared_row(partner.grey_levels(y, columns, work), cells);
+        break;
+      case MatchCost::kAbsolute:
+        kernels::absolute_row(partner.grey_levels(y, columns, work),
+                              std::numeric_limits<float>::infinity(), cells);
+        break;
+      case MatchCost::kTruncated:
+        kernels::absolute_row(partner.grey_levels(y, columns, work),
+                              static_cast<float>(parameters_.truncation), cells);
+        break;
+      case MatchCost::kContaminated:
+        kernels::contaminated_energy_row(partner.grey_levels(y, columns, work), measurement_,
+                                         cells);
+        break;
+      case MatchCost::kBirchfieldTomasi:
+        kernels::sampling_insensitive_row(partner.features<3>(y, columns), cells);
+        break;
+      case MatchCost::kGradient:
+        kernels::negated_evidence_row(partner.features<3>(y, columns),
+                                      parameters_.norm == GradientNorm::kOctagon, cells);
+        break;
+      case MatchCost::kCensus:
+        kernels::hamming_row(partner.codes(y, columns), cells);
+        break;
+    }
+  }
+
+  void likelihoods(const PartnerRows& partner, int y, Range columns, float* work,
+                   float* cells) const {
+    switch (parameters_.cost) {
+      case MatchCost::kSquared:
+      case MatchCost::kContaminated:
+        kernels::contaminated_likelihood_row(partner.grey_levels(y, columns, work), measurement_,
+                                             cells);
+        break;
+      case MatchCost::kGradient:
+        energies(partner, y, columns, work, cells);
+        kernels::likelihood_of_evidence(
+            {partner.geometry(), columns.begin, columns.size()},
+            static_cast<float>(std::max(kLeastSigma, parameters_.sigma_measurement)),
+            measurement_.epsilon, cells);
+        break;
+      default:
+        energies(partner, y, columns, work, cells);
+        kernels::likelihood_of_costs({columns.size(), lanes_, count_}, measurement_, cells);
+        break;
+    }
+  }
+
+  /// Only columns near the borders have such cells.
+  void fill_without_partner(const PartnerRows& partner, Range columns, float* cells) const {
+    if (!without_partner_) {
+      return;
+    }
+    const auto fill = [&](int x) {
+      const CandidateRange inside = partner.with_partner(x);
+      float* column = cells + static_cast<std::size_t>(x - columns.begin) * lanes();
+      std::fill(column, column + inside.begin, *without_partner_);
+      std::fill(column + std::max(inside.begin, inside.end), column + count_, *without_partner_);
+    };
+    const CandidateRange inner = partner.columns_with_all_partners();
+    int x = columns.begin;
+    for (; x < std::min(columns.end, inner.begin); ++x) {
+      fill(x);
+    }
+    for (x = std::max(x, inner.end); x < columns.end; ++x) {
+      fill(x);
+    }
+  }
+
+  MethodParameters parameters_;
+  kernels::ContaminatedGaussian measurement_;
+  int lanes_;
+  int count_;
+  std::vector<PartnerRows> partners_;
+  CellMeaning meaning_;
+  std::optional<float> without_partner_;
+};
+
+/// The name of a cost that looks at more than grey levels, which can be interpolated; else empty.
+std::string_view cost_of_whole_pixels(MatchCost cost) {
+  switch (cost) {
+    case MatchCost::kBirchfieldTomasi:
+      return "birchfield-tomasi";
+    case MatchCost::kGradient:
+      return "gradient";
+    case MatchCost::kCensus:
+      return "census";
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<scheduler::RowStage> make_cost_stage(const MethodParameters& parameters,
+                                                     const kernels::CandidateGeometry& geometry,
+                                                     const CostImage& reference,
+                                                     std::span<const CostPartner> partners,
+                                                     CellMeaning meaning, int height) {
+  std::vector<PartnerRows> rows;
+  for (const CostPartner& partner : partners) {
+    rows.emplace_back(reference, partner, geometry);
+    const std::string_view cost = cost_of_whole_pixels(parameters.cost);
+    if (rows.back().is_interpolated() && !cost.empty()) {
+      throw UsageError(fmt::format(
+          "cost {} cannot be interpolated between pixels, as several baselines need, expected "
+          "squared, absolute, truncated or contaminated",
+          cost));
+    }
+  }
+  return std::make_unique<CostStage>(parameters, geometry, std::move(rows), meaning, height);
+}
+
+}  // namespace vantage

@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <iterator>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "engine/error.h"
+#include "engine/io/opencv_setup.h"
+#include "engine/plot/drawing.h"
+
+namespace vantage {
+namespace {
+
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char letter : text) {
+    switch (letter) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        // Control characters and bytes that may not be UTF-8 would make the document ill-formed.
+        result += letter >= ' ' && letter <= '~' ? letter : '?';
+    }
+  }
+  return result;
+}
+
+std::string base64(std::span<const unsigned char> bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    unsigned bits = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      bits = bits << 8 | (k < count ? bytes[i + k] : 0U);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += k <= count ? kDigits[bits >> (18 - 6 * k) & 63U] : '=';
+    }
+  }
+  return text;
+}
+
+std::string png_of(const Image<std::uint8_t>& rgb) {
+  prepare_opencv();
+  cv::Mat bgr;
+  cv::cvtColor(cv::Mat(rgb.height(), rgb.width(), CV_8UC3, const_cast<std::uint8_t*>(rgb.row(0)),
+                       rgb.view().stride()),
+               bgr, cv::COLOR_RGB2BGR);
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(".png", bgr, bytes)) {
+    throw Error("a picture of a drawing cannot be encoded as PNG");
+  }
+  return base64(bytes);
+}
+
+std::string hex(Colour colour) {
+  return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
+}
+
+class SvgWriter {
+ public:
+  void operator()(const StrokeShape& stroke) {
+    append(
+        "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{:.4g}\" "
+        "stroke-linejoin=\"round\" points=\"",
+        hex(stroke.colour), stroke.width);
+    for (const DrawingPoint& point : stroke.points) {
+      append("{:.2f},{:.2f} ", point.x, point.y);
+    }
+    text_ += "\"/>\n";
+  }
+  void operator()(const DiscShape& disc) {
+    append("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.4g}\" fill=\"{}\"/>\n", disc.centre.x,
+           disc.centre.y, disc.radius, hex(disc.colour));
+  }
+  void operator()(const BoxShape& box) {
+    append("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\"/>\n",
+           box.corner.x, box.corner.y, box.width, box.height, hex(box.colour));
+  }
+  void operator()(const TextShape& text) {
+    constexpr std::string_view kAnchors[] = {"start", "middle", "end"};
+    append(
+        "<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"{:.4g}\" text-anchor=\"{}\" "
+        "fill=\"{}\">{}</text>\n",
+        text.baseline.x, text.baseline.y, text.size,
+        kAnchors[static_cast<std::size_t>(text.anchor)], hex(text.colour), escaped(text.text));
+  }
+  void operator()(const PictureShape& picture) {
+    append(
+        "<image x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" "
+        "preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" "
+        "href=\"data:image/png;base64,{}\"/>\n",
+        picture.corner.x, picture.corner.y, picture.width, picture.height, png_of(picture.rgb));
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  template <typename... Values>
+  void append(fmt::format_string<Values...> format, Values&&... values) {
+    fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
+  }
+
+  std::string text_;
+};
+
+}  // namespace
+
+std::string to_svg(const Drawing& drawing) {
+  SvgWriter writer;
+  for (const DrawingShape& shape : drawing.shapes) {
+    std::visit(writer, shape);
+  }
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
+      "viewBox=\"0 0 {0} {1}\" font-family=\"sans-serif\">\n"
+      "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{2}</svg>\n",
+      drawing.width, drawing.height, writer.text());
+}
+
+}  // namespace vantage

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string_view>
+
+#include "engine/execution.h"
+#include "engine/image/image.h"
+#include "engine/image/photograph.h"
+#include "engine/matching/match_options.h"
+#include "engine/refinement/edge_snapping.h"
+#include "engine/refinement/refinement.h"
+#include "engine/refinement/speckles.h"
+
+namespace vantage {
+
+/// One map on its way through refinement; all images have one size.
+struct MapToRefine {
+  MapSide side = MapSide::kLeft;
+  const Photograph* image = nullptr;         ///< the map's own; for edge snapping only
+  DisparityMap* disparity_px = nullptr;      ///< winners, NaN = unknown
+  DisparityMap* disparity_y_px = nullptr;    ///< of a two-dimensional search, else null
+  const Image<float>* confidence = nullptr;  ///< where uses_confidence(); else not read
+  Mask* unmatched = nullptr;                 ///< result
+};
+
+/// Working memory of refine_maps(), reused from call to call.
+struct RefinementWork {
+  EdgeSnappingWork edge_snapping;
+  std::array<SpeckleWork, 2> speckles;
+};
+
+/// Makes dense maps of winners (EQUATIONS §5): edge snapping → cross-check → confidence → speckles
+/// → fill, each as `options` says. `other`: the map of the other image, refined as well; null:
+/// there is none, and no cross-check, the unknown pixels are unmatched instead. `step_done` is told
+/// the name of each step that was taken (static storage). Identical for any `execution`.
+void refine_maps(const RefinementOptions& options, const MapToRefine& map, const MapToRefine* other,
+                 Execution& execution, RefinementWork& work,
+                 const std::function<void(std::string_view)>& step_done);
+
+}  // namespace vantage

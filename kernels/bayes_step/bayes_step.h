@@ -1,0 +1,60 @@
+#pragma once
+
+#include "kernels/star_row.h"
+
+namespace vantage::kernels {
+
+/// The prior's smoothing along a cell column (6.35), up to a factor that cancels when
+/// probabilities are normalised: pS(i) = Σ_k tap[|k|] · p(i + k) + floor · Σ p, p being 0 outside
+/// the range of candidates. The floor stands for the contamination εP, which all offsets share.
+struct PriorKernel {
+  const float* taps = nullptr;  ///< tap[0] … tap[radius]
+  int radius = 0;
+  float floor = 0;  ///< > 0
+};
+
+/// What an iteration leaves in its output cells.
+enum class BayesState {
+  kSmoothed,     ///< pS: what iterations with μ = ½ look at
+  kLogSmoothed,  ///< μ · log pS: what iterations with any other μ look at
+  kProbability,  ///< p itself, normalised, after the last iteration
+};
+
+/// One row of Bayesian diffusion (6.32)–(6.37). `star.source` holds the likelihoods p0 up to a
+/// factor per column; lanes that are no candidates hold 0 there.
+struct BayesRow {
+  StarRow star;
+  PriorKernel prior;
+  BayesState state = BayesState::kSmoothed;
+  float mu = 0.5F;          ///< for kLogSmoothed
+  int count = 0;            ///< candidates: lanes [0, count)
+  float* output = nullptr;  ///< star.lanes floats a column; not an input
+  /// bayes_work_floats() floats, 64-byte aligned; any contents.
+  float* work = nullptr;
+};
+
+/// Lanes of zeros that the smoothing needs on either side of a column, as floats of work memory.
+inline int bayes_work_floats(int lanes, int prior_radius) {
+  constexpr int kVector = 16;
+  return lanes + 2 * ((prior_radius + kVector - 1) / kVector * kVector + kVector);
+}
+
+/// Before the first iteration: p = p0 normalised, and its state. Only star.source, columns and
+/// lanes are looked at.
+void bayes_start_row(const BayesRow& row);
+
+/// μ = ½, without exponentials and logarithms: p ∝ p0 · sqrt(product of pS over the star). Cells
+/// are pS; neutral columns hold 1. Relative error of p below 1e-6, as long as the product of five
+/// floors is a normal float.
+void bayes_half_row(const BayesRow& row);
+
+/// Any μ: p ∝ p0 · exp(sum of μ · log pS over the star). Cells are μ · log pS; neutral columns hold
+/// 0.
+void bayes_general_row(const BayesRow& row);
+
+/// The same, plainly, in double arithmetic.
+void bayes_start_row_ref(const BayesRow& row);
+void bayes_half_row_ref(const BayesRow& row);
+void bayes_general_row_ref(const BayesRow& row);
+
+}  // namespace vantage::kernels

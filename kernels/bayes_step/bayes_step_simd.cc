@@ -1,0 +1,255 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/bayes_step/bayes_step_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "kernels/bayes_step/bayes_step.h"
+#include "kernels/candidates.h"
+#include "kernels/cells/exp_log-inl.h"
+#include "kernels/cells/lane_sums-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// The columns of a star.
+struct StarColumns {
+  const float* centre;
+  const float* left;
+  const float* right;
+  const float* up;
+  const float* down;
+  const float* source;
+};
+
+// Calls column(columns, output) for each column of the row, left to right.
+template <class Column>
+HWY_INLINE void each_column(const BayesRow& row, Column column) {
+  const StarRow& star = row.star;
+  StarColumns at{star.centre, star.left_of_first, nullptr, star.up, star.down, star.source};
+  float* output = row.output;
+  for (int x = 0; x < star.columns; ++x) {
+    at.right = x + 1 < star.columns ? at.centre + star.pitch : star.right_of_last;
+    column(at, output);
+    at.left = at.centre;
+    at.centre += star.pitch;
+    at.up += star.up_pitch;
+    at.down += star.down_pitch;
+    at.source += star.lanes;
+    output += star.lanes;
+  }
+}
+
+// p0 · sqrt(product of the star), times a factor that is the same for all lanes.
+HWY_INLINE FloatVec half_weight(const StarColumns& at, int lane) {
+  const FloatTag df;
+  const auto load = [&](const float* cells) HWY_ATTR { return hn::Load(df, cells + lane); };
+  const FloatVec product =
+      hn::Mul(hn::Mul(hn::Mul(load(at.up), load(at.down)), hn::Mul(load(at.left), load(at.right))),
+              load(at.centre));
+#if HWY_TARGET == HWY_SCALAR
+  return hn::Mul(load(at.source), hn::Sqrt(product));
+#else
+  // One Newton step on the estimate y of 1/sqrt(x): 2 sqrt(x) = (x·y) (3 − (x·y)·y). Square roots
+  // themselves take 10 to 12 cycles a vector, all of this 5.
+  const FloatVec estimate = hn::ApproximateReciprocalSqrt(product);
+  const FloatVec root = hn::Mul(product, estimate);
+  const FloatVec correction = hn::NegMulAdd(root, estimate, hn::Set(df, 3.0F));
+  return hn::Mul(hn::Mul(load(at.source), root), correction);
+#endif
+}
+
+// Columns of kBlocks · 16 lanes whose prior has no neighbours: all in registers.
+template <int kBlocks>
+HWY_INLINE void half_column_in_registers(const StarColumns& at, float scale, float floor,
+                                         float* output) {
+  const FloatTag df;
+  constexpr int kVectors = kBlocks * kParts;
+  FloatVec p[kVectors];
+  LaneBlock16 sums;
+#pragma GCC unroll 16
+  for (int v = 0; v < kVectors; ++v) {
+    p[v] = half_weight(at, v * kFloatLanes);
+    sums.part[v % kParts] = v < kParts ? p[v] : hn::Add(sums.part[v % kParts], p[v]);
+  }
+  const FloatVec factor = hn::Div(hn::Set(df, scale), sum_lanes(sums));
+  const FloatVec lowest = hn::Set(df, floor);
+#pragma GCC unroll 16
+  for (int v = 0; v < kVectors; ++v) {
+    hn::Store(hn::MulAdd(p[v], factor, lowest), df, output + v * kFloatLanes);
+  }
+}
+
+template <int kBlocks>
+HWY_INLINE void half_row_in_registers(const BayesRow& row) {
+  const bool smooth = row.state != BayesState::kProbability;
+  const float scale = smooth ? row.prior.taps[0] : 1.0F;
+  const float floor = smooth ? row.prior.floor : 0.0F;
+  each_column(row, [&](const StarColumns& at, float* output)
+                       HWY_ATTR { half_column_in_registers<kBlocks>(at, scale, floor, output); });
+}
+
+// A column of unnormalised probabilities in memory, with zeros on both sides.
+class WorkColumn {
+ public:
+  explicit WorkColumn(const BayesRow& row)
+      : row_(row),
+        margin_((bayes_work_floats(row.star.lanes, row.prior.radius) - row.star.lanes) / 2),
+        p_(row.work + margin_) {
+    std::fill_n(row.work, margin_, 0.0F);
+    std::fill_n(p_ + row.star.lanes, margin_, 0.0F);
+  }
+
+  // Makes p(lane) with `weight` and leaves the row's state in `output`.
+  template <class Weight>
+  HWY_INLINE void run(Weight weight, float* output) const {
+    const FloatTag df;
+    const int lanes = row_.star.lanes;
+    LaneBlock16 sums;
+    sums.fill(hn::Zero(df));
+    for (int lane = 0; lane < lanes; lane += kLaneMultiple) {
+      for (int part = 0; part < kParts; ++part) {
+        const int first = lane + part * kFloatLanes;
+        const FloatVec p = weight(first);
+        hn::Store(p, df, p_ + first);
+        sums.part[part] = hn::Add(sums.part[part], p);
+      }
+    }
+    finish(hn::Div(hn::Set(df, 1.0F), sum_lanes(sums)), output);
+  }
+
+ private:
+  HWY_INLINE void finish(FloatVec normalise, float* output) const {
+    const FloatTag df;
+    const int lanes = row_.star.lanes;
+    if (row_.state == BayesState::kProbability) {
+      for (int lane = 0; lane < lanes; lane += kFloatLanes) {
+        hn::Store(hn::Mul(hn::Load(df, p_ + lane), normalise), df, output + lane);
+      }
+      return;
+    }
+    if (row_.state == BayesState::kSmoothed) {
+      smooth(normalise, output, [](FloatVec smoothed) HWY_ATTR { return smoothed; });
+    } else {
+      const FloatVec mu = hn::Set(df, row_.mu);
+      smooth(normalise, output,
+             [mu](FloatVec smoothed) HWY_ATTR { return hn::Mul(mu, fast_log(smoothed)); });
+    }
+  }
+
+  template <class State>
+  HWY_INLINE void smooth(FloatVec normalise, float* output, State state) const {
+    const FloatTag df;
+    const float* const p = p_;
+    const float* const taps = row_.prior.taps;
+    const int radius = row_.prior.radius;
+    const FloatVec floor = hn::Set(df, row_.prior.floor);
+    for (int lane = 0; lane < row_.star.lanes; lane += kFloatLanes) {
+      FloatVec sum = hn::Mul(hn::Load(df, p + lane), hn::Set(df, taps[0]));
+      for (int k = 1; k <= radius; ++k) {
+        const FloatVec both = hn::Add(hn::LoadU(df, p + lane - k), hn::LoadU(df, p + lane + k));
+        sum = hn::MulAdd(both, hn::Set(df, taps[k]), sum);
+      }
+      hn::Store(state(hn::MulAdd(sum, normalise, floor)), df, output + lane);
+    }
+  }
+
+  const BayesRow& row_;
+  int margin_;
+  float* p_;
+};
+
+void bayes_start_row_simd(const BayesRow& row) {
+  const WorkColumn work(row);
+  const FloatTag df;
+  const float* source = row.star.source;
+  float* output = row.output;
+  for (int x = 0; x < row.star.columns; ++x) {
+    work.run([&](int lane) HWY_ATTR { return hn::Load(df, source + lane); }, output);
+    source += row.star.lanes;
+    output += row.star.lanes;
+  }
+}
+
+void bayes_half_row_simd(const BayesRow& row) {
+  // Up to 64 lanes a column fits the registers of AVX-512 beside the rest.
+  if (row.state == BayesState::kProbability ||
+      (row.state == BayesState::kSmoothed && row.prior.radius == 0)) {
+    switch (row.star.lanes / kLaneMultiple) {
+      case 1:
+        return half_row_in_registers<1>(row);
+      case 2:
+        return half_row_in_registers<2>(row);
+      case 3:
+        return half_row_in_registers<3>(row);
+      case 4:
+        return half_row_in_registers<4>(row);
+      case 5:
+        return half_row_in_registers<5>(row);
+      case 6:
+        return half_row_in_registers<6>(row);
+      case 8:
+        return half_row_in_registers<8>(row);
+      default:
+        break;
+    }
+  }
+  const WorkColumn work(row);
+  each_column(row, [&](const StarColumns& at, float* output) HWY_ATTR {
+    work.run([&at](int lane) HWY_ATTR { return half_weight(at, lane); }, output);
+  });
+}
+
+void bayes_general_row_simd(const BayesRow& row) {
+  const WorkColumn work(row);
+  each_column(row, [&](const StarColumns& at, float* output) HWY_ATTR {
+    const FloatTag df;
+    const auto star_sum = [&at, df](int lane) HWY_ATTR {
+      const auto load = [&](const float* cells) HWY_ATTR { return hn::Load(df, cells + lane); };
+      return hn::Add(
+          hn::Add(hn::Add(load(at.up), load(at.down)), hn::Add(load(at.left), load(at.right))),
+          load(at.centre));
+    };
+    // The largest sum becomes exp(0): some lane stays above the underflow. Lanes that are no
+    // candidates have the state of p = 0, which no candidate is below.
+    LaneBlock16 most;
+    most.fill(hn::Set(df, -3e38F));
+    for (int lane = 0; lane < row.star.lanes; lane += kLaneMultiple) {
+      for (int part = 0; part < kParts; ++part) {
+        const int first = lane + part * kFloatLanes;
+        const FloatVec sum = star_sum(first);
+        hn::Store(sum, df, output + first);
+        most.part[part] = hn::Max(most.part[part], sum);
+      }
+    }
+    const FloatVec largest = max_lanes(most);
+    const float* const sums = output;
+    const float* const source = at.source;
+    work.run(
+        [&](int lane) HWY_ATTR {
+          return hn::Mul(hn::Load(df, source + lane),
+                         fast_exp(hn::Sub(hn::Load(df, sums + lane), largest)));
+        },
+        output);
+  });
+}
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(bayes_start_row_simd);
+HWY_EXPORT(bayes_half_row_simd);
+HWY_EXPORT(bayes_general_row_simd);
+
+void bayes_start_row(const BayesRow& row) { HWY_DYNAMIC_DISPATCH(bayes_start_row_simd)(row); }
+void bayes_half_row(const BayesRow& row) { HWY_DYNAMIC_DISPATCH(bayes_half_row_simd)(row); }
+void bayes_general_row(const BayesRow& row) { HWY_DYNAMIC_DISPATCH(bayes_general_row_simd)(row); }
+
+}  // namespace vantage::kernels
+#endif

@@ -1,0 +1,90 @@
+// Reduces lane-by-lane results of cell columns, several columns together; included by dispatched
+// files, once per target.
+
+#if defined(VANTAGE_KERNELS_LANE_TREES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VANTAGE_KERNELS_LANE_TREES_INL_H_
+#undef VANTAGE_KERNELS_LANE_TREES_INL_H_
+#else
+#define VANTAGE_KERNELS_LANE_TREES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include "kernels/candidates.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+
+using TagF = hwy::HWY_NAMESPACE::ScalableTag<float>;
+using VecF = hwy::HWY_NAMESPACE::VFromD<TagF>;
+constexpr int kStep = static_cast<int>(hwy::HWY_NAMESPACE::MaxLanes(TagF()));
+/// Vectors that hold one value for each of kLaneMultiple lanes.
+constexpr int kParts = kLaneMultiple / kStep;
+
+struct Sum {
+  static HWY_INLINE VecF joined(VecF a, VecF b) { return hwy::HWY_NAMESPACE::Add(a, b); }
+};
+struct Minimum {
+  static HWY_INLINE VecF joined(VecF a, VecF b) { return hwy::HWY_NAMESPACE::Min(a, b); }
+};
+
+// Every second lane of `low` and, behind them, of `high`, from the first on (even) or the second.
+HWY_INLINE VecF even_lanes(VecF low, VecF high) {
+#if HWY_TARGET == HWY_SCALAR
+  (void)high;
+  return low;
+#else
+  return hwy::HWY_NAMESPACE::ConcatEven(TagF(), high, low);
+#endif
+}
+HWY_INLINE VecF odd_lanes(VecF low, VecF high) {
+#if HWY_TARGET == HWY_SCALAR
+  (void)low;
+  return high;
+#else
+  return hwy::HWY_NAMESPACE::ConcatOdd(TagF(), high, low);
+#endif
+}
+
+// Joins neighbours among kCount vectors of values, until one vector is left. `values` holds kCount
+// values for each of kStep columns, column by column: lane k of the result is that of column k. The
+// tree over a column's values is the same for every kStep.
+template <class Operation, int kCount>
+HWY_INLINE VecF joined_lanes(const float* values) {
+  if constexpr (kCount == 1) {
+    return hwy::HWY_NAMESPACE::Load(TagF(), values);
+  } else {
+    const VecF low = joined_lanes<Operation, kCount / 2>(values);
+    const VecF high = joined_lanes<Operation, kCount / 2>(values + kCount / 2 * kStep);
+    return Operation::joined(even_lanes(low, high), odd_lanes(low, high));
+  }
+}
+
+/// The smallest and the second smallest element of some values.
+struct TwoLeast {
+  VecF least;
+  VecF second;
+};
+
+// The same of values that come as the two least of some values each.
+template <int kCount>
+HWY_INLINE TwoLeast joined_two_least(const float* least, const float* second) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  if constexpr (kCount == 1) {
+    return {hn::Load(TagF(), least), hn::Load(TagF(), second)};
+  } else {
+    constexpr int half = kCount / 2 * kStep;
+    const TwoLeast low = joined_two_least<kCount / 2>(least, second);
+    const TwoLeast high = joined_two_least<kCount / 2>(least + half, second + half);
+    const VecF even = even_lanes(low.least, high.least);
+    const VecF odd = odd_lanes(low.least, high.least);
+    const VecF seconds =
+        hn::Min(even_lanes(low.second, high.second), odd_lanes(low.second, high.second));
+    return {hn::Min(even, odd), hn::Min(hn::Max(even, odd), seconds)};
+  }
+}
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,101 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/census/census_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that they are compiled once per target.
+#include <hwy/highway.h>
+
+#include "kernels/feature_pairs-inl.h"
+
+#include <cstdint>
+
+#include "kernels/census/census.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag = hn::ScalableTag<float>;
+using Vec = hn::VFromD<Tag>;
+using TagCode = hn::ScalableTag<std::uint32_t>;
+using VecCode = hn::VFromD<TagCode>;
+using Code = Features<std::uint32_t, 2>;
+
+// Shifts `half` to the left and puts in whether the neighbours are less than the centre.
+HWY_INLINE void append(const float* neighbours, Vec centre, VecCode& half) {
+  const Tag d;
+  const TagCode d32;
+  const auto is_less = hn::Lt(hn::LoadU(d, neighbours), centre);
+  half = hn::Sub(hn::Add(half, half), hn::BitCast(d32, hn::VecFromMask(d, is_less)));
+}
+
+void census_codes(const CensusRows& rows, int width, std::uint32_t* first_half,
+                  std::uint32_t* second_half) {
+  const Tag d;
+  const TagCode d32;
+  for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(d))) {
+    const Vec centre = hn::LoadU(d, rows[kCensusRadiusY] + x);
+    VecCode above = hn::Zero(d32);
+    VecCode below = hn::Zero(d32);
+    for (int v = 0; v < kCensusRadiusY; ++v) {
+      for (int u = -kCensusRadiusX; u <= kCensusRadiusX; ++u) {
+        append(rows[v] + x + u, centre, above);
+      }
+    }
+    for (int u = 1; u <= kCensusRadiusX; ++u) {
+      append(rows[kCensusRadiusY] + x + u - kCensusRadiusX - 1, centre, above);
+      append(rows[kCensusRadiusY] + x + u, centre, below);
+    }
+    for (int v = kCensusRadiusY + 1; v <= 2 * kCensusRadiusY; ++v) {
+      for (int u = -kCensusRadiusX; u <= kCensusRadiusX; ++u) {
+        append(rows[v] + x + u, centre, below);
+      }
+    }
+    hn::StoreU(above, d32, first_half + x);
+    hn::StoreU(below, d32, second_half + x);
+  }
+}
+
+// Bits set in the lanes of two vectors together.
+HWY_INLINE VecCode count_bits(VecCode a, VecCode b) {
+#if HWY_TARGET == HWY_SCALAR
+  return hn::Add(hn::PopulationCount(a), hn::PopulationCount(b));
+#else
+  const TagCode d32;
+  const hn::Repartition<std::uint8_t, TagCode> d8;
+  // The counts of four bytes are added in 32-bit lanes: none exceeds 8 bits on the way.
+  const auto of_bytes = hn::BitCast(d32, hn::Add(hn::PopulationCount(hn::BitCast(d8, a)),
+                                                 hn::PopulationCount(hn::BitCast(d8, b))));
+  const VecCode of_pairs = hn::Add(of_bytes, hn::ShiftRight<16>(of_bytes));
+  return hn::And(hn::Add(of_pairs, hn::ShiftRight<8>(of_pairs)), hn::Set(d32, 0xFF));
+#endif
+}
+
+struct Hamming {
+  HWY_INLINE Vec operator()(const Code& reference, const Code& partner) const {
+    const VecCode different =
+        count_bits(hn::Xor(reference[0], partner[0]), hn::Xor(reference[1], partner[1]));
+    return hn::ConvertTo(Tag(), hn::BitCast(hn::ScalableTag<std::int32_t>(), different));
+  }
+  HWY_INLINE Vec finish(Vec cost) const { return cost; }
+};
+
+void hamming(const CensusPairs& row, float* cells) { compare_row<false>(row, Hamming(), cells); }
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(census_codes);
+HWY_EXPORT(hamming);
+
+void census_code_row(const CensusRows& rows, int width, std::uint32_t* first_half,
+                     std::uint32_t* second_half) {
+  HWY_DYNAMIC_DISPATCH(census_codes)(rows, width, first_half, second_half);
+}
+void hamming_row(const CensusPairs& row, float* cells) {
+  HWY_DYNAMIC_DISPATCH(hamming)(row, cells);
+}
+
+}  // namespace vantage::kernels
+#endif

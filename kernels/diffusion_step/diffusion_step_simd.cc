@@ -1,0 +1,70 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/diffusion_step/diffusion_step_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include "kernels/diffusion_step/diffusion_step.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <bool kPull>
+HWY_INLINE void diffusion_columns(const DiffusionRow& row) {
+  const hn::ScalableTag<float> df;
+  const int vector = static_cast<int>(hn::Lanes(df));
+  const StarRow& star = row.star;
+  const int lanes = star.lanes;
+  const auto own = hn::Set(df, 1.0F - 4.0F * row.step - row.pull);
+  const auto step = hn::Set(df, row.step);
+  const auto pull = hn::Set(df, row.pull);
+  const float* centre = star.centre;
+  const float* left = star.left_of_first;
+  const float* up = star.up;
+  const float* down = star.down;
+  const float* source = star.source;
+  float* output = row.output;
+  for (int x = 0; x < star.columns; ++x) {
+    const float* right = x + 1 < star.columns ? centre + star.pitch : star.right_of_last;
+#pragma GCC unroll 4
+    for (int lane = 0; lane < lanes; lane += vector) {
+      const auto load = [&](const float* cells) HWY_ATTR { return hn::Load(df, cells + lane); };
+      const auto neighbours =
+          hn::Add(hn::Add(load(left), load(right)), hn::Add(load(up), load(down)));
+      auto energy = hn::Add(hn::Mul(own, load(centre)), hn::Mul(step, neighbours));
+      if constexpr (kPull) {
+        energy = hn::Add(energy, hn::Mul(pull, load(source)));
+      }
+      hn::Store(energy, df, output + lane);
+    }
+    left = centre;
+    centre += star.pitch;
+    up += star.up_pitch;
+    down += star.down_pitch;
+    if constexpr (kPull) {
+      source += lanes;
+    }
+    output += lanes;
+  }
+}
+
+void diffusion_row_simd(const DiffusionRow& row) {
+  if (row.pull != 0.0F) {
+    diffusion_columns<true>(row);
+  } else {
+    diffusion_columns<false>(row);
+  }
+}
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(diffusion_row_simd);
+
+void diffusion_row(const DiffusionRow& row) { HWY_DYNAMIC_DISPATCH(diffusion_row_simd)(row); }
+
+}  // namespace vantage::kernels
+#endif

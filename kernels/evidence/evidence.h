@@ -1,0 +1,45 @@
+#pragma once
+
+#include "kernels/candidates.h"
+#include "kernels/feature_pairs.h"
+
+namespace vantage::kernels {
+
+/// Planes: α·gx, α·gy and |g|/2 of each pixel's gradient g.
+using GradientPairs = FeaturePairs<float, 3>;
+
+/// Weights of the octagonal norm f1·L1 + f∞·L∞ (5.15–5.17).
+inline constexpr float kOctagonSum = 0.3978247F;
+inline constexpr float kOctagonMost = 0.5626091F;
+
+/// A row of gradients g, to be made into those planes: x and y hold gx, gy.
+struct GradientRowPlanes {
+  float* x = nullptr;
+  float* y = nullptr;
+  float* half_norm = nullptr;
+  int width = 0;
+};
+
+/// Fills half_norm and multiplies x and y by α, in place. All three are read and written up to the
+/// next multiple of kLaneMultiple behind `width`. Identical on every instruction set.
+void evidence_planes_row(const GradientRowPlanes& row, float alpha, bool octagon);
+void evidence_planes_row_ref(const GradientRowPlanes& row, float alpha, bool octagon);
+
+/// Negated evidence for a match (5.5): α |gL − gR| − (|gL| + |gR|)/2, |·| being L2 or the octagon.
+/// Of three channels: the mean. Writes columns × lanes floats, identical on every instruction set.
+void negated_evidence_row(const GradientPairs& row, bool octagon, float* cells);
+void negated_evidence_row_ref(const GradientPairs& row, bool octagon, float* cells);
+
+/// Cells of negated evidence, geometry.lanes() a column.
+struct EvidenceRow {
+  CandidateGeometry geometry;
+  int first_column = 0;
+  int columns = 0;
+};
+
+/// In place: (1−ε) exp((E − max E) / σ) + ε, the maximum being over the column's candidates with a
+/// partner; ε for those without, 0 for the lanes behind. σ and ε in (0, ∞) and (0, 1).
+void likelihood_of_evidence(const EvidenceRow& row, float sigma, float epsilon, float* cells);
+void likelihood_of_evidence_ref(const EvidenceRow& row, float sigma, float epsilon, float* cells);
+
+}  // namespace vantage::kernels

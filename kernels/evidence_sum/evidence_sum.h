@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+
+#include "kernels/candidates.h"
+
+namespace vantage::kernels {
+
+/// Planes of an image's gradients g, from some pixel on: α·gx, α·gy and |g|/2, as
+/// evidence_planes_row() makes them.
+struct GradientBlock {
+  const float* x = nullptr;
+  const float* y = nullptr;
+  const float* half_norm = nullptr;
+  std::ptrdiff_t row_stride = 0;  ///< floats from a row to the next one, in all planes
+};
+
+/// A rectangle of pixels of one image and, pixel by pixel, those of another one that they are
+/// compared with. Rows can be read up to the next multiple of kLaneMultiple behind `columns`.
+struct EvidenceBlock {
+  GradientBlock reference;
+  GradientBlock partner;
+  int columns = 0;
+  int rows = 0;
+  bool octagon = false;  ///< norm of the difference: the octagon instead of L2
+};
+
+/// Σ over the block of E = (|gL| + |gR|)/2 − α |gL − gR| (5.5). E is float; column j is added to
+/// sum j mod kLaneMultiple, in float, from top to bottom; these sums are added pairwise in double.
+/// For blocks of up to some 10⁴ pixels. Identical on every instruction set.
+double evidence_sum(const EvidenceBlock& block);
+
+/// The same, plainly.
+double evidence_sum_ref(const EvidenceBlock& block);
+
+/// Adds the sums of kLaneMultiple lanes, neighbouring halves first.
+double pairwise_sum(const float* lanes);
+
+}  // namespace vantage::kernels

@@ -1,0 +1,92 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/evidence_sum/evidence_sum_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include "kernels/evidence/evidence.h"
+#include "kernels/evidence_sum/evidence_sum.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag = hn::ScalableTag<float>;
+using Vec = hn::VFromD<Tag>;
+
+template <bool kOctagon>
+HWY_INLINE Vec evidence(const GradientBlock& reference, const GradientBlock& partner, int j) {
+  const Tag d;
+  const Vec dx = hn::Sub(hn::LoadU(d, reference.x + j), hn::LoadU(d, partner.x + j));
+  const Vec dy = hn::Sub(hn::LoadU(d, reference.y + j), hn::LoadU(d, partner.y + j));
+  const Vec norms =
+      hn::Add(hn::LoadU(d, reference.half_norm + j), hn::LoadU(d, partner.half_norm + j));
+  if constexpr (!kOctagon) {
+    return hn::Sub(norms, hn::Sqrt(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy))));
+  } else {
+    const Vec across = hn::Abs(dx);
+    const Vec down = hn::Abs(dy);
+    return hn::Sub(norms, hn::Add(hn::Mul(hn::Set(d, kOctagonSum), hn::Add(across, down)),
+                                  hn::Mul(hn::Set(d, kOctagonMost), hn::Max(across, down))));
+  }
+}
+
+HWY_INLINE void next_row(GradientBlock& block) {
+  block.x += block.row_stride;
+  block.y += block.row_stride;
+  block.half_norm += block.row_stride;
+}
+
+template <bool kOctagon>
+double sum_of(const EvidenceBlock& block) {
+  const Tag d;
+  constexpr int kStep = static_cast<int>(hn::MaxLanes(Tag()));
+  constexpr int kVectors = kLaneMultiple / kStep;
+  GradientBlock reference = block.reference;
+  GradientBlock partner = block.partner;
+  const int whole = block.columns / kLaneMultiple * kLaneMultiple;
+  const int rest = block.columns - whole;
+  Vec sums[kVectors];
+  for (int v = 0; v < kVectors; ++v) {
+    sums[v] = hn::Zero(d);
+  }
+  for (int row = 0; row < block.rows; ++row) {
+    for (int j = 0; j < whole; j += kLaneMultiple) {
+#pragma GCC unroll 4
+      for (int v = 0; v < kVectors; ++v) {
+        sums[v] = hn::Add(sums[v], evidence<kOctagon>(reference, partner, j + v * kStep));
+      }
+    }
+    for (int v = 0; v * kStep < rest; ++v) {
+      const auto counted = hn::FirstN(d, static_cast<std::size_t>(rest - v * kStep));
+      sums[v] = hn::Add(
+          sums[v],
+          hn::IfThenElseZero(counted, evidence<kOctagon>(reference, partner, whole + v * kStep)));
+    }
+    next_row(reference);
+    next_row(partner);
+  }
+  float lanes[kLaneMultiple];
+  for (int v = 0; v < kVectors; ++v) {
+    hn::StoreU(sums[v], d, lanes + v * kStep);
+  }
+  return pairwise_sum(lanes);
+}
+
+double evidence_sum_simd(const EvidenceBlock& block) {
+  return block.octagon ? sum_of<true>(block) : sum_of<false>(block);
+}
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(evidence_sum_simd);
+
+double evidence_sum(const EvidenceBlock& block) {
+  return HWY_DYNAMIC_DISPATCH(evidence_sum_simd)(block);
+}
+
+}  // namespace vantage::kernels
+#endif

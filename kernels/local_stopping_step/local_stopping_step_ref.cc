@@ -1,0 +1,68 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "kernels/local_stopping_step/local_stopping_step.h"
+
+namespace vantage::kernels {
+namespace {
+
+float winner_margin(const float* cells, int count) {
+  if (count < 2) {
+    return 0;
+  }
+  const float* const best = std::min_element(cells, cells + count);
+  float second = best == cells ? cells[1] : cells[0];
+  double sum = 0;
+  for (int i = 0; i < count; ++i) {
+    sum += cells[i];
+    if (cells + i != best) {
+      second = std::min(second, cells[i]);
+    }
+  }
+  return sum == 0 ? 0 : static_cast<float>((static_cast<double>(second) - *best) / sum);
+}
+
+float negative_entropy(const float* cells, int count, float scale) {
+  const float best = *std::min_element(cells, cells + count);
+  double total = 0;
+  double moment = 0;
+  for (int i = 0; i < count; ++i) {
+    const double exponent = static_cast<double>(scale) * (static_cast<double>(cells[i]) - best);
+    total += std::exp(-exponent);
+    moment += std::exp(-exponent) * exponent;
+  }
+  return static_cast<float>(-moment / total - std::log(total));
+}
+
+}  // namespace
+
+void local_stopping_row_ref(const LocalStoppingRow& row) {
+  const StarRow& star = row.star;
+  const float own = 1.0F - 4.0F * row.step;
+  const auto certainty = [&row](const float* cells) {
+    return row.measure == CertaintyMeasure::kMargin ? winner_margin(cells, row.count)
+                                                    : negative_entropy(cells, row.count, row.scale);
+  };
+  for (int x = 0; x < star.columns; ++x) {
+    const float* const centre = star.centre + x * star.pitch;
+    float* const output = row.output + static_cast<std::ptrdiff_t>(x) * row.output_pitch;
+    const float before = star.pitch > star.lanes ? centre[star.lanes] : certainty(centre);
+    for (int i = 0; i < star.lanes; ++i) {
+      const float neighbours =
+          (star.left_of(x)[i] + star.right_of(x)[i]) +
+          (star.up[x * star.up_pitch + i] + star.down[x * star.down_pitch + i]);
+      output[i] = own * centre[i] + row.step * neighbours;
+    }
+    float after = certainty(output);
+    if (before > after) {
+      std::copy_n(centre, star.lanes, output);
+      after = before;
+    }
+    if (row.output_pitch > star.lanes) {
+      std::fill_n(output + star.lanes, kCertaintyFloats, after);
+    }
+  }
+}
+
+}  // namespace vantage::kernels

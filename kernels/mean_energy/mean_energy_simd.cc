@@ -1,0 +1,100 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/mean_energy/mean_energy_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include <algorithm>
+
+#include "kernels/mean_energy/mean_energy.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag64 = hn::ScalableTag<double>;
+using Tag32 = hn::Rebind<std::int32_t, Tag64>;
+using TagF = hn::Rebind<float, Tag64>;
+
+HWY_INLINE hn::VFromD<TagF> means(const WinnerRow& row, const std::int32_t* cells,
+                                  hn::VFromD<Tag64> factor, double offset) {
+  const Tag64 d64;
+  const auto sums = hn::ShiftRightSame(hn::LoadU(Tag32(), cells), row.index_bits);
+  return hn::DemoteTo(TagF(),
+                      hn::Sub(hn::Mul(hn::PromoteTo(d64, sums), factor), hn::Set(d64, offset)));
+}
+
+// A column all of whose candidates have the same samples, or padding behind the last one.
+HWY_INLINE void plain_column(const WinnerRow& row, const EnergyUnit& unit, int x,
+                             const std::int32_t* cells, float* energies) {
+  const Tag64 d64;
+  const int lanes = row.geometry.lanes();
+  const int count = row.geometry.count;
+  const int samples = unit.window_rows * row.full_window_columns(x);
+  const auto factor = hn::Set(d64, unit.scale / samples);
+  for (int i = 0; i < lanes; i += static_cast<int>(hn::Lanes(d64))) {
+    hn::StoreU(means(row, cells + i, factor, unit.offset), TagF(), energies + i);
+  }
+  std::fill(energies + count, energies + lanes, 0.0F);
+}
+
+// Any column: from one candidate to the next the window may lose or gain a column.
+HWY_INLINE void border_column(const WinnerRow& row, const EnergyUnit& unit, int x,
+                              const std::int32_t* cells, float* energies) {
+  const Tag64 d64;
+  const Tag32 d32;
+  const int lanes = row.geometry.lanes();
+  const CandidateRange candidates = row.candidates(x);
+  if (candidates.empty()) {
+    std::fill_n(energies, lanes, 0.0F);
+    return;
+  }
+  // WinnerRow::window_columns() for neighbouring candidates.
+  const int last_column = row.geometry.width - 1;
+  const auto first = hn::Set(d32, std::max(x - row.window_radius, 0));
+  const auto last = hn::Set(d32, std::min(x + row.window_radius, last_column));
+  const auto shifts_per_lane = hn::Set(d32, -row.geometry.direction);
+  const auto window_rows = hn::Set(d64, unit.window_rows);
+  for (int i = 0; i < lanes; i += static_cast<int>(hn::Lanes(d64))) {
+    const auto shift = hn::Add(hn::Set(d32, x - row.geometry.partner(x, i)),
+                               hn::Mul(hn::Iota(d32, 0), shifts_per_lane));
+    const auto columns =
+        hn::Sub(hn::Min(last, hn::Add(hn::Set(d32, last_column), shift)), hn::Max(first, shift));
+    // Lanes that hold no candidate have no samples, perhaps, but their results are not kept.
+    const auto samples =
+        hn::Mul(window_rows, hn::PromoteTo(d64, hn::Add(columns, hn::Set(d32, 1))));
+    const auto factor = hn::Div(hn::Set(d64, unit.scale), samples);
+    hn::StoreU(means(row, cells + i, factor, unit.offset), TagF(), energies + i);
+  }
+  std::fill(energies, energies + candidates.begin, 0.0F);
+  std::fill(energies + candidates.end, energies + lanes, 0.0F);
+}
+
+void mean_energy_row_simd(const WinnerRow& row, const EnergyUnit& unit,
+                          float* HWY_RESTRICT energies) {
+  const int lanes = row.geometry.lanes();
+  const auto [plain_begin, plain_end] = row.plain_columns();
+  const std::int32_t* cells = row.cells;
+  for (int j = 0; j < row.columns; ++j, cells += lanes, energies += lanes) {
+    const int x = row.first_column + j;
+    if (x >= plain_begin && x < plain_end) {
+      plain_column(row, unit, x, cells, energies);
+    } else {
+      border_column(row, unit, x, cells, energies);
+    }
+  }
+}
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(mean_energy_row_simd);
+
+void mean_energy_row(const WinnerRow& row, const EnergyUnit& unit, float* energies) {
+  HWY_DYNAMIC_DISPATCH(mean_energy_row_simd)(row, unit, energies);
+}
+
+}  // namespace vantage::kernels
+#endif

@@ -1,0 +1,61 @@
+// The functions of exp_log.h for vectors; included by dispatched files, once per target.
+
+#if defined(VANTAGE_KERNELS_PIXEL_COST_EXP_LOG_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VANTAGE_KERNELS_PIXEL_COST_EXP_LOG_INL_H_
+#undef VANTAGE_KERNELS_PIXEL_COST_EXP_LOG_INL_H_
+#else
+#define VANTAGE_KERNELS_PIXEL_COST_EXP_LOG_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+#include "kernels/pixel_cost/exp_log.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+
+using ExpLogVec = hwy::HWY_NAMESPACE::VFromD<hwy::HWY_NAMESPACE::ScalableTag<float>>;
+
+HWY_INLINE ExpLogVec exp2_of_negative(ExpLogVec exponent) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::ScalableTag<float> df;
+  const hn::ScalableTag<std::int32_t> d32;
+  const ExpLogVec round = hn::Set(df, kRoundToInteger);
+  exponent = hn::Max(exponent, hn::Set(df, kLeastExponent));
+  const ExpLogVec shifted = hn::Add(exponent, round);
+  const ExpLogVec f = hn::Sub(exponent, hn::Sub(shifted, round));
+  ExpLogVec sum = hn::Set(df, kExp2Polynomial[4]);
+#pragma GCC unroll 4
+  for (int k = 3; k >= 0; --k) {
+    sum = hn::Add(hn::Mul(sum, f), hn::Set(df, kExp2Polynomial[k]));
+  }
+  const ExpLogVec power = hn::Add(hn::Mul(sum, f), hn::Set(df, 1.0F));
+  return hn::BitCast(
+      df, hn::Add(hn::BitCast(d32, power), hn::ShiftLeft<23>(hn::BitCast(d32, shifted))));
+}
+
+HWY_INLINE ExpLogVec log_of_normal(ExpLogVec value) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::ScalableTag<float> df;
+  const hn::ScalableTag<std::int32_t> d32;
+  const auto bits = hn::BitCast(d32, value);
+  const auto exponent = hn::ShiftRight<23>(hn::Sub(bits, hn::Set(d32, kRootHalfBits)));
+  const ExpLogVec f =
+      hn::Sub(hn::BitCast(df, hn::Sub(bits, hn::ShiftLeft<23>(exponent))), hn::Set(df, 1.0F));
+  ExpLogVec sum = hn::Set(df, kLogPolynomial[6]);
+#pragma GCC unroll 6
+  for (int k = 5; k >= 0; --k) {
+    sum = hn::Add(hn::Mul(sum, f), hn::Set(df, kLogPolynomial[k]));
+  }
+  const ExpLogVec square = hn::Mul(f, f);
+  const ExpLogVec tail =
+      hn::Sub(hn::Mul(hn::Mul(sum, f), square), hn::Mul(hn::Set(df, 0.5F), square));
+  return hn::Add(hn::Add(tail, f), hn::Mul(hn::ConvertTo(df, exponent), hn::Set(df, kLn2)));
+}
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

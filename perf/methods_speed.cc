@@ -1,0 +1,205 @@
+// Speed of the iterative and evidence methods: against OpenCV's StereoSGBM on the same pair and
+// threads, against themselves pass by pass, and over numbers of iterations; all contenders of a
+// table interleaved in one run. Prints tables; --json FILE writes the figures.
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "engine/matching/stereo_matcher.h"
+#include "engine/simd.h"
+#include "perf/bench_pair.h"
+#include "perf/interleaved.h"
+#include "perf/peers.h"
+#include "perf/tables.h"
+#include "scheduler/whole_image_pipeline.h"
+
+namespace vantage::perf {
+namespace {
+
+constexpr int kWidth = 450;
+constexpr int kHeight = 375;
+constexpr int kDisparities = 64;
+constexpr double kCells = static_cast<double>(kWidth) * kHeight * kDisparities;
+
+struct Method {
+  std::string name;
+  MatchOptions options;
+  double work = 1;  ///< what the target counts: cells, or cells and iterations
+};
+
+Method make_method(std::string name, MatchMethod method, int iterations,
+                   const MethodOverrides& overrides) {
+  Method result{std::move(name), {}, kCells * std::max(1, iterations)};
+  result.options.method = method;
+  result.options.parameters = overrides;
+  result.options.parameters.subpixel = Subpixel::kNone;
+  if (iterations > 0) {
+    result.options.parameters.iterations = iterations;
+  }
+  result.options.disparities = {0, kDisparities - 1};
+  result.options.raw = true;
+  return result;
+}
+
+std::vector<Method> all_methods() {
+  std::vector<Method> methods;
+  methods.push_back(
+      make_method("Bayes, sigma-prior 0.1", MatchMethod::kBayes, 10, {.sigma_prior = 0.1}));
+  methods.push_back(
+      make_method("Bayes, sigma-prior 0.4", MatchMethod::kBayes, 10, {.sigma_prior = 0.4}));
+  methods.push_back(
+      make_method("Bayes, mu 0.45", MatchMethod::kBayes, 10, {.mu = 0.45, .sigma_prior = 0.1}));
+  methods.push_back(make_method("membrane", MatchMethod::kMembrane, 10, {}));
+  methods.push_back(make_method("diffusion", MatchMethod::kDiffusion, 10, {}));
+  methods.push_back(make_method("local stopping, margin", MatchMethod::kLocalStopping, 10, {}));
+  methods.push_back(make_method("local stopping, entropy", MatchMethod::kLocalStopping, 10,
+                                {.certainty = Certainty::kEntropy}));
+  methods.push_back(make_method("gradient, box cascade", MatchMethod::kGradient, 0, {}));
+  methods.push_back(make_method("gradient, Gaussian", MatchMethod::kGradient, 0,
+                                {.aggregation = Aggregation::kGaussian}));
+  methods.push_back(
+      make_method("census, box 9x9", MatchMethod::kSsd, 0, {.cost = MatchCost::kCensus}));
+  return methods;
+}
+
+/// A method's left map, on its own threads.
+class Runner {
+ public:
+  Runner(const Method& method, const ExecutionOptions& execution)
+      : execution_(execution), matcher_(method.options, execution_) {}
+  void run(const Pair& pair) {
+    matcher_.match(pair.left_grey, pair.right_grey,
+                   {.left = true, .right = false, .unmatched = false}, maps_, &report_);
+  }
+  [[nodiscard]] const MatchReport& report() const { return report_; }
+
+ private:
+  Execution execution_;
+  StereoMatcher matcher_;
+  DisparityMaps maps_;
+  MatchReport report_;
+};
+
+/// The chain by the whole-image executor: every row of every stage stored, one thread.
+void run_whole_image_chain(const Method& method, const Pair& pair, Execution& execution) {
+  const MethodParameters parameters = method.options.resolved();
+  const auto geometry = candidate_geometry(method.options, Reference::kLeft, kWidth, kHeight);
+  CostImage left;
+  CostImage right;
+  left.prepare(pair.left_grey, parameters, geometry, {true, false, false}, execution);
+  right.prepare(pair.right_grey, parameters, geometry, {false, true, false}, execution);
+  DisparityMap map(kWidth, kHeight);
+  const MatchChain chain(parameters, geometry,
+                         {.reference = &left, .partners = {CostPartner{.image = &right}}},
+                         {.disparity_px = map.view()});
+  scheduler::run_whole_image(chain.stages());
+}
+
+/// Times every method on one thread, on all, and pass by pass on all.
+nlohmann::json against_peers(const Pair& pair, int rounds) {
+  const int threads = scheduler::detect_machine().hardware_threads;
+  const cv::Mat left = to_opencv(pair.left_grey);
+  const cv::Mat right = to_opencv(pair.right_grey);
+  cv::Mat result;
+  const auto sgbm = make_sgbm({0, kDisparities - 1}, 5, 1, cv::StereoSGBM::MODE_SGBM_3WAY);
+  const auto run_sgbm = [&](int sgbm_threads) {
+    cv::setNumThreads(sgbm_threads);
+    sgbm->compute(left, right, result);
+    cv::setNumThreads(1);
+  };
+  const std::vector<Method> methods = all_methods();
+  std::vector<std::unique_ptr<Runner>> runners;
+  std::vector<Contender> contenders{
+      {fmt::format("StereoSGBM 3-way, {} threads", threads), [&] { run_sgbm(threads); }},
+      {"StereoSGBM 3-way, 1 thread", [&] { run_sgbm(1); }}};
+  std::vector<double> work{kCells, kCells};
+  const auto add = [&](const Method& method, const ExecutionOptions& execution,
+                       const std::string& how) {
+    runners.push_back(std::make_unique<Runner>(method, execution));
+    contenders.push_back(
+        {method.name + how, [&pair, runner = runners.back().get()] { runner->run(pair); }});
+    work.push_back(method.work);
+  };
+  Execution serial({.threads = 1});
+  for (const Method& method : methods) {
+    add(method, {.threads = threads}, fmt::format(", {} threads", threads));
+    add(method, {.threads = 1}, ", 1 thread");
+    if (method.work > kCells) {
+      add(method, {.threads = threads, .iterations_per_pass = 1}, ", pass by pass");
+    }
+  }
+  contenders.push_back({"Bayes, whole-image executor, 1 thread",
+                        [&] { run_whole_image_chain(methods.front(), pair, serial); }});
+  work.push_back(methods.front().work);
+  return print_table("450x375, 64 disparities, one map; ns per cell and iteration",
+                     time_interleaved(contenders, rounds), work);
+}
+
+nlohmann::json over_iterations(const Pair& pair, int rounds) {
+  const int threads = scheduler::detect_machine().hardware_threads;
+  nlohmann::json tables = nlohmann::json::array();
+  for (const MatchMethod kind : {MatchMethod::kBayes, MatchMethod::kMembrane}) {
+    std::vector<Method> methods;
+    std::vector<std::unique_ptr<Runner>> runners;
+    std::vector<Contender> contenders;
+    std::vector<double> work;
+    for (const int iterations : {10, 50, 200}) {
+      methods.push_back(make_method(fmt::format("{} iterations", iterations), kind, iterations,
+                                    {.sigma_prior = 0.1}));
+      runners.push_back(
+          std::make_unique<Runner>(methods.back(), ExecutionOptions{.threads = threads}));
+      contenders.push_back(
+          {methods.back().name, [&pair, runner = runners.back().get()] { runner->run(pair); }});
+      work.push_back(methods.back().work);
+    }
+    tables.push_back(
+        print_table(fmt::format("{} over iterations, {} threads; ns per cell and iteration",
+                                kind == MatchMethod::kBayes ? "Bayes" : "membrane", threads),
+                    time_interleaved(contenders, rounds), work));
+    for (std::size_t i = 0; i < runners.size(); ++i) {
+      const auto& plan = runners[i]->report().plan;
+      fmt::print("{}: {} passes, strips {} columns wide, bands {} rows high\n", methods[i].name,
+                 plan.passes.size(), plan.passes.front().strip_columns,
+                 plan.passes.front().band_rows);
+    }
+  }
+  return tables;
+}
+
+}  // namespace
+}  // namespace vantage::perf
+
+int main(int argc, char** argv) {
+  using namespace vantage::perf;
+  cv::setNumThreads(1);
+  std::optional<std::string> json_path;
+  int rounds = 11;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string option = argv[i];
+    if (option == "--json") {
+      json_path = argv[i + 1];
+    } else if (option == "--rounds") {
+      rounds = std::max(1, std::atoi(argv[i + 1]));
+    } else {
+      fmt::print(stderr, "methods_speed [--json FILE] [--rounds N]\n");
+      return 2;
+    }
+  }
+  fmt::print("instruction set {}, {} hardware threads\n", vantage::instruction_set_in_use(),
+             vantage::scheduler::detect_machine().hardware_threads);
+  const Pair pair = make_pair(kWidth, kHeight, kDisparities);
+  nlohmann::json tables = nlohmann::json::array();
+  tables.push_back(against_peers(pair, rounds));
+  for (auto& table : over_iterations(pair, std::max(3, rounds / 3))) {
+    tables.push_back(std::move(table));
+  }
+  if (json_path) {
+    std::ofstream(*json_path) << tables.dump(2) << '\n';
+  }
+  return 0;
+}

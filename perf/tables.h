@@ -1,0 +1,42 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "perf/interleaved.h"
+
+namespace vantage::perf {
+
+/// Prints a table of timings, each also divided by its work (cells, or cells and iterations) and by
+/// the first one, and returns it.
+inline nlohmann::json print_table(const std::string& title, const std::vector<Timing>& timings,
+                                  const std::vector<double>& work) {
+  fmt::print("\n{}\n{:<42} {:>9} {:>9} {:>9} {:>9} {:>7}\n", title, "", "min ms", "median ms",
+             "max ms", "ns/cell", "ratio");
+  nlohmann::json rows = nlohmann::json::array();
+  for (std::size_t i = 0; i < timings.size(); ++i) {
+    const Timing& timing = timings[i];
+    const double ratio = timing.median() / timings.front().median();
+    fmt::print("{:<42} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.4f} {:>7.3f}\n", timing.name,
+               timing.least() * 1e3, timing.median() * 1e3, timing.most() * 1e3,
+               timing.median() / work[i] * 1e9, ratio);
+    rows.push_back({{"name", timing.name},
+                    {"min_seconds", timing.least()},
+                    {"median_seconds", timing.median()},
+                    {"max_seconds", timing.most()},
+                    {"ns_per_cell", timing.median() / work[i] * 1e9},
+                    {"ratio_to_first", ratio}});
+  }
+  return {{"title", title}, {"rows", rows}};
+}
+
+/// The same where all do the same work.
+inline nlohmann::json print_table(const std::string& title, const std::vector<Timing>& timings,
+                                  double work) {
+  return print_table(title, timings, std::vector<double>(timings.size(), work));
+}
+
+}  // namespace vantage::perf

@@ -1,0 +1,180 @@
+#include "scheduler/pass_planner.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace vantage::scheduler {
+namespace {
+
+// How many times the rings and states of one strip may fill a cache. Level 1: stages stream through
+// them, so a little too much still hits mostly. Level 2: the rest is for image rows, results and
+// whatever else runs on the core.
+constexpr double kLevel1Share = 1.2;
+constexpr double kLevel2Share = 0.5;
+// The same in passes of more parts than kFewParts: their rings are large beside the image rows.
+constexpr double kLevel2ShareOfManyParts = 0.75;
+constexpr std::size_t kFewParts = 3;
+// Time per cell while the strips of all threads live in their level-2 caches, in the level 3 that
+// they share, or beyond, level 1 being 1.
+constexpr double kLevel2Time = 1.35;
+constexpr double kLevel3Time = 2.5;
+constexpr double kMemoryTime = 6.0;
+// Starting a row of a stage takes as long as this many bytes of its cells.
+constexpr double kRowStartBytes = 1024;
+// Setting out a stage in a task takes as long as starting this many rows.
+constexpr int kTaskStartRows = 8;
+// Tasks take unequal time: at the end of a pass threads wait for this part of a task.
+constexpr double kUnevenTask = 0.15;
+// More tasks per thread than this gain nothing.
+constexpr int kMostTasksPerThread = 8;
+// Narrower strips are only tried when they are asked for.
+constexpr int kLeastStripColumns = 16;
+// Numbers of strips and bands to try: all up to kSmallCount, then each about this times the last.
+constexpr int kSmallCount = 12;
+constexpr double kCountStep = 1.2;
+
+int divide_up(int total, int part) { return (total + part - 1) / part; }
+
+int next_count(int count) {
+  return count < kSmallCount ? count + 1 : static_cast<int>(count * kCountStep);
+}
+
+/// Sizes of equal parts of `total`, from the whole down to `least` (the whole in any case).
+std::vector<int> part_sizes(int total, int least, int most_parts) {
+  std::vector<int> sizes = {std::max(1, total)};
+  for (int count = 2; count <= most_parts && divide_up(total, count) >= least;
+       count = next_count(count)) {
+    if (const int size = divide_up(total, count); size != sizes.back()) {
+      sizes.push_back(size);
+    }
+  }
+  return sizes;
+}
+
+}  // namespace
+
+PassPlanner::PassPlanner(const PassStages& pass, const Machine& machine, const PlanRequest& request)
+    : pass_(pass),
+      output_(pass.stages.back()->extent()),
+      machine_(machine),
+      request_(request),
+      threads_(std::max(1, request.threads)),
+      memory_bytes_(request.memory_bytes.value_or(kDefaultMemoryBytes)) {
+  std::size_t bytes = 0;
+  for (const RowStage* stage : pass.stages) {
+    bytes = std::max(bytes, stage->bytes_per_column());
+  }
+  row_start_columns_ = kRowStartBytes / static_cast<double>(std::max<std::size_t>(bytes, 64));
+}
+
+PassPlan PassPlanner::plan(int step_rows) {
+  step_rows = std::clamp(step_rows, 1, std::max(1, output_.rows));
+  const std::vector<int> widths =
+      request_.strip_columns
+          ? std::vector{std::clamp(*request_.strip_columns, 1, std::max(1, output_.columns))}
+          : part_sizes(output_.columns, kLeastStripColumns, output_.columns);
+  const std::vector<int> heights =
+      request_.band_rows
+          ? std::vector{std::clamp(*request_.band_rows, 1, step_rows)}
+          : part_sizes(step_rows, 1, threads_ > 1 ? kMostTasksPerThread * threads_ : 1);
+  std::vector<std::vector<int>> rows;
+  for (const int height : heights) {
+    rows.push_back(rows_made(height));
+  }
+  PassPlan best;
+  bool best_fits = false;
+  best.expected_time = std::numeric_limits<double>::max();
+  for (const int width : widths) {
+    lay_out_middle_strip(width);
+    const bool fits = layout_.scratch_bytes * static_cast<std::size_t>(threads_) <= memory_bytes_;
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+      PassPlan plan;
+      plan.strip_columns = width;
+      plan.strips = std::max(1, divide_up(output_.columns, width));
+      plan.band_rows = heights[i];
+      plan.bands = divide_up(step_rows, heights[i]);
+      estimate(rows[i], plan);
+      if (fits != best_fits ? fits : plan.expected_time < best.expected_time) {
+        best = plan;
+        best_fits = fits;
+      }
+    }
+  }
+  for (int strip = 0; strip < best.strips; ++strip) {
+    const int begin = strip * best.strip_columns;
+    const Range columns{begin, std::min(begin + best.strip_columns, output_.columns)};
+    lay_out_sweep(pass_, columns, {0, 1}, layout_);
+    best.scratch_bytes = std::max(best.scratch_bytes, layout_.scratch_bytes);
+  }
+  return best;
+}
+
+std::vector<int> PassPlanner::rows_made(int height) const {
+  const int top = std::max(0, (output_.rows - height) / 2);
+  Range wanted{top, std::min(output_.rows, top + height)};
+  Range source = wanted;
+  const std::size_t beside = pass_.source == nullptr ? 0 : 1;
+  std::vector<int> rows(pass_.stages.size() + beside);
+  for (std::size_t k = pass_.stages.size(); k-- > 0;) {
+    const RowStage& stage = *pass_.stages[k];
+    const Extent input = k > 0 ? pass_.stages[k - 1]->extent() : pass_.input;
+    const Range made{stage.sweep_start(wanted.begin), wanted.end};
+    rows[k + beside] = made.size();
+    if (stage.reads_source()) {
+      source = {std::min(source.begin, made.begin), std::max(source.end, made.end)};
+    }
+    if (!made.empty()) {
+      wanted = {stage.input_rows(made.begin, input).begin,
+                stage.input_rows(made.end - 1, input).end};
+    }
+  }
+  if (pass_.source != nullptr) {
+    rows[0] = source.end - pass_.source->sweep_start(source.begin);
+  }
+  return rows;
+}
+
+void PassPlanner::estimate(const std::vector<int>& rows, PassPlan& plan) const {
+  double computed = 0;
+  double starts = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const StageSweep& part = layout_.parts[k];
+    const int row_works = rows[k] + part.stage->first_row_work() - 1;
+    computed += static_cast<double>(part.columns.size()) * row_works;
+    starts += row_works + kTaskStartRows;
+  }
+  const double delivered = std::max(1.0, static_cast<double>(pass_.stages.size()) *
+                                             std::min(plan.strip_columns, output_.columns) *
+                                             std::min(plan.band_rows, output_.rows));
+  plan.work_ratio = std::max(1.0, computed / delivered);
+  const double work = plan.work_ratio + starts * row_start_columns_ / delivered;
+  plan.expected_time = work * cache_time(layout_.scratch_bytes) *
+                       imbalance(plan.strips * plan.bands) *
+                       static_cast<double>(pass_.stages.size());
+}
+
+double PassPlanner::cache_time(std::size_t scratch_bytes) const {
+  const auto bytes = static_cast<double>(scratch_bytes);
+  if (bytes <= kLevel1Share * static_cast<double>(machine_.l1_data_bytes)) {
+    return 1;
+  }
+  const double share = layout_.parts.size() > kFewParts ? kLevel2ShareOfManyParts : kLevel2Share;
+  if (bytes <= share * static_cast<double>(machine_.l2_bytes)) {
+    return kLevel2Time;
+  }
+  const bool shared =
+      machine_.l3_bytes == 0 || bytes * threads_ <= static_cast<double>(machine_.l3_bytes);
+  return shared ? kLevel3Time : kMemoryTime;
+}
+
+double PassPlanner::imbalance(int tasks) const {
+  return threads_ == 1 ? 1 : (divide_up(tasks, threads_) + kUnevenTask) * threads_ / tasks;
+}
+
+void PassPlanner::lay_out_middle_strip(int width) {
+  const int begin = std::max(0, (output_.columns - width) / 2);
+  const int row = output_.rows / 2;
+  lay_out_sweep(pass_, {begin, std::min(output_.columns, begin + width)}, {row, row + 1}, layout_);
+}
+
+}  // namespace vantage::scheduler

@@ -1,0 +1,266 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/pair_fixture.h"
+
+namespace vantage {
+namespace {
+
+using testing::HasSubstr;
+
+using MatchCommandOptions = PairTest;
+
+struct Refused {
+  std::vector<std::string> options;
+  std::string says;
+};
+
+TEST_F(MatchCommandOptions, BadValuesAreRefusedWithTheirBound) {
+  const std::vector<Refused> cases = {
+      {{"--window", "182"}, "window is 182, expected an odd number from 1 to 181"},
+      {{"--iterations", "-1"}, "iterations is -1, expected a number from 0 to 10000"},
+      {{"--method", "diffusion", "--lambda", "0.25"}, "lambda is 0.25, expected a number above 0"},
+      {{"--method", "membrane", "--lambda", "0.23"}, "at most 1/(4 + beta) = 0.2222"},
+      {{"--method", "membrane", "--beta", "-1"}, "beta is -1, expected a number of at least 0"},
+      {{"--method", "bayes", "--mu", "1.5"}, "mu is 1.5, expected a number above 0 and at most 1"},
+      {{"--method", "bayes", "--sigma-prior", "0"},
+       "sigma-prior is 0, expected a number of pixels"},
+      {{"--method", "bayes", "--epsilon-prior", "1"},
+       "epsilon-prior is 1, expected a number between"},
+      {{"--method", "bayes", "--sigma-measurement=-2"}, "sigma-measurement is -2, expected"},
+      {{"--method", "bayes", "--epsilon-measurement", "0"}, "epsilon-measurement is 0, expected"},
+      {{"--cost", "truncated", "--truncation", "0"}, "truncation is 0, expected a number of grey"},
+      {{"--method", "gradient", "--alpha", "-1"}, "alpha is -1, expected a number of at least 0"},
+      {{"--method", "gradient", "--aggregation-sigma", "0.4"}, "from 0.5 to 16"},
+      {{"--edge-snapping", "17"}, "edge-snapping is 17, expected a number of pixels from 0 to 16"},
+      {{"--cross-check", "0.5"}, "cross-check is 0.5, expected a number of at least 1"},
+      {{"--speckle-size", "-1"}, "speckle-size is -1, expected"},
+      {{"--disparities", "0:4096"}, "(4097 candidates), expected at most 4096"},
+      {{"--disparities-y", "-300:300"}, "expected at most 4096"},
+      {{"--disparities-y", "3"}, "--disparities-y is '3', expected MIN:MAX"},
+      {{"--border", "valid", "--aggregate", "gaussian"}, "only the aggregation box has windows"},
+      {{"--method", "local-stopping", "--cost", "gradient"}, "expected certainty entropy"},
+      {{"--method", "ssd", "--preset", "fast"}, "method and preset are both set"},
+      {{"--disparities-y", "0:1", "--edge-snapping", "on"}, "expected 0 with disparities-y"},
+      {{"--cross-check", "never"}, "--cross-check is 'never', expected a number"},
+      {{"--fill", "quadratic"}, "--fill is 'quadratic', expected one of constant|linear|none"},
+      {{"--prefilter", "box"}, "--prefilter is 'box', expected one of gaussian|none"},
+      {{"--sigma-pior", "1"}, "'--sigma-pior', the nearest known one is '--sigma-prior'"},
+      {{"--agregate", "box"}, "'--agregate', the nearest known one is '--aggregate'"},
+      {{"--confidence", folder_ / "c.png"}, "PNG holds no floats"},
+      {{"--confidence", folder_ / "c.flo"}, ".pfm .tiff .tif .exr .npy"},
+      {{"--disparities-y", "0:1"}, "out.pfm', expected a file name that ends in .flo .npy"},
+      {{"--reference", "right", "--unmatched-right", folder_ / "u.png"},
+       "--unmatched-right cannot"},
+      {{"--baselines", "0"}, "0, expected a finite number other than 0"},
+      {{"--baselines", "1,2"}, "--baselines has 2 numbers, expected 1"},
+      {{"--baselines", "1,"}, "--baselines is '', expected a number"},
+      {{right_, "--baselines", "2,2"}, "are both 2, expected different ones"},
+      {{"--baselines", "1", "--output-right", folder_ / "r.pfm"}, "--output-right cannot go with"},
+      {{"--baselines", "1", "--reference", "right"}, "--reference right cannot go with"},
+      {{"--baselines", "1", "--disparities-y", "0:1"}, "--disparities-y cannot go with"}};
+  const auto before = files_below(folder_.path());
+  for (const Refused& refused : cases) {
+    std::vector<std::string> arguments = {"match", left_, right_, "-o", folder_ / "out.pfm"};
+    arguments.insert(arguments.end(), refused.options.begin(), refused.options.end());
+    const ProcessResult result = run_vantage(arguments);
+    EXPECT_EQ(result.exit_code, 2) << refused.says << '\n' << result.err;
+    EXPECT_TRUE(is_one_line(result, "match"));
+    EXPECT_THAT(result.err, HasSubstr(refused.says));
+  }
+  EXPECT_EQ(files_below(folder_.path()), before);
+}
+
+TEST_F(MatchCommandOptions, ImagesOfUnequalSizeAmongSeveralAreNamed) {
+  write_photograph(folder_ / "small.png", {Image<std::uint8_t>(7, 9)});
+  const ProcessResult result =
+      match(folder_ / "out.pfm", {folder_ / "small.png", "--baselines=1,2"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(is_one_line(result, "match"));
+  EXPECT_THAT(result.err, HasSubstr("small.png is 7x9 but "));
+  EXPECT_THAT(result.err, HasSubstr("left.png is 71x53, expected equal sizes"));
+}
+
+TEST_F(MatchCommandOptions, ReportShowsWhatWasSetAndWhatIsInForce) {
+  ASSERT_EQ(match(folder_ / "map.pfm", {"--method", "membrane", "--iterations", "3", "--report",
+                                        folder_ / "r.json", "--cross-check", "none"})
+                .exit_code,
+            0);
+  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  const auto& settings = report["settings"];
+  EXPECT_EQ(settings["method"], "membrane");
+  EXPECT_EQ(settings["iterations"], 3);
+  EXPECT_EQ(settings["aggregate"], "auto");
+  const auto& resolved = settings["resolved"];
+  EXPECT_EQ(resolved["aggregate"], "membrane");
+  EXPECT_EQ(resolved["cost"], "squared");
+  EXPECT_EQ(resolved["iterations"], 3);
+  EXPECT_EQ(resolved["beta"], 0.5);
+  EXPECT_EQ(resolved["cross-check"], "none");
+  EXPECT_EQ(resolved["confidence-threshold"], "none");
+  for (const auto& [name, value] : resolved.items()) {
+    EXPECT_NE(value, "auto") << name;
+  }
+  const auto& plan = report["plan"];
+  EXPECT_TRUE(plan.contains("stored_bytes"));
+  EXPECT_GE(plan["steps"], 1);
+  for (const auto& pass : plan["passes"]) {
+    for (const char* key : {"first_stage", "end_stage", "strip_width_px", "band_height_px",
+                            "work_ratio", "scratch_bytes", "stored_rows"}) {
+      EXPECT_TRUE(pass.contains(key)) << key;
+    }
+  }
+}
+
+TEST_F(MatchCommandOptions, ThePresetIsWhatItsHelpSays) {
+  const std::string help = run_vantage({"match", "--help"}).out;
+  for (const std::string preset : {"fast", "balanced", "quality"}) {
+    const std::size_t begin = help.find("; " + preset + ": ") + 4 + preset.size();
+    const std::string text = help.substr(begin, help.find_first_of(";\n", begin) - begin);
+    std::vector<std::string> options = {"--method"};
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t end = std::min(text.find(' ', at), text.size());
+      options.push_back(text.substr(at, end - at));
+      at = end + 1;
+    }
+    ASSERT_EQ(match(folder_ / "a.pfm", options).exit_code, 0) << text;
+    ASSERT_EQ(match(folder_ / "b.pfm", {"--preset", preset}).exit_code, 0);
+    EXPECT_EQ(read_file(folder_ / "a.pfm"), read_file(folder_ / "b.pfm")) << preset;
+  }
+}
+
+TEST_F(MatchCommandOptions, ConfidenceIsWrittenAndItsThresholdMarks) {
+  ASSERT_EQ(match(folder_ / "a.pfm", {"--method", "bayes", "--confidence", folder_ / "c.npy",
+                                      "--unmatched", folder_ / "a.png", "--cross-check", "none"})
+                .exit_code,
+            0);
+  const DisparityMap confidence = read_disparity(folder_ / "c.npy");
+  ASSERT_EQ(confidence.width(), 71);
+  ASSERT_EQ(match(folder_ / "b.pfm", {"--method", "bayes", "--confidence-threshold", "0.99",
+                                      "--cross-check", "none", "--unmatched", folder_ / "b.png"})
+                .exit_code,
+            0);
+  const Photograph all_matched = read_photograph(folder_ / "a.png");
+  const Photograph some_matched = read_photograph(folder_ / "b.png");
+  int unsure = 0;
+  for (int y = 0; y < confidence.height(); ++y) {
+    for (int x = 0; x < confidence.width(); ++x) {
+      const float probability = confidence.at(x, y);
+      EXPECT_TRUE(probability > 0 && probability <= 1.0001F) << probability;
+      const bool is_unsure = probability <= 0.99;
+      unsure += is_unsure ? 1 : 0;
+      ASSERT_EQ(std::get<Image<std::uint8_t>>(all_matched.pixels).at(x, y), 0);
+      ASSERT_EQ(std::get<Image<std::uint8_t>>(some_matched.pixels).at(x, y), is_unsure ? 255 : 0);
+    }
+  }
+  EXPECT_GT(unsure, 0);
+}
+
+TEST_F(MatchCommandOptions, FillNoneLeavesTheUnmatchedUnknown) {
+  ASSERT_EQ(match(folder_ / "a.pfm",
+                  {"--fill", "none", "--output-right", folder_ / "r.pfm", "--unmatched",
+                   folder_ / "u.png", "--unmatched-right", folder_ / "v.png", "--cross-check", "1"})
+                .exit_code,
+            0);
+  for (const auto& [map_name, mask_name] :
+       {std::pair{"a.pfm", "u.png"}, std::pair{"r.pfm", "v.png"}}) {
+    const DisparityMap map = read_disparity(folder_ / map_name);
+    const Photograph mask = read_photograph(folder_ / mask_name);
+    int unmatched = 0;
+    for (int y = 0; y < map.height(); ++y) {
+      for (int x = 0; x < map.width(); ++x) {
+        const bool marked = std::get<Image<std::uint8_t>>(mask.pixels).at(x, y) != 0;
+        unmatched += marked ? 1 : 0;
+        ASSERT_EQ(std::isnan(map.at(x, y)), marked);
+      }
+    }
+    EXPECT_GT(unmatched, 0);
+  }
+}
+
+TEST_F(MatchCommandOptions, TwoComponentsAreWrittenAsFlow) {
+  // The right image one row lower: y_left − y_right = −1.
+  const auto& right = std::get<Image<std::uint8_t>>(read_photograph(right_).pixels);
+  Image<std::uint8_t> lower(right.width(), right.height());
+  for (int y = 0; y < right.height(); ++y) {
+    std::copy_n(right.row(std::max(0, y - 1)), right.width(), lower.row(y));
+  }
+  write_photograph(folder_ / "lower.png", {std::move(lower)});
+  const ProcessResult result = run_vantage(
+      {"match", left_, folder_ / "lower.png", "-o", folder_ / "d.flo", "--disparities=0:9",
+       "--disparities-y=-2:2", "--method", "gradient", "--subpixel", "none"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string bytes = read_file(folder_ / "d.flo");
+  ASSERT_EQ(bytes.size(), 12U + 71 * 53 * 8);
+  int right_ones = 0;
+  int all = 0;
+  for (int y = 4; y < 48; ++y) {
+    for (int x = 12; x < 66; ++x) {
+      float flow[2];
+      std::memcpy(flow, bytes.data() + 12 + (y * 71 + x) * 8, 8);
+      ++all;
+      right_ones +=
+          flow[1] == 1 && std::abs(flow[0] + pair_.left_disparity.at(x, y)) < 0.6F ? 1 : 0;
+    }
+  }
+  EXPECT_GT(right_ones, 0.75 * all);
+}
+
+TEST_F(MatchCommandOptions, SeveralImagesOfOneCameraAgreeWithThePair) {
+  // The right image once more at twice the baseline would need twice the disparities; from the
+  // other side of the reference a pair of mirrored baselines is the pair itself.
+  ASSERT_EQ(match(folder_ / "a.pfm", {"--cross-check", "none", "--method", "diffusion"}).exit_code,
+            0);
+  ASSERT_EQ(match(folder_ / "b.pfm", {"--baselines", "2.5", "--method", "diffusion"}).exit_code, 0);
+  EXPECT_EQ(read_file(folder_ / "a.pfm"), read_file(folder_ / "b.pfm"));
+  ASSERT_EQ(run_vantage({"match", right_, left_, "-o", folder_ / "c.pfm", "--disparities=0:9",
+                         "--baselines=-1", "--method", "diffusion"})
+                .exit_code,
+            0);
+  ASSERT_EQ(match(folder_ / "d.pfm",
+                  {"--reference", "right", "--cross-check", "none", "--method", "diffusion"})
+                .exit_code,
+            0);
+  EXPECT_EQ(read_file(folder_ / "c.pfm"), read_file(folder_ / "d.pfm"));
+}
+
+TEST_F(MatchCommandOptions, RunAndSynthTakeThem) {
+  ProcessResult result =
+      run_vantage({"synth", left_, right_, "-o", folder_ / "v.png", "--view", "0.5",
+                   "--disparities=0:9", "--preset", "balanced", "--edge-snapping", "2"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  result = run_vantage({"synth", left_, right_, "-o", folder_ / "w.png", "--view", "0.5",
+                        "--disparities=0:9", "--disparities-y", "0:1"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("--disparities-y"));
+  for (const char* side : {"l", "r"}) {
+    std::filesystem::create_directory(folder_ / side);
+  }
+  std::filesystem::copy_file(left_, folder_ / "l/0.png");
+  std::filesystem::copy_file(right_, folder_ / "r/0.png");
+  const std::vector<std::string> run = {"run",           "--left",           folder_ / "l",
+                                        "--right",       folder_ / "r",      "-o",
+                                        folder_ / "out", "--disparities=0:9"};
+  auto arguments = run;
+  arguments.insert(arguments.end(), {"--method", "gradient", "--save", "disparity,confidence"});
+  result = run_vantage(arguments);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out/disparity/000000.pfm"));
+  ASSERT_EQ(match(folder_ / "a.pfm", {"--method", "gradient", "--confidence", folder_ / "c.pfm"})
+                .exit_code,
+            0);
+  EXPECT_EQ(read_file(folder_ / "out/confidence/000000.pfm"), read_file(folder_ / "c.pfm"));
+  arguments.insert(arguments.end(), {"--format", "png"});
+  result = run_vantage(arguments);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("format is png, which holds no floats"));
+  arguments = run;
+  arguments.insert(arguments.end(), {"--disparities-y", "0:1"});
+  EXPECT_EQ(run_vantage(arguments).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "engine/matching/match_options.h"
+
+namespace vantage::testing {
+
+/// A way of matching, and a name for messages.
+struct MethodCase {
+  std::string name;
+  MatchOptions options;  ///< raw, without sub-pixel
+};
+
+/// What test runners print of a case instead of its bytes.
+inline void PrintTo(const MethodCase& method, std::ostream* stream) { *stream << method.name; }
+
+/// The book's methods, and one of every other kind of chain: whatever is different code.
+inline std::vector<MethodCase> method_cases(DisparityRange range) {
+  std::vector<MethodCase> cases;
+  const auto add = [&](std::string name, MatchMethod method, void (*set)(MethodOverrides & p)) {
+    MatchOptions options;
+    options.method = method;
+    options.disparities = range;
+    options.raw = true;
+    options.parameters.subpixel = Subpixel::kNone;
+    set(options.parameters);
+    cases.push_back({std::move(name), options});
+  };
+  add("ssd", MatchMethod::kSsd, [](MethodOverrides&) {});
+  add("ssd_valid", MatchMethod::kSsd, [](MethodOverrides& p) {
+    p.border = Border::kValid;
+    p.window_px = 5;
+  });
+  add("truncated_box", MatchMethod::kSsd,
+      [](MethodOverrides& p) { p.cost = MatchCost::kTruncated; });
+  add("census_box", MatchMethod::kSsd, [](MethodOverrides& p) {
+    p.cost = MatchCost::kCensus;
+    p.window_px = 5;
+  });
+  add("birchfield_tomasi_none", MatchMethod::kSsd, [](MethodOverrides& p) {
+    p.cost = MatchCost::kBirchfieldTomasi;
+    p.aggregation = Aggregation::kNone;
+  });
+  add("absolute_gaussian", MatchMethod::kSsd, [](MethodOverrides& p) {
+    p.cost = MatchCost::kAbsolute;
+    p.aggregation = Aggregation::kGaussian;
+  });
+  add("gradient", MatchMethod::kGradient, [](MethodOverrides&) {});
+  add("gradient_octagon", MatchMethod::kGradient, [](MethodOverrides& p) {
+    p.norm = GradientNorm::kOctagon;
+    p.gradient = GradientFilter::kSimoncelli5;
+  });
+  add("diffusion", MatchMethod::kDiffusion, [](MethodOverrides&) {});
+  add("membrane", MatchMethod::kMembrane, [](MethodOverrides&) {});
+  add("local_stopping_margin", MatchMethod::kLocalStopping,
+      [](MethodOverrides& p) { p.certainty = Certainty::kMargin; });
+  add("local_stopping_entropy", MatchMethod::kLocalStopping,
+      [](MethodOverrides& p) { p.certainty = Certainty::kEntropy; });
+  add("bayes_planar", MatchMethod::kBayes, [](MethodOverrides& p) { p.sigma_prior = 0.1; });
+  add("bayes", MatchMethod::kBayes, [](MethodOverrides& p) { p.sigma_prior = 0.4; });
+  add("bayes_general", MatchMethod::kBayes, [](MethodOverrides& p) { p.mu = 0.3; });
+  add("bayes_of_evidence", MatchMethod::kBayes,
+      [](MethodOverrides& p) { p.cost = MatchCost::kGradient; });
+  return cases;
+}
+
+}  // namespace vantage::testing

@@ -1,0 +1,135 @@
+// What must not change results: threads, executors, plans, and, within bounds, instruction sets.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "engine/matching/stereo_matcher.h"
+#include "engine/simd.h"
+#include "tests/engine/method_cases.h"
+#include "tests/engine/oracle_comparison.h"
+
+namespace vantage {
+namespace {
+
+using testing::method_cases;
+using testing::MethodCase;
+using testing::PhotographPair;
+using testing::PixelKind;
+using testing::textured_pair;
+
+bool identical(const Image<float>& a, const Image<float>& b) {
+  if (a.width() != b.width() || a.height() != b.height()) {
+    return false;
+  }
+  for (int y = 0; y < a.height(); ++y) {
+    if (std::memcmp(a.row(y), b.row(y), sizeof(float) * static_cast<std::size_t>(a.width())) != 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool identical(const DisparityMaps& a, const DisparityMaps& b) {
+  return identical(a.left, b.left) && identical(a.right, b.right) &&
+         identical(a.left_confidence, b.left_confidence) &&
+         identical(a.right_confidence, b.right_confidence);
+}
+
+DisparityMaps maps_of(const PhotographPair& pair, const MatchOptions& options,
+                      const ExecutionOptions& execution_options) {
+  Execution execution(execution_options);
+  DisparityMaps maps;
+  StereoMatcher(options, execution).match(pair.left, pair.right, {.confidence = true}, maps);
+  return maps;
+}
+
+class MethodExecution : public ::testing::TestWithParam<MethodCase> {};
+
+TEST_P(MethodExecution, PlansAndExecutorsGiveIdenticalResults) {
+  using scheduler::ExecutorKind;
+  for (const PixelKind kind : {PixelKind::kGrey8, PixelKind::kColour8}) {
+    const auto pair = textured_pair(59, 41, {-3, 17}, kind, 7);
+    MatchOptions options = GetParam().options;
+    options.disparities = {-3, 17};
+    options.parameters.subpixel = Subpixel::kParabola;
+    const DisparityMaps expected =
+        maps_of(pair, options, {.threads = 1, .executor = ExecutorKind::kSerial});
+    const auto expect_identical = [&](const ExecutionOptions& execution, const std::string& what) {
+      EXPECT_TRUE(identical(maps_of(pair, options, execution), expected)) << what;
+    };
+    for (const ExecutorKind executor :
+         {ExecutorKind::kTbb, ExecutorKind::kOpenMp, ExecutorKind::kSerial}) {
+#ifdef __SANITIZE_THREAD__
+      if (executor == ExecutorKind::kOpenMp) {
+        continue;  // libgomp is not instrumented
+      }
+#endif
+      for (const int threads : {1, 2, 3}) {
+        expect_identical({.threads = threads, .executor = executor},
+                         "executor " + std::to_string(static_cast<int>(executor)) + ", threads " +
+                             std::to_string(threads));
+      }
+    }
+    for (const int strip : {1, 16, 23, 500}) {
+      for (const int band : {1, 9, 500}) {
+        for (const int pass : {1, 3, 1000}) {
+          if (strip * band < 9 && pass > 1) {
+            continue;  // a whole cone of cells for every pixel
+          }
+          expect_identical({.threads = 2,
+                            .strip_width_px = strip,
+                            .band_height_px = band,
+                            .iterations_per_pass = pass},
+                           "strip " + std::to_string(strip) + ", band " + std::to_string(band) +
+                               ", iterations per pass " + std::to_string(pass));
+        }
+      }
+    }
+  }
+}
+
+/// Each instruction set against the first: winners, and confidences where winners are equal.
+TEST_P(MethodExecution, InstructionSetsAgree) {
+  const auto pair = textured_pair(59, 41, {-3, 28}, PixelKind::kGrey8, 8);
+  MatchOptions options = GetParam().options;
+  options.disparities = {-3, 28};
+  const ExecutionOptions execution{.threads = 1};
+  DisparityMaps expected;
+  for (const std::string& name : available_instruction_sets()) {
+    force_instruction_set(name);
+    ASSERT_EQ(instruction_set_in_use(), name);
+    DisparityMaps maps = maps_of(pair, options, execution);
+    if (expected.left.empty()) {
+      expected = std::move(maps);
+      continue;
+    }
+    int candidates = 0;
+    int equal = 0;
+    for (int y = 0; y < maps.left.height(); ++y) {
+      for (int x = 0; x < maps.left.width(); ++x) {
+        const float wanted = expected.left.at(x, y);
+        EXPECT_EQ(std::isnan(maps.left.at(x, y)), std::isnan(wanted)) << name;
+        candidates += std::isnan(wanted) ? 0 : 1;
+        if (maps.left.at(x, y) == wanted) {
+          ++equal;
+          const float confidence = expected.left_confidence.at(x, y);
+          EXPECT_NEAR(maps.left_confidence.at(x, y), confidence,
+                      1e-5 * std::max(1.0F, std::abs(confidence)))
+              << name << " at " << x << ", " << y;
+        }
+      }
+    }
+    EXPECT_GE(equal, 0.999 * candidates) << name;
+  }
+  force_instruction_set("best");
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, MethodExecution, ::testing::ValuesIn(method_cases({})),
+                         [](const auto& instance) { return instance.param.name; });
+
+}  // namespace
+}  // namespace vantage

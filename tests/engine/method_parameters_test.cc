@@ -1,0 +1,316 @@
+#include "engine/matching/method_parameters.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/matching/match_options.h"
+#include "engine/matching/match_presets.h"
+
+namespace vantage {
+namespace {
+
+using testing::HasSubstr;
+
+/// What the validator says; "" when it is content.
+std::string complaint(const MatchOptions& options) {
+  try {
+    options.validate();
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(MethodParameters, AreTheBooks) {
+  // EQUATIONS §1–§3.
+  const MethodParameters ssd = book_parameters(MatchMethod::kSsd);
+  EXPECT_EQ(ssd.cost, MatchCost::kSquared);
+  EXPECT_EQ(ssd.aggregation, Aggregation::kBox);
+  EXPECT_EQ(ssd.border, Border::kClip);
+  const MethodParameters gradient = book_parameters(MatchMethod::kGradient);
+  EXPECT_EQ(gradient.cost, MatchCost::kGradient);
+  EXPECT_EQ(gradient.aggregation, Aggregation::kBoxCascade);
+  EXPECT_EQ(gradient.aggregation_sigma_px, 2);
+  EXPECT_EQ(gradient.alpha, 1);
+  EXPECT_EQ(gradient.norm, GradientNorm::kL2);
+  EXPECT_EQ(gradient.gradient, GradientFilter::kCentral);
+  EXPECT_TRUE(gradient.prefilter);
+  const MethodParameters diffusion = book_parameters(MatchMethod::kDiffusion);
+  EXPECT_EQ(diffusion.aggregation, Aggregation::kDiffusion);
+  EXPECT_EQ(diffusion.lambda, 0.15);
+  const MethodParameters membrane = book_parameters(MatchMethod::kMembrane);
+  EXPECT_EQ(membrane.aggregation, Aggregation::kMembrane);
+  EXPECT_EQ(membrane.beta, 0.5);
+  EXPECT_EQ(book_parameters(MatchMethod::kLocalStopping).certainty, Certainty::kMargin);
+  const MethodParameters bayes = book_parameters(MatchMethod::kBayes);
+  EXPECT_EQ(bayes.cost, MatchCost::kContaminated);
+  EXPECT_EQ(bayes.aggregation, Aggregation::kBayes);
+  EXPECT_EQ(bayes.mu, 0.5);
+  EXPECT_EQ(bayes.epsilon_prior, 0.01);
+  EXPECT_EQ(bayes.epsilon_measurement, 0.1);
+  EXPECT_EQ(bayes.iterations, 10);
+}
+
+TEST(MethodParameters, OverridesGoBeforePresetsBeforeTheBook) {
+  MatchOptions options;
+  options.preset = MatchPreset::kBalanced;
+  const PresetSettings preset = preset_settings(MatchPreset::kBalanced);
+  EXPECT_EQ(options.resolved(), resolve(preset.method, preset.parameters));
+  EXPECT_EQ(options.resolved_refinement().cross_check_px, *preset.refinement.cross_check_px);
+  options.parameters.iterations = 77;
+  options.parameters.aggregation = Aggregation::kMembrane;
+  options.refinement.speckle_size_px = 3;
+  options.refinement.cross_check = false;
+  const MethodParameters resolved = options.resolved();
+  EXPECT_EQ(resolved.iterations, 77);
+  EXPECT_EQ(resolved.aggregation, Aggregation::kMembrane);
+  EXPECT_EQ(resolved.cost, MatchCost::kSquared);  // what suits a membrane
+  EXPECT_EQ(resolved.sigma_prior, *preset.parameters.sigma_prior);
+  EXPECT_EQ(options.resolved_refinement().speckle_size_px, 3);
+  EXPECT_FALSE(options.resolved_refinement().cross_check);
+  EXPECT_EQ(options.resolved_refinement().cross_check_px, *preset.refinement.cross_check_px);
+}
+
+TEST(MethodParameters, CostFollowsTheAggregationUnlessItIsSet) {
+  MatchOptions options;
+  options.parameters.aggregation = Aggregation::kBayes;
+  EXPECT_EQ(options.resolved().cost, MatchCost::kContaminated);
+  options.parameters.cost = MatchCost::kCensus;
+  EXPECT_EQ(options.resolved().cost, MatchCost::kCensus);
+  options = {};
+  options.method = MatchMethod::kGradient;
+  options.parameters.aggregation = Aggregation::kBayes;
+  EXPECT_EQ(options.resolved().cost, MatchCost::kGradient);
+}
+
+TEST(MethodParameters, PresetsAreValidAndNotCombinedWithMethods) {
+  for (const MatchPreset preset :
+       {MatchPreset::kFast, MatchPreset::kBalanced, MatchPreset::kQuality}) {
+    MatchOptions options;
+    options.preset = preset;
+    EXPECT_EQ(complaint(options), "");
+    options.method = MatchMethod::kBayes;
+    EXPECT_THAT(complaint(options), HasSubstr("method and preset are both set"));
+  }
+}
+
+TEST(MethodParameters, SpelledOutIsTheSameWithoutPreset) {
+  MatchOptions options;
+  options.preset = MatchPreset::kQuality;
+  options.disparities = {-7, 90};
+  options.parameters.beta = 0.25;
+  options.refinement.fill = Fill::kLinear;
+  const MatchOptions spelled_out = options.spelled_out();
+  EXPECT_FALSE(spelled_out.preset.has_value());
+  EXPECT_EQ(complaint(spelled_out), "");
+  EXPECT_EQ(spelled_out.resolved(), options.resolved());
+  EXPECT_EQ(spelled_out.resolved_refinement(), options.resolved_refinement());
+  // Nothing is left to the defaults of a method or of the range.
+  MatchOptions other = spelled_out;
+  other.method = MatchMethod::kGradient;
+  other.disparities = {0, 1};
+  EXPECT_EQ(other.resolved(), options.resolved());
+  EXPECT_EQ(other.resolved_refinement(), options.resolved_refinement());
+}
+
+TEST(Refinement, DefaultsDependOnRangeAndCost) {
+  MatchOptions options;
+  options.disparities = {0, 59};
+  EXPECT_EQ(options.resolved_refinement().cross_check_px, 4);
+  EXPECT_FALSE(uses_confidence(options.resolved_refinement()));
+  EXPECT_EQ(options.resolved_refinement().fill, Fill::kConstant);
+  options.disparities = {0, 5};
+  EXPECT_EQ(options.resolved_refinement().cross_check_px, 1);
+  options.method = MatchMethod::kGradient;
+  EXPECT_TRUE(uses_confidence(options.resolved_refinement()));
+  EXPECT_EQ(options.resolved_refinement().confidence_threshold, 0);
+  options.refinement.confidence_threshold = -std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(uses_confidence(options.resolved_refinement()));
+}
+
+struct Bound {
+  std::string name;
+  std::function<void(MatchOptions&, double)> set;
+  std::vector<double> good;
+  std::vector<double> bad;
+  std::string says;  ///< the limit, as the message has it
+  MatchMethod method = MatchMethod::kSsd;
+};
+
+template <typename T>
+std::function<void(MatchOptions&, double)> parameter(std::optional<T> MethodOverrides::*field) {
+  return [=](MatchOptions& options, double value) {
+    options.parameters.*field = static_cast<T>(value);
+  };
+}
+template <typename T>
+std::function<void(MatchOptions&, double)> refinement(
+    std::optional<T> RefinementOverrides::*field) {
+  return [=](MatchOptions& options, double value) {
+    options.refinement.*field = static_cast<T>(value);
+  };
+}
+
+TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  using P = MethodOverrides;
+  using R = RefinementOverrides;
+  const std::vector<Bound> bounds = {
+      {"window",
+       parameter(&P::window_px),
+       {1, 3, 181},
+       {-1, 0, 2, 182, 183},
+       "odd number from 1 to 181"},
+      {"aggregation-sigma",
+       parameter(&P::aggregation_sigma_px),
+       {0.5, 16},
+       {0.49, 16.1, kNan},
+       "from 0.5 to 16"},
+      {"iterations", parameter(&P::iterations), {0, 10000}, {-1, 10001}, "from 0 to 10000"},
+      {"lambda",
+       parameter(&P::lambda),
+       {0.01, 0.249},
+       {0, -1, 0.25, kNan},
+       "below 0.25",
+       MatchMethod::kDiffusion},
+      {"lambda",
+       parameter(&P::lambda),
+       {0.01, 0.249},
+       {0, 0.25, kNan},
+       "below 0.25",
+       MatchMethod::kLocalStopping},
+      {"lambda",
+       parameter(&P::lambda),
+       {0.01, 1 / 4.5},
+       {0, 0.2223, kNan},
+       "1/(4 + beta) = 0.2222",
+       MatchMethod::kMembrane},
+      {"beta",
+       parameter(&P::beta),
+       {0, 2.5},
+       {-0.1, kNan, kInfinity},
+       "at least 0",
+       MatchMethod::kMembrane},
+      {"mu",
+       parameter(&P::mu),
+       {0.01, 1},
+       {0, 1.01, kNan},
+       "above 0 and at most 1",
+       MatchMethod::kBayes},
+      {"sigma-prior",
+       parameter(&P::sigma_prior),
+       {0.01, 9},
+       {0, -1, kNan, kInfinity},
+       "above 0",
+       MatchMethod::kBayes},
+      {"epsilon-prior",
+       parameter(&P::epsilon_prior),
+       {0.01, 0.99},
+       {0, 1, -1, kNan},
+       "between 0 and 1",
+       MatchMethod::kBayes},
+      {"sigma-measurement",
+       parameter(&P::sigma_measurement),
+       {0.01, 99},
+       {0, -1, kNan, kInfinity},
+       "above 0",
+       MatchMethod::kBayes},
+      {"epsilon-measurement",
+       parameter(&P::epsilon_measurement),
+       {0.01, 0.99},
+       {0, 1, kNan},
+       "between 0 and 1",
+       MatchMethod::kBayes},
+      {"truncation", parameter(&P::truncation), {0.1, 255}, {0, -1, kNan, kInfinity}, "above 0"},
+      {"alpha",
+       parameter(&P::alpha),
+       {0, 3},
+       {-0.1, kNan, kInfinity},
+       "at least 0",
+       MatchMethod::kGradient},
+      {"edge-snapping", refinement(&R::edge_snapping_px), {0, 16}, {-1, 17}, "from 0 to 16"},
+      {"cross-check",
+       refinement(&R::cross_check_px),
+       {1, 100},
+       {0.99, 0, kNan, kInfinity},
+       "at least 1"},
+      {"confidence-threshold",
+       refinement(&R::confidence_threshold),
+       {-5, 0, 5, -kInfinity},
+       {kNan, kInfinity},
+       "finite"},
+      {"speckle-size", refinement(&R::speckle_size_px), {0, 1000}, {-1}, "at least 0"},
+  };
+  for (const Bound& bound : bounds) {
+    const auto complaint_about = [&](double value) {
+      MatchOptions options;
+      options.method = bound.method;
+      bound.set(options, value);
+      return complaint(options);
+    };
+    for (const double value : bound.good) {
+      EXPECT_EQ(complaint_about(value), "") << bound.name << ' ' << value;
+    }
+    for (const double value : bound.bad) {
+      EXPECT_THAT(complaint_about(value), HasSubstr(bound.name + " is ")) << value;
+      EXPECT_THAT(complaint_about(value), HasSubstr(bound.says)) << bound.name << ' ' << value;
+    }
+  }
+}
+
+TEST(MatchOptions, Candidates) {
+  MatchOptions options;
+  options.disparities = {0, 4095};
+  EXPECT_EQ(complaint(options), "");
+  options.disparities = {0, 4096};
+  EXPECT_THAT(complaint(options), HasSubstr("4097 candidates"));
+  EXPECT_THAT(complaint(options), HasSubstr("at most 4096"));
+  options.disparities = {3, 2};
+  EXPECT_THAT(complaint(options), HasSubstr("MIN <= MAX"));
+  options.disparities = {std::numeric_limits<int>::min(), std::numeric_limits<int>::max()};
+  EXPECT_THAT(complaint(options), HasSubstr("within ±65535"));
+  options.disparities = {-65535, -65000};
+  EXPECT_EQ(complaint(options), "");
+
+  options.disparities = {0, 255};
+  options.disparities_y = {-8, 7};
+  EXPECT_EQ(complaint(options), "");
+  options.disparities_y = {-8, 8};
+  EXPECT_THAT(complaint(options), HasSubstr("disparities-y is -8:8 (4352 candidates"));
+  options.disparities_y = {1, 0};
+  EXPECT_THAT(complaint(options), HasSubstr("disparities-y is 1:0, expected MIN:MAX"));
+  options.disparities_y = {0, 0};
+  options.refinement.edge_snapping_px = 4;
+  EXPECT_THAT(complaint(options), HasSubstr("expected 0 with disparities-y"));
+}
+
+TEST(MatchOptions, CombinationsThatMakeNoSenseAreRefusedWithTheReason) {
+  MatchOptions options;
+  options.parameters.border = Border::kValid;
+  EXPECT_EQ(complaint(options), "");
+  options.parameters.aggregation = Aggregation::kNone;
+  EXPECT_EQ(complaint(options), "");
+  for (const Aggregation aggregation :
+       {Aggregation::kGaussian, Aggregation::kBoxCascade, Aggregation::kDiffusion,
+        Aggregation::kMembrane, Aggregation::kLocalStopping, Aggregation::kBayes}) {
+    options.parameters.aggregation = aggregation;
+    EXPECT_THAT(complaint(options), HasSubstr("only the aggregation box has windows"));
+  }
+  options = {};
+  options.method = MatchMethod::kLocalStopping;
+  options.parameters.cost = MatchCost::kGradient;
+  EXPECT_THAT(complaint(options), HasSubstr("expected certainty entropy"));
+  options.parameters.certainty = Certainty::kEntropy;
+  EXPECT_EQ(complaint(options), "");
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,62 @@
+// The methods against the plain transcription on a rendered scene, and on a photographed one where
+// there is one: textures, slanted surfaces and occlusions that random pairs lack.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "engine/generation/layered_scene.h"
+#include "engine/io/photograph_io.h"
+#include "tests/engine/method_cases.h"
+#include "tests/engine/oracle_comparison.h"
+
+namespace vantage {
+namespace {
+
+using testing::crop;
+using testing::expect_equals_oracle;
+using testing::method_cases;
+using testing::MethodCase;
+using testing::PhotographPair;
+using testing::tolerance_of;
+
+class PhotographMethods : public ::testing::TestWithParam<MethodCase> {
+ protected:
+  static void expect_equal(const PhotographPair& pair, DisparityRange range, const char* what) {
+    Execution execution({.threads = 2});
+    MatchOptions options = GetParam().options;
+    options.disparities = range;
+    expect_equals_oracle(pair, options, execution, tolerance_of(options.resolved()), what);
+  }
+};
+
+TEST_P(PhotographMethods, EqualTheOracleOnARenderedScene) {
+  static const PhotographPair pair = [] {
+    Execution execution({.threads = 2});
+    LayeredSceneOptions options;
+    options.width_px = 160;
+    options.height_px = 120;
+    options.far_disparity_px = 3;
+    options.near_disparity_px = 18;
+    options.noise_sigma = 1;
+    const LayeredScene scene(options, execution);
+    return PhotographPair{crop(scene.render({0, 0}, 0).image, 40, 30, 80, 60),
+                          crop(scene.render({1, 0}, 0).image, 40, 30, 80, 60)};
+  }();
+  expect_equal(pair, {0, 23}, "rendered");
+}
+
+TEST_P(PhotographMethods, EqualTheOracleOnAPhotographedScene) {
+  const std::filesystem::path folder = std::filesystem::path(VANTAGE_SHARED_DATA) / "cones_half";
+  if (!std::filesystem::is_directory(folder)) {
+    GTEST_SKIP() << "no photographs at " << folder;
+  }
+  static const PhotographPair pair{crop(read_photograph(folder / "im2.png"), 50, 60, 80, 60),
+                                   crop(read_photograph(folder / "im6.png"), 50, 60, 80, 60)};
+  expect_equal(pair, {4, 33}, "photographed");
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, PhotographMethods, ::testing::ValuesIn(method_cases({})),
+                         [](const auto& instance) { return instance.param.name; });
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,306 @@
+#include "tests/engine/plain_aggregation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace vantage::testing {
+namespace {
+
+constexpr std::array<std::pair<int, int>, 4> kNeighbours = {{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
+
+bool is_inside(const Volume& volume, int x, int y) {
+  return x >= 0 && x < volume.width && y >= 0 && y < volume.height;
+}
+
+/// Calls visit(x, y, i) for every cell.
+template <typename Visit>
+void for_each_cell(const Volume& volume, Visit visit) {
+  for (int y = 0; y < volume.height; ++y) {
+    for (int x = 0; x < volume.width; ++x) {
+      for (int i = 0; i < volume.count(); ++i) {
+        visit(x, y, i);
+      }
+    }
+  }
+}
+
+std::vector<double> column_of(const Volume& volume, int x, int y) {
+  std::vector<double> column;
+  for (int i = 0; i < volume.count(); ++i) {
+    column.push_back(volume.at(x, y, i));
+  }
+  return column;
+}
+
+double log_of_sum_of_exponentials(const std::vector<double>& exponents) {
+  const double most = *std::max_element(exponents.begin(), exponents.end());
+  double sum = 0;
+  for (const double exponent : exponents) {
+    sum += std::exp(exponent - most);
+  }
+  return most + std::log(sum);
+}
+
+/// (6.25), (6.36): p ∝ exp(−E) down each column.
+Volume probabilities_of(const Volume& energies) {
+  Volume result = Volume::like(energies);
+  for (int y = 0; y < energies.height; ++y) {
+    for (int x = 0; x < energies.width; ++x) {
+      std::vector<double> exponents = column_of(energies, x, y);
+      for (double& exponent : exponents) {
+        exponent = -exponent;
+      }
+      const double log_sum = log_of_sum_of_exponentials(exponents);
+      for (int i = 0; i < energies.count(); ++i) {
+        result.at(x, y, i) = std::exp(exponents[static_cast<std::size_t>(i)] - log_sum);
+      }
+    }
+  }
+  return result;
+}
+
+/// (6.33): pS = wP * p along d.
+Volume smoothed(const Volume& probabilities, const std::vector<double>& kernel) {
+  const int count = probabilities.count();
+  Volume result = Volume::like(probabilities);
+  for_each_cell(probabilities, [&](int x, int y, int i) {
+    for (int j = 0; j < count; ++j) {
+      result.at(x, y, i) +=
+          kernel[static_cast<std::size_t>(j - i + count - 1)] * probabilities.at(x, y, j);
+    }
+  });
+  return result;
+}
+
+}  // namespace
+
+Volume plain_box_mean(const Volume& costs, int window_px, Border border) {
+  const int radius = window_px / 2;
+  Volume result = Volume::like(costs);
+  for_each_cell(costs, [&](int x, int y, int i) {
+    double sum = 0;
+    int samples = 0;
+    for (int v = y - radius; v <= y + radius; ++v) {
+      for (int u = x - radius; u <= x + radius; ++u) {
+        if (is_inside(costs, u, v) && costs.has_partner(u, i)) {
+          sum += costs.at(u, v, i);
+          ++samples;
+        }
+      }
+    }
+    const bool is_candidate =
+        costs.has_partner(x, i) &&
+        (border == Border::kClip || samples == (2 * radius + 1) * (2 * radius + 1));
+    result.at(x, y, i) = is_candidate ? sum / samples : std::numeric_limits<double>::quiet_NaN();
+  });
+  return result;
+}
+
+Volume plain_convolution(const Volume& costs, const std::vector<double>& taps) {
+  const int radius = static_cast<int>(taps.size()) / 2;
+  const auto pass = [&](const Volume& input, int step_x, int step_y) {
+    Volume result = Volume::like(input);
+    for_each_cell(input, [&](int x, int y, int i) {
+      for (int k = -radius; k <= radius; ++k) {
+        if (is_inside(input, x + k * step_x, y + k * step_y)) {
+          result.at(x, y, i) += taps[static_cast<std::size_t>(k + radius)] *
+                                input.at(x + k * step_x, y + k * step_y, i);
+        }
+      }
+    });
+    return result;
+  };
+  return pass(pass(costs, 1, 0), 0, 1);
+}
+
+std::vector<double> gaussian_taps(double sigma_px) {
+  const int radius = static_cast<int>(std::ceil(4 * sigma_px));
+  std::vector<double> taps;
+  double sum = 0;
+  for (int k = -radius; k <= radius; ++k) {
+    taps.push_back(std::exp(-k * k / (2 * sigma_px * sigma_px)));
+    sum += taps.back();
+  }
+  for (double& tap : taps) {
+    tap /= sum;
+  }
+  return taps;
+}
+
+std::vector<double> box_cascade_taps(double sigma_px) {
+  // In units of 1/12 px², so that equal distances compare as equal.
+  const double wanted = 12 * sigma_px * sigma_px;
+  std::array<int, 4> best = {1, 1, 1, 1};
+  double best_distance = std::numeric_limits<double>::infinity();
+  double best_flatness = 0;
+  const int most = 2 * static_cast<int>(std::ceil(2 * sigma_px)) + 3;
+  for (int a = 1; a <= most; a += 2) {
+    for (int b = a; b <= most; b += 2) {
+      for (int c = b; c <= most; c += 2) {
+        for (int d = c; d <= most; d += 2) {
+          const double distance = std::abs(a * a + b * b + c * c + d * d - 4 - wanted);
+          double flatness = 0;
+          for (const int width : {a, b, c, d}) {
+            flatness += std::pow(width, 4);
+          }
+          if (distance < best_distance || (distance == best_distance && flatness < best_flatness)) {
+            best = {a, b, c, d};
+            best_distance = distance;
+            best_flatness = flatness;
+          }
+        }
+      }
+    }
+  }
+  std::vector<double> taps = {1};
+  for (const int width : best) {
+    std::vector<double> wider(taps.size() + static_cast<std::size_t>(width) - 1);
+    for (std::size_t i = 0; i < taps.size(); ++i) {
+      for (int k = 0; k < width; ++k) {
+        wider[i + static_cast<std::size_t>(k)] += taps[i] / width;
+      }
+    }
+    taps = std::move(wider);
+  }
+  return taps;
+}
+
+Volume plain_membrane(const Volume& first, double lambda, double beta, int iterations) {
+  Volume energies = first;
+  for (int n = 0; n < iterations; ++n) {
+    Volume next = energies;
+    for_each_cell(energies, [&](int x, int y, int i) {
+      const double here = energies.at(x, y, i);
+      double change = beta * (first.at(x, y, i) - here);
+      for (const auto& [dx, dy] : kNeighbours) {
+        if (is_inside(energies, x + dx, y + dy)) {
+          change += energies.at(x + dx, y + dy, i) - here;
+        }
+      }
+      next.at(x, y, i) += lambda * change;
+    });
+    energies = std::move(next);
+  }
+  return energies;
+}
+
+Volume plain_diffusion(const Volume& first, double lambda, int iterations) {
+  return plain_membrane(first, lambda, 0, iterations);
+}
+
+double plain_margin(const std::vector<double>& column) {
+  std::vector<double> sorted = column;
+  std::sort(sorted.begin(), sorted.end());
+  double sum = 0;
+  for (const double energy : sorted) {
+    sum += energy;
+  }
+  return sorted.size() < 2 || sum == 0 ? 0 : (sorted[1] - sorted[0]) / sum;
+}
+
+double plain_negative_entropy(const std::vector<double>& column, double scale) {
+  const double least = *std::min_element(column.begin(), column.end());
+  std::vector<double> exponents;
+  for (const double energy : column) {
+    exponents.push_back(-scale * (energy - least));
+  }
+  const double log_sum = log_of_sum_of_exponentials(exponents);
+  double sum = 0;
+  for (const double exponent : exponents) {
+    sum += std::exp(exponent - log_sum) * (exponent - log_sum);
+  }
+  return sum;
+}
+
+Volume plain_local_stopping(const Volume& first, double lambda, Certainty certainty, double scale,
+                            int iterations) {
+  const auto certainty_of = [&](const Volume& volume, int x, int y) {
+    return certainty == Certainty::kMargin ? plain_margin(column_of(volume, x, y))
+                                           : plain_negative_entropy(column_of(volume, x, y), scale);
+  };
+  Volume energies = first;
+  for (int n = 0; n < iterations; ++n) {
+    Volume next = plain_diffusion(energies, lambda, 1);
+    for (int y = 0; y < first.height; ++y) {
+      for (int x = 0; x < first.width; ++x) {
+        if (certainty_of(energies, x, y) > certainty_of(next, x, y)) {
+          for (int i = 0; i < first.count(); ++i) {
+            next.at(x, y, i) = energies.at(x, y, i);
+          }
+        }
+      }
+    }
+    energies = std::move(next);
+  }
+  return energies;
+}
+
+std::vector<double> prior_kernel(int count, double sigma_prior, double epsilon_prior) {
+  std::vector<double> kernel;
+  double sum = 0;
+  for (int k = -(count - 1); k <= count - 1; ++k) {
+    kernel.push_back((1 - epsilon_prior) * std::exp(-k * k / (2 * sigma_prior * sigma_prior)) +
+                     epsilon_prior);
+    sum += kernel.back();
+  }
+  for (double& weight : kernel) {
+    weight /= sum;
+  }
+  return kernel;
+}
+
+Volume plain_bayes(const Volume& energies, const MethodParameters& parameters) {
+  const std::vector<double> kernel =
+      prior_kernel(energies.count(), parameters.sigma_prior, parameters.epsilon_prior);
+  Volume probabilities = probabilities_of(energies);
+  for (int n = 0; n < parameters.iterations; ++n) {
+    Volume smooth_energies = smoothed(probabilities, kernel);
+    for (double& cell : smooth_energies.cells) {
+      cell = -std::log(cell);  // (6.34)
+    }
+    Volume next = energies;  // (6.37)
+    for_each_cell(energies, [&](int x, int y, int i) {
+      double sum = smooth_energies.at(x, y, i);
+      for (const auto& [dx, dy] : kNeighbours) {
+        if (is_inside(energies, x + dx, y + dy)) {
+          sum += smooth_energies.at(x + dx, y + dy, i);
+        }
+      }
+      next.at(x, y, i) += parameters.mu * sum;
+    });
+    probabilities = probabilities_of(next);
+  }
+  return probabilities;
+}
+
+Volume plain_bayes_products(const Volume& energies, const MethodParameters& parameters) {
+  const std::vector<double> kernel =
+      prior_kernel(energies.count(), parameters.sigma_prior, parameters.epsilon_prior);
+  const Volume first = probabilities_of(energies);
+  Volume probabilities = first;
+  for (int n = 0; n < parameters.iterations; ++n) {
+    const Volume smooth = smoothed(probabilities, kernel);
+    for (int y = 0; y < first.height; ++y) {
+      for (int x = 0; x < first.width; ++x) {
+        double sum = 0;
+        for (int i = 0; i < first.count(); ++i) {
+          double product = smooth.at(x, y, i);
+          for (const auto& [dx, dy] : kNeighbours) {
+            product *= is_inside(first, x + dx, y + dy) ? smooth.at(x + dx, y + dy, i) : 1;
+          }
+          probabilities.at(x, y, i) = first.at(x, y, i) * std::sqrt(product);
+          sum += probabilities.at(x, y, i);
+        }
+        for (int i = 0; i < first.count(); ++i) {
+          probabilities.at(x, y, i) /= sum;
+        }
+      }
+    }
+  }
+  return probabilities;
+}
+
+}  // namespace vantage::testing

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "tests/engine/plain_costs.h"
+
+namespace vantage::testing {
+
+/// Mean over the samples of a square window that lie inside both images (EQUATIONS §1; Fig. 1.11);
+/// NaN where a cell is no candidate: its partner, or with `valid` any of its window's, is outside.
+Volume plain_box_mean(const Volume& costs, int window_px, Border border);
+
+/// Convolution with a kernel of odd length in x and in y, cells outside the image being 0 (5.4).
+Volume plain_convolution(const Volume& costs, const std::vector<double>& taps);
+/// Sampled, normalised, radius ⌈4σ⌉.
+std::vector<double> gaussian_taps(double sigma_px);
+/// Wells: the convolution of four box filters of odd widths whose variances, (w² − 1)/12, add up to
+/// σ² as nearly as they can; of several choices the one nearest to a Gaussian, whose fourth
+/// cumulant is 0: the least Σ w⁴. σ = 2: 3, 3, 3, 5.
+std::vector<double> box_cascade_taps(double sigma_px);
+
+/// (6.7), `iterations` times.
+Volume plain_diffusion(const Volume& first, double lambda, int iterations);
+/// (6.9), `iterations` times.
+Volume plain_membrane(const Volume& first, double lambda, double beta, int iterations);
+
+/// How distinct the least cell of a column is, over all its cells: (6.13), or (6.15) with
+/// p ∝ exp(−scale · (E − Emin)). A single cell has the margin 0.
+double plain_margin(const std::vector<double>& column);
+double plain_negative_entropy(const std::vector<double>& column, double scale);
+
+/// §6.4: diffusion that restores the columns whose certainty it would reduce.
+Volume plain_local_stopping(const Volume& first, double lambda, Certainty certainty, double scale,
+                            int iterations);
+
+/// wP over the offsets −(D − 1) … D − 1, summing to 1 (6.33).
+std::vector<double> prior_kernel(int count, double sigma_prior, double epsilon_prior);
+
+/// Probabilities after Bayesian diffusion (6.25)–(6.37), in logarithms, for any μ.
+Volume plain_bayes(const Volume& energies, const MethodParameters& parameters);
+/// The same for μ = ½ as products (EQUATIONS §3).
+Volume plain_bayes_products(const Volume& energies, const MethodParameters& parameters);
+
+}  // namespace vantage::testing

@@ -1,0 +1,201 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "engine/image/photograph.h"
+#include "engine/matching/stage_cost.h"
+#include "tests/engine/plain_costs.h"
+
+namespace vantage::testing {
+
+/// A photograph the reference is compared with, and where its camera stands.
+struct PlainPartner {
+  const Photograph* photograph = nullptr;
+  double ratio = 1;
+  int disparity_y_px = 0;
+};
+
+/// What stage_cost.h says a cell holds, in double, cell by cell, for any number of partners
+/// anywhere.
+class PlainCostCells {
+ public:
+  PlainCostCells(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
+                 const Photograph& reference, const std::vector<PlainPartner>& partners,
+                 CellMeaning meaning)
+      : parameters_(parameters),
+        geometry_(geometry),
+        meaning_(meaning),
+        reference_(channels_of(reference)),
+        partners_(partners) {
+    for (const PlainPartner& partner : partners) {
+      partner_channels_.push_back(channels_of(*partner.photograph));
+    }
+  }
+
+  /// Candidates of one column.
+  [[nodiscard]] std::vector<double> column(int x, int y) const {
+    const bool is_energy = meaning_ == CellMeaning::kEnergy;
+    std::vector<double> cells(static_cast<std::size_t>(geometry_.count), is_energy ? 0 : 1);
+    for (std::size_t p = 0; p < partners_.size(); ++p) {
+      const std::vector<double> of_partner = column(p, x, y);
+      for (std::size_t i = 0; i < cells.size(); ++i) {
+        cells[i] = is_energy ? cells[i] + of_partner[i] : cells[i] * of_partner[i];
+      }
+    }
+    return cells;
+  }
+
+ private:
+  struct Channel {
+    Plane level;
+    Gradient gradient;
+  };
+
+  [[nodiscard]] std::vector<Channel> channels_of(const Photograph& photograph) const {
+    std::vector<Channel> channels;
+    for (const Plane& plane : planes_of(photograph, parameters_.colour)) {
+      channels.push_back({plane, {}});
+      if (parameters_.cost == MatchCost::kGradient) {
+        channels.back().gradient = gradient_of(plane, parameters_.gradient, parameters_.prefilter);
+      }
+    }
+    return channels;
+  }
+
+  [[nodiscard]] std::vector<double> column(std::size_t p, int x, int y) const {
+    const PlainPartner& partner = partners_[p];
+    const bool is_energy = meaning_ == CellMeaning::kEnergy;
+    const double epsilon = parameters_.epsilon_measurement;
+    const int partner_y = y + geometry_.direction * partner.disparity_y_px;
+    const int height = reference_.front().level.height;
+    std::vector<double> energies;
+    std::vector<bool> is_inside;
+    double most_evidence = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i < geometry_.count; ++i) {
+      // Products with ratios that floats cannot hold are meant exactly.
+      const double shift = std::round((geometry_.disparity_min + i) * partner.ratio * 1e9) / 1e9;
+      const double at = x + geometry_.direction * shift;
+      is_inside.push_back(at >= 0 && at <= geometry_.width - 1 && partner_y >= 0 &&
+                          partner_y < height);
+      energies.push_back(mean_cost(p, x, y, std::clamp<double>(at, 0, geometry_.width - 1),
+                                   std::clamp(partner_y, 0, height - 1)));
+      if (is_inside.back()) {
+        most_evidence = std::max(most_evidence, -energies.back());
+      }
+    }
+    for (std::size_t i = 0; i < energies.size(); ++i) {
+      double& cell = energies[i];
+      if (!is_inside[i]) {
+        cell = !is_energy                                     ? epsilon
+               : parameters_.cost == MatchCost::kGradient     ? 0
+               : parameters_.cost == MatchCost::kContaminated ? -std::log(epsilon)
+                                                              : cell;
+      } else if (!is_energy) {
+        switch (parameters_.cost) {
+          case MatchCost::kSquared:
+          case MatchCost::kContaminated:
+            cell = measurement(cell);
+            break;
+          case MatchCost::kGradient:
+            cell =
+                (1 - epsilon) * std::exp((-cell - most_evidence) / parameters_.sigma_measurement) +
+                epsilon;
+            break;
+          default:
+            cell = measurement(cell * cell);
+        }
+      }
+    }
+    return energies;
+  }
+
+  /// Of the channels; of likelihoods of grey levels the mean of the squares.
+  [[nodiscard]] double mean_cost(std::size_t p, int x, int y, double at, int partner_y) const {
+    const std::size_t channels = std::max(reference_.size(), partner_channels_[p].size());
+    double sum = 0;
+    for (std::size_t c = 0; c < channels; ++c) {
+      sum +=
+          cost(reference_[std::min(c, reference_.size() - 1)], x, y,
+               partner_channels_[p][std::min(c, partner_channels_[p].size() - 1)], at, partner_y);
+    }
+    return sum / static_cast<double>(channels);
+  }
+
+  [[nodiscard]] double cost(const Channel& a, int x, int y, const Channel& b, double at,
+                            int partner_y) const {
+    const int whole = static_cast<int>(std::floor(at));
+    const double fraction = at - whole;
+    const double level =
+        (1 - fraction) * b.level.at(whole, partner_y) + fraction * b.level.at(whole + 1, partner_y);
+    const double difference = a.level.at(x, y) - level;
+    switch (parameters_.cost) {
+      case MatchCost::kSquared:
+        return difference * difference;
+      case MatchCost::kAbsolute:
+        return std::abs(difference);
+      case MatchCost::kTruncated:
+        return std::min(std::abs(difference), parameters_.truncation);
+      case MatchCost::kContaminated:
+        return meaning_ == CellMeaning::kLikelihood
+                   ? difference * difference
+                   : -std::log(measurement(difference * difference));
+      case MatchCost::kBirchfieldTomasi:
+        return std::min(distance(a.level.at(x, y), b.level, whole, partner_y),
+                        distance(level, a.level, x, y));
+      case MatchCost::kGradient: {
+        const auto length = [&](double u, double v) { return length_of(u, v, parameters_.norm); };
+        const double ax = a.gradient.x.at(x, y);
+        const double ay = a.gradient.y.at(x, y);
+        const double bx = b.gradient.x.at(whole, partner_y);
+        const double by = b.gradient.y.at(whole, partner_y);
+        return parameters_.alpha * length(ax - bx, ay - by) - (length(ax, ay) + length(bx, by)) / 2;
+      }
+      case MatchCost::kCensus: {
+        int different = 0;
+        for (int v = -3; v <= 3; ++v) {
+          for (int u = -4; u <= 4; ++u) {
+            different +=
+                (a.level.at(x + u, y + v) < a.level.at(x, y)) !=
+                        (b.level.at(whole + u, partner_y + v) < b.level.at(whole, partner_y))
+                    ? 1
+                    : 0;
+          }
+        }
+        return different;
+      }
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+
+  /// How far `value` is from what `plane` takes within half a pixel of (x, y).
+  [[nodiscard]] static double distance(double value, const Plane& plane, int x, int y) {
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (const double u : {-.5, 0., .5}) {
+      const int neighbour = u < 0 ? x - 1 : u > 0 ? x + 1 : x;
+      const double at = (plane.at(x, y) + plane.at(neighbour, y)) / 2;
+      least = std::min(least, at);
+      most = std::max(most, at);
+    }
+    return std::max({0.0, value - most, least - value});
+  }
+
+  [[nodiscard]] double measurement(double squared_residual) const {
+    const double sigma = parameters_.sigma_measurement;
+    const double epsilon = parameters_.epsilon_measurement;
+    return (1 - epsilon) * std::exp(-squared_residual / (2 * sigma * sigma)) + epsilon;
+  }
+
+  MethodParameters parameters_;
+  kernels::CandidateGeometry geometry_;
+  CellMeaning meaning_;
+  std::vector<Channel> reference_;
+  std::vector<PlainPartner> partners_;
+  std::vector<std::vector<Channel>> partner_channels_;
+};
+
+}  // namespace vantage::testing

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <vector>
+
+#include "engine/image/photograph.h"
+#include "engine/matching/match_options.h"
+
+namespace vantage::testing {
+
+/// A whole disparity space (6.1) in double precision: the oracle of all matching methods. Nothing
+/// of the engine's kernels, layouts or tricks is used to make one.
+struct Volume {
+  int width = 0;
+  int height = 0;
+  DisparityRange range;
+  int direction = -1;  ///< the partner of x is x + direction · d
+  std::vector<double> cells;
+
+  Volume() = default;
+  /// All cells are `value`.
+  Volume(int width_px, int height_px, DisparityRange disparities, Reference reference,
+         double value = 0);
+  /// The shape of `other` and nothing else of it.
+  static Volume like(const Volume& other);
+
+  [[nodiscard]] int count() const { return range.count(); }
+  [[nodiscard]] double& at(int x, int y, int i) { return cells[index(x, y, i)]; }
+  [[nodiscard]] double at(int x, int y, int i) const { return cells[index(x, y, i)]; }
+  [[nodiscard]] int partner(int x, int i) const { return x + direction * (range.min + i); }
+  [[nodiscard]] bool has_partner(int x, int i) const {
+    return partner(x, i) >= 0 && partner(x, i) < width;
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(int x, int y, int i) const {
+    const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+    return (row + static_cast<std::size_t>(x)) * static_cast<std::size_t>(count()) +
+           static_cast<std::size_t>(i);
+  }
+};
+
+/// One channel of a photograph in grey levels.
+struct Plane {
+  int width = 0;
+  int height = 0;
+  std::vector<double> values;
+
+  /// Coordinates outside replicate the border.
+  [[nodiscard]] double at(int x, int y) const;
+};
+
+/// What costs compare: luma (EQUATIONS §0), or each colour channel.
+std::vector<Plane> planes_of(const Photograph& photograph, ColourUse colour);
+
+/// Gradient of an image (5.9), by correlation with the filters of EQUATIONS §2; each filtering step
+/// replicates the border of what it filters.
+struct Gradient {
+  Plane x;
+  Plane y;
+};
+Gradient gradient_of(const Plane& plane, GradientFilter filter, bool prefilter);
+
+/// |v| by `norm` (5.15).
+double length_of(double x, double y, GradientNorm norm);
+
+/// E0 of (6.1) with the cost `parameters.cost`; at cells whose partner is outside the cost of the
+/// clamped coordinate, 0 for evidence, −log ε for the contaminated Gaussian.
+Volume plain_costs(const Photograph& reference, const Photograph& other, Reference reference_is,
+                   DisparityRange range, const MethodParameters& parameters);
+
+/// E0 of Bayesian diffusion (6.26): −log of the likelihood that stage_cost.h states for each cost.
+/// Of three channels r² is the mean of the squared differences, for the contaminated Gaussian too.
+Volume plain_measurement_energies(const Photograph& reference, const Photograph& other,
+                                  Reference reference_is, DisparityRange range,
+                                  const MethodParameters& parameters);
+
+}  // namespace vantage::testing

@@ -1,0 +1,126 @@
+#include "tests/engine/plain_matching.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vantage::testing {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+double entropy_scale(const MethodParameters& parameters) {
+  return 1 / (2 * parameters.sigma_measurement * parameters.sigma_measurement);
+}
+
+/// (5.12), max p, (6.13) or (6.15); over the candidates, whose energies are `candidates`.
+double confidence_of(const std::vector<double>& candidates, double least,
+                     const MethodParameters& parameters) {
+  if (parameters.aggregation == Aggregation::kBayes) {
+    return std::exp(-least);
+  }
+  if (parameters.aggregation == Aggregation::kLocalStopping) {
+    return parameters.certainty == Certainty::kMargin
+               ? plain_margin(candidates)
+               : plain_negative_entropy(candidates, entropy_scale(parameters));
+  }
+  return is_evidence(parameters) ? -least : plain_margin(candidates);
+}
+
+PlainChoice choose(const Volume& energies, int x, int y, const MethodParameters& parameters) {
+  const auto energy_at = [&](int i) {
+    return i >= 0 && i < energies.count() && energies.has_partner(x, i) ? energies.at(x, y, i)
+                                                                        : kNan;
+  };
+  PlainChoice choice{kNan, kNan, kNan, kNan, std::numeric_limits<double>::infinity(), kNan};
+  std::vector<double> candidates;
+  int best = -1;
+  for (int i = 0; i < energies.count(); ++i) {
+    const double energy = energy_at(i);
+    if (std::isnan(energy)) {
+      continue;
+    }
+    candidates.push_back(energy);
+    if (best < 0 || energy < choice.energy) {
+      choice.runner_up = best < 0 ? choice.runner_up : choice.energy;
+      choice.energy = energy;
+      best = i;
+    } else {
+      choice.runner_up = std::min(choice.runner_up, energy);
+    }
+  }
+  if (best < 0) {
+    choice.runner_up = kNan;
+    return choice;
+  }
+  choice.winner = energies.range.min + best;
+  choice.disparity = choice.winner;
+  if (parameters.subpixel == Subpixel::kParabola) {
+    const double below = energy_at(best - 1);
+    const double above = energy_at(best + 1);
+    choice.curvature = below - 2 * choice.energy + above;
+    if (choice.curvature > 0) {  // false when a neighbour is no candidate
+      choice.disparity += (below - above) / (2 * choice.curvature);
+    }
+  }
+  choice.confidence = confidence_of(candidates, choice.energy, parameters);
+  return choice;
+}
+
+}  // namespace
+
+Volume plain_aggregate(const Photograph& reference, const Photograph& other, Reference reference_is,
+                       DisparityRange range, const MethodParameters& parameters) {
+  if (parameters.aggregation == Aggregation::kBayes) {
+    Volume cells = plain_bayes(
+        plain_measurement_energies(reference, other, reference_is, range, parameters), parameters);
+    for (double& cell : cells.cells) {
+      cell = -std::log(cell);
+    }
+    return cells;
+  }
+  const Volume costs = plain_costs(reference, other, reference_is, range, parameters);
+  switch (parameters.aggregation) {
+    case Aggregation::kBox:
+      return plain_box_mean(costs, parameters.window_px, parameters.border);
+    case Aggregation::kGaussian:
+      return plain_convolution(costs, gaussian_taps(parameters.aggregation_sigma_px));
+    case Aggregation::kBoxCascade:
+      return plain_convolution(costs, box_cascade_taps(parameters.aggregation_sigma_px));
+    case Aggregation::kDiffusion:
+      return plain_diffusion(costs, parameters.lambda, parameters.iterations);
+    case Aggregation::kMembrane:
+      return plain_membrane(costs, parameters.lambda, parameters.beta, parameters.iterations);
+    case Aggregation::kLocalStopping:
+      return plain_local_stopping(costs, parameters.lambda, parameters.certainty,
+                                  entropy_scale(parameters), parameters.iterations);
+    case Aggregation::kNone:
+    case Aggregation::kBayes:
+      break;
+  }
+  return costs;
+}
+
+PlainMap plain_select(const Volume& energies, const MethodParameters& parameters) {
+  PlainMap map{energies.width, energies.height, {}};
+  for (int y = 0; y < energies.height; ++y) {
+    for (int x = 0; x < energies.width; ++x) {
+      map.choices.push_back(choose(energies, x, y, parameters));
+    }
+  }
+  return map;
+}
+
+DisparityRange possible_range(DisparityRange range, int width_px) {
+  return {std::max(range.min, 1 - width_px), std::min(range.max, width_px - 1)};
+}
+
+PlainMap plain_match(const Photograph& left, const Photograph& right, Reference reference,
+                     DisparityRange range, const MethodParameters& parameters) {
+  const bool is_left = reference == Reference::kLeft;
+  return plain_select(plain_aggregate(is_left ? left : right, is_left ? right : left, reference,
+                                      possible_range(range, left.width()), parameters),
+                      parameters);
+}
+
+}  // namespace vantage::testing

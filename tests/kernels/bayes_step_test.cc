@@ -1,0 +1,112 @@
+#include "kernels/bayes_step/bayes_step.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "kernels/candidates.h"
+#include "tests/kernels/kernel_test_utils.h"
+#include "tests/kernels/star_rows.h"
+
+namespace vantage::kernels {
+namespace {
+
+using Kernel = void (*)(const BayesRow&);
+
+struct Shape {
+  int columns;
+  int count;
+};
+constexpr Shape kShapes[] = {{1, 1},  {2, 3},  {3, 16},  {5, 17},  {1, 33}, {4, 64},
+                             {3, 80}, {2, 96}, {2, 113}, {2, 128}, {1, 300}};
+
+class BayesStep : public EveryTarget {
+ protected:
+  /// Compares a kernel with its reference on random rows; `low`, `high` bound the cells.
+  static void compare(Kernel kernel, Kernel reference, float low, float high, float neutral,
+                      double bound) {
+    const std::vector<float> taps{0.99F, 0.3F, 0.04F};
+    unsigned seed = 1;
+    for (const Shape shape : kShapes) {
+      for (int radius = 0; radius <= 2; ++radius) {
+        for (const BayesState state :
+             {BayesState::kSmoothed, BayesState::kLogSmoothed, BayesState::kProbability}) {
+          const int lanes = CandidateGeometry{1, 0, shape.count, -1}.lanes();
+          StarRows rows(shape.columns, lanes, lanes, low, high, ++seed);
+          for (int i = 0; i < shape.columns * lanes; ++i) {
+            const bool is_candidate = i % lanes < shape.count;
+            rows.source()[i] = is_candidate ? 0.1F + 0.01F * static_cast<float>(i % 7) : 0.0F;
+          }
+          if (seed % 2 == 0) {
+            rows.remove_up(neutral);
+          }
+          BayesRow row;
+          row.star = rows.star();
+          row.prior = {taps.data(), radius, 0.01F};
+          row.state = state;
+          row.mu = 0.7F;
+          row.count = shape.count;
+          Image<float> work(bayes_work_floats(lanes, radius), 1);
+          work.fill(-7);  // any contents
+          row.work = work.row(0);
+          Image<float> expected(lanes * shape.columns, 1);
+          Image<float> actual(lanes * shape.columns, 1);
+          row.output = expected.row(0);
+          reference(row);
+          row.output = actual.row(0);
+          kernel(row);
+          for (int i = 0; i < expected.width(); ++i) {
+            ASSERT_NEAR(actual.at(i, 0), expected.at(i, 0),
+                        bound * (1 + std::abs(expected.at(i, 0))))
+                << shape.columns << " columns of " << shape.count << ", radius " << radius
+                << ", state " << static_cast<int>(state) << ", cell " << i;
+          }
+        }
+      }
+    }
+  }
+};
+
+TEST_P(BayesStep, StartEqualsReference) {
+  compare(bayes_start_row, bayes_start_row_ref, 0.01F, 1, 1, 1e-6);
+}
+
+TEST_P(BayesStep, HalfEqualsReference) {
+  compare(bayes_half_row, bayes_half_row_ref, 0.01F, 1, 1, 2e-6);
+}
+
+TEST_P(BayesStep, GeneralEqualsReference) {
+  compare(bayes_general_row, bayes_general_row_ref, -12, 0, 0, 5e-6);
+}
+
+TEST_P(BayesStep, GeneralSurvivesSumsFarBelowTheRangeOfExponentials) {
+  compare(bayes_general_row, bayes_general_row_ref, -300, -290, 0, 5e-4);
+}
+
+TEST_P(BayesStep, ProbabilitiesSumToOne) {
+  const int lanes = 64;
+  StarRows rows(3, lanes, lanes, 0.01F, 1, 5);
+  BayesRow row;
+  row.star = rows.star();
+  const float tap = 0.99F;
+  row.prior = {&tap, 0, 0.01F};
+  row.state = BayesState::kProbability;
+  row.count = 64;
+  Image<float> work(bayes_work_floats(lanes, 0), 1);
+  row.work = work.row(0);
+  Image<float> output(lanes * 3, 1);
+  row.output = output.row(0);
+  bayes_half_row(row);
+  for (int x = 0; x < 3; ++x) {
+    double sum = 0;
+    for (int i = 0; i < lanes; ++i) {
+      sum += output.at(x * lanes + i, 0);
+    }
+    EXPECT_NEAR(sum, 1, 1e-6);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Targets, BayesStep, testing::ValuesIn(each_target()), target_test_name);
+
+}  // namespace
+}  // namespace vantage::kernels

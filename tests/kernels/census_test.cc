@@ -1,0 +1,105 @@
+#include "kernels/census/census.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "tests/kernels/feature_rows.h"
+#include "tests/kernels/kernel_test_utils.h"
+
+namespace vantage::kernels {
+namespace {
+
+class Census : public EveryTarget {};
+VANTAGE_ON_EVERY_TARGET(Census);
+
+/// Seven rows of few grey levels, so that many neighbours are equal.
+struct Window {
+  explicit Window(int width) {
+    std::mt19937 random(static_cast<unsigned>(width));
+    const auto size = static_cast<std::size_t>((width + 15) / 16 * 16) + 2 * kCensusRadiusX;
+    for (std::size_t v = 0; v < rows.size(); ++v) {
+      memory.emplace_back(size, random() % 5);
+      for (std::size_t k = 0; k < size; ++k) {
+        memory.back()[k] = static_cast<float>(random() % 4) / 4;
+      }
+      rows[v] = memory.back().data() + kCensusRadiusX;
+    }
+  }
+  std::vector<UnalignedRow<float>> memory;
+  CensusRows rows{};
+};
+
+TEST_P(Census, Codes) {
+  for (const int width : {1, 2, 15, 16, 17, 40}) {
+    const Window window(width);
+    const auto padded = static_cast<std::size_t>((width + 15) / 16 * 16);
+    GuardedRow<std::uint32_t> first(padded, 1, 0xABCDU);
+    GuardedRow<std::uint32_t> second(padded, 2, 0xABCDU);
+    census_code_row(window.rows, width, first.data(), second.data());
+    std::vector<std::uint32_t> first_ref(padded);
+    std::vector<std::uint32_t> second_ref(padded);
+    census_code_row_ref(window.rows, width, first_ref.data(), second_ref.data());
+    for (int x = 0; x < width; ++x) {
+      const auto k = static_cast<std::size_t>(x);
+      ASSERT_EQ(first.values()[k], first_ref[k]);
+      ASSERT_EQ(second.values()[k], second_ref[k]);
+      // Bit by bit, in reading order.
+      int bit = 0;
+      for (int v = 0; v < 7; ++v) {
+        for (int u = -4; u <= 4; ++u) {
+          if (v == 3 && u == 0) {
+            continue;
+          }
+          const float* row = window.rows[static_cast<std::size_t>(v)];
+          const std::uint32_t half = bit < 31 ? first_ref[k] : second_ref[k];
+          ASSERT_EQ((half >> (30 - bit % 31)) & 1U, row[x + u] < window.rows[3][x] ? 1U : 0U)
+              << "row " << v << ", column " << u;
+          ++bit;
+        }
+      }
+      ASSERT_EQ(bit, 62);
+    }
+    EXPECT_TRUE(first.intact());
+    EXPECT_TRUE(second.intact());
+  }
+}
+
+TEST_P(Census, HammingDistance) {
+  const auto draw = [](std::mt19937& random) -> std::uint32_t {
+    switch (random() % 6) {
+      case 0:
+        return 0;
+      case 1:
+        return 0xFFFFFFFFU;
+      default:
+        return static_cast<std::uint32_t>(random());
+    }
+  };
+  for_each_feature_rows<std::uint32_t, 2>(draw, [](const CensusPairs& row) {
+    const auto cells = equal_cells(
+        cell_count(row), [&](float* out) { hamming_row(row, out); },
+        [&](float* out) { hamming_row_ref(row, out); });
+    for (int j = 0; j < row.columns; ++j) {
+      for (int i = 0; i < row.lanes; ++i) {
+        int different = 0;
+        for (int c = 0; c < row.channels; ++c) {
+          const auto& [a, b] = row.channel[static_cast<std::size_t>(c)];
+          for (std::size_t p = 0; p < 2; ++p) {
+            for (int bit = 0; bit < 32; ++bit) {
+              different += static_cast<int>(((a[p][j] >> bit) & 1U) ^
+                                            ((b[p][j * row.partner_step + i] >> bit) & 1U));
+            }
+          }
+        }
+        ASSERT_FLOAT_EQ(cells[static_cast<std::size_t>(j * row.lanes + i)],
+                        static_cast<float>(different) / static_cast<float>(row.channels));
+      }
+    }
+  });
+}
+
+}  // namespace
+}  // namespace vantage::kernels

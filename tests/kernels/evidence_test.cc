@@ -1,0 +1,145 @@
+#include "kernels/evidence/evidence.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "tests/kernels/feature_rows.h"
+#include "tests/kernels/kernel_test_utils.h"
+
+namespace vantage::kernels {
+namespace {
+
+class Evidence : public EveryTarget {};
+VANTAGE_ON_EVERY_TARGET(Evidence);
+
+float draw_component(std::mt19937& random) {
+  return random() % 6 == 0 ? 0 : static_cast<float>(random_int(random, -2550, 2550)) / 10;
+}
+
+double norm(double x, double y, bool octagon) {
+  return octagon ? .3978247 * (std::abs(x) + std::abs(y)) +
+                       .5626091 * std::max(std::abs(x), std::abs(y))
+                 : std::hypot(x, y);
+}
+
+TEST_P(Evidence, NegatedEvidence) {
+  for (const bool octagon : {false, true}) {
+    for_each_feature_rows<float, 3>(draw_component, [&](const GradientPairs& row) {
+      const auto cells = equal_cells(
+          cell_count(row), [&](float* out) { negated_evidence_row(row, octagon, out); },
+          [&](float* out) { negated_evidence_row_ref(row, octagon, out); });
+      for (int j = 0; j < row.columns; ++j) {
+        for (int i = 0; i < row.lanes; ++i) {
+          const int k = j * row.partner_step + i;
+          double sum = 0;
+          for (int c = 0; c < row.channels; ++c) {
+            const auto& [a, b] = row.channel[static_cast<std::size_t>(c)];
+            sum += norm(double{a[0][j]} - b[0][k], double{a[1][j]} - b[1][k], octagon) -
+                   (double{a[2][j]} + b[2][k]);
+          }
+          ASSERT_NEAR(cells[static_cast<std::size_t>(j * row.lanes + i)], sum / row.channels, 2e-4);
+        }
+      }
+    });
+  }
+}
+
+TEST_P(Evidence, Planes) {
+  std::mt19937 random(2);
+  for (const bool octagon : {false, true}) {
+    for (const int width : {1, 3, 16, 17, 45}) {
+      const auto padded = static_cast<std::size_t>((width + 15) / 16 * 16);
+      std::vector<float> gx(padded);
+      std::vector<float> gy(padded);
+      std::generate(gx.begin(), gx.end(), [&] { return draw_component(random); });
+      std::generate(gy.begin(), gy.end(), [&] { return draw_component(random); });
+      std::vector<float> half_norm(padded);
+      std::vector<float> x = gx;
+      std::vector<float> y = gy;
+      evidence_planes_row({x.data(), y.data(), half_norm.data(), width}, 1.5F, octagon);
+      std::vector<float> ref_half_norm(padded);
+      std::vector<float> ref_x = gx;
+      std::vector<float> ref_y = gy;
+      evidence_planes_row_ref({ref_x.data(), ref_y.data(), ref_half_norm.data(), width}, 1.5F,
+                              octagon);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(width); ++k) {
+        ASSERT_EQ(x[k], ref_x[k]);
+        ASSERT_EQ(y[k], ref_y[k]);
+        ASSERT_EQ(half_norm[k], ref_half_norm[k]);
+        ASSERT_FLOAT_EQ(x[k], 1.5F * gx[k]);
+        ASSERT_FLOAT_EQ(y[k], 1.5F * gy[k]);
+        ASSERT_NEAR(half_norm[k], norm(gx[k], gy[k], octagon) / 2, 1e-4);
+      }
+    }
+  }
+}
+
+// The octagon approximates the L2 norm within 3.96 % (5.17).
+TEST_P(Evidence, OctagonIsNearL2) {
+  double worst = 0;
+  for (int step = 0; step < 1600; ++step) {
+    const double angle = step * 2 * M_PI / 1600;
+    std::vector<float> x(16, static_cast<float>(100 * std::cos(angle)));
+    std::vector<float> y(16, static_cast<float>(100 * std::sin(angle)));
+    std::vector<float> half_norm(16);
+    evidence_planes_row({x.data(), y.data(), half_norm.data(), 1}, 1, true);
+    worst = std::max(worst, std::abs(half_norm[0] / 50.0 - 1));
+  }
+  EXPECT_LE(worst, .0396);
+  EXPECT_GE(worst, .039);
+}
+
+TEST_P(Evidence, Likelihood) {
+  std::mt19937 random(4);
+  const auto draw = [&] { return static_cast<float>(random_int(random, -3000, 3000)) / 10; };
+  for (const int direction : {-1, 1}) {
+    for (const int count : {1, 5, 16, 17, 64, 75}) {
+      for (const int least_disparity : {-40, -3, 0, 30}) {
+        for (const int width : {1, 13, 50}) {
+          const CandidateGeometry geometry{width, least_disparity, count, direction};
+          const int first = random_int(random, 0, width - 1);
+          const EvidenceRow row{geometry, first, width - first};
+          const auto lanes = static_cast<std::size_t>(geometry.lanes());
+          std::vector<float> costs(static_cast<std::size_t>(row.columns) * lanes);
+          std::generate(costs.begin(), costs.end(), draw);
+          const float sigma = random() % 2 == 0 ? 5.0F : 1e-30F;
+          const auto run = [&](auto kernel) {
+            return [&, kernel](float* out) {
+              std::copy(costs.begin(), costs.end(), out);
+              kernel(row, sigma, .1F, out);
+            };
+          };
+          const auto cells = equal_cells(costs.size(), run(likelihood_of_evidence),
+                                         run(likelihood_of_evidence_ref));
+          for (int j = 0; j < row.columns; ++j) {
+            const float* cost = costs.data() + static_cast<std::size_t>(j) * lanes;
+            const auto inside = [&](int i) {
+              const int partner = first + j + direction * (least_disparity + i);
+              return i < count && partner >= 0 && partner < width;
+            };
+            double most = -std::numeric_limits<double>::infinity();
+            for (int i = 0; i < count; ++i) {
+              most = inside(i) ? std::max<double>(most, -cost[i]) : most;
+            }
+            for (int i = 0; i < geometry.lanes(); ++i) {
+              const double expected = inside(i)   ? .9 * std::exp((-cost[i] - most) / sigma) + .1
+                                      : i < count ? .1
+                                                  : 0;
+              ASSERT_NEAR(cells[static_cast<std::size_t>(j) * lanes + static_cast<std::size_t>(i)],
+                          expected, 1e-6)
+                  << "column " << first + j << ", lane " << i;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vantage::kernels

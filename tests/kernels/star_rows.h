@@ -1,0 +1,54 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+#include "engine/image/image.h"
+#include "kernels/star_row.h"
+
+namespace vantage::kernels {
+
+/// Three rows of random cells with a column beyond either end, and a source row, for tests of
+/// iterations: 64-byte aligned as kernels expect them.
+class StarRows {
+ public:
+  StarRows(int columns, int lanes, int pitch, float low, float high, unsigned seed)
+      : cells_(pitch * (columns + 2), 3), source_(lanes * columns, 1), neutral_(lanes, 1) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> value(low, high);
+    for (int y = 0; y < 3; ++y) {
+      std::generate_n(cells_.row(y), cells_.width(), [&] { return value(random); });
+    }
+    std::generate_n(source_.row(0), source_.width(), [&] { return value(random); });
+    star_.columns = columns;
+    star_.lanes = lanes;
+    star_.pitch = star_.up_pitch = star_.down_pitch = pitch;
+    star_.centre = cells_.row(1) + pitch;
+    star_.up = cells_.row(0) + pitch;
+    star_.down = cells_.row(2) + pitch;
+    star_.left_of_first = star_.centre - pitch;
+    star_.right_of_last = star_.centre + static_cast<std::ptrdiff_t>(columns) * pitch;
+    star_.source = source_.row(0);
+  }
+
+  [[nodiscard]] const StarRow& star() const { return star_; }
+  [[nodiscard]] float* source() { return source_.row(0); }
+  [[nodiscard]] float* centre(int column) { return cells_.row(1) + star_.pitch * (column + 1); }
+
+  /// The row above is missing: a column of `neutral` stands for it.
+  void remove_up(float neutral) {
+    neutral_.fill(neutral);
+    star_.up = neutral_.row(0);
+    star_.up_pitch = 0;
+  }
+
+ private:
+  Image<float> cells_;
+  Image<float> source_;
+  Image<float> neutral_;
+  StarRow star_;
+};
+
+}  // namespace vantage::kernels
