@@ -107,8 +107,8 @@ void check_several(const MatchJob& job) {
   const std::size_t others = 1 + job.more.size();
   if (job.baselines.size() != others) {
     throw UsageError(
-        fmt::format("--baselines has {} numbers, expected {}: one for each image but the first",
-                    job.baselines.size(), others));
+        fmt::format("--baselines has {} number{}, expected {}: one for each image but the first",
+                    job.baselines.size(), job.baselines.size() == 1 ? "" : "s", others));
   }
   if (job.match.reference == Reference::kRight) {
     throw UsageError(

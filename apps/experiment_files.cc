@@ -111,7 +111,7 @@ LinePlot iteration_plot(const Statistic& statistic, const std::vector<Experiment
 Drawing contact_sheet(const std::vector<ExperimentRun>& runs) {
   constexpr double kMapSide = 150;
   constexpr double kGap = 8;
-  constexpr double kLabelWidth = 150;
+  constexpr double kLabelWidth = 175;
   constexpr double kTop = 60;
   constexpr auto kColumns = kExperimentIterations.size();
   constexpr auto kRows = kIterationMethods.size();
@@ -205,7 +205,7 @@ double write_support_files(const std::filesystem::path& folder) {
       responses.push_back(membrane_impulse_response(beta, kLambda, iterations, kRadius));
     }
     for (std::size_t i = 0; i < responses.size(); ++i) {
-      curves.emplace_back(fmt::format("{} iterations", kIterations[i]), &responses[i]);
+      curves.emplace_back(fmt::format("n = {}", kIterations[i]), &responses[i]);
     }
     curves.emplace_back("inverse Fourier transform of (6.12)", &limit);
     for (const auto& [name, support] : curves) {
@@ -229,9 +229,10 @@ double write_support_files(const std::filesystem::path& folder) {
     difference = std::max(difference, largest_difference(limit, responses.back()));
   }
   write_text_file(folder / "support.csv", table);
-  write_drawing(
-      folder / "support.svg",
-      draw_line_plots(fmt::format("Support of the membrane, lambda = {}", kLambda), plots, 2));
+  write_drawing(folder / "support.svg",
+                draw_line_plots(
+                    fmt::format("Support of the membrane after n iterations, lambda = {}", kLambda),
+                    plots, 2));
   const SupportFunction shape = membrane_support(kFigureBeta, kShownRadius);
   HeatMap map{.title = "inverse Fourier transform of (6.12)",
               .x_title = "dx, pixels",

@@ -56,13 +56,18 @@ CLI::Option* add_option(CLI::App& app, const Setting& setting) {
   return option;
 }
 
+[[noreturn]] void reject_option(const std::string& argument,
+                                const std::vector<std::string>& known) {
+  const std::string name = argument.substr(0, argument.find('='));
+  throw UsageError(fmt::format("unknown option '{}', the nearest known one is '{}'", name,
+                               nearest_name(name, known)));
+}
+
 void require_known(const std::vector<std::string>& leftovers,
                    const std::vector<std::string>& known) {
   for (const std::string& argument : leftovers) {
     if (argument.size() > 1 && argument[0] == '-') {
-      const std::string name = argument.substr(0, argument.find('='));
-      throw UsageError(fmt::format("unknown option '{}', the nearest known one is '{}'", name,
-                                   nearest_name(name, known)));
+      reject_option(argument, known);
     }
   }
   if (!leftovers.empty()) {
@@ -75,6 +80,16 @@ void set_value(const Setting& setting, const SettingValue& value, const std::str
     setting.set(value);
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{} {}", shown_name, error.what()));
+  }
+}
+
+/// CLI11 takes "-7" for a number and so for a positional argument; here those are files.
+void require_files(const std::vector<std::string>& texts, const std::vector<std::string>& known) {
+  for (const std::string& text : texts) {
+    if (text.size() > 1 && text[0] == '-' &&
+        (text[1] == '.' || std::isdigit(static_cast<unsigned char>(text[1])) != 0)) {
+      reject_option(text, known);
+    }
   }
 }
 
@@ -218,6 +233,9 @@ bool Settings::read(const std::vector<std::string>& arguments) {
     const std::vector<std::string>& texts = options[i]->results();
     if (texts.empty()) {
       continue;
+    }
+    if (setting.positional) {
+      require_files(texts, known);
     }
     const std::string shown_name = setting.positional ? setting.value_name : "--" + setting.name;
     if (!setting.list && texts.size() > 1) {

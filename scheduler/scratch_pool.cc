@@ -4,6 +4,12 @@
 #include <new>
 
 namespace vantage::scheduler {
+namespace {
+
+// A block serves leases down to its size divided by this.
+constexpr std::size_t kMostWaste = 4;
+
+}  // namespace
 
 void ScratchPool::Free::operator()(std::byte* memory) const noexcept {
   ::operator delete (memory, std::align_val_t{kAlignment});
@@ -12,10 +18,12 @@ void ScratchPool::Free::operator()(std::byte* memory) const noexcept {
 ScratchPool::Lease ScratchPool::lease(std::size_t bytes) {
   bytes = std::max<std::size_t>(bytes, kAlignment);
   std::lock_guard lock(mutex_);
-  // The smallest block that fits; a chain asks for few sizes, so the list stays short.
+  // The smallest block that fits without wasting most of itself: the large ones are for whole-image
+  // states, which would otherwise have to be allocated anew, page by page.
   auto best = free_.end();
   for (auto it = free_.begin(); it != free_.end(); ++it) {
-    if (it->bytes >= bytes && (best == free_.end() || it->bytes < best->bytes)) {
+    if (it->bytes >= bytes && it->bytes <= kMostWaste * bytes &&
+        (best == free_.end() || it->bytes < best->bytes)) {
       best = it;
     }
   }
@@ -25,9 +33,9 @@ ScratchPool::Lease ScratchPool::lease(std::size_t bytes) {
     return {this, std::move(block)};
   }
   if (!free_.empty()) {
-    // Too small for today's tasks (the plan has changed): let it go instead of hoarding both.
-    bytes_held_ -= free_.back().bytes;
-    free_.pop_back();
+    // The plan has changed: the block that has been idle longest goes, instead of hoarding both.
+    bytes_held_ -= free_.front().bytes;
+    free_.erase(free_.begin());
     --blocks_;
   }
   free_.reserve(blocks_ + 1);  // so that give_back() cannot fail

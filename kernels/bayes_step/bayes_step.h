@@ -16,7 +16,7 @@ struct PriorKernel {
 /// What an iteration leaves in its output cells.
 enum class BayesState {
   kSmoothed,     ///< pS: what iterations with μ = ½ look at
-  kLogSmoothed,  ///< μ · log pS: what iterations with any other μ look at
+  kLogSmoothed,  ///< μ · log₂ pS: what iterations with any other μ look at
   kProbability,  ///< p itself, normalised, after the last iteration
 };
 
@@ -48,7 +48,7 @@ void bayes_start_row(const BayesRow& row);
 /// floors is a normal float.
 void bayes_half_row(const BayesRow& row);
 
-/// Any μ: p ∝ p0 · exp(sum of μ · log pS over the star). Cells are μ · log pS; neutral columns hold
+/// Any μ: p ∝ p0 · 2^(sum of μ · log₂ pS over the star). Cells are μ · log₂ pS; neutral columns hold
 /// 0.
 void bayes_general_row(const BayesRow& row);
 

@@ -1,47 +1,41 @@
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "kernels/bayes_step/bayes_step.h"
 
 namespace vantage::kernels {
 namespace {
 
-/// Normalises p, smooths it along the column and writes the state.
-void finish_column(const BayesRow& row, std::vector<double>& p, float* output) {
+/// p(lane) = p0 · weight(x, lane), normalised, smoothed along the column, written as the state.
+template <class Weight>
+void make_column(const BayesRow& row, int x, Weight weight) {
+  const float* const source = row.star.source + x * row.star.lanes;
+  float* const output = row.output + x * row.star.lanes;
   double sum = 0;
-  for (const double value : p) {
-    sum += value;
+  for (int i = 0; i < row.star.lanes; ++i) {
+    sum += source[i] * weight(x, i);
   }
-  for (double& value : p) {
-    value /= sum;
-  }
+  const auto p = [&](int i) { return source[i] * weight(x, i) / sum; };
   for (int i = 0; i < row.star.lanes; ++i) {
     if (row.state == BayesState::kProbability) {
-      output[i] = static_cast<float>(p[static_cast<std::size_t>(i)]);
+      output[i] = static_cast<float>(p(i));
       continue;
     }
     double smoothed = row.prior.floor;
     for (int k = -row.prior.radius; k <= row.prior.radius; ++k) {
       if (i + k >= 0 && i + k < row.count) {
-        smoothed += row.prior.taps[std::abs(k)] * p[static_cast<std::size_t>(i + k)];
+        smoothed += row.prior.taps[std::abs(k)] * p(i + k);
       }
     }
     output[i] = static_cast<float>(
-        row.state == BayesState::kSmoothed ? smoothed : row.mu * std::log(smoothed));
+        row.state == BayesState::kSmoothed ? smoothed : row.mu * std::log2(smoothed));
   }
 }
 
-/// p(lane) = p0 · weight(cells of the star), column by column.
 template <class Weight>
 void all_columns(const BayesRow& row, Weight weight) {
-  const StarRow& star = row.star;
-  std::vector<double> p(static_cast<std::size_t>(star.lanes));
-  for (int x = 0; x < star.columns; ++x) {
-    for (int i = 0; i < star.lanes; ++i) {
-      p[static_cast<std::size_t>(i)] = star.source[x * star.lanes + i] * weight(x, i);
-    }
-    finish_column(row, p, row.output + x * star.lanes);
+  for (int x = 0; x < row.star.columns; ++x) {
+    make_column(row, x, weight);
   }
 }
 
@@ -73,7 +67,7 @@ void bayes_general_row_ref(const BayesRow& row) {
     for (int k = 1; k < star.lanes; ++k) {
       largest = std::max(largest, sum(x, k));
     }
-    return std::exp(sum(x, i) - largest);
+    return std::exp2(sum(x, i) - largest);
   });
 }
 

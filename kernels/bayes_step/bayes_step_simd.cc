@@ -5,7 +5,9 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "kernels/bayes_step/bayes_step.h"
 #include "kernels/candidates.h"
@@ -135,9 +137,9 @@ class WorkColumn {
     if (row_.state == BayesState::kSmoothed) {
       smooth(normalise, output, [](FloatVec smoothed) HWY_ATTR { return smoothed; });
     } else {
-      const FloatVec mu = hn::Set(df, row_.mu);
+      const FloatVec mu = hn::Set(df, row_.mu * kLog2E);
       smooth(normalise, output,
-             [mu](FloatVec smoothed) HWY_ATTR { return hn::Mul(mu, fast_log(smoothed)); });
+             [mu](FloatVec smoothed) HWY_ATTR { return hn::Mul(mu, log_of_normal(smoothed)); });
     }
   }
 
@@ -204,38 +206,58 @@ void bayes_half_row_simd(const BayesRow& row) {
   });
 }
 
-void bayes_general_row_simd(const BayesRow& row) {
+HWY_INLINE FloatVec star_sum(const StarColumns& at, int lane) {
+  const FloatTag df;
+  const auto load = [&](const float* cells) HWY_ATTR { return hn::Load(df, cells + lane); };
+  return hn::Add(
+      hn::Add(hn::Add(load(at.up), load(at.down)), hn::Add(load(at.left), load(at.right))),
+      load(at.centre));
+}
+
+// The largest sum of a column, in every lane. Lanes that are no candidates have the state of p = 0,
+// which no candidate is below.
+HWY_INLINE FloatVec largest_sum(const StarColumns& at, int lanes) {
+  const FloatTag df;
+  LaneBlock16 most;
+  most.fill(hn::Set(df, std::numeric_limits<float>::lowest()));
+  for (int lane = 0; lane < lanes; lane += kLaneMultiple) {
+    for (int part = 0; part < kParts; ++part) {
+      const FloatVec sum = star_sum(at, lane + part * kFloatLanes);
+      most.part[part] = hn::Max(most.part[part], sum);
+    }
+  }
+  return max_lanes(most);
+}
+
+// kScaled: the largest sum becomes 0, so that some lane stays above the underflow.
+template <bool kScaled>
+HWY_INLINE void general_columns(const BayesRow& row) {
+  const FloatTag df;
   const WorkColumn work(row);
   each_column(row, [&](const StarColumns& at, float* output) HWY_ATTR {
-    const FloatTag df;
-    const auto star_sum = [&at, df](int lane) HWY_ATTR {
-      const auto load = [&](const float* cells) HWY_ATTR { return hn::Load(df, cells + lane); };
-      return hn::Add(
-          hn::Add(hn::Add(load(at.up), load(at.down)), hn::Add(load(at.left), load(at.right))),
-          load(at.centre));
-    };
-    // The largest sum becomes exp(0): some lane stays above the underflow. Lanes that are no
-    // candidates have the state of p = 0, which no candidate is below.
-    LaneBlock16 most;
-    most.fill(hn::Set(df, -3e38F));
-    for (int lane = 0; lane < row.star.lanes; lane += kLaneMultiple) {
-      for (int part = 0; part < kParts; ++part) {
-        const int first = lane + part * kFloatLanes;
-        const FloatVec sum = star_sum(first);
-        hn::Store(sum, df, output + first);
-        most.part[part] = hn::Max(most.part[part], sum);
-      }
+    FloatVec largest = hn::Zero(df);
+    if constexpr (kScaled) {
+      largest = largest_sum(at, row.star.lanes);
     }
-    const FloatVec largest = max_lanes(most);
-    const float* const sums = output;
-    const float* const source = at.source;
     work.run(
         [&](int lane) HWY_ATTR {
-          return hn::Mul(hn::Load(df, source + lane),
-                         fast_exp(hn::Sub(hn::Load(df, sums + lane), largest)));
+          FloatVec exponent = star_sum(at, lane);
+          if constexpr (kScaled) {
+            exponent = hn::Sub(exponent, largest);
+          }
+          return hn::Mul(hn::Load(df, at.source + lane), exp2_of_negative(exponent));
         },
         output);
   });
+}
+
+void bayes_general_row_simd(const BayesRow& row) {
+  const float least_sum = 5.0F * row.mu * std::log2(row.prior.floor);
+  if (least_sum > 0.8F * kLeastExponent) {
+    general_columns<false>(row);
+  } else {
+    general_columns<true>(row);
+  }
 }
 
 }  // namespace vantage::kernels::HWY_NAMESPACE

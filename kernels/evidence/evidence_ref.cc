@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "kernels/evidence/evidence.h"
-#include "kernels/pixel_cost/exp_log.h"
+#include "kernels/cells/exp_log.h"
 
 namespace vantage::kernels {
 namespace {

@@ -5,7 +5,7 @@
 #include <hwy/highway.h>
 
 #include "kernels/feature_pairs-inl.h"
-#include "kernels/pixel_cost/exp_log-inl.h"
+#include "kernels/cells/exp_log-inl.h"
 
 #include <cstdint>
 #include <limits>

@@ -158,7 +158,7 @@ HWY_INLINE FloatVec negative_entropy(const CandidateLanes& lanes, float scale, c
         least.part[part] = hn::Min(least.part[part], hn::IfThenElse(mask, energy, infinity));
       });
   const FloatVec best = min_lanes(least);
-  const FloatVec scales = hn::Set(df, scale);
+  const FloatVec scales = hn::Set(df, scale * kLog2E);
   LaneBlock16 total;
   LaneBlock16 moment;
   total.fill(hn::Zero(df));
@@ -167,22 +167,23 @@ HWY_INLINE FloatVec negative_entropy(const CandidateLanes& lanes, float scale, c
     total.part[part] = hn::Add(total.part[part], weight);
     moment.part[part] = hn::Add(moment.part[part], hn::Mul(weight, exponent));
   };
-  // Beyond 87 the weight is nothing, and the product must not be either infinity or not a number.
+  // Beyond the least exponent the weight is nothing, and the product must stay a number.
   const auto exponent_of = [&](FloatVec energy) HWY_ATTR {
-    return hn::Min(hn::Mul(scales, hn::Sub(energy, best)), hn::Set(df, 87.0F));
+    return hn::Min(hn::Mul(scales, hn::Sub(energy, best)), hn::Set(df, -kLeastExponent));
   };
   each_candidate(
       lanes, load,
       [&](int part, FloatVec energy) HWY_ATTR {
         const FloatVec exponent = exponent_of(energy);
-        add(part, exponent, fast_exp(hn::Neg(exponent)));
+        add(part, exponent, exp2_of_negative(hn::Neg(exponent)));
       },
       [&](auto mask, int part, FloatVec energy) HWY_ATTR {
         const FloatVec exponent = exponent_of(energy);
-        add(part, exponent, hn::IfThenElseZero(mask, fast_exp(hn::Neg(exponent))));
+        add(part, exponent, hn::IfThenElseZero(mask, exp2_of_negative(hn::Neg(exponent))));
       });
   const FloatVec z = sum_lanes(total);
-  return hn::Neg(hn::Add(hn::Div(sum_lanes(moment), z), fast_log(z)));
+  const FloatVec mean_exponent = hn::Mul(hn::Div(sum_lanes(moment), z), hn::Set(df, kLn2));
+  return hn::Neg(hn::Add(mean_exponent, log_of_normal(z)));
 }
 
 // Makes the step of one column in `output` and returns the certainty of the result.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "kernels/feature_pairs.h"
-#include "kernels/pixel_cost/exp_log.h"
+#include "kernels/cells/exp_log.h"
 
 namespace vantage::kernels {
 

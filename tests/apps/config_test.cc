@@ -120,7 +120,7 @@ TEST_F(Config, CommandLineOverridesFileOverridesDefault) {
   EXPECT_THAT(result.out, HasSubstr("\nraw = false\n"));
   EXPECT_THAT(result.out, HasSubstr("\nthreads = 'auto'\n"));
   EXPECT_THAT(result.out, HasSubstr("\ncross-check = 2.0\n"));
-  EXPECT_THAT(result.out, HasSubstr("\nsubpixel = 'parabola'\n"));
+  EXPECT_THAT(result.out, HasSubstr("\nsubpixel = 'auto'\n"));
 }
 
 TEST_F(Config, AFileCanHoldTheWholeJob) {

@@ -183,7 +183,8 @@ TEST_F(MatchCommandOptions, FillNoneLeavesTheUnmatchedUnknown) {
 
 TEST_F(MatchCommandOptions, TwoComponentsAreWrittenAsFlow) {
   // The right image one row lower: y_left − y_right = −1.
-  const auto& right = std::get<Image<std::uint8_t>>(read_photograph(right_).pixels);
+  const Photograph photograph = read_photograph(right_);
+  const auto& right = std::get<Image<std::uint8_t>>(photograph.pixels);
   Image<std::uint8_t> lower(right.width(), right.height());
   for (int y = 0; y < right.height(); ++y) {
     std::copy_n(right.row(std::max(0, y - 1)), right.width(), lower.row(y));

@@ -173,7 +173,11 @@ TEST_P(AwkwardShapes, EqualTheOracle) {
           << name;
       continue;
     }
-    expect_equals_oracle(pair, options, execution, tolerance_of(options.resolved()), name);
+    testing::Tolerance tolerance = tolerance_of(options.resolved());
+    if (options.resolved().certainty == Certainty::kEntropy) {
+      tolerance.strays = 5;  // an eleventh of such small images lies beside a stray pixel
+    }
+    expect_equals_oracle(pair, options, execution, tolerance, name);
   }
 }
 

@@ -239,9 +239,11 @@ Tolerance tolerance_of(const MethodParameters& parameters) {
     case Aggregation::kNone:
       // The margin between two costs that are almost 0.
       tolerance.confidence = 3e-3;
+      tolerance.energy = 5e-5;
       break;
     case Aggregation::kBox:
       // Costs are rounded to fixed point, unless they are squares of 8-bit grey levels.
+      tolerance.energy = 5e-3;
       tolerance.confidence = 5e-3;
       tolerance.subpixel_px = 1e-3;
       break;
@@ -249,15 +251,17 @@ Tolerance tolerance_of(const MethodParameters& parameters) {
       // A column whose certainty hardly changes may be restored by one and not by the other; from
       // then on it differs, and a little later its neighbours. Entropies of floats are noise where
       // a winner is quite sure.
-      tolerance.confidence_share = parameters.certainty == Certainty::kEntropy ? 0.95 : 0.99;
+      tolerance.confidence_share = parameters.certainty == Certainty::kEntropy ? 0.92 : 0.99;
       tolerance.strays = 2;
       break;
     case Aggregation::kBayes:
       // Each iteration lets likely candidates grow, and so the differences between them.
+      tolerance.energy = 1e-4;
       tolerance.confidence = 1e-3;
       tolerance.subpixel_px = 1e-3;
       if (leaves_out_taps(parameters)) {
         tolerance.tie = 3e-3;
+        tolerance.energy = 3e-3;
         tolerance.confidence = 3e-2;
         tolerance.subpixel_px = 3e-2;
       }

@@ -32,6 +32,8 @@ struct Tolerance {
   double tie = 1e-5;
   /// Magnitude, in units of the energy, below which differences of rounding no longer shrink.
   double floor = 1;
+  /// Of the winner's energy, relative to max(|energy|, floor).
+  double energy = 1e-5;
   /// Of the confidence, relative to max(|confidence|, confidence_floor).
   double confidence = 5e-5;
   double confidence_floor = 0.01;

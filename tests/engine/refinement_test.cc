@@ -271,6 +271,9 @@ TEST(RefineMaps, EdgesOfEachImageMoveItsOwnMapBeforeTheCrossCheck) {
     EXPECT_EQ(pair.right.at(18, y), 0);
     EXPECT_EQ(pair.right.at(21, y), 4);
     EXPECT_EQ(pair.left_unmatched.at(26, y), 0);
+    // The right image shows the partners of the left one's last columns, but not the reverse.
+    EXPECT_EQ(pair.left_unmatched.at(39, y), 0);
+    EXPECT_EQ(pair.right_unmatched.at(39, y), 255);
   }
 }
 

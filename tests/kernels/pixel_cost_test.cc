@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "kernels/pixel_cost/exp_log.h"
+#include "kernels/cells/exp_log.h"
 #include "tests/kernels/feature_rows.h"
 #include "tests/kernels/kernel_test_utils.h"
 

@@ -1,0 +1,201 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/apps/pair_fixture.h"
+#include "tests/well_formed_xml.h"
+
+namespace vantage {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class ResponseCommand : public PairTest {
+ protected:
+  [[nodiscard]] ProcessResult response(const std::string& out,
+                                       const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"response", left_, right_, "-o", out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_vantage(arguments);
+  }
+};
+
+TEST_F(ResponseCommand, PrintsTheDominantDisplacements) {
+  const ProcessResult result = response(folder_ / "r.csv");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  // The background of the random-dot square is at 2.
+  EXPECT_THAT(result.out, HasSubstr("whole              2     0"));
+  EXPECT_THAT(result.out, HasSubstr("bottom-right "));
+  std::istringstream rows(read_file(folder_ / "r.csv"));
+  std::string line;
+  ASSERT_TRUE(std::getline(rows, line));
+  EXPECT_EQ(line, "dx_px,dy_px,whole,top-left,top-right,bottom-left,bottom-right");
+  int count = 0;
+  double largest = -1e300;
+  int at = 0;
+  while (std::getline(rows, line)) {
+    int dx = 0;
+    int dy = 0;
+    double whole = 0;
+    double quadrant[4] = {};
+    ASSERT_EQ(std::sscanf(line.c_str(), "%d,%d,%lf,%lf,%lf,%lf,%lf", &dx, &dy, &whole, quadrant,
+                          quadrant + 1, quadrant + 2, quadrant + 3),
+              7)
+        << line;
+    EXPECT_NEAR(whole, quadrant[0] + quadrant[1] + quadrant[2] + quadrant[3],
+                1e-6 * std::abs(whole) + 1e-6);
+    if (whole > largest) {
+      largest = whole;
+      at = dx;
+    }
+    ++count;
+  }
+  EXPECT_EQ(count, 16 + 71 / 4 + 1);
+  EXPECT_EQ(at, 2);
+}
+
+TEST_F(ResponseCommand, WritesArraysPlotsAndAReport) {
+  const ProcessResult result =
+      response(folder_ / "r.npy", {"--displacements-x=-3:9", "--displacements-y=-2:2", "--plot",
+                                   folder_ / "r.svg", "--report", folder_ / "r.json", "--quiet"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, IsEmpty());
+  const std::string npy = read_file(folder_ / "r.npy");
+  EXPECT_THAT(npy.substr(0, 128), HasSubstr("'descr': '<f8'"));
+  EXPECT_THAT(npy.substr(0, 128), HasSubstr("'shape': (5,5,13,)"));
+  EXPECT_EQ((npy.size() - 5 * 5 * 13 * 8) % 64, 0U);
+  const XmlOutline plot = read_xml(read_file(folder_ / "r.svg"));
+  EXPECT_EQ(plot.error, "");
+  EXPECT_EQ(plot.count("image"), 2 * 5);
+  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  EXPECT_EQ(report["settings"]["displacements-x"], "-3:9");
+  EXPECT_EQ(report["results"]["dominant"]["whole"]["dx_px"], 2);
+  EXPECT_EQ(report["results"]["dominant"]["whole"]["dy_px"], 0);
+}
+
+TEST_F(ResponseCommand, CurvesForOneRange) {
+  ASSERT_EQ(response(folder_ / "r.csv", {"--plot", folder_ / "x.svg"}).exit_code, 0);
+  ASSERT_EQ(response(folder_ / "r.csv", {"--displacements-x=2:2", "--displacements-y=-4:4",
+                                         "--plot", folder_ / "y.png", "--norm", "octagon"})
+                .exit_code,
+            0);
+  const XmlOutline plot = read_xml(read_file(folder_ / "x.svg"));
+  EXPECT_EQ(plot.error, "");
+  EXPECT_EQ(plot.count("image"), 0);
+  EXPECT_EQ(plot.count("circle"), 5);  // the legend
+  EXPECT_GT(read_photograph(folder_ / "y.png").width(), 300);
+}
+
+TEST_F(ResponseCommand, BadInputIsOneLine) {
+  const std::string out = folder_ / "r.csv";
+  const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {
+      {{"--displacements-x", "5:4"}, "displacements-x is 5:4"},
+      {{"--displacements-x", "wide"}, "--displacements-x is 'wide', expected MIN:MAX"},
+      {{"--displacements-y", "auto"}, "--displacements-y is 'auto'"},
+      {{"--alpha", "-1"}, "alpha is -1"},
+      {{"--gradient", "prewitt"}, "--gradient is 'prewitt'"},
+      {{"--plot", folder_ / "plot.txt"}, "--plot is"},
+      {{"--plot", left_}, "which is an input as well"}};
+  for (const auto& [arguments, says] : misuses) {
+    const ProcessResult result = response(out, arguments);
+    EXPECT_EQ(result.exit_code, 2) << says;
+    EXPECT_TRUE(is_one_line(result, "response"));
+    EXPECT_THAT(result.err, HasSubstr(says));
+  }
+  EXPECT_EQ(response(folder_ / "r.txt").exit_code, 2);
+  EXPECT_EQ(run_vantage({"response", left_, folder_ / "none.png", "-o", out}).exit_code, 1);
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST_F(ResponseCommand, ConstantImagesHaveNoneAndStillWriteTheirData) {
+  Image<std::uint8_t> grey(40, 30);
+  grey.fill(77);
+  write_photograph(folder_ / "grey.png", {std::move(grey)});
+  const ProcessResult result = run_vantage({"response", folder_ / "grey.png", folder_ / "grey.png",
+                                            "-o", folder_ / "r.csv", "--plot", folder_ / "r.svg"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("none"));
+  EXPECT_EQ(read_xml(read_file(folder_ / "r.svg")).error, "");
+}
+
+/// match, synth and run choose the range themselves.
+class AutomaticDisparities : public PairTest {
+ protected:
+  AutomaticDisparities() {
+    BookPairOptions options = book_pair_options("real-square");
+    options.width_px = 160;
+    options.height_px = 120;
+    pair_ = make_book_pair(options);
+    write_photograph(left_, pair_.left);
+    write_photograph(right_, pair_.right);
+  }
+};
+
+TEST_F(AutomaticDisparities, MatchTellsTheRangeAndReportsIt) {
+  const ProcessResult result =
+      run_vantage({"match", left_, right_, "-o", folder_ / "a.pfm", "--disparities", "auto",
+                   "--window", "5", "--report", folder_ / "r.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  const std::string range = report["settings"]["disparities"];
+  EXPECT_THAT(result.err, HasSubstr("--disparities auto is " + range));
+  EXPECT_TRUE(report["seconds"]["stages"].contains("range"));
+  int least = 0;
+  int most = 0;
+  ASSERT_EQ(std::sscanf(range.c_str(), "%d:%d", &least, &most), 2) << range;
+  EXPECT_LE(least, 2);
+  EXPECT_GE(most, 6);
+  EXPECT_LE(most - least, 20);
+  // The same as giving that range.
+  ASSERT_EQ(run_vantage({"match", left_, right_, "-o", folder_ / "b.pfm", "--disparities=" + range,
+                         "--window", "5"})
+                .exit_code,
+            0);
+  EXPECT_EQ(read_file(folder_ / "a.pfm"), read_file(folder_ / "b.pfm"));
+  EXPECT_LT(bad_share(read_disparity(folder_ / "a.pfm"), pair_.left_disparity, pair_.left_occluded),
+            0.05);
+}
+
+TEST_F(AutomaticDisparities, SynthAndRunTakeItToo) {
+  ProcessResult result = run_vantage(
+      {"synth", left_, right_, "-o", folder_ / "v.png", "--view", "0.5", "--disparities=auto"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("synth: --disparities auto is "));
+  result = run_vantage({"run", "--left", left_, "--right", right_, "-o", folder_ / "out",
+                        "--disparities", "auto", "--report", folder_ / "r.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("run: --disparities auto is "));
+  EXPECT_NE(nlohmann::json::parse(read_file(folder_ / "r.json"))["settings"]["disparities"],
+            "auto");
+}
+
+TEST_F(AutomaticDisparities, ConstantImagesNeedARange) {
+  Image<std::uint8_t> grey(80, 60);
+  grey.fill(77);
+  write_photograph(folder_ / "grey.png", {std::move(grey)});
+  const std::string grey_file = folder_ / "grey.png";
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"match", grey_file, grey_file, "-o", folder_ / "o.pfm"},
+        {"run", "--left", grey_file, "--right", grey_file, "-o", folder_ / "out"}}) {
+    auto arguments = command;
+    arguments.insert(arguments.end(), {"--disparities", "auto"});
+    const ProcessResult result = run_vantage(arguments);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_TRUE(is_one_line(result, command.front()));
+    EXPECT_THAT(result.err, HasSubstr("give --disparities MIN:MAX"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(std::string(folder_ / "o.pfm")));
+}
+
+TEST_F(AutomaticDisparities, NotForTwoDimensions) {
+  const ProcessResult result = run_vantage({"match", left_, right_, "-o", folder_ / "o.flo",
+                                            "--disparities", "auto", "--disparities-y=-1:1"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("disparities is auto"));
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,169 @@
+#include "engine/matching/disparity_range.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "engine/generation/book_pairs.h"
+#include "engine/generation/layered_scene.h"
+#include "engine/matching/stereo_matcher.h"
+#include "tests/engine/io_test_support.h"
+
+namespace vantage {
+namespace {
+
+using testing::HasSubstr;
+
+struct Judged {
+  double covered = 0;  ///< share of the known disparities inside the range
+  double ratio = 0;    ///< length of the range over that of the truth
+};
+
+Judged judge(DisparityRange range, const DisparityMap& truth) {
+  float least = std::numeric_limits<float>::infinity();
+  float most = -least;
+  int inside = 0;
+  int known = 0;
+  for (int y = 0; y < truth.height(); ++y) {
+    for (int x = 0; x < truth.width(); ++x) {
+      const float d = truth.at(x, y);
+      if (std::isfinite(d)) {
+        ++known;
+        inside += d >= static_cast<float>(range.min) && d <= static_cast<float>(range.max) ? 1 : 0;
+        least = std::min(least, d);
+        most = std::max(most, d);
+      }
+    }
+  }
+  return {static_cast<double>(inside) / known, range.count() / (most - least + 1.0)};
+}
+
+/// A pair of texture whose disparities are `disparity` and one more.
+BookPair flat_pair(int width, int height, int disparity, BookPattern pattern) {
+  // The front is one pixel nearer.
+  BookPairOptions options;
+  options.pattern = pattern;
+  options.width_px = width;
+  options.height_px = height;
+  options.background_disparity_px = disparity;
+  options.front_disparity_px = disparity + 1;
+  return make_book_pair(options);
+}
+
+TEST(DisparityRange, CoversMadeUpScenes) {
+  Execution execution({.threads = 2});
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    LayeredSceneOptions options;
+    options.width_px = 320;
+    options.height_px = 200;
+    options.far_disparity_px = 6.0 + static_cast<double>(seed);
+    options.near_disparity_px = 30;
+    options.samples_per_side = 1;
+    options.right_gain = 1.1;
+    options.right_offset = -8;
+    options.noise_sigma = 2;
+    options.seed = seed;
+    const LayeredScene scene(options, execution);
+    const SceneRendering left = scene.render({0, 0}, 0);
+    const SceneRendering right = scene.render({1, 0}, 0);
+    const DisparityRange range = estimate_disparity_range(left.image, right.image, execution);
+    const Judged judged = judge(range, left.disparity);
+    EXPECT_GE(judged.covered, 0.99) << range.min << ':' << range.max;
+    EXPECT_LE(judged.ratio, 2.2) << range.min << ':' << range.max;
+  }
+}
+
+TEST(DisparityRange, CoversTheBookPairsWithTexture) {
+  Execution execution({.threads = 2});
+  for (const char* name : {"rds-square", "real-square", "rds-bars", "real-bars"}) {
+    for (const double noise : {0.0, 4.0}) {
+      BookPairOptions options = book_pair_options(name);
+      options.width_px = 200;
+      options.height_px = 160;
+      options.noise_sigma = noise;
+      const BookPair pair = make_book_pair(options);
+      const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution);
+      EXPECT_GE(judge(range, pair.left_disparity).covered, 0.95)
+          << name << ' ' << range.min << ':' << range.max;
+      EXPECT_GE(range.min, -10);
+      EXPECT_LE(range.max, 30);
+    }
+  }
+}
+
+TEST(DisparityRange, FindsNegativeAndLargeDisparities) {
+  Execution execution({.threads = 2});
+  for (const int disparity : {-20, -7, 0, 31, 60}) {
+    const BookPair pair = flat_pair(240, 64, disparity, BookPattern::kRandomDots);
+    const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution);
+    EXPECT_GE(disparity, range.min);
+    EXPECT_LE(disparity + 1, range.max);
+    EXPECT_LE(range.count(), 12) << range.min << ':' << range.max;
+  }
+}
+
+TEST(DisparityRange, ReducesLargeImages) {
+  Execution execution({.threads = 2});
+  const BookPair pair = flat_pair(2001, 97, 90, BookPattern::kGrass);
+  const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution);
+  EXPECT_GE(90, range.min);
+  EXPECT_LE(91, range.max);
+  EXPECT_LE(range.count(), 30);
+}
+
+TEST(DisparityRange, WorksOnImagesOfOneTile) {
+  Execution execution({.threads = 1});
+  const BookPair pair = flat_pair(40, 12, 3, BookPattern::kRandomDots);
+  const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution);
+  EXPECT_GE(3, range.min);
+  EXPECT_LE(3, range.max);
+}
+
+TEST(DisparityRange, IsIdenticalForAnyThreads) {
+  const BookPair pair = flat_pair(150, 90, 11, BookPattern::kGrass);
+  Execution one({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
+  Execution three({.threads = 3});
+  EXPECT_EQ(estimate_disparity_range(pair.left, pair.right, one),
+            estimate_disparity_range(pair.left, pair.right, three));
+}
+
+TEST(DisparityRange, SaysThatThereIsNoEvidence) {
+  Execution execution({.threads = 1});
+  Image<std::uint8_t> grey(100, 60);
+  grey.fill(128);
+  const Photograph constant{std::move(grey)};
+  const auto error_of = [&](const Photograph& left, const Photograph& right) {
+    return test::error_of([&] { estimate_disparity_range(left, right, execution); });
+  };
+  EXPECT_THAT(error_of(constant, constant), HasSubstr("no evidence"));
+  EXPECT_THAT(error_of(constant, constant), HasSubstr("--disparities MIN:MAX"));
+  EXPECT_THAT(error_of(test::noise<std::uint8_t>(200, 100, 1, 1),
+                       test::noise<std::uint8_t>(200, 100, 1, 2)),
+              HasSubstr("no evidence"));
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 40}, {2, 2}}) {
+    EXPECT_THAT(error_of(test::noise<std::uint8_t>(width, height, 1, 1),
+                         test::noise<std::uint8_t>(width, height, 1, 2)),
+                HasSubstr("no evidence"));
+  }
+  EXPECT_THAT(error_of(constant, test::noise<std::uint8_t>(100, 61, 1)),
+              HasSubstr("expected equal sizes"));
+  EXPECT_THAT(error_of(test::noise<std::uint8_t>(4000, 3, 1), test::noise<std::uint8_t>(1, 1, 1)),
+              HasSubstr("expected equal sizes"));
+}
+
+TEST(DisparityRange, MatchersRefuseWhatIsNotYetChosen) {
+  Execution execution({.threads = 1});
+  MatchOptions options;
+  options.disparities_auto = true;
+  EXPECT_THAT(test::error_of([&] { const StereoMatcher matcher(options, execution); }),
+              HasSubstr("disparities is auto"));
+  options.disparities_y = {-1, 1};
+  EXPECT_THAT(test::error_of([&] { options.validate(); }), HasSubstr("disparities-y"));
+}
+
+}  // namespace
+}  // namespace vantage
