@@ -8,10 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "engine/evaluation/membrane_support.h"
 #include "engine/io/atomic_file.h"
 #include "engine/io/preview.h"
-#include "engine/plot/heat_map.h"
 #include "engine/plot/line_plot.h"
 
 namespace vantage::apps {
@@ -177,80 +175,6 @@ void write_iteration_files(const std::filesystem::path& folder,
   write_drawing(folder / "iterations.svg",
                 draw_line_plots("Disparity error against iterations", plots, kPanelColumns));
   write_drawing(folder / "iterations-maps.png", contact_sheet(runs));
-}
-
-double write_support_files(const std::filesystem::path& folder) {
-  constexpr std::array<double, 4> kBetas = {0.3, 0.5, 0.7, 1};
-  constexpr double kFigureBeta = 0.7;
-  constexpr std::array<int, 4> kIterations = {1, 10, 30, 100};
-  constexpr double kLambda = 0.15;
-  constexpr int kRadius = 40;
-  constexpr int kShownRadius = 10;
-  double difference = 0;
-  std::string table = "beta,dx,dy,inverse_fourier";
-  for (const int iterations : kIterations) {
-    table += fmt::format(",iterations_{}", iterations);
-  }
-  table += '\n';
-  std::vector<LinePlot> plots;
-  for (const double beta : kBetas) {
-    LinePlot plot{.title = fmt::format("beta = {}", beta),
-                  .x_axis = {.title = "dx, pixels (dy = 0)"},
-                  .y_axis = {.title = "weight", .scale = AxisScale::kLogarithmic},
-                  .series = {}};
-    const SupportFunction limit = membrane_support(beta, kRadius);
-    std::vector<SupportFunction> responses;
-    std::vector<std::pair<std::string, const SupportFunction*>> curves;
-    for (const int iterations : kIterations) {
-      responses.push_back(membrane_impulse_response(beta, kLambda, iterations, kRadius));
-    }
-    for (std::size_t i = 0; i < responses.size(); ++i) {
-      curves.emplace_back(fmt::format("n = {}", kIterations[i]), &responses[i]);
-    }
-    curves.emplace_back("inverse Fourier transform of (6.12)", &limit);
-    for (const auto& [name, support] : curves) {
-      PlotSeries series{name, {}, {}};
-      for (int dx = -kShownRadius; dx <= kShownRadius; ++dx) {
-        series.x.push_back(dx);
-        series.y.push_back(support->at(dx, 0));
-      }
-      plot.series.push_back(std::move(series));
-    }
-    plots.push_back(std::move(plot));
-    for (int dy = 0; dy <= kShownRadius; ++dy) {
-      for (int dx = 0; dx <= kShownRadius; ++dx) {
-        table += fmt::format("{},{},{},{:.12g}", beta, dx, dy, limit.at(dx, dy));
-        for (const SupportFunction& response : responses) {
-          table += fmt::format(",{:.12g}", response.at(dx, dy));
-        }
-        table += '\n';
-      }
-    }
-    difference = std::max(difference, largest_difference(limit, responses.back()));
-  }
-  write_text_file(folder / "support.csv", table);
-  write_drawing(folder / "support.svg",
-                draw_line_plots(
-                    fmt::format("Support of the membrane after n iterations, lambda = {}", kLambda),
-                    plots, 2));
-  const SupportFunction shape = membrane_support(kFigureBeta, kShownRadius);
-  HeatMap map{.title = "inverse Fourier transform of (6.12)",
-              .x_title = "dx, pixels",
-              .y_title = "dy, pixels",
-              .x_first = -kShownRadius,
-              .y_first = -kShownRadius,
-              .values = Image<float>(2 * kShownRadius + 1, 2 * kShownRadius + 1)};
-  for (int dy = -kShownRadius; dy <= kShownRadius; ++dy) {
-    for (int dx = -kShownRadius; dx <= kShownRadius; ++dx) {
-      map.values.at(dx + kShownRadius, dy + kShownRadius) = static_cast<float>(shape.at(dx, dy));
-    }
-  }
-  std::vector<HeatMap> maps;
-  maps.push_back(std::move(map));
-  write_drawing(
-      folder / "support-shape.svg",
-      draw_heat_maps(fmt::format("Support of the membrane, beta = {}", kFigureBeta), maps, 1));
-  return difference;
 }
 
 }  // namespace vantage::apps

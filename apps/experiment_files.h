@@ -18,9 +18,9 @@ void write_noise_files(const std::filesystem::path& folder, const std::vector<Ex
 void write_iteration_files(const std::filesystem::path& folder,
                            const std::vector<ExperimentRun>& runs);
 
-/// support.csv; support.svg: sections of the impulse response after some iterations and of the
-/// inverse Fourier transform of (6.12); support-shape.svg: the latter as a surface (Fig. 6.9).
-/// Returns the largest difference between the two after the most iterations.
+/// support.csv; support.svg: sections of the membrane's impulse response after some iterations and
+/// of the inverse Fourier transform of (6.12); support-shape.svg: the latter as a surface (Fig.
+/// 6.9). Returns the largest difference between the two after the most iterations.
 double write_support_files(const std::filesystem::path& folder);
 
 }  // namespace vantage::apps

@@ -57,7 +57,7 @@ void run_whole_image_chain(const Photograph& left, const Photograph& right,
   prepare_pair(left, right, geometry, parameters.window_px * parameters.window_px, {true, false},
                execution, pair);
   DisparityMap map(left.width(), left.height());
-  const MatchChain chain(parameters, geometry, {.pair = &pair}, {.disparity_px = map.view()});
+  const MatchChain chain(parameters, geometry, {&pair, nullptr, {}}, {map.view(), {}, {}});
   scheduler::run_whole_image(chain.stages());
 }
 

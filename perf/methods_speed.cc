@@ -32,12 +32,11 @@ struct Method {
   double work = 1;  ///< what the target counts: cells, or cells and iterations
 };
 
-Method make_method(std::string name, MatchMethod method, int iterations,
-                   const MethodOverrides& overrides) {
+Method make_method(std::string name, MatchMethod method, int iterations) {
   Method result{std::move(name), {}, kCells * std::max(1, iterations)};
   result.options.method = method;
-  result.options.parameters = overrides;
   result.options.parameters.subpixel = Subpixel::kNone;
+  result.options.parameters.sigma_prior = 0.1;
   if (iterations > 0) {
     result.options.parameters.iterations = iterations;
   }
@@ -48,22 +47,20 @@ Method make_method(std::string name, MatchMethod method, int iterations,
 
 std::vector<Method> all_methods() {
   std::vector<Method> methods;
-  methods.push_back(
-      make_method("Bayes, sigma-prior 0.1", MatchMethod::kBayes, 10, {.sigma_prior = 0.1}));
-  methods.push_back(
-      make_method("Bayes, sigma-prior 0.4", MatchMethod::kBayes, 10, {.sigma_prior = 0.4}));
-  methods.push_back(
-      make_method("Bayes, mu 0.45", MatchMethod::kBayes, 10, {.mu = 0.45, .sigma_prior = 0.1}));
-  methods.push_back(make_method("membrane", MatchMethod::kMembrane, 10, {}));
-  methods.push_back(make_method("diffusion", MatchMethod::kDiffusion, 10, {}));
-  methods.push_back(make_method("local stopping, margin", MatchMethod::kLocalStopping, 10, {}));
-  methods.push_back(make_method("local stopping, entropy", MatchMethod::kLocalStopping, 10,
-                                {.certainty = Certainty::kEntropy}));
-  methods.push_back(make_method("gradient, box cascade", MatchMethod::kGradient, 0, {}));
-  methods.push_back(make_method("gradient, Gaussian", MatchMethod::kGradient, 0,
-                                {.aggregation = Aggregation::kGaussian}));
-  methods.push_back(
-      make_method("census, box 9x9", MatchMethod::kSsd, 0, {.cost = MatchCost::kCensus}));
+  const auto add = [&](std::string name, MatchMethod method, int iterations) -> MethodOverrides& {
+    methods.push_back(make_method(std::move(name), method, iterations));
+    return methods.back().options.parameters;
+  };
+  add("Bayes, sigma-prior 0.1", MatchMethod::kBayes, 10);
+  add("Bayes, sigma-prior 0.4", MatchMethod::kBayes, 10).sigma_prior = 0.4;
+  add("Bayes, mu 0.45", MatchMethod::kBayes, 10).mu = 0.45;
+  add("membrane", MatchMethod::kMembrane, 10);
+  add("diffusion", MatchMethod::kDiffusion, 10);
+  add("local stopping, margin", MatchMethod::kLocalStopping, 10);
+  add("local stopping, entropy", MatchMethod::kLocalStopping, 10).certainty = Certainty::kEntropy;
+  add("gradient, box cascade", MatchMethod::kGradient, 0);
+  add("gradient, Gaussian", MatchMethod::kGradient, 0).aggregation = Aggregation::kGaussian;
+  add("census, box 9x9", MatchMethod::kSsd, 0).cost = MatchCost::kCensus;
   return methods;
 }
 
@@ -94,9 +91,8 @@ void run_whole_image_chain(const Method& method, const Pair& pair, Execution& ex
   left.prepare(pair.left_grey, parameters, geometry, {true, false, false}, execution);
   right.prepare(pair.right_grey, parameters, geometry, {false, true, false}, execution);
   DisparityMap map(kWidth, kHeight);
-  const MatchChain chain(parameters, geometry,
-                         {.reference = &left, .partners = {CostPartner{.image = &right}}},
-                         {.disparity_px = map.view()});
+  const MatchChain chain(parameters, geometry, {nullptr, &left, {CostPartner{&right}}},
+                         {map.view(), {}, {}});
   scheduler::run_whole_image(chain.stages());
 }
 
@@ -130,7 +126,9 @@ nlohmann::json against_peers(const Pair& pair, int rounds) {
     add(method, {.threads = threads}, fmt::format(", {} threads", threads));
     add(method, {.threads = 1}, ", 1 thread");
     if (method.work > kCells) {
-      add(method, {.threads = threads, .iterations_per_pass = 1}, ", pass by pass");
+      ExecutionOptions pass_by_pass{.threads = threads};
+      pass_by_pass.iterations_per_pass = 1;
+      add(method, pass_by_pass, ", pass by pass");
     }
   }
   contenders.push_back({"Bayes, whole-image executor, 1 thread",
@@ -149,8 +147,7 @@ nlohmann::json over_iterations(const Pair& pair, int rounds) {
     std::vector<Contender> contenders;
     std::vector<double> work;
     for (const int iterations : {10, 50, 200}) {
-      methods.push_back(make_method(fmt::format("{} iterations", iterations), kind, iterations,
-                                    {.sigma_prior = 0.1}));
+      methods.push_back(make_method(fmt::format("{} iterations", iterations), kind, iterations));
       runners.push_back(
           std::make_unique<Runner>(methods.back(), ExecutionOptions{.threads = threads}));
       contenders.push_back(

@@ -38,8 +38,8 @@ struct CellSelectionSettings {
 /// Last stage: chooses in each column the candidate with a partner whose cell is best (least
 /// energy, largest probability), the smallest of equals, and optionally refines it by a parabola
 /// (§3; through −log p for probabilities). Input cells are float, geometry.lanes() a column, finite
-/// where a candidate has a partner; what other lanes hold does not matter. Throws Error for a wanted
-/// confidence that such cells do not have.
+/// where a candidate has a partner; what other lanes hold does not matter. Throws Error for a
+/// wanted confidence that such cells do not have.
 std::unique_ptr<scheduler::RowStage> make_cell_selection_stage(
     const kernels::CandidateGeometry& geometry, const CellSelectionSettings& settings,
     const MapOutputs& outputs);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+
+#include "kernels/candidates.h"
 #include "kernels/star_row.h"
 
 namespace vantage::kernels {
@@ -33,10 +36,20 @@ struct BayesRow {
   float* work = nullptr;
 };
 
-/// Lanes of zeros that the smoothing needs on either side of a column, as floats of work memory.
+/// Columns whose probabilities are in work memory at a time: while some are summed up, others are
+/// normalised.
+inline int bayes_work_columns(int lanes) {
+  constexpr int kMostFloats = 1024;
+  return std::clamp(kMostFloats / lanes, 1, 8);
+}
+
+/// Zeros that the smoothing needs on either side of a column.
+inline int bayes_work_margin(int prior_radius) {
+  return (prior_radius + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
+}
+
 inline int bayes_work_floats(int lanes, int prior_radius) {
-  constexpr int kVector = 16;
-  return lanes + 2 * ((prior_radius + kVector - 1) / kVector * kVector + kVector);
+  return bayes_work_columns(lanes) * (lanes + 2 * bayes_work_margin(prior_radius));
 }
 
 /// Before the first iteration: p = p0 normalised, and its state. Only star.source, columns and
@@ -48,8 +61,8 @@ void bayes_start_row(const BayesRow& row);
 /// floors is a normal float.
 void bayes_half_row(const BayesRow& row);
 
-/// Any μ: p ∝ p0 · 2^(sum of μ · log₂ pS over the star). Cells are μ · log₂ pS; neutral columns hold
-/// 0.
+/// Any μ: p ∝ p0 · 2^(sum of μ · log₂ pS over the star). Cells are μ · log₂ pS; neutral columns
+/// hold 0.
 void bayes_general_row(const BayesRow& row);
 
 /// The same, plainly, in double arithmetic.

@@ -95,20 +95,52 @@ HWY_INLINE void half_row_in_registers(const BayesRow& row) {
                        HWY_ATTR { half_column_in_registers<kBlocks>(at, scale, floor, output); });
 }
 
-// A column of unnormalised probabilities in memory, with zeros on both sides.
-class WorkColumn {
+// Unnormalised probabilities of a few columns in memory, with zeros on both sides of each. First
+// all of them are made, then all are normalised: one column after the other would wait for the sum
+// over its lanes each time.
+class WorkColumns {
  public:
-  explicit WorkColumn(const BayesRow& row)
+  explicit WorkColumns(const BayesRow& row)
       : row_(row),
-        margin_((bayes_work_floats(row.star.lanes, row.prior.radius) - row.star.lanes) / 2),
-        p_(row.work + margin_) {
-    std::fill_n(row.work, margin_, 0.0F);
-    std::fill_n(p_ + row.star.lanes, margin_, 0.0F);
+        columns_(bayes_work_columns(row.star.lanes)),
+        margin_(bayes_work_margin(row.prior.radius)),
+        pitch_(row.star.lanes + 2 * margin_) {
+    for (int j = 0; j < columns_; ++j) {
+      std::fill_n(p(j) - margin_, margin_, 0.0F);
+      std::fill_n(p(j) + row.star.lanes, margin_, 0.0F);
+    }
   }
 
-  // Makes p(lane) with `weight` and leaves the row's state in `output`.
+  // Makes p = weight(columns, lane) for all columns of the row and leaves the row's state.
   template <class Weight>
-  HWY_INLINE void run(Weight weight, float* output) const {
+  HWY_INLINE void run(Weight weight) const {
+    FloatVec normalise[kMostColumns];
+    float* block_output = row_.output;
+    int filled = 0;
+    each_column(row_, [&](const StarColumns& at, float* output) HWY_ATTR {
+      normalise[filled] = make(at, weight, p(filled));
+      ++filled;
+      if (filled == columns_ || output == last_output()) {
+        for (int j = 0; j < filled; ++j) {
+          finish(p(j), normalise[j], block_output);
+          block_output += row_.star.lanes;
+        }
+        filled = 0;
+      }
+    });
+  }
+
+ private:
+  static constexpr int kMostColumns = 8;  // of bayes_work_columns()
+
+  [[nodiscard]] float* p(int column) const { return row_.work + column * pitch_ + margin_; }
+  [[nodiscard]] const float* last_output() const {
+    return row_.output + static_cast<std::ptrdiff_t>(row_.star.columns - 1) * row_.star.lanes;
+  }
+
+  // Returns the factor that normalises the column.
+  template <class Weight>
+  HWY_INLINE FloatVec make(const StarColumns& at, Weight weight, float* p) const {
     const FloatTag df;
     const int lanes = row_.star.lanes;
     LaneBlock16 sums;
@@ -116,41 +148,55 @@ class WorkColumn {
     for (int lane = 0; lane < lanes; lane += kLaneMultiple) {
       for (int part = 0; part < kParts; ++part) {
         const int first = lane + part * kFloatLanes;
-        const FloatVec p = weight(first);
-        hn::Store(p, df, p_ + first);
-        sums.part[part] = hn::Add(sums.part[part], p);
+        const FloatVec value = weight(at, first);
+        hn::Store(value, df, p + first);
+        sums.part[part] = hn::Add(sums.part[part], value);
       }
     }
-    finish(hn::Div(hn::Set(df, 1.0F), sum_lanes(sums)), output);
+    return hn::Div(hn::Set(df, 1.0F), sum_lanes(sums));
   }
 
- private:
-  HWY_INLINE void finish(FloatVec normalise, float* output) const {
+  HWY_INLINE void finish(const float* p, FloatVec normalise, float* output) const {
     const FloatTag df;
     const int lanes = row_.star.lanes;
     if (row_.state == BayesState::kProbability) {
       for (int lane = 0; lane < lanes; lane += kFloatLanes) {
-        hn::Store(hn::Mul(hn::Load(df, p_ + lane), normalise), df, output + lane);
+        hn::Store(hn::Mul(hn::Load(df, p + lane), normalise), df, output + lane);
       }
       return;
     }
     if (row_.state == BayesState::kSmoothed) {
-      smooth(normalise, output, [](FloatVec smoothed) HWY_ATTR { return smoothed; });
+      smooth(p, normalise, output, [](FloatVec smoothed) HWY_ATTR { return smoothed; });
     } else {
       const FloatVec mu = hn::Set(df, row_.mu * kLog2E);
-      smooth(normalise, output,
-             [mu](FloatVec smoothed) HWY_ATTR { return hn::Mul(mu, log_of_normal(smoothed)); });
+      smooth(p, normalise, output, [mu](FloatVec smoothed) HWY_ATTR {
+        return hn::Mul(mu, log_of_normal<true>(smoothed));
+      });
     }
   }
 
   template <class State>
-  HWY_INLINE void smooth(FloatVec normalise, float* output, State state) const {
+  HWY_INLINE void smooth(const float* p, FloatVec normalise, float* output, State state) const {
+    switch (row_.prior.radius) {
+      case 0:
+        return smooth_with<0>(p, normalise, output, state);
+      case 1:
+        return smooth_with<1>(p, normalise, output, state);
+      default:
+        return smooth_with<-1>(p, normalise, output, state);
+    }
+  }
+
+  // kRadius: of the prior, −1: any.
+  template <int kRadius, class State>
+  HWY_INLINE void smooth_with(const float* p, FloatVec normalise, float* output,
+                              State state) const {
     const FloatTag df;
-    const float* const p = p_;
     const float* const taps = row_.prior.taps;
-    const int radius = row_.prior.radius;
+    const int radius = kRadius >= 0 ? kRadius : row_.prior.radius;
+    const int lanes = row_.star.lanes;
     const FloatVec floor = hn::Set(df, row_.prior.floor);
-    for (int lane = 0; lane < row_.star.lanes; lane += kFloatLanes) {
+    for (int lane = 0; lane < lanes; lane += kFloatLanes) {
       FloatVec sum = hn::Mul(hn::Load(df, p + lane), hn::Set(df, taps[0]));
       for (int k = 1; k <= radius; ++k) {
         const FloatVec both = hn::Add(hn::LoadU(df, p + lane - k), hn::LoadU(df, p + lane + k));
@@ -161,20 +207,15 @@ class WorkColumn {
   }
 
   const BayesRow& row_;
+  int columns_;
   int margin_;
-  float* p_;
+  int pitch_;
 };
 
 void bayes_start_row_simd(const BayesRow& row) {
-  const WorkColumn work(row);
   const FloatTag df;
-  const float* source = row.star.source;
-  float* output = row.output;
-  for (int x = 0; x < row.star.columns; ++x) {
-    work.run([&](int lane) HWY_ATTR { return hn::Load(df, source + lane); }, output);
-    source += row.star.lanes;
-    output += row.star.lanes;
-  }
+  WorkColumns(row).run([df](const StarColumns& at, int lane)
+                           HWY_ATTR { return hn::Load(df, at.source + lane); });
 }
 
 void bayes_half_row_simd(const BayesRow& row) {
@@ -200,10 +241,8 @@ void bayes_half_row_simd(const BayesRow& row) {
         break;
     }
   }
-  const WorkColumn work(row);
-  each_column(row, [&](const StarColumns& at, float* output) HWY_ATTR {
-    work.run([&at](int lane) HWY_ATTR { return half_weight(at, lane); }, output);
-  });
+  WorkColumns(row).run([](const StarColumns& at, int lane)
+                           HWY_ATTR { return half_weight(at, lane); });
 }
 
 HWY_INLINE FloatVec star_sum(const StarColumns& at, int lane) {
@@ -233,21 +272,21 @@ HWY_INLINE FloatVec largest_sum(const StarColumns& at, int lanes) {
 template <bool kScaled>
 HWY_INLINE void general_columns(const BayesRow& row) {
   const FloatTag df;
-  const WorkColumn work(row);
-  each_column(row, [&](const StarColumns& at, float* output) HWY_ATTR {
-    FloatVec largest = hn::Zero(df);
+  const int lanes = row.star.lanes;
+  const float* column = nullptr;
+  FloatVec largest = hn::Zero(df);
+  WorkColumns(row).run([&](const StarColumns& at, int lane) HWY_ATTR {
     if constexpr (kScaled) {
-      largest = largest_sum(at, row.star.lanes);
+      if (at.centre != column) {
+        column = at.centre;
+        largest = largest_sum(at, lanes);
+      }
     }
-    work.run(
-        [&](int lane) HWY_ATTR {
-          FloatVec exponent = star_sum(at, lane);
-          if constexpr (kScaled) {
-            exponent = hn::Sub(exponent, largest);
-          }
-          return hn::Mul(hn::Load(df, at.source + lane), exp2_of_negative(exponent));
-        },
-        output);
+    FloatVec exponent = star_sum(at, lane);
+    if constexpr (kScaled) {
+      exponent = hn::Sub(exponent, largest);
+    }
+    return hn::Mul(hn::Load(df, at.source + lane), exp2_of_negative<true>(exponent));
   });
 }
 

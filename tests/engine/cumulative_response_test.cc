@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -186,6 +187,26 @@ TEST(CumulativeResponse, FindsTheShiftOfEachQuadrant) {
   for (int quadrant = 0; quadrant < 4; ++quadrant) {
     EXPECT_EQ(response.dominant(kParts[quadrant + 1]), (Displacement{shifts[quadrant], 0}));
   }
+}
+
+TEST(CumulativeResponse, NothingDominatesForLackOfPartners) {
+  // Unrelated images: each pixel with a partner is evidence against the displacement.
+  const Photograph left = test::noise<std::uint8_t>(60, 40, 1, 1);
+  const Photograph right = test::noise<std::uint8_t>(60, 40, 1, 2);
+  CumulativeResponseOptions options;
+  options.displacements_x = {-70, 70};
+  Execution execution({.threads = 2});
+  const CumulativeResponse response = cumulative_response(left, right, options, execution);
+  const auto whole = response.dominant(ImagePart::kWhole);
+  ASSERT_TRUE(whole.has_value());
+  EXPECT_LT(response.at(ImagePart::kWhole, *whole), 0);
+  EXPECT_LE(std::abs(whole->x_px), 30);
+  const auto left_half = response.dominant(ImagePart::kTopLeft);
+  ASSERT_TRUE(left_half.has_value());
+  EXPECT_TRUE(left_half->x_px <= 15 && left_half->x_px >= -45);
+  options.displacements_x = {40, 50};
+  EXPECT_EQ(cumulative_response(left, right, options, execution).dominant(ImagePart::kWhole),
+            std::nullopt);
 }
 
 TEST(CumulativeResponse, IsIdenticalForAnyThreads) {

@@ -106,6 +106,53 @@ TEST(DisparityRange, FindsNegativeAndLargeDisparities) {
   }
 }
 
+TEST(DisparityRange, FindsASmallObjectFarBeforeTheBackground) {
+  Execution execution({.threads = 2});
+  BookPairOptions options;
+  options.width_px = 240;
+  options.height_px = 160;
+  options.front_disparity_px = 75;
+  const BookPair pair = make_book_pair(options);
+  const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution);
+  EXPECT_LE(range.min, 2);
+  EXPECT_GE(range.max, 75);
+}
+
+TEST(DisparityRange, IgnoresWhatTheOtherImageDoesNotConfirm) {
+  Execution execution({.threads = 2});
+  BookPair pair = flat_pair(320, 96, 4, BookPattern::kRandomDots);
+  // A piece of the right image that the left one shows a second time, 100 columns away.
+  auto& left = std::get<Image<std::uint8_t>>(pair.left.pixels);
+  const auto& right = std::get<Image<std::uint8_t>>(pair.right.pixels);
+  for (int y = 32; y < 64; ++y) {
+    for (int x = 224; x < 288; ++x) {
+      left.at(x, y) = right.at(x - 100, y);
+    }
+  }
+  const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution);
+  EXPECT_LE(range.min, 4);
+  EXPECT_GE(range.max, 5);
+  EXPECT_LT(range.max, 100);
+}
+
+TEST(DisparityRange, RepeatedTextureIsNoEvidence) {
+  Execution execution({.threads = 2});
+  Photograph views[2];
+  for (unsigned view = 0; view < 2; ++view) {
+    Photograph noise = test::noise<std::uint8_t>(320, 96, 1, view + 1);
+    auto& pixels = std::get<Image<std::uint8_t>>(noise.pixels);
+    for (int y = 0; y < 96; ++y) {
+      for (int x = 0; x < 320; ++x) {
+        const int stripe = x % 8 < 4 ? 60 : 180;
+        pixels.at(x, y) = static_cast<std::uint8_t>(stripe + pixels.at(x, y) / 32);
+      }
+    }
+    views[view] = std::move(noise);
+  }
+  EXPECT_THAT(test::error_of([&] { estimate_disparity_range(views[0], views[1], execution); }),
+              HasSubstr("no evidence"));
+}
+
 TEST(DisparityRange, ReducesLargeImages) {
   Execution execution({.threads = 2});
   const BookPair pair = flat_pair(2001, 97, 90, BookPattern::kGrass);

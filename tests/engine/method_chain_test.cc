@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <optional>
 
 #include "engine/matching/match_chain.h"
 #include "scheduler/strip_pipeline.h"

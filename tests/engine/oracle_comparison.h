@@ -60,14 +60,15 @@ struct Agreement {
 };
 
 /// Raw maps of both references and their confidences against the oracle; fails the running test
-/// where they differ by more than `tolerance`. `what` names the case in messages.
+/// where they differ by more than `tolerance`. `what` names the case in messages. With
+/// VANTAGE_TEST_VERBOSE in the environment it prints what it counted.
 void expect_equals_oracle(const PhotographPair& pair, MatchOptions options, Execution& execution,
                           const Tolerance& tolerance, const std::string& what);
 
 /// What rounding can do to a method: measured, times three or so.
 Tolerance tolerance_of(const MethodParameters& parameters);
 
-/// "squared under membrane", for messages and names of tests.
+/// For names of tests.
 std::string name_of(MatchCost cost);
 std::string name_of(Aggregation aggregation);
 

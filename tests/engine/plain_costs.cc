@@ -1,7 +1,6 @@
 #include "tests/engine/plain_costs.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>

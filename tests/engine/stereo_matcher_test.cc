@@ -267,15 +267,19 @@ TEST(StereoMatcher, ChainEqualsWholeImageOracle) {
 
   const auto geometry = candidate_geometry(options, Reference::kLeft, 89, 37);
   PreparedPair pair;
-  prepare_pair(left, right, geometry, options.resolved().window_px * options.resolved().window_px, {}, execution, pair);
+  const MethodParameters parameters = options.resolved();
+  prepare_pair(left, right, geometry, parameters.window_px * parameters.window_px, {}, execution,
+               pair);
+  ChainInput input;
+  input.pair = &pair;
   DisparityMap whole(89, 37);
-  const MatchChain chain(options, geometry, pair, whole.view());
+  const MatchChain chain(parameters, geometry, input, {whole.view(), {}, {}});
   scheduler::run_whole_image(chain.stages());
   EXPECT_TRUE(identical(maps.left, whole));
 
   // The column sums stored as a whole image between two passes.
   DisparityMap in_passes(89, 37);
-  const MatchChain split(options, geometry, pair, in_passes.view());
+  const MatchChain split(parameters, geometry, input, {in_passes.view(), {}, {}});
   scheduler::PlanRequest request;
   request.threads = 2;
   request.strip_columns = 13;
