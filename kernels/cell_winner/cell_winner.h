@@ -54,8 +54,8 @@ void select_cell_winners_row(const CellRow& row, const CellWinners& outputs);
 
 /// Of energies, negative entropy (6.15): entropy[j] = Σ p log p ≤ 0 with
 /// p ∝ exp(−scale · (E − Emin)) over the candidates of column first_column + j; NaN where there is
-/// none. `best`: the least energies, as select_cell_winners_row() writes them. scale ≥ 0.
-/// Instruction sets agree to 1e-5, not exactly: the exponential uses what each offers.
+/// none. `best`: the least energies, as select_cell_winners_row() writes them. scale ≥ 0. To 1e-5;
+/// identical on every instruction set.
 void cell_entropy_row(const CellRow& row, const float* best, float scale, float* entropy);
 
 /// energy[j] = −log probability[j]: infinity for 0, NaN for NaN. Identical on every instruction

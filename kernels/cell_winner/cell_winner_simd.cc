@@ -2,7 +2,6 @@
 #define HWY_TARGET_INCLUDE "kernels/cell_winner/cell_winner_simd.cc"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, so that it is compiled once per target.
-#include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include "kernels/cell_winner/cell_winner.h"
 #include "kernels/cell_winner/lane_trees-inl.h"
 #include "kernels/cell_winner/logarithm-inl.h"
+#include "kernels/cells/exp_log-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
@@ -138,7 +138,7 @@ class Places {
   VecF first_;
 };
 
-// Lane by lane, sums of e and e·t with e = exp(−t), t = scale · (E − Emin).
+// Lane by lane, sums of e and e·t with e = 2^−t, t = scale · (E − Emin).
 class Weights {
  public:
   HWY_INLINE Weights(float least, float scale)
@@ -150,14 +150,16 @@ class Weights {
   template <class Lanes>
   HWY_INLINE void add(const float* cells, const LaneRange& range, int lane) {
     const TagF d;
+    // What it leaves of e is nothing beside the winner's 1.
+    const VecF most = hn::Set(d, -kLeastExponent);
 #pragma GCC unroll 4
     for (int p = 0; p < kParts; ++p) {
       const int first = lane + p * kStep;
       const VecF above = hn::Mul(scale_, hn::Sub(hn::LoadU(d, cells + first), least_));
-      // Beyond 104 the exponential is 0, and 0 times infinity would be no number.
-      const VecF most = hn::Set(d, 200.0F);
-      const VecF t = Lanes(range, first).cells_or(hn::Min(above, most), most);
-      const VecF weight = hn::Exp(d, hn::Neg(t));
+      const Lanes counts(range, first);
+      // Before the exponential too: what else lanes hold need not be a number.
+      const VecF t = counts.cells_or(hn::Min(above, most), most);
+      const VecF weight = counts.cells_or(exp2_of_negative(hn::Neg(t)), hn::Zero(d));
       sum_[p] = hn::Add(sum_[p], weight);
       weighted_[p] = hn::Add(weighted_[p], hn::Mul(weight, t));
     }
@@ -286,14 +288,15 @@ class Stretch {
     for (int j = begin_; j < end_; j += kStep) {
       const int columns = std::min(kStep, end_ - j);
       for (int k = 0; k < columns; ++k) {
-        Weights weights(best[j + k], scale);
+        Weights weights(best[j + k], scale * kLog2E);
         visit_up<kAll>(weights, cells(j + k), candidates(j + k), lanes_);
         weights.store(lane_sums + k * kLaneMultiple, lane_weighted + k * kLaneMultiple);
       }
       const VecF sum = joined_lanes<Sum, kLaneMultiple>(lane_sums);
       const VecF weighted = joined_lanes<Sum, kLaneMultiple>(lane_weighted);
-      // The winner alone contributes 1: a smaller sum is that of no candidate.
-      const VecF value = hn::Sub(hn::Zero(d), hn::Add(hn::Div(weighted, sum), hn::Log(d, sum)));
+      const VecF mean = hn::Mul(hn::Div(weighted, sum), hn::Set(d, kLn2));
+      const VecF value = hn::Sub(hn::Zero(d), hn::Add(mean, log_of_normal(sum)));
+      // The winner alone contributes 1.
       const auto none = hn::Lt(sum, hn::Set(d, 0.5F));
       store_first(d, hn::IfThenElse(none, hn::Set(d, kUnknown), hn::Min(value, hn::Zero(d))),
                   columns, output + j);

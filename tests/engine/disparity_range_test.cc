@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <utility>
 
 #include "engine/generation/book_pairs.h"
 #include "engine/generation/layered_scene.h"
+#include "engine/io/disparity_io.h"
+#include "engine/io/photograph_io.h"
 #include "engine/matching/stereo_matcher.h"
 #include "tests/engine/io_test_support.h"
 
@@ -92,6 +95,32 @@ TEST(DisparityRange, CoversTheBookPairsWithTexture) {
       EXPECT_GE(range.min, -10);
       EXPECT_LE(range.max, 30);
     }
+  }
+}
+
+TEST(DisparityRange, CoversPhotographs) {
+  const std::filesystem::path data = VANTAGE_SHARED_DATA;
+  if (!std::filesystem::exists(data)) {
+    GTEST_SKIP() << "no photographs at " << data;
+  }
+  struct Scene {
+    const char* left;
+    const char* right;
+    const char* truth;
+    double scale;
+  };
+  Execution execution({.threads = 2});
+  for (const Scene& scene :
+       {Scene{"tsukuba/im3.ppm", "tsukuba/im4.ppm", "tsukuba/disp3.pgm", 16},
+        Scene{"venus/im2.ppm", "venus/im6.ppm", "venus/disp2.pgm", 8},
+        Scene{"cones/im2.png", "cones/im6.png", "cones/disp2.png", 4},
+        Scene{"bowling1/view1.png", "bowling1/view5.png", "bowling1/disp1.png", 2},
+        Scene{"motorcycle/im0.png", "motorcycle/im1E.png", "motorcycle/disp0.pfm", 0}}) {
+    const DisparityRange range = estimate_disparity_range(
+        read_photograph(data / scene.left), read_photograph(data / scene.right), execution);
+    const Judged judged = judge(range, read_disparity(data / scene.truth, scene.scale));
+    EXPECT_GE(judged.covered, 0.99) << scene.left << ' ' << range.min << ':' << range.max;
+    EXPECT_LE(judged.ratio, 2.6) << scene.left << ' ' << range.min << ':' << range.max;
   }
 }
 

@@ -193,6 +193,28 @@ TEST_P(CellWinner, MarginsEqualTheReferenceToTheBit) {
   });
 }
 
+TEST(CellEntropy, IsTheSameOnEveryInstructionSet) {
+  std::mt19937 random(55);
+  WinnerCase c;
+  c.width = 300;
+  c.count = 70;
+  const FloatCells cells(random, c, CellKind::kEnergies);
+  const CellRow row = cells.row(c, 0, c.width, false);
+  std::vector<float> best(static_cast<std::size_t>(c.width));
+  select_cell_winners_row_ref(row, {nullptr, best.data(), nullptr});
+  std::vector<float> first;
+  for (const long long target : each_target()) {
+    force_target(target);
+    std::vector<float> entropy(best.size());
+    cell_entropy_row(row, best.data(), 1e-4F, entropy.data());
+    if (first.empty()) {
+      first = entropy;
+    }
+    EXPECT_EQ(entropy, first) << target_name(target);
+  }
+  force_target(0);
+}
+
 TEST_P(CellWinner, TiesGoToTheSmallestDisparityAndHaveNoMargin) {
   for (int count = 1; count <= 70; ++count) {
     for (int first = 0; first < count; ++first) {
