@@ -70,16 +70,16 @@ inline DisparityMap to_map(const cv::Mat& sixteenths, int min_disparity) {
   return map;
 }
 
-/// StereoSGBM's left and right maps: the right one from the mirrored, exchanged images. The images
+/// A matcher's left and right maps: the right one from the mirrored, exchanged images. The images
 /// are padded on the left as far as the range reaches, because it leaves those columns out.
-struct SgbmMaps {
+struct PeerMaps {
   DisparityMap left;
   DisparityMap right;
 };
 
-inline SgbmMaps sgbm_maps(const cv::Mat& left, const cv::Mat& right, DisparityRange range,
-                          int block, int mode) {
-  const cv::Ptr<cv::StereoSGBM> sgbm = make_sgbm(range, block, left.channels(), mode);
+/// Both maps of a matcher: see PeerMaps.
+inline PeerMaps both_maps(cv::StereoMatcher& matcher, const cv::Mat& left, const cv::Mat& right,
+                          DisparityRange range) {
   const int pad = range.min + opencv_candidates(range);
   const auto one_map = [&](const cv::Mat& reference, const cv::Mat& other) {
     cv::Mat padded_reference;
@@ -87,7 +87,7 @@ inline SgbmMaps sgbm_maps(const cv::Mat& left, const cv::Mat& right, DisparityRa
     cv::Mat disparity;
     cv::copyMakeBorder(reference, padded_reference, 0, 0, pad, 0, cv::BORDER_REPLICATE);
     cv::copyMakeBorder(other, padded_other, 0, 0, pad, 0, cv::BORDER_REPLICATE);
-    sgbm->compute(padded_reference, padded_other, disparity);
+    matcher.compute(padded_reference, padded_other, disparity);
     return cv::Mat(disparity.colRange(pad, disparity.cols));
   };
   cv::Mat left_flipped;
@@ -97,6 +97,16 @@ inline SgbmMaps sgbm_maps(const cv::Mat& left, const cv::Mat& right, DisparityRa
   cv::Mat right_disparity;
   cv::flip(one_map(right_flipped, left_flipped), right_disparity, 1);
   return {to_map(one_map(left, right), range.min), to_map(right_disparity, range.min)};
+}
+
+inline PeerMaps sgbm_maps(const cv::Mat& left, const cv::Mat& right, DisparityRange range,
+                          int block, int mode) {
+  return both_maps(*make_sgbm(range, block, left.channels(), mode), left, right, range);
+}
+
+inline PeerMaps bm_maps(const cv::Mat& left, const cv::Mat& right, DisparityRange range,
+                        int window_px) {
+  return both_maps(*make_bm(range, window_px), left, right, range);
 }
 
 }  // namespace vantage::perf

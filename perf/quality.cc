@@ -108,7 +108,7 @@ Maps strict_ssd_maps(const Photograph& left, const Photograph& right, DisparityR
 
 Maps opencv_maps(const Photograph& left, const Photograph& right, DisparityRange range,
                  Execution& execution) {
-  SgbmMaps sgbm = sgbm_maps(to_opencv(left), to_opencv(right), range, 5, cv::StereoSGBM::MODE_SGBM);
+  PeerMaps sgbm = sgbm_maps(to_opencv(left), to_opencv(right), range, 5, cv::StereoSGBM::MODE_SGBM);
   Maps maps{"OpenCV StereoSGBM", std::move(sgbm.left), std::move(sgbm.right)};
   refine(maps, range, execution);
   return maps;
