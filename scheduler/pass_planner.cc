@@ -14,11 +14,16 @@ constexpr double kLevel2Share = 0.5;
 // The same in passes of more parts than kFewParts: their rings are large beside the image rows.
 constexpr double kLevel2ShareOfManyParts = 0.75;
 constexpr std::size_t kFewParts = 3;
+// The part of level 3 that the strips of all threads may fill: images, stored rows and other
+// programs want room too.
+constexpr double kLevel3Share = 0.4;
 // Time per cell while the strips of all threads live in their level-2 caches, in the level 3 that
-// they share, or beyond, level 1 being 1.
+// they share, or beyond, level 1 being 1. Iterations stream through their rings, so that level 3 is
+// nearly as good as level 2: ten of Bayes on 450x375x64, strips of 225 columns in level 3 took 0.93
+// of the time of 57 columns in level 2, whose halos are wider (Zen 4, 2026-11-21).
 constexpr double kLevel2Time = 1.35;
-constexpr double kLevel3Time = 2.5;
-constexpr double kMemoryTime = 6.0;
+constexpr double kLevel3Time = 1.5;
+constexpr double kMemoryTime = 4.0;
 // Starting a row of a stage takes as long as this many bytes of its cells.
 constexpr double kRowStartBytes = 1024;
 // Setting out a stage in a task takes as long as starting this many rows.
@@ -162,8 +167,7 @@ double PassPlanner::cache_time(std::size_t scratch_bytes) const {
   if (bytes <= share * static_cast<double>(machine_.l2_bytes)) {
     return kLevel2Time;
   }
-  const bool shared =
-      machine_.l3_bytes == 0 || bytes * threads_ <= static_cast<double>(machine_.l3_bytes);
+  const bool shared = bytes * threads_ <= kLevel3Share * static_cast<double>(machine_.l3_bytes);
   return shared ? kLevel3Time : kMemoryTime;
 }
 
