@@ -60,8 +60,8 @@ TEST(MethodParameters, AreTheBooks) {
 
 TEST(MethodParameters, OverridesGoBeforePresetsBeforeTheBook) {
   MatchOptions options;
-  options.preset = MatchPreset::kBalanced;
-  const PresetSettings preset = preset_settings(MatchPreset::kBalanced);
+  options.preset = MatchPreset::kQuality;
+  const PresetSettings preset = preset_settings(MatchPreset::kQuality);
   EXPECT_EQ(options.resolved(), resolve(preset.method, preset.parameters));
   EXPECT_EQ(options.resolved_refinement().cross_check_px, *preset.refinement.cross_check_px);
   options.parameters.iterations = 77;
@@ -71,8 +71,8 @@ TEST(MethodParameters, OverridesGoBeforePresetsBeforeTheBook) {
   const MethodParameters resolved = options.resolved();
   EXPECT_EQ(resolved.iterations, 77);
   EXPECT_EQ(resolved.aggregation, Aggregation::kMembrane);
-  EXPECT_EQ(resolved.cost, MatchCost::kSquared);  // what suits a membrane
-  EXPECT_EQ(resolved.sigma_prior, *preset.parameters.sigma_prior);
+  EXPECT_EQ(resolved.cost, MatchCost::kCensus);  // the preset's goes with a membrane too
+  EXPECT_EQ(resolved.sigma_measurement, *preset.parameters.sigma_measurement);
   EXPECT_EQ(options.resolved_refinement().speckle_size_px, 3);
   EXPECT_FALSE(options.resolved_refinement().cross_check);
   EXPECT_EQ(options.resolved_refinement().cross_check_px, *preset.refinement.cross_check_px);
