@@ -147,10 +147,19 @@ class CostStage final : public scheduler::RowStage {
                    float* cells) const {
     switch (parameters_.cost) {
       case MatchCost::kSquared:
-      case MatchCost::kContaminated:
         kernels::contaminated_likelihood_row(partner.grey_levels(y, columns, work), measurement_,
                                              cells);
         break;
+      case MatchCost::kContaminated: {
+        const kernels::GreyPairs levels = partner.grey_levels(y, columns, work);
+        if (levels.channels == 1) {
+          kernels::contaminated_likelihood_row(levels, measurement_, cells);
+        } else {
+          kernels::contaminated_energy_row(levels, measurement_, cells);
+          kernels::likelihood_of_energies({columns.size(), lanes_, count_}, cells);
+        }
+        break;
+      }
       case MatchCost::kGradient:
         energies(partner, y, columns, work, cells);
         kernels::likelihood_of_evidence(

@@ -68,10 +68,10 @@ enum class CellMeaning {
 /// is negated. Of colour channels: the mean of their costs. A cell whose partner is outside has the
 /// cost of the clamped coordinate; evidence has 0, the contaminated Gaussian −log ε. With several
 /// partners: the sum of their costs.
-/// Likelihoods: (1−ε) exp(−r²/2σ²) + ε, with r² = ΔI² (of channels: its mean) for the squared and
-/// contaminated costs, r = the cost for the others, and for evidence
-/// (1−ε) exp((E − max over the column)/σ) + ε, E of the cells with a partner; ε where the partner
-/// is outside. With several partners: the product.
+/// Likelihoods: exp(−cost) of the contaminated cost, which is (1−ε) exp(−ΔI²/2σ²) + ε for one
+/// channel; else (1−ε) exp(−r²/2σ²) + ε, with r² = the squared cost, r = any other cost, and for
+/// evidence (1−ε) exp((E − max over the column)/σ) + ε, E of the cells with a partner; ε where the
+/// partner is outside. With several partners: the product.
 ///
 /// `reference`, prepared as a reference, `partners` (at least one), prepared as partners of this
 /// direction, and their planes must outlive the stage; all prepared with `parameters`, this range

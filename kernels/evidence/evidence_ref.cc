@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "kernels/evidence/evidence.h"
 #include "kernels/cells/exp_log.h"
+#include "kernels/evidence/evidence.h"
 
 namespace vantage::kernels {
 namespace {

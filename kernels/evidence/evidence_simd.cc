@@ -4,8 +4,8 @@
 // After foreach_target.h, so that they are compiled once per target.
 #include <hwy/highway.h>
 
-#include "kernels/feature_pairs-inl.h"
 #include "kernels/cells/exp_log-inl.h"
+#include "kernels/feature_pairs-inl.h"
 
 #include <cstdint>
 #include <limits>

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/feature_pairs.h"
 #include "kernels/cells/exp_log.h"
+#include "kernels/feature_pairs.h"
 
 namespace vantage::kernels {
 
@@ -68,6 +68,11 @@ struct CellRow {
 /// The measurement model at r = the cost in each cell, in place. Lanes from row.count on become 0.
 void likelihood_of_costs(const CellRow& row, ContaminatedGaussian model, float* cells);
 void likelihood_of_costs_ref(const CellRow& row, ContaminatedGaussian model, float* cells);
+
+/// exp(−energy) of each cell, in place: likelihoods of means of contaminated energies, ≥ 0 but for
+/// rounding. Lanes from row.count on become 0.
+void likelihood_of_energies(const CellRow& row, float* cells);
+void likelihood_of_energies_ref(const CellRow& row, float* cells);
 
 /// cells += addend, cells *= factor, for several partners. cells_count: a multiple of
 /// kLaneMultiple.

@@ -89,6 +89,15 @@ void likelihood_of_costs_ref(const CellRow& row, ContaminatedGaussian model, flo
   }
 }
 
+void likelihood_of_energies_ref(const CellRow& row, float* cells) {
+  for (int j = 0; j < row.columns; ++j) {
+    for (int i = 0; i < row.lanes; ++i) {
+      float& cell = cells[j * row.lanes + i];
+      cell = i < row.count ? exp2_of_negative(cell * -kLog2E) : 0.0F;
+    }
+  }
+}
+
 void add_cells_ref(const float* addend, int cells_count, float* cells) {
   for (int k = 0; k < cells_count; ++k) {
     cells[k] += addend[k];

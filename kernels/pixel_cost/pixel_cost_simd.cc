@@ -4,8 +4,8 @@
 // After foreach_target.h, so that they are compiled once per target.
 #include <hwy/highway.h>
 
-#include "kernels/feature_pairs-inl.h"
 #include "kernels/cells/exp_log-inl.h"
+#include "kernels/feature_pairs-inl.h"
 
 #include <cstddef>
 
@@ -103,22 +103,34 @@ void contaminated_likelihood(const GreyPairs& row, ContaminatedGaussian model, f
   compare_row<true>(row, ContaminatedLikelihood{Measurement(model)}, cells);
 }
 
-void costs_to_likelihood(const CellRow& row, ContaminatedGaussian model, float* cells) {
+// likelihood(value) of the candidates of each column, 0 in the other lanes.
+template <class Likelihood>
+HWY_INLINE void each_candidate_cell(const CellRow& row, Likelihood likelihood, float* cells) {
   const Tag d;
   const int step = static_cast<int>(hn::Lanes(d));
-  const Measurement measurement(model);
   for (int j = 0; j < row.columns; ++j, cells += row.lanes) {
     int lane = 0;
     for (; lane < row.count; lane += step) {
-      const Vec cost = hn::LoadU(d, cells + lane);
-      const Vec likelihood = measurement(hn::Mul(cost, cost));
+      const Vec value = likelihood(hn::LoadU(d, cells + lane));
       const auto is_candidate = hn::FirstN(d, static_cast<std::size_t>(row.count - lane));
-      hn::StoreU(hn::IfThenElseZero(is_candidate, likelihood), d, cells + lane);
+      hn::StoreU(hn::IfThenElseZero(is_candidate, value), d, cells + lane);
     }
     for (; lane < row.lanes; lane += step) {
       hn::StoreU(hn::Zero(d), d, cells + lane);
     }
   }
+}
+
+void costs_to_likelihood(const CellRow& row, ContaminatedGaussian model, float* cells) {
+  const Measurement measurement(model);
+  each_candidate_cell(
+      row, [&](Vec cost) HWY_ATTR { return measurement(hn::Mul(cost, cost)); }, cells);
+}
+
+void energies_to_likelihood(const CellRow& row, float* cells) {
+  const Vec factor = hn::Set(Tag(), -kLog2E);
+  each_candidate_cell(
+      row, [&](Vec energy) HWY_ATTR { return exp2_of_negative(hn::Mul(energy, factor)); }, cells);
 }
 
 void add(const float* addend, int cells_count, float* cells) {
@@ -158,6 +170,7 @@ HWY_EXPORT(sampling_insensitive);
 HWY_EXPORT(contaminated_energy);
 HWY_EXPORT(contaminated_likelihood);
 HWY_EXPORT(costs_to_likelihood);
+HWY_EXPORT(energies_to_likelihood);
 HWY_EXPORT(add);
 HWY_EXPORT(multiply);
 HWY_EXPORT(sampling_bounds);
@@ -177,6 +190,9 @@ void contaminated_likelihood_row(const GreyPairs& row, ContaminatedGaussian mode
 }
 void likelihood_of_costs(const CellRow& row, ContaminatedGaussian model, float* cells) {
   HWY_DYNAMIC_DISPATCH(costs_to_likelihood)(row, model, cells);
+}
+void likelihood_of_energies(const CellRow& row, float* cells) {
+  HWY_DYNAMIC_DISPATCH(energies_to_likelihood)(row, cells);
 }
 void add_cells(const float* addend, int cells_count, float* cells) {
   HWY_DYNAMIC_DISPATCH(add)(addend, cells_count, cells);

@@ -97,8 +97,10 @@ class PlainCostCells {
       } else if (!is_energy) {
         switch (parameters_.cost) {
           case MatchCost::kSquared:
-          case MatchCost::kContaminated:
             cell = measurement(cell);
+            break;
+          case MatchCost::kContaminated:
+            cell = std::exp(-cell);
             break;
           case MatchCost::kGradient:
             cell =
@@ -140,9 +142,7 @@ class PlainCostCells {
       case MatchCost::kTruncated:
         return std::min(std::abs(difference), parameters_.truncation);
       case MatchCost::kContaminated:
-        return meaning_ == CellMeaning::kLikelihood
-                   ? difference * difference
-                   : -std::log(measurement(difference * difference));
+        return -std::log(measurement(difference * difference));
       case MatchCost::kBirchfieldTomasi:
         return std::min(distance(a.level.at(x, y), b.level, whole, partner_y),
                         distance(level, a.level, x, y));

@@ -254,11 +254,7 @@ Volume plain_costs(const Photograph& reference, const Photograph& other, Referen
 Volume plain_measurement_energies(const Photograph& reference, const Photograph& other,
                                   Reference reference_is, DisparityRange range,
                                   const MethodParameters& parameters) {
-  const bool of_squares =
-      parameters.cost == MatchCost::kSquared || parameters.cost == MatchCost::kContaminated;
-  MethodParameters residual = parameters;
-  residual.cost = of_squares ? MatchCost::kSquared : parameters.cost;
-  Volume energies = plain_costs(reference, other, reference_is, range, residual);
+  Volume energies = plain_costs(reference, other, reference_is, range, parameters);
   const double epsilon = parameters.epsilon_measurement;
   for (int y = 0; y < energies.height; ++y) {
     for (int x = 0; x < energies.width; ++x) {
@@ -275,9 +271,9 @@ Volume plain_measurement_energies(const Photograph& reference, const Photograph&
         } else if (parameters.cost == MatchCost::kGradient) {
           const double exponent = (-cell - most_evidence) / parameters.sigma_measurement;
           cell = -std::log((1 - epsilon) * std::exp(exponent) + epsilon);
-        } else if (of_squares) {
+        } else if (parameters.cost == MatchCost::kSquared) {
           cell = contaminated(cell, parameters);
-        } else {
+        } else if (parameters.cost != MatchCost::kContaminated) {
           cell = contaminated(cell * cell, parameters);
         }
       }

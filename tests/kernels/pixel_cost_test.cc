@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "kernels/candidates.h"
 #include "kernels/cells/exp_log.h"
 #include "tests/kernels/feature_rows.h"
 #include "tests/kernels/kernel_test_utils.h"
@@ -215,6 +216,29 @@ TEST_P(PixelCost, LikelihoodOfCosts) {
         const double cost = costs[k];
         ASSERT_NEAR(cells[k], is_candidate ? measurement(model, cost * cost) : 0, 4e-7);
       }
+    }
+  }
+}
+
+TEST_P(PixelCost, LikelihoodsOfEnergies) {
+  std::mt19937 random(7);
+  for (const int count : {1, 15, 16, 17, 40}) {
+    const int lanes = CandidateGeometry{1, 0, count, -1}.lanes();
+    const CellRow row{3, lanes, count};
+    std::vector<float> energies(static_cast<std::size_t>(3 * lanes));
+    std::generate(energies.begin(), energies.end(), [&] { return draw_grey(random) / 20; });
+    energies[0] = 0;
+    const auto run = [&](auto kernel) {
+      return [&, kernel](float* out) {
+        std::copy(energies.begin(), energies.end(), out);
+        kernel(row, out);
+      };
+    };
+    const auto cells =
+        equal_cells(energies.size(), run(likelihood_of_energies), run(likelihood_of_energies_ref));
+    for (std::size_t k = 0; k < energies.size(); ++k) {
+      const bool is_candidate = static_cast<int>(k) % lanes < count;
+      ASSERT_NEAR(cells[k], is_candidate ? std::exp(-static_cast<double>(energies[k])) : 0, 1e-6);
     }
   }
 }
