@@ -57,7 +57,9 @@ inline Mask visible_in_both(const DisparityMap& truth) {
   std::vector<float> nearest(static_cast<std::size_t>(truth.width()));
   for (int y = 0; y < truth.height(); ++y) {
     std::fill(nearest.begin(), nearest.end(), -std::numeric_limits<float>::infinity());
-    const auto place = [&](int x) { return static_cast<int>(std::lround(x - truth.at(x, y))); };
+    const auto place = [&](int x) {
+      return static_cast<int>(std::lround(static_cast<float>(x) - truth.at(x, y)));
+    };
     const auto is_inside = [&](int x) {
       return std::isfinite(truth.at(x, y)) && place(x) >= 0 && place(x) < truth.width();
     };
