@@ -1,0 +1,225 @@
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <initializer_list>
+
+#include "engine/error.h"
+#include "engine/io/file_bytes.h"
+#include "engine/rectification/calibration_entries.h"
+#include "engine/rectification/stereo_calibration.h"
+
+namespace vantage {
+namespace {
+
+constexpr std::size_t kMostBytes = 16U << 20;
+
+using Matrix34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+
+/// The entries of a file, asked for by name.
+class CalibrationFile {
+ public:
+  explicit CalibrationFile(CalibrationEntries entries) : entries_(std::move(entries)) {}
+
+  /// The entry of the first of these names that is there, null if none is. Throws Error when it
+  /// does not hold numbers.
+  [[nodiscard]] const CalibrationEntry* find(std::initializer_list<std::string_view> names) const {
+    for (const std::string_view name : names) {
+      const auto entry = entries_.find(name);
+      if (entry != entries_.end()) {
+        if (!entry->second.problem.empty()) {
+          throw Error(fmt::format("{} {}", name, entry->second.problem));
+        }
+        return &entry->second;
+      }
+    }
+    return nullptr;
+  }
+
+  /// Like find(), but it has to be there, with as many values (rows · columns of them).
+  [[nodiscard]] const std::vector<double>& values(std::initializer_list<std::string_view> names,
+                                                  int rows, int columns) const {
+    const CalibrationEntry* entry = find(names);
+    const std::string_view name = *names.begin();
+    if (entry == nullptr) {
+      throw Error(
+          fmt::format("there is no {} in it, expected a {}x{} matrix", name, rows, columns));
+    }
+    if (entry->values.size() != static_cast<std::size_t>(rows * columns)) {
+      throw Error(fmt::format("{} has {} values, expected {}x{}", name, entry->values.size(), rows,
+                              columns));
+    }
+    if (rows > 1 && columns > 1 && entry->rows != 0 && entry->rows != rows) {
+      throw Error(fmt::format("{} is a {}x{} matrix, expected {}x{}", name, entry->rows,
+                              entry->columns, rows, columns));
+    }
+    return entry->values;
+  }
+
+  [[nodiscard]] Eigen::Matrix3d matrix(std::initializer_list<std::string_view> names) const {
+    return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(
+        values(names, 3, 3).data());
+  }
+  [[nodiscard]] double number(std::string_view name) const { return values({name}, 1, 1)[0]; }
+
+ private:
+  CalibrationEntries entries_;
+};
+
+int whole_pixels(double value) {
+  if (!(value >= 1 && value <= 1e6) || value != std::floor(value)) {
+    throw Error(fmt::format("the image size holds {}, expected whole pixels", value));
+  }
+  return static_cast<int>(value);
+}
+
+/// The rotation nearest to what a file gives to a few digits. Leaves what is none as it is.
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
+  return (rotation - matrix).cwiseAbs().maxCoeff() <= 1e-3 ? rotation : matrix;
+}
+
+StereoCalibration from_opencv(const CalibrationFile& file) {
+  StereoCalibration calibration{.format = "OpenCV"};
+  calibration.left.matrix = file.matrix({"M1", "K1", "cameraMatrix1", "camera_matrix_1"});
+  calibration.right.matrix = file.matrix({"M2", "K2", "cameraMatrix2", "camera_matrix_2"});
+  if (const CalibrationEntry* d = file.find({"D1", "distCoeffs1", "dist_coeffs_1"})) {
+    calibration.left.distortion = d->values;
+  }
+  if (const CalibrationEntry* d = file.find({"D2", "distCoeffs2", "dist_coeffs_2"})) {
+    calibration.right.distortion = d->values;
+  }
+  if (file.find({"R"}) == nullptr || file.find({"T", "t"}) == nullptr) {
+    throw Error(
+        "it has no R and T, expected intrinsics (M1, D1, M2, D2) and extrinsics (R, T) in one "
+        "file");
+  }
+  calibration.rotation = nearest_rotation(file.matrix({"R"}));
+  calibration.translation = Eigen::Map<const Eigen::Vector3d>(file.values({"T", "t"}, 3, 1).data());
+  if (file.find({"image_width"}) != nullptr) {
+    calibration.image_size = {whole_pixels(file.number("image_width")),
+                              whole_pixels(file.number("image_height"))};
+  } else if (file.find({"imageSize", "image_size"}) != nullptr) {
+    const std::vector<double>& size = file.values({"imageSize", "image_size"}, 2, 1);
+    calibration.image_size = {whole_pixels(size[0]), whole_pixels(size[1])};
+  }
+  Eigen::Matrix3d difference = calibration.left.matrix - calibration.right.matrix;
+  difference(0, 2) = 0;
+  calibration.is_rectified = difference.isZero(0) && calibration.left.is_without_distortion() &&
+                             calibration.right.is_without_distortion() &&
+                             calibration.rotation == Eigen::Matrix3d::Identity() &&
+                             calibration.translation.x() < 0 && calibration.translation.y() == 0 &&
+                             calibration.translation.z() == 0;
+  return calibration;
+}
+
+StereoCalibration from_middlebury(const CalibrationFile& file) {
+  StereoCalibration calibration{.is_rectified = true, .format = "Middlebury"};
+  calibration.left.matrix = file.matrix({"cam0"});
+  calibration.right.matrix = file.matrix({"cam1"});
+  calibration.translation = {-file.number("baseline"), 0, 0};
+  calibration.image_size = {whole_pixels(file.number("width")),
+                            whole_pixels(file.number("height"))};
+  if (file.find({"doffs"}) != nullptr &&
+      !(std::abs(file.number("doffs") - calibration.doffs_px()) <= 0.1)) {
+    throw Error(fmt::format("doffs is {}, but cx of cam1 is {:.6g} more than of cam0",
+                            file.number("doffs"), calibration.doffs_px()));
+  }
+  return calibration;
+}
+
+/// Two cameras of a rig of which each is P = K · (I | t).
+StereoCalibration from_projections(const Matrix34& left, const Matrix34& right) {
+  StereoCalibration calibration{.is_rectified = true};
+  calibration.left.matrix = left.leftCols<3>();
+  calibration.right.matrix = right.leftCols<3>();
+  calibration.left.validate("left camera");
+  calibration.right.validate("right camera");
+  calibration.translation = calibration.right.matrix.inverse() * right.col(3) -
+                            calibration.left.matrix.inverse() * left.col(3);
+  return calibration;
+}
+
+StereoCalibration from_kitti(const CalibrationFile& file) {
+  const auto projection = [&](std::string_view name, std::string_view other_name) -> Matrix34 {
+    return Eigen::Map<const Matrix34>(file.values({name, other_name}, 3, 4).data());
+  };
+  const bool is_grey = file.find({"P0", "P_rect_00"}) != nullptr;
+  StereoCalibration calibration =
+      is_grey ? from_projections(projection("P0", "P_rect_00"), projection("P1", "P_rect_01"))
+              : from_projections(projection("P2", "P_rect_02"), projection("P3", "P_rect_03"));
+  calibration.format = is_grey ? "KITTI, cameras 0 and 1" : "KITTI, cameras 2 and 3";
+  const char* size_name = is_grey ? "S_rect_00" : "S_rect_02";
+  if (file.find({size_name}) != nullptr) {
+    const std::vector<double>& size = file.values({size_name}, 2, 1);
+    calibration.image_size = {whole_pixels(size[0]), whole_pixels(size[1])};
+  }
+  return calibration;
+}
+
+/// KITTI's odometry sequences are passed on with and without names: lines of 12 numbers. Empty if
+/// the text is anything else.
+CalibrationEntries nameless_projections(std::string_view text) {
+  const CalibrationEntry all = numbers_of(text);
+  CalibrationEntries entries;
+  if (all.values.size() == 24 || all.values.size() == 48) {
+    for (std::size_t i = 0; i < all.values.size() / 12; ++i) {
+      const auto first = all.values.begin() + static_cast<std::ptrdiff_t>(12 * i);
+      entries[fmt::format("P{}", i)] = {.values = {first, first + 12}};
+    }
+  }
+  return entries;
+}
+
+StereoCalibration parse(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) {
+    text.remove_prefix(kByteOrderMark.size());
+  }
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first != std::string_view::npos && text[first] == '<') {
+    return from_opencv(CalibrationFile(xml_entries(text)));
+  }
+  if (CalibrationEntries entries = assignment_entries(text); entries.contains("cam0")) {
+    return from_middlebury(CalibrationFile(std::move(entries)));
+  }
+  if (CalibrationEntries entries = nameless_projections(text); !entries.empty()) {
+    return from_kitti(CalibrationFile(std::move(entries)));
+  }
+  CalibrationEntries entries = yaml_entries(text);
+  for (const char* name : {"P0", "P1", "P2", "P3", "P_rect_00", "P_rect_02"}) {
+    // OpenCV's files have P1 and P2 of their own beside the cameras they come from.
+    if (entries.contains(name) && !entries.contains("R") && !entries.contains("T")) {
+      return from_kitti(CalibrationFile(std::move(entries)));
+    }
+  }
+  for (const char* name : {"M1", "K1", "cameraMatrix1", "camera_matrix_1", "R", "T"}) {
+    if (entries.contains(name)) {
+      return from_opencv(CalibrationFile(std::move(entries)));
+    }
+  }
+  throw Error(
+      "it is not a stereo calibration, expected OpenCV's YAML or XML, or calib.txt of Middlebury "
+      "or KITTI");
+}
+
+}  // namespace
+
+StereoCalibration read_stereo_calibration(const std::filesystem::path& path) {
+  const std::vector<std::uint8_t> bytes = read_file_bytes(path);
+  try {
+    if (bytes.size() > kMostBytes) {
+      throw Error(
+          fmt::format("it has {} bytes, expected a text of at most {}", bytes.size(), kMostBytes));
+    }
+    StereoCalibration calibration =
+        parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    calibration.validate();
+    return calibration;
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path.string(), error.what()));
+  }
+}
+
+}  // namespace vantage

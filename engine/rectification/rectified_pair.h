@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "engine/rectification/stereo_calibration.h"
+
+namespace vantage {
+
+/// What rectified images show.
+struct RectificationOptions {
+  /// 0: as much as fits without a pixel that the cameras did not see (default); 1: all that either
+  /// camera saw, with black around it; between them the window grows evenly.
+  double kept_outline = 0;
+
+  /// Throws UsageError naming the field, its value and its limit.
+  void validate() const;
+};
+
+/// A rectangle of whole pixels.
+struct PixelRectangle {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+};
+
+/// A camera turned so that it forms a rectified pair with another one.
+struct RectifiedCamera {
+  Eigen::Matrix3d matrix;      ///< K of the rectified image
+  Eigen::Matrix3d rotation;    ///< rectified frame ← frame of the camera
+  Eigen::Matrix3d homography;  ///< rectified pixel ← pixel of the camera, freed of its distortion
+};
+
+/// Rectified cameras side by side on a common X axis: a point (X, Y, Z) of the left one's frame is
+/// seen at d = fx · baseline / Z − doffs_px.
+struct RectifiedPair {
+  int width_px = 0;
+  int height_px = 0;
+  RectifiedCamera left;
+  RectifiedCamera right;
+  double baseline = 0;  ///< in the calibration's unit
+  /// cx of the right − cx of the left camera. 0 unless the calibration was of rectified images.
+  double doffs_px = 0;
+  /// Without a black pixel in either image.
+  PixelRectangle valid;
+
+  [[nodiscard]] const RectifiedCamera& camera(Side side) const {
+    return side == Side::kLeft ? left : right;
+  }
+};
+
+/// The rectified cameras of images of this size, which is also the size of the rectified images.
+///
+/// X is the direction of the baseline, Z the part of the mean viewing direction orthogonal to it,
+/// Y = Z × X (EQUATIONS §6), so both cameras turn about equally far. Both rectified cameras have
+/// one focal length, the same in x and y, and one principal point: infinity has disparity 0. A
+/// rectified calibration is passed on as it is.
+///
+/// Throws Error, naming quantity and limit, for an image size that contradicts the calibration, a
+/// baseline more than 45° off the cameras' x axes (cameras one above or behind the other, or
+/// swapped), viewing directions 90° apart, or views that have next to nothing in common.
+RectifiedPair rectified_pair(const StereoCalibration& calibration, int width_px, int height_px,
+                             const RectificationOptions& options = {});
+
+}  // namespace vantage

@@ -1,0 +1,107 @@
+#include "engine/rectification/rectifier.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+#include "engine/error.h"
+#include "kernels/bicubic_remap/bicubic_remap.h"
+
+namespace vantage {
+
+Rectifier::Rectifier(const StereoCalibration& calibration, int width_px, int height_px,
+                     const RectificationOptions& options)
+    : pair_(rectified_pair(calibration, width_px, height_px, options)),
+      needs_rectification_(!calibration.is_rectified),
+      views_{make_view(calibration.left, Side::kLeft), make_view(calibration.right, Side::kRight)} {
+}
+
+Rectifier::View Rectifier::make_view(const Camera& camera, Side side) const {
+  const RectifiedCamera& rectified = pair_.camera(side);
+  View view{.lens = LensModel(camera),
+            .ray_from_pixel = rectified.rotation.transpose() * rectified.matrix.inverse(),
+            .x_px = {},
+            .y_px = {}};
+  if (!needs_rectification_) {
+    return view;
+  }
+  constexpr float kUnseen = std::numeric_limits<float>::quiet_NaN();
+  view.x_px.resize(pair_.width_px, pair_.height_px);
+  view.y_px.resize(pair_.width_px, pair_.height_px);
+  for (int y = 0; y < pair_.height_px; ++y) {
+    for (int x = 0; x < pair_.width_px; ++x) {
+      const auto position = source_position(view, {x, y});
+      view.x_px.at(x, y) = position ? static_cast<float>(position->x()) : kUnseen;
+      view.y_px.at(x, y) = position ? static_cast<float>(position->y()) : kUnseen;
+    }
+  }
+  return view;
+}
+
+std::optional<Eigen::Vector2d> Rectifier::source_position(const View& view,
+                                                          const Eigen::Vector2d& rectified_px) {
+  const Eigen::Vector3d ray = view.ray_from_pixel * rectified_px.homogeneous();
+  return ray.z() > 0 ? view.lens.position_of(ray.hnormalized()) : std::nullopt;
+}
+
+std::optional<Eigen::Vector2d> Rectifier::source_position(
+    Side side, const Eigen::Vector2d& rectified_px) const {
+  return needs_rectification_ ? source_position(view(side), rectified_px)
+                              : std::optional(rectified_px);
+}
+
+std::optional<Eigen::Vector2d> Rectifier::rectified_position(
+    Side side, const Eigen::Vector2d& source_px) const {
+  if (!needs_rectification_) {
+    return source_px;
+  }
+  const auto ray = view(side).lens.ray_of(source_px);
+  if (!ray) {
+    return std::nullopt;
+  }
+  const RectifiedCamera& camera = pair_.camera(side);
+  const Eigen::Vector3d point = camera.matrix * camera.rotation * ray->homogeneous();
+  return point.z() > 0 ? std::optional<Eigen::Vector2d>(point.hnormalized()) : std::nullopt;
+}
+
+void Rectifier::apply(const Photograph& source, Side side, Photograph& result,
+                      Execution& execution) const {
+  const int width = pair_.width_px;
+  const int height = pair_.height_px;
+  if (source.width() != width || source.height() != height) {
+    throw Error(fmt::format("the image to rectify is {}x{}, expected {}x{}", source.width(),
+                            source.height(), width, height));
+  }
+  std::visit(
+      [&]<typename T>(const Image<T>& from) {
+        if (!std::holds_alternative<Image<T>>(result.pixels)) {
+          result.pixels = Image<T>();
+        }
+        Image<T>& to = std::get<Image<T>>(result.pixels);
+        to.resize(width, height, from.channels());
+        execution.for_each_band(height, [&](int first_row, int end_row) {
+          for (int y = first_row; y < end_row; ++y) {
+            if (!needs_rectification_) {
+              std::copy_n(from.row(y), width * from.channels(), to.row(y));
+              continue;
+            }
+            kernels::remap_bicubic_row(
+                kernels::RemapRow<T>{.pixels = from.row(0),
+                                     .stride = static_cast<std::ptrdiff_t>(from.view().stride()),
+                                     .width = width,
+                                     .height = height,
+                                     .channels = from.channels(),
+                                     .x_px = view(side).x_px.row(y),
+                                     .y_px = view(side).y_px.row(y),
+                                     .count = width},
+                to.row(y));
+          }
+        });
+      },
+      source.pixels);
+}
+
+}  // namespace vantage

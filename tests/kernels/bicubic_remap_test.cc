@@ -1,0 +1,205 @@
+#include "kernels/bicubic_remap/bicubic_remap.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <type_traits>
+#include <vector>
+
+#include "kernels/pixel_row/pixel_row.h"
+#include "tests/kernels/kernel_test_utils.h"
+#include "tests/kernels/synthesis_rows.h"
+
+namespace vantage::kernels {
+namespace {
+
+/// An image that ends where its memory ends, and positions for a row of another one.
+template <typename T>
+struct Scene {
+  int width;
+  int height;
+  int channels;
+  std::ptrdiff_t stride;
+  std::vector<T> pixels;
+  std::vector<float> x_px;
+  std::vector<float> y_px;
+
+  Scene(std::mt19937& random, int w, int h, int c, int count)
+      : width(w),
+        height(h),
+        channels(c),
+        stride(w * c + random_int(random, 0, 3)),
+        pixels(static_cast<std::size_t>(stride * (h - 1) + w * c)) {
+    for (T& value : pixels) {
+      if constexpr (std::is_same_v<T, float>) {
+        value = static_cast<float>(random_int(random, -20, 130)) / 100;
+      } else {
+        value = static_cast<T>(random());
+      }
+    }
+    for (int n = 0; n < count; ++n) {
+      x_px.push_back(position(random, width, n));
+      y_px.push_back(position(random, height, n));
+    }
+  }
+
+  /// Mostly inside and near each other, as in real maps; at times anything.
+  static float position(std::mt19937& random, int size, int n) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const float last = static_cast<float>(size - 1);
+    switch (random() % 40) {
+      case 0:
+        return std::numeric_limits<float>::quiet_NaN();
+      case 1:
+        return random() % 2 == 0 ? kInfinity : -kInfinity;
+      case 2:
+        return -0.5F;
+      case 3:
+        return last + 0.5F;
+      case 4:
+        return std::nextafter(random() % 2 == 0 ? -0.5F : last + 0.5F, kInfinity);
+      case 5:
+        return -3e9F;
+      case 6:
+        return static_cast<float>(random_int(random, 0, size - 1));
+      default: {
+        const float jitter = static_cast<float>(random_int(random, 0, 999)) / 1000;
+        return std::fmod(static_cast<float>(n), std::max(last, 1.0F)) + jitter;
+      }
+    }
+  }
+
+  [[nodiscard]] RemapRow<T> row() const {
+    return {.pixels = pixels.data(),
+            .stride = stride,
+            .width = width,
+            .height = height,
+            .channels = channels,
+            .x_px = x_px.data(),
+            .y_px = y_px.data(),
+            .count = static_cast<int>(x_px.size())};
+  }
+};
+
+// Keys' cubic convolution kernel, a = −½, as the paper defines it.
+double keys(double t) {
+  t = std::abs(t);
+  if (t < 1) {
+    return 1.5 * t * t * t - 2.5 * t * t + 1;
+  }
+  return t < 2 ? -0.5 * t * t * t + 2.5 * t * t - 4 * t + 2 : 0;
+}
+
+template <typename T>
+class BicubicRemap : public testing::Test {};
+using PixelTypes = testing::Types<std::uint8_t, std::uint16_t, float>;
+TYPED_TEST_SUITE(BicubicRemap, PixelTypes);
+
+TYPED_TEST(BicubicRemap, EqualOnEveryInstructionSetAndToReference) {
+  using T = TypeParam;
+  std::mt19937 random(1);
+  for (const auto& [width, height] :
+       {std::pair{1, 1}, {1, 9}, {9, 1}, {2, 2}, {3, 5}, {4, 4}, {5, 7}, {13, 11}, {150, 6}}) {
+    for (const int channels : {1, 3, 4}) {
+      for (const int count : {0, 1, 5, 63, 64, 65, 149, 200}) {
+        const Scene<T> scene(random, width, height, channels, count);
+        const std::size_t size = static_cast<std::size_t>(count * channels);
+        std::vector<T> expected(size);
+        remap_bicubic_row_ref(scene.row(), expected.data());
+        for_each_target([&] {
+          GuardedRow<T> result(size, 1, T{77});
+          remap_bicubic_row(scene.row(), result.data());
+          ASSERT_EQ(result.values(), expected)
+              << width << "x" << height << ", " << channels << " channels, " << count;
+          ASSERT_TRUE(result.intact());
+        });
+      }
+    }
+  }
+}
+
+// Blocks all of whose taps lie inside take another path than those at the border; it reads more
+// than it needs and must not do so behind the image.
+TYPED_TEST(BicubicRemap, ReadsNothingBehindTheImage) {
+  using T = TypeParam;
+  std::mt19937 random(2);
+  for (const int channels : {1, 3, 4}) {
+    for (int from_right = 2; from_right <= 6; ++from_right) {
+      Scene<T> scene(random, 96, 4, channels, 64);
+      for (int n = 0; n < 64; ++n) {
+        scene.x_px[static_cast<std::size_t>(n)] = 95.25F - static_cast<float>(from_right);
+        scene.y_px[static_cast<std::size_t>(n)] = 1.5F;
+      }
+      std::vector<T> expected(static_cast<std::size_t>(64 * channels));
+      remap_bicubic_row_ref(scene.row(), expected.data());
+      for_each_target([&] {
+        std::vector<T> result(expected.size());
+        remap_bicubic_row(scene.row(), result.data());
+        ASSERT_EQ(result, expected) << channels << " channels, " << from_right;
+      });
+    }
+  }
+}
+
+TYPED_TEST(BicubicRemap, IsKeysConvolutionWithReplicatedBorder) {
+  using T = TypeParam;
+  std::mt19937 random(3);
+  for (const auto& [width, height] : {std::pair{1, 1}, {2, 7}, {7, 2}, {30, 20}}) {
+    for (const int channels : {1, 3, 4}) {
+      const Scene<T> scene(random, width, height, channels, 150);
+      std::vector<T> result(static_cast<std::size_t>(150 * channels));
+      remap_bicubic_row(scene.row(), result.data());
+      for (int n = 0; n < 150; ++n) {
+        const double x = scene.x_px[static_cast<std::size_t>(n)];
+        const double y = scene.y_px[static_cast<std::size_t>(n)];
+        const bool seen = x >= -0.5 && x <= width - 0.5 && y >= -0.5 && y <= height - 0.5;
+        for (int c = 0; c < channels; ++c) {
+          double sum = 0;
+          double least = 0;
+          double most = kLargestValue<T>;
+          for (int j = -2; seen && j <= height + 2; ++j) {
+            for (int i = -2; i <= width + 2; ++i) {
+              const double weight = keys(x - i) * keys(y - j);
+              const double value = static_cast<double>(scene.pixels[static_cast<std::size_t>(
+                  std::clamp(j, 0, height - 1) * scene.stride +
+                  std::clamp(i, 0, width - 1) * channels + c)]);
+              sum += weight * value;
+              if (std::abs(x - i) < 2 && std::abs(y - j) < 2) {
+                least = std::min(least, value);
+                most = std::max(most, value);
+              }
+            }
+          }
+          const double tolerance = std::is_same_v<T, float> ? 2e-6 : 0.5 + kLargestValue<T> * 1e-6;
+          ASSERT_NEAR(result[static_cast<std::size_t>(n * channels + c)],
+                      std::clamp(sum, least, most), tolerance)
+              << width << "x" << height << " at " << x << ", " << y;
+        }
+      }
+    }
+  }
+}
+
+TYPED_TEST(BicubicRemap, WholePositionsAreThePixelsThemselves) {
+  using T = TypeParam;
+  std::mt19937 random(4);
+  for (const int channels : {1, 3, 4}) {
+    Scene<T> scene(random, 70, 5, channels, 70);
+    for (int y = 0; y < 5; ++y) {
+      for (int n = 0; n < 70; ++n) {
+        scene.x_px[static_cast<std::size_t>(n)] = static_cast<float>(n);
+        scene.y_px[static_cast<std::size_t>(n)] = static_cast<float>(y);
+      }
+      std::vector<T> result(static_cast<std::size_t>(70 * channels));
+      remap_bicubic_row(scene.row(), result.data());
+      const auto first = scene.pixels.begin() + y * scene.stride;
+      EXPECT_EQ(result, std::vector<T>(first, first + 70 * channels)) << "row " << y;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vantage::kernels
