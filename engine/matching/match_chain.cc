@@ -14,6 +14,7 @@
 #include "engine/matching/stage_column_ssd.h"
 #include "engine/matching/stage_column_sum.h"
 #include "engine/matching/stage_diffusion.h"
+#include "engine/matching/stage_disparity_prior.h"
 #include "engine/matching/stage_smoothing.h"
 #include "engine/matching/stage_window_selection.h"
 
@@ -74,6 +75,14 @@ ConfidenceMeasure confidence_measure(const MethodParameters& parameters) {
   }
 }
 
+/// Of a pixel's column, for the prior: squares of large differences would make single pixels decide
+/// for all around them.
+float most_contrast(const MethodParameters& parameters) {
+  constexpr float kGreyLevels = 20;
+  return parameters.cost == MatchCost::kSquared ? kGreyLevels * kGreyLevels
+                                                : std::numeric_limits<float>::infinity();
+}
+
 WindowSelectionSettings window_selection(const MethodParameters& parameters) {
   WindowSelectionSettings settings;
   settings.radius = parameters.window_px / 2;
@@ -95,10 +104,17 @@ MatchChain::MatchChain(const MethodParameters& parameters,
     return;
   }
   const int height = outputs_.disparity_px.height();
-  add(make_cost_stage(parameters, geometry_, *input.reference, input.partners,
-                      parameters.aggregation == Aggregation::kBayes ? CellMeaning::kLikelihood
-                                                                    : CellMeaning::kEnergy,
-                      height));
+  const CellMeaning meaning = parameters.aggregation == Aggregation::kBayes
+                                  ? CellMeaning::kLikelihood
+                                  : CellMeaning::kEnergy;
+  auto costs =
+      make_cost_stage(parameters, geometry_, *input.reference, input.partners, meaning, height);
+  if (!input.prior_px.empty()) {
+    costs = make_disparity_prior_stage(std::move(costs), geometry_, meaning, input.prior_px,
+                                       static_cast<float>(input.prior_weight),
+                                       most_contrast(parameters));
+  }
+  add(std::move(costs));
   if (parameters.aggregation == Aggregation::kBox) {
     add_box(parameters, input);
     return;
@@ -141,7 +157,10 @@ void MatchChain::add_column_ssd(const MethodParameters& parameters, const Prepar
 }
 
 void MatchChain::add_box(const MethodParameters& parameters, const ChainInput& input) {
-  const CostBounds bounds = cost_bounds(parameters, static_cast<int>(input.partners.size()));
+  CostBounds bounds = cost_bounds(parameters, static_cast<int>(input.partners.size()));
+  if (!input.prior_px.empty()) {
+    bounds.largest += static_cast<float>(input.prior_weight) * (bounds.largest - bounds.least);
+  }
   const ColumnSumScale quantised =
       column_sum_scale(bounds.least, bounds.largest, parameters.window_px);
   WindowSelectionSettings settings = window_selection(parameters);

@@ -27,6 +27,10 @@ struct ChainInput {
   const PreparedPair* pair = nullptr;  ///< else the rest counts
   const CostImage* reference = nullptr;
   std::vector<CostPartner> partners;
+  /// Disparities that pixels are drawn towards, on the reference's grid; empty: none. Not beside
+  /// `pair`. See DisparityPrior.
+  ImageView<const float> prior_px = {};
+  double prior_weight = 0;
 };
 
 /// The stages that compute one disparity map: cost → aggregation → selection.

@@ -56,6 +56,20 @@ void require_different_baselines(std::span<const OtherView> others) {
   }
 }
 
+void require_usable(const DisparityPrior& prior, const Photograph& image) {
+  constexpr double kMostWeight = 100;
+  if (!(prior.weight >= 0 && prior.weight <= kMostWeight)) {
+    throw UsageError(fmt::format("the weight of the prior is {}, expected a number from 0 to {}",
+                                 prior.weight, kMostWeight));
+  }
+  for (const ImageView<const float>& map : {prior.left_px, prior.right_px}) {
+    if (!map.empty() && (map.width() != image.width() || map.height() != image.height())) {
+      throw Error(fmt::format("the prior is {}x{}, expected {}x{} as the images", map.width(),
+                              map.height(), image.width(), image.height()));
+    }
+  }
+}
+
 /// Keeps for each pixel the better of the winners found so far and those of one more vertical
 /// disparity; the earlier of equals.
 struct WinnerMerge {
@@ -99,32 +113,62 @@ bool StereoMatcher::wants_confidence(const MatchRequest& request) const {
   return request.confidence || (!options_.raw && uses_confidence(options_.resolved_refinement()));
 }
 
+/// What the chains of both maps read.
+std::pair<ChainInput, ChainInput> StereoMatcher::prepare_inputs(const Photograph& left,
+                                                                const Photograph& right,
+                                                                bool needs_left, bool needs_right,
+                                                                bool uses_prior,
+                                                                Prepared& prepared) const {
+  const auto geometry = candidate_geometry(options_, Reference::kLeft, left.width(), left.height());
+  ChainInput left_input;
+  ChainInput right_input;
+  if (uses_column_ssd(parameters_) && !options_.disparities_y && !uses_prior) {
+    prepare_pair(left, right, geometry, parameters_.window_px * parameters_.window_px,
+                 {needs_left, needs_right}, execution_, prepared.pair);
+    left_input.pair = right_input.pair = &prepared.pair;
+  } else {
+    prepared.images.resize(2);
+    CostImage& left_image = prepared.images[0];
+    CostImage& right_image = prepared.images[1];
+    left_image.prepare(left, parameters_, geometry, {needs_left, false, needs_right}, execution_);
+    right_image.prepare(right, parameters_, geometry, {needs_right, needs_left, false}, execution_);
+    left_input = {nullptr, &left_image, {CostPartner{&right_image}}};
+    right_input = {nullptr, &right_image, {CostPartner{&left_image}}};
+  }
+  return {left_input, right_input};
+}
+
+scheduler::ChainPlan StereoMatcher::plan(const Photograph& left, const Photograph& right) const {
+  require_equal_sizes(left, "left image", right, "right image");
+  const auto prepared = prepared_.borrow();
+  const ChainInput input = prepare_inputs(left, right, true, false, false, *prepared).first;
+  const auto geometry = candidate_geometry(options_, Reference::kLeft, left.width(), left.height());
+  DisparityMap map(left.width(), left.height());
+  return plan_of(MatchChain(parameters_, geometry, input, {.disparity_px = map.view()}));
+}
+
 void StereoMatcher::match(const Photograph& left, const Photograph& right,
                           const MatchRequest& request, DisparityMaps& maps,
                           MatchReport* report) const {
   require_equal_sizes(left, "left image", right, "right image");
+  require_usable(request.prior, left);
+  if (!request.prior.empty() && options_.disparities_y) {
+    throw UsageError("there is a prior beside disparities-y, expected a search along rows only");
+  }
+  const bool uses_prior = !request.prior.empty() && request.prior.weight > 0;
   MatchReport own_report;
   MatchReport& times = report != nullptr ? *report : own_report;
   times = {};
   StageClock clock(times);
   const bool needs_left = request.left || !options_.raw;
   const bool needs_right = request.right || !options_.raw;
-  const auto geometry = candidate_geometry(options_, Reference::kLeft, left.width(), left.height());
   const auto prepared = prepared_.borrow();
-  ChainInput left_input;
-  ChainInput right_input;
-  if (uses_column_ssd(parameters_) && !options_.disparities_y) {
-    prepare_pair(left, right, geometry, parameters_.window_px * parameters_.window_px,
-                 {needs_left, needs_right}, execution_, prepared->pair);
-    left_input.pair = right_input.pair = &prepared->pair;
-  } else {
-    prepared->images.resize(2);
-    CostImage& left_image = prepared->images[0];
-    CostImage& right_image = prepared->images[1];
-    left_image.prepare(left, parameters_, geometry, {needs_left, false, needs_right}, execution_);
-    right_image.prepare(right, parameters_, geometry, {needs_right, needs_left, false}, execution_);
-    left_input = {nullptr, &left_image, {CostPartner{&right_image}}};
-    right_input = {nullptr, &right_image, {CostPartner{&left_image}}};
+  auto [left_input, right_input] =
+      prepare_inputs(left, right, needs_left, needs_right, uses_prior, *prepared);
+  if (uses_prior) {
+    left_input.prior_px = request.prior.left_px;
+    right_input.prior_px = request.prior.right_px;
+    left_input.prior_weight = right_input.prior_weight = request.prior.weight;
   }
   clock.record("prepare");
 
@@ -298,18 +342,23 @@ void StereoMatcher::search_rows(const kernels::CandidateGeometry& geometry, cons
   }
 }
 
-void StereoMatcher::run_chain(const kernels::CandidateGeometry& geometry, const ChainInput& input,
-                              const MapOutputs& outputs, MatchReport& report) const {
-  const MatchChain chain(parameters_, geometry, input, outputs);
+scheduler::ChainPlan StereoMatcher::plan_of(const MatchChain& chain) const {
   const ExecutionOptions& execution = execution_.options();
   scheduler::PlanRequest request;
   request.threads = execution_.executor().thread_count();
   request.strip_columns = execution.strip_width_px;
   request.band_rows = execution.band_height_px;
+  request.memory_bytes = execution.chain_memory_bytes;
   if (execution.iterations_per_pass) {
     request.pass_ends = chain.pass_ends(*execution.iterations_per_pass);
   }
-  report.plan = scheduler::plan_chain(chain.stages(), execution_.machine(), request);
+  return scheduler::plan_chain(chain.stages(), execution_.machine(), request);
+}
+
+void StereoMatcher::run_chain(const kernels::CandidateGeometry& geometry, const ChainInput& input,
+                              const MapOutputs& outputs, MatchReport& report) const {
+  const MatchChain chain(parameters_, geometry, input, outputs);
+  report.plan = plan_of(chain);
   scheduler::run_strips(chain.stages(), report.plan, execution_.executor(), execution_.scratch());
   report.cells += static_cast<double>(geometry.width) * outputs.disparity_px.height() *
                   options_.disparities.count();

@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/execution.h"
@@ -30,12 +31,26 @@ struct DisparityMaps {
   DisparityMap right_disparity_y;
 };
 
+/// Disparities that pixels are drawn towards, such as those of the frame before where the image has
+/// not changed: the first stage of matching favours candidates near them (kernels/disparity_prior).
+/// Such a pixel keeps its disparity unless its own costs and its neighbours' speak against it.
+struct DisparityPrior {
+  /// Size of the images; NaN, or a value outside the range, where a pixel has none. Empty: no pixel
+  /// of that map has one. Not owned.
+  ImageView<const float> left_px = {};
+  ImageView<const float> right_px = {};
+  double weight = 1;  ///< 0..100; 1 counts about as much as what a pixel's own costs say
+
+  [[nodiscard]] bool empty() const { return left_px.empty() && right_px.empty(); }
+};
+
 /// What the caller wants. With refinement (options.raw == false) all of it is computed anyway.
 struct MatchRequest {
   bool left = true;
   bool right = true;
-  bool unmatched = true;    ///< the masks of the maps
-  bool confidence = false;  ///< the confidence of the maps
+  bool unmatched = true;      ///< the masks of the maps
+  bool confidence = false;    ///< the confidence of the maps
+  DisparityPrior prior = {};  ///< for match() without a vertical search only
 };
 
 /// One more image of a camera on the baseline of the reference (6.6).
@@ -68,9 +83,14 @@ class StereoMatcher {
   StereoMatcher(const MatchOptions& options, Execution& execution);
 
   /// left and right: equal size, at least 1×1, any depth and channels; depths may differ.
-  /// Throws Error when sizes differ or no pixel has a candidate in the range.
+  /// Throws Error when sizes differ or no pixel has a candidate in the range, UsageError for a
+  /// prior's weight out of range or a prior beside a vertical search.
   void match(const Photograph& left, const Photograph& right, const MatchRequest& request,
              DisparityMaps& maps, MatchReport* report = nullptr) const;
+
+  /// How the map of the left image is going to be worked off: what a report of match() says.
+  /// Errors as match(), without a vertical search.
+  [[nodiscard]] scheduler::ChainPlan plan(const Photograph& left, const Photograph& right) const;
 
   /// The map of `reference` from all of `others` at once (6.6): the partner of column x in the
   /// k-th of them is x − d · baseline_k / |baseline_1|, so that candidates are the disparities
@@ -101,6 +121,12 @@ class StereoMatcher {
   };
 
   [[nodiscard]] bool wants_confidence(const MatchRequest& request) const;
+  [[nodiscard]] std::pair<ChainInput, ChainInput> prepare_inputs(const Photograph& left,
+                                                                 const Photograph& right,
+                                                                 bool needs_left, bool needs_right,
+                                                                 bool uses_prior,
+                                                                 Prepared& prepared) const;
+  [[nodiscard]] scheduler::ChainPlan plan_of(const MatchChain& chain) const;
   void compute_map(Reference reference, const ChainInput& input, Prepared& prepared,
                    const Result& result, MatchReport& report) const;
   void search_rows(const kernels::CandidateGeometry& geometry, const ChainInput& input,

@@ -1,5 +1,7 @@
 #include "engine/synthesis/intensity_fit.h"
 
+#include <cstddef>
+
 namespace vantage {
 namespace {
 
@@ -28,6 +30,16 @@ IntensityFit fit_intensities(const kernels::IntensitySums& sums, int channel,
     return {};
   }
   return {.offset = (mean_right - gain * mean_left) * unit, .gain = gain};
+}
+
+std::array<IntensityFit, 4> fit_channels(const kernels::IntensitySums& sums, int channels,
+                                         double grey_levels_per_unit) {
+  const int colour_channels = channels == 4 ? 3 : channels;
+  std::array<IntensityFit, 4> fits;
+  for (int c = 0; c < colour_channels; ++c) {
+    fits[static_cast<std::size_t>(c)] = fit_intensities(sums, c, grey_levels_per_unit);
+  }
+  return fits;
 }
 
 }  // namespace vantage

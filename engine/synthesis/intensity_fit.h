@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "kernels/intensity_sums/intensity_sums.h"
 
 namespace vantage {
@@ -8,6 +10,8 @@ namespace vantage {
 struct IntensityFit {
   double offset = 0;
   double gain = 1;
+
+  friend bool operator==(const IntensityFit&, const IntensityFit&) = default;
 };
 
 /// Least squares (3.10) from the sums (3.11) of one channel, whose values are worth
@@ -16,5 +20,9 @@ struct IntensityFit {
 /// difference between two cameras of one rig.
 IntensityFit fit_intensities(const kernels::IntensitySums& sums, int channel,
                              double grey_levels_per_unit);
+
+/// The fits of all colours of images with so many channels; an alpha channel has the identity.
+std::array<IntensityFit, 4> fit_channels(const kernels::IntensitySums& sums, int channels,
+                                         double grey_levels_per_unit);
 
 }  // namespace vantage

@@ -100,12 +100,14 @@ class Synthesis {
     std::uninitialized_fill(records_.begin(), records_.end(), RowRecord{});
   }
 
-  void run(Image<T>& image, SynthesizedView& view) {
+  void run(Image<T>& image, SynthesizedView& view, const std::array<IntensityFit, 4>* given_fit) {
     // Both passes warp anew: keeping the warped colours of the first would take several times the
     // memory of all inputs, and warping is cheap.
     view.intensity = {};
-    if (options_.match_intensities) {
-      regress_intensities(view.intensity);
+    if (given_fit != nullptr) {
+      view.intensity = *given_fit;
+    } else if (options_.match_intensities) {
+      view.intensity = fit_channels(intensity_sums(), channels_, double{kGreyLevelsPerUnit<T>});
     }
     image.resize(width_, height_, channels_);
     view.holes.resize(width_, height_);
@@ -118,6 +120,17 @@ class Synthesis {
       holes += record.holes;
     }
     view.hole_fraction = static_cast<double>(holes) / (static_cast<double>(width_) * height_);
+  }
+
+  kernels::IntensitySums intensity_sums() {
+    for_each_warped_row([&](int y, const kernels::WarpedPairRow& pair, float*) {
+      records_[static_cast<std::size_t>(y)].sums = kernels::intensity_sums_row(pair);
+    });
+    kernels::IntensitySums total;
+    for (const RowRecord& record : records_) {
+      total.add(record.sums);
+    }
+    return total;
   }
 
  private:
@@ -133,21 +146,6 @@ class Synthesis {
         body(y, warper.warp(y), warper.spare_row());
       }
     });
-  }
-
-  void regress_intensities(std::array<IntensityFit, 4>& intensity) {
-    for_each_warped_row([&](int y, const kernels::WarpedPairRow& pair, float*) {
-      records_[static_cast<std::size_t>(y)].sums = kernels::intensity_sums_row(pair);
-    });
-    kernels::IntensitySums total;
-    for (const RowRecord& record : records_) {
-      total.add(record.sums);
-    }
-    const int colour_channels = channels_ == 4 ? 3 : channels_;  // alpha is no intensity
-    for (int c = 0; c < colour_channels; ++c) {
-      intensity[static_cast<std::size_t>(c)] =
-          fit_intensities(total, c, double{kGreyLevelsPerUnit<T>});
-    }
   }
 
   void combine(const std::array<IntensityFit, 4>& intensity, Image<T>& image, Mask& holes) {
@@ -206,6 +204,35 @@ class Synthesis {
   std::span<RowRecord> records_;
 };
 
+/// The photographs and maps of one call.
+struct PairOfMaps {
+  const Photograph& left;
+  const Photograph& right;
+  ImageView<const float> left_disparity;
+  ImageView<const float> right_disparity;
+};
+
+/// Checks the pair and the position, then calls body(synthesis) with a Synthesis of its pixel type.
+template <typename Body>
+void with_synthesis(const PairOfMaps& pair, const SynthesisOptions& options, double view_x,
+                    Execution& execution, const Body& body) {
+  if (!(std::abs(view_x) <= kFarthestView)) {
+    throw UsageError(fmt::format("view is at {} baselines, expected -{}..{}", view_x, kFarthestView,
+                                 kFarthestView));
+  }
+  require_same_shape(pair.left, pair.right, pair.left_disparity, pair.right_disparity);
+  std::visit(
+      [&]<typename T>(const Image<T>& left_image) {
+        const StereoSource<T> source{.left = left_image.view(),
+                                     .right = std::get<Image<T>>(pair.right.pixels).view(),
+                                     .left_disparity = pair.left_disparity,
+                                     .right_disparity = pair.right_disparity};
+        Synthesis<T> synthesis(source, options, view_x, execution);
+        body(synthesis);
+      },
+      pair.left.pixels);
+}
+
 }  // namespace
 
 ViewSynthesizer::ViewSynthesizer(const SynthesisOptions& options, Execution& execution)
@@ -216,25 +243,35 @@ ViewSynthesizer::ViewSynthesizer(const SynthesisOptions& options, Execution& exe
 void ViewSynthesizer::synthesize(const Photograph& left, const Photograph& right,
                                  ImageView<const float> left_disparity,
                                  ImageView<const float> right_disparity, double view_x,
-                                 SynthesizedView& view) const {
-  if (!(std::abs(view_x) <= kFarthestView)) {
-    throw UsageError(fmt::format("view is at {} baselines, expected -{}..{}", view_x, kFarthestView,
-                                 kFarthestView));
-  }
-  require_same_shape(left, right, left_disparity, right_disparity);
-  std::visit(
-      [&]<typename T>(const Image<T>& left_image) {
-        if (!std::holds_alternative<Image<T>>(view.image.pixels)) {
-          view.image.pixels.template emplace<Image<T>>();
-        }
-        const StereoSource<T> source{.left = left_image.view(),
-                                     .right = std::get<Image<T>>(right.pixels).view(),
-                                     .left_disparity = left_disparity,
-                                     .right_disparity = right_disparity};
-        Synthesis<T>(source, options_, view_x, execution_)
-            .run(std::get<Image<T>>(view.image.pixels), view);
-      },
-      left.pixels);
+                                 SynthesizedView& view,
+                                 const std::array<IntensityFit, 4>* given_fit) const {
+  with_synthesis({left, right, left_disparity, right_disparity}, options_, view_x, execution_,
+                 [&]<typename T>(Synthesis<T>& synthesis) {
+                   if (!std::holds_alternative<Image<T>>(view.image.pixels)) {
+                     view.image.pixels.template emplace<Image<T>>();
+                   }
+                   synthesis.run(std::get<Image<T>>(view.image.pixels), view, given_fit);
+                 });
+}
+
+kernels::IntensitySums ViewSynthesizer::intensity_sums(const Photograph& left,
+                                                       const Photograph& right,
+                                                       ImageView<const float> left_disparity,
+                                                       ImageView<const float> right_disparity,
+                                                       double view_x) const {
+  kernels::IntensitySums sums;
+  with_synthesis({left, right, left_disparity, right_disparity}, options_, view_x, execution_,
+                 [&]<typename T>(Synthesis<T>& synthesis) {
+                   sums = synthesis.intensity_sums();
+                   const double unit{kGreyLevelsPerUnit<T>};
+                   for (int c = 0; c < 4; ++c) {
+                     sums.left[c] *= unit;
+                     sums.right[c] *= unit;
+                     sums.left_right[c] *= unit * unit;
+                     sums.left_left[c] *= unit * unit;
+                   }
+                 });
+  return sums;
 }
 
 }  // namespace vantage

@@ -37,10 +37,21 @@ class ViewSynthesizer {
   /// left, right: equal size, depth and channels. Maps: same size, NaN or ±inf = unknown (such
   /// pixels are not warped). view_x = XS in baselines, 0 = left camera, 1 = right camera; within
   /// ±16. `view` shares no memory with the inputs. Throws Error when shapes differ, UsageError for
-  /// a view_x out of range.
+  /// a view_x out of range. `given_fit`: takes the place of the regression, also where the options
+  /// do without one.
   void synthesize(const Photograph& left, const Photograph& right,
                   ImageView<const float> left_disparity, ImageView<const float> right_disparity,
-                  double view_x, SynthesizedView& view) const;
+                  double view_x, SynthesizedView& view,
+                  const std::array<IntensityFit, 4>* given_fit = nullptr) const;
+
+  /// The sums of the regression (3.11) at view_x, in grey levels: those of several pairs can be
+  /// added up for one fit_channels(sums, channels, 1). Errors as synthesize(). Identical for any
+  /// execution.
+  [[nodiscard]] kernels::IntensitySums intensity_sums(const Photograph& left,
+                                                      const Photograph& right,
+                                                      ImageView<const float> left_disparity,
+                                                      ImageView<const float> right_disparity,
+                                                      double view_x) const;
 
   [[nodiscard]] const SynthesisOptions& options() const { return options_; }
 

@@ -1,0 +1,59 @@
+#include <algorithm>
+
+#include "kernels/cells/exp_log.h"
+#include "kernels/disparity_prior/disparity_prior.h"
+
+namespace vantage::kernels {
+namespace {
+
+/// min(k²/4, 1) of candidate i.
+float share_of_depth(const DisparityPriorRow& row, int column, int i) {
+  const float offset = row.prior_px[column] - static_cast<float>(row.disparity_min);
+  const float k = (static_cast<float>(i) - offset) * (1 / kPriorReachPx);
+  return std::min(k * k, 1.0F);
+}
+
+/// Sums every sixteenth lane, then the sixteen sums as the tree of lane_sums-inl.h does.
+float mean_above_least(const float* cells, int count) {
+  float sums[kLaneMultiple] = {};
+  float least = cells[0];
+  for (int i = 0; i < count; ++i) {
+    sums[i % kLaneMultiple] += cells[i];
+    least = std::min(least, cells[i]);
+  }
+  for (int half = kLaneMultiple / 2; half >= 1; half /= 2) {
+    for (int i = 0; i < half; ++i) {
+      sums[i] += sums[i + half];
+    }
+  }
+  return std::max(sums[0] / static_cast<float>(count) - least, 0.0F);
+}
+
+}  // namespace
+
+void energies_with_prior_row_ref(const DisparityPriorRow& row, float* cells) {
+  for (int j = 0; j < row.columns; ++j, cells += row.lanes) {
+    if (!row.has_prior(j)) {
+      continue;
+    }
+    const float scale =
+        row.weight * std::min(mean_above_least(cells, row.count), row.most_contrast);
+    for (int i = 0; i < row.lanes; ++i) {
+      cells[i] += scale * share_of_depth(row, j, i);
+    }
+  }
+}
+
+void likelihoods_with_prior_row_ref(const DisparityPriorRow& row, float* cells) {
+  const float exponent_scale = prior_exponent_scale(row.weight);
+  for (int j = 0; j < row.columns; ++j, cells += row.lanes) {
+    if (!row.has_prior(j)) {
+      continue;
+    }
+    for (int i = 0; i < row.lanes; ++i) {
+      cells[i] *= exp2_of_negative(exponent_scale * share_of_depth(row, j, i));
+    }
+  }
+}
+
+}  // namespace vantage::kernels

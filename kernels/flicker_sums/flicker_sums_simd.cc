@@ -1,0 +1,172 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/flicker_sums/flicker_sums_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "kernels/flicker_sums/flicker_sums.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class D, class Operation>
+HWY_INLINE auto joined(D d, hn::VFromD<D> v, Operation operation) {
+  HWY_ALIGN hn::TFromD<D> lanes[hn::MaxLanes(D())];
+  hn::Store(v, d, lanes);
+  return operation(lanes, lanes + hn::Lanes(d));
+}
+
+template <class D>
+HWY_INLINE std::int64_t sum_of(D d, hn::VFromD<D> v) {
+  return joined(d, v, [](const auto* begin, const auto* end) {
+    std::int64_t sum = 0;
+    for (; begin != end; ++begin) {
+      sum += *begin;
+    }
+    return sum;
+  });
+}
+
+/// Columns [begin, end), a multiple of the vector, few enough for sums of 32 bits.
+HWY_INLINE void add_disparity_change(const float* HWY_RESTRICT now,
+                                     const float* HWY_RESTRICT before,
+                                     const std::uint8_t* HWY_RESTRICT mask, int begin, int end,
+                                     DisparityChange& sums) {
+  const hn::ScalableTag<float> d;
+  const hn::ScalableTag<std::int32_t> di;
+  const hn::Rebind<std::uint8_t, decltype(d)> d8;
+  const auto infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+  const auto one = hn::Set(d, 1.0F);
+  const auto units = hn::Set(d, 1024.0F);
+  auto least = infinity;
+  auto most = hn::Neg(infinity);
+  auto compared = hn::Zero(di);
+  auto jumped = hn::Zero(di);
+  auto change = hn::Zero(di);
+  for (int x = begin; x < end; x += static_cast<int>(hn::Lanes(d))) {
+    const auto a = hn::LoadU(d, now + x);
+    const auto b = hn::LoadU(d, before + x);
+    const auto known_a = hn::Eq(a, a);
+    const auto known_b = hn::Eq(b, b);
+    least = hn::Min(
+        least, hn::Min(hn::IfThenElse(known_a, a, infinity), hn::IfThenElse(known_b, b, infinity)));
+    most = hn::Max(most, hn::Max(hn::IfThenElse(known_a, a, hn::Neg(infinity)),
+                                 hn::IfThenElse(known_b, b, hn::Neg(infinity))));
+    const auto difference = hn::Abs(hn::Sub(a, b));
+    const auto masked =
+        hn::RebindMask(d, hn::Ne(hn::PromoteTo(di, hn::LoadU(d8, mask + x)), hn::Zero(di)));
+    const auto counts = hn::And(masked, hn::Eq(difference, difference));
+    const auto counted = hn::IfThenElseZero(counts, difference);
+    // −1 where true.
+    compared = hn::Sub(compared, hn::VecFromMask(di, hn::RebindMask(di, counts)));
+    jumped = hn::Sub(jumped, hn::VecFromMask(di, hn::RebindMask(di, hn::Gt(counted, one))));
+    change = hn::Add(change, hn::ConvertTo(di, hn::Add(hn::Mul(hn::Min(counted, units), units),
+                                                       hn::Set(d, 0.5F))));
+  }
+  sums.compared += sum_of(di, compared);
+  sums.jumped += sum_of(di, jumped);
+  sums.change += sum_of(di, change);
+  sums.least_px = std::min(sums.least_px, joined(d, least, [](const float* a, const float* z) {
+                             return *std::min_element(a, z);
+                           }));
+  sums.most_px = std::max(sums.most_px, joined(d, most, [](const float* a, const float* z) {
+                            return *std::max_element(a, z);
+                          }));
+}
+
+DisparityChange disparity_change(const float* now, const float* before, const std::uint8_t* mask,
+                                 int width) {
+  constexpr int kPiece = 1024;  // 2^10 columns of 2^20 units stay below 2^31
+  const int whole = width - width % static_cast<int>(hn::Lanes(hn::ScalableTag<float>()));
+  DisparityChange sums =
+      disparity_change_row_ref(now + whole, before + whole, mask + whole, width - whole);
+  for (int x = 0; x < whole; x += kPiece) {
+    add_disparity_change(now, before, mask, x, std::min(x + kPiece, whole), sums);
+  }
+  return sums;
+}
+
+/// Sums of bytes: lanes of 16 bits take 256 of them.
+class ByteSum {
+ public:
+  using D = hn::ScalableTag<std::uint16_t>;
+  static constexpr int kStep = static_cast<int>(hn::MaxLanes(D()));
+  static constexpr int kMostSteps = 256;
+
+  HWY_INLINE ByteSum() : lanes_(hn::Zero(D())) {}
+  HWY_INLINE void add(hn::VFromD<hn::Rebind<std::uint8_t, D>> bytes) {
+    lanes_ = hn::Add(lanes_, hn::PromoteTo(D(), bytes));
+  }
+  HWY_INLINE std::int64_t sum() const { return sum_of(D(), lanes_); }
+
+ private:
+  hn::VFromD<D> lanes_;
+};
+using TagOfBytes = hn::Rebind<std::uint8_t, ByteSum::D>;
+
+LevelChange level_change(const std::uint8_t* HWY_RESTRICT now,
+                         const std::uint8_t* HWY_RESTRICT before,
+                         const std::uint8_t* HWY_RESTRICT mask, int width) {
+  const TagOfBytes d8;
+  const int whole = width - width % ByteSum::kStep;
+  LevelChange sums = level_change_row_ref(now + whole, before + whole, mask + whole, width - whole);
+  for (int x = 0; x < whole;) {
+    const int end = std::min(whole, x + ByteSum::kMostSteps * ByteSum::kStep);
+    ByteSum compared;
+    ByteSum change;
+    for (; x < end; x += ByteSum::kStep) {
+      const auto a = hn::LoadU(d8, now + x);
+      const auto b = hn::LoadU(d8, before + x);
+      const auto counts = hn::LoadU(d8, mask + x);
+      const auto difference = hn::Sub(hn::Max(a, b), hn::Min(a, b));
+      change.add(hn::And(difference, counts));
+      compared.add(hn::And(counts, hn::Set(d8, 1)));
+    }
+    sums.compared += compared.sum();
+    sums.change += change.sum();
+  }
+  return sums;
+}
+
+std::int64_t level_sum(const std::uint8_t* levels, int width) {
+  const TagOfBytes d8;
+  const int whole = width - width % ByteSum::kStep;
+  std::int64_t total = level_sum_row_ref(levels + whole, width - whole);
+  for (int x = 0; x < whole;) {
+    const int end = std::min(whole, x + ByteSum::kMostSteps * ByteSum::kStep);
+    ByteSum sum;
+    for (; x < end; x += ByteSum::kStep) {
+      sum.add(hn::LoadU(d8, levels + x));
+    }
+    total += sum.sum();
+  }
+  return total;
+}
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(disparity_change);
+HWY_EXPORT(level_change);
+HWY_EXPORT(level_sum);
+
+DisparityChange disparity_change_row(const float* now_px, const float* before_px,
+                                     const std::uint8_t* mask, int width) {
+  return HWY_DYNAMIC_DISPATCH(disparity_change)(now_px, before_px, mask, width);
+}
+LevelChange level_change_row(const std::uint8_t* now, const std::uint8_t* before,
+                             const std::uint8_t* mask, int width) {
+  return HWY_DYNAMIC_DISPATCH(level_change)(now, before, mask, width);
+}
+std::int64_t level_sum_row(const std::uint8_t* levels, int width) {
+  return HWY_DYNAMIC_DISPATCH(level_sum)(levels, width);
+}
+
+}  // namespace vantage::kernels
+#endif

@@ -1,0 +1,62 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/luma_levels/luma_levels_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "kernels/luma_levels/luma_levels.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+void luma_levels(const std::uint8_t* HWY_RESTRICT pixels, int width, int channels,
+                 std::uint8_t* HWY_RESTRICT levels) {
+  if (channels == 1) {
+    std::copy_n(pixels, width, levels);
+    return;
+  }
+  const hn::ScalableTag<std::uint16_t> d16;
+  const hn::Rebind<std::uint8_t, decltype(d16)> d8;
+  const int step = static_cast<int>(hn::Lanes(d16));
+  int x = 0;
+  for (; x + step <= width; x += step) {
+    const std::uint8_t* at = pixels + static_cast<std::ptrdiff_t>(x) * channels;
+    auto red = hn::Undefined(d8);
+    auto green = hn::Undefined(d8);
+    auto blue = hn::Undefined(d8);
+    if (channels == 3) {
+      hn::LoadInterleaved3(d8, at, red, green, blue);
+    } else {
+      auto alpha = hn::Undefined(d8);
+      hn::LoadInterleaved4(d8, at, red, green, blue, alpha);
+    }
+    // At most 255 · 256 + 128.
+    const auto weighted = [&](auto channel, std::uint16_t weight) HWY_ATTR {
+      return hn::Mul(hn::PromoteTo(d16, channel), hn::Set(d16, weight));
+    };
+    const auto sum = hn::Add(hn::Add(weighted(red, 77), weighted(green, 150)),
+                             hn::Add(weighted(blue, 29), hn::Set(d16, 128)));
+    const hn::RebindToSigned<decltype(d16)> di16;
+    hn::StoreU(hn::DemoteTo(d8, hn::BitCast(di16, hn::ShiftRight<8>(sum))), d8, levels + x);
+  }
+  luma_levels_row_ref(pixels + static_cast<std::ptrdiff_t>(x) * channels, width - x, channels,
+                      levels + x);
+}
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(luma_levels);
+
+void luma_levels_row(const std::uint8_t* pixels, int width, int channels, std::uint8_t* levels) {
+  HWY_DYNAMIC_DISPATCH(luma_levels)(pixels, width, channels, levels);
+}
+
+}  // namespace vantage::kernels
+#endif

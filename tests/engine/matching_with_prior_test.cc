@@ -1,0 +1,217 @@
+// Matching with a prior: what it must not depend on, and what it does.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "engine/error.h"
+#include "engine/matching/stereo_matcher.h"
+#include "engine/simd.h"
+#include "tests/engine/method_cases.h"
+#include "tests/engine/oracle_comparison.h"
+
+namespace vantage {
+namespace {
+
+using testing::method_cases;
+using testing::MethodCase;
+using testing::PhotographPair;
+using testing::PixelKind;
+using testing::textured_pair;
+
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+constexpr DisparityRange kRange{-3, 17};
+
+bool identical(const Image<float>& a, const Image<float>& b) {
+  if (a.width() != b.width() || a.height() != b.height()) {
+    return false;
+  }
+  for (int y = 0; y < a.height(); ++y) {
+    if (std::memcmp(a.row(y), b.row(y), sizeof(float) * static_cast<std::size_t>(a.width())) != 0) {
+      return false;
+    }
+  }
+  return true;
+}
+bool identical(const DisparityMaps& a, const DisparityMaps& b) {
+  return identical(a.left, b.left) && identical(a.right, b.right) &&
+         identical(a.left_confidence, b.left_confidence) &&
+         identical(a.right_confidence, b.right_confidence);
+}
+
+/// Stripes: unknown, in the range with fractions, at its ends, outside.
+DisparityMap striped_prior(int width, int height) {
+  DisparityMap prior(width, height);
+  const float values[] = {kUnknown, 3.25F, -3, 11.5F, 17, kUnknown, 25, 8.75F};
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      prior.at(x, y) = values[(x / 5 + y / 7) % 8];
+    }
+  }
+  return prior;
+}
+
+DisparityMap constant_prior(int width, int height, float disparity_px) {
+  DisparityMap prior(width, height);
+  prior.fill(disparity_px);
+  return prior;
+}
+
+DisparityMaps maps_of(const PhotographPair& pair, const MatchOptions& options,
+                      const DisparityPrior& prior,
+                      const ExecutionOptions& execution_options = {.threads = 2}) {
+  Execution execution(execution_options);
+  DisparityMaps maps;
+  StereoMatcher(options, execution)
+      .match(pair.left, pair.right, {.confidence = true, .prior = prior}, maps);
+  return maps;
+}
+
+class MatchingWithPrior : public ::testing::TestWithParam<MethodCase> {
+ protected:
+  MatchingWithPrior() : options_(GetParam().options) { options_.disparities = kRange; }
+  MatchOptions options_;
+};
+
+TEST_P(MatchingWithPrior, PlansAndExecutorsGiveIdenticalResults) {
+  using scheduler::ExecutorKind;
+  const auto pair = textured_pair(59, 41, kRange, PixelKind::kColour8, 7);
+  const DisparityMap map = striped_prior(59, 41);
+  const DisparityPrior prior{.left_px = map.view(), .right_px = map.view(), .weight = 0.7};
+  options_.parameters.subpixel = Subpixel::kParabola;
+  const DisparityMaps expected =
+      maps_of(pair, options_, prior, {.threads = 1, .executor = ExecutorKind::kSerial});
+  EXPECT_FALSE(identical(maps_of(pair, options_, {}), expected));
+  for (const int strip : {1, 23, 500}) {
+    for (const int band : {9, 500}) {
+      for (const int pass : {1, 3, 1000}) {
+        if (strip == 1 && pass > 1) {
+          continue;  // a whole cone of cells for every pixel
+        }
+        const ExecutionOptions execution{.threads = strip % 3 + 1,
+                                         .strip_width_px = strip,
+                                         .band_height_px = band,
+                                         .iterations_per_pass = pass};
+        EXPECT_TRUE(identical(maps_of(pair, options_, prior, execution), expected))
+            << "strip " << strip << ", band " << band << ", iterations per pass " << pass;
+      }
+    }
+  }
+}
+
+TEST_P(MatchingWithPrior, InstructionSetsAgree) {
+  const MethodParameters parameters = options_.resolved();
+  if (parameters.aggregation == Aggregation::kBayes ||
+      (parameters.aggregation == Aggregation::kLocalStopping &&
+       parameters.certainty == Certainty::kEntropy)) {
+    GTEST_SKIP() << "uses fused operations";
+  }
+  const auto pair = textured_pair(59, 41, kRange, PixelKind::kGrey8, 8);
+  const DisparityMap map = striped_prior(59, 41);
+  const DisparityPrior prior{.left_px = map.view(), .right_px = map.view()};
+  DisparityMaps expected;
+  for (const std::string& name : available_instruction_sets()) {
+    force_instruction_set(name);
+    DisparityMaps maps = maps_of(pair, options_, prior);
+    if (expected.left.empty()) {
+      expected = std::move(maps);
+    } else {
+      EXPECT_TRUE(identical(maps, expected)) << name;
+    }
+  }
+  force_instruction_set("best");
+}
+
+TEST_P(MatchingWithPrior, NoPixelWithAPriorIsNoPrior) {
+  const auto pair = textured_pair(37, 23, kRange, PixelKind::kGrey8, 9);
+  const DisparityMaps expected = maps_of(pair, options_, {});
+  for (const float nothing : {kUnknown, 18.0F, -3.5F}) {
+    const DisparityMap map = constant_prior(37, 23, nothing);
+    // Sums of costs in fractions are kept to another power of two.
+    const DisparityMaps maps =
+        maps_of(pair, options_, {.left_px = map.view(), .right_px = map.view(), .weight = 0.001});
+    int equal = 0;
+    for (int y = 0; y < 23; ++y) {
+      for (int x = 0; x < 37; ++x) {
+        const float wanted = expected.left.at(x, y);
+        const float actual = maps.left.at(x, y);
+        equal += std::isnan(wanted) ? std::isnan(actual) : wanted == actual;
+      }
+    }
+    EXPECT_GE(equal, 37 * 23 - 1) << nothing;
+  }
+  const DisparityMap map = striped_prior(37, 23);
+  EXPECT_TRUE(identical(
+      maps_of(pair, options_, {.left_px = map.view(), .right_px = map.view(), .weight = 0}),
+      expected));
+}
+
+TEST_P(MatchingWithPrior, DecidesWhereTheImagesDoNot) {
+  PhotographPair flat;
+  Image<std::uint8_t> grey(41, 19);
+  grey.fill(90);
+  flat.left.pixels = grey.copy();
+  flat.right.pixels = std::move(grey);
+  const DisparityMap map = constant_prior(41, 19, 5);
+  const DisparityMaps maps =
+      maps_of(flat, options_, {.left_px = map.view(), .right_px = map.view()});
+  // Without contrast a prior on energies has no unit: nothing changes.
+  const bool has_likelihoods = options_.resolved().aggregation == Aggregation::kBayes;
+  const DisparityMaps without = maps_of(flat, options_, {});
+  for (int x = 12; x < 30; ++x) {
+    EXPECT_EQ(maps.left.at(x, 9), has_likelihoods ? 5 : without.left.at(x, 9)) << x;
+  }
+}
+
+TEST_P(MatchingWithPrior, GivesWayToTheImages) {
+  // The prior is wrong everywhere by 6 pixels or more: what the images say wins nearly everywhere.
+  const auto pair = textured_pair(61, 43, kRange, PixelKind::kGrey8, 10);
+  options_.parameters.border = {};
+  const DisparityMaps expected = maps_of(pair, options_, {});
+  const DisparityMap map = constant_prior(61, 43, -3);
+  const DisparityMaps maps =
+      maps_of(pair, options_, {.left_px = map.view(), .right_px = map.view(), .weight = 0.25});
+  int candidates = 0;
+  int equal = 0;
+  for (int y = 5; y < 38; ++y) {
+    for (int x = 22; x < 50; ++x) {
+      candidates += std::isnan(expected.left.at(x, y)) ? 0 : 1;
+      equal += maps.left.at(x, y) == expected.left.at(x, y) ? 1 : 0;
+    }
+  }
+  EXPECT_GE(equal, 0.85 * candidates);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, MatchingWithPrior, ::testing::ValuesIn(method_cases({})),
+                         [](const auto& instance) { return instance.param.name; });
+
+TEST(MatchingWithPriorErrors, AreNamed) {
+  const auto pair = textured_pair(31, 17, {0, 9}, PixelKind::kGrey8, 1);
+  MatchOptions options;
+  options.disparities = {0, 9};
+  const DisparityMap map = constant_prior(31, 17, 4);
+  const DisparityMap narrow = constant_prior(30, 17, 4);
+  EXPECT_THROW(maps_of(pair, options, {.left_px = map.view(), .weight = -1}), UsageError);
+  EXPECT_THROW(maps_of(pair, options, {.left_px = map.view(), .weight = 101}), UsageError);
+  EXPECT_THROW(maps_of(pair, options, {.left_px = map.view(), .weight = std::nan("")}), UsageError);
+  EXPECT_THROW(maps_of(pair, options, {.right_px = narrow.view()}), Error);
+  options.disparities_y = DisparityRange{-1, 1};
+  EXPECT_THROW(maps_of(pair, options, {.left_px = map.view()}), UsageError);
+}
+
+TEST(MatchingWithPriorErrors, OneMapMayHaveNone) {
+  const auto pair = textured_pair(31, 17, {0, 9}, PixelKind::kGrey8, 1);
+  MatchOptions options;
+  options.disparities = {0, 9};
+  options.raw = true;
+  const DisparityMap map = constant_prior(31, 17, 4);
+  const DisparityMaps expected = maps_of(pair, options, {});
+  const DisparityMaps maps = maps_of(pair, options, {.left_px = map.view(), .weight = 100});
+  EXPECT_FALSE(identical(maps.left, expected.left));
+  EXPECT_TRUE(identical(maps.right, expected.right));
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,57 @@
+#include "kernels/luma_levels/luma_levels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <random>
+#include <vector>
+
+#include "tests/kernels/kernel_test_utils.h"
+
+namespace vantage::kernels {
+namespace {
+
+class LumaLevels : public EveryTarget {};
+VANTAGE_ON_EVERY_TARGET(LumaLevels);
+
+TEST_P(LumaLevels, AreTheRoundedLuma) {
+  std::mt19937 random(72);
+  for (const int channels : {1, 3, 4}) {
+    for (const int width : {1, 2, 15, 16, 17, 31, 64, 65, 301}) {
+      UnalignedRow<std::uint8_t> pixels(static_cast<std::size_t>(width * channels), random() % 5);
+      for (std::size_t k = 0; k < pixels.size(); ++k) {
+        pixels[k] = random() % 4 == 0 ? 255 : static_cast<std::uint8_t>(random());
+      }
+      GuardedRow<std::uint8_t> levels(static_cast<std::size_t>(width), random() % 5, 0xA5);
+      luma_levels_row(pixels.data(), width, channels, levels.data());
+      ASSERT_TRUE(levels.intact());
+      std::vector<std::uint8_t> reference(static_cast<std::size_t>(width));
+      luma_levels_row_ref(pixels.data(), width, channels, reference.data());
+      ASSERT_EQ(levels.values(), reference);
+      for (int x = 0; x < width; ++x) {
+        const std::uint8_t* pixel = pixels.data() + static_cast<std::ptrdiff_t>(x) * channels;
+        const double luma =
+            channels == 1 ? pixel[0] : 0.299 * pixel[0] + 0.587 * pixel[1] + 0.114 * pixel[2];
+        ASSERT_NEAR(reference[static_cast<std::size_t>(x)], luma, channels == 1 ? 0 : 1);
+      }
+    }
+  }
+}
+
+TEST_P(LumaLevels, BlackAndWhiteStayThemselves) {
+  const std::uint8_t black[4 * 64] = {};
+  std::uint8_t pixels[4 * 64];
+  std::fill(std::begin(pixels), std::end(pixels), std::uint8_t{255});
+  std::uint8_t levels[64];
+  luma_levels_row(pixels, 64, 4, levels);
+  EXPECT_EQ(std::count(std::begin(levels), std::end(levels), 255), 64);
+  luma_levels_row(black, 64, 4, levels);
+  EXPECT_EQ(std::count(std::begin(levels), std::end(levels), 0), 64);
+}
+
+}  // namespace
+}  // namespace vantage::kernels

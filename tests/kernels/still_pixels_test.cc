@@ -1,0 +1,129 @@
+#include "kernels/still_pixels/still_pixels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <random>
+#include <vector>
+
+#include "tests/kernels/kernel_test_utils.h"
+
+namespace vantage::kernels {
+namespace {
+
+constexpr int kWidths[] = {1, 2, 3, 15, 16, 17, 31, 63, 64, 65, 129, 200};
+
+std::vector<std::uint8_t> random_levels(std::mt19937& random, int width, int readable) {
+  std::vector<std::uint8_t> levels(static_cast<std::size_t>(readable), 0xEE);
+  for (int x = 0; x < width; ++x) {
+    levels[static_cast<std::size_t>(x)] = random() % 5 == 0
+                                              ? static_cast<std::uint8_t>(random() % 2 * 255)
+                                              : static_cast<std::uint8_t>(random());
+  }
+  return levels;
+}
+
+class StillPixelsKernel : public EveryTarget {};
+VANTAGE_ON_EVERY_TARGET(StillPixelsKernel);
+
+TEST_P(StillPixelsKernel, ChangesAreSumsOverThreeByThreePixels) {
+  std::mt19937 random(73);
+  for (const int width : kWidths) {
+    const int readable = still_row_values(width) - 2 * kStillMargin;
+    std::vector<std::uint8_t> now[3];
+    std::vector<std::uint8_t> before[3];
+    FrameRows rows;
+    rows.width = width;
+    for (std::size_t k = 0; k < 3; ++k) {
+      now[k] = random_levels(random, width, readable);
+      before[k] = random() % 3 == 0 ? now[k] : random_levels(random, width, readable);
+      rows.now[k] = now[k].data();
+      rows.before[k] = before[k].data();
+    }
+    const auto values = static_cast<std::size_t>(still_row_values(width));
+    std::vector<std::int16_t> work(values);
+    std::vector<std::int16_t> change(values);
+    std::vector<std::int16_t> reference(values);
+    box_change_row(rows, work.data() + kStillMargin, change.data() + kStillMargin);
+    box_change_row_ref(rows, work.data() + kStillMargin, reference.data() + kStillMargin);
+    for (int x = -1; x <= width; ++x) {
+      const int centre = std::clamp(x, 0, width - 1);
+      int sum = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const auto column = static_cast<std::size_t>(std::clamp(centre + dx, 0, width - 1));
+          sum += now[k][column] - before[k][column];
+        }
+      }
+      const auto place = static_cast<std::size_t>(x + kStillMargin);
+      ASSERT_EQ(change[place], std::abs(sum)) << "column " << x << " of " << width;
+      ASSERT_EQ(reference[place], std::abs(sum)) << "column " << x << " of " << width;
+    }
+  }
+}
+
+TEST_P(StillPixelsKernel, StillMeansNoLargerChangeAround) {
+  std::mt19937 random(74);
+  for (const int width : kWidths) {
+    const auto values = static_cast<std::size_t>(still_row_values(width));
+    std::vector<std::int16_t> rows[3];
+    const std::int16_t* changes[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      rows[k].assign(values, 0x7000);
+      for (int x = 0; x < width; ++x) {
+        rows[k][static_cast<std::size_t>(x + kStillMargin)] =
+            static_cast<std::int16_t>(random() % 20 == 0 ? 27 + random() % 3 : random() % 27);
+      }
+      rows[k][kStillMargin - 1] = rows[k][kStillMargin];
+      rows[k][static_cast<std::size_t>(kStillMargin + width)] =
+          rows[k][static_cast<std::size_t>(kStillMargin + width - 1)];
+      changes[k] = rows[k].data() + kStillMargin;
+    }
+    std::vector<std::uint8_t> still(values);
+    std::vector<std::uint8_t> reference(values);
+    still_row(changes, width, 27, still.data());
+    still_row_ref(changes, width, 27, reference.data());
+    for (int x = 0; x < width; ++x) {
+      int most = 0;
+      for (const std::int16_t* row : changes) {
+        most = std::max({most, int{row[x - 1]}, int{row[x]}, int{row[x + 1]}});
+      }
+      ASSERT_EQ(still[static_cast<std::size_t>(x)], most <= 27 ? 255 : 0) << x << " of " << width;
+      ASSERT_EQ(reference[static_cast<std::size_t>(x)], most <= 27 ? 255 : 0);
+    }
+  }
+}
+
+TEST(StillView, NeedsAllThePixelsItCanComeFrom) {
+  std::mt19937 random(75);
+  for (const int width : {1, 2, 7, 40}) {
+    for (int run = 0; run < 300; ++run) {
+      std::vector<std::uint8_t> still(static_cast<std::size_t>(width));
+      for (std::uint8_t& value : still) {
+        value = random() % 6 == 0 ? 0 : 255;
+      }
+      const int least = random_int(random, -width - 3, width + 3);
+      const int most = random_int(random, least, width + 6);
+      std::vector<std::uint8_t> view(still.size(), 7);
+      still_view_row(still.data(), width, least, most, view.data());
+      for (int x = 0; x < width; ++x) {
+        int inside = 0;
+        bool all = true;
+        for (int source = x + least; source <= x + most; ++source) {
+          if (source >= 0 && source < width) {
+            ++inside;
+            all = all && still[static_cast<std::size_t>(source)] != 0;
+          }
+        }
+        ASSERT_EQ(view[static_cast<std::size_t>(x)], inside > 0 && all ? 255 : 0)
+            << x << " of " << width << ", shifts " << least << " to " << most;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vantage::kernels
