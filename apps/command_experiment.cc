@@ -108,7 +108,8 @@ int command_experiment(const Arguments& arguments) {
   std::vector<ExperimentRun> noise_runs;
   std::vector<ExperimentRun> iteration_runs;
   {
-    Progress progress("experiment noise", "runs", job.common.quiet);
+    Progress progress("experiment noise", "runs",
+                      job.common.quiet ? ProgressStyle::kNone : ProgressStyle::kAuto);
     const int noise_total =
         static_cast<int>(job.options.pairs.size() * kExperimentNoise.size() * kNoiseMethods.size());
     const int all =

@@ -130,7 +130,9 @@ int command_generate_scene(const Arguments& arguments) {
   const int frames = job.frames.value_or(1);
   int frames_done = 0;
   {
-    Progress progress("generate scene", "frames", job.common.quiet || frames == 1);
+    Progress progress(
+        "generate scene", "frames",
+        job.common.quiet || frames == 1 ? ProgressStyle::kNone : ProgressStyle::kAuto);
     while (frames_done < frames && !interrupted.load()) {
       make_frame(job, scene, frames_done, files, report);
       progress.update(++frames_done, frames, 0);

@@ -1,166 +1,79 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
-#include "apps/automatic_disparities.h"
 #include "apps/commands.h"
 #include "apps/interrupt.h"
-#include "apps/option_groups.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
 #include "apps/run_report.h"
-#include "apps/settings.h"
+#include "apps/run_results.h"
+#include "apps/run_session.h"
+#include "apps/run_settings.h"
 #include "engine/error.h"
-#include "engine/io/frame_source.h"
-#include "engine/sequence/sequence_runner.h"
+#include "engine/io/atomic_file.h"
+#include "engine/sequence/sequence_join.h"
 #include "engine/simd.h"
 
 namespace vantage::apps {
 namespace {
 
-namespace fs = std::filesystem;
-
-struct RunJob {
-  SequenceOptions sequence;
-  CommonOptions common;
-  std::string left;
-  std::string right;
-  std::string output;
-  /// Empty: the disparity map, and the views when there are any.
-  std::optional<std::vector<SequenceOutput>> save;
-};
-
-constexpr std::string_view kAutomatic = "auto";
-constexpr std::pair<std::string_view, SequenceOutput> kOutputNames[] = {
-    {"disparity", SequenceOutput::kDisparity},
-    {"right-disparity", SequenceOutput::kRightDisparity},
-    {"confidence", SequenceOutput::kConfidence},
-    {"unmatched", SequenceOutput::kUnmatched},
-    {"preview", SequenceOutput::kPreview},
-    {"views", SequenceOutput::kViews}};
-
-std::vector<SequenceOutput> to_outputs(const SettingValue& value) {
-  std::vector<SequenceOutput> outputs;
-  for (const SettingValue& member : to_list(value)) {
-    for (const std::string& name : split(to_text(member), ',')) {
-      const auto known = std::ranges::find(kOutputNames, name,
-                                           &std::pair<std::string_view, SequenceOutput>::first);
-      if (known == std::end(kOutputNames)) {
-        reject_value(name,
-                     "a list of disparity, right-disparity, confidence, unmatched, preview, views");
-      }
-      if (std::ranges::find(outputs, known->second) == outputs.end()) {
-        outputs.push_back(known->second);
-      }
-    }
-  }
-  return outputs;
+JournalOpening opening_of(const RunJob& job) {
+  return job.overwrite ? JournalOpening::kOverwrite
+         : job.force   ? JournalOpening::kForce
+         : job.resume  ? JournalOpening::kResume
+                       : JournalOpening::kNew;
 }
 
-SettingValue output_names(const std::vector<SequenceOutput>& outputs) {
-  SettingValue names = SettingValue::array();
-  for (const SequenceOutput output : outputs) {
-    names.push_back(std::ranges::find(kOutputNames, output,
-                                      &std::pair<std::string_view, SequenceOutput>::second)
-                        ->first);
+/// Made once for all parts of the run and all times it is resumed. Empty when interrupted.
+std::optional<ShotTable> find_shots(const RunJob& job, RunSession& session,
+                                    const SequenceLayout& layout, Execution& execution,
+                                    RunReport& report) {
+  const std::filesystem::path path = layout.journal_folder() / "shots.json";
+  if (std::ifstream stored(path, std::ios::binary); stored) {
+    std::ostringstream text;
+    text << stored.rdbuf();
+    return shot_table_from_json(text.str());
   }
-  return names;
-}
-
-void add_sequence_settings(Settings& settings, RunJob& job) {
-  settings.begin_group("Files");
-  settings
-      .text("left", job.left, "SOURCE",
-            "Frames of the left camera: a folder, a pattern (left/%06d.png), a glob or a video")
-      .required = true;
-  settings.text("right", job.right, "SOURCE", "Frames of the right camera").required = true;
-  Setting& output = settings.text("output", job.output, "DIR",
-                                  "Folder to write to: DIR/disparity/000000.pfm and so on");
-  output.short_name = 'o';
-  output.required = true;
-  settings.begin_group("Sequence");
-  Setting& save =
-      settings.add("save", "LIST",
-                   "What to write of each frame, from disparity,right-disparity,confidence,"
-                   "unmatched,preview,views; auto: disparity, and views if there are any");
-  save.list = true;
-  save.set = [&job](const SettingValue& value) {
-    const auto members = to_list(value);
-    if (members.size() == 1 && members.front() == kAutomatic) {
-      job.save.reset();
-    } else {
-      job.save = to_outputs(value);
-    }
+  Progress progress("run: looking for shots", "frames", job.progress);
+  SurveyHooks hooks;
+  hooks.progress = [&](const SurveyProgress& now) {
+    progress.update(now.frames_done, now.frames_total, 0);
   };
-  save.get = [&job] { return job.save ? output_names(*job.save) : SettingValue(kAutomatic); };
-  add_view_setting(settings, job.sequence.views_x);
-  settings.text("format", job.sequence.disparity_format, "EXT",
-                "File format of the maps: pfm, png, tiff, exr or npy");
-  settings.integer("in-flight", job.sequence.in_flight, "N",
-                   "Frames under way at once, 1 to 64; auto: threads + 1, at most 8");
-}
-
-fs::path resolved(const fs::path& path) {
-  std::error_code ignored;
-  return fs::weakly_canonical(fs::absolute(path, ignored), ignored);
-}
-
-/// Results must not land among the frames they are made from.
-void require_separate_folders(const RunJob& job) {
-  for (const std::string& source : {job.left, job.right}) {
-    std::error_code ignored;
-    const fs::path folder =
-        fs::is_directory(source, ignored) ? fs::path(source) : fs::path(source).parent_path();
-    for (const fs::path& written : SequenceLayout(job.output, job.sequence).folders()) {
-      if (resolved(written) == resolved(folder)) {
-        throw UsageError(fmt::format("--output would write into '{}', where the frames '{}' are",
-                                     written.string(), source));
-      }
-    }
+  hooks.stop = &interrupt_flag();
+  if (session.rectifier) {
+    hooks.prepare = [&](FramePair& pair) {
+      Photograph rectified;
+      session.rectifier->apply(pair.left, Side::kLeft, rectified, execution);
+      std::swap(pair.left, rectified);
+      session.rectifier->apply(pair.right, Side::kRight, rectified, execution);
+      std::swap(pair.right, rectified);
+    };
   }
+  auto shots = report.timed_compute("shots", [&] {
+    return survey_shots(*session.pairs, 0, session.selection.frame_count, job.sequence, hooks,
+                        execution);
+  });
+  if (shots) {
+    write_text_file(path, to_json(*shots));
+  }
+  return shots;
 }
 
-void check(const RunJob& job) {
-  job.sequence.validate();
-  job.common.execution.validate();
-  require_separate_folders(job);
-  FileChecks files;
-  files.add_output(job.common.report, "--report", OutputKind::kText);
-}
-
-/// Opens the sources once more: a frame that has been read from them is gone.
-void choose_disparities_of_first_pair(RunJob& job, const Settings& settings, Execution& execution,
-                                      RunReport& report) {
-  if (!job.sequence.match.disparities_auto) {
+/// Joins videos once all frames are there that the folder is to have.
+void join_if_whole(const RunJob& job, const RunSession& session, const SequenceLayout& layout,
+                   const SequenceReport& sequence, RunJournal& journal, RunReport& report) {
+  if (job.shard || sequence.interrupted || !layout.has_videos()) {
     return;
   }
-  Photograph left;
-  Photograph right;
-  const auto read_first = [&](const std::string& source, Photograph& frame) {
-    if (!open_frame_source(source)->next(frame)) {
-      throw Error(fmt::format("{} has no frame", source));
-    }
-  };
-  report.timed_file_access("read", [&] {
-    read_first(job.left, left);
-    read_first(job.right, right);
+  const DeliveredFrames delivered(layout);
+  const FrameRange frames = contiguous_frames(delivered, session.selection.frame_count);
+  report.timed_file_access("join", [&] {
+    join_segments(job.sequence, layout, session.identity, frames, sequence.frames > 0, journal);
   });
-  choose_disparities(settings, job.common, left, right, job.sequence.match, execution, report);
-}
-
-void fill_report(const SequenceReport& sequence, RunReport& report) {
-  for (const SequenceStage& stage : sequence.stages) {
-    report.add_stage(stage.name, stage.seconds);
-  }
-  report.add_compute_seconds(sequence.compute_seconds);
-  report.add_cells(sequence.cells);
-  report.set_plan(sequence.plan);
-  report.set_results({{"frames", sequence.frames},
-                      {"interrupted", sequence.interrupted},
-                      {"in_flight", sequence.in_flight},
-                      {"width_px", sequence.width_px},
-                      {"height_px", sequence.height_px}});
 }
 
 }  // namespace
@@ -168,49 +81,70 @@ void fill_report(const SequenceReport& sequence, RunReport& report) {
 int command_run(const Arguments& arguments) {
   RunJob job;
   Settings settings("run",
-                    "Computes disparity maps and new views of a sequence of rectified pairs.");
-  add_sequence_settings(settings, job);
-  add_reference_setting(settings, job.sequence.match);
-  add_match_settings(settings, job.sequence.match);
-  add_synthesis_settings(settings, job.sequence.synthesis);
-  add_common_settings(settings, job.common);
+                    "Computes disparity maps and new views of a sequence of pairs of frames.");
+  add_run_settings(settings, job);
   if (!settings.read(arguments)) {
     return kExitDone;
   }
-  if (job.save) {
-    job.sequence.save = *job.save;
-  } else if (!job.sequence.views_x.empty()) {
-    job.sequence.save.push_back(SequenceOutput::kViews);
-  }
-  check(job);
+  complete(job);
   RunReport report(settings.command(), reported_settings(settings, job.sequence.match));
   force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
+  RunSession session = open_run(job, settings, report);
+  const std::string plan = describe_plan(job, settings, session);
+  if (job.dry_run) {
+    fmt::print("{}", plan);
+    return kExitDone;
+  }
+  FileChecks files;
+  files.add_output(job.common.report, "--report", OutputKind::kText);
+  if (!job.common.quiet) {
+    fmt::print(stderr, "{}", plan);
+  }
+  ExecutionOptions execution_options = job.common.execution;
+  execution_options.chain_memory_bytes = session.memory.chain_bytes;
+  Execution execution(execution_options);
   report.set_execution(execution);
-  choose_disparities_of_first_pair(job, settings, execution, report);
-  const SequenceRunner runner(job.sequence, execution);
-  const std::unique_ptr<FrameSource> left = open_frame_source(job.left);
-  const std::unique_ptr<FrameSource> right = open_frame_source(job.right);
 
+  const SequenceLayout layout(job.output, job.sequence);
+  RunJournal journal(layout.journal_folder(), session.identity, opening_of(job),
+                     RunSession::part_name(job));
+  const std::atomic<bool>& interrupted = interrupt_flag();
+  std::optional<ShotTable> shots;
+  if (job.sequence.needs_shots()) {
+    shots = find_shots(job, session, layout, execution, report);
+    if (!shots) {
+      return kExitInterrupted;
+    }
+  }
   SequenceReport sequence;
   {
-    Progress progress("run", "frames", job.common.quiet);
-    sequence = runner.run(
-        *left, *right, job.output,
-        [&](const SequenceProgress& now) {
-          progress.update(now.frames_done, now.frames_total, now.cells);
-        },
-        &interrupt_flag());
+    Progress progress("run", "frames", job.common.quiet ? ProgressStyle::kNone : job.progress);
+    SequenceRun run = session.run(job, shots ? &*shots : nullptr);
+    run.stop = &interrupted;
+    run.on_progress = [&](const SequenceProgress& now) {
+      progress.update(now.frames_done, now.frames_total, now.cells);
+    };
+    sequence = SequenceRunner(job.sequence, execution).run(run, layout, journal);
   }
-  fill_report(sequence, report);
+  join_if_whole(job, session, layout, sequence, journal, report);
+  fill_report(job, session, sequence, DeliveredFrames(layout), report);
   report.write(job.common.report);
   if (!job.common.quiet) {
-    fmt::print(stderr, "run: {} frames of {}x{} pixels, {} in flight -> {}{}\n", sequence.frames,
-               sequence.width_px, sequence.height_px, sequence.in_flight, job.output,
-               sequence.interrupted ? " (interrupted)" : "");
+    print_summary(job, session, sequence);
     report.print_summary();
   }
-  return sequence.interrupted ? kExitInterrupted : kExitDone;
+  if (sequence.interrupted) {
+    return kExitInterrupted;
+  }
+  if (session.pairs->unpaired_frames() > 0 && RunSession::part_name(job) == "all") {
+    // What has a partner is finished; whoever counts on all of it must know.
+    if (!job.keep_going) {
+      throw Error(fmt::format("all {} pairs are done, but {}", session.selection.frame_count,
+                              fmt::join(session.pairs->remarks(), "; ")));
+    }
+    return kExitSkipped;
+  }
+  return sequence.skipped.empty() ? kExitDone : kExitSkipped;
 }
 
 }  // namespace vantage::apps

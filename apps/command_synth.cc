@@ -6,6 +6,7 @@
 
 #include "apps/automatic_disparities.h"
 #include "apps/commands.h"
+#include "apps/frame_rate_setting.h"
 #include "apps/interrupt.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
@@ -43,7 +44,7 @@ struct SynthJob {
   std::string right_disparity;
   std::optional<double> disparity_scale;
   std::string hole_mask;
-  double frames_per_second = 25;
+  FrameRate frame_rate;
 
   [[nodiscard]] bool has_maps() const { return !left_disparity.empty(); }
 };
@@ -75,7 +76,7 @@ void add_view_settings(Settings& settings, SynthJob& job) {
                                                 job.sweep->views))
                      : SettingValue();
   };
-  settings.number("fps", job.frames_per_second, "F", "Views per second of a video");
+  add_frame_rate_setting(settings, "fps", job.frame_rate, "Views per second of a video");
 }
 
 void add_file_settings(Settings& settings, SynthJob& job) {
@@ -138,10 +139,6 @@ void check(const SynthJob& job, const Settings& settings, const ViewOutput& outp
     throw UsageError(
         "one of --left-disparity and --right-disparity is missing, expected both or "
         "none");
-  }
-  if (!(job.frames_per_second > 0 && job.frames_per_second <= 1000)) {
-    throw UsageError(fmt::format("--fps is {}, expected a number above 0 and at most 1000",
-                                 job.frames_per_second));
   }
   if (job.disparity_scale && !(*job.disparity_scale > 0)) {
     throw UsageError(
@@ -241,16 +238,17 @@ int command_synth(const Arguments& arguments) {
   SettingValue results = SettingValue::array();
   SynthesizedView view;
   {
-    Progress progress("synth", "views", job.common.quiet || views == 1);
+    Progress progress("synth", "views",
+                      job.common.quiet || views == 1 ? ProgressStyle::kNone : ProgressStyle::kAuto);
     for (int index = 0; index < views && !interrupted.load(); ++index) {
       const double view_x = views_x[static_cast<std::size_t>(index)];
       report.timed_compute("views", [&] {
         synthesizer.synthesize(left, right, maps.left.view(), maps.right.view(), view_x, view);
       });
       report.timed_file_access("write", [&] {
-        output.write(index, view.image, job.frames_per_second);
+        output.write(index, view.image, job.frame_rate);
         if (hole_mask) {
-          hole_mask->write(index, {view.holes.copy()}, job.frames_per_second);
+          hole_mask->write(index, {view.holes.copy()}, job.frame_rate);
         }
       });
       results.push_back(describe(view_x, view));

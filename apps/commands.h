@@ -21,6 +21,7 @@ struct Command {
 inline constexpr int kExitDone = 0;
 inline constexpr int kExitFailed = 1;
 inline constexpr int kExitUsage = 2;
+inline constexpr int kExitSkipped = 3;
 inline constexpr int kExitInterrupted = 130;
 
 /// All subcommands, in the order of --help.
@@ -34,6 +35,8 @@ int command_generate_book(const Arguments& arguments);
 int command_generate_scene(const Arguments& arguments);
 int command_response(const Arguments& arguments);
 int command_experiment(const Arguments& arguments);
+int command_merge(const Arguments& arguments);
+int command_submit(const Arguments& arguments);
 int command_info(const Arguments& arguments);
 
 }  // namespace vantage::apps

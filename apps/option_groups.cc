@@ -7,7 +7,7 @@
 namespace vantage::apps {
 void add_common_settings(Settings& settings, CommonOptions& options) {
   using scheduler::ExecutorKind;
-  settings.begin_group("Execution (never changes a result)");
+  settings.begin_group("Execution (never changes a result)", false);
   settings.integer("threads", options.execution.threads, "N",
                    "Threads, 1 to 1024; auto: all this process may use");
   settings.choice<ExecutorKind>("executor", options.execution.executor,
@@ -23,7 +23,7 @@ void add_common_settings(Settings& settings, CommonOptions& options) {
                    "Iterations between two stores of their state; auto: from the cache sizes");
   settings.text("isa", options.isa, "NAME",
                 "Instruction set of the kernels; best, or a name of 'vantage info'");
-  settings.begin_group("Messages");
+  settings.begin_group("Messages", false);
   settings.text("report", options.report, "FILE", "Write a JSON report of the run to FILE");
   settings.flag("quiet", options.quiet, "Print errors only");
 }

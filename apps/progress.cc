@@ -11,8 +11,10 @@
 namespace vantage::apps {
 namespace {
 
-constexpr std::chrono::milliseconds kTerminalInterval{100};
+constexpr std::chrono::milliseconds kBarInterval{100};
 constexpr std::chrono::seconds kLineInterval{5};
+constexpr std::chrono::seconds kWindow{60};
+constexpr std::chrono::milliseconds kSampleInterval{250};
 
 std::string bar(double fraction) {
   constexpr int kWidth = 24;
@@ -29,12 +31,15 @@ std::string duration(double seconds) {
 
 }  // namespace
 
-Progress::Progress(std::string command, std::string unit, bool quiet)
-    : command_(std::move(command)),
-      unit_(std::move(unit)),
-      quiet_(quiet),
-      terminal_(::isatty(STDERR_FILENO) != 0),
-      next_print_(start_ + (terminal_ ? Clock::duration::zero() : kLineInterval)) {}
+Progress::Progress(std::string command, std::string unit, ProgressStyle style)
+    : command_(std::move(command)), unit_(std::move(unit)), style_(style) {
+  if (style_ == ProgressStyle::kAuto) {
+    style_ = ::isatty(STDERR_FILENO) != 0 ? ProgressStyle::kBar : ProgressStyle::kPlain;
+  }
+  const Clock::time_point now = Clock::now();
+  samples_.push_back({now, 0, 0});
+  next_print_ = style_ == ProgressStyle::kBar ? now : now + kLineInterval;
+}
 
 Progress::~Progress() {
   if (line_open_) {
@@ -43,44 +48,54 @@ Progress::~Progress() {
 }
 
 void Progress::update(int done, std::optional<int> total, double cells) {
-  const Clock::time_point now = Clock::now();
-  const bool last = total && done == *total;
-  // Elsewhere than on a terminal the final summary of the command says the rest.
-  if (quiet_ || (now < next_print_ && !(last && terminal_))) {
+  if (style_ == ProgressStyle::kNone) {
     return;
   }
-  const std::string text = describe(done, total, cells);
-  if (terminal_) {
-    next_print_ = now + kTerminalInterval;
-    fmt::print(stderr, "\r{}\x1b[K", text);
-    std::fflush(stderr);
-    line_open_ = true;
-  } else {
-    next_print_ = now + kLineInterval;
-    fmt::print(stderr, "{}\n", text);
+  const Sample now{Clock::now(), done, cells};
+  const bool last = total && done == *total;
+  // Elsewhere than on a terminal the final summary of the command says the rest.
+  if (now.time >= next_print_ || (last && style_ == ProgressStyle::kBar)) {
+    const std::string text = describe(now, total);
+    if (style_ == ProgressStyle::kBar) {
+      next_print_ = now.time + kBarInterval;
+      fmt::print(stderr, "\r{}\x1b[K", text);
+      std::fflush(stderr);
+      line_open_ = true;
+    } else {
+      next_print_ = now.time + kLineInterval;
+      fmt::print(stderr, "{}\n", text);
+    }
+  }
+  if (now.time - samples_.back().time >= kSampleInterval) {
+    samples_.push_back(now);
+    while (samples_.size() > 2 && now.time - samples_[1].time >= kWindow) {
+      samples_.pop_front();
+    }
   }
 }
 
-std::string Progress::describe(int done, std::optional<int> total, double cells) const {
+std::string Progress::describe(const Sample& now, std::optional<int> total) const {
+  const Sample& past = samples_.front();
   const double seconds =
-      std::max(1e-9, std::chrono::duration<double>(Clock::now() - start_).count());
+      std::max(1e-9, std::chrono::duration<double>(now.time - past.time).count());
+  const double rate = (now.done - past.done) / seconds;
   std::string text = command_ + ": ";
   if (total && *total > 0) {
     // The length of a video can be an estimate: never past the end.
-    const int end = std::max(*total, done);
-    if (terminal_) {
-      text += bar(static_cast<double>(done) / end);
+    const int end = std::max(*total, now.done);
+    if (style_ == ProgressStyle::kBar) {
+      text += bar(static_cast<double>(now.done) / end);
     }
-    text += fmt::format("{}/{} {}", done, end, unit_);
+    text += fmt::format("{}/{} {}", now.done, end, unit_);
   } else {
-    text += fmt::format("{} {}", done, unit_);
+    text += fmt::format("{} {}", now.done, unit_);
   }
-  text += fmt::format(", {:.2f} {}/s", done / seconds, unit_);
-  if (cells > 0) {
-    text += fmt::format(", {:.0f} million cells/s", cells / seconds * 1e-6);
+  text += fmt::format(", {:.2f} {}/s", rate, unit_);
+  if (now.cells > 0) {
+    text += fmt::format(", {:.0f} million cells/s", (now.cells - past.cells) / seconds * 1e-6);
   }
-  if (total && done > 0 && done <= *total) {
-    text += fmt::format(", {} left", duration(seconds / done * (*total - done)));
+  if (total && rate > 0 && now.done <= *total) {
+    text += fmt::format(", {} left", duration((*total - now.done) / rate));
   }
   return text;
 }

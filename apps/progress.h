@@ -1,17 +1,26 @@
 #pragma once
 
 #include <chrono>
+#include <deque>
 #include <optional>
 #include <string>
 
 namespace vantage::apps {
 
-/// Tells people on stderr how far a long job is, with rate and time left: a bar that is redrawn on
-/// a terminal, a plain line every few seconds elsewhere. Thread rule: one thread at a time.
+enum class ProgressStyle {
+  kAuto,   ///< a bar on a terminal, else lines
+  kBar,    ///< redrawn in place
+  kPlain,  ///< a line every few seconds, for logs
+  kNone
+};
+
+/// Tells people on stderr how far a long job is, with rate and time left. Rate and time left are
+/// those of the last minute, so that neither the start nor what was quick long ago spoils them; no
+/// time is told before there is something to go by. Thread rule: one thread at a time.
 class Progress {
  public:
-  /// `unit` is what is counted ("frames"). A quiet one prints nothing.
-  Progress(std::string command, std::string unit, bool quiet);
+  /// `unit` is what is counted ("frames").
+  Progress(std::string command, std::string unit, ProgressStyle style);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   /// Ends the line of the bar.
@@ -22,14 +31,18 @@ class Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
-  [[nodiscard]] std::string describe(int done, std::optional<int> total, double cells) const;
+  struct Sample {
+    Clock::time_point time;
+    int done = 0;
+    double cells = 0;
+  };
+  [[nodiscard]] std::string describe(const Sample& now, std::optional<int> total) const;
 
   std::string command_;
   std::string unit_;
-  bool quiet_;
-  bool terminal_;
+  ProgressStyle style_;  ///< not kAuto
   bool line_open_ = false;
-  Clock::time_point start_ = Clock::now();
+  std::deque<Sample> samples_;  ///< of the last minute, the oldest first
   Clock::time_point next_print_;
 };
 

@@ -108,6 +108,7 @@ Setting& Settings::add(std::string name, std::string value_name, std::string hel
   setting.value_name = std::move(value_name);
   setting.help = std::move(help);
   setting.group = group_;
+  setting.changes_results = group_changes_results_;
   return settings_.emplace_back(std::move(setting));
 }
 
@@ -192,6 +193,27 @@ SettingValue Settings::values() const {
   return values;
 }
 
+SettingValue Settings::result_values() const {
+  SettingValue values = SettingValue::object();
+  for (const Setting& setting : settings_) {
+    SettingValue value = setting.get();
+    if (setting.changes_results && !is_unset(value)) {
+      values[setting.name] = std::move(value);
+    }
+  }
+  return values;
+}
+
+void Settings::set_values(const SettingValue& values) {
+  for (const auto& [key, value] : values.items()) {
+    const auto setting = std::ranges::find(settings_, key, &Setting::name);
+    if (setting == settings_.end()) {
+      throw UsageError(fmt::format("unknown setting '{}'", key));
+    }
+    set_value(*setting, value, key);
+  }
+}
+
 bool Settings::read(const std::vector<std::string>& arguments) {
   CLI::App app(summary_, "vantage " + command_);
   app.allow_extras();
@@ -211,6 +233,12 @@ bool Settings::read(const std::vector<std::string>& arguments) {
   app.add_flag("--print-config", print_config, "Write all settings in effect as TOML and stop")
       ->group("Settings");
 
+  std::string job_file;
+  if (takes_job_file_) {
+    app.add_option("JOB", job_file, "Read settings from this TOML file, as --config does")
+        ->type_name("")
+        ->group("Settings");
+  }
   std::vector<std::string> reversed = arguments;  // as CLI11 wants them
   std::reverse(reversed.begin(), reversed.end());
   try {
@@ -225,8 +253,13 @@ bool Settings::read(const std::vector<std::string>& arguments) {
   }
   require_known(app.remaining(), known);
 
-  if (!config_path.empty()) {
-    apply_config(config_path);
+  if (!job_file.empty() && !config_path.empty()) {
+    throw UsageError(
+        fmt::format("settings are to be read from '{}' and from '{}', expected one file", job_file,
+                    config_path));
+  }
+  if (const std::string& path = job_file.empty() ? config_path : job_file; !path.empty()) {
+    apply_config(path);
   }
   for (std::size_t i = 0; i < settings_.size(); ++i) {
     const Setting& setting = settings_[i];

@@ -24,7 +24,8 @@ struct Setting {
   bool positional = false;
   bool required = false;
   bool flag = false;
-  bool list = false;  ///< may be given several times; an array in TOML
+  bool list = false;            ///< may be given several times; an array in TOML
+  bool changes_results = true;  ///< else it says how work is done, not what comes of it
   /// Takes a value of the TOML file or a text (list: texts) of the command line. Throws UsageError
   /// "is …, expected …" without the name.
   std::function<void(const SettingValue&)> set;
@@ -40,7 +41,13 @@ class Settings {
   Settings(std::string command, std::string summary);
 
   /// Settings added from now on appear under `title` in --help and --print-config.
-  void begin_group(std::string title) { group_ = std::move(title); }
+  /// `changes_results`: of all of them.
+  void begin_group(std::string title, bool changes_results = true) {
+    group_ = std::move(title);
+    group_changes_results_ = changes_results;
+  }
+  /// A first argument that is no option is taken as --config.
+  void take_job_file() { takes_job_file_ = true; }
 
   Setting& flag(std::string name, bool& field, std::string help);
   Setting& integer(std::string name, int& field, std::string value_name, std::string help);
@@ -76,6 +83,13 @@ class Settings {
   }
   /// Name → present value, in order of registration.
   [[nodiscard]] SettingValue values() const;
+  /// Those that change results, without those that are not set.
+  [[nodiscard]] SettingValue result_values() const;
+  /// Sets what result_values() gave. Throws Error naming a key that is not known or a value that is
+  /// not accepted.
+  void set_values(const SettingValue& values);
+  /// All settings as --print-config writes them.
+  [[nodiscard]] std::string toml() const;
   [[nodiscard]] const std::string& command() const { return command_; }
 
  private:
@@ -85,11 +99,12 @@ class Settings {
                       std::function<std::optional<Enum>()> present);
   void apply_config(const std::string& path);
   void require_complete() const;
-  [[nodiscard]] std::string toml() const;
 
   std::string command_;
   std::string summary_;
   std::string group_ = "Options";
+  bool group_changes_results_ = true;
+  bool takes_job_file_ = false;
   std::deque<Setting> settings_;  // deque: add() hands out references
   std::set<std::string> given_;
 };

@@ -39,13 +39,14 @@ void ViewOutput::check(FileChecks& checks, const std::string& option) const {
   }
 }
 
-void ViewOutput::write(int index, const Photograph& image, double frames_per_second) {
+void ViewOutput::write(int index, const Photograph& image, FrameRate rate) {
   if (!is_video(path_)) {
     write_photograph(file(index), image);
     return;
   }
   if (video_ == nullptr) {
-    video_ = std::make_unique<VideoWriter>(path_, image.width(), image.height(), frames_per_second);
+    video_ = std::make_unique<VideoWriter>(path_, image.width(), image.height(),
+                                           VideoEncoding{.rate = rate});
   }
   video_->write(image);
 }

@@ -19,7 +19,7 @@ class ViewOutput {
   void check(FileChecks& checks, const std::string& option) const;
 
   /// View `index`, in order.
-  void write(int index, const Photograph& image, double frames_per_second);
+  void write(int index, const Photograph& image, FrameRate rate);
   /// Call it after the last view; without it no video is left.
   void finish();
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -20,6 +21,10 @@ struct ExecutionOptions {
   std::optional<int> band_height_px = std::nullopt;  ///< ≥ 1; default from the cost model
   /// Iterations between two stores of the whole state, ≥ 1; default from the cost model.
   std::optional<int> iterations_per_pass = std::nullopt;
+
+  /// For what the iterations of one map store between passes, with the scratch of all threads; as
+  /// far as it can be kept. Default scheduler::kDefaultMemoryBytes.
+  std::optional<std::size_t> chain_memory_bytes = std::nullopt;
 
   /// Throws UsageError naming the field, its value and its limit.
   void validate() const;

@@ -7,15 +7,24 @@
 
 namespace vantage::scheduler {
 
-/// The three steps of one frame in a sequence. `slot` is a number in [0, in_flight); no two frames
+/// The five steps of one frame in a sequence. `slot` is a number in [0, in_flight); no two frames
 /// that are under way at the same time have the same slot, so buffers can be kept per slot.
 struct FrameSteps {
   /// Fetches the next frame into `slot`; false at the end. Called in order, never concurrently.
   std::function<bool(int slot)> read;
-  /// Works on the frame in `slot`. Called concurrently for different slots.
+  /// Brings what was read in `slot` into the form to work on. Called concurrently for different
+  /// slots.
+  std::function<void(int slot)> prepare;
+  /// Works on the frame in `slot`. Called concurrently for different slots, unless
+  /// compute_in_order: then in the order of reading, never concurrently.
   std::function<void(int slot)> compute;
+  /// Brings the results in `slot` into the form to deliver. Called concurrently for different
+  /// slots.
+  std::function<void(int slot)> encode;
   /// Delivers the frame in `slot`. Called in the order of reading, never concurrently.
   std::function<void(int slot)> write;
+  /// For frames that need what the one before has computed.
+  bool compute_in_order = false;
 };
 
 /// A pool of threads and the two ways this project uses one: loops over independent tasks, and

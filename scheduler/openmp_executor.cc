@@ -65,13 +65,16 @@ class OpenMpExecutor final : public Executor {
 
   void run_frame_steps(int in_flight, const FrameSteps& steps) override {
     // Tasks are ordered through the addresses they name as dependences: `slots[s]` chains the
-    // frames that share a slot, `writer` chains the deliveries. Reading stays on the thread that
-    // creates the tasks, which first waits for the slot's previous frame.
+    // steps and frames of a slot, `orders[…]` the frames whose computation is in order, `writer`
+    // the deliveries. Reading stays on the thread that creates the tasks, which first waits for the
+    // slot's previous frame.
     std::vector<char> slots(static_cast<std::size_t>(in_flight));
+    std::vector<char> orders(static_cast<std::size_t>(in_flight));
     [[maybe_unused]] char* slot_token = slots.data();
+    [[maybe_unused]] char* order_token = orders.data();
     [[maybe_unused]] char writer = 0;
 #pragma omp parallel num_threads(threads_) default(none) \
-    shared(steps, slot_token, writer, in_flight)
+    shared(steps, slot_token, order_token, writer, in_flight)
 #pragma omp single
     {
       for (int slot = 0;; slot = (slot + 1) % in_flight) {
@@ -82,7 +85,17 @@ class OpenMpExecutor final : public Executor {
 #pragma omp task default(none) shared(steps, slot_token) firstprivate(slot) \
     depend(inout                                                            \
            : slot_token[slot])
+        steps.prepare(slot);
+        [[maybe_unused]] const int order = steps.compute_in_order ? 0 : slot;
+#pragma omp task default(none) shared(steps, slot_token, order_token) firstprivate(slot) \
+    depend(inout                                                                         \
+           : slot_token[slot]) depend(inout                                              \
+                                      : order_token[order])
         steps.compute(slot);
+#pragma omp task default(none) shared(steps, slot_token) firstprivate(slot) \
+    depend(inout                                                            \
+           : slot_token[slot])
+        steps.encode(slot);
 #pragma omp task default(none) shared(steps, slot_token, writer) firstprivate(slot) \
     depend(inout                                                                    \
            : slot_token[slot]) depend(inout                                         \

@@ -44,26 +44,32 @@ class TbbExecutor final : public Executor {
   void run_frame_steps(int in_flight, const FrameSteps& steps) override {
     // The pipeline has at most `in_flight` tokens and its last filter is in order, so frame
     // i − in_flight has been written before frame i is read: slots are free when reused.
+    const tbb::filter_mode compute_mode =
+        steps.compute_in_order ? tbb::filter_mode::serial_in_order : tbb::filter_mode::parallel;
     int next_slot = 0;
+    const auto read = [&](tbb::flow_control& control) {
+      const int slot = next_slot;
+      if (steps.read(slot)) {
+        next_slot = (slot + 1) % in_flight;
+      } else {
+        control.stop();
+      }
+      return slot;
+    };
+    const auto filter = [](tbb::filter_mode mode, const std::function<void(int)>& step) {
+      return tbb::make_filter<int, int>(mode, [&step](int slot) {
+        step(slot);
+        return slot;
+      });
+    };
     arena_.execute([&] {
-      tbb::parallel_pipeline(static_cast<std::size_t>(in_flight),
-                             tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order,
-                                                         [&](tbb::flow_control& control) {
-                                                           const int slot = next_slot;
-                                                           if (!steps.read(slot)) {
-                                                             control.stop();
-                                                             return slot;
-                                                           }
-                                                           next_slot = (slot + 1) % in_flight;
-                                                           return slot;
-                                                         }) &
-                                 tbb::make_filter<int, int>(tbb::filter_mode::parallel,
-                                                            [&](int slot) {
-                                                              steps.compute(slot);
-                                                              return slot;
-                                                            }) &
-                                 tbb::make_filter<int, void>(tbb::filter_mode::serial_in_order,
-                                                             [&](int slot) { steps.write(slot); }));
+      tbb::parallel_pipeline(
+          static_cast<std::size_t>(in_flight),
+          tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order, read) &
+              filter(tbb::filter_mode::parallel, steps.prepare) &
+              filter(compute_mode, steps.compute) &
+              filter(tbb::filter_mode::parallel, steps.encode) &
+              tbb::make_filter<int, void>(tbb::filter_mode::serial_in_order, steps.write));
     });
   }
 

@@ -59,6 +59,7 @@ class ExecutorWithDeclaredOrder final : public Executor {
     std::vector<Moment> slot_done(static_cast<std::size_t>(in_flight));
     Moment begun;
     Moment reading_done;
+    Moment computing_done;
     Moment writing_done;
     begun.declare_reached();
     const auto enter = [&](int slot, Moment& previous) -> Moment& {
@@ -74,9 +75,23 @@ class ExecutorWithDeclaredOrder final : public Executor {
       const ReachedAtEnd reading_end(reading_done);
       return steps.read(slot);
     };
-    ordered.compute = [&](int slot) {
+    ordered.prepare = [&](int slot) {
       const ReachedAtEnd slot_end(enter(slot, begun));
+      steps.prepare(slot);
+    };
+    ordered.compute_in_order = steps.compute_in_order;
+    ordered.compute = [&](int slot) {
+      const ReachedAtEnd slot_end(enter(slot, steps.compute_in_order ? computing_done : begun));
+      if (!steps.compute_in_order) {
+        steps.compute(slot);
+        return;
+      }
+      const ReachedAtEnd computing_end(computing_done);
       steps.compute(slot);
+    };
+    ordered.encode = [&](int slot) {
+      const ReachedAtEnd slot_end(enter(slot, begun));
+      steps.encode(slot);
     };
     ordered.write = [&](int slot) {
       const ReachedAtEnd slot_end(enter(slot, writing_done));

@@ -102,7 +102,8 @@ DisparityMap read_disparity(const std::filesystem::path& path, double scale) {
       stored.photograph.pixels);
 }
 
-void write_disparity(const std::filesystem::path& path, ImageView<const float> disparity) {
+std::vector<std::uint8_t> encode_disparity(const std::filesystem::path& path,
+                                           ImageView<const float> disparity) {
   if (!is_disparity_extension(path)) {
     throw UsageError(fmt::format(
         "cannot write {}: unknown disparity extension '{}', expected .pfm .png .tiff .exr or .npy",
@@ -117,14 +118,19 @@ void write_disparity(const std::filesystem::path& path, ImageView<const float> d
   const std::string extension = lower_case_extension(path);
   if (extension == ".pfm") {
     const auto map = with_unknown_as(disparity, std::numeric_limits<float>::infinity());
-    write_binary_file(path, encode_pfm(map.view()));
-  } else if (extension == ".npy") {
-    write_binary_file(path, encode_npy(with_unknown_as(disparity, kUnknown).view()));
-  } else if (extension == ".png") {
-    write_image(path, Photograph{to_kitti(path, disparity)});
-  } else {
-    write_image(path, Photograph{with_unknown_as(disparity, kUnknown)});
+    return encode_pfm(map.view());
   }
+  if (extension == ".npy") {
+    return encode_npy(with_unknown_as(disparity, kUnknown).view());
+  }
+  if (extension == ".png") {
+    return encode_image(path, Photograph{to_kitti(path, disparity)});
+  }
+  return encode_image(path, Photograph{with_unknown_as(disparity, kUnknown)});
+}
+
+void write_disparity(const std::filesystem::path& path, ImageView<const float> disparity) {
+  write_binary_file(path, encode_disparity(path, disparity));
 }
 
 bool is_disparity_extension(const std::filesystem::path& path) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include "engine/image/image.h"
 
@@ -19,6 +21,11 @@ DisparityMap read_disparity(const std::filesystem::path& path, double scale = 0)
 /// own files), .tiff/.exr (float, NaN), .npy (float32). NaN and ±inf in memory are unknown. Whole
 /// or not at all. Throws UsageError for another extension, Error when the file cannot be written.
 void write_disparity(const std::filesystem::path& path, ImageView<const float> disparity);
+
+/// The bytes of a file named `path` that holds the map; what write_disparity() writes, and it
+/// throws alike.
+std::vector<std::uint8_t> encode_disparity(const std::filesystem::path& path,
+                                           ImageView<const float> disparity);
 
 /// True when write_disparity() knows the extension.
 bool is_disparity_extension(const std::filesystem::path& path);

@@ -98,7 +98,7 @@ void write_displacements(const std::filesystem::path& path, const DisplacementVi
   if (extension == ".npy") {
     write_binary_file(path, encode_npy(values.view()));
   } else {
-    write_image(path, Photograph{with_validity(values)});
+    write_binary_file(path, encode_image(path, Photograph{with_validity(values)}));
   }
 }
 

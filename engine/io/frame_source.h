@@ -1,12 +1,28 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/image/photograph.h"
+#include "engine/io/frame_rate.h"
 
 namespace vantage {
+
+/// A frame on its way from a source: fetched in order by one thread, decoded by any.
+struct FetchedFrame {
+  std::filesystem::path file;  ///< the image file still to be read; empty: `photograph` is there
+  Photograph photograph;       ///< reused from frame to frame
+  int frames_missing = 0;      ///< frames of a video that should lie between it and the one before
+  /// What is odd about the frame though it can be used ("2 frames are missing before it").
+  std::vector<std::string> remarks;
+
+  /// Reads `file`, if there is one, into `photograph`. Thread rule: concurrently for different
+  /// frames. Throws Error naming the file.
+  void decode();
+};
 
 /// The frames of one camera, one after the other. Thread rule: one thread at a time.
 class FrameSource {
@@ -16,19 +32,36 @@ class FrameSource {
   FrameSource& operator=(const FrameSource&) = delete;
   virtual ~FrameSource() = default;
 
-  /// Reads the next frame into `frame`; false after the last one. Throws Error naming the frame
-  /// when it is bad; the call after that goes on with the frame behind it where the source can
-  /// (image files can, a video ends).
-  virtual bool next(Photograph& frame) = 0;
+  /// Fetches the next frame; false after the last one, which in some videos comes a few frames
+  /// before frame_count(). Throws Error naming the frame when it is bad; the call after that goes
+  /// on with the frame behind it. Behind a bad frame of a video all others are bad too.
+  virtual bool fetch(FetchedFrame& frame) = 0;
+  /// fetch() and decode().
+  bool next(Photograph& frame);
 
-  /// Frames there are in all, where that is known before reading them; an estimate for some videos.
-  [[nodiscard]] virtual std::optional<int> frame_count() const = 0;
+  /// Has the next fetch() give frame `index` (0 ≤ index ≤ frame_count()), the same as after that
+  /// many calls of fetch(). Forward and backward; a video may have to decode all frames before it.
+  virtual void skip_to(int index) = 0;
+
+  /// Frames there are in all. Some containers promise a few more than their videos have.
+  [[nodiscard]] virtual int frame_count() const = 0;
 
   /// Names frame `index`, counted from 0: the file, or "video.mp4 frame 12".
   [[nodiscard]] virtual std::string describe(int index) const = 0;
 
+  /// Number in the name of frame `index`'s file, the last one of several ("left_0012.png": 12);
+  /// empty where there is none, and for videos.
+  [[nodiscard]] virtual std::optional<long long> number_of(int index) const = 0;
+
   /// Empty for image files.
-  [[nodiscard]] virtual std::optional<double> frames_per_second() const = 0;
+  [[nodiscard]] virtual std::optional<FrameRate> frame_rate() const = 0;
+
+  /// The video file, which may hold sound; empty for image files.
+  [[nodiscard]] virtual std::filesystem::path video_file() const = 0;
+
+  /// What the frames are read from, so that a later run can tell whether it is still the same: one
+  /// line of kind, name, number of files, bytes and a hash of all names, sizes and times of change.
+  [[nodiscard]] virtual std::string identity() const = 0;
 };
 
 /// Opens what `spec` names; something that exists under that very name goes first:

@@ -6,14 +6,15 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <string>
 #include <type_traits>
 
 #include "engine/error.h"
-#include "engine/io/atomic_file.h"
 #include "engine/io/image_header.h"
 #include "engine/io/opencv_setup.h"
 #include "engine/io/pfm.h"
+#include "engine/io/png_decoder.h"
 #include "engine/io/png_structure.h"
 #include "engine/io/pnm.h"
 
@@ -165,9 +166,13 @@ StoredImage decode_image(const FileBytes& file) {
       PnmImage pnm = decode_pnm(file);
       return {std::move(pnm.photograph), pnm.max_value};
     }
-    case ImageFormat::kPng:
-      result.photograph = decode_with_opencv(file, check_and_strip_png(file));
+    case ImageFormat::kPng: {
+      const PngStructure structure = check_png_structure(file);
+      std::optional<Photograph> usual = decode_usual_png(structure);
+      result.photograph =
+          usual ? std::move(*usual) : decode_with_opencv(file, strip_png(structure));
       break;
+    }
     default:
       check_image_header(file, format);
       result.photograph = decode_with_opencv(file, file.all());
@@ -178,19 +183,18 @@ StoredImage decode_image(const FileBytes& file) {
   return result;
 }
 
-void write_image(const std::filesystem::path& path, const Photograph& photograph) {
+std::vector<std::uint8_t> encode_image(const std::filesystem::path& path,
+                                       const Photograph& photograph) {
   if (photograph.width() < 1 || photograph.height() < 1) {
     throw Error(fmt::format("cannot write {}: the image has no pixels", path.string()));
   }
   const std::string extension = lower_case_extension(path);
   check_capability(path, extension, photograph);
   if (extension == ".pfm") {
-    write_binary_file(path, encode_pfm(std::get<Image<float>>(photograph.pixels).view()));
-    return;
+    return encode_pfm(std::get<Image<float>>(photograph.pixels).view());
   }
   if (extension == ".pgm" || extension == ".ppm" || extension == ".pnm") {
-    write_binary_file(path, encode_pnm(photograph));
-    return;
+    return encode_pnm(photograph);
   }
   std::vector<std::uint8_t> bytes;
   try {
@@ -202,7 +206,7 @@ void write_image(const std::filesystem::path& path, const Photograph& photograph
     throw Error(fmt::format("cannot write {}: an image of {}x{} pixels does not fit a {} file",
                             path.string(), photograph.width(), photograph.height(), extension));
   }
-  write_binary_file(path, bytes);
+  return bytes;
 }
 
 }  // namespace vantage

@@ -19,8 +19,10 @@ struct StoredImage {
 /// Decodes an image of any format that read_photograph() knows. Throws Error.
 StoredImage decode_image(const FileBytes& file);
 
-/// Writes by extension; whole or not at all. Floats of any value. Throws UsageError for an unknown
-/// extension, Error when the format cannot hold the depth or channels or the file not be written.
-void write_image(const std::filesystem::path& path, const Photograph& photograph);
+/// The bytes of an image file of the format that the extension of `path` says. Floats of any value.
+/// Throws UsageError for an unknown extension, Error when the format cannot hold the depth or
+/// channels; both name `path`.
+std::vector<std::uint8_t> encode_image(const std::filesystem::path& path,
+                                       const Photograph& photograph);
 
 }  // namespace vantage

@@ -36,9 +36,8 @@ class ThreadFilter : public std::streambuf {
 
 void prepare_opencv() {
   static const bool prepared = [] {
-    // OpenCV reads these when it first opens such a file. A value that the user set stays.
+    // OpenCV reads this when it first opens such a file. A value that the user set stays.
     ::setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 0);
-    ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);  // AV_LOG_QUIET
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     // cv::error() would print every exception before throwing it.
     cv::redirectError([](int, const char*, const char*, const char*, int, void*) { return 0; });

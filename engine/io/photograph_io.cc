@@ -5,6 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "engine/io/atomic_file.h"
 #include "engine/io/file_bytes.h"
 #include "engine/io/image_file.h"
 
@@ -56,15 +57,20 @@ Photograph read_photograph(const std::filesystem::path& path) {
   return std::move(stored.photograph);
 }
 
+std::vector<std::uint8_t> encode_photograph(const std::filesystem::path& path,
+                                            const Photograph& photograph) {
+  return encode_image(path, photograph);
+}
+
 void write_photograph(const std::filesystem::path& path, const Photograph& photograph) {
-  write_image(path, photograph);
+  write_binary_file(path, encode_image(path, photograph));
 }
 
 void write_mask(const std::filesystem::path& path, ImageView<const std::uint8_t> mask) {
   if (lower_case_extension(path) != ".png") {
     throw UsageError(fmt::format("cannot write {}: a mask is a .png file", path.string()));
   }
-  write_image(path, Photograph{Image<std::uint8_t>::copy_of(mask)});
+  write_photograph(path, Photograph{Image<std::uint8_t>::copy_of(mask)});
 }
 
 }  // namespace vantage

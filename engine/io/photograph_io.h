@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include "engine/image/photograph.h"
 
@@ -17,6 +19,10 @@ inline constexpr long long kMaxImagePixels = 1LL << 28;
 /// Thread rule: may be called concurrently. Throws Error naming the file when it is missing, empty,
 /// truncated, not an image, absurdly large in its header, or float with NaN or infinity.
 Photograph read_photograph(const std::filesystem::path& path);
+
+/// The bytes of an image file named `path`; what write_photograph() writes, and it throws alike.
+std::vector<std::uint8_t> encode_photograph(const std::filesystem::path& path,
+                                            const Photograph& photograph);
 
 /// Writes by extension (.png .jpg .tiff .bmp .ppm .pgm .webp .exr .pfm); whole or not at all.
 /// Throws Error when the folder cannot be written or the format cannot hold the depth or channels,

@@ -1,6 +1,7 @@
 #include "engine/io/png_structure.h"
 
 #include <fmt/format.h>
+#include <libdeflate.h>
 
 #include <array>
 #include <bit>
@@ -9,34 +10,13 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t kSignatureBytes = 8;
+constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
 
 /// Deflate cannot compress by more than this factor.
 constexpr std::size_t kMaxDeflateRatio = 1032;
 
-constexpr std::array<std::uint32_t, 256> make_crc_table() {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t n = 0; n < 256; ++n) {
-    std::uint32_t c = n;
-    for (int bit = 0; bit < 8; ++bit) {
-      c = (c & 1U) != 0 ? 0xEDB88320U ^ (c >> 1) : c >> 1;
-    }
-    table[n] = c;
-  }
-  return table;
-}
-constexpr std::array<std::uint32_t, 256> kCrcTable = make_crc_table();
-
-std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
-  std::uint32_t crc = 0xFFFFFFFFU;
-  for (const std::uint8_t byte : bytes) {
-    crc = kCrcTable[(crc ^ byte) & 255U] ^ (crc >> 8);
-  }
-  return ~crc;
-}
-
-/// Least number of bytes before compression, from the IHDR at `offset`.
-std::size_t check_header(const FileBytes& file, std::size_t offset) {
+/// Reads the IHDR at `offset`; returns the least number of bytes before compression.
+std::size_t read_header(const FileBytes& file, std::size_t offset, PngStructure& structure) {
   const auto width = file.integer<std::uint32_t>(offset, std::endian::big);
   const auto height = file.integer<std::uint32_t>(offset + 4, std::endian::big);
   file.check_dimensions(width, height);
@@ -48,6 +28,11 @@ std::size_t check_header(const FileBytes& file, std::size_t offset) {
     file.fail(fmt::format("its PNG header says colour type {} with {} bits, which does not exist",
                           colour_type, bit_depth));
   }
+  structure.width = static_cast<int>(width);
+  structure.height = static_cast<int>(height);
+  structure.bit_depth = bit_depth;
+  structure.colour_type = colour_type;
+  structure.interlaced = file.byte(offset + 12) != 0;
   const std::size_t row_bits =
       std::size_t{width} * static_cast<std::size_t>(kChannels[colour_type] * bit_depth);
   return (row_bits + 7) / 8 * height;
@@ -55,38 +40,38 @@ std::size_t check_header(const FileBytes& file, std::size_t offset) {
 
 }  // namespace
 
-std::vector<std::uint8_t> check_and_strip_png(const FileBytes& file) {
-  std::vector<std::uint8_t> essential;
-  essential.reserve(file.size());
-  const auto signature = file.part(0, kSignatureBytes);
-  essential.insert(essential.end(), signature.begin(), signature.end());
-
+PngStructure check_png_structure(const FileBytes& file) {
+  PngStructure structure;
+  (void)file.part(0, kSignature.size());
   std::size_t raw_bytes = 0;
   std::size_t compressed_bytes = 0;
   std::string type;
-  for (std::size_t offset = kSignatureBytes; type != "IEND";) {
+  for (std::size_t offset = kSignature.size(); type != "IEND";) {
     const std::size_t length = file.integer<std::uint32_t>(offset, std::endian::big);
     const auto chunk = file.part(offset, length + 12);
     type.assign(chunk.begin() + 4, chunk.begin() + 8);
-    if ((offset == kSignatureBytes) != (type == "IHDR") || (type == "IHDR" && length != 13)) {
+    if ((offset == kSignature.size()) != (type == "IHDR") || (type == "IHDR" && length != 13)) {
       file.fail("is damaged, a PNG file begins with one IHDR chunk of 13 bytes");
     }
     const bool matters =
         type == "IHDR" || type == "PLTE" || type == "tRNS" || type == "IDAT" || type == "IEND";
     if (matters) {
       const auto stored = file.integer<std::uint32_t>(offset + 8 + length, std::endian::big);
-      if (crc32(chunk.subspan(4, length + 4)) != stored) {
+      if (libdeflate_crc32(0, chunk.data() + 4, length + 4) != stored) {
         file.fail(
             fmt::format("is damaged, wrong checksum of the {} chunk at byte {}", type, offset));
       }
-      essential.insert(essential.end(), chunk.begin(), chunk.end());
+      structure.essential_chunks.push_back(chunk);
     } else if (type[0] >= 'A' && type[0] <= 'Z') {
       file.fail(fmt::format("is damaged, unknown PNG chunk at byte {}", offset));
     }
     if (type == "IHDR") {
-      raw_bytes = check_header(file, offset + 8);
+      raw_bytes = read_header(file, offset + 8, structure);
     } else if (type == "IDAT") {
       compressed_bytes += length;
+      structure.pixel_data.push_back(chunk.subspan(8, length));
+    } else if (type == "tRNS") {
+      structure.has_transparent_colour = true;
     }
     offset += chunk.size();
   }
@@ -94,7 +79,15 @@ std::vector<std::uint8_t> check_and_strip_png(const FileBytes& file) {
     file.fail(fmt::format("is damaged, {} compressed bytes cannot hold the pixels its header says",
                           compressed_bytes));
   }
-  return essential;
+  return structure;
+}
+
+std::vector<std::uint8_t> strip_png(const PngStructure& structure) {
+  std::vector<std::uint8_t> file(kSignature.begin(), kSignature.end());
+  for (const auto chunk : structure.essential_chunks) {
+    file.insert(file.end(), chunk.begin(), chunk.end());
+  }
+  return file;
 }
 
 }  // namespace vantage

@@ -10,6 +10,8 @@ namespace vantage {
 struct PreviewRange {
   float min_px = 0;
   float max_px = 1;
+
+  friend bool operator==(PreviewRange, PreviewRange) = default;
 };
 
 /// A range that shows most of the map well whatever a few wild pixels say: the 1st and the 99th

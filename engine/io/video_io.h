@@ -5,11 +5,17 @@
 #include <optional>
 
 #include "engine/image/photograph.h"
+#include "engine/io/frame_rate.h"
 
 namespace vantage {
 
-/// Reads the frames of a video file in order, as 8-bit RGB, in the size they are stored in (a
-/// rotation flag is ignored). Thread rule: one thread at a time; different readers are independent.
+/// Reads the frames of a video file in order of presentation, in the size they are stored in (a
+/// rotation flag is ignored): RGB, 8-bit, or 16-bit where the stream has more bits. Grey streams
+/// have one channel, as far as their decoder tells. Colours are converted by the matrix, range and
+/// place of chroma the stream is flagged with, and rounded; unspecified, they are BT.601 below 720
+/// rows, BT.709 from there, with limited range. Thread rule: one thread at a time; different
+/// readers are independent. Up to four threads decode; they change nothing, not even which frame is
+/// found damaged.
 class VideoReader {
  public:
   /// Throws Error when the file is missing, not a video, cut off, or has frames of absurd size.
@@ -19,31 +25,50 @@ class VideoReader {
   [[nodiscard]] int width() const;
   [[nodiscard]] int height() const;
   /// Empty where the container does not say.
-  [[nodiscard]] std::optional<double> frames_per_second() const;
-  /// What the container says: exact in MP4, an estimate from the duration in some others.
-  [[nodiscard]] std::optional<int> frame_count() const;
+  [[nodiscard]] std::optional<FrameRate> frame_rate() const;
+  /// Frames the index of an MP4 or MOV lists; in other containers the packets of the video are
+  /// counted, for which the whole file is read. Interlaced videos may have fewer, and, by up to 2
+  /// %, recordings that begin in mid-programme.
+  [[nodiscard]] int frame_count() const;
 
   /// Decodes the next frame into `frame`, whose memory is reused; false after the last one. Throws
-  /// Error naming the frame when the file ends well before the frames it promised.
+  /// Error naming the frame when it is damaged or the file ends before the frames it promised: the
+  /// video ends there, as later frames are made from the damaged one.
   bool read(Photograph& frame);
+  /// read() without the picture.
+  bool skip();
+
+  /// Frames that should lie between the last frame read and the one before it, by their times and
+  /// the frame rate; 0 where nothing is missing or times are unknown.
+  [[nodiscard]] int frames_missing() const;
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
 
+/// How videos are encoded.
+struct VideoEncoding {
+  FrameRate rate = {};
+  /// H.264 constant rate factor, 0 (lossless but for the colour conversion) to 51 (worst).
+  int crf = 18;
+};
+
 /// Writes an MP4 (H.264, yuv420p: what browsers play). H.264 in this format has even sizes only: an
 /// odd last column or row is repeated once. The file appears under its name at finish(); without
-/// it nothing is left. Thread rule: one thread at a time.
+/// it nothing is left. One thread encodes, so that the bytes depend on the frames only.
+/// Thread rule: one thread at a time.
 class VideoWriter {
  public:
-  /// `path` ends in .mp4; width and height in 2..16384 pixels; frames_per_second in (0, 1000].
-  /// Throws UsageError for values outside, Error when the file cannot be written.
-  VideoWriter(const std::filesystem::path& path, int width, int height, double frames_per_second);
+  /// `path` ends in .mp4; width and height in 2..16384 pixels. Throws UsageError for values
+  /// outside, Error when the file cannot be written.
+  VideoWriter(const std::filesystem::path& path, int width, int height,
+              const VideoEncoding& encoding);
   ~VideoWriter();
 
   /// Appends a frame: 8-bit, 16-bit or float (0..1, clamped), 1, 3 or 4 channels (alpha is
-  /// dropped). Throws Error when its size is not the one given at construction.
+  /// dropped). Throws Error when its size is not the one given at construction, or the disk is
+  /// full.
   void write(const Photograph& frame);
 
   /// Ends the file, checks that it reads back as a video of as many frames as were written, and

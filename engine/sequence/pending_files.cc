@@ -1,39 +1,79 @@
 #include "engine/sequence/pending_files.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <string>
 #include <system_error>
 
-#include "engine/error.h"
-
 namespace vantage {
+namespace {
 
-void PendingFiles::add(const std::filesystem::path& path,
-                       const std::function<void(const std::filesystem::path&)>& write) {
-  const std::filesystem::path hidden =
-      path.parent_path() /
-      fmt::format(".{}.pending{}", path.stem().string(), path.extension().string());
-  files_.push_back({hidden, path});
-  try {
-    write(hidden);
-  } catch (const Error& error) {
-    // Users know the file by its final name.
-    std::string message = error.what();
-    if (const std::size_t at = message.find(hidden.string()); at != std::string::npos) {
-      message.replace(at, hidden.string().size(), path.string());
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& path, int error_number) {
+  throw OutputError(fmt::format("cannot write {}: {}", path.string(),
+                                std::generic_category().message(error_number)));
+}
+
+class FileDescriptor {
+ public:
+  FileDescriptor(const fs::path& path, int flags)
+      : descriptor_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
+  FileDescriptor(const FileDescriptor&) = delete;
+  FileDescriptor& operator=(const FileDescriptor&) = delete;
+  ~FileDescriptor() {
+    if (descriptor_ >= 0) {
+      ::close(descriptor_);
     }
-    throw Error(message);
+  }
+  [[nodiscard]] int get() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+}  // namespace
+
+PendingFiles& PendingFiles::operator=(PendingFiles&& other) noexcept {
+  discard();
+  files_.swap(other.files_);
+  return *this;
+}
+
+void PendingFiles::add(const fs::path& path, std::span<const std::uint8_t> bytes) {
+  // The process in the name: a requeued job may begin while the one before it still ends.
+  const fs::path hidden =
+      path.parent_path() / fmt::format(".{}.{}.pending", path.filename().string(), ::getpid());
+  files_.push_back({hidden, path});
+  const FileDescriptor file(hidden, O_WRONLY | O_CREAT | O_TRUNC);
+  if (file.get() < 0) {
+    fail(path, errno);
+  }
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file.get(), bytes.data(), bytes.size());
+    if (written < 0 && errno != EINTR) {
+      fail(path, errno);
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(std::max<ssize_t>(written, 0)));
   }
 }
 
-void PendingFiles::commit() {
+void PendingFiles::commit(std::set<fs::path>& folders) {
   for (const File& file : files_) {
-    std::error_code error;
-    std::filesystem::rename(file.hidden, file.path, error);
-    if (error) {
-      throw Error(fmt::format("cannot write {}: {}", file.path.string(), error.message()));
+    {
+      const FileDescriptor written(file.hidden, O_RDONLY);
+      if (written.get() < 0 || ::fsync(written.get()) != 0) {
+        fail(file.path, errno);
+      }
     }
+    if (::rename(file.hidden.c_str(), file.path.c_str()) != 0) {
+      fail(file.path, errno);
+    }
+    folders.insert(file.path.parent_path());
   }
   files_.clear();
 }
@@ -41,9 +81,16 @@ void PendingFiles::commit() {
 void PendingFiles::discard() noexcept {
   for (const File& file : files_) {
     std::error_code ignored;
-    std::filesystem::remove(file.hidden, ignored);
+    fs::remove(file.hidden, ignored);
   }
   files_.clear();
+}
+
+void flush_folder(const fs::path& folder) {
+  const FileDescriptor open_folder(folder, O_RDONLY | O_DIRECTORY);
+  if (open_folder.get() >= 0) {
+    (void)::fsync(open_folder.get());
+  }
 }
 
 }  // namespace vantage

@@ -1,25 +1,39 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <functional>
+#include <set>
+#include <span>
 #include <vector>
+
+#include "engine/error.h"
 
 namespace vantage {
 
-/// Files that are complete on disk but do not have their names yet: encoding and flushing can run
-/// for several frames at once while the names appear in order. Thread rule: one thread at a time.
+/// A result cannot be written: no fault of its frame, so no frame is skipped for it.
+class OutputError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Files whose bytes are handed to the system but that do not have their names yet: encoding runs
+/// for several frames at once, while names appear in order and only for what is safely on disk.
+/// Files that never get their names are removed. Thread rule: one thread at a time.
 class PendingFiles {
  public:
   PendingFiles() = default;
   PendingFiles(PendingFiles&& other) noexcept = default;
-  PendingFiles& operator=(PendingFiles&&) = delete;
+  PendingFiles& operator=(PendingFiles&& other) noexcept;
   ~PendingFiles() { discard(); }
 
-  /// Has `write` make the file under a hidden name beside `path`, with the same extension.
-  void add(const std::filesystem::path& path,
-           const std::function<void(const std::filesystem::path&)>& write);
-  /// Gives all files their names, in the order of add(). Throws Error naming the one that failed.
-  void commit();
+  /// Writes `bytes` under a hidden name beside `path`. Throws OutputError naming `path`.
+  void add(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
+
+  /// Flushes all files to disk and gives them their names, in the order of add(). The names
+  /// themselves are safe once the folders, which are added to `folders`, are flushed. Throws
+  /// OutputError naming the file that failed.
+  void commit(std::set<std::filesystem::path>& folders);
+
   /// Removes what has no name yet.
   void discard() noexcept;
 
@@ -30,5 +44,8 @@ class PendingFiles {
   };
   std::vector<File> files_;
 };
+
+/// Makes names in `folder` survive a power cut, where the file system can do that.
+void flush_folder(const std::filesystem::path& folder);
 
 }  // namespace vantage

@@ -11,91 +11,124 @@
 namespace vantage {
 namespace {
 
-constexpr int kMaxInFlight = 64;
-constexpr double kMaxView = 16;
+constexpr int kMaxChunkFrames = 100000;
+constexpr int kMaxCrf = 51;
+constexpr double kFarthestView = 16;  // baselines
+
+bool holds_floats(SequenceOutput output) {
+  return output == SequenceOutput::kDisparity || output == SequenceOutput::kRightDisparity ||
+         output == SequenceOutput::kConfidence;
+}
+
+bool contains(const std::vector<SequenceOutput>& outputs, SequenceOutput output) {
+  return std::ranges::find(outputs, output) != outputs.end();
+}
+
+std::string_view name_of(SequenceOutput output) {
+  return std::ranges::find(sequence_output_names(), output,
+                           &std::pair<std::string_view, SequenceOutput>::second)
+      ->first;
+}
+
+void check_views(const SequenceOptions& options) {
+  const bool wanted =
+      options.saves(SequenceOutput::kViews) || options.saves(SequenceOutput::kHoles);
+  if (wanted && options.views.empty()) {
+    throw UsageError("save has views but no view is given, expected --view XS or --view-path KEYS");
+  }
+  if (!wanted && !options.views.empty()) {
+    throw UsageError("view is given but save has no views, expected both");
+  }
+  for (auto view = options.views.begin(); view != options.views.end(); ++view) {
+    view->validate();
+    if (std::find(options.views.begin(), view, *view) != view) {
+      throw UsageError(fmt::format("view {} is given twice", view->moves()
+                                                                 ? to_string(*view)
+                                                                 : fmt::format("{}", view->at(0))));
+    }
+  }
+  for (const double view_x : options.stereo_views_x) {
+    if (!(std::abs(view_x) <= kFarthestView)) {
+      throw UsageError(fmt::format("stereo-views has {}, expected two numbers within ±{}", view_x,
+                                   kFarthestView));
+    }
+  }
+}
+
+void check_formats(const SequenceOptions& options) {
+  if (!is_disparity_extension("map." + options.map_format)) {
+    throw UsageError(
+        fmt::format("format is '{}', expected pfm, png, tiff, exr or npy", options.map_format));
+  }
+  if (options.saves(SequenceOutput::kConfidence) && options.map_format == "png") {
+    throw UsageError(
+        "format is png, which holds no floats, but save has confidence; expected pfm, tiff, exr or "
+        "npy");
+  }
+  for (const SequenceOutput output : options.video) {
+    if (holds_floats(output)) {
+      throw UsageError(fmt::format(
+          "video has {}, whose values a video cannot hold; expected unmatched, right-unmatched, "
+          "preview, views, holes or stereo",
+          name_of(output)));
+    }
+    if (!options.saves(output)) {
+      throw UsageError(
+          fmt::format("video has {0} but save has not, expected --save …,{0}", name_of(output)));
+    }
+  }
+  if (options.crf < 0 || options.crf > kMaxCrf) {
+    throw UsageError(
+        fmt::format("crf is {}, expected a number from 0 to {}", options.crf, kMaxCrf));
+  }
+  if (options.chunk_frames < 1 || options.chunk_frames > kMaxChunkFrames) {
+    throw UsageError(fmt::format("chunk-frames is {}, expected a number from 1 to {}",
+                                 options.chunk_frames, kMaxChunkFrames));
+  }
+}
 
 }  // namespace
 
-bool SequenceOptions::saves(SequenceOutput output) const {
-  return std::ranges::find(save, output) != save.end();
+const std::vector<std::pair<std::string_view, SequenceOutput>>& sequence_output_names() {
+  static const std::vector<std::pair<std::string_view, SequenceOutput>> names = {
+      {"disparity", SequenceOutput::kDisparity},
+      {"right-disparity", SequenceOutput::kRightDisparity},
+      {"confidence", SequenceOutput::kConfidence},
+      {"unmatched", SequenceOutput::kUnmatched},
+      {"right-unmatched", SequenceOutput::kRightUnmatched},
+      {"preview", SequenceOutput::kPreview},
+      {"views", SequenceOutput::kViews},
+      {"holes", SequenceOutput::kHoles},
+      {"stereo", SequenceOutput::kStereo}};
+  return names;
+}
+
+bool SequenceOptions::saves(SequenceOutput output) const { return contains(save, output); }
+bool SequenceOptions::saves_as_video(SequenceOutput output) const {
+  return contains(video, output);
 }
 
 void SequenceOptions::validate() const {
   match.validate();
   synthesis.validate();
+  temporal.validate();
   if (match.disparities_y) {
     throw UsageError("disparities-y is set, expected none: sequences are of rectified pairs");
   }
   if (save.empty()) {
     throw UsageError("save is empty, expected at least one output");
   }
-  if (saves(SequenceOutput::kViews) != !views_x.empty()) {
-    throw UsageError(views_x.empty() ? "save has views but no view is given, expected --view XS"
-                                     : "view is given but save has no views, expected both");
-  }
-  if (saves(SequenceOutput::kRightDisparity) && match.reference == Reference::kRight) {
-    throw UsageError("save has right-disparity with reference right, where disparity is that map");
-  }
-  for (auto view = views_x.begin(); view != views_x.end(); ++view) {
-    if (!(std::abs(*view) <= kMaxView)) {
-      throw UsageError(fmt::format("view is {}, expected a number within ±{}", *view, kMaxView));
-    }
-    if (std::find(views_x.begin(), view, *view) != view) {
-      throw UsageError(fmt::format("view {} is given twice", *view));
+  if (match.reference == Reference::kRight) {
+    for (const SequenceOutput output :
+         {SequenceOutput::kRightDisparity, SequenceOutput::kRightUnmatched}) {
+      if (saves(output)) {
+        throw UsageError(fmt::format("save has {} with reference right, whose map is disparity",
+                                     name_of(output)));
+      }
     }
   }
-  if (!is_disparity_extension("map." + disparity_format)) {
-    throw UsageError(
-        fmt::format("format is '{}', expected pfm, png, tiff, exr or npy", disparity_format));
-  }
-  if (saves(SequenceOutput::kConfidence) && disparity_format == "png") {
-    throw UsageError(
-        "format is png, which holds no floats, but save has confidence; expected pfm, tiff, exr or "
-        "npy");
-  }
-  if (in_flight && (*in_flight < 1 || *in_flight > kMaxInFlight)) {
-    throw UsageError(
-        fmt::format("in-flight is {}, expected a number from 1 to {}", *in_flight, kMaxInFlight));
-  }
-}
-
-SequenceLayout::SequenceLayout(std::filesystem::path folder, const SequenceOptions& options)
-    : folder_(std::move(folder)), save_(options.save), views_x_(options.views_x) {}
-
-std::filesystem::path SequenceLayout::folder_of(SequenceOutput output, int view) const {
-  switch (output) {
-    case SequenceOutput::kDisparity:
-      return folder_ / "disparity";
-    case SequenceOutput::kRightDisparity:
-      return folder_ / "right-disparity";
-    case SequenceOutput::kConfidence:
-      return folder_ / "confidence";
-    case SequenceOutput::kUnmatched:
-      return folder_ / "unmatched";
-    case SequenceOutput::kPreview:
-      return folder_ / "preview";
-    case SequenceOutput::kViews:
-      break;
-  }
-  return views_x_.size() == 1
-             ? folder_ / "views"
-             : folder_ / "views" / fmt::format("{}", views_x_[static_cast<std::size_t>(view)]);
-}
-
-std::vector<std::filesystem::path> SequenceLayout::folders() const {
-  std::vector<std::filesystem::path> folders;
-  for (const SequenceOutput output : save_) {
-    const auto parts = output == SequenceOutput::kViews ? static_cast<int>(views_x_.size()) : 1;
-    for (int part = 0; part < parts; ++part) {
-      folders.push_back(folder_of(output, part));
-    }
-  }
-  return folders;
-}
-
-std::filesystem::path SequenceLayout::file(SequenceOutput output, int frame,
-                                           const std::string& extension, int view) const {
-  return folder_of(output, view) / fmt::format("{:06}.{}", frame, extension);
+  check_views(*this);
+  check_formats(*this);
 }
 
 }  // namespace vantage

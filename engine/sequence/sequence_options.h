@@ -1,23 +1,41 @@
 #pragma once
 
-#include <filesystem>
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "engine/image/stereo_packing.h"
+#include "engine/io/frame_rate.h"
 #include "engine/matching/match_options.h"
+#include "engine/sequence/temporal_options.h"
+#include "engine/sequence/view_track.h"
 #include "engine/synthesis/synthesis_options.h"
 
 namespace vantage {
 
-/// What a sequence run writes for each frame.
+/// What a sequence run can write for each frame.
 enum class SequenceOutput {
-  kDisparity,
-  kRightDisparity,
-  kConfidence,
-  kUnmatched,
-  kPreview,
-  kViews
+  kDisparity,       ///< map of the reference image
+  kRightDisparity,  ///< map of the right image beside that of the left one
+  kConfidence,      ///< of the reference's map
+  kUnmatched,       ///< mask of the pixels of the reference's map that were filled
+  kRightUnmatched,
+  kPreview,  ///< the reference's map in colours
+  kViews,    ///< new views
+  kHoles,    ///< masks of their pixels that no image shows
+  kStereo    ///< two views in one picture
+};
+
+/// Names of the outputs on the command line, which are also those of their folders.
+const std::vector<std::pair<std::string_view, SequenceOutput>>& sequence_output_names();
+
+/// What a quantity that is fitted to the images is fitted to.
+enum class FitScope {
+  kFrame,  ///< each frame anew
+  kShot    ///< once for all frames between two cuts
 };
 
 /// Everything that decides which files a sequence run writes and what is in them.
@@ -25,39 +43,36 @@ struct SequenceOptions {
   MatchOptions match;  ///< without disparities_y
   SynthesisOptions synthesis;
   std::vector<SequenceOutput> save = {SequenceOutput::kDisparity};  ///< at least one
-  /// Positions XS of the new views in baselines, within ±16; exactly when kViews is saved.
-  std::vector<double> views_x;
+  /// Of `save`, those written as one H.264 video each instead of an image per frame; maps of floats
+  /// cannot be.
+  std::vector<SequenceOutput> video;
+  /// New views; some exactly when kViews or kHoles is saved.
+  std::vector<ViewTrack> views;
+  /// The positions XS of the two views of kStereo; 0 and 1 are the photographs themselves.
+  std::array<double, 2> stereo_views_x = {0, 1};
+  StereoPacking stereo_packing;
+  FitScope intensity_fit = FitScope::kFrame;  ///< of the new views (3.9–3.11)
+  bool preview_range_per_shot = false;        ///< else the range of the search
+  TemporalOptions temporal;
+  bool measure_flicker = false;
   /// Extension of the disparity and confidence files without the dot: pfm, png (not with
   /// kConfidence), tiff, exr or npy.
-  std::string disparity_format = "pfm";
-  /// Frames under way at the same time, 1..64; default min(threads + 1, 8).
-  std::optional<int> in_flight;
+  std::string map_format = "pfm";
+  FrameRate frame_rate;  ///< of videos written
+  int crf = 18;          ///< of videos written, see VideoEncoding
+  bool sound = true;     ///< videos take over the sound of the input
+  /// Frames between two points at which videos are cut into segments and nothing is handed on from
+  /// frame to frame, see FrameSelection; 1..100000.
+  int chunk_frames = 50;
 
   /// Throws UsageError naming the field, its value and its limit.
   void validate() const;
   [[nodiscard]] bool saves(SequenceOutput output) const;
-};
-
-/// Where the files of a run are: DIR/disparity/000000.pfm, DIR/right-disparity/…,
-/// DIR/confidence/, DIR/unmatched/, DIR/preview/, DIR/views/000000.png (one view) or
-/// DIR/views/0.25/000000.png (several).
-class SequenceLayout {
- public:
-  SequenceLayout(std::filesystem::path folder, const SequenceOptions& options);
-
-  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-  /// All folders that files go to. For kViews one per view.
-  [[nodiscard]] std::vector<std::filesystem::path> folders() const;
-  /// `extension` comes without the dot; `view` counts from 0 and matters for kViews only.
-  [[nodiscard]] std::filesystem::path file(SequenceOutput output, int frame,
-                                           const std::string& extension, int view = 0) const;
-
- private:
-  [[nodiscard]] std::filesystem::path folder_of(SequenceOutput output, int view) const;
-
-  std::filesystem::path folder_;
-  std::vector<SequenceOutput> save_;
-  std::vector<double> views_x_;
+  [[nodiscard]] bool saves_as_video(SequenceOutput output) const;
+  /// Whether the sequence is looked over for shots before the run.
+  [[nodiscard]] bool needs_shots() const {
+    return intensity_fit == FitScope::kShot || preview_range_per_shot;
+  }
 };
 
 }  // namespace vantage

@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <string_view>
-#include <variant>
+#include <utility>
 
 #include "engine/error.h"
-#include "engine/io/disparity_io.h"
-#include "engine/io/photograph_io.h"
-#include "engine/sequence/busy_clock.h"
-#include "engine/sequence/pending_files.h"
-#include "engine/sequence/preview_range.h"
-#include "engine/synthesis/view_synthesizer.h"
+#include "engine/sequence/commit_queue.h"
+#include "engine/sequence/delivered_frames.h"
+#include "engine/sequence/leftovers.h"
+#include "engine/sequence/segment_writer.h"
 #include "scheduler/frame_pipeline.h"
 
 namespace vantage {
@@ -25,251 +24,261 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// What one frame under way needs; reused by the frame `in_flight` later.
-struct FrameSlot {
-  int index = 0;
-  Photograph left;
-  Photograph right;
-  DisparityMaps maps;
-  MatchReport match;
-  std::vector<SynthesizedView> views;
-  Photograph preview;
-  PendingFiles files;
-  double read_seconds = 0;
-  double views_seconds = 0;
-  double preview_seconds = 0;
-  double write_seconds = 0;
-};
+FrameDependence dependence_of(const SequenceOptions& options, const SequenceLayout& layout) {
+  using Past = FrameDependence::Past;
+  return {.past = options.temporal.weight > 0 ? Past::kChunk
+                  : options.measure_flicker   ? Past::kOne
+                                              : Past::kNone,
+          .whole_chunks = layout.has_videos()};
+}
 
-/// A frame whose work failed. Its files are named once nothing runs any more: sources are not for
-/// several threads.
-class FrameError : public Error {
+/// Whether a frame was made without one that it depends on, because that one was skipped.
+bool lacks_past(const DeliveredFrames& delivered, int frame, int chunk_begin,
+                FrameDependence::Past past) {
+  using Past = FrameDependence::Past;
+  const int first = past == Past::kNone  ? frame
+                    : past == Past::kOne ? std::max(chunk_begin, frame - 1)
+                                         : chunk_begin;
+  const auto begin = delivered.records().lower_bound(first);
+  const auto end = delivered.records().lower_bound(frame);
+  return std::any_of(begin, end, [](const auto& entry) { return entry.second.skipped; });
+}
+
+/// Hands out the frames to work on, one after the other.
+class FrameFeed {
  public:
-  FrameError(int frame, const std::string& message) : Error(message), frame_(frame) {}
-  [[nodiscard]] int frame() const { return frame_; }
+  explicit FrameFeed(std::vector<FrameRun> runs) : runs_(std::move(runs)) {
+    for (const FrameRun& run : runs_) {
+      frames_total_ += run.frames.count();
+    }
+    begin_run();
+  }
+
+  /// Of the frames to deliver.
+  [[nodiscard]] int frames_total() const { return frames_total_; }
+
+  /// Names the next frame; false at the end.
+  bool next(int& frame, bool& is_lead_in) {
+    if (run_ == runs_.size()) {
+      return false;
+    }
+    frame = next_frame_++;
+    is_lead_in = frame < runs_[run_].frames.first;
+    if (next_frame_ == runs_[run_].frames.end) {
+      ++run_;
+      begin_run();
+    }
+    return true;
+  }
 
  private:
-  int frame_;
+  void begin_run() {
+    if (run_ < runs_.size()) {
+      next_frame_ = runs_[run_].frames.first - runs_[run_].lead_in;
+    }
+  }
+
+  std::vector<FrameRun> runs_;
+  std::size_t run_ = 0;
+  int next_frame_ = 0;
+  int frames_total_ = 0;
 };
 
-/// Extension, without the dot, of a picture file that holds the depth losslessly.
-const char* lossless_extension(const Photograph& photograph) {
-  return std::holds_alternative<Image<float>>(photograph.pixels) ? "tiff" : "png";
-}
-
-void make_folders(const SequenceLayout& layout) {
-  for (const std::filesystem::path& folder : layout.folders()) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) {
-      throw Error(fmt::format("{}: cannot be made a folder: {}", folder.string(), error.message()));
-    }
-  }
-}
-
-/// One run: the three steps of a frame, and what they add up to.
+/// One run: the steps of a frame that are taken in order, and what all add up to.
 class Run {
  public:
-  Run(const SequenceOptions& options, Execution& execution, int in_flight, FrameSource& left,
-      FrameSource& right, const std::filesystem::path& folder,
-      const std::function<void(const SequenceProgress&)>& on_frame)
+  Run(const SequenceOptions& options, const SequenceRun& run, const SequenceLayout& layout,
+      RunJournal& journal, std::vector<FrameRun> work, Execution& execution)
       : options_(options),
-        matcher_(options.match, execution),
-        synthesizer_(options.synthesis, execution),
-        left_(left),
-        right_(right),
-        layout_(folder, options),
-        on_frame_(on_frame),
-        slots_(static_cast<std::size_t>(in_flight)) {
-    report_.in_flight = in_flight;
-    if (left.frame_count() && right.frame_count()) {
-      frames_total_ = std::min(*left.frame_count(), *right.frame_count());
-    }
-    for (FrameSlot& slot : slots_) {
-      slot.views.resize(options.views_x.size());
-    }
-    make_folders(layout_);
+        run_(run),
+        layout_(layout),
+        execution_(execution),
+        worker_({options, layout, run.pairs, run.frame_size, run.rectifier, run.shots, execution}),
+        feed_(std::move(work)),
+        segments_(options, layout, worker_, run.frame_size.value_or(ImageExtent()), execution),
+        flicker_(options.temporal.threshold),
+        slots_(static_cast<std::size_t>(run.in_flight)),
+        queue_(journal, [this](int frames, double cells) { tell_progress(frames, cells); }) {
+    report_.in_flight = run.in_flight;
   }
 
-  [[nodiscard]] scheduler::FrameSteps steps() {
-    return {[this](int slot) { return read(slots_[static_cast<std::size_t>(slot)]); },
-            [this](int slot) { compute(slots_[static_cast<std::size_t>(slot)]); },
-            [this](int slot) { write(slots_[static_cast<std::size_t>(slot)]); }};
-  }
-
-  [[nodiscard]] SequenceReport finish(bool interrupted) {
-    if (report_.frames == 0 && !interrupted) {
-      throw Error("the sequences have no frames");
-    }
-    report_.interrupted = interrupted;
-    report_.compute_seconds = compute_clock_.seconds();
+  SequenceReport work() {
+    const auto slot_of = [this](int slot) -> FrameSlot& {
+      return slots_[static_cast<std::size_t>(slot)];
+    };
+    scheduler::FrameSteps steps;
+    steps.read = [&](int slot) { return read(slot_of(slot)); };
+    steps.prepare = [&](int slot) { worker_.prepare(slot_of(slot)); };
+    steps.compute = [&](int slot) { worker_.compute(slot_of(slot)); };
+    steps.encode = [&](int slot) { worker_.encode(slot_of(slot)); };
+    steps.write = [&](int slot) { write(slot_of(slot)); };
+    steps.compute_in_order = worker_.computes_in_order();
+    const auto skip = [&](int slot, const std::exception_ptr& error) {
+      return skip_frame(slot_of(slot), error);
+    };
+    const scheduler::FrameOutcome outcome =
+        scheduler::run_frames(execution_.executor(), run_.in_flight, steps, skip, run_.stop);
+    queue_.finish();
+    report_.interrupted = outcome.interrupted;
+    report_.compute_seconds = worker_.compute_seconds();
     return std::move(report_);
   }
 
  private:
   bool read(FrameSlot& slot) {
     const Clock::time_point start = Clock::now();
-    slot.index = frames_read_;
-    bool has_left = false;
-    bool has_right = false;
-    try {
-      has_left = left_.next(slot.left);
-      has_right = right_.next(slot.right);
-    } catch (const Error& error) {
-      throw Error(fmt::format("frame {}: {}", slot.index, error.what()));
+    slot.times.clear();
+    if (!feed_.next(slot.frame, slot.is_lead_in)) {
+      return false;
     }
-    if (has_left != has_right) {
-      throw unequal_lengths(has_left);
+    if (slot.frame != next_pair_) {
+      run_.pairs.skip_to(slot.frame);
     }
-    slot.read_seconds = seconds_since(start);
-    ++frames_read_;
-    return has_left;
-  }
-
-  [[nodiscard]] Error unequal_lengths(bool left_is_longer) const {
-    const std::optional<int> longer = (left_is_longer ? left_ : right_).frame_count();
-    const std::string length = longer && *longer > frames_read_
-                                   ? fmt::format("{}", *longer)
-                                   : fmt::format("at least {}", frames_read_ + 1);
-    return Error(
-        fmt::format("frame {}: the {} sequence has ended after {} frames but the {} one "
-                    "has {}, expected equal lengths",
-                    frames_read_, left_is_longer ? "right" : "left", frames_read_,
-                    left_is_longer ? "left" : "right", length));
-  }
-
-  void compute(FrameSlot& slot) {
-    try {
-      {
-        const BusyClock::Activity activity(compute_clock_);
-        match(slot);
-        synthesize(slot);
-        paint_preview(slot);
-      }
-      write_pending(slot);
-    } catch (const Error& error) {
-      throw FrameError(slot.index, error.what());
+    next_pair_ = slot.frame + 1;
+    if (!run_.pairs.fetch(slot.pair)) {
+      throw Error(fmt::format("the sequence has ended before it, expected {} frames",
+                              run_.selection.frame_count));
     }
-  }
-
-  void match(FrameSlot& slot) {
-    const bool right_is_primary = options_.match.reference == Reference::kRight;
-    const bool needs_views = !options_.views_x.empty();
-    const MatchRequest request{
-        .left = !right_is_primary || needs_views,
-        .right = right_is_primary || needs_views || options_.saves(SequenceOutput::kRightDisparity),
-        .confidence = options_.saves(SequenceOutput::kConfidence)};
-    matcher_.match(slot.left, slot.right, request, slot.maps, &slot.match);
-  }
-
-  void synthesize(FrameSlot& slot) {
-    const Clock::time_point start = Clock::now();
-    for (std::size_t view = 0; view < slot.views.size(); ++view) {
-      synthesizer_.synthesize(slot.left, slot.right, slot.maps.left.view(), slot.maps.right.view(),
-                              options_.views_x[view], slot.views[view]);
-    }
-    slot.views_seconds = seconds_since(start);
-  }
-
-  void paint_preview(FrameSlot& slot) {
-    const Clock::time_point start = Clock::now();
-    if (options_.saves(SequenceOutput::kPreview)) {
-      const PreviewRange range = preview_range_of(options_.match.disparities);
-      slot.preview.pixels = colour_preview(primary_map(slot).view(), range.min_px, range.max_px);
-    }
-    slot.preview_seconds = seconds_since(start);
-  }
-
-  [[nodiscard]] const DisparityMap& primary_map(const FrameSlot& slot) const {
-    return options_.match.reference == Reference::kLeft ? slot.maps.left : slot.maps.right;
-  }
-  [[nodiscard]] const Image<float>& primary_confidence(const FrameSlot& slot) const {
-    return options_.match.reference == Reference::kLeft ? slot.maps.left_confidence
-                                                        : slot.maps.right_confidence;
-  }
-  [[nodiscard]] const Mask& primary_unmatched(const FrameSlot& slot) const {
-    return options_.match.reference == Reference::kLeft ? slot.maps.left_unmatched
-                                                        : slot.maps.right_unmatched;
-  }
-
-  /// Encodes here, in parallel with other frames: compressing takes as long as matching.
-  void write_pending(FrameSlot& slot) const {
-    const Clock::time_point start = Clock::now();
-    slot.files.discard();  // left by a frame that came after one that failed
-    for (const SequenceOutput output : options_.save) {
-      const std::string& map_extension = options_.disparity_format;
-      switch (output) {
-        case SequenceOutput::kDisparity:
-          add_file(slot, output, map_extension,
-                   [&](const auto& path) { write_disparity(path, primary_map(slot).view()); });
-          break;
-        case SequenceOutput::kRightDisparity:
-          add_file(slot, output, map_extension,
-                   [&](const auto& path) { write_disparity(path, slot.maps.right.view()); });
-          break;
-        case SequenceOutput::kConfidence:
-          add_file(slot, output, map_extension, [&](const auto& path) {
-            write_disparity(path, primary_confidence(slot).view());
-          });
-          break;
-        case SequenceOutput::kUnmatched:
-          add_file(slot, output, "png",
-                   [&](const auto& path) { write_mask(path, primary_unmatched(slot).view()); });
-          break;
-        case SequenceOutput::kPreview:
-          add_file(slot, output, "png",
-                   [&](const auto& path) { write_photograph(path, slot.preview); });
-          break;
-        case SequenceOutput::kViews:
-          for (std::size_t view = 0; view < slot.views.size(); ++view) {
-            const Photograph& image = slot.views[view].image;
-            add_file(
-                slot, output, lossless_extension(image),
-                [&](const auto& path) { write_photograph(path, image); }, static_cast<int>(view));
-          }
-          break;
-      }
-    }
-    slot.write_seconds = seconds_since(start);
-  }
-
-  void add_file(FrameSlot& slot, SequenceOutput output, const std::string& extension,
-                const std::function<void(const std::filesystem::path&)>& write,
-                int view = 0) const {
-    slot.files.add(layout_.file(output, slot.index, extension, view), write);
+    slot.times.push_back({"read", seconds_since(start)});
+    return true;
   }
 
   void write(FrameSlot& slot) {
     const Clock::time_point start = Clock::now();
-    try {
-      slot.files.commit();
-    } catch (const Error& error) {
-      throw Error(fmt::format("frame {}: {}", slot.index, error.what()));
+    FrameRecord record{.frame = slot.frame, .files = std::move(slot.file_names)};
+    measure_flicker(slot, record);
+    if (slot.is_lead_in) {
+      return;
     }
-    slot.write_seconds += seconds_since(start);
+    note_oddities(slot, record);
+    if (layout_.has_videos()) {
+      segment_of(slot.frame);
+      segments_.add(slot);
+    }
+    slot.times.push_back({"write", seconds_since(start)});
     add_to_report(slot);
-    if (on_frame_) {
-      on_frame_({report_.frames, frames_total_, report_.cells});
+    deliver(std::move(slot.files), std::move(record), slot.match.cells);
+  }
+
+  /// Compares with the frame before it in its chunk.
+  void measure_flicker(const FrameSlot& slot, FrameRecord& record) {
+    if (!options_.measure_flicker) {
+      return;
+    }
+    const int chunk = slot.frame / options_.chunk_frames;
+    if (chunk != flicker_chunk_) {
+      flicker_.restart();
+      flicker_chunk_ = chunk;
+    }
+    std::vector<ViewOfFrame> views;
+    for (std::size_t view = 0; view < options_.views.size(); ++view) {
+      views.push_back({slot.views_x[view], &slot.views[view].image});
+    }
+    record.flicker = flicker_.add(*slot.left, slot.maps.left.view(), views, execution_);
+  }
+
+  void note_oddities(FrameSlot& slot, FrameRecord& record) {
+    record.remarks = slot.pair.remarks;
+    if (slot.frame == last_frame_ + 1) {
+      const bool left = slot.content[0] == last_content_[0];
+      const bool right = slot.content[1] == last_content_[1];
+      if (left || right) {
+        record.remarks.push_back(fmt::format("{} the same as in frame {}",
+                                             left && right ? "both images are"
+                                             : left        ? "the left image is"
+                                                           : "the right image is",
+                                             last_frame_));
+      }
+    }
+    last_frame_ = slot.frame;
+    last_content_ = slot.content;
+    for (const std::string& remark : record.remarks) {
+      report_.remarks.push_back({slot.frame, remark});
+    }
+  }
+
+  bool skip_frame(FrameSlot& slot, const std::exception_ptr& error) {
+    slot.files.discard();
+    std::string problem;
+    try {
+      std::rethrow_exception(error);
+    } catch (const DeliveryError&) {
+      throw;
+    } catch (const OutputError& output) {
+      throw OutputError(fmt::format("frame {}: {}", slot.frame, output.what()));
+    } catch (const UsageError&) {
+      throw;
+    } catch (const Error& bad_frame) {
+      problem = bad_frame.what();
+    }
+    if (!run_.keep_going) {
+      throw Error(
+          fmt::format("frame {} ({}): {}", slot.frame, run_.pairs.describe(slot.frame), problem));
+    }
+    if (slot.is_lead_in) {
+      return true;  // whoever delivers it records it
+    }
+    report_.skipped.push_back(
+        {slot.frame, fmt::format("{}: {}", run_.pairs.describe(slot.frame), problem)});
+    if (layout_.has_videos()) {
+      segment_of(slot.frame);
+      segments_.add_skipped();
+    }
+    deliver({}, {.frame = slot.frame, .skipped = true, .problem = std::move(problem)}, 0);
+    return true;
+  }
+
+  /// Begins the segment of the frame if it is the first one there.
+  void segment_of(int frame) {
+    const FrameRange chunk = run_.selection.chunk_of(frame);
+    if (frame == chunk.first) {
+      segments_.begin(chunk);
+      segment_records_.clear();
+    }
+  }
+
+  /// With videos the journal tells of frames when their segment is whole.
+  void deliver(PendingFiles files, FrameRecord record, double cells) {
+    Delivery delivery;
+    delivery.files = std::move(files);
+    delivery.frames = 1;
+    delivery.cells = cells;
+    const int frame = record.frame;
+    delivery.frame = frame;
+    if (!layout_.has_videos()) {
+      delivery.records.emplace_back(std::move(record));
+    } else {
+      segment_records_.emplace_back(std::move(record));
+      const FrameRange chunk = run_.selection.chunk_of(frame);
+      if (frame + 1 == chunk.end) {
+        segments_.finish();
+        segment_records_.emplace_back(SegmentRecord{chunk});
+        delivery.records = std::exchange(segment_records_, {});
+      }
+    }
+    queue_.push(std::move(delivery));
+  }
+
+  void tell_progress(int frames, double cells) {
+    progress_.frames_done += frames;
+    progress_.frames_total = feed_.frames_total();
+    progress_.cells += cells;
+    if (run_.on_progress) {
+      run_.on_progress(progress_);
     }
   }
 
   void add_to_report(const FrameSlot& slot) {
     ++report_.frames;
-    report_.width_px = slot.left.width();
-    report_.height_px = slot.left.height();
+    report_.width_px = slot.left->width();
+    report_.height_px = slot.left->height();
     report_.cells += slot.match.cells;
     report_.plan = slot.match.plan;
-    add_stage("read", slot.read_seconds);
-    for (const StageTime& stage : slot.match.stages) {
-      add_stage(stage.name, stage.seconds);
+    for (const auto& times : {slot.match.stages, slot.times}) {
+      for (const StageTime& stage : times) {
+        add_stage(stage.name, stage.seconds);
+      }
     }
-    if (!slot.views.empty()) {
-      add_stage("views", slot.views_seconds);
-    }
-    if (options_.saves(SequenceOutput::kPreview)) {
-      add_stage("preview", slot.preview_seconds);
-    }
-    add_stage("write", slot.write_seconds);
   }
 
   void add_stage(std::string_view name, double seconds) {
@@ -282,17 +291,23 @@ class Run {
   }
 
   const SequenceOptions& options_;
-  StereoMatcher matcher_;
-  ViewSynthesizer synthesizer_;
-  FrameSource& left_;
-  FrameSource& right_;
-  SequenceLayout layout_;
-  const std::function<void(const SequenceProgress&)>& on_frame_;
+  const SequenceRun& run_;
+  const SequenceLayout& layout_;
+  Execution& execution_;
+  FrameWorker worker_;
+  FrameFeed feed_;      // only the reading step touches it while frames are under way
+  int next_pair_ = -1;  // likewise; the source may be anywhere at first
+  // What follows, up to the slots, only the writing step touches.
+  SegmentWriter segments_;
+  std::vector<JournalRecord> segment_records_;
+  FlickerMeter flicker_;
+  int flicker_chunk_ = -1;
+  int last_frame_ = -2;
+  std::array<std::uint64_t, 2> last_content_ = {};
+  SequenceReport report_;
   std::vector<FrameSlot> slots_;
-  std::optional<int> frames_total_;
-  int frames_read_ = 0;    // only the reading step touches it
-  SequenceReport report_;  // only the writing step touches it
-  BusyClock compute_clock_;
+  SequenceProgress progress_;  // only the queue's thread touches it
+  CommitQueue queue_;          // last: works while all others are there
 };
 
 }  // namespace
@@ -302,23 +317,24 @@ SequenceRunner::SequenceRunner(const SequenceOptions& options, Execution& execut
   options_.validate();
 }
 
-SequenceReport SequenceRunner::run(FrameSource& left, FrameSource& right,
-                                   const std::filesystem::path& folder,
-                                   const std::function<void(const SequenceProgress&)>& on_frame,
-                                   const std::atomic<bool>* stop) const {
-  constexpr int kDefaultMaxInFlight = 8;
-  scheduler::Executor& executor = execution_.executor();
-  const int in_flight =
-      options_.in_flight.value_or(std::min(executor.thread_count() + 1, kDefaultMaxInFlight));
-  Run run(options_, execution_, in_flight, left, right, folder, on_frame);
-  try {
-    const scheduler::FrameOutcome outcome =
-        scheduler::run_frames(executor, in_flight, run.steps(), stop);
-    return run.finish(outcome.interrupted);
-  } catch (const FrameError& error) {
-    throw Error(fmt::format("frame {} ({}, {}): {}", error.frame(), left.describe(error.frame()),
-                            right.describe(error.frame()), error.what()));
+SequenceReport SequenceRunner::run(const SequenceRun& run, const SequenceLayout& layout,
+                                   RunJournal& journal) const {
+  layout.make_folders();
+  const FrameRange own = run.selection.own();
+  remove_leftovers(layout, own);
+  const DeliveredFrames delivered(layout);
+  const FrameDependence dependence = dependence_of(options_, layout);
+  std::vector<FrameRun> work = plan_work(run.selection, dependence, [&](int frame) {
+    return delivered.is_done(frame) &&
+           !lacks_past(delivered, frame, run.selection.chunk_begin(frame), dependence.past);
+  });
+  int before = own.count();
+  for (const FrameRun& part : work) {
+    before -= part.frames.count();
   }
+  SequenceReport report = Run(options_, run, layout, journal, std::move(work), execution_).work();
+  report.frames_before = before;
+  return report;
 }
 
 }  // namespace vantage

@@ -1,24 +1,30 @@
 #pragma once
 
 #include <atomic>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/execution.h"
-#include "engine/io/frame_source.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/rectification/rectifier.h"
+#include "engine/sequence/flicker.h"
+#include "engine/sequence/frame_worker.h"
+#include "engine/sequence/pair_source.h"
+#include "engine/sequence/run_journal.h"
+#include "engine/sequence/sequence_layout.h"
 #include "engine/sequence/sequence_options.h"
+#include "engine/sequence/shots.h"
+#include "engine/sequence/work_plan.h"
 
 namespace vantage {
 
-/// Where a run stands after a frame has been written.
+/// Where a run stands.
 struct SequenceProgress {
-  int frames_done = 0;
-  std::optional<int> frames_total;  ///< when both sources know their length
-  double cells = 0;                 ///< matching cells computed for the frames done
+  int frames_done = 0;   ///< delivered by this process
+  int frames_total = 0;  ///< that this process has to work on
+  double cells = 0;      ///< matching cells computed for the frames done
 };
 
 /// Seconds of one stage, summed over frames (frames overlap, so sums may exceed wall time).
@@ -27,40 +33,61 @@ struct SequenceStage {
   double seconds = 0;
 };
 
+/// What is to be said about one frame.
+struct FrameRemark {
+  int frame = 0;
+  std::string text;
+};
+
 struct SequenceReport {
-  int frames = 0;
-  bool interrupted = false;  ///< `stop` was raised before the sources ended
+  int frames = 0;         ///< delivered by this run
+  int frames_before = 0;  ///< of its share that had been delivered before
+  std::vector<FrameRemark> skipped;
+  std::vector<FrameRemark> remarks;  ///< frames that repeat the one before, gaps in time, …
+  bool interrupted = false;          ///< `stop` was raised before all was done
   int in_flight = 0;
   int width_px = 0;  ///< of the last frame
   int height_px = 0;
   double cells = 0;
   /// Time during which at least one frame was being matched or rendered: no reading or writing.
   double compute_seconds = 0;
-  std::vector<SequenceStage> stages;  ///< in order of first appearance, with "read" and "write"
+  std::vector<SequenceStage> stages;  ///< in order of first appearance
   scheduler::ChainPlan plan;          ///< of the last frame
 };
 
-/// Turns two sequences of frames into disparity maps and new views on disk, in order. The strips of
+/// What a run works on and how.
+struct SequenceRun {
+  PairSource& pairs;
+  FrameSelection selection;
+  std::optional<ImageExtent> frame_size;  ///< that all frames must have; must be set for videos
+  const Rectifier* rectifier = nullptr;   ///< null: the pairs are rectified
+  const ShotTable* shots = nullptr;       ///< must be set where the options need shots
+  int in_flight = 1;                      ///< frames under way at the same time, 1..64
+  bool keep_going = false;                ///< frames that fail are skipped and recorded
+  std::function<void(const SequenceProgress&)> on_progress;  ///< never concurrently
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// Turns a sequence of pairs into disparity maps and new views on disk, in order. The strips of
 /// several frames share the executor's threads; memory is bounded by the frames in flight, whose
-/// buffers are reused.
+/// buffers are reused. Frames that the journal and the files say are done are left alone.
 ///
-/// Thread rule: one run() at a time. Files are identical for any ExecutionOptions and in-flight
-/// count. Each file appears whole or not at all.
+/// Thread rule: one run() at a time. Files are identical for any ExecutionOptions, in-flight count
+/// and division into parts, and after any interruption. Each file appears whole or not at all, and
+/// the journal tells of it when it is safe.
 class SequenceRunner {
  public:
   /// Throws UsageError for invalid options. `execution` must outlive the runner.
   SequenceRunner(const SequenceOptions& options, Execution& execution);
 
-  /// Makes `folder` and the folders below it, then works until a source ends. `on_frame` is called
-  /// after each written frame, in order, never concurrently. Raising `stop` reads no further frame
-  /// and finishes those under way.
+  /// Makes the folders of `layout`, then works on what is missing. Raising `stop` reads no further
+  /// frame and finishes those under way.
   ///
-  /// Throws Error at the first bad frame, naming its number and file, after all earlier frames are
-  /// written and with none after it; likewise when one source ends before the other, naming both
-  /// lengths.
-  SequenceReport run(FrameSource& left, FrameSource& right, const std::filesystem::path& folder,
-                     const std::function<void(const SequenceProgress&)>& on_frame = {},
-                     const std::atomic<bool>* stop = nullptr) const;
+  /// Throws Error at the first bad frame, naming its number and files, after all earlier frames are
+  /// delivered and with none after it, unless `keep_going`; OutputError, naming the file, when
+  /// results cannot be written.
+  SequenceReport run(const SequenceRun& run, const SequenceLayout& layout,
+                     RunJournal& journal) const;
 
  private:
   SequenceOptions options_;

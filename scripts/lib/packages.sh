@@ -6,10 +6,16 @@
 readonly BUILD_PACKAGES=(
   g++ cmake ninja-build pkg-config
   libtbb-dev libopencv-dev libeigen3-dev libhwy-dev libhwloc-dev
+  libavformat-dev libavcodec-dev libavutil-dev libswscale-dev libswresample-dev
+  libdeflate-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libfmt-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   python3
 )
+
+# What some tests need beside that; without these they are skipped.
+# shellcheck disable=SC2034
+readonly TEST_PACKAGES=(slurmctld slurmd slurm-client munge)
 
 can_be_root() {
   [[ $(id -u) -eq 0 ]] || command -v sudo >/dev/null

@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "engine/image/stereo_packing.h"
 #include "engine/io/video_io.h"
 #include "tests/apps/pair_fixture.h"
+#include "tests/apps/run_fixture.h"
 
 namespace vantage {
 namespace {
@@ -15,8 +17,24 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::StartsWith;
 
 constexpr int kFrames = 6;
+
+/// Names of the files a run made, without those of its journal.
+std::vector<std::string> made_in(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& [name, content] : results_in(folder)) {
+    names.push_back(name);
+  }
+  return names;
+}
+
+/// What a run says that fails: its plan, and an error as the last line.
+std::string last_line(const ProcessResult& result) {
+  const std::string text = result.err.substr(0, result.err.size() - 1);
+  return text.substr(text.rfind('\n') + 1);
+}
 
 class RunCommand : public testing::Test {
  protected:
@@ -81,7 +99,7 @@ TEST_F(RunCommand, EveryFrameEqualsTheSingleCommands) {
     EXPECT_EQ(written("preview", ".png"), read_file(folder_ / "p.png")) << frame;
     EXPECT_EQ(written("views", ".png"), read_file(folder_ / "v.png")) << frame;
   }
-  EXPECT_EQ(files_below(out).size(), 5U * kFrames);
+  EXPECT_EQ(made_in(out).size(), 5U * kFrames);
   const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
   EXPECT_EQ(report["command"], "run");
   EXPECT_EQ(report["results"]["frames"], kFrames);
@@ -96,7 +114,7 @@ TEST_F(RunCommand, FilesDoNotDependOnExecutionNorFramesInFlight) {
     more.insert(more.end(), outputs.begin(), outputs.end());
     const ProcessResult result = run(out, more);
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    return files_below(out);
+    return made_in(out);
   };
   const std::string expected = folder_ / "expected";
   const auto names = run_with(expected, {"--executor", "serial", "--in-flight", "1"});
@@ -123,11 +141,9 @@ TEST_F(RunCommand, TakesPatternsGlobsAndVideos) {
                          "-o", folder_ / "b", "--disparities=0:9", "--quiet"})
                 .exit_code,
             0);
-  for (const std::string& file : files_below(folder_ / "a")) {
-    EXPECT_EQ(read_file(folder_ / "a/" + file), read_file(folder_ / "b/" + file));
-  }
+  EXPECT_EQ(results_in(folder_ / "a"), results_in(folder_ / "b"));
   for (const std::string side : {"left", "right"}) {
-    VideoWriter video(folder_ / (side + ".mp4"), 48, 30, 25);
+    VideoWriter video(folder_ / (side + ".mp4"), 48, 30, {});
     for (int frame = 0; frame < 3; ++frame) {
       Image<std::uint8_t> grey(48, 30);
       for (int y = 0; y < 30; ++y) {
@@ -143,7 +159,7 @@ TEST_F(RunCommand, TakesPatternsGlobsAndVideos) {
       run_vantage({"run", "--left", folder_ / "left.mp4", "--right", folder_ / "right.mp4", "-o",
                    folder_ / "c", "--disparities=0:9"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(files_below(folder_ / "c"),
+  EXPECT_THAT(made_in(folder_ / "c"),
               ElementsAre("disparity/000000.pfm", "disparity/000001.pfm", "disparity/000002.pfm"));
 }
 
@@ -155,11 +171,10 @@ TEST_F(RunCommand, StopsAtTheFirstBadFrame) {
     const ProcessResult result =
         run(out, {"--executor", executor, "--threads", "3", "--in-flight", "4"});
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_TRUE(is_one_line(result, "run"));
-    EXPECT_THAT(result.err, HasSubstr("frame 3"));
-    EXPECT_THAT(result.err, HasSubstr("frame3.png"));
-    EXPECT_THAT(files_below(out), ElementsAre("disparity/000000.pfm", "disparity/000001.pfm",
-                                              "disparity/000002.pfm"));
+    EXPECT_THAT(last_line(result), StartsWith("vantage run: frame 3 ("));
+    EXPECT_THAT(last_line(result), HasSubstr("frame3.png"));
+    EXPECT_THAT(made_in(out), ElementsAre("disparity/000000.pfm", "disparity/000001.pfm",
+                                          "disparity/000002.pfm"));
   }
 }
 
@@ -167,22 +182,23 @@ TEST_F(RunCommand, NamesTheFrameWhoseSizesDiffer) {
   write_photograph(right_ + name(2), {Image<std::uint8_t>(4, 4)});
   const ProcessResult result = run(folder_ / "out", {"--in-flight", "4"});
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(is_one_line(result, "run"));
-  EXPECT_THAT(result.err, HasSubstr("frame 2 ("));
-  EXPECT_THAT(result.err, HasSubstr(right_ + name(2)));
-  EXPECT_THAT(files_below(folder_ / "out"),
+  EXPECT_THAT(last_line(result), StartsWith("vantage run: frame 2 ("));
+  EXPECT_THAT(last_line(result), HasSubstr(right_ + name(2)));
+  EXPECT_THAT(made_in(folder_ / "out"),
               ElementsAre("disparity/000000.pfm", "disparity/000001.pfm"));
 }
 
 TEST_F(RunCommand, UnequalLengthsAreAnErrorAfterTheCommonFrames) {
   std::filesystem::remove(right_ + name(5));
   std::filesystem::remove(right_ + name(4));
-  const ProcessResult result = run(folder_ / "out");
+  ProcessResult result = run(folder_ / "out");
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(is_one_line(result, "run"));
-  EXPECT_THAT(result.err, HasSubstr("frame 4: the right sequence has ended after 4 frames but the "
-                                    "left one has 6"));
-  EXPECT_EQ(files_below(folder_ / "out").size(), 4U);
+  EXPECT_THAT(last_line(result), HasSubstr("all 4 pairs are done, but"));
+  EXPECT_THAT(last_line(result), HasSubstr("2 frames more"));
+  EXPECT_EQ(made_in(folder_ / "out").size(), 4U);
+  result = run(folder_ / "out", {"--resume", "--keep-going"});
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_EQ(run(folder_ / "out", {"--resume", "--frames", "0-3"}).exit_code, 0);
 }
 
 TEST_F(RunCommand, InterruptFinishesTheFramesUnderWay) {
@@ -195,14 +211,14 @@ TEST_F(RunCommand, InterruptFinishesTheFramesUnderWay) {
   const std::string out = folder_ / "out";
   const TemporaryFolder streams;
   const VantageProcess process(arguments(out, {"--report", folder_ / "r.json"}), streams.path());
-  for (int wait = 0; wait < 2000 && files_below(out).empty(); ++wait) {
+  for (int wait = 0; wait < 2000 && made_in(out).empty(); ++wait) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   process.send(SIGINT);
   const ProcessResult result = process.wait();
   EXPECT_EQ(result.exit_code, 130) << result.err;
   EXPECT_THAT(result.err, HasSubstr("interrupted"));
-  const auto files = files_below(out);
+  const auto files = made_in(out);
   ASSERT_FALSE(files.empty());
   EXPECT_LT(files.size(), static_cast<std::size_t>(kMany));
   // No gap, no partial file: the last one is the one that the count says.
@@ -224,8 +240,25 @@ TEST_F(RunCommand, WrongUsageIsOneLineAndExit2) {
       {{"--format", "gif"}, "format is 'gif'"},
       {{"--in-flight", "0"}, "in-flight is 0"},
       {{"--reference", "right", "--save", "right-disparity"}, "right-disparity"},
-      {{"--resume"}, "unknown option '--resume'"},
-      {{"--shard", "1/2"}, "unknown option '--shard'"}};
+      {{"--shard", "3/2"}, "--shard is '3/2', expected I/N"},
+      {{"--shard", "0/2"}, "--shard is '0/2'"},
+      {{"--frames", "5-4"}, "--frames is '5-4', expected a range"},
+      {{"--frames", "3"}, "--frames is '3'"},
+      {{"--memory", "4X"}, "--memory is '4X', expected a size"},
+      {{"--memory", "0"}, "--memory is '0'"},
+      {{"--video", "disparity"}, "whose values a video cannot hold"},
+      {{"--video", "preview"}, "--save …,preview"},
+      {{"--view-path", "0"}, "--view-path is '0', expected keys"},
+      {{"--stereo-views", "0.5"}, "--stereo-views is '0.5'"},
+      {{"--stereo-packing", "sbs"}, "--stereo-packing is 'sbs'"},
+      {{"--fps", "0"}, "--fps is '0'"},
+      {{"--chunk-frames", "0"}, "chunk-frames is 0"},
+      {{"--temporal-prior", "-1"}, "-1"},
+      {{"--progress", "loud"}, "--progress is 'loud'"},
+      {{"--step", "2"}, "step"},
+      {{"--stereo", "x.mp4"}, "stereo"},
+      {{"--overwrite", "--resume"}, "--overwrite and --resume"},
+      {{"--overwrite", "--shard", "1/2"}, "--overwrite with --shard"}};
   for (const auto& [more, says] : misuses) {
     const ProcessResult result = run(out, more);
     EXPECT_EQ(result.exit_code, 2) << says;
@@ -253,7 +286,162 @@ TEST_F(RunCommand, BadSourcesAreOneLineAndExit1) {
   write_file(folder_ / "file", "not a folder");
   const ProcessResult result = run(folder_ / "file");
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(is_one_line(result, "run"));
+  EXPECT_THAT(last_line(result), HasSubstr(folder_ / "file"));
+}
+
+TEST_F(RunCommand, EveryKindOfInputGivesTheSame) {
+  const std::vector<std::string> outputs = {"--save",  "disparity,views",   "--view", "0.5",
+                                            "--quiet", "--disparities=0:9", "-o"};
+  const auto made_from = [&](std::vector<std::string> input, const std::string& out) {
+    input.insert(input.begin(), "run");
+    input.insert(input.end(), outputs.begin(), outputs.end());
+    input.push_back(folder_ / out);
+    const ProcessResult result = run_vantage(input);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return results_in(folder_ / out);
+  };
+  const auto expected = made_from({"--left", left_, "--right", right_}, "two");
+  ASSERT_EQ(expected.size(), 2U * kFrames);
+  // A list, with names relative to it.
+  std::string list = "left,right\n# frames\n\n";
+  // One picture for both, and one camera that stands where the left and the right one did in turn.
+  std::filesystem::create_directories(folder_ / "packed");
+  std::filesystem::create_directories(folder_ / "walk");
+  for (int frame = 0; frame < kFrames; ++frame) {
+    list += "left" + name(frame) + ",\"right" + name(frame) + "\"\n";
+    const Photograph left = read_photograph(left_ + name(frame));
+    const Photograph right = read_photograph(right_ + name(frame));
+    Photograph packed;
+    pack_stereo(left, right, {.above_below = true, .half_size = false, .right_first = true},
+                packed);
+    write_photograph(folder_ / "packed" + name(frame), packed);
+    write_photograph(folder_ / "walk" + name(2 * frame), left);
+    write_photograph(folder_ / "walk" + name(2 * frame + 1), right);
+  }
+  write_file(folder_ / "pairs.csv", list);
+  EXPECT_EQ(made_from({"--pairs", folder_ / "pairs.csv"}, "list"), expected);
+  EXPECT_EQ(made_from({"--stereo", folder_ / "packed", "--packing", "abr"}, "packed-out"),
+            expected);
+  auto walked = made_from({"--sequence", folder_ / "walk", "--step", "1"}, "walk-out");
+  ASSERT_EQ(walked.size(), 2U * (2 * kFrames - 1));
+  EXPECT_EQ(walked["disparity/000004.pfm"], expected.at("disparity/000002.pfm"));
+  // Shifted against each other, and back.
+  std::filesystem::create_directories(folder_ / "late");
+  for (int frame = 0; frame < kFrames; ++frame) {
+    std::filesystem::copy_file(right_ + name(frame), folder_ / "late" + name(frame + 3));
+  }
+  write_photograph(folder_ / "late" + name(2), {Image<std::uint8_t>(47, 29)});
+  EXPECT_EQ(made_from({"--left", left_, "--right", folder_ / "late", "--offset", "1"}, "late-out"),
+            expected);
+}
+
+TEST_F(RunCommand, VideosHoldWhatTheImagesShow) {
+  const std::vector<std::string> outputs = {"--save",
+                                            "preview,views,stereo",
+                                            "--view-path",
+                                            "0=0,5=1",
+                                            "--stereo-views",
+                                            "0.25,0.75",
+                                            "--stereo-packing",
+                                            "sbsl",
+                                            "--fps",
+                                            "30000/1001",
+                                            "--chunk-frames",
+                                            "4"};
+  std::vector<std::string> videos = outputs;
+  videos.insert(videos.end(), {"--video", "preview,views,stereo", "--crf", "4"});
+  ASSERT_EQ(run(folder_ / "images", outputs).exit_code, 0);
+  const ProcessResult result = run(folder_ / "videos", videos);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(made_in(folder_ / "videos"), ElementsAre("preview.mp4", "stereo.mp4", "views.mp4"));
+  for (const std::string kind : {"preview", "views", "stereo"}) {
+    VideoReader video(folder_ / "videos/" + kind + ".mp4");
+    EXPECT_EQ(video.frame_count(), kFrames);
+    EXPECT_EQ(video.frame_rate(), (FrameRate{30000, 1001}));
+    const Photograph image = read_photograph(folder_ / "images/" + kind + "/000003.png");
+    // H.264 has even sizes.
+    EXPECT_EQ(video.width(), (image.width() + 1) / 2 * 2) << kind;
+    EXPECT_EQ(video.height(), (image.height() + 1) / 2 * 2) << kind;
+  }
+}
+
+TEST_F(RunCommand, ADryRunTellsThePlanAndWritesNothing) {
+  const ProcessResult result = run(
+      folder_ / "out", {"--dry-run", "--memory", "900M", "--frames", "2-3", "--in-flight", "3"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  for (const char* part : {"6 pairs of 47x29", "frames 2-3", "disparities 0:9",
+                           "3 frames in flight", "of 900 MiB", "writes disparity to"}) {
+    EXPECT_THAT(result.out, HasSubstr(part));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  const ProcessResult small = run(folder_ / "out", {"--dry-run", "--memory", "1M"});
+  EXPECT_EQ(small.exit_code, 1);
+  EXPECT_TRUE(is_one_line(small, "run"));
+  EXPECT_THAT(small.err, HasSubstr("memory is 1 MiB, expected at least"));
+  const ProcessResult beyond = run(folder_ / "out", {"--frames", "6-9"});
+  EXPECT_EQ(beyond.exit_code, 1);
+  EXPECT_THAT(beyond.err, HasSubstr("--frames begins at 6 but the input has 6 frames"));
+}
+
+TEST_F(RunCommand, JobFilesHoldEverything) {
+  const std::vector<std::string> more = {"--save",       "preview,views,stereo",
+                                         "--view",       "0.25",
+                                         "--view-path",  "0=0,5=1",
+                                         "--video",      "stereo",
+                                         "--fps",        "12.5",
+                                         "--frames",     "1-4",
+                                         "--window",     "5",
+                                         "--memory",     "2G",
+                                         "--keep-going", "--no-sound"};
+  std::vector<std::string> printed = arguments(folder_ / "job", more);
+  printed.push_back("--print-config");
+  const ProcessResult config = run_vantage(printed);
+  ASSERT_EQ(config.exit_code, 0) << config.err;
+  write_file(folder_ / "job.toml", config.out);
+  const ProcessResult again = run_vantage({"run", folder_ / "job.toml", "--print-config"});
+  EXPECT_EQ(again.out, config.out);
+  ASSERT_EQ(run(folder_ / "options", more).exit_code, 0);
+  const ProcessResult job = run_vantage({"run", folder_ / "job.toml"});
+  ASSERT_EQ(job.exit_code, 0) << job.err;
+  EXPECT_EQ(results_in(folder_ / "job"), results_in(folder_ / "options"));
+  write_file(folder_ / "typo.toml", "keep-goin = true\n");
+  const ProcessResult typo = run_vantage({"run", folder_ / "typo.toml"});
+  EXPECT_EQ(typo.exit_code, 2);
+  EXPECT_THAT(typo.err,
+              HasSubstr("unknown key 'keep-goin', the nearest known one is 'keep-going'"));
+  EXPECT_EQ(run_vantage({"run", folder_ / "job.toml", "--config", folder_ / "job.toml"}).exit_code,
+            2);
+}
+
+TEST_F(RunCommand, MergeChecksAndJoinsWhatPartsHaveMade) {
+  const std::vector<std::string> outputs = {"--save",  "disparity,preview", "--video",
+                                            "preview", "--chunk-frames",    "2"};
+  ASSERT_EQ(run(folder_ / "whole", outputs).exit_code, 0);
+  const std::string out = folder_ / "parts";
+  const auto part = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = outputs;
+    all.insert(all.end(), more.begin(), more.end());
+    return run(out, all).exit_code;
+  };
+  EXPECT_EQ(run_vantage({"merge", out}).exit_code, 1);
+  ASSERT_EQ(part({"--shard", "3/3"}), 0);
+  ASSERT_EQ(part({"--shard", "1/3"}), 0);
+  const ProcessResult incomplete = run_vantage({"merge", out});
+  EXPECT_EQ(incomplete.exit_code, 1);
+  EXPECT_TRUE(is_one_line(incomplete, "merge"));
+  EXPECT_THAT(incomplete.err, HasSubstr("2 of 6 frames are missing (2-3)"));
+  EXPECT_EQ(run_vantage({"merge", out, "--partial"}).exit_code, 1);
+  EXPECT_FALSE(std::filesystem::exists(out + "/preview.mp4"));
+  ASSERT_EQ(part({"--frames", "2-3"}), 0);
+  const ProcessResult complete = run_vantage({"merge", out, "--report", folder_ / "m.json"});
+  EXPECT_EQ(complete.exit_code, 0) << complete.err;
+  EXPECT_EQ(results_in(out), results_in(folder_ / "whole"));
+  EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "m.json"))["results"]["frames"], 6);
+  EXPECT_EQ(run_vantage({"merge", out}).exit_code, 0);
+  EXPECT_EQ(results_in(out), results_in(folder_ / "whole"));
+  std::filesystem::remove(out + "/disparity/000004.pfm");
+  EXPECT_THAT(run_vantage({"merge", out}).err, HasSubstr("1 of 6 frames are missing (4)"));
 }
 
 }  // namespace

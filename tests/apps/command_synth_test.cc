@@ -87,7 +87,7 @@ TEST_F(SynthCommand, MatchesThePairWithoutMaps) {
 
 TEST_F(SynthCommand, SweepsBecomeVideosAndEqualTheirViews) {
   const ProcessResult video =
-      synth_from_maps({"-o", outputs_ + "/v.mp4", "--sweep", "-0.5:1:4", "--fps", "10"});
+      synth_from_maps({"-o", outputs_ + "/v.mp4", "--sweep", "-0.5:1:4", "--fps", "29.97"});
   ASSERT_EQ(video.exit_code, 0) << video.err;
   VideoReader reader(outputs_ + "/v.mp4");
   Photograph frame;
@@ -96,7 +96,7 @@ TEST_F(SynthCommand, SweepsBecomeVideosAndEqualTheirViews) {
     ++frames;
   }
   EXPECT_EQ(frames, 4);
-  EXPECT_NEAR(reader.frames_per_second().value_or(0), 10, 1e-6);
+  EXPECT_EQ(reader.frame_rate(), (FrameRate{30000, 1001}));
 
   ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/s%d.png", "--sweep", "-0.5:1:4"}).exit_code, 0);
   ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/half.png", "--view", "0.5"}).exit_code, 0);
@@ -132,6 +132,8 @@ TEST_F(SynthCommand, WrongUsageIsOneLineAndExit2) {
       {{"-o", outputs_ + "/%s.png", "--sweep", "0:1:3"}, "expected one %d"},
       {{"-o", outputs_ + "/%d%d.png", "--sweep", "0:1:3"}, "expected one %d"},
       {{"-o", outputs_ + "/%d.mp4", "--sweep", "0:1:3"}, "expected one video name"},
+      {{"-o", outputs_ + "/v.mp4", "--sweep", "0:1:3", "--fps", "0"}, "--fps is"},
+      {{"-o", outputs_ + "/v.mp4", "--sweep", "0:1:3", "--fps", "30/0"}, "--fps is"},
       {{"-o", outputs_ + "/v.gif", "--view", "0.5"}, "v.gif"},
       {{"-o", out, "--view", "0.5", "--left-disparity", left_map_}, "--right-disparity is missing"},
       {{"-o", out, "--view", "0.5", "--left-disparity", left_map_, "--right-disparity", right_map_,

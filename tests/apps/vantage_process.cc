@@ -4,9 +4,9 @@
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <csignal>
 
 #include <algorithm>
+#include <csignal>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -14,9 +14,36 @@
 #include "tests/temporary_folder.h"
 
 namespace vantage {
+namespace {
+
+/// As exec wants them; ends with null.
+std::vector<char*> pointers(std::vector<std::string>& texts) {
+  std::vector<char*> all;
+  for (std::string& text : texts) {
+    all.push_back(text.data());
+  }
+  all.push_back(nullptr);
+  return all;
+}
+
+std::string name_of(const std::string& variable) { return variable.substr(0, variable.find('=')); }
+
+std::vector<std::string> with_changes(char** variables, const std::vector<std::string>& changes) {
+  std::vector<std::string> all = changes;
+  for (; *variables != nullptr; ++variables) {
+    const std::string name = name_of(*variables);
+    if (std::ranges::none_of(changes, [&](const auto& other) { return name_of(other) == name; })) {
+      all.emplace_back(*variables);
+    }
+  }
+  return all;
+}
+
+}  // namespace
 
 VantageProcess::VantageProcess(const std::vector<std::string>& arguments,
-                               const std::filesystem::path& folder)
+                               const std::filesystem::path& folder,
+                               const std::vector<std::string>& environment)
     : out_(folder / "stdout"), err_(folder / "stderr") {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -26,12 +53,9 @@ VantageProcess::VantageProcess(const std::vector<std::string>& arguments,
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err_.c_str(), kFlags, 0600);
   std::vector<std::string> texts = {VANTAGE_BINARY};
   texts.insert(texts.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& text : texts) {
-    argv.push_back(text.data());
-  }
-  argv.push_back(nullptr);
-  const int error = posix_spawn(&pid_, VANTAGE_BINARY, &actions, nullptr, argv.data(), environ);
+  std::vector<std::string> variables = with_changes(environ, environment);
+  const int error = posix_spawn(&pid_, VANTAGE_BINARY, &actions, nullptr, pointers(texts).data(),
+                                pointers(variables).data());
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) {
     throw std::runtime_error("cannot start " VANTAGE_BINARY);
@@ -40,6 +64,14 @@ VantageProcess::VantageProcess(const std::vector<std::string>& arguments,
 
 void VantageProcess::send(int signal) const { ::kill(pid_, signal); }
 
+bool VantageProcess::has_ended() const {
+  siginfo_t info{};
+  return ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         info.si_pid != 0;
+}
+
+std::string VantageProcess::err() const { return read_file(err_); }
+
 ProcessResult VantageProcess::wait() const {
   int status = 0;
   ::waitpid(pid_, &status, 0);
@@ -47,9 +79,10 @@ ProcessResult VantageProcess::wait() const {
           read_file(err_)};
 }
 
-ProcessResult run_vantage(const std::vector<std::string>& arguments) {
+ProcessResult run_vantage(const std::vector<std::string>& arguments,
+                          const std::vector<std::string>& environment) {
   const TemporaryFolder streams;
-  return VantageProcess(arguments, streams.path()).wait();
+  return VantageProcess(arguments, streams.path(), environment).wait();
 }
 
 std::string read_file(const std::filesystem::path& path) {

@@ -16,11 +16,17 @@ struct ProcessResult {
 /// Starts the `vantage` binary without a shell; its output goes to files in `folder`.
 class VantageProcess {
  public:
-  VantageProcess(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+  /// `environment`: variables ("NAME=value") beside, or instead of, those of this process.
+  VantageProcess(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                 const std::vector<std::string>& environment = {});
   VantageProcess(const VantageProcess&) = delete;
   VantageProcess& operator=(const VantageProcess&) = delete;
 
   void send(int signal) const;
+  /// Whether it is no longer running; wait() is to be called all the same.
+  [[nodiscard]] bool has_ended() const;
+  /// What it has printed on stderr so far.
+  [[nodiscard]] std::string err() const;
   /// Call it once.
   [[nodiscard]] ProcessResult wait() const;
 
@@ -31,7 +37,8 @@ class VantageProcess {
 };
 
 /// Runs the binary to its end.
-ProcessResult run_vantage(const std::vector<std::string>& arguments);
+ProcessResult run_vantage(const std::vector<std::string>& arguments,
+                          const std::vector<std::string>& environment = {});
 
 /// The whole file.
 std::string read_file(const std::filesystem::path& path);

@@ -4,36 +4,29 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "engine/io/file_identity.h"
+#include "engine/io/frame_number.h"
 #include "engine/io/natural_order.h"
-#include "engine/io/photograph_io.h"
-#include "engine/io/video_io.h"
 #include "engine/io/wildcard.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/frame_test_support.h"
 
 namespace vantage {
 namespace {
 
 using test::error_of;
+using test::put_image;
 using test::put_text;
+using test::put_video;
+using test::value_of;
+using test::values_of;
 using ::testing::HasSubstr;
-
-/// A 2×1 image whose value tells it from the others.
-void put_image(const std::filesystem::path& path, int value) {
-  Photograph photograph{Image<std::uint8_t>(2, 1)};
-  std::get<Image<std::uint8_t>>(photograph.pixels).fill(static_cast<std::uint8_t>(value));
-  write_photograph(path, photograph);
-}
-
-std::vector<int> values_of(FrameSource& source) {
-  std::vector<int> values;
-  Photograph frame;
-  while (source.next(frame)) {
-    values.push_back(std::get<Image<std::uint8_t>>(frame.pixels).at(0, 0));
-  }
-  return values;
-}
 
 TEST(FrameSource, AFolderIsReadInNaturalOrder) {
   const TemporaryFolder folder;
@@ -47,7 +40,9 @@ TEST(FrameSource, AFolderIsReadInNaturalOrder) {
   const auto source = open_frame_source(folder.path().string());
   EXPECT_EQ(source->frame_count(), 5);
   EXPECT_EQ(source->describe(1), folder / "frame9.png");
-  EXPECT_EQ(source->frames_per_second(), std::nullopt);
+  EXPECT_EQ(source->number_of(4), 100);
+  EXPECT_EQ(source->frame_rate(), std::nullopt);
+  EXPECT_EQ(source->video_file(), "");
   EXPECT_EQ(values_of(*source), (std::vector<int>{2, 9, 10, 11, 100}));
 }
 
@@ -108,21 +103,150 @@ TEST(FrameSource, ANameThatExistsIsNoPattern) {
 
 TEST(FrameSource, AVideoGivesItsFramesAndItsRate) {
   const TemporaryFolder folder;
-  VideoWriter writer(folder / "v.mp4", 32, 32, 24);
-  Photograph frame{Image<std::uint8_t>(32, 32)};
-  for (const int value : {20, 120, 220}) {
-    std::get<Image<std::uint8_t>>(frame.pixels).fill(static_cast<std::uint8_t>(value));
-    writer.write(frame);
-  }
-  writer.finish();
+  put_video(folder / "v.mp4", {20, 120, 220}, {24000, 1001});
   const auto source = open_frame_source(folder / "v.mp4");
   EXPECT_EQ(source->frame_count(), 3);
-  EXPECT_NEAR(source->frames_per_second().value_or(0), 24, 1e-6);
+  EXPECT_EQ(source->frame_rate(), (FrameRate{24000, 1001}));
   EXPECT_EQ(source->describe(2), folder / "v.mp4" + " frame 2");
+  EXPECT_EQ(source->number_of(2), std::nullopt);
+  EXPECT_EQ(source->video_file(), folder / "v.mp4");
   const std::vector<int> values = values_of(*source);
   ASSERT_EQ(values.size(), 3U);
   EXPECT_NEAR(values[0], 20, 4);
   EXPECT_NEAR(values[2], 220, 4);
+}
+
+TEST(FrameSource, FetchingReadsNoImageFile) {
+  const TemporaryFolder folder;
+  put_image(folder / "1.png", 11);
+  const auto source = open_frame_source(folder / "1.png");
+  FetchedFrame frame;
+  ASSERT_TRUE(source->fetch(frame));
+  EXPECT_EQ(frame.file, folder / "1.png");
+  EXPECT_EQ(frame.photograph.width(), 0);
+  frame.decode();
+  EXPECT_EQ(value_of(frame.photograph), 11);
+  EXPECT_FALSE(source->fetch(frame));
+}
+
+/// The next frame, or what is wrong with it.
+struct Outcome {
+  bool is_frame = false;
+  Photograph frame;
+  std::string problem;
+};
+
+std::optional<Outcome> next_outcome(FrameSource& source) {
+  Outcome outcome;
+  try {
+    outcome.is_frame = source.next(outcome.frame);
+    return outcome.is_frame ? std::optional(std::move(outcome)) : std::nullopt;
+  } catch (const Error& error) {
+    outcome.problem = error.what();
+    return outcome;
+  }
+}
+
+/// What follows skip_to() is what a source gives that is read from the start, bad frames too.
+void expect_to_skip_everywhere(const std::string& spec) {
+  const auto sequential = open_frame_source(spec);
+  std::vector<Outcome> outcomes;
+  while (std::optional<Outcome> outcome = next_outcome(*sequential)) {
+    outcomes.push_back(std::move(*outcome));
+  }
+  const int count = sequential->frame_count();
+  ASSERT_EQ(static_cast<int>(outcomes.size()), count);
+  const auto source = open_frame_source(spec);
+  for (int from = 0; from <= count; ++from) {
+    for (int to = 0; to <= count; ++to) {
+      source->skip_to(from);
+      EXPECT_EQ(next_outcome(*source).has_value(), from < count);
+      source->skip_to(to);
+      const std::optional<Outcome> outcome = next_outcome(*source);
+      ASSERT_EQ(outcome.has_value(), to < count) << from << " " << to;
+      if (outcome) {
+        const Outcome& expected = outcomes[static_cast<std::size_t>(to)];
+        EXPECT_EQ(outcome->is_frame, expected.is_frame) << from << " " << to;
+        EXPECT_TRUE(test::same(outcome->frame, expected.frame)) << from << " " << to;
+      }
+    }
+  }
+}
+
+TEST(FrameSource, SkipsToAnyFrame) {
+  const TemporaryFolder folder;
+  test::put_images(folder / "images", {0, 1, 2, 3});
+  expect_to_skip_everywhere(folder / "images");
+  expect_to_skip_everywhere(folder / "images/%06d.png");
+  put_video(folder / "v.mp4", {10, 60, 110, 160, 210});
+  expect_to_skip_everywhere(folder / "v.mp4");
+}
+
+TEST(FrameSource, BehindDamageAllFramesOfAVideoAreBad) {
+  const TemporaryFolder folder;
+  constexpr int kFrames = 8;
+  VideoWriter writer(folder / "v.mp4", 64, 64, {});
+  for (unsigned i = 0; i < kFrames; ++i) {
+    writer.write(test::noise<std::uint8_t>(64, 64, 3, i));
+  }
+  writer.finish();
+  std::vector<std::uint8_t> bytes = test::bytes_of(folder / "v.mp4");
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2), 2000, 0);
+  test::put_bytes(folder / "v.mp4", bytes);
+  const auto source = open_frame_source(folder / "v.mp4");
+  ASSERT_EQ(source->frame_count(), kFrames);
+  std::vector<std::string> problems;
+  while (std::optional<Outcome> outcome = next_outcome(*source)) {
+    problems.push_back(outcome->problem);
+  }
+  ASSERT_EQ(static_cast<int>(problems.size()), kFrames);
+  EXPECT_EQ(problems.front(), "");
+  const auto first_bad = std::ranges::find_if(problems, [](const auto& p) { return !p.empty(); });
+  ASSERT_NE(first_bad, problems.end());
+  ASSERT_LT(first_bad + 1, problems.end());
+  EXPECT_THAT(*first_bad, testing::StartsWith(folder / "v.mp4"));
+  for (auto problem = first_bad + 1; problem != problems.end(); ++problem) {
+    EXPECT_THAT(*problem,
+                testing::StartsWith(source->describe(static_cast<int>(problem - problems.begin())) +
+                                    ": lies behind damage (" + *first_bad));
+  }
+  expect_to_skip_everywhere(folder / "v.mp4");
+}
+
+TEST(FrameSource, TheIdentityTellsWhetherFilesAreTheSame) {
+  const TemporaryFolder folder;
+  const std::string images = folder / "images";
+  test::put_images(images, {0, 1, -1, 3});
+  const auto identity_of = [](const std::string& spec) {
+    return open_frame_source(spec)->identity();
+  };
+  const std::string before = identity_of(images);
+  EXPECT_THAT(before, testing::StartsWith("images " + images + ": 3 files, "));
+  EXPECT_EQ(identity_of(images), before);
+  EXPECT_NE(identity_of(images + "/%06d.png"), before);
+  EXPECT_THAT(identity_of(images + "/%06d.png"), HasSubstr(": 3 files, "));
+  EXPECT_NE(identity_of(images + "/*.png"), before) << "another name";
+  const auto files_of = [](const std::string& identity) {
+    return identity.substr(identity.rfind(": "));
+  };
+  EXPECT_EQ(files_of(identity_of(images + "/*.png")), files_of(before)) << "the same files";
+
+  const std::filesystem::path file = images + "/000001.png";
+  const auto time = std::filesystem::last_write_time(file);
+  std::filesystem::last_write_time(file, time + std::chrono::milliseconds(1));
+  EXPECT_NE(identity_of(images), before) << "another time";
+  std::filesystem::last_write_time(file, time);
+  EXPECT_EQ(identity_of(images), before);
+  put_text(file, "of another size");
+  std::filesystem::last_write_time(file, time);
+  EXPECT_NE(identity_of(images), before);
+  std::filesystem::rename(file, images + "/000002.png");
+  const std::string renamed = identity_of(images);
+  std::filesystem::rename(images + "/000002.png", file);
+  EXPECT_NE(identity_of(images), renamed);
+  put_video(folder / "v.mp4", {1});
+  EXPECT_THAT(identity_of(folder / "v.mp4"),
+              testing::StartsWith("video " + (folder / "v.mp4") + ": 1 file, "));
 }
 
 TEST(FrameSource, ABadFrameIsNamed) {
@@ -151,9 +275,35 @@ TEST(FrameSource, RefusesWhatMatchesNothing) {
   put_text(folder / "notes.txt", "just text in here, not a video\n");
   refuse(folder / "notes.txt", "not a video");
   for (const char* bad :
-       {"%s.png", "%d_%d.png", "%", "%6d.png", "%012d.png", "a%%.png", "%0d.png"}) {
+       {"%s.png", "%d_%d.png", "%", "%6d.png", "%012d.png", "%00d.png", "a%%.png", "%0d.png"}) {
     EXPECT_THROW(open_frame_source(folder / bad), UsageError) << bad;
   }
+}
+
+TEST(FrameNumber, IsTheLastOneInTheName) {
+  EXPECT_EQ(frame_number("left_0012.png"), 12);
+  EXPECT_EQ(frame_number("3/cam1_7b.tar.png"), 7);
+  EXPECT_EQ(frame_number("12"), 12);
+  EXPECT_EQ(frame_number("0"), 0);
+  EXPECT_EQ(frame_number("a-5.png"), 5);
+  EXPECT_EQ(frame_number("999999999999999999.png"), 999999999999999999);
+  EXPECT_EQ(frame_number("1000000000000000000.png"), std::nullopt);
+  EXPECT_EQ(frame_number("5/left.png7"), std::nullopt);
+  EXPECT_EQ(frame_number(""), std::nullopt);
+}
+
+TEST(Fnv1aHash, GivesThePublishedValues) {
+  const auto hash_of = [](std::string_view text) {
+    Fnv1aHash hash;
+    hash.add(text);
+    return hash.value();
+  };
+  EXPECT_EQ(hash_of(""), 0xcbf29ce484222325U);
+  EXPECT_EQ(hash_of("a"), 0xaf63dc4c8601ec8cU);
+  EXPECT_EQ(hash_of("foobar"), 0x85944171f73967e8U);
+  Fnv1aHash of_number;
+  of_number.add(std::uint64_t{0x0201});
+  EXPECT_EQ(of_number.value(), hash_of(std::string_view("\1\2\0\0\0\0\0\0", 8)));
 }
 
 TEST(Wildcard, MatchesAsTheShellDoes) {

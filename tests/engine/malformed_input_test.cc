@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, MalformedDisparity,
 TEST(MalformedVideo, IsAnErrorOrFrames) {
   const TemporaryFolder folder;
   const auto path = folder / "video.mp4";
-  VideoWriter writer(path, 32, 32, 25);
+  VideoWriter writer(path, 32, 32, {});
   for (unsigned i = 0; i < 4; ++i) {
     writer.write(noise<std::uint8_t>(32, 32, 3, i));
   }

@@ -20,11 +20,12 @@
 namespace vantage::scheduler {
 namespace {
 
-enum class Step { kRead, kCompute, kWrite };
-constexpr Step kSteps[] = {Step::kRead, Step::kCompute, Step::kWrite};
+enum class Step { kRead, kPrepare, kCompute, kEncode, kWrite };
+constexpr Step kSteps[] = {Step::kRead, Step::kPrepare, Step::kCompute, Step::kEncode,
+                           Step::kWrite};
 
 std::string message(int frame, Step step) {
-  constexpr std::string_view names[] = {"read", "compute", "write"};
+  constexpr std::string_view names[] = {"read", "prepare", "compute", "encode", "write"};
   return "frame " + std::to_string(frame) + " " +
          std::string(names[static_cast<std::size_t>(step)]);
 }
@@ -48,14 +49,34 @@ class Sequence {
     FrameSteps steps;
     steps.read = [this](int slot) { return read(slot); };
     steps.compute = [this](int slot) { compute(slot); };
+    steps.prepare = [this](int slot) { work_on(slot, Step::kPrepare); };
+    steps.encode = [this](int slot) { work_on(slot, Step::kEncode); };
     steps.write = [this](int slot) { write(slot); };
-    return run_frames(executor_, in_flight_, steps, stop);
+    steps.compute_in_order = compute_in_order;
+    return run_frames(executor_, in_flight_, steps, skip, stop);
   }
 
   /// The frames that were written, in the order of writing.
   [[nodiscard]] const std::vector<int>& written() const { return written_; }
   [[nodiscard]] int frames_read() const { return next_frame_; }
   [[nodiscard]] int frames_computed() const { return computed_; }
+  /// The frames that were computed, in that order; kept for compute_in_order only.
+  [[nodiscard]] const std::vector<int>& order_computed() const { return order_computed_; }
+  [[nodiscard]] const std::vector<int>& skipped() const { return skipped_; }
+  bool compute_in_order = false;
+  SkipFrame skip;
+  /// Skips every frame that fails but for `last`, which ends the run.
+  void skip_all_but(int last) {
+    skip = [this, last](int slot, const std::exception_ptr& error) {
+      const Alone alone(writing_);
+      EXPECT_TRUE(error);
+      const int frame = frame_in(slot);
+      skipped_.push_back(frame);
+      --under_way_;
+      frame_in(slot) = kFree;
+      return frame != last;
+    };
+  }
   /// Called with the number of a frame just written.
   std::function<void(int)> after_write = [](int) {};
 
@@ -71,21 +92,31 @@ class Sequence {
       return false;
     }
     const int frame = next_frame_++;
-    fail_if_due(frame, Step::kRead);
     EXPECT_EQ(frame_in(slot), kFree) << "slot " << slot << " is in use";
     frame_in(slot) = frame;
     EXPECT_LE(++under_way_, in_flight_);
+    fail_if_due(frame, Step::kRead);
     nested_loop();
     return true;
   }
   void compute(int slot) {
     const int frame = frame_in(slot);
+    if (compute_in_order) {
+      const Alone alone(computing_);
+      order_computed_.push_back(frame);
+    }
     // Frames overtake each other: the first of each three takes longest.
     std::this_thread::sleep_for(std::chrono::microseconds(frame % 3 == 0 ? 300 : 0));
     fail_if_due(frame, Step::kCompute);
     nested_loop();
     EXPECT_EQ(frame_in(slot), frame);
     ++computed_;
+  }
+  void work_on(int slot, Step step) {
+    const int frame = frame_in(slot);
+    fail_if_due(frame, step);
+    nested_loop();
+    EXPECT_EQ(frame_in(slot), frame);
   }
   void write(int slot) {
     const Alone alone(writing_);
@@ -135,7 +166,10 @@ class Sequence {
   int next_frame_ = 0;
   std::vector<int> slot_frame_;
   std::vector<int> written_;
+  std::vector<int> skipped_;
+  std::vector<int> order_computed_;
   std::atomic<int> computed_{0};
+  std::atomic<int> computing_{0};
   std::atomic<int> under_way_{0};
   std::atomic<int> reading_{0};
   std::atomic<int> writing_{0};
@@ -211,6 +245,44 @@ TEST_P(FramePipeline, FirstFailingFrameWinsWhateverStepsFail) {
       // A frame that is computed for long fails behind one that fails at once.
       expect_first_failure(12, {{0, Step::kCompute}, {1, first}, {2, second}});
     }
+  }
+}
+
+TEST_P(FramePipeline, SkippedFramesLeaveTheOthersWhole) {
+  const std::vector<Failure> failures = {{0, Step::kWrite}, {2, Step::kRead},
+                                         {3, Step::kRead},  {5, Step::kCompute},
+                                         {6, Step::kWrite}, {9, Step::kEncode}};
+  for (const int in_flight : kInFlight) {
+    Sequence all(executor(), 12, in_flight, failures);
+    all.skip_all_but(-1);
+    const FrameOutcome outcome = all.run();
+    EXPECT_EQ(outcome.frames_written, 6);
+    EXPECT_EQ(outcome.frames_skipped, 6);
+    EXPECT_EQ(all.written(), (std::vector<int>{1, 4, 7, 8, 10, 11}));
+    EXPECT_EQ(all.skipped(), (std::vector<int>{0, 2, 3, 5, 6, 9}));
+
+    Sequence until(executor(), 12, in_flight, failures);
+    until.skip_all_but(5);
+    EXPECT_THROW(until.run(), std::runtime_error);
+    EXPECT_EQ(until.written(), (std::vector<int>{1, 4}));
+    EXPECT_EQ(until.skipped(), (std::vector<int>{0, 2, 3, 5}));
+  }
+}
+
+TEST_P(FramePipeline, AnErrorOfSkippingEndsTheRun) {
+  Sequence sequence(executor(), 8, 3, {{2, Step::kCompute}});
+  sequence.skip = [](int, const std::exception_ptr&) -> bool { throw std::logic_error("full"); };
+  EXPECT_THROW(sequence.run(), std::logic_error);
+  EXPECT_EQ(sequence.written(), first_frames(2));
+}
+
+TEST_P(FramePipeline, ComputesInOrderWhereAsked) {
+  for (const int in_flight : kInFlight) {
+    Sequence sequence(executor(), 23, in_flight);
+    sequence.compute_in_order = true;
+    EXPECT_EQ(sequence.run().frames_written, 23);
+    EXPECT_EQ(sequence.order_computed(), first_frames(23));
+    EXPECT_EQ(sequence.written(), first_frames(23));
   }
 }
 

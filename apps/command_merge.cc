@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/commands.h"
+#include "apps/outputs.h"
+#include "apps/run_report.h"
+#include "apps/run_results.h"
+#include "apps/run_session.h"
+#include "apps/run_settings.h"
+#include "engine/error.h"
+#include "engine/sequence/delivered_frames.h"
+#include "engine/sequence/sequence_join.h"
+
+namespace vantage::apps {
+namespace {
+
+struct MergeJob {
+  std::string folder;
+  bool partial = false;
+  std::string report;
+  bool quiet = false;
+};
+
+void add_merge_settings(Settings& settings, MergeJob& job) {
+  settings.positional("dir", job.folder, "Folder of the run").required = true;
+  settings.flag("partial", job.partial,
+                "Join the frames there are, if they follow each other without a gap");
+  settings.text("report", job.report, "FILE", "Write a JSON report to FILE");
+  settings.flag("quiet", job.quiet, "Print errors only");
+}
+
+std::vector<int> skipped_frames(const DeliveredFrames& delivered, FrameRange frames) {
+  std::vector<int> skipped;
+  for (const auto& [frame, record] : delivered.records()) {
+    if (record.skipped && frames.contains(frame)) {
+      skipped.push_back(frame);
+    }
+  }
+  return skipped;
+}
+
+}  // namespace
+
+int command_merge(const Arguments& arguments) {
+  MergeJob job;
+  Settings settings("merge", "Checks that all parts of a run are complete and joins their videos.");
+  add_merge_settings(settings, job);
+  if (!settings.read(arguments)) {
+    return kExitDone;
+  }
+  FileChecks files;
+  files.add_output(job.report, "--report", OutputKind::kText);
+  RunReport report(settings.command(), settings.values());
+  RunJob run;
+  Settings run_settings("run", "");
+  add_run_settings(run_settings, run);
+  const RunIdentity identity = read_run(job.folder, run_settings, run);
+  const SequenceLayout layout(job.folder, run.sequence);
+  const DeliveredFrames delivered(layout);
+  const FrameRange all{0, identity.frame_count};
+  const std::vector<FrameRange> missing = delivered.missing(all);
+  FrameRange frames = all;
+  if (job.partial) {
+    frames = contiguous_frames(delivered, identity.frame_count);
+    if (frames.empty()) {
+      throw Error(fmt::format("{}: frames {} are missing, expected frames without a gap",
+                              job.folder, to_string(missing)));
+    }
+  } else if (!missing.empty()) {
+    int count = 0;
+    for (const FrameRange range : missing) {
+      count += range.count();
+    }
+    throw Error(
+        fmt::format("{}: {} of {} frames are missing ({}), expected all; 'vantage run "
+                    "--resume' with the settings of the run makes them",
+                    job.folder, count, identity.frame_count, to_string(missing)));
+  }
+  {
+    // The part name keeps two merges, not merge and run, from working at once.
+    RunJournal journal(layout.journal_folder(), identity, JournalOpening::kResume, "merge");
+    report.timed_file_access(
+        "join", [&] { join_segments(run.sequence, layout, identity, frames, true, journal); });
+  }
+  const std::vector<int> skipped = skipped_frames(delivered, frames);
+  SettingValue results = {{"frames", frames.count() - static_cast<int>(skipped.size())},
+                          {"first_frame", frames.first},
+                          {"skipped", skipped}};
+  if (run.sequence.measure_flicker) {
+    results["flicker"] = flicker_values(total_flicker(delivered));
+  }
+  report.set_results(std::move(results));
+  report.write(job.report);
+  if (!job.quiet) {
+    fmt::print(stderr, "merge: {} frames, {} skipped, are complete in {}\n", frames.count(),
+               skipped.size(), job.folder);
+  }
+  return skipped.empty() ? kExitDone : kExitSkipped;
+}
+
+}  // namespace vantage::apps

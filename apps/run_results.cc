@@ -1,0 +1,100 @@
+#include "apps/run_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "engine/sequence/sequence_join.h"
+
+namespace vantage::apps {
+namespace {
+
+/// More would hide what else there is to read; the report has them all.
+constexpr std::size_t kRemarksPrinted = 5;
+
+SettingValue remark_values(const std::vector<FrameRemark>& remarks) {
+  SettingValue values = SettingValue::array();
+  for (const FrameRemark& remark : remarks) {
+    values.push_back({{"frame", remark.frame}, {"text", remark.text}});
+  }
+  return values;
+}
+
+void print_remarks(const char* kind, const std::vector<FrameRemark>& remarks) {
+  for (std::size_t i = 0; i < std::min(remarks.size(), kRemarksPrinted); ++i) {
+    fmt::print(stderr, "run: {}frame {}: {}\n", kind, remarks[i].frame, remarks[i].text);
+  }
+  if (remarks.size() > kRemarksPrinted) {
+    fmt::print(stderr, "run: {}… and {} more, see --report\n", kind,
+               remarks.size() - kRemarksPrinted);
+  }
+}
+
+}  // namespace
+
+SettingValue flicker_values(const FlickerSums& sums) {
+  if (sums.frames == 0) {
+    return nullptr;
+  }
+  SettingValue views = SettingValue::array();
+  for (const ViewFlickerSums& view : sums.views) {
+    views.push_back({{"mean_grey_change", view.mean_grey_change()},
+                     {"mean_brightness_jump", view.mean_brightness_jump(sums.frames)}});
+  }
+  return {{"frames", sums.frames},
+          {"share_compared", sums.share_compared()},
+          {"mean_disparity_change_px", sums.mean_disparity_change_px()},
+          {"share_jumped", sums.share_jumped()},
+          {"mean_grey_change", sums.mean_grey_change()},
+          {"views", views}};
+}
+
+void fill_report(const RunJob& job, const RunSession& session, const SequenceReport& sequence,
+                 const DeliveredFrames& delivered, RunReport& report) {
+  for (const SequenceStage& stage : sequence.stages) {
+    report.add_stage(stage.name, stage.seconds);
+  }
+  report.add_compute_seconds(sequence.compute_seconds);
+  report.add_cells(sequence.cells);
+  report.set_plan(sequence.frames > 0 ? sequence.plan : session.memory.chain);
+  SettingValue results = {{"frames", sequence.frames},
+                          {"frames_before", sequence.frames_before},
+                          {"frames_of_part", session.selection.own().count()},
+                          {"frames_of_input", session.selection.frame_count},
+                          {"interrupted", sequence.interrupted},
+                          {"skipped", remark_values(sequence.skipped)},
+                          {"remarks", remark_values(sequence.remarks)},
+                          {"pairing", session.pairs->remarks()},
+                          {"in_flight", sequence.in_flight},
+                          {"planned_memory_bytes", session.memory.total_bytes},
+                          {"width_px", session.shape.source.width_px},
+                          {"height_px", session.shape.source.height_px},
+                          {"frames_per_second_of_video", to_string(job.sequence.frame_rate)}};
+  if (job.sequence.measure_flicker) {
+    results["flicker"] = flicker_values(total_flicker(delivered));
+  }
+  report.set_results(std::move(results));
+}
+
+void print_summary(const RunJob& job, const RunSession& session, const SequenceReport& sequence) {
+  print_remarks("", sequence.remarks);
+  print_remarks("skipped ", sequence.skipped);
+  std::string line = fmt::format("run: {} frame{} of {}x{} pixels", sequence.frames,
+                                 sequence.frames == 1 ? "" : "s", session.shape.source.width_px,
+                                 session.shape.source.height_px);
+  if (sequence.frames_before > 0) {
+    line += fmt::format(", {} had been done before", sequence.frames_before);
+  }
+  if (!sequence.skipped.empty()) {
+    line += fmt::format(", {} skipped", sequence.skipped.size());
+  }
+  line += " -> " + job.output;
+  if (sequence.interrupted) {
+    line += " (interrupted, --resume continues)";
+  }
+  fmt::print(stderr, "{}\n", line);
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,216 @@
+#include "apps/run_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "apps/automatic_disparities.h"
+#include "engine/error.h"
+#include "engine/io/file_identity.h"
+#include "engine/sequence/delivered_frames.h"
+#include "engine/sequence/sequence_layout.h"
+
+namespace vantage::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A bad frame at the beginning is for the run to report; what the frames are like can be learnt
+/// from any.
+constexpr int kFramesTried = 100;
+
+void read_first_pair(PairSource& pairs, FramePair& pair) {
+  const int tries = std::min(kFramesTried, pairs.pair_count());
+  for (int index = 0; index < tries; ++index) {
+    try {
+      pairs.skip_to(index);
+      if (pairs.fetch(pair)) {
+        pairs.decode(pair);
+        pairs.skip_to(0);
+        return;
+      }
+    } catch (const Error& error) {
+      if (index + 1 == tries) {
+        throw Error(fmt::format("none of the first {} frames can be read; the last says: {}", tries,
+                                error.what()));
+      }
+    }
+  }
+  throw Error("the sequence has no pair of frames");
+}
+
+PairShape shape_of(const Photograph& photograph) {
+  return {.source = {photograph.width(), photograph.height()},
+          .channels = photograph.channels(),
+          .bytes_per_value =
+              std::visit([](const auto& image) { return static_cast<int>(sizeof(*image.row(0))); },
+                         photograph.pixels)};
+}
+
+RunIdentity identity_of(const RunJob& job, const Settings& settings, const RunSession& session) {
+  RunIdentity identity;
+  SettingValue values = settings.result_values();
+  values["fps"] = to_string(job.sequence.frame_rate);
+  identity.settings = values.dump(-1, ' ', false, SettingValue::error_handler_t::replace);
+  identity.inputs = session.pairs->identities();
+  if (!job.calibration.empty()) {
+    FileIdentity calibration;
+    calibration.add(fs::path(job.calibration).filename().string(), job.calibration);
+    identity.inputs.push_back("calibration: " + calibration.to_string());
+  }
+  identity.frame_count = session.pairs->pair_count();
+  const PairSource::Sound sound = session.pairs->sound();
+  if (job.sequence.sound && !sound.file.empty()) {
+    identity.sound_file = fs::absolute(sound.file);
+    identity.sound_first_frame = sound.first_frame;
+    identity.sound_rate = session.pairs->frame_rate().value_or(FrameRate());
+  }
+  return identity;
+}
+
+std::string size_text(std::size_t bytes) {
+  const double mib = static_cast<double>(bytes) / (1 << 20);
+  return mib < 1024 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.2f} GiB", mib / 1024);
+}
+
+std::string outputs_text(const RunJob& job) {
+  std::string text;
+  const SequenceLayout layout(job.output, job.sequence);
+  for (const OutputStream& stream : layout.streams()) {
+    text += (text.empty() ? "" : ", ") + stream.name + (stream.as_video ? ".mp4" : "");
+  }
+  return text;
+}
+
+std::string matcher_text(const RunJob& job, const SettingValue& values) {
+  if (job.sequence.match.preset) {
+    return "preset " + values["preset"].get<std::string>();
+  }
+  return "method " + (job.sequence.match.method ? values["method"].get<std::string>() : "ssd");
+}
+
+std::string strips_text(const scheduler::ChainPlan& plan) {
+  const scheduler::PassPlan& pass = plan.passes.front();
+  std::string text = fmt::format("{} strip{} of {} columns x {} band{} of {} rows", pass.strips,
+                                 pass.strips == 1 ? "" : "s", pass.strip_columns, pass.bands,
+                                 pass.bands == 1 ? "" : "s", pass.band_rows);
+  if (plan.passes.size() > 1) {
+    text += fmt::format(", {} passes", plan.passes.size());
+  }
+  if (plan.steps > 1) {
+    text += fmt::format(", {} steps of {} rows", plan.steps, plan.step_rows);
+  }
+  return text;
+}
+
+}  // namespace
+
+SequenceRun RunSession::run(const RunJob& job, const ShotTable* shots) const {
+  // Pairs of a list need not have to do with one another.
+  const bool any_size = !job.input.pairs.empty() && job.sequence.video.empty() &&
+                        job.sequence.temporal.weight == 0 && !rectifier;
+  return {.pairs = *pairs,
+          .selection = selection,
+          .frame_size = any_size ? std::nullopt : std::optional(shape.source),
+          .rectifier = rectifier ? &*rectifier : nullptr,
+          .shots = shots,
+          .in_flight = memory.in_flight,
+          .keep_going = job.keep_going,
+          .on_progress = {},
+          .stop = nullptr};
+}
+
+std::string RunSession::part_name(const RunJob& job) {
+  std::string name;
+  if (job.frames) {
+    name = fmt::format("frames-{}-{}", job.frames->first, job.frames->end - 1);
+  }
+  if (job.shard) {
+    name += fmt::format("{}{}-of-{}", name.empty() ? "" : "-", job.shard->index, job.shard->count);
+  }
+  return name.empty() ? "all" : name;
+}
+
+RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
+  RunSession session;
+  session.pairs = open_pair_source(job.input);
+  FramePair first;
+  report.timed_file_access("open", [&] { read_first_pair(*session.pairs, first); });
+  session.shape = shape_of(first.left);
+  session.selection = {.frame_count = session.pairs->pair_count(),
+                       .chunk_frames = job.sequence.chunk_frames,
+                       .frames = job.frames,
+                       .shard = job.shard};
+  if (job.frames && session.selection.all().empty()) {
+    throw Error(fmt::format("--frames begins at {} but the input has {} frames (0 to {})",
+                            job.frames->first, session.selection.frame_count,
+                            session.selection.frame_count - 1));
+  }
+  Execution execution(job.common.execution);
+  const int threads = execution.executor().thread_count();
+  session.executor = fmt::format("{} thread{} ({})", threads, threads == 1 ? "" : "s",
+                                 execution.executor().name());
+  if (!job.calibration.empty()) {
+    const StereoCalibration calibration = read_stereo_calibration(job.calibration);
+    Rectifier rectifier(calibration, first.left.width(), first.left.height());
+    if (rectifier.needs_rectification()) {
+      session.rectifier.emplace(std::move(rectifier));
+      session.shape.is_rectified_here = true;
+      FramePair source = std::move(first);
+      session.rectifier->apply(source.left, Side::kLeft, first.left, execution);
+      session.rectifier->apply(source.right, Side::kRight, first.right, execution);
+    }
+  }
+  choose_disparities(settings, job.common, first.left, first.right, job.sequence.match, execution,
+                     report);
+  job.sequence.frame_rate =
+      job.frame_rate.value_or(session.pairs->frame_rate().value_or(FrameRate()));
+  session.identity = identity_of(job, settings, session);
+  session.memory = plan_memory(job.sequence, {job.in_flight, job.memory_bytes}, session.shape,
+                               first.left, first.right, job.common.execution);
+  return session;
+}
+
+std::string describe_plan(const RunJob& job, const Settings& settings, const RunSession& session) {
+  const FrameRange own = session.selection.own();
+  std::string text;
+  const auto line = [&](const std::string& content) { text += "run: " + content + "\n"; };
+  line(fmt::format(
+      "{} pairs of {}x{} pixels{}{}", session.selection.frame_count, session.shape.source.width_px,
+      session.shape.source.height_px, session.rectifier ? ", rectified on the fly" : "",
+      own == FrameRange{0, session.selection.frame_count}
+          ? ""
+          : fmt::format("; this part: {}", own.empty() ? "none" : "frames " + to_string({own}))));
+  for (const std::string& remark : session.pairs->remarks()) {
+    line("note: " + remark);
+  }
+  line(fmt::format("{}, disparities {}:{}, {}", matcher_text(job, settings.values()),
+                   job.sequence.match.disparities.min, job.sequence.match.disparities.max,
+                   strips_text(session.memory.chain)));
+  line(fmt::format("{}, {} frame{} in flight; memory about {}{}", session.executor,
+                   session.memory.in_flight, session.memory.in_flight == 1 ? "" : "s",
+                   size_text(session.memory.total_bytes),
+                   job.memory_bytes ? " of " + size_text(*job.memory_bytes) : std::string()));
+  line(fmt::format("writes {} to {}", outputs_text(job), job.output));
+  return text;
+}
+
+RunIdentity read_run(const std::string& folder, Settings& settings, RunJob& job) {
+  const fs::path journal = fs::path(folder) / ".vantage";
+  RunIdentity identity = RunJournal::read_identity(journal);
+  try {
+    settings.set_values(SettingValue::parse(identity.settings));
+    job.output = folder;
+    job.input.left = job.input.right = "-";  // not opened
+    complete(job);
+  } catch (const UsageError& error) {
+    throw Error(fmt::format("{}: cannot be read as the settings of a run: {}",
+                            (journal / "run.json").string(), error.what()));
+  }
+  job.sequence.frame_rate = job.frame_rate.value_or(FrameRate());
+  return identity;
+}
+
+}  // namespace vantage::apps

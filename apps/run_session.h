@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "apps/run_report.h"
+#include "apps/run_settings.h"
+#include "engine/rectification/rectifier.h"
+#include "engine/sequence/memory_plan.h"
+#include "engine/sequence/run_journal.h"
+#include "engine/sequence/sequence_runner.h"
+
+namespace vantage::apps {
+
+/// A run whose input has been opened and looked at, before anything is written.
+struct RunSession {
+  std::unique_ptr<PairSource> pairs;
+  std::optional<Rectifier> rectifier;  ///< where a calibration has to be applied
+  PairShape shape;                     ///< of the first pair that could be read
+  FrameSelection selection;
+  RunIdentity identity;
+  MemoryPlan memory;
+  std::string executor;  ///< "2 threads (tbb)"
+
+  /// What the run gets to do; `shots` where the options need them.
+  [[nodiscard]] SequenceRun run(const RunJob& job, const ShotTable* shots) const;
+  /// Names this process's part of the run, for the journal: "all", "2-of-7", "frames-100-199".
+  [[nodiscard]] static std::string part_name(const RunJob& job);
+};
+
+/// Opens the input of `job`, which is complete(), and fills in what follows from it: the range of
+/// disparities where it is automatic, the frame rate, the plan. Throws Error.
+RunSession open_run(RunJob& job, const Settings& settings, RunReport& report);
+
+/// What is going to be done, for people; several lines.
+std::string describe_plan(const RunJob& job, const Settings& settings, const RunSession& session);
+
+/// The settings of a run that its folder tells of, set into `job`, for commands that go on with it.
+RunIdentity read_run(const std::string& folder, Settings& settings, RunJob& job);
+
+}  // namespace vantage::apps

@@ -1,0 +1,393 @@
+#include "apps/run_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "apps/frame_rate_setting.h"
+#include "apps/match_settings.h"
+#include "engine/error.h"
+#include "engine/sequence/sequence_layout.h"
+
+namespace vantage::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kAutomatic = "auto";
+constexpr int kMaxInFlight = 64;
+constexpr int kMaxShards = 100000;
+
+std::string known_outputs() {
+  std::string names;
+  for (const auto& [name, output] : sequence_output_names()) {
+    names += (names.empty() ? "" : ",") + std::string(name);
+  }
+  return names;
+}
+
+std::vector<SequenceOutput> to_outputs(const SettingValue& value) {
+  std::vector<SequenceOutput> outputs;
+  for (const SettingValue& member : to_list(value)) {
+    for (const std::string& name : split(to_text(member), ',')) {
+      const auto known = std::ranges::find(sequence_output_names(), name,
+                                           &std::pair<std::string_view, SequenceOutput>::first);
+      if (known == sequence_output_names().end()) {
+        reject_value(name, "a list of " + known_outputs());
+      }
+      if (std::ranges::find(outputs, known->second) == outputs.end()) {
+        outputs.push_back(known->second);
+      }
+    }
+  }
+  return outputs;
+}
+
+SettingValue output_names(const std::vector<SequenceOutput>& outputs) {
+  SettingValue names = SettingValue::array();
+  for (const SequenceOutput output : outputs) {
+    names.push_back(std::ranges::find(sequence_output_names(), output,
+                                      &std::pair<std::string_view, SequenceOutput>::second)
+                        ->first);
+  }
+  return names;
+}
+
+std::optional<long long> whole_number(std::string_view text) {
+  long long number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool whole = error == std::errc{} && end == text.data() + text.size();
+  return whole ? std::optional(number) : std::nullopt;
+}
+
+/// Two whole numbers with a separator between them.
+std::optional<std::pair<int, int>> two_numbers(const std::string& text, char separator) {
+  const auto parts = split(text, separator);
+  if (parts.size() != 2) {
+    return std::nullopt;
+  }
+  const auto first = whole_number(parts[0]);
+  const auto second = whole_number(parts[1]);
+  constexpr int kMost = std::numeric_limits<int>::max() - 1;
+  if (!first || !second || *first < 0 || *second < 0 || *first > kMost || *second > kMost) {
+    return std::nullopt;
+  }
+  return std::pair(static_cast<int>(*first), static_cast<int>(*second));
+}
+
+/// "512M", "4G", "1.5GiB", "800000000".
+std::size_t to_bytes(const SettingValue& value) {
+  const std::string text = value.is_number() ? value.dump() : to_text(value);
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  std::string unit(end, text.data() + text.size());
+  if (unit.ends_with("iB")) {
+    unit.resize(unit.size() - 2);
+  } else if (unit.ends_with("B")) {
+    unit.pop_back();
+  }
+  constexpr std::string_view kUnits = "KMGT";
+  const std::size_t power = unit.empty() ? 0 : kUnits.find(unit) + 1;
+  const double bytes = std::ldexp(number, 10 * static_cast<int>(power));
+  if (error != std::errc{} || unit.size() > 1 || (!unit.empty() && power == 0) ||
+      !(bytes >= 1 && bytes <= 0x1p50)) {
+    reject_value(value, "a size in bytes such as 800M or 4G (units of 1024)");
+  }
+  return static_cast<std::size_t>(bytes);
+}
+
+std::string bytes_text(std::size_t bytes) {
+  constexpr std::string_view kUnits = "KMGT";
+  std::size_t power = 0;
+  while (power < kUnits.size() && bytes % 1024 == 0 && bytes > 0) {
+    bytes /= 1024;
+    ++power;
+  }
+  return power == 0 ? fmt::format("{}", bytes) : fmt::format("{}{}", bytes, kUnits[power - 1]);
+}
+
+void add_packing(Settings& settings, std::string name, std::optional<StereoPacking>& field,
+                 std::string help) {
+  std::vector<std::pair<std::string_view, StereoPacking>> names = stereo_packing_names();
+  settings.choice<StereoPacking>(std::move(name), field, names, std::move(help), "none");
+}
+
+void add_input_settings(Settings& settings, RunJob& job) {
+  settings.begin_group("Input: one of --left with --right, --stereo, --pairs, --sequence");
+  const auto path = [&](std::string name, std::string& field, std::string value_name,
+                        std::string help) -> Setting& {
+    Setting& setting =
+        settings.text(std::move(name), field, std::move(value_name), std::move(help));
+    // The journal knows inputs by what is in them.
+    setting.changes_results = false;
+    return setting;
+  };
+  path("left", job.input.left, "SOURCE",
+       "Frames of the left camera: a folder, a pattern (left/%06d.png), a glob or a video");
+  path("right", job.input.right, "SOURCE", "Frames of the right camera");
+  settings.integer("offset", job.input.offset_frames, "N",
+                   "Right frame i + N belongs to left frame i");
+  path("stereo", job.input.stereo, "SOURCE", "Frames that hold both images, see --packing");
+  add_packing(settings, "packing", job.input.packing, "How they do, by the names of ffmpeg");
+  path("pairs", job.input.pairs, "FILE.csv", "Pairs of image files, a line left,right each");
+  path("sequence", job.input.sequence, "SOURCE", "Frames of one moving camera, see --step");
+  settings.integer("step", job.input.step, "K",
+                   "Frame t is the left image and frame t + K the right one");
+  path("calibration", job.calibration, "FILE",
+       "Rectifies the pairs first: OpenCV YAML or XML, Middlebury or KITTI calib.txt");
+}
+
+void add_view_path_setting(Settings& settings, std::vector<ViewTrack>& tracks) {
+  Setting& setting =
+      settings.add("view-path", "KEYS",
+                   "New view that moves: FRAME=XS,FRAME=XS…, linear in between; repeatable");
+  setting.list = true;
+  setting.set = [&tracks](const SettingValue& value) {
+    std::vector<ViewTrack> read;
+    for (const SettingValue& member : to_list(value)) {
+      read.push_back(parse_view_track(to_text(member)));
+    }
+    tracks = std::move(read);
+  };
+  setting.get = [&tracks] {
+    SettingValue texts = SettingValue::array();
+    for (const ViewTrack& track : tracks) {
+      texts.push_back(to_string(track));
+    }
+    return texts;
+  };
+}
+
+void add_stereo_views_setting(Settings& settings, std::array<double, 2>& views_x) {
+  Setting& setting = settings.add("stereo-views", "XL,XR",
+                                  "Where the eyes of the packed stereo output stand; 0,1: the "
+                                  "photographs themselves");
+  setting.set = [&views_x](const SettingValue& value) {
+    const auto parts = split(to_text(value), ',');
+    try {
+      if (parts.size() == 2) {
+        views_x = {to_number(parts[0]), to_number(parts[1])};
+        return;
+      }
+    } catch (const UsageError&) {
+      // said below
+    }
+    reject_value(value, "two positions on the baseline such as 0.25,0.75");
+  };
+  setting.get = [&views_x] { return fmt::format("{},{}", views_x[0], views_x[1]); };
+}
+
+void add_output_settings(Settings& settings, RunJob& job) {
+  settings.begin_group("Output");
+  Setting& output = settings.text("output", job.output, "DIR",
+                                  "Folder to write to: DIR/disparity/000000.pfm, DIR/views.mp4 and "
+                                  "so on");
+  output.short_name = 'o';
+  output.required = true;
+  output.changes_results = false;
+  Setting& save = settings.add("save", "LIST",
+                               "What to write of each frame, from " + known_outputs() +
+                                   "; auto: disparity, and views if there are any");
+  save.list = true;
+  save.set = [&job](const SettingValue& value) {
+    const auto members = to_list(value);
+    if (members.size() == 1 && members.front() == kAutomatic) {
+      job.save.reset();
+    } else {
+      job.save = to_outputs(value);
+    }
+  };
+  save.get = [&job] { return job.save ? output_names(*job.save) : SettingValue(kAutomatic); };
+  Setting& video = settings.add("video", "LIST",
+                                "Of these, what is written as one video instead of images: "
+                                "unmatched, right-unmatched, preview, views, holes, stereo");
+  video.list = true;
+  video.set = [&job](const SettingValue& value) { job.sequence.video = to_outputs(value); };
+  video.get = [&job] { return output_names(job.sequence.video); };
+  add_view_setting(settings, job.fixed_views_x);
+  add_view_path_setting(settings, job.moving_views);
+  add_stereo_views_setting(settings, job.sequence.stereo_views_x);
+  settings.choice<StereoPacking>("stereo-packing", job.sequence.stereo_packing,
+                                 stereo_packing_names(), "How the stereo output holds them");
+  settings.text("format", job.sequence.map_format, "EXT",
+                "File format of the maps: pfm, png, tiff, exr or npy");
+  add_frame_rate_setting(settings, "fps", job.frame_rate,
+                         "Frames per second of the videos; auto: the input's, of images 25");
+  settings.integer("crf", job.sequence.crf, "N", "Quality of the videos, 0 (best) to 51");
+  Setting& no_sound = settings.add("no-sound", "", "Do not take over the sound of the input");
+  no_sound.flag = true;
+  no_sound.set = [&job](const SettingValue& value) { job.sequence.sound = !to_truth(value); };
+  no_sound.get = [&job] { return !job.sequence.sound; };
+}
+
+void add_steadiness_settings(Settings& settings, SequenceOptions& options) {
+  settings.begin_group("Steadiness from frame to frame");
+  settings.choice<FitScope>(
+      "intensity-fit", options.intensity_fit,
+      {{"frame", FitScope::kFrame}, {"shot", FitScope::kShot}},
+      "Brightness of the images is adapted to each other per frame or once per shot");
+  settings.choice<bool>("preview-range", options.preview_range_per_shot,
+                        {{"search", false}, {"shot", true}},
+                        "Colours of previews span the search range or the disparities of a shot");
+  settings.number("temporal-prior", options.temporal.weight, "W",
+                  "How much pixels whose image does not change keep their disparity; 0: not, "
+                  "1: as much as their own costs count");
+  settings.number("temporal-threshold", options.temporal.threshold, "G",
+                  "Up to so many grey levels of difference an image does not change");
+  settings.flag("measure-flicker", options.measure_flicker,
+                "Measure how much results change where the images do not");
+}
+
+void add_part_settings(Settings& settings, RunJob& job) {
+  settings.begin_group("Part of the work, and resuming it", false);
+  Setting& frames = settings.add("frames", "A-B", "Only frames A to B, counted from 0; all");
+  frames.set = [&job](const SettingValue& value) {
+    if (value == "all") {
+      job.frames.reset();
+      return;
+    }
+    const auto range = two_numbers(to_text(value), '-');
+    if (!range || range->first > range->second) {
+      reject_value(value, "a range of frames such as 100-199, or all");
+    }
+    job.frames = FrameRange{range->first, range->second + 1};
+  };
+  frames.get = [&job]() -> SettingValue {
+    return job.frames ? fmt::format("{}-{}", job.frames->first, job.frames->end - 1) : "all";
+  };
+  Setting& shard =
+      settings.add("shard", "I/N", "Only part I of N, in a folder that all share; all");
+  shard.set = [&job](const SettingValue& value) {
+    if (value == "all") {
+      job.shard.reset();
+      return;
+    }
+    const auto numbers = two_numbers(to_text(value), '/');
+    if (!numbers || numbers->first < 1 || numbers->first > numbers->second ||
+        numbers->second > kMaxShards) {
+      reject_value(value, "I/N with 1 <= I <= N such as 2/7, or all");
+    }
+    job.shard = Shard{numbers->first, numbers->second};
+  };
+  shard.get = [&job]() -> SettingValue {
+    return job.shard ? fmt::format("{}/{}", job.shard->index, job.shard->count) : "all";
+  };
+  settings
+      .integer("chunk-frames", job.sequence.chunk_frames, "N",
+               "Frames that are never divided between parts; videos are made and a temporal "
+               "prior starts anew in such chunks")
+      .changes_results = true;
+  settings.flag("resume", job.resume, "Continue the run that the folder holds");
+  settings.flag("overwrite", job.overwrite, "Begin anew where the folder holds a run");
+  settings.flag("force", job.force, "Continue although settings or inputs differ");
+  settings.flag("keep-going", job.keep_going, "Skip and record bad frames; exit code 3");
+}
+
+void add_pipeline_settings(Settings& settings, RunJob& job) {
+  settings.begin_group("Pipeline", false);
+  settings.integer("in-flight", job.in_flight, "N",
+                   "Frames under way at once, 1 to 64; auto: threads + 2, less where memory is");
+  Setting& memory =
+      settings.add("memory", "SIZE", "Most memory to plan for, such as 800M or 4G; auto: no limit");
+  memory.set = [&job](const SettingValue& value) {
+    if (value == kAutomatic) {
+      job.memory_bytes.reset();
+    } else {
+      job.memory_bytes = to_bytes(value);
+    }
+  };
+  memory.get = [&job]() -> SettingValue {
+    return job.memory_bytes ? SettingValue(bytes_text(*job.memory_bytes))
+                            : SettingValue(kAutomatic);
+  };
+  settings.flag("dry-run", job.dry_run, "Print the plan and stop");
+  settings.choice<ProgressStyle>("progress", job.progress,
+                                 {{"auto", ProgressStyle::kAuto},
+                                  {"bar", ProgressStyle::kBar},
+                                  {"plain", ProgressStyle::kPlain},
+                                  {"none", ProgressStyle::kNone}},
+                                 "A bar, a line every few seconds, or none; auto: a bar on a "
+                                 "terminal, else lines");
+}
+
+fs::path resolved(const fs::path& path) {
+  std::error_code ignored;
+  return fs::weakly_canonical(fs::absolute(path, ignored), ignored);
+}
+
+/// Results must not land among the frames they are made from.
+void require_separate_folders(const RunJob& job) {
+  const SequenceLayout layout(job.output, job.sequence);
+  for (const std::string& source :
+       {job.input.left, job.input.right, job.input.stereo, job.input.sequence}) {
+    if (source.empty()) {
+      continue;
+    }
+    std::error_code ignored;
+    const fs::path folder =
+        fs::is_directory(source, ignored) ? fs::path(source) : fs::path(source).parent_path();
+    for (const OutputStream& stream : layout.streams()) {
+      const fs::path written =
+          stream.as_video ? layout.video(stream) : layout.folder() / stream.name;
+      if (resolved(written) == resolved(folder) || resolved(written) == resolved(source)) {
+        throw UsageError(fmt::format("--output would write into '{}', where the frames '{}' are",
+                                     written.string(), source));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void add_run_settings(Settings& settings, RunJob& job) {
+  settings.take_job_file();
+  add_input_settings(settings, job);
+  add_output_settings(settings, job);
+  add_steadiness_settings(settings, job.sequence);
+  add_part_settings(settings, job);
+  add_pipeline_settings(settings, job);
+  add_reference_setting(settings, job.sequence.match);
+  add_match_settings(settings, job.sequence.match);
+  add_synthesis_settings(settings, job.sequence.synthesis);
+  add_common_settings(settings, job.common);
+}
+
+void complete(RunJob& job) {
+  SequenceOptions& sequence = job.sequence;
+  sequence.views.clear();
+  for (const double view_x : job.fixed_views_x) {
+    sequence.views.push_back(ViewTrack::fixed(view_x));
+  }
+  sequence.views.insert(sequence.views.end(), job.moving_views.begin(), job.moving_views.end());
+  if (job.save) {
+    sequence.save = *job.save;
+  } else {
+    sequence.save = {SequenceOutput::kDisparity};
+    if (!sequence.views.empty()) {
+      sequence.save.push_back(SequenceOutput::kViews);
+    }
+  }
+  job.input.validate();
+  sequence.validate();
+  job.common.execution.validate();
+  if (job.in_flight && (*job.in_flight < 1 || *job.in_flight > kMaxInFlight)) {
+    throw UsageError(fmt::format("in-flight is {}, expected a number from 1 to {}", *job.in_flight,
+                                 kMaxInFlight));
+  }
+  if (job.overwrite && (job.resume || job.force)) {
+    throw UsageError(fmt::format("--overwrite and --{} are both given, expected one of them",
+                                 job.resume ? "resume" : "force"));
+  }
+  if (job.overwrite && job.shard) {
+    throw UsageError(
+        "--overwrite with --shard would remove what other shards have done; remove the folder "
+        "first, or use another one");
+  }
+  require_separate_folders(job);
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/option_groups.h"
+#include "apps/progress.h"
+#include "apps/settings.h"
+#include "engine/sequence/pair_source.h"
+#include "engine/sequence/sequence_options.h"
+#include "engine/sequence/work_plan.h"
+
+namespace vantage::apps {
+
+/// Everything a user can set about a run.
+struct RunJob {
+  PairSourceOptions input;
+  std::string calibration;  ///< file, empty = rectified pairs
+  std::string output;       ///< folder
+  SequenceOptions sequence;
+  /// Empty: the disparity map, and the views when there are any.
+  std::optional<std::vector<SequenceOutput>> save;
+  std::vector<double> fixed_views_x;
+  std::vector<ViewTrack> moving_views;
+  std::optional<FrameRate> frame_rate;  ///< empty: the input's, else 25
+  std::optional<FrameRange> frames;
+  std::optional<Shard> shard;
+  std::optional<int> in_flight;  ///< 1..64; empty: from threads and memory
+  std::optional<std::size_t> memory_bytes;
+  bool dry_run = false;
+  bool resume = false;
+  bool overwrite = false;
+  bool force = false;
+  bool keep_going = false;
+  ProgressStyle progress = ProgressStyle::kAuto;
+  CommonOptions common;
+};
+
+/// Binds all of it: the options of 'vantage run'.
+void add_run_settings(Settings& settings, RunJob& job);
+
+/// Fills in what follows from other fields. Throws UsageError where fields are wrong or do not go
+/// together; files are not looked at but to keep results out of the folders they are made from.
+void complete(RunJob& job);
+
+}  // namespace vantage::apps

@@ -1,0 +1,242 @@
+#include "engine/image/stereo_packing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <type_traits>
+
+#include "engine/error.h"
+
+namespace vantage {
+namespace {
+
+/// Pixels in the memory of `photograph`, which is given the type if it has another.
+template <typename T>
+Image<T>& pixels_of(Photograph& photograph) {
+  if (!std::holds_alternative<Image<T>>(photograph.pixels)) {
+    photograph.pixels = Image<T>();
+  }
+  return std::get<Image<T>>(photograph.pixels);
+}
+
+template <typename T>
+void copy_pixels(ImageView<const T> source, ImageView<T> target) {
+  for (int y = 0; y < source.height(); ++y) {
+    std::copy_n(source.row(y), source.width() * source.channels(), target.row(y));
+  }
+}
+
+/// The first (left or upper) or second half of a packed picture.
+template <typename View>
+View half_of(const View& packed, bool above_below, bool second) {
+  const int width = above_below ? packed.width() : packed.width() / 2;
+  const int height = above_below ? packed.height() / 2 : packed.height();
+  const int x = second && !above_below ? width : 0;
+  const int y = second && above_below ? height : 0;
+  return {packed.row(y) + x * packed.channels(), width, height, packed.channels(), packed.stride()};
+}
+
+/// Interpolated values are held to these: cubic interpolation overshoots.
+template <typename T>
+struct ValueRange {
+  T smallest;
+  T largest;
+};
+
+/// That of the type, for floats that of the pixels.
+template <typename T>
+ValueRange<T> range_of(ImageView<const T> image) {
+  if constexpr (!std::is_same_v<T, float>) {
+    return {std::numeric_limits<T>::min(), std::numeric_limits<T>::max()};
+  } else {
+    ValueRange<T> range{*image.row(0), *image.row(0)};
+    for (int y = 0; y < image.height(); ++y) {
+      const auto [smallest, largest] =
+          std::minmax_element(image.row(y), image.row(y) + image.width() * image.channels());
+      range = {std::min(range.smallest, *smallest), std::max(range.largest, *largest)};
+    }
+    return range;
+  }
+}
+
+/// Catmull-Rom interpolation a quarter of the way from `near` to `next`: the cubic one that leaves
+/// ramps as they are. `before` lies in front of `near`, `after` behind `next`.
+template <typename T>
+T at_a_quarter(T before, T near, T next, T after, ValueRange<T> range) {
+  if constexpr (std::is_same_v<T, float>) {
+    const float sum = -9.0F * before + 111.0F * near + 29.0F * next - 3.0F * after;
+    return std::clamp(sum / 128.0F, range.smallest, range.largest);
+  } else {
+    const int sum = -9 * before + 111 * near + 29 * next - 3 * after;
+    return static_cast<T>(std::clamp<int>((sum + 64) >> 7, range.smallest, range.largest));
+  }
+}
+
+/// Makes the two pixels, or rows, of full size that a pixel, or row, of half size stands for.
+/// `sources` are it, in the middle, and its two neighbours to either side.
+template <typename T>
+void stretch_run(const std::array<const T*, 5>& sources, int count, ValueRange<T> range, T* first,
+                 T* second) {
+  const auto [s0, s1, s2, s3, s4] = sources;
+  for (int i = 0; i < count; ++i) {
+    first[i] = at_a_quarter(s3[i], s2[i], s1[i], s0[i], range);
+    second[i] = at_a_quarter(s1[i], s2[i], s3[i], s4[i], range);
+  }
+}
+
+template <typename T>
+void stretch_rows(ImageView<const T> half, ImageView<T> full) {
+  const ValueRange<T> range = range_of(half);
+  std::array<const T*, 5> sources;
+  for (int y = 0; y < half.height(); ++y) {
+    for (int i = 0; i < 5; ++i) {
+      sources[static_cast<std::size_t>(i)] = half.row(std::clamp(y + i - 2, 0, half.height() - 1));
+    }
+    stretch_run(sources, half.width() * half.channels(), range, full.row(2 * y),
+                full.row(2 * y + 1));
+  }
+}
+
+template <typename T>
+void stretch_columns(ImageView<const T> half, ImageView<T> full) {
+  const ValueRange<T> range = range_of(half);
+  const int channels = half.channels();
+  std::array<const T*, 5> sources;
+  for (int y = 0; y < half.height(); ++y) {
+    for (int x = 0; x < half.width(); ++x) {
+      for (int i = 0; i < 5; ++i) {
+        sources[static_cast<std::size_t>(i)] =
+            half.row(y) + std::clamp(x + i - 2, 0, half.width() - 1) * channels;
+      }
+      T* target = full.row(y) + 2 * x * channels;
+      stretch_run(sources, channels, range, target, target + channels);
+    }
+  }
+}
+
+template <typename T>
+void unpack_half(ImageView<const T> half, StereoPacking packing, Image<T>& image) {
+  const int factor = packing.half_size ? 2 : 1;
+  image.resize(half.width() * (packing.above_below ? 1 : factor),
+               half.height() * (packing.above_below ? factor : 1), half.channels());
+  if (!packing.half_size) {
+    copy_pixels(half, image.view());
+  } else if (packing.above_below) {
+    stretch_rows(half, image.view());
+  } else {
+    stretch_columns(half, image.view());
+  }
+}
+
+template <typename T>
+T mean_of(T a, T b) {
+  if constexpr (std::is_same_v<T, float>) {
+    return 0.5F * (a + b);
+  } else {
+    return static_cast<T>((static_cast<unsigned>(a) + b + 1U) / 2U);
+  }
+}
+
+template <typename T>
+void pack_half(const Image<T>& image, StereoPacking packing, ImageView<T> half) {
+  const int channels = image.channels();
+  if (!packing.half_size) {
+    copy_pixels(image.view(), half);
+  } else if (packing.above_below) {
+    for (int y = 0; y < half.height(); ++y) {
+      const T* upper = image.row(2 * y);
+      const T* lower = image.row(std::min(2 * y + 1, image.height() - 1));
+      std::transform(upper, upper + half.width() * channels, lower, half.row(y), mean_of<T>);
+    }
+  } else {
+    for (int y = 0; y < half.height(); ++y) {
+      const T* source = image.row(y);
+      T* target = half.row(y);
+      for (int x = 0; x < half.width(); ++x) {
+        const int left = 2 * x * channels;
+        const int right = std::min(2 * x + 1, image.width() - 1) * channels;
+        for (int c = 0; c < channels; ++c) {
+          target[x * channels + c] = mean_of(source[left + c], source[right + c]);
+        }
+      }
+    }
+  }
+}
+
+void require_equal_shapes(const Photograph& left, const Photograph& right) {
+  constexpr std::string_view kDepths[] = {"8-bit", "16-bit", "float"};
+  const auto shape = [&](const Photograph& photograph) {
+    return fmt::format("{}x{} with {} {} channel{}", photograph.width(), photograph.height(),
+                       photograph.channels(), kDepths[photograph.pixels.index()],
+                       photograph.channels() == 1 ? "" : "s");
+  };
+  if (left.pixels.index() != right.pixels.index() || left.width() != right.width() ||
+      left.height() != right.height() || left.channels() != right.channels()) {
+    throw Error(fmt::format("left image is {} but right image is {}, expected equal shapes",
+                            shape(left), shape(right)));
+  }
+}
+
+}  // namespace
+
+const std::vector<std::pair<std::string_view, StereoPacking>>& stereo_packing_names() {
+  static const std::vector<std::pair<std::string_view, StereoPacking>> kNames = {
+      {"sbsl", {}},
+      {"sbsr", {.right_first = true}},
+      {"sbs2l", {.half_size = true}},
+      {"sbs2r", {.half_size = true, .right_first = true}},
+      {"abl", {.above_below = true}},
+      {"abr", {.above_below = true, .right_first = true}},
+      {"ab2l", {.above_below = true, .half_size = true}},
+      {"ab2r", {.above_below = true, .half_size = true, .right_first = true}},
+      {"tbl", {.above_below = true}},
+      {"tbr", {.above_below = true, .right_first = true}},
+      {"tb2l", {.above_below = true, .half_size = true}},
+      {"tb2r", {.above_below = true, .half_size = true, .right_first = true}}};
+  return kNames;
+}
+
+void unpack_stereo(const Photograph& packed, StereoPacking packing, Photograph& left,
+                   Photograph& right) {
+  const int divided = packing.above_below ? packed.height() : packed.width();
+  if (divided < 2 || divided % 2 != 0) {
+    throw Error(fmt::format("packed image is {}x{}, expected an even {} that both images share",
+                            packed.width(), packed.height(),
+                            packing.above_below ? "height" : "width"));
+  }
+  std::visit(
+      [&]<typename T>(const Image<T>& image) {
+        const bool above_below = packing.above_below;
+        unpack_half(half_of(image.view(), above_below, packing.right_first), packing,
+                    pixels_of<T>(left));
+        unpack_half(half_of(image.view(), above_below, !packing.right_first), packing,
+                    pixels_of<T>(right));
+      },
+      packed.pixels);
+}
+
+void pack_stereo(const Photograph& left, const Photograph& right, StereoPacking packing,
+                 Photograph& packed) {
+  require_equal_shapes(left, right);
+  std::visit(
+      [&]<typename T>(const Image<T>& left_image) {
+        const int divisor = packing.half_size ? 2 : 1;
+        const int width = left_image.width();
+        const int height = left_image.height();
+        Image<T>& image = pixels_of<T>(packed);
+        if (packing.above_below) {
+          image.resize(width, 2 * ((height + divisor - 1) / divisor), left_image.channels());
+        } else {
+          image.resize(2 * ((width + divisor - 1) / divisor), height, left_image.channels());
+        }
+        const bool above_below = packing.above_below;
+        pack_half(left_image, packing, half_of(image.view(), above_below, packing.right_first));
+        pack_half(std::get<Image<T>>(right.pixels), packing,
+                  half_of(image.view(), above_below, !packing.right_first));
+      },
+      left.pixels);
+}
+
+}  // namespace vantage

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/image/photograph.h"
+#include "engine/io/libav.h"
+
+namespace vantage {
+
+/// RGB from 16-bit luma and chroma.
+struct ColourFactors {
+  float black = 0;  ///< luma of it
+  float grey = 1;   ///< per luma
+  float red_of_red = 0;
+  float green_of_red = 0;
+  float green_of_blue = 0;
+  float blue_of_blue = 0;
+};
+
+/// Makes photographs of decoded frames: RGB of colours, one channel of grey; 8-bit, or 16-bit where
+/// the frame has more bits. Chroma is interpolated bicubically from where it was sampled. Matrix
+/// and range are those the frame is flagged with; unspecified, colours are BT.601 below 720 rows,
+/// BT.709 from there, with limited range, and grey levels have full range, as players take them.
+class FrameToPhotograph {
+ public:
+  /// Reuses the memory of `photograph`. Throws Error, without a name, for a format that cannot be
+  /// converted.
+  void convert(const AVFrame& frame, Photograph& photograph);
+
+ private:
+  /// What convert() needs for frames such as this one.
+  void prepare(const AVFrame& frame);
+  template <typename T>
+  void fill(const AVFrame& frame, Image<T>& image);
+
+  /// What all below was made for.
+  struct Source {
+    int width = 0;
+    int height = 0;
+    int format = -1;
+    int colour_space = 0;
+    int colour_range = 0;
+    int chroma_location = 0;
+    bool operator==(const Source&) const = default;
+  };
+  Source source_;
+  bool grey_ = false;
+  bool wide_ = false;                  ///< more than 8 bits
+  std::vector<std::uint16_t> levels_;  ///< what each grey sample becomes; empty: not grey
+  LibavScaler scaler_;
+  LibavFrame yuv_;  ///< 16-bit luma and chroma of every pixel; empty: the scaler makes the result
+  ColourFactors factors_;
+};
+
+}  // namespace vantage

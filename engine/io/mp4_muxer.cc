@@ -1,0 +1,96 @@
+#include "engine/io/mp4_muxer.h"
+
+#include <fmt/format.h>
+
+#include <new>
+
+#include "engine/error.h"
+#include "engine/io/video_io.h"
+
+extern "C" {
+#include <libavformat/avformat.h>
+}
+
+namespace vantage {
+
+void Mp4Muxer::Free::operator()(AVFormatContext* output) const noexcept {
+  avio_closep(&output->pb);
+  avformat_free_context(output);
+}
+
+Mp4Muxer::Mp4Muxer(const std::filesystem::path& path) : path_(path), file_(path) {
+  silence_libav();
+  const std::string address = "file:" + file_.temporary_path().string();
+  AVFormatContext* output = nullptr;
+  if (avformat_alloc_output_context2(&output, nullptr, "mp4", address.c_str()) < 0) {
+    throw std::bad_alloc();
+  }
+  output_.reset(output);
+  output_->flags |= AVFMT_FLAG_BITEXACT;
+  if (const int result = avio_open(&output_->pb, address.c_str(), AVIO_FLAG_WRITE); result < 0) {
+    fail(libav_message(result));
+  }
+}
+
+Mp4Muxer::~Mp4Muxer() = default;
+
+void Mp4Muxer::fail(const std::string& problem) const {
+  throw Error(fmt::format("cannot write {}: {}", path_.string(), problem));
+}
+
+int Mp4Muxer::add_stream(const AVCodecParameters& parameters, AVRational time_unit) {
+  AVStream* stream = avformat_new_stream(output_.get(), nullptr);
+  if (stream == nullptr || avcodec_parameters_copy(stream->codecpar, &parameters) < 0) {
+    throw std::bad_alloc();
+  }
+  stream->codecpar->codec_tag = 0;  // the one of another container may mean nothing here
+  stream->time_base = time_unit;
+  return stream->index;
+}
+
+void Mp4Muxer::begin() {
+  AVDictionary* options = nullptr;
+  av_dict_set(&options, "movflags", "+faststart", 0);
+  const int result = avformat_write_header(output_.get(), &options);
+  av_dict_free(&options);
+  if (result < 0) {
+    fail(libav_message(result));
+  }
+}
+
+void Mp4Muxer::write(AVPacket& packet, int stream, AVRational time_unit) {
+  packet.stream_index = stream;
+  packet.pos = -1;
+  av_packet_rescale_ts(&packet, time_unit, output_->streams[stream]->time_base);
+  int result = av_interleaved_write_frame(output_.get(), &packet);
+  if (result >= 0) {
+    result = output_->pb->error;
+  }
+  if (result < 0) {
+    fail(libav_message(result));
+  }
+}
+
+void Mp4Muxer::finish(int frames) {
+  int result = av_write_trailer(output_.get());
+  const int closed = avio_closep(&output_->pb);
+  if (result >= 0) {
+    result = closed;
+  }
+  output_.reset();
+  if (result < 0) {
+    fail(libav_message(result));
+  }
+  int stored = 0;
+  try {
+    stored = VideoReader(file_.temporary_path()).frame_count();
+  } catch (const Error&) {
+    stored = 0;
+  }
+  if (stored != frames) {
+    fail(fmt::format("{} of {} frames were stored (disk full?)", stored, frames));
+  }
+  file_.commit();
+}
+
+}  // namespace vantage

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "engine/io/atomic_file.h"
+#include "engine/io/frame_rate.h"
+#include "engine/io/libav.h"
+
+struct AVCodecParameters;
+struct AVRational;
+
+namespace vantage {
+
+/// Writes an MP4 whose index comes first, so that browsers can begin before they have all of it.
+/// Holds nothing but what it is given: no dates, no versions. The file appears under its name at
+/// finish(); without it nothing is left.
+/// Thread rule: one thread at a time.
+class Mp4Muxer {
+ public:
+  /// Throws Error when the file cannot be written.
+  explicit Mp4Muxer(const std::filesystem::path& path);
+  Mp4Muxer(const Mp4Muxer&) = delete;
+  Mp4Muxer& operator=(const Mp4Muxer&) = delete;
+  ~Mp4Muxer();
+
+  /// Adds a stream before begin(), the video first. Returns its number.
+  int add_stream(const AVCodecParameters& parameters, AVRational time_unit);
+  void begin();
+  /// `packet`, whose times count in `time_unit`, belongs to stream `stream`; it is empty
+  /// afterwards. Packets of a stream come in decoding order, those of several streams roughly by
+  /// their times. Throws Error when the disk is full.
+  void write(AVPacket& packet, int stream, AVRational time_unit);
+  /// Ends the file, checks that it reads back as a video of `frames` frames, and gives it its name.
+  void finish(int frames);
+
+  [[noreturn]] void fail(const std::string& problem) const;
+
+ private:
+  struct Free {
+    void operator()(AVFormatContext* output) const noexcept;
+  };
+
+  std::filesystem::path path_;
+  AtomicFile file_;
+  // Declared after the file: closes it before it is removed.
+  std::unique_ptr<AVFormatContext, Free> output_;
+};
+
+}  // namespace vantage

@@ -1,0 +1,157 @@
+#include "engine/io/video_decoder.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <new>
+
+#include "engine/error.h"
+#include "engine/io/file_bytes.h"
+#include "engine/io/photograph_io.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+}
+
+namespace vantage {
+namespace {
+
+/// Decoders that were tried on damaged videos with several frames under way at once. Not all bear
+/// it: that of MPEG-4 part 2 in FFmpeg 5.1 aborts the process.
+bool can_decode_frames_at_once(AVCodecID codec) {
+  switch (codec) {
+    case AV_CODEC_ID_H264:
+    case AV_CODEC_ID_HEVC:
+    case AV_CODEC_ID_VP8:
+    case AV_CODEC_ID_VP9:
+    case AV_CODEC_ID_AV1:
+    case AV_CODEC_ID_PRORES:
+    case AV_CODEC_ID_FFV1:
+    case AV_CODEC_ID_MJPEG:
+      return true;
+    default:
+      return false;
+  }
+}
+
+LibavCodec open_decoder(const AVStream& stream, int threads, const std::string& name) {
+  const AVCodec* decoder = avcodec_find_decoder(stream.codecpar->codec_id);
+  if (decoder == nullptr) {
+    throw Error(fmt::format("{}: is coded as {}, which cannot be decoded here", name,
+                            avcodec_get_name(stream.codecpar->codec_id)));
+  }
+  LibavCodec codec(avcodec_alloc_context3(decoder));
+  if (codec == nullptr) {
+    throw std::bad_alloc();
+  }
+  int result = avcodec_parameters_to_context(codec.get(), stream.codecpar);
+  codec->pkt_timebase = stream.time_base;
+  codec->thread_count = threads;
+  codec->thread_type =
+      FF_THREAD_SLICE | (can_decode_frames_at_once(decoder->id) ? FF_THREAD_FRAME : 0);
+  codec->err_recognition = AV_EF_EXPLODE;
+  codec->max_pixels = kMaxImagePixels;
+  if (result >= 0) {
+    result = avcodec_open2(codec.get(), decoder, nullptr);
+  }
+  if (result < 0) {
+    throw Error(fmt::format("{}: its {} video cannot be decoded ({})", name, decoder->name,
+                            libav_message(result)));
+  }
+  return codec;
+}
+
+}  // namespace
+
+VideoDecoder::VideoDecoder(const std::filesystem::path& path, int threads)
+    : threads_(threads), input_(open_media_file(path)) {
+  stream_ = find_video_stream(*input_);
+  if (stream_ == nullptr) {
+    throw Error(fmt::format("{}: holds no video", path.string()));
+  }
+  const AVCodecParameters& parameters = *stream_->codecpar;
+  if (parameters.width == 0 || parameters.height == 0) {
+    throw Error(fmt::format(
+        "{}: no frame of its video can be decoded (damaged, or cut without re-encoding)",
+        path.string()));
+  }
+  FileBytes({}, path.string()).check_dimensions(parameters.width, parameters.height);
+  read_only(*input_, *stream_);
+  cut_.emplace(parameters);
+  read_packet();
+  if (cut_->misses_frames()) {
+    threads_ = 1;  // only then damage that is not to be excused is marked in the frames
+  }
+  codec_ = open_decoder(*stream_, threads_, path.string());
+}
+
+bool VideoDecoder::read_packet() {
+  do {
+    av_packet_unref(packet_.get());
+    read_result_ = av_read_frame(input_.get(), packet_.get());
+  } while (read_result_ >= 0 && packet_->stream_index != stream_->index);
+  packet_is_cut_off_ = read_result_ >= 0 && cut_->is_cut_off(*packet_);
+  return read_result_ >= 0;
+}
+
+VideoDecoder::Step VideoDecoder::next() {
+  for (;;) {
+    const int result = avcodec_receive_frame(codec_.get(), frame_.get());
+    if (result >= 0) {
+      return check_frame();
+    }
+    if (result == AVERROR(EAGAIN)) {
+      feed();
+    } else if (result == AVERROR_EOF) {
+      return problem_.empty() ? Step::kEnd : Step::kDamaged;
+    } else if (!stop_feeding(libav_message(result), packet_time_)) {
+      return Step::kDamaged;
+    }
+  }
+}
+
+VideoDecoder::Step VideoDecoder::check_frame() {
+  if (!problem_.empty()) {
+    return frame_->best_effort_timestamp < damaged_time_ ? Step::kFrame : Step::kDamaged;
+  }
+  if (frame_->decode_error_flags != 0 || (frame_->flags & AV_FRAME_FLAG_CORRUPT) != 0) {
+    problem_ = "the frame is incomplete";
+    return Step::kDamaged;
+  }
+  return Step::kFrame;
+}
+
+void VideoDecoder::feed() {
+  if (read_result_ == AVERROR_EOF) {
+    avcodec_send_packet(codec_.get(), nullptr);
+    return;
+  }
+  if (read_result_ < 0) {
+    stop_feeding(libav_message(read_result_), std::numeric_limits<std::int64_t>::max());
+    return;
+  }
+  if (!packet_is_cut_off_) {
+    packet_time_ = packet_->pts;
+    codec_->err_recognition = cut_->misses_frames() ? 0 : AV_EF_EXPLODE;
+    if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) {
+      stop_feeding("the file is damaged there", packet_time_);
+    } else if (const int sent = avcodec_send_packet(codec_.get(), packet_.get()); sent < 0) {
+      stop_feeding(libav_message(sent), packet_time_);
+    }
+  }
+  read_packet();
+}
+
+bool VideoDecoder::stop_feeding(const std::string& problem, std::int64_t damaged_time) {
+  if (!problem_.empty()) {
+    return false;
+  }
+  problem_ = problem;
+  // With several threads the packets behind the damaged one are under way.
+  damaged_time_ = threads_ == 1 ? damaged_time : AV_NOPTS_VALUE;
+  avcodec_send_packet(codec_.get(), nullptr);
+  return true;
+}
+
+}  // namespace vantage

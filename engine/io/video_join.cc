@@ -1,0 +1,170 @@
+#include "engine/io/video_join.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/io/libav.h"
+#include "engine/io/mp4_muxer.h"
+#include "engine/io/sound_packets.h"
+
+extern "C" {
+#include <libavformat/avformat.h>
+}
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The packets of a segment, in decoding order.
+class Segment {
+ public:
+  Segment(const fs::path& path, AVRational frame_unit)
+      : path_(path),
+        frame_unit_(frame_unit),
+        input_(open_media_file(path)),
+        stream_(find_video_stream(*input_)) {
+    if (stream_ == nullptr || stream_->codecpar->codec_id != AV_CODEC_ID_H264) {
+      fail("holds no H.264 video");
+    }
+    read_only(*input_, *stream_);
+  }
+
+  [[nodiscard]] const AVCodecParameters& parameters() const { return *stream_->codecpar; }
+
+  /// Reads the next packet; its pts becomes the number of its frame. False after the last one.
+  bool read(AVPacket& packet) {
+    int result = av_read_frame(input_.get(), &packet);
+    while (result >= 0 && packet.stream_index != stream_->index) {
+      av_packet_unref(&packet);
+      result = av_read_frame(input_.get(), &packet);
+    }
+    if (result == AVERROR_EOF) {
+      return false;
+    }
+    if (result < 0 || (packet.flags & AV_PKT_FLAG_CORRUPT) != 0 || packet.pts == AV_NOPTS_VALUE) {
+      fail(result < 0 ? libav_message(result) : "is damaged");
+    }
+    const std::int64_t frame = av_rescale_q(packet.pts, stream_->time_base, frame_unit_);
+    if (av_compare_ts(frame, frame_unit_, packet.pts, stream_->time_base) != 0) {
+      fail(fmt::format("has another frame rate, expected {}/{}", frame_unit_.den, frame_unit_.num));
+    }
+    packet.pts = frame;
+    return true;
+  }
+
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw Error(fmt::format("{}: {}", path_.string(), problem));
+  }
+
+ private:
+  fs::path path_;
+  AVRational frame_unit_;
+  LibavInput input_;
+  AVStream* stream_;
+};
+
+bool same_coding(const AVCodecParameters& a, const AVCodecParameters& b) {
+  return a.width == b.width && a.height == b.height && a.format == b.format &&
+         a.extradata_size == b.extradata_size && a.extradata_size > 0 &&
+         std::memcmp(a.extradata, b.extradata, static_cast<std::size_t>(a.extradata_size)) == 0;
+}
+
+void check_same_coding(const Segment& segment, const Segment& first, const fs::path& first_path) {
+  const AVCodecParameters& own = segment.parameters();
+  const AVCodecParameters& expected = first.parameters();
+  if (!same_coding(own, expected)) {
+    segment.fail(fmt::format("is a video of {}x{} coded differently from {} of {}x{}", own.width,
+                             own.height, first_path.string(), expected.width, expected.height));
+  }
+}
+
+/// What the segments hold together.
+struct JoinPlan {
+  std::vector<int> segment_frames;
+  int frames = 0;
+  /// Frames by which decoding has to be ahead of showing.
+  int decoding_lead = 0;
+};
+
+/// Reads all segments once: the times of the first packet depend on the last segment.
+JoinPlan plan_join(std::span<const fs::path> paths, AVRational frame_unit) {
+  JoinPlan plan;
+  const Segment first(paths.front(), frame_unit);
+  const LibavPacket packet = make_libav_packet();
+  for (const fs::path& path : paths) {
+    Segment segment(path, frame_unit);
+    check_same_coding(segment, first, paths.front());
+    std::vector<std::int64_t> shown;
+    while (segment.read(*packet)) {
+      const auto lead = static_cast<std::int64_t>(shown.size()) - packet->pts;
+      plan.decoding_lead = std::max(plan.decoding_lead, static_cast<int>(lead));
+      shown.push_back(packet->pts);
+      av_packet_unref(packet.get());
+    }
+    std::sort(shown.begin(), shown.end());
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      if (shown[i] != static_cast<std::int64_t>(i)) {
+        segment.fail(fmt::format("frame {} is missing", i));
+      }
+    }
+    if (shown.empty()) {
+      segment.fail("is a video without frames");
+    }
+    plan.segment_frames.push_back(static_cast<int>(shown.size()));
+    plan.frames += plan.segment_frames.back();
+  }
+  return plan;
+}
+
+}  // namespace
+
+void join_videos(std::span<const fs::path> segments, FrameRate rate, const SoundTrack& sound,
+                 const fs::path& output) {
+  if (segments.empty()) {
+    throw Error(fmt::format("cannot write {}: no videos to join", output.string()));
+  }
+  const AVRational frame_unit = {static_cast<int>(rate.denominator),
+                                 static_cast<int>(rate.numerator)};
+  const JoinPlan plan = plan_join(segments, frame_unit);
+  const std::unique_ptr<SoundPackets> sound_packets = open_sound_packets(sound);
+  bool sound_left = sound_packets != nullptr && sound_packets->next();
+
+  Mp4Muxer muxer(output);
+  const int video_stream =
+      muxer.add_stream(Segment(segments.front(), frame_unit).parameters(), frame_unit);
+  const int sound_stream =
+      sound_left ? muxer.add_stream(sound_packets->parameters(), sound_packets->time_unit()) : -1;
+  muxer.begin();
+  const auto write_sound_before = [&](double seconds) {
+    while (sound_left && sound_packets->seconds() < seconds) {
+      muxer.write(sound_packets->packet(), sound_stream, sound_packets->time_unit());
+      sound_left = sound_packets->next();
+    }
+  };
+  const LibavPacket packet = make_libav_packet();
+  std::int64_t decoded = 0;
+  std::int64_t first_frame = 0;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    Segment segment(segments[i], frame_unit);
+    while (segment.read(*packet)) {
+      packet->pts += first_frame;
+      packet->dts = decoded - plan.decoding_lead;
+      packet->duration = 1;
+      ++decoded;
+      write_sound_before(static_cast<double>(packet->dts) * av_q2d(frame_unit));
+      muxer.write(*packet, video_stream, frame_unit);
+    }
+    first_frame += plan.segment_frames[i];
+  }
+  write_sound_before(sound.end_seconds - sound.begin_seconds);
+  muxer.finish(plan.frames);
+}
+
+}  // namespace vantage

@@ -1,0 +1,158 @@
+#include "engine/io/video_timing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/io/cut_video.h"
+#include "engine/io/libav.h"
+
+extern "C" {
+#include <libavformat/avformat.h>
+}
+
+namespace vantage {
+namespace {
+
+struct PacketTimes {
+  std::vector<std::int64_t> times;  ///< in the stream's unit, of the packets that have one
+  std::size_t packets = 0;          ///< that show a frame
+
+  void add(std::int64_t time) {
+    ++packets;
+    if (time != AV_NOPTS_VALUE) {
+      times.push_back(time);
+    }
+  }
+};
+
+bool has_whole_index(const AVFormatContext& input, const AVStream& stream) {
+  return std::string_view(input.iformat->name).find("mp4") != std::string_view::npos &&
+         stream.nb_frames > 0 && avformat_index_get_entries_count(&stream) > 0;
+}
+
+PacketTimes read_index(AVStream& stream) {
+  PacketTimes result;
+  for (int i = 0; i < avformat_index_get_entries_count(&stream); ++i) {
+    const AVIndexEntry* entry = avformat_index_get_entry(&stream, i);
+    // An edit list leaves out frames that others need: they are decoded and not shown.
+    if ((entry->flags & AVINDEX_DISCARD_FRAME) == 0 && entry->size > 0) {
+      result.add(entry->timestamp);
+    }
+  }
+  return result;
+}
+
+bool shows_a_frame(const AVPacket& packet, AVCodecID codec) {
+  if (packet.size == 0 || (packet.flags & AV_PKT_FLAG_DISCARD) != 0) {
+    return false;
+  }
+  // VP8 marks, in its first byte, frames that are only there for others to refer to.
+  return codec != AV_CODEC_ID_VP8 || (packet.data[0] & 0x10) != 0;
+}
+
+PacketTimes read_packets(const std::filesystem::path& path, int stream_index) {
+  const LibavInput input = open_media_file(path);
+  if (static_cast<unsigned>(stream_index) >= input->nb_streams) {
+    return {};
+  }
+  const AVStream& stream = *input->streams[stream_index];
+  read_only(*input, stream);
+  const LibavPacket packet = make_libav_packet();
+  const AVCodecID codec = stream.codecpar->codec_id;
+  CutVideo cut(*stream.codecpar);
+  bool key_seen = false;
+  PacketTimes result;
+  while (av_read_frame(input.get(), packet.get()) >= 0) {
+    if (packet->stream_index == stream_index && !cut.is_cut_off(*packet) &&
+        shows_a_frame(*packet, codec)) {
+      if (!key_seen && (packet->flags & AV_PKT_FLAG_KEY) != 0) {
+        result = {};  // what a recording in mid-programme begins with cannot be decoded
+        key_seen = true;
+      }
+      result.add(packet->pts != AV_NOPTS_VALUE ? packet->pts : packet->dts);
+    }
+    av_packet_unref(packet.get());
+  }
+  return result;
+}
+
+/// The middle one of the steps between times; 0 when there is none.
+double usual_step(std::vector<std::int64_t> times) {
+  std::sort(times.begin(), times.end());
+  std::vector<std::int64_t> steps;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (times[i] > times[i - 1]) {
+      steps.push_back(times[i] - times[i - 1]);
+    }
+  }
+  if (steps.empty()) {
+    return 0;
+  }
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return static_cast<double>(*middle);
+}
+
+std::optional<FrameRate> to_frame_rate(AVRational rate) {
+  if (rate.num <= 0 || rate.den <= 0) {
+    return std::nullopt;
+  }
+  int numerator = 0;
+  int denominator = 0;
+  constexpr int kLargestTerm = 1'000'000;
+  av_reduce(&numerator, &denominator, rate.num, rate.den, kLargestTerm);
+  if (numerator < 1 || denominator < 1 || numerator / denominator >= 1000) {
+    return std::nullopt;
+  }
+  return FrameRate{numerator, denominator};
+}
+
+/// Frames divided by length is too low where frames are missing, and a guess from the first frames
+/// is wrong where their times are rounded: that one is taken which is nearer to the usual step.
+std::optional<FrameRate> choose_rate(const AVStream& stream, double step_seconds) {
+  const std::optional<FrameRate> average = to_frame_rate(stream.avg_frame_rate);
+  const std::optional<FrameRate> guess = to_frame_rate(stream.r_frame_rate);
+  if (!average || !guess || step_seconds <= 0) {
+    return average ? average : guess;
+  }
+  const auto error = [&](const FrameRate& rate) {
+    return std::abs(std::log(rate.per_second() * step_seconds));
+  };
+  return error(*guess) < error(*average) ? guess : average;
+}
+
+/// Packets of interlaced video may hold half a frame. Elsewhere than in an index, some of the
+/// packets may be no frames.
+int uncertain_frames(int frames, bool from_index, AVFieldOrder order) {
+  if (order != AV_FIELD_UNKNOWN && order != AV_FIELD_PROGRESSIVE) {
+    return (frames + 1) / 2;
+  }
+  return from_index ? 0 : std::max(2, frames / 50);
+}
+
+}  // namespace
+
+VideoTiming examine_video_timing(AVFormatContext& input, AVStream& stream,
+                                 const std::filesystem::path& path) {
+  const bool from_index = has_whole_index(input, stream);
+  PacketTimes packets = from_index ? read_index(stream) : read_packets(path, stream.index);
+  if (packets.packets == 0 || packets.packets > std::numeric_limits<int>::max()) {
+    throw Error(fmt::format("{}: is a video without frames", path.string()));
+  }
+  VideoTiming timing;
+  timing.frames = static_cast<int>(packets.packets);
+  timing.frames_uncertain =
+      uncertain_frames(timing.frames, from_index, stream.codecpar->field_order);
+  timing.rate =
+      choose_rate(stream, usual_step(std::move(packets.times)) * av_q2d(stream.time_base));
+  return timing;
+}
+
+}  // namespace vantage

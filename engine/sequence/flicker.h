@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/execution.h"
+#include "engine/image/image.h"
+#include "engine/image/photograph.h"
+
+namespace vantage {
+
+/// How much one new view flickers, as sums; see FlickerSums. Nothing is compared between frames
+/// whose view is from different places.
+struct ViewFlickerSums {
+  /// Pixels of the view that can only show surfaces whose left image did not change.
+  std::int64_t compared = 0;
+  std::int64_t grey_change = 0;  ///< Σ |V_t − V_{t−1}| over them, in grey levels
+  /// Σ over frames of |change of the view's mean − change of the left image's mean|, in 1/1024 grey
+  /// level.
+  std::int64_t brightness_jump = 0;
+
+  void add(const ViewFlickerSums& other);
+  /// Means; 0 where nothing was compared. `frames`: FlickerSums::frames.
+  [[nodiscard]] double mean_grey_change() const;
+  [[nodiscard]] double mean_brightness_jump(std::int64_t frames) const;
+  friend bool operator==(const ViewFlickerSums&, const ViewFlickerSums&) = default;
+};
+
+/// How much results change from frame to frame where the left image did not (StillPixels): what
+/// changes there is flicker, or noise of the images, of which nothing is deducted. Sums over
+/// frames; all integers, so that they may be added in any order.
+struct FlickerSums {
+  std::int64_t frames = 0;            ///< that had a frame before them in their chunk
+  std::int64_t pixels = 0;            ///< of those frames
+  std::int64_t still = 0;             ///< of them: the left image did not change
+  std::int64_t grey_change = 0;       ///< Σ |L_t − L_{t−1}| over these, in grey levels
+  std::int64_t compared = 0;          ///< of these: both disparities are known
+  std::int64_t jumped = 0;            ///< of these: the disparity changed by more than 1 px
+  std::int64_t disparity_change = 0;  ///< Σ |d_t − d_{t−1}| over the compared ones, in 1/1024 px
+  std::vector<ViewFlickerSums> views;
+
+  /// Throws Error when both have views and not the same number of them.
+  void add(const FlickerSums& other);
+  /// All 0, with so many views; memory is kept.
+  void clear(std::size_t view_count);
+  /// Means and shares; 0 where nothing was compared.
+  [[nodiscard]] double mean_disparity_change_px() const;
+  [[nodiscard]] double share_jumped() const;
+  [[nodiscard]] double share_compared() const;
+  [[nodiscard]] double mean_grey_change() const;  ///< of the left image
+  friend bool operator==(const FlickerSums&, const FlickerSums&) = default;
+};
+
+/// One new view of a frame.
+struct ViewOfFrame {
+  double view_x = 0;  ///< XS in baselines
+  const Photograph* image = nullptr;
+};
+
+/// Compares the frames of a chunk with one another. Thread rule: one call at a time. Memory is
+/// reused from frame to frame.
+class FlickerMeter {
+ public:
+  /// `threshold`: that of StillPixels. Throws UsageError.
+  explicit FlickerMeter(double threshold);
+  ~FlickerMeter();
+  FlickerMeter(FlickerMeter&&) noexcept;
+  FlickerMeter& operator=(FlickerMeter&&) noexcept;
+
+  /// The next frame has nothing before it.
+  void restart();
+
+  /// What this frame adds: nothing (but as many views) for the first one, and where the size of the
+  /// images or the number of views changes. left_map: on the left grid, NaN = unknown; empty: there
+  /// is none, and no pixel of a view is compared either, since what it shows cannot be told. All
+  /// of equal size, else throws Error. Grey levels are luma, rounded. Identical for any
+  /// `execution`.
+  FlickerSums add(const Photograph& left, ImageView<const float> left_map,
+                  std::span<const ViewOfFrame> views, Execution& execution);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace vantage

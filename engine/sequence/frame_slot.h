@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/image/photograph.h"
+#include "engine/matching/stereo_matcher.h"
+#include "engine/sequence/pair_source.h"
+#include "engine/sequence/pending_files.h"
+#include "engine/synthesis/view_synthesizer.h"
+
+namespace vantage {
+
+/// What one frame under way needs; reused by a later frame.
+struct FrameSlot {
+  int frame = 0;
+  bool is_lead_in = false;  ///< computed for the frames behind it only
+  FramePair pair;
+  std::array<Photograph, 2> rectified;  ///< where a calibration is applied
+  const Photograph* left = nullptr;     ///< what is matched: of `pair` or `rectified`
+  const Photograph* right = nullptr;
+  std::array<std::uint64_t, 2> content = {};  ///< content_hash() of the pair
+  DisparityMaps maps;
+  MatchReport match;
+  /// The new views of SequenceOptions::views, then those of the stereo picture that are no
+  /// photographs.
+  std::vector<SynthesizedView> views;
+  std::vector<double> views_x;
+  Photograph preview;
+  Photograph stereo;
+  PendingFiles files;
+  std::vector<std::string> file_names;  ///< of `files`, relative to the run's folder
+  std::vector<StageTime> times;         ///< of everything but matching
+};
+
+}  // namespace vantage

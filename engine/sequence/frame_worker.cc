@@ -1,0 +1,267 @@
+#include "engine/sequence/frame_worker.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "engine/error.h"
+#include "engine/image/content_hash.h"
+#include "engine/image/stereo_packing.h"
+#include "engine/io/disparity_io.h"
+#include "engine/io/photograph_io.h"
+#include "engine/io/preview.h"
+#include "engine/sequence/preview_range.h"
+
+namespace vantage {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Appends the time until its end to the times of a slot.
+class TimedStep {
+ public:
+  TimedStep(FrameSlot& slot, std::string_view name) : slot_(slot), name_(name) {}
+  TimedStep(const TimedStep&) = delete;
+  TimedStep& operator=(const TimedStep&) = delete;
+  ~TimedStep() {
+    slot_.times.push_back({name_, std::chrono::duration<double>(Clock::now() - start_).count()});
+  }
+
+ private:
+  FrameSlot& slot_;
+  std::string_view name_;
+  Clock::time_point start_ = Clock::now();
+};
+
+void require_size(const Photograph& photograph, std::string_view side, ImageExtent expected) {
+  if (photograph.width() != expected.width_px || photograph.height() != expected.height_px) {
+    throw Error(fmt::format("the {} image is {}x{}, expected {}x{} as at the start of the sequence",
+                            side, photograph.width(), photograph.height(), expected.width_px,
+                            expected.height_px));
+  }
+}
+
+}  // namespace
+
+FrameWorker::FrameWorker(const FrameTools& tools)
+    : options_(tools.options),
+      layout_(tools.layout),
+      pairs_(tools.pairs),
+      frame_size_(tools.frame_size),
+      rectifier_(tools.rectifier),
+      shots_(tools.shots),
+      execution_(tools.execution),
+      matcher_(tools.options.match, tools.execution),
+      synthesizer_(tools.options.synthesis, tools.execution),
+      temporal_(tools.options.temporal) {}
+
+void FrameWorker::prepare(FrameSlot& slot) const {
+  {
+    const TimedStep step(slot, "decode");
+    pairs_.decode(slot.pair);
+    slot.content = {content_hash(slot.pair.left), content_hash(slot.pair.right)};
+  }
+  if (frame_size_) {
+    require_size(slot.pair.left, "left", *frame_size_);
+    require_size(slot.pair.right, "right", *frame_size_);
+  }
+  slot.left = &slot.pair.left;
+  slot.right = &slot.pair.right;
+  if (rectifier_ != nullptr) {
+    const BusyClock::Activity activity(compute_clock_);
+    const TimedStep step(slot, "rectify");
+    rectifier_->apply(slot.pair.left, Side::kLeft, slot.rectified[0], execution_);
+    rectifier_->apply(slot.pair.right, Side::kRight, slot.rectified[1], execution_);
+    slot.left = &slot.rectified[0];
+    slot.right = &slot.rectified[1];
+  }
+}
+
+void FrameWorker::compute(FrameSlot& slot) {
+  const BusyClock::Activity activity(compute_clock_);
+  match(slot);
+  if (slot.is_lead_in && !options_.measure_flicker) {
+    return;
+  }
+  synthesize(slot);
+  if (slot.is_lead_in) {
+    return;
+  }
+  paint_preview(slot);
+  pack_stereo_picture(slot);
+}
+
+void FrameWorker::match(FrameSlot& slot) {
+  const bool right_is_primary = options_.match.reference == Reference::kRight;
+  const bool both = !options_.views.empty() || options_.saves(SequenceOutput::kStereo) ||
+                    options_.saves(SequenceOutput::kRightDisparity) ||
+                    options_.saves(SequenceOutput::kRightUnmatched);
+  MatchRequest request{.left = !right_is_primary || both,
+                       .right = right_is_primary || both,
+                       .confidence = options_.saves(SequenceOutput::kConfidence)};
+  if (!computes_in_order()) {
+    matcher_.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
+    return;
+  }
+  // A chunk knows nothing of what was before it, whichever of its frames is the first good one.
+  const int chunk = slot.frame / options_.chunk_frames;
+  if (chunk != temporal_chunk_) {
+    temporal_.restart();
+    temporal_chunk_ = chunk;
+  }
+  request.prior = temporal_.priors_for(*slot.left, *slot.right, execution_);
+  matcher_.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
+  temporal_.remember(*slot.left, *slot.right, slot.maps, execution_);
+}
+
+/// Null unless the view is where a camera stood.
+const Photograph* FrameWorker::photograph_at(const FrameSlot& slot, double view_x) const {
+  return view_x == 0 ? slot.left : view_x == 1 ? slot.right : nullptr;
+}
+
+void FrameWorker::synthesize(FrameSlot& slot) const {
+  slot.views_x.clear();
+  for (const ViewTrack& track : options_.views) {
+    slot.views_x.push_back(track.at(slot.frame));
+  }
+  if (options_.saves(SequenceOutput::kStereo)) {
+    for (const double view_x : options_.stereo_views_x) {
+      if (photograph_at(slot, view_x) == nullptr) {
+        slot.views_x.push_back(view_x);
+      }
+    }
+  }
+  if (slot.views_x.empty()) {
+    return;
+  }
+  const TimedStep step(slot, "views");
+  slot.views.resize(slot.views_x.size());
+  const std::array<IntensityFit, 4>* fit =
+      options_.intensity_fit == FitScope::kShot ? &shots_->shot_of(slot.frame).intensity : nullptr;
+  for (std::size_t view = 0; view < slot.views.size(); ++view) {
+    synthesizer_.synthesize(*slot.left, *slot.right, slot.maps.left.view(), slot.maps.right.view(),
+                            slot.views_x[view], slot.views[view], fit);
+  }
+}
+
+void FrameWorker::paint_preview(FrameSlot& slot) const {
+  if (!options_.saves(SequenceOutput::kPreview)) {
+    return;
+  }
+  const TimedStep step(slot, "preview");
+  const PreviewRange range = options_.preview_range_per_shot
+                                 ? shots_->shot_of(slot.frame).preview_range
+                                 : preview_range_of(options_.match.disparities);
+  slot.preview.pixels = colour_preview(primary_map(slot).view(), range.min_px, range.max_px);
+}
+
+void FrameWorker::pack_stereo_picture(FrameSlot& slot) const {
+  if (!options_.saves(SequenceOutput::kStereo)) {
+    return;
+  }
+  const TimedStep step(slot, "stereo");
+  std::size_t next_view = options_.views.size();
+  const auto picture_at = [&](double view_x) {
+    const Photograph* photograph = photograph_at(slot, view_x);
+    return photograph != nullptr ? photograph : &slot.views[next_view++].image;
+  };
+  const Photograph* left = picture_at(options_.stereo_views_x[0]);
+  const Photograph* right = picture_at(options_.stereo_views_x[1]);
+  pack_stereo(*left, *right, options_.stereo_packing, slot.stereo);
+}
+
+const DisparityMap& FrameWorker::primary_map(const FrameSlot& slot) const {
+  return options_.match.reference == Reference::kLeft ? slot.maps.left : slot.maps.right;
+}
+
+const Mask& FrameWorker::mask_of(const FrameSlot& slot, const OutputStream& stream) const {
+  if (stream.output == SequenceOutput::kHoles) {
+    return slot.views[static_cast<std::size_t>(stream.view)].holes;
+  }
+  const bool left =
+      options_.match.reference == Reference::kLeft && stream.output == SequenceOutput::kUnmatched;
+  return left ? slot.maps.left_unmatched : slot.maps.right_unmatched;
+}
+
+/// Null for masks and maps.
+const Photograph* FrameWorker::stored_picture(const FrameSlot& slot,
+                                              const OutputStream& stream) const {
+  switch (stream.output) {
+    case SequenceOutput::kPreview:
+      return &slot.preview;
+    case SequenceOutput::kViews:
+      return &slot.views[static_cast<std::size_t>(stream.view)].image;
+    case SequenceOutput::kStereo:
+      return &slot.stereo;
+    default:
+      return nullptr;
+  }
+}
+
+Photograph FrameWorker::picture_of(const FrameSlot& slot, const OutputStream& stream) const {
+  if (const Photograph* picture = stored_picture(slot, stream)) {
+    return std::visit([](const auto& image) { return Photograph{image.copy()}; }, picture->pixels);
+  }
+  return {mask_of(slot, stream).copy()};
+}
+
+std::string FrameWorker::extension_of(const FrameSlot& slot, const OutputStream& stream) const {
+  switch (stream.output) {
+    case SequenceOutput::kDisparity:
+    case SequenceOutput::kRightDisparity:
+    case SequenceOutput::kConfidence:
+      return options_.map_format;
+    default:
+      break;
+  }
+  // Pictures keep their depth: PNG holds no floats.
+  const Photograph* picture = stored_picture(slot, stream);
+  return picture != nullptr && std::holds_alternative<Image<float>>(picture->pixels) ? "tiff"
+                                                                                     : "png";
+}
+
+std::vector<std::uint8_t> FrameWorker::encoded(const FrameSlot& slot, const OutputStream& stream,
+                                               const std::filesystem::path& path) const {
+  switch (stream.output) {
+    case SequenceOutput::kDisparity:
+      return encode_disparity(path, primary_map(slot).view());
+    case SequenceOutput::kRightDisparity:
+      return encode_disparity(path, slot.maps.right.view());
+    case SequenceOutput::kConfidence:
+      return encode_disparity(path, options_.match.reference == Reference::kLeft
+                                        ? slot.maps.left_confidence.view()
+                                        : slot.maps.right_confidence.view());
+    default:
+      break;
+  }
+  if (const Photograph* picture = stored_picture(slot, stream)) {
+    return encode_photograph(path, *picture);
+  }
+  return encode_photograph(path, picture_of(slot, stream));
+}
+
+void FrameWorker::encode(FrameSlot& slot) const {
+  slot.files.discard();  // left by a frame that was given up
+  slot.file_names.clear();
+  if (slot.is_lead_in) {
+    return;
+  }
+  const TimedStep step(slot, "encode");
+  for (const OutputStream& stream : layout_.streams()) {
+    if (stream.as_video) {
+      continue;
+    }
+    const std::filesystem::path name =
+        SequenceLayout::file(stream, slot.frame, extension_of(slot, stream));
+    const std::filesystem::path path = layout_.folder() / name;
+    slot.files.add(path, encoded(slot, stream, path));
+    slot.file_names.push_back(name.string());
+  }
+}
+
+}  // namespace vantage

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/execution.h"
+#include "engine/matching/stereo_matcher.h"
+#include "engine/rectification/rectifier.h"
+#include "engine/sequence/busy_clock.h"
+#include "engine/sequence/frame_slot.h"
+#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/sequence_options.h"
+#include "engine/sequence/shots.h"
+#include "engine/sequence/temporal_state.h"
+#include "engine/synthesis/view_synthesizer.h"
+
+namespace vantage {
+
+/// Size of all images of a run.
+struct ImageExtent {
+  int width_px = 0;
+  int height_px = 0;
+};
+
+/// What frames are worked on with. All must outlive the worker.
+struct FrameTools {
+  const SequenceOptions& options;
+  const SequenceLayout& layout;
+  const PairSource& pairs;                ///< for decoding
+  std::optional<ImageExtent> frame_size;  ///< that all frames must have; empty: any
+  const Rectifier* rectifier;             ///< null: the pairs are rectified
+  const ShotTable* shots;                 ///< null unless the options need shots
+  Execution& execution;
+};
+
+/// The steps of a frame between reading and writing. What they do depends on the frame and, with a
+/// temporal prior, on the frames before it in its chunk.
+class FrameWorker {
+ public:
+  explicit FrameWorker(const FrameTools& tools);
+
+  /// Whether compute() must be called in the order of the frames, one after the other.
+  [[nodiscard]] bool computes_in_order() const { return options_.temporal.weight > 0; }
+
+  /// Decodes and rectifies. Thread rule: concurrently for different slots; so encode(), and
+  /// compute() unless computes_in_order().
+  void prepare(FrameSlot& slot) const;
+  /// Maps, new views, pictures. Throws Error where the images do not fit.
+  void compute(FrameSlot& slot);
+  /// Writes the files of a frame that is no lead-in, without their names. Throws OutputError.
+  void encode(FrameSlot& slot) const;
+
+  /// Time during which at least one frame was in compute(), or rectified.
+  [[nodiscard]] double compute_seconds() const { return compute_clock_.seconds(); }
+
+  /// Of the reference's map.
+  [[nodiscard]] const DisparityMap& primary_map(const FrameSlot& slot) const;
+  /// What `stream`, none of floats, shows of the frame.
+  [[nodiscard]] Photograph picture_of(const FrameSlot& slot, const OutputStream& stream) const;
+
+ private:
+  void match(FrameSlot& slot);
+  void synthesize(FrameSlot& slot) const;
+  void paint_preview(FrameSlot& slot) const;
+  void pack_stereo_picture(FrameSlot& slot) const;
+  [[nodiscard]] const Photograph* photograph_at(const FrameSlot& slot, double view_x) const;
+  [[nodiscard]] std::vector<std::uint8_t> encoded(const FrameSlot& slot, const OutputStream& stream,
+                                                  const std::filesystem::path& path) const;
+  [[nodiscard]] std::string extension_of(const FrameSlot& slot, const OutputStream& stream) const;
+  [[nodiscard]] const Photograph* stored_picture(const FrameSlot& slot,
+                                                 const OutputStream& stream) const;
+  [[nodiscard]] const Mask& mask_of(const FrameSlot& slot, const OutputStream& stream) const;
+
+  const SequenceOptions& options_;
+  const SequenceLayout& layout_;
+  const PairSource& pairs_;
+  std::optional<ImageExtent> frame_size_;
+  const Rectifier* rectifier_;
+  const ShotTable* shots_;
+  Execution& execution_;
+  StereoMatcher matcher_;
+  ViewSynthesizer synthesizer_;
+  TemporalState temporal_;
+  int temporal_chunk_ = -1;  ///< that temporal_ is of
+  mutable BusyClock compute_clock_;
+};
+
+}  // namespace vantage

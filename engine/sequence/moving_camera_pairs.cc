@@ -1,0 +1,145 @@
+#include "engine/sequence/moving_camera_pairs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cstdlib>
+#include <utility>
+#include <variant>
+
+#include "engine/error.h"
+#include "engine/sequence/frame_numbering.h"
+
+namespace vantage {
+namespace {
+
+/// Copies into the memory that `target` has.
+void copy_photograph(const Photograph& source, Photograph& target) {
+  std::visit(
+      [&]<typename T>(const Image<T>& image) {
+        if (!std::holds_alternative<Image<T>>(target.pixels)) {
+          target.pixels = Image<T>();
+        }
+        auto& copy = std::get<Image<T>>(target.pixels);
+        copy.resize(image.width(), image.height(), image.channels());
+        for (int y = 0; y < image.height(); ++y) {
+          std::copy_n(image.row(y), image.width() * image.channels(), copy.row(y));
+        }
+      },
+      source.pixels);
+}
+
+}  // namespace
+
+MovingCameraPairs::MovingCameraPairs(std::unique_ptr<FrameSource> source, int step)
+    : source_(std::move(source)), distance_(std::abs(step)), later_is_left_(step < 0) {
+  if (pair_count() < 1) {
+    throw Error(fmt::format("no frame has a partner: the sequence has {} frame{}, the step is {}",
+                            source_->frame_count(), source_->frame_count() == 1 ? "" : "s", step));
+  }
+}
+
+std::string MovingCameraPairs::describe(int index) const {
+  const int left = later_is_left_ ? index + distance_ : index;
+  const int right = later_is_left_ ? index : index + distance_;
+  return fmt::format("{}, {}", source_->describe(left), source_->describe(right));
+}
+
+std::vector<std::string> MovingCameraPairs::remarks() const {
+  return numbering_remarks({*source_, 0, source_->frame_count()});
+}
+
+bool MovingCameraImages::fetch(FramePair& pair) {
+  if (next_index_ >= pair_count()) {
+    return false;
+  }
+  pair.index = next_index_++;
+  pair.remarks.clear();
+  source().skip_to(pair.index);
+  source().fetch(earlier(pair));
+  source().skip_to(pair.index + distance());
+  source().fetch(later(pair));
+  return true;
+}
+
+void MovingCameraImages::decode(FramePair& pair) const {
+  for (FetchedFrame& frame : pair.fetched) {
+    frame.decode();
+  }
+  std::swap(pair.left, pair.fetched[0].photograph);
+  std::swap(pair.right, pair.fetched[1].photograph);
+}
+
+MovingCameraVideo::MovingCameraVideo(std::unique_ptr<FrameSource> source, int step)
+    : MovingCameraPairs(std::move(source), step),
+      kept_(static_cast<std::size_t>(std::abs(step)) + 1) {}
+
+bool MovingCameraVideo::keep_next() {
+  KeptFrame& place = kept(kept_end_);
+  place.problem.clear();
+  try {
+    if (!source().fetch(place.fetched)) {
+      return false;
+    }
+  } catch (const Error& error) {
+    place.problem = error.what();
+    place.fetched.frames_missing = 0;
+  }
+  ++kept_end_;
+  return true;
+}
+
+bool MovingCameraVideo::fetch(FramePair& pair) {
+  const int last = next_index_ + distance();
+  while (kept_end_ <= last) {
+    if (!keep_next()) {
+      return false;
+    }
+  }
+  pair.index = next_index_++;
+  pair.remarks.clear();
+  KeptFrame& first_frame = kept(pair.index);
+  const KeptFrame& last_frame = kept(last);
+  for (const KeptFrame* frame : {&std::as_const(first_frame), &last_frame}) {
+    if (!frame->problem.empty()) {
+      throw Error(frame->problem);
+    }
+  }
+  int missing = 0;
+  for (int frame = pair.index + 1; frame <= last; ++frame) {
+    missing += kept(frame).fetched.frames_missing;
+  }
+  if (missing > 0) {
+    pair.remarks.push_back(fmt::format("{} frame{} missing between {} and {}", missing,
+                                       missing == 1 ? " is" : "s are",
+                                       source().describe(pair.index), source().describe(last)));
+  }
+  std::swap(earlier(pair).photograph, first_frame.fetched.photograph);
+  copy_photograph(last_frame.fetched.photograph, later(pair).photograph);
+  return true;
+}
+
+void MovingCameraVideo::decode(FramePair& pair) const {
+  std::swap(pair.left, pair.fetched[0].photograph);
+  std::swap(pair.right, pair.fetched[1].photograph);
+}
+
+void MovingCameraVideo::skip_to(int index) {
+  assert(index >= 0 && index <= pair_count());
+  if (index < next_index_ || index > kept_end_) {
+    source().skip_to(index);
+    kept_end_ = index;
+  }
+  next_index_ = index;
+}
+
+std::unique_ptr<PairSource> make_moving_camera_pairs(std::unique_ptr<FrameSource> source,
+                                                     int step) {
+  if (source->video_file().empty()) {
+    return std::make_unique<MovingCameraImages>(std::move(source), step);
+  }
+  return std::make_unique<MovingCameraVideo>(std::move(source), step);
+}
+
+}  // namespace vantage

@@ -1,0 +1,88 @@
+#include "engine/sequence/pair_source.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/io/image_sequence.h"
+#include "engine/sequence/moving_camera_pairs.h"
+#include "engine/sequence/packed_pairs.h"
+#include "engine/sequence/pair_list.h"
+#include "engine/sequence/two_camera_pairs.h"
+
+namespace vantage {
+namespace {
+
+constexpr int kMaxOffset = 1000000;
+constexpr int kMaxStep = 1000;
+
+std::unique_ptr<PairSource> open_pair_list(const std::filesystem::path& file) {
+  std::vector<std::filesystem::path> left;
+  std::vector<std::filesystem::path> right;
+  for (ListedPair& pair : read_pair_list(file)) {
+    left.push_back(std::move(pair.left));
+    right.push_back(std::move(pair.right));
+  }
+  const auto open_column = [&](const char* column, std::vector<std::filesystem::path> names) {
+    return std::make_unique<ListedImages>(fmt::format("{} ({} column)", file.string(), column),
+                                          file.parent_path(), std::move(names));
+  };
+  return std::make_unique<TwoCameraPairs>(open_column("left", std::move(left)),
+                                          open_column("right", std::move(right)), 0, false);
+}
+
+}  // namespace
+
+void PairSourceOptions::validate() const {
+  const bool two_cameras = !left.empty() || !right.empty();
+  const int kinds = (two_cameras ? 1 : 0) + (stereo.empty() ? 0 : 1) + (pairs.empty() ? 0 : 1) +
+                    (sequence.empty() ? 0 : 1);
+  if (kinds != 1) {
+    throw UsageError(
+        fmt::format("{} input{} given, expected exactly one of left and right, stereo, pairs, "
+                    "sequence",
+                    kinds == 0 ? "no" : "several kinds of", kinds == 0 ? " is" : " are"));
+  }
+  if (two_cameras && (left.empty() || right.empty())) {
+    throw UsageError(left.empty() ? "right is given without left" : "left is given without right");
+  }
+  if (offset_frames < -kMaxOffset || offset_frames > kMaxOffset) {
+    throw UsageError(fmt::format("offset is {}, expected {}..{} frames", offset_frames, -kMaxOffset,
+                                 kMaxOffset));
+  }
+  if (offset_frames != 0 && !two_cameras) {
+    throw UsageError(fmt::format("offset is {}, expected 0 without left and right", offset_frames));
+  }
+  if (!stereo.empty() && !packing) {
+    throw UsageError("stereo is given without packing");
+  }
+  if (packing && stereo.empty()) {
+    throw UsageError("packing is given without stereo");
+  }
+  if (step == 0 || step < -kMaxStep || step > kMaxStep) {
+    throw UsageError(
+        fmt::format("step is {}, expected 1 to {} frames or -1 to -{}", step, kMaxStep, kMaxStep));
+  }
+  if (step != 1 && sequence.empty()) {
+    throw UsageError(fmt::format("step is {}, expected 1 without sequence", step));
+  }
+}
+
+std::unique_ptr<PairSource> open_pair_source(const PairSourceOptions& options) {
+  options.validate();
+  if (!options.stereo.empty()) {
+    return std::make_unique<PackedPairs>(open_frame_source(options.stereo), *options.packing);
+  }
+  if (!options.pairs.empty()) {
+    return open_pair_list(options.pairs);
+  }
+  if (!options.sequence.empty()) {
+    return make_moving_camera_pairs(open_frame_source(options.sequence), options.step);
+  }
+  return std::make_unique<TwoCameraPairs>(open_frame_source(options.left),
+                                          open_frame_source(options.right), options.offset_frames,
+                                          true);
+}
+
+}  // namespace vantage

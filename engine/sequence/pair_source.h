@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/image/stereo_packing.h"
+#include "engine/io/frame_source.h"
+
+namespace vantage {
+
+/// A pair of frames on its way from a source: fetched in order by one thread, decoded by any.
+/// Memory is reused from pair to pair.
+struct FramePair {
+  int index = 0;                        ///< of the pair, counted from 0
+  std::array<FetchedFrame, 2> fetched;  ///< what decode() makes the pair of
+  Photograph left;
+  Photograph right;
+  std::vector<std::string> remarks;  ///< of both frames, and of what they are as a pair
+};
+
+/// Where the pairs of a run come from: exactly one of the four.
+struct PairSourceOptions {
+  /// Two sources of open_frame_source(), paired by index: frame i + offset_frames of the right one
+  /// belongs to frame i of the left one. With a negative offset the first −offset_frames of the
+  /// left one have no partner: pair 0 is then the first that has one.
+  std::string left;
+  std::string right;
+  int offset_frames = 0;
+  /// One source whose frames hold both images.
+  std::string stereo;
+  std::optional<StereoPacking> packing;
+  /// A CSV file with the columns left,right: a pair of image files a line. Names are relative to
+  /// the file's folder; an optional heading "left,right", empty lines and lines that begin with #
+  /// are skipped; quotes as in RFC 4180, blanks around what is not quoted are dropped.
+  std::string pairs;
+  /// One moving camera: frame t is the left image and frame t + step the right one (step < 0: the
+  /// camera moved to the left). |step| in 1..1000.
+  std::string sequence;
+  int step = 1;
+
+  /// Throws UsageError naming the field, its value and what was expected.
+  void validate() const;
+};
+
+/// The pairs of a run, one after the other. Thread rule: one thread at a time but for decode().
+class PairSource {
+ public:
+  PairSource() = default;
+  PairSource(const PairSource&) = delete;
+  PairSource& operator=(const PairSource&) = delete;
+  virtual ~PairSource() = default;
+
+  /// Fetches the next pair; false after the last one, which may come a few pairs before
+  /// pair_count(), see FrameSource::fetch(). Throws Error naming the file or frame when one of its
+  /// frames is bad; the call after that goes on with the next pair. Image files are found to be bad
+  /// by decode().
+  virtual bool fetch(FramePair& pair) = 0;
+  /// Makes `left` and `right` of what was fetched: reads image files, takes packed frames apart.
+  /// Thread rule: concurrently for different pairs. Throws Error.
+  virtual void decode(FramePair& pair) const = 0;
+
+  /// Has the next fetch() give pair `index` (0 ≤ index ≤ pair_count()).
+  virtual void skip_to(int index) = 0;
+  /// Pairs there are in all: frames that have a partner.
+  [[nodiscard]] virtual int pair_count() const = 0;
+  /// "left/000012.png, right/000012.png" or "film.mp4 frame 12".
+  [[nodiscard]] virtual std::string describe(int index) const = 0;
+  /// What is odd about the pairing as a whole, a line each: frames left over on one side ("the left
+  /// sequence has 2 frames more than the right one: …"), file numbers that are missing or differ
+  /// between the sides ("left/000018.png is paired with right/000017.png from pair 17 on").
+  [[nodiscard]] virtual std::vector<std::string> remarks() const = 0;
+  /// Frames without a partner at the end of the longer side; 0 when the lengths agree or follow
+  /// from offset_frames or step.
+  [[nodiscard]] virtual int unpaired_frames() const = 0;
+  /// Of the left video or the packed one; empty for image files.
+  [[nodiscard]] virtual std::optional<FrameRate> frame_rate() const = 0;
+  /// Video file that sound can be taken from, and the frame of it that pair 0 is; the file is empty
+  /// where there is none.
+  struct Sound {
+    std::filesystem::path file;
+    int first_frame = 0;
+  };
+  [[nodiscard]] virtual Sound sound() const = 0;
+  /// One line per source: see FrameSource::identity().
+  [[nodiscard]] virtual std::vector<std::string> identities() const = 0;
+};
+
+/// Throws Error when a source cannot be opened, UsageError for invalid options.
+std::unique_ptr<PairSource> open_pair_source(const PairSourceOptions& options);
+
+}  // namespace vantage

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/io/frame_rate.h"
+#include "engine/sequence/flicker.h"
+#include "engine/sequence/frame_range.h"
+
+namespace vantage {
+
+/// What the files of a run depend on. Two processes that work in one folder must agree on it.
+struct RunIdentity {
+  std::string settings = "{}";       ///< a JSON object: the settings that results depend on
+  /// A line per source, see FrameSource::identity(). What follows the last ": " must be the same.
+  std::vector<std::string> inputs;
+  int frame_count = 0;               ///< of the whole input
+  std::filesystem::path sound_file;  ///< video that sound is taken from; empty: none
+  int sound_first_frame = 0;         ///< the frame of it that frame 0 of the run is
+  FrameRate sound_rate;              ///< of the frames of that video
+};
+
+/// How one frame ended.
+struct FrameRecord {
+  int frame = 0;
+  bool skipped = false;
+  std::string problem = {};               ///< why it was skipped
+  std::vector<std::string> remarks = {};  ///< what was odd about a frame that is done
+  std::vector<std::string> files = {};    ///< relative to the run's folder
+  FlickerSums flicker = {};               ///< all 0 where it was not measured
+};
+
+/// All videos have a segment of these frames.
+struct SegmentRecord {
+  FrameRange frames;
+};
+
+/// The videos of these frames have been joined and their segments removed.
+struct JoinRecord {
+  FrameRange frames;
+};
+
+using JournalRecord = std::variant<FrameRecord, SegmentRecord, JoinRecord>;
+
+/// What a process may find in the folder it is to work in.
+enum class JournalOpening {
+  kNew,       ///< no run; or, for a part of a run, the same run without this part
+  kResume,    ///< nothing, or the same run
+  kForce,     ///< nothing, or any run: what it holds counts as done
+  kOverwrite  ///< anything: an old journal is removed
+};
+
+/// The journal in DIR/.vantage: run.json says what the run is, frames-PART.jsonl what has been
+/// finished, a line each, written after the files it tells of are safe. Every process appends to a
+/// file of its own, which it locks; all read all.
+///
+/// Thread rule: one thread at a time.
+class RunJournal {
+ public:
+  /// `part` names this process's share of the run ("all", "2-of-7"). Throws Error when the folder
+  /// holds something else than `opening` allows, naming what differs, when another process works on
+  /// the same part, or when nothing can be written.
+  RunJournal(const std::filesystem::path& journal_folder, const RunIdentity& identity,
+             JournalOpening opening, const std::string& part);
+  ~RunJournal();
+  RunJournal(RunJournal&&) noexcept;
+  RunJournal& operator=(RunJournal&&) = delete;
+
+  /// Appends and flushes. Throws Error; records are then not to be counted on.
+  void append(std::span<const JournalRecord> records);
+
+  /// Whether the folder holds a run.
+  static bool is_present(const std::filesystem::path& journal_folder);
+  /// Throws Error when there is none or it is damaged.
+  static RunIdentity read_identity(const std::filesystem::path& journal_folder);
+  /// The records of all parts, each part's in order. Lines that were cut off by a crash are not
+  /// counted.
+  static std::vector<JournalRecord> read_records(const std::filesystem::path& journal_folder);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace vantage

@@ -1,0 +1,134 @@
+#include "engine/sequence/segment_writer.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "engine/error.h"
+#include "engine/image/stereo_packing.h"
+#include "engine/sequence/pending_files.h"
+
+namespace vantage {
+
+/// One video. `last` is kept to show it again where frames are skipped.
+struct SegmentWriter::Stream {
+  const OutputStream* output = nullptr;
+  std::unique_ptr<VideoWriter> writer;
+  Photograph last;
+  int leading_skipped = 0;  ///< frames before the segment's first good one
+};
+
+namespace {
+
+/// Videos have two pixels a side at least: smaller pictures are repeated.
+Photograph at_least_two_a_side(Photograph picture) {
+  if (picture.width() > 1 && picture.height() > 1) {
+    return picture;
+  }
+  return std::visit(
+      [](const auto& image) {
+        std::remove_cvref_t<decltype(image)> larger(std::max(2, image.width()),
+                                                    std::max(2, image.height()), image.channels());
+        for (int y = 0; y < larger.height(); ++y) {
+          for (int x = 0; x < larger.width(); ++x) {
+            for (int c = 0; c < larger.channels(); ++c) {
+              larger.at(x, y, c) = image.at(x % image.width(), y % image.height(), c);
+            }
+          }
+        }
+        return Photograph{std::move(larger)};
+      },
+      picture.pixels);
+}
+
+}  // namespace
+
+SegmentWriter::SegmentWriter(const SequenceOptions& options, const SequenceLayout& layout,
+                             const FrameWorker& worker, ImageExtent frame_size,
+                             Execution& execution)
+    : options_(options),
+      layout_(layout),
+      worker_(worker),
+      frame_size_(frame_size),
+      execution_(execution) {
+  for (const OutputStream& output : layout.streams()) {
+    if (output.as_video) {
+      streams_.emplace_back().output = &output;
+    }
+  }
+}
+
+SegmentWriter::~SegmentWriter() = default;
+
+void SegmentWriter::begin(FrameRange frames) {
+  frames_ = frames;
+  for (Stream& stream : streams_) {
+    stream.writer.reset();
+    stream.leading_skipped = 0;
+  }
+}
+
+void SegmentWriter::write(Stream& stream, const Photograph& picture, int times) {
+  try {
+    if (!stream.writer) {
+      stream.writer = std::make_unique<VideoWriter>(
+          layout_.segment(*stream.output, frames_), picture.width(), picture.height(),
+          VideoEncoding{options_.frame_rate, options_.crf});
+    }
+    for (int i = 0; i < times; ++i) {
+      stream.writer->write(picture);
+    }
+  } catch (const Error& error) {
+    throw OutputError(error.what());
+  }
+}
+
+void SegmentWriter::add(const FrameSlot& slot) {
+  // One task per video: an encoder uses one thread, so that its bytes depend on nothing else.
+  execution_.executor().parallel_for(static_cast<int>(streams_.size()), [&](int index) {
+    Stream& stream = streams_[static_cast<std::size_t>(index)];
+    stream.last = at_least_two_a_side(worker_.picture_of(slot, *stream.output));
+    write(stream, stream.last, 1 + std::exchange(stream.leading_skipped, 0));
+  });
+}
+
+void SegmentWriter::add_skipped() {
+  for (Stream& stream : streams_) {
+    if (stream.writer) {
+      write(stream, stream.last, 1);
+    } else {
+      ++stream.leading_skipped;
+    }
+  }
+}
+
+/// Of the size that good frames have: segments are joined.
+Photograph SegmentWriter::black_picture(const OutputStream& output) const {
+  Photograph black{Image<std::uint8_t>(frame_size_.width_px, frame_size_.height_px)};
+  std::get<Image<std::uint8_t>>(black.pixels).fill(0);
+  if (output.output != SequenceOutput::kStereo) {
+    return at_least_two_a_side(std::move(black));
+  }
+  Photograph packed;
+  pack_stereo(black, black, options_.stereo_packing, packed);
+  return at_least_two_a_side(std::move(packed));
+}
+
+void SegmentWriter::finish() {
+  for (Stream& stream : streams_) {
+    if (!stream.writer) {
+      write(stream, black_picture(*stream.output), stream.leading_skipped);
+    }
+    try {
+      stream.writer->finish();
+    } catch (const Error& error) {
+      throw OutputError(error.what());
+    }
+    stream.writer.reset();
+  }
+}
+
+}  // namespace vantage

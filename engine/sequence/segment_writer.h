@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "engine/io/video_io.h"
+#include "engine/sequence/frame_range.h"
+#include "engine/sequence/frame_worker.h"
+#include "engine/sequence/sequence_layout.h"
+
+namespace vantage {
+
+/// Writes the videos of a run, segment by segment. A segment has one picture for each of its
+/// frames: a frame that is skipped shows the one before it, at the beginning of a segment the next
+/// good one, and in a segment without any good one black.
+///
+/// Thread rule: one thread at a time.
+class SegmentWriter {
+ public:
+  /// `frame_size`: of the pairs. All must outlive the writer.
+  SegmentWriter(const SequenceOptions& options, const SequenceLayout& layout,
+                const FrameWorker& worker, ImageExtent frame_size, Execution& execution);
+  ~SegmentWriter();
+
+  /// Begins the segment of `frames`; what was begun before and not finished is dropped.
+  void begin(FrameRange frames);
+  /// The next frame of the segment. Throws OutputError.
+  void add(const FrameSlot& slot);
+  void add_skipped();
+  /// Gives the segment's files their names. Throws OutputError.
+  void finish();
+
+ private:
+  struct Stream;
+  void write(Stream& stream, const Photograph& picture, int times);
+  [[nodiscard]] Photograph black_picture(const OutputStream& output) const;
+
+  const SequenceOptions& options_;
+  const SequenceLayout& layout_;
+  const FrameWorker& worker_;
+  ImageExtent frame_size_;
+  Execution& execution_;
+  std::vector<Stream> streams_;
+  FrameRange frames_;
+};
+
+}  // namespace vantage

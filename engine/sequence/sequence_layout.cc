@@ -1,0 +1,85 @@
+#include "engine/sequence/sequence_layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "engine/error.h"
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of a fixed view its position, of a moving one its number among those.
+std::string view_name(const std::vector<ViewTrack>& views, int view) {
+  const auto track = views.begin() + view;
+  if (!track->moves()) {
+    return fmt::format("{}", track->at(0));
+  }
+  const auto number =
+      std::count_if(views.begin(), track + 1, [](const ViewTrack& other) { return other.moves(); });
+  return fmt::format("path-{}", number);
+}
+
+}  // namespace
+
+SequenceLayout::SequenceLayout(fs::path folder, const SequenceOptions& options)
+    : folder_(std::move(folder)) {
+  for (const SequenceOutput output : options.save) {
+    const auto known = std::ranges::find(sequence_output_names(), output,
+                                         &std::pair<std::string_view, SequenceOutput>::second);
+    const std::string name(known->first);
+    const bool as_video = options.saves_as_video(output);
+    const bool per_view = output == SequenceOutput::kViews || output == SequenceOutput::kHoles;
+    if (!per_view || options.views.size() == 1) {
+      streams_.push_back({output, 0, as_video, name});
+      continue;
+    }
+    for (int view = 0; view < static_cast<int>(options.views.size()); ++view) {
+      streams_.push_back({output, view, as_video, name + "/" + view_name(options.views, view)});
+    }
+  }
+}
+
+bool SequenceLayout::has_videos() const {
+  return std::ranges::any_of(streams_, &OutputStream::as_video);
+}
+
+fs::path SequenceLayout::file(const OutputStream& stream, int frame, const std::string& extension) {
+  return fs::path(stream.name) / fmt::format("{:06}.{}", frame, extension);
+}
+
+fs::path SequenceLayout::video(const OutputStream& stream) const {
+  return folder_ / (stream.name + ".mp4");
+}
+
+fs::path SequenceLayout::segment_folder(const OutputStream& stream) const {
+  return journal_folder() / "segments" / stream.name;
+}
+
+fs::path SequenceLayout::segment(const OutputStream& stream, FrameRange frames) const {
+  return segment_folder(stream) / fmt::format("{:06}-{:06}.mp4", frames.first, frames.end - 1);
+}
+
+void SequenceLayout::make_folders() const {
+  make_folder(journal_folder());
+  for (const OutputStream& stream : streams_) {
+    make_folder(stream.as_video ? segment_folder(stream) : folder_ / stream.name);
+    if (stream.as_video) {
+      make_folder(video(stream).parent_path());
+    }
+  }
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw Error(fmt::format("{}: cannot be made a folder: {}", folder.string(), error.message()));
+  }
+}
+
+}  // namespace vantage

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/sequence/frame_range.h"
+#include "engine/sequence/sequence_options.h"
+
+namespace vantage {
+
+/// One picture per frame that a run writes: as files of their own, or as a video.
+struct OutputStream {
+  SequenceOutput output = SequenceOutput::kDisparity;
+  int view = 0;  ///< number of the new view, for kViews and kHoles
+  bool as_video = false;
+  /// "disparity", or "views/0.25" and "views/path-1" where there are several views. The folder of
+  /// its files, and without .mp4 the file of its video, below the run's folder.
+  std::string name;
+};
+
+/// Where the files of a run are:
+///   DIR/disparity/000000.pfm, DIR/views/000000.png (one view) or DIR/views/0.25/000000.png …
+///   DIR/preview.mp4, DIR/views/0.25.mp4 …            what is written as video
+///   DIR/.vantage/run.json, frames-*.jsonl            the journal
+///   DIR/.vantage/segments/NAME/000000-000049.mp4     parts of videos until they are joined
+class SequenceLayout {
+ public:
+  SequenceLayout(std::filesystem::path folder, const SequenceOptions& options);
+
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  [[nodiscard]] std::filesystem::path journal_folder() const { return folder_ / ".vantage"; }
+  [[nodiscard]] const std::vector<OutputStream>& streams() const { return streams_; }
+  [[nodiscard]] bool has_videos() const;
+
+  /// `extension` comes without the dot. Relative to the folder.
+  [[nodiscard]] static std::filesystem::path file(const OutputStream& stream, int frame,
+                                                  const std::string& extension);
+  [[nodiscard]] std::filesystem::path video(const OutputStream& stream) const;
+  [[nodiscard]] std::filesystem::path segment(const OutputStream& stream, FrameRange frames) const;
+
+  /// Makes all folders that a run of these options needs. Throws Error.
+  void make_folders() const;
+
+ private:
+  [[nodiscard]] std::filesystem::path segment_folder(const OutputStream& stream) const;
+
+  std::filesystem::path folder_;
+  std::vector<OutputStream> streams_;
+};
+
+/// Makes `folder` and its parents. Throws Error.
+void make_folder(const std::filesystem::path& folder);
+
+}  // namespace vantage

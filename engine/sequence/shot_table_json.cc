@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/error.h"
+#include "engine/sequence/shots.h"
+
+namespace vantage {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Shot& shot) {
+  Json intensity = Json::array();
+  for (const IntensityFit& fit : shot.intensity) {
+    intensity.push_back({{"offset", fit.offset}, {"gain", fit.gain}});
+  }
+  // Floats as doubles, which are written so that they come back the same.
+  return {
+      {"first_frame", shot.first_frame},
+      {"end_frame", shot.end_frame},
+      {"intensity", intensity},
+      {"preview_range", {double{shot.preview_range.min_px}, double{shot.preview_range.max_px}}}};
+}
+
+Shot shot_of_json(const Json& json) {
+  Shot shot;
+  shot.first_frame = json.at("first_frame").get<int>();
+  shot.end_frame = json.at("end_frame").get<int>();
+  for (std::size_t c = 0; c < shot.intensity.size(); ++c) {
+    const Json& fit = json.at("intensity").at(c);
+    shot.intensity[c] = {.offset = fit.at("offset").get<double>(),
+                         .gain = fit.at("gain").get<double>()};
+  }
+  shot.preview_range = {json.at("preview_range").at(0).get<float>(),
+                        json.at("preview_range").at(1).get<float>()};
+  return shot;
+}
+
+void check(const ShotTable& table) {
+  if (table.shots.empty()) {
+    throw Error("shots: there is none, expected at least one");
+  }
+  for (std::size_t k = 0; k < table.shots.size(); ++k) {
+    const Shot& shot = table.shots[k];
+    if (shot.end_frame <= shot.first_frame) {
+      throw Error(fmt::format("shots: shot {} has frames {} to {}, expected at least one", k,
+                              shot.first_frame, shot.end_frame));
+    }
+    if (k > 0 && shot.first_frame != table.shots[k - 1].end_frame) {
+      throw Error(
+          fmt::format("shots: shot {} begins at frame {}, expected {}, where the one before "
+                      "ends",
+                      k, shot.first_frame, table.shots[k - 1].end_frame));
+    }
+    if (!(shot.preview_range.min_px < shot.preview_range.max_px)) {
+      throw Error(
+          fmt::format("shots: shot {} has a preview range of {} to {} px, expected the "
+                      "smaller first",
+                      k, shot.preview_range.min_px, shot.preview_range.max_px));
+    }
+    for (const IntensityFit& fit : shot.intensity) {
+      if (!(fit.gain > 0)) {
+        throw Error(
+            fmt::format("shots: shot {} has a gain of {}, expected more than 0", k, fit.gain));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::string to_json(const ShotTable& table) {
+  Json shots = Json::array();
+  for (const Shot& shot : table.shots) {
+    shots.push_back(json_of(shot));
+  }
+  return Json{{"shots", shots}}.dump(1) + "\n";
+}
+
+ShotTable shot_table_from_json(const std::string& text) {
+  ShotTable table;
+  try {
+    const Json json = Json::parse(text);
+    for (const Json& shot : json.at("shots")) {
+      table.shots.push_back(shot_of_json(shot));
+    }
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(fmt::format("shots: cannot be read: {}", error.what()));
+  }
+  check(table);
+  return table;
+}
+
+}  // namespace vantage

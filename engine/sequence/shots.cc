@@ -1,0 +1,239 @@
+#include "engine/sequence/shots.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+
+#include "engine/error.h"
+#include "engine/matching/stereo_matcher.h"
+#include "engine/sequence/preview_range.h"
+#include "engine/sequence/shot_cuts.h"
+#include "engine/synthesis/view_synthesizer.h"
+
+namespace vantage {
+namespace {
+
+constexpr double kViewOfFit = 0.5;  // baselines
+constexpr double kOutside = 0.01;   // share of the disparities on either side of the range
+constexpr float kWidening = 0.05F;
+constexpr float kLeastWideningPx = 0.5F;
+
+/// The disparities of some maps, and the range that shows them.
+class DisparitySamples {
+ public:
+  void add(ImageView<const float> map_px) {
+    for (int y = 0; y < map_px.height(); ++y) {
+      std::copy_if(map_px.row(y), map_px.row(y) + map_px.width(), std::back_inserter(values_),
+                   [](float d) { return std::isfinite(d); });
+    }
+  }
+  [[nodiscard]] bool empty() const { return values_.empty(); }
+  [[nodiscard]] PreviewRange range() {
+    const float least = percentile(kOutside);
+    const float most = percentile(1 - kOutside);
+    const float margin = std::max(kLeastWideningPx, kWidening * (most - least));
+    return {least - margin, most + margin};
+  }
+  void clear() { values_.clear(); }
+
+ private:
+  [[nodiscard]] float percentile(double share) {
+    const auto place =
+        static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values_.size() - 1)));
+    std::nth_element(values_.begin(), values_.begin() + place, values_.end());
+    return values_[static_cast<std::size_t>(place)];
+  }
+
+  std::vector<float> values_;
+};
+
+/// One survey.
+class Survey {
+ public:
+  Survey(PairSource& pairs, const SequenceOptions& options, const SurveyHooks& hooks,
+         Execution& execution)
+      : pairs_(pairs),
+        options_(options),
+        hooks_(hooks),
+        execution_(execution),
+        matcher_(options.match, execution),
+        synthesizer_(options.synthesis, execution) {}
+
+  [[nodiscard]] std::optional<ShotTable> run(int first_frame, int end_frame) {
+    progress_.frames_total = end_frame - first_frame;
+    const std::optional<ShotCuts> cuts = find_cuts(first_frame, end_frame);
+    if (!cuts) {
+      return std::nullopt;
+    }
+    ShotTable table;
+    table.shots.push_back(shot_from(first_frame, end_frame));
+    for (const int start : cuts->shot_starts()) {
+      if (start > 0) {
+        table.shots.back().end_frame = first_frame + start;
+        table.shots.push_back(shot_from(first_frame + start, end_frame));
+      }
+    }
+    for (const Shot& shot : table.shots) {
+      progress_.frames_total += static_cast<int>(samples_of(shot).size());
+    }
+    for (Shot& shot : table.shots) {
+      if (!fit(shot)) {
+        return std::nullopt;
+      }
+    }
+    return table;
+  }
+
+ private:
+  [[nodiscard]] bool is_stopped() const { return hooks_.stop != nullptr && hooks_.stop->load(); }
+  void report(int frames) {
+    progress_.frames_done += frames;
+    if (hooks_.progress) {
+      hooks_.progress(progress_);
+    }
+  }
+
+  [[nodiscard]] Shot shot_from(int first_frame, int end_frame) const {
+    return {.first_frame = first_frame,
+            .end_frame = end_frame,
+            .preview_range = preview_range_of(options_.match.disparities)};
+  }
+
+  /// False at the end of the sequence; a pair that cannot be fetched has no thumbnail.
+  bool fetch(FramePair& pair, bool& is_good) {
+    try {
+      is_good = true;
+      return pairs_.fetch(pair);
+    } catch (const Error&) {
+      is_good = false;
+      return true;
+    }
+  }
+
+  /// Frames are fetched one after the other, and a batch of them looked at in parallel.
+  [[nodiscard]] std::optional<ShotCuts> find_cuts(int first_frame, int end_frame) {
+    struct Slot {
+      FramePair pair;
+      bool is_good = false;
+      std::optional<Thumbnail> thumbnail;
+    };
+    std::vector<Slot> slots(static_cast<std::size_t>(execution_.executor().thread_count()));
+    ShotCuts cuts;
+    pairs_.skip_to(first_frame);
+    for (int frame = first_frame; frame < end_frame;) {
+      if (is_stopped()) {
+        return std::nullopt;
+      }
+      int count = 0;
+      while (count < static_cast<int>(slots.size()) && frame < end_frame) {
+        Slot& slot = slots[static_cast<std::size_t>(count)];
+        if (!fetch(slot.pair, slot.is_good)) {
+          frame = end_frame;
+          break;
+        }
+        ++count;
+        ++frame;
+      }
+      execution_.executor().parallel_for(count, [&](int k) {
+        Slot& slot = slots[static_cast<std::size_t>(k)];
+        slot.thumbnail = slot.is_good ? thumbnail_of(slot.pair) : std::nullopt;
+      });
+      for (int k = 0; k < count; ++k) {
+        cuts.add(slots[static_cast<std::size_t>(k)].thumbnail);
+      }
+      report(count);
+    }
+    return cuts;
+  }
+
+  [[nodiscard]] std::optional<Thumbnail> thumbnail_of(FramePair& pair) const {
+    try {
+      pairs_.decode(pair);
+      return make_thumbnail(pair.left);
+    } catch (const UsageError&) {
+      throw;
+    } catch (const Error&) {
+      return std::nullopt;
+    }
+  }
+
+  /// First, middle and last frame, each once.
+  [[nodiscard]] static std::vector<int> samples_of(const Shot& shot) {
+    std::vector<int> frames = {shot.first_frame,
+                               shot.first_frame + (shot.end_frame - 1 - shot.first_frame) / 2,
+                               shot.end_frame - 1};
+    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+    return frames;
+  }
+
+  /// False when stopped.
+  bool fit(Shot& shot) {
+    kernels::IntensitySums sums;
+    int channels = 0;
+    disparities_.clear();
+    for (const int frame : samples_of(shot)) {
+      if (is_stopped()) {
+        return false;
+      }
+      try {
+        add_sample(frame, sums);
+        channels = pair_.left.channels();
+      } catch (const UsageError&) {
+        throw;
+      } catch (const Error&) {
+        // The run will say what is wrong with it.
+      }
+      report(1);
+    }
+    shot.intensity = fit_channels(sums, channels, 1);
+    if (!disparities_.empty()) {
+      shot.preview_range = disparities_.range();
+    }
+    return true;
+  }
+
+  void add_sample(int frame, kernels::IntensitySums& sums) {
+    pairs_.skip_to(frame);
+    if (!pairs_.fetch(pair_)) {
+      return;
+    }
+    pairs_.decode(pair_);
+    if (hooks_.prepare) {
+      hooks_.prepare(pair_);
+    }
+    matcher_.match(pair_.left, pair_.right, {}, maps_);
+    const bool is_left = options_.match.reference == Reference::kLeft;
+    disparities_.add(is_left ? maps_.left.view() : maps_.right.view());
+    sums.add(synthesizer_.intensity_sums(pair_.left, pair_.right, maps_.left.view(),
+                                         maps_.right.view(), kViewOfFit));
+  }
+
+  PairSource& pairs_;
+  const SequenceOptions& options_;
+  const SurveyHooks& hooks_;
+  Execution& execution_;
+  StereoMatcher matcher_;
+  ViewSynthesizer synthesizer_;
+  SurveyProgress progress_;
+  FramePair pair_;
+  DisparityMaps maps_;
+  DisparitySamples disparities_;
+};
+
+}  // namespace
+
+const Shot& ShotTable::shot_of(int frame) const {
+  const auto behind =
+      std::upper_bound(shots.begin(), shots.end(), frame,
+                       [](int number, const Shot& shot) { return number < shot.first_frame; });
+  return behind == shots.begin() ? shots.front() : *std::prev(behind);
+}
+
+std::optional<ShotTable> survey_shots(PairSource& pairs, int first_frame, int end_frame,
+                                      const SequenceOptions& options, const SurveyHooks& hooks,
+                                      Execution& execution) {
+  return Survey(pairs, options, hooks, execution).run(first_frame, end_frame);
+}
+
+}  // namespace vantage

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/sequence/pair_source.h"
+
+namespace vantage {
+
+/// Pairs of the frames of two cameras, by index.
+class TwoCameraPairs final : public PairSource {
+ public:
+  /// Frame i + offset_frames of `right` belongs to frame i of `left`. `numbers_matter`: remarks()
+  /// looks at the numbers in the file names. Throws Error when no frame has a partner.
+  TwoCameraPairs(std::unique_ptr<FrameSource> left, std::unique_ptr<FrameSource> right,
+                 int offset_frames, bool numbers_matter);
+
+  bool fetch(FramePair& pair) override;
+  void decode(FramePair& pair) const override;
+  void skip_to(int index) override;
+  [[nodiscard]] int pair_count() const override { return pair_count_; }
+  [[nodiscard]] std::string describe(int index) const override;
+  [[nodiscard]] std::vector<std::string> remarks() const override;
+  [[nodiscard]] int unpaired_frames() const override;
+  [[nodiscard]] std::optional<FrameRate> frame_rate() const override;
+  [[nodiscard]] Sound sound() const override;
+  [[nodiscard]] std::vector<std::string> identities() const override;
+
+ private:
+  /// Frames at the end of the left (right) source that have no partner.
+  [[nodiscard]] int left_over() const { return left_->frame_count() - first_left_ - pair_count_; }
+  [[nodiscard]] int right_over() const {
+    return right_->frame_count() - first_right_ - pair_count_;
+  }
+
+  std::unique_ptr<FrameSource> left_;
+  std::unique_ptr<FrameSource> right_;
+  bool numbers_matter_;
+  int first_left_;  // frame of pair 0
+  int first_right_;
+  int pair_count_;
+  int next_index_ = 0;
+};
+
+}  // namespace vantage

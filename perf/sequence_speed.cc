@@ -1,0 +1,418 @@
+// Speed of sequences: what a frame costs without reading and writing, the sustained rate of a run
+// from files to files, and the loop a user of OpenCV writes, all interleaved in one run.
+// Prints tables; --json FILE writes the figures.
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/build_info.h"
+#include "engine/matching/stereo_matcher.h"
+#include "engine/sequence/sequence_runner.h"
+#include "engine/simd.h"
+#include "engine/synthesis/view_synthesizer.h"
+#include "perf/opencv_loop.h"
+#include "perf/sequence_inputs.h"
+
+namespace vantage::perf {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr DisparityRange kRange = {0, 79};
+constexpr double kViewX = 0.5;
+constexpr int kChunkFrames = 24;
+/// Delivered before the clock of a run starts: by then all memory has been allocated.
+constexpr int kWarmUpFrames = 8;
+
+/// Of one frame, in seconds: by the wall clock, and of all the process's threads together. The
+/// second hardly depends on what else the machine does.
+struct FrameTime {
+  double wall = 0;
+  double processor = 0;
+};
+
+class Stopwatch {
+ public:
+  [[nodiscard]] FrameTime per_frame(int frames) const {
+    const std::chrono::duration<double> wall = Clock::now() - wall_start_;
+    return {wall.count() / frames, (processor_seconds() - processor_start_) / frames};
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  static double processor_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& time) {
+      return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  }
+
+  Clock::time_point wall_start_ = Clock::now();
+  double processor_start_ = processor_seconds();
+};
+
+/// One way to work on a sequence; returns the time of a frame.
+struct Contender {
+  std::string name;
+  std::function<FrameTime()> run;
+  std::vector<FrameTime> rounds = {};
+};
+
+struct Method {
+  std::string name;
+  MatchOptions match;
+  int frames;  ///< of a run, warm-up included
+};
+
+std::vector<Method> all_methods() {
+  std::vector<Method> methods(4);
+  methods[0] = {.name = "ssd", .match = {}, .frames = 104};
+  methods[1] = {.name = "preset fast", .match = {}, .frames = 104};
+  methods[1].match.preset = MatchPreset::kFast;
+  methods[2] = {.name = "preset balanced", .match = {}, .frames = 56};
+  methods[2].match.preset = MatchPreset::kBalanced;
+  methods[3] = {.name = "bayes", .match = {}, .frames = 24};
+  methods[3].match.method = MatchMethod::kBayes;
+  for (Method& method : methods) {
+    method.match.disparities = kRange;
+  }
+  return methods;
+}
+
+SequenceOptions run_options(const Method& method, bool views_as_video) {
+  SequenceOptions options;
+  options.match = method.match;
+  options.save = {SequenceOutput::kDisparity, SequenceOutput::kRightDisparity,
+                  SequenceOutput::kViews};
+  if (views_as_video) {
+    options.video = {SequenceOutput::kViews};
+  }
+  options.views = {ViewTrack::fixed(kViewX)};
+  options.chunk_frames = kChunkFrames;
+  return options;
+}
+
+/// What a run computes between reading and writing, on pairs in memory.
+class Computation {
+ public:
+  Computation(const Method& method, int threads)
+      : execution_({.threads = threads}),
+        matcher_(method.match, execution_),
+        synthesizer_(SynthesisOptions{}, execution_) {}
+
+  void work(const FramePair& pair) {
+    const auto results = results_.borrow();
+    matcher_.match(pair.left, pair.right, {}, results->maps);
+    synthesizer_.synthesize(pair.left, pair.right, results->maps.left.view(),
+                            results->maps.right.view(), kViewX, results->view);
+  }
+
+  /// Each frame after the other, or as many at a time as there are threads.
+  FrameTime work(const std::vector<FramePair>& pairs) {
+    const Stopwatch watch;
+    const int count = static_cast<int>(pairs.size());
+    execution_.executor().parallel_for(
+        count, [&](int pair) { work(pairs[static_cast<std::size_t>(pair)]); });
+    return watch.per_frame(count);
+  }
+
+ private:
+  struct Results {
+    DisparityMaps maps;
+    SynthesizedView view;
+  };
+
+  Execution execution_;
+  StereoMatcher matcher_;
+  ViewSynthesizer synthesizer_;
+  ObjectPool<Results> results_;
+};
+
+/// From files to files. The clock starts when the first frames have been delivered.
+FrameTime time_run(const PairSourceOptions& input, const SequenceOptions& options, int frames,
+                   int threads, int in_flight, const fs::path& folder) {
+  fs::remove_all(folder);
+  RepeatedPairs pairs(input, frames);
+  Execution execution({.threads = threads});
+  FramePair first;
+  pairs.fetch(first);
+  pairs.decode(first);
+  const ImageExtent size{first.left.width(), first.left.height()};
+  pairs.skip_to(0);
+  const SequenceLayout layout(folder, options);
+  RunIdentity identity;
+  identity.frame_count = frames;
+  RunJournal journal(layout.journal_folder(), identity, JournalOpening::kNew, "all");
+  std::optional<Stopwatch> watch;
+  int frames_before = 0;
+  SequenceRun run{.pairs = pairs,
+                  .selection = {.frame_count = frames,
+                                .chunk_frames = kChunkFrames,
+                                .frames = std::nullopt,
+                                .shard = std::nullopt},
+                  .frame_size = size,
+                  .in_flight = in_flight,
+                  .on_progress = [&](const SequenceProgress& progress) {
+                    if (!watch && progress.frames_done >= kWarmUpFrames) {
+                      watch.emplace();
+                      frames_before = progress.frames_done;
+                    }
+                  }};
+  SequenceRunner(options, execution).run(run, layout, journal);
+  return watch->per_frame(frames - frames_before);
+}
+
+/// The loop over PNG files or over a packed video, which OpenCV's own reader would decode with the
+/// same library.
+FrameTime time_opencv(const SequenceInputs& inputs, bool from_video, int frames, int threads,
+                      const fs::path& folder) {
+  for (const char* name : {"disparity", "right-disparity", "views"}) {
+    fs::create_directories(folder / name);
+  }
+  cv::setNumThreads(threads);
+  OpenCvLoop loop(kRange);
+  std::optional<Stopwatch> watch;
+  std::optional<VideoReader> reader;
+  Photograph packed;
+  cv::Mat left;
+  cv::Mat right;
+  for (int frame = 0; frame < frames; ++frame) {
+    if (frame == 1) {
+      watch.emplace();
+    }
+    if (from_video) {
+      if (!reader || !reader->read(packed)) {
+        reader.emplace(inputs.video_file);
+        reader->read(packed);
+      }
+      const auto& image = std::get<Image<std::uint8_t>>(packed.pixels);
+      const cv::Mat both(image.height(), image.width(), CV_8UC(image.channels()),
+                         const_cast<std::uint8_t*>(image.row(0)), image.view().stride());
+      left = both.colRange(0, both.cols / 2);
+      right = both.colRange(both.cols / 2, both.cols);
+    } else {
+      const auto& files =
+          inputs.image_pairs[static_cast<std::size_t>(frame) % inputs.image_pairs.size()];
+      left = cv::imread(files[0].string(), cv::IMREAD_UNCHANGED);
+      right = cv::imread(files[1].string(), cv::IMREAD_UNCHANGED);
+    }
+    loop.work(left, right, folder, fmt::format("{:06}", frame));
+  }
+  cv::setNumThreads(1);
+  return watch->per_frame(frames - 1);
+}
+
+std::vector<FramePair> decode_pairs(const PairSourceOptions& input, int count) {
+  const auto source = open_pair_source(input);
+  std::vector<FramePair> pairs(static_cast<std::size_t>(std::min(count, source->pair_count())));
+  for (FramePair& pair : pairs) {
+    source->fetch(pair);
+    source->decode(pair);
+  }
+  return pairs;
+}
+
+/// Runs all in turn, so that a machine that slows down meanwhile does so for all of them.
+void run_interleaved(std::vector<Contender>& contenders, int rounds) {
+  for (Contender& contender : contenders) {
+    contender.run();
+  }
+  for (int round = 0; round < rounds; ++round) {
+    for (Contender& contender : contenders) {
+      contender.rounds.push_back(contender.run());
+    }
+  }
+}
+
+double least(std::vector<double> values) { return *std::min_element(values.begin(), values.end()); }
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+std::vector<double> of(const std::vector<FrameTime>& rounds, double FrameTime::*time) {
+  std::vector<double> values;
+  for (const FrameTime& round : rounds) {
+    values.push_back(round.*time);
+  }
+  return values;
+}
+
+/// Round by round: cores × wall time of `contender` over processor time of `reference`, inverted.
+double median_efficiency(const Contender& reference, const Contender& contender, int cores) {
+  std::vector<double> values;
+  for (std::size_t round = 0; round < contender.rounds.size(); ++round) {
+    values.push_back(reference.rounds[round].wall / (cores * contender.rounds[round].wall));
+  }
+  return median(values);
+}
+
+/// The first contender is what a frame costs one thread without reading and writing.
+nlohmann::json print_table(const std::string& title, const std::vector<Contender>& contenders,
+                           const Contender& peer, int cores) {
+  fmt::print("\n{}\n{:<38} {:>9} {:>9} {:>9} {:>9} {:>10} {:>10}\n", title, "", "least ms",
+             "median ms", "CPU ms", "frames/s", "efficiency", "to OpenCV");
+  nlohmann::json rows = nlohmann::json::array();
+  const auto row = [&](const Contender& contender) {
+    const std::vector<double> wall = of(contender.rounds, &FrameTime::wall);
+    const double processor = least(of(contender.rounds, &FrameTime::processor));
+    const double efficiency = median_efficiency(contenders.front(), contender, cores);
+    const double ratio = median(wall) / median(of(peer.rounds, &FrameTime::wall));
+    fmt::print("{:<38} {:>9.2f} {:>9.2f} {:>9.2f} {:>9.1f} {:>10.3f} {:>10.3f}\n", contender.name,
+               least(wall) * 1e3, median(wall) * 1e3, processor * 1e3, 1 / median(wall), efficiency,
+               ratio);
+    rows.push_back({{"name", contender.name},
+                    {"least_seconds", least(wall)},
+                    {"median_seconds", median(wall)},
+                    {"processor_seconds", processor},
+                    {"efficiency", efficiency},
+                    {"ratio_to_opencv", ratio}});
+  };
+  for (const Contender& contender : contenders) {
+    row(contender);
+  }
+  row(peer);
+  return {{"title", title}, {"rows", rows}};
+}
+
+struct Settings {
+  std::optional<fs::path> json;
+  fs::path input = fs::path(VANTAGE_SHARED_DATA) / "kitti_seq1";
+  fs::path output = fs::temp_directory_path();
+  int rounds = 5;
+  int threads = scheduler::detect_machine().hardware_threads;
+  std::optional<int> in_flight;
+  std::string only;  ///< name of a method; empty: all
+};
+
+nlohmann::json time_input(const SequenceInputs& inputs, bool from_video, const Settings& settings,
+                          const fs::path& folder) {
+  const PairSourceOptions& input = from_video ? inputs.video : inputs.images;
+  const int in_flight = settings.in_flight.value_or(settings.threads + 2);
+  const std::string form = from_video ? "packed MP4" : "PNG pairs";
+  const std::vector<FramePair> pairs = decode_pairs(input, 16);
+  std::vector<std::unique_ptr<Computation>> computations;
+  std::vector<Contender> contenders;
+  std::vector<std::pair<std::string, std::size_t>> groups;
+  for (const Method& method : all_methods()) {
+    if (!settings.only.empty() && settings.only != method.name) {
+      continue;
+    }
+    groups.emplace_back(method.name, contenders.size());
+    for (const int threads : {1, settings.threads}) {
+      computations.push_back(std::make_unique<Computation>(method, threads));
+      contenders.push_back(
+          {threads == 1 ? "computing alone, 1 thread"
+                        : fmt::format("computing alone, {} frames at a time", threads),
+           [&pairs, computation = computations.back().get()] { return computation->work(pairs); }});
+    }
+    contenders.push_back({form + " to PFM and PNG", [&, method] {
+                            return time_run(input, run_options(method, false), method.frames,
+                                            settings.threads, in_flight, folder / "run");
+                          }});
+    contenders.push_back({form + " to PFM and MP4", [&, method] {
+                            return time_run(input, run_options(method, true), method.frames,
+                                            settings.threads, in_flight, folder / "run");
+                          }});
+  }
+  contenders.push_back({"OpenCV StereoSGBM loop", [&, from_video] {
+                          return time_opencv(inputs, from_video, 25, settings.threads,
+                                             folder / "opencv");
+                        }});
+  run_interleaved(contenders, settings.rounds);
+  nlohmann::json tables = nlohmann::json::array();
+  for (const auto& [name, first] : groups) {
+    const auto begin = contenders.begin() + static_cast<std::ptrdiff_t>(first);
+    tables.push_back(print_table(fmt::format("{}, {}: {}", inputs.name, form, name),
+                                 {begin, begin + 4}, contenders.back(), settings.threads));
+  }
+  return tables;
+}
+
+int usage() {
+  fmt::print(stderr,
+             "sequence_speed [FOLDER with left/, right/ and a packed .mp4] [--json FILE] [--rounds "
+             "N] [--output FOLDER] [--threads N] [--in-flight N] [--only METHOD] \n");
+  return 2;
+}
+
+std::optional<SequenceInputs> find_inputs(const fs::path& folder) {
+  if (!fs::is_directory(folder / "left") || !fs::is_directory(folder / "right")) {
+    return std::nullopt;
+  }
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".mp4") {
+      return sequence_inputs(folder.filename().string(), folder / "left", folder / "right",
+                             entry.path());
+    }
+  }
+  return std::nullopt;
+}
+
+int run_benchmark(int argc, char** argv) {
+  Settings settings;
+  for (int i = 1; i < argc; ++i) {
+    const std::string option = argv[i];
+    if (!option.starts_with("--")) {
+      settings.input = option;
+      continue;
+    }
+    if (++i == argc) {
+      return usage();
+    }
+    if (option == "--json") {
+      settings.json = argv[i];
+    } else if (option == "--rounds") {
+      settings.rounds = std::max(1, std::atoi(argv[i]));
+    } else if (option == "--output") {
+      settings.output = argv[i];
+    } else if (option == "--threads") {
+      settings.threads = std::max(1, std::atoi(argv[i]));
+    } else if (option == "--in-flight") {
+      settings.in_flight = std::max(1, std::atoi(argv[i]));
+    } else if (option == "--only") {
+      settings.only = argv[i];
+    } else {
+      return usage();
+    }
+  }
+  cv::setNumThreads(1);
+  fmt::print("instruction set {}, {} threads\n", instruction_set_in_use(), settings.threads);
+  const fs::path folder = settings.output / fmt::format("sequence_speed-{}", ::getpid());
+  fs::create_directories(folder);
+  std::optional<SequenceInputs> inputs = find_inputs(settings.input);
+  if (!inputs) {
+    fmt::print("no sequence in {}: a generated one is used\n", settings.input.string());
+    inputs = generate_sequence(folder / "input");
+  }
+  nlohmann::json tables = nlohmann::json::array();
+  for (const bool from_video : {false, true}) {
+    for (auto& table : time_input(*inputs, from_video, settings, folder)) {
+      tables.push_back(std::move(table));
+    }
+  }
+  fs::remove_all(folder);
+  if (settings.json) {
+    std::ofstream(*settings.json) << tables.dump(2) << '\n';
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace vantage::perf
+
+int main(int argc, char** argv) { return vantage::perf::run_benchmark(argc, argv); }

@@ -1,0 +1,143 @@
+#include "tests/apps/run_fixture.h"
+
+#include <cstdio>
+#include <sstream>
+
+#include "engine/execution.h"
+#include "engine/generation/layered_scene.h"
+
+namespace vantage {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kDifferencesTold = 5;
+
+bool is_unnamed(const std::string& name) {
+  return name.ends_with(".pending") || name.find(".tmp-") != std::string::npos;
+}
+
+void write_bytes(const std::string& path, const Photograph& photograph) {
+  const auto bytes = encode_photograph(path, photograph);
+  write_file(path, std::string(bytes.begin(), bytes.end()));
+}
+
+}  // namespace
+
+FolderContent results_in(const fs::path& folder) {
+  FolderContent content;
+  for (const std::string& name : files_below(folder)) {
+    if (!name.starts_with(".vantage/")) {
+      content[name] = read_file(folder / name);
+    }
+  }
+  return content;
+}
+
+std::vector<std::string> leftovers_in(const fs::path& folder) {
+  std::vector<std::string> left;
+  for (const std::string& name : files_below(folder)) {
+    if (is_unnamed(name)) {
+      left.push_back(name);
+    }
+  }
+  return left;
+}
+
+testing::AssertionResult same_files(const FolderContent& actual, const FolderContent& expected) {
+  std::vector<std::string> differences;
+  for (const auto& [name, bytes] : expected) {
+    const auto found = actual.find(name);
+    if (found == actual.end()) {
+      differences.push_back(name + " is missing");
+    } else if (found->second != bytes) {
+      differences.push_back(name + " has other bytes");
+    }
+  }
+  for (const auto& [name, bytes] : actual) {
+    if (!expected.contains(name)) {
+      differences.push_back(name + " should not be there");
+    }
+  }
+  if (differences.empty()) {
+    return testing::AssertionSuccess();
+  }
+  auto failure = testing::AssertionFailure() << differences.size() << " differences:";
+  for (std::size_t i = 0; i < std::min(differences.size(), kDifferencesTold); ++i) {
+    failure << " " << differences[i] << ";";
+  }
+  return failure;
+}
+
+std::vector<int> journalled_frames(const fs::path& folder, bool skipped) {
+  std::map<int, bool> frames;
+  for (const std::string& name : files_below(folder / ".vantage")) {
+    if (!name.starts_with("frames-")) {
+      continue;
+    }
+    std::istringstream lines(read_file(folder / ".vantage" / name));
+    for (std::string line; std::getline(lines, line);) {
+      const auto record = nlohmann::json::parse(line, nullptr, false);
+      if (record.is_object() && record.contains("frame")) {
+        frames[record["frame"]] = record.contains("skipped");
+      }
+    }
+  }
+  std::vector<int> found;
+  for (const auto& [frame, is_skipped] : frames) {
+    if (is_skipped == skipped) {
+      found.push_back(frame);
+    }
+  }
+  return found;
+}
+
+std::string frame_file(int frame, const std::string& extension) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06d.", frame);
+  return name + extension;
+}
+
+nlohmann::json read_report(const fs::path& path) { return nlohmann::json::parse(read_file(path)); }
+
+std::vector<std::string> joined(std::vector<std::string> some,
+                                const std::vector<std::string>& more) {
+  some.insert(some.end(), more.begin(), more.end());
+  return some;
+}
+
+RunTest::RunTest() {
+  Execution execution(ExecutionOptions{});
+  const LayeredScene scene(
+      {.width_px = kWidth, .height_px = kHeight, .far_disparity_px = 1, .samples_per_side = 1},
+      execution);
+  fs::create_directory(left_);
+  fs::create_directory(right_);
+  for (int frame = 0; frame < kFrames; ++frame) {
+    write_bytes(left_ + "/" + frame_file(frame), scene.render({0, 0}, frame).image);
+    write_bytes(right_ + "/" + frame_file(frame), scene.render({1, 0}, frame).image);
+  }
+}
+
+std::vector<std::string> RunTest::arguments(const std::string& out,
+                                            const std::vector<std::string>& more) const {
+  return joined({"run", "--left", left_, "--right", right_, "-o", out, "--disparities=0:9"}, more);
+}
+
+ProcessResult RunTest::run(const std::string& out, const std::vector<std::string>& more) const {
+  return run_vantage(arguments(out, more));
+}
+
+FolderContent RunTest::undisturbed(const std::vector<std::string>& more) const {
+  const TemporaryFolder out;
+  const ProcessResult result = run(out / "out", more);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return results_in(out / "out");
+}
+
+std::string RunTest::frame_bytes(const std::string& side, int frame) const {
+  return read_file(folder_ / (side + "/" + frame_file(frame)));
+}
+
+}  // namespace vantage

@@ -1,0 +1,385 @@
+// Runs whose input is damaged, incomplete or not what it was.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "engine/io/video_io.h"
+#include "tests/apps/run_fixture.h"
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr int kBad = 7;
+
+std::vector<int> numbers(int first, int end) {
+  std::vector<int> all(static_cast<std::size_t>(end - first));
+  std::iota(all.begin(), all.end(), first);
+  return all;
+}
+
+class RunSources : public RunTest {
+ protected:
+  [[nodiscard]] std::string file(const std::string& side, int frame) const {
+    return folder_ / (side + "/" + frame_file(frame));
+  }
+
+  /// Without --keep-going the run ends there and says why; what is before it is done.
+  void expect_stop_at(int frame, const std::string& source, const std::string& says) const {
+    const ProcessResult result = run(out_, {"--quiet"});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_TRUE(is_one_line(result, "run"));
+    EXPECT_THAT(result.err, HasSubstr("frame " + std::to_string(frame)));
+    EXPECT_THAT(result.err, HasSubstr(source));
+    EXPECT_THAT(result.err, HasSubstr(says));
+    EXPECT_EQ(journalled_frames(out_), numbers(0, frame));
+    EXPECT_EQ(results_in(out_).size(), static_cast<std::size_t>(frame));
+    EXPECT_THAT(leftovers_in(out_), IsEmpty());
+  }
+
+  /// With --keep-going all others are made; the report and the journal tell of those left out.
+  void expect_skipped(const std::vector<int>& frames,
+                      const std::vector<std::string>& outputs = {}) const {
+    const std::string report = folder_ / "report.json";
+    const ProcessResult result =
+        run(out_, joined(outputs, {"--resume", "--keep-going", "--report", report}));
+    EXPECT_EQ(result.exit_code, 3) << result.err;
+    EXPECT_EQ(journalled_frames(out_, true), frames);
+    EXPECT_EQ(journalled_frames(out_).size(), kFrames - frames.size());
+    const nlohmann::json results = read_report(report)["results"];
+    ASSERT_EQ(results["skipped"].size(), frames.size());
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      EXPECT_EQ(results["skipped"][i]["frame"], frames[i]);
+      EXPECT_FALSE(fs::exists(out_ + "/disparity/" + frame_file(frames[i], "pfm")));
+    }
+  }
+
+  /// The sources are whole again: what was skipped is made.
+  void expect_repaired(const FolderContent& expected,
+                       const std::vector<std::string>& outputs = {}) const {
+    const std::string report = folder_ / "report.json";
+    const std::vector<std::string> again = joined(outputs, {"--resume", "--report", report});
+    const ProcessResult refused = run(out_, joined(again, {"--quiet"}));
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_TRUE(is_one_line(refused, "run"));
+    EXPECT_THAT(refused.err, HasSubstr("the input was"));
+    const ProcessResult result = run(out_, joined(again, {"--force"}));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(same_files(results_in(out_), expected));
+    EXPECT_THAT(journalled_frames(out_, true), IsEmpty());
+  }
+
+  void break_and_repair(const std::string& side, const std::string& broken_bytes,
+                        const std::string& says) {
+    const FolderContent expected = undisturbed({});
+    const std::string whole = frame_bytes(side, kBad);
+    write_file(file(side, kBad), broken_bytes);
+    expect_stop_at(kBad, file(side, kBad), says);
+    expect_skipped({kBad});
+    write_file(file(side, kBad), whole);
+    expect_repaired(expected);
+    EXPECT_EQ(read_report(folder_ / "report.json")["results"]["frames"], 1);
+  }
+
+  std::string out_ = folder_ / "out";
+};
+
+TEST_F(RunSources, APngThatIsCutOff) {
+  break_and_repair("left", frame_bytes("left", kBad).substr(0, 900), "");
+}
+
+TEST_F(RunSources, APngWithOtherBytesInTheMiddle) {
+  std::string bytes = frame_bytes("right", kBad);
+  for (std::size_t i = bytes.size() / 2; i < bytes.size() / 2 + 40; ++i) {
+    bytes[i] = static_cast<char>(~bytes[i]);
+  }
+  break_and_repair("right", bytes, "");
+}
+
+TEST_F(RunSources, AnEmptyFile) { break_and_repair("left", "", ""); }
+
+TEST_F(RunSources, AFrameOfAnotherSizeOnOneSide) {
+  const std::string other = file("left", kBad) + ".png";
+  write_photograph(other, {Image<std::uint8_t>(kWidth + 1, kHeight)});
+  const std::string bytes = read_file(other);
+  fs::remove(other);
+  break_and_repair("left", bytes, "65x48");
+}
+
+TEST_F(RunSources, AFrameOfAnotherSizeOnBothSides) {
+  const FolderContent expected = undisturbed({});
+  const std::string left = frame_bytes("left", kBad);
+  const std::string right = frame_bytes("right", kBad);
+  for (const std::string side : {"left", "right"}) {
+    write_photograph(file(side, kBad), {Image<std::uint8_t>(kWidth, kHeight - 9)});
+  }
+  expect_stop_at(kBad, file("left", kBad), "64x39, expected 64x48");
+  expect_skipped({kBad});
+  write_file(file("left", kBad), left);
+  write_file(file("right", kBad), right);
+  expect_repaired(expected);
+  EXPECT_EQ(read_report(folder_ / "report.json")["results"]["frames"], 1);
+}
+
+TEST_F(RunSources, BadFramesInVideosAreRepaired) {
+  // At the beginning of a chunk, a whole chunk, and at the end.
+  const std::vector<int> bad = {5, 10, 11, 12, 13, 14, 19};
+  const FolderContent expected = undisturbed(kVideoOutputs);
+  std::map<int, std::string> whole;
+  for (const int frame : bad) {
+    whole[frame] = frame_bytes("right", frame);
+    write_file(file("right", frame), "no picture");
+  }
+  expect_skipped(bad, kVideoOutputs);
+  for (const std::string video : {"preview", "views"}) {
+    VideoReader reader(out_ + "/" + video + ".mp4");
+    EXPECT_EQ(reader.frame_count(), kFrames) << video;
+  }
+  for (const auto& [frame, bytes] : whole) {
+    write_file(file("right", frame), bytes);
+  }
+  expect_repaired(expected, kVideoOutputs);
+  EXPECT_FALSE(fs::exists(out_ + "/.vantage/segments"));
+}
+
+TEST_F(RunSources, BadFramesBeforeOthersThatBuildOnThem) {
+  const std::vector<std::string> outputs = {"--chunk-frames", "10", "--temporal-prior", "1"};
+  const FolderContent expected = undisturbed(outputs);
+  const std::string whole = frame_bytes("left", 3);
+  write_file(file("left", 3), "");
+  expect_skipped({3}, outputs);
+  write_file(file("left", 3), whole);
+  // Those behind it in its chunk were made without it, so they are made again.
+  expect_repaired(expected, outputs);
+  EXPECT_EQ(read_report(folder_ / "report.json")["results"]["frames"], 7);
+}
+
+TEST_F(RunSources, FlickerIsMeasuredAgainBesideARepairedFrame) {
+  const std::vector<std::string> outputs = {"--measure-flicker"};
+  const std::string report = folder_ / "whole.json";
+  ASSERT_EQ(run(folder_ / "whole", joined(outputs, {"--report", report})).exit_code, 0);
+  const std::string whole = frame_bytes("left", 3);
+  write_file(file("left", 3), "");
+  expect_skipped({3}, outputs);
+  write_file(file("left", 3), whole);
+  expect_repaired(results_in(folder_ / "whole"), outputs);
+  const nlohmann::json results = read_report(folder_ / "report.json")["results"];
+  EXPECT_EQ(results["frames"], 2);
+  EXPECT_EQ(results["flicker"], read_report(report)["results"]["flicker"]);
+}
+
+TEST_F(RunSources, AllFramesBad) {
+  for (int frame = 0; frame < kFrames; ++frame) {
+    write_file(file("left", frame), "");
+  }
+  const ProcessResult result = run(out_, {"--quiet", "--keep-going"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(is_one_line(result, "run"));
+  EXPECT_FALSE(fs::exists(out_));
+}
+
+TEST_F(RunSources, TheFirstFramesBad) {
+  for (int frame = 0; frame < 3; ++frame) {
+    write_file(file("left", frame), "");
+  }
+  const ProcessResult result = run(out_, {"--quiet"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(is_one_line(result, "run"));
+  EXPECT_THAT(result.err, HasSubstr("frame 0 "));
+  expect_skipped({0, 1, 2});
+}
+
+/// A number that is missing is a frame that is: those behind it keep their partners.
+TEST_F(RunSources, AMissingNumberOfAPattern) {
+  const FolderContent expected = undisturbed({});
+  const auto with_patterns = [&](const std::vector<std::string>& more) {
+    return run_vantage(joined({"run", "--left", left_ + "/%06d.png", "--right",
+                               right_ + "/%06d.png", "-o", out_, "--disparities=0:9"},
+                              more));
+  };
+  fs::rename(file("right", kBad), folder_ / "kept.png");
+  const ProcessResult stopped = with_patterns({"--quiet"});
+  EXPECT_EQ(stopped.exit_code, 1);
+  EXPECT_TRUE(is_one_line(stopped, "run"));
+  EXPECT_THAT(stopped.err, HasSubstr("frame " + std::to_string(kBad)));
+  EXPECT_THAT(stopped.err, HasSubstr(file("right", kBad)));
+  EXPECT_EQ(journalled_frames(out_), numbers(0, kBad));
+  EXPECT_EQ(with_patterns({"--resume", "--keep-going"}).exit_code, 3);
+  EXPECT_THAT(journalled_frames(out_, true), ElementsAre(kBad));
+  fs::rename(folder_ / "kept.png", file("right", kBad));
+  EXPECT_EQ(with_patterns({"--resume", "--force"}).exit_code, 0);
+  EXPECT_TRUE(same_files(results_in(out_), expected));
+}
+
+TEST_F(RunSources, UnequalLengths) {
+  for (int frame = 15; frame < kFrames; ++frame) {
+    fs::remove(file("right", frame));
+  }
+  const ProcessResult result = run(out_, {"--quiet"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(is_one_line(result, "run"));
+  EXPECT_THAT(result.err, HasSubstr("all 15 pairs are done"));
+  EXPECT_THAT(result.err, HasSubstr("5 frames more"));
+  EXPECT_EQ(journalled_frames(out_), numbers(0, 15));
+  EXPECT_EQ(run(out_, {"--resume", "--keep-going"}).exit_code, 3);
+  EXPECT_EQ(run(out_, {"--overwrite", "--frames", "0-14"}).exit_code, 0);
+}
+
+class RunVideoSources : public RunSources {
+ protected:
+  RunVideoSources() {
+    for (const std::string side : {"left", "right"}) {
+      VideoWriter video(folder_ / (side + ".mp4"), kWidth, kHeight, VideoEncoding());
+      std::string raw = "YUV4MPEG2 W64 H48 F25:1 Ip A1:1 Cmono\n";
+      for (int frame = 0; frame < kFrames; ++frame) {
+        const Photograph picture = read_photograph(file(side, frame));
+        video.write(picture);
+        const auto& image = std::get<Image<std::uint8_t>>(picture.pixels);
+        raw += "FRAME\n";
+        for (int y = 0; y < kHeight; ++y) {
+          for (int x = 0; x < kWidth; ++x) {
+            raw += static_cast<char>(image.at(x, y, 1));
+          }
+        }
+      }
+      video.finish();
+      write_file(folder_ / (side + ".y4m"), raw);
+    }
+  }
+  [[nodiscard]] ProcessResult run_videos(const std::string& extension,
+                                         const std::vector<std::string>& more) const {
+    return run_vantage(joined({"run", "--left", folder_ / ("left." + extension), "--right",
+                               folder_ / ("right." + extension), "-o", out_, "--disparities=0:9"},
+                              more));
+  }
+};
+
+TEST_F(RunVideoSources, AVideoThatEndsInTheMiddleOfAFrame) {
+  EXPECT_EQ(run_videos("y4m", {}).exit_code, 0);
+  const FolderContent expected = results_in(out_);
+  fs::remove_all(out_);
+  const std::string whole = read_file(folder_ / "right.y4m");
+  write_file(folder_ / "right.y4m", whole.substr(0, whole.size() * 6 / 10));
+  const ProcessResult stopped = run_videos("y4m", {"--quiet"});
+  EXPECT_EQ(stopped.exit_code, 1);
+  EXPECT_TRUE(is_one_line(stopped, "run"));
+  EXPECT_THAT(stopped.err, HasSubstr("right.y4m"));
+  const std::vector<int> done = journalled_frames(out_);
+  EXPECT_THAT(stopped.err, HasSubstr("frame " + std::to_string(done.size())));
+  EXPECT_EQ(done, numbers(0, static_cast<int>(done.size())));
+  EXPECT_GT(done.size(), 2U);
+  EXPECT_LT(done.size(), 18U);
+  const ProcessResult kept_going = run_videos("y4m", {"--resume", "--keep-going"});
+  EXPECT_EQ(kept_going.exit_code, 3) << kept_going.err;
+  EXPECT_EQ(journalled_frames(out_, true), numbers(static_cast<int>(done.size()), kFrames));
+  write_file(folder_ / "right.y4m", whole);
+  const ProcessResult repaired =
+      run_videos("y4m", {"--resume", "--force", "--report", folder_ / "report.json"});
+  EXPECT_EQ(repaired.exit_code, 0) << repaired.err;
+  EXPECT_EQ(read_report(folder_ / "report.json")["results"]["frames"], kFrames - done.size());
+  EXPECT_TRUE(same_files(results_in(out_), expected));
+}
+
+/// Containers that tell their length are looked at first.
+TEST_F(RunVideoSources, AVideoThatIsNoneOrCutOff) {
+  const std::string whole = read_file(folder_ / "right.mp4");
+  for (const std::size_t bytes : {std::size_t{0}, std::size_t{10}, whole.size() - 1}) {
+    write_file(folder_ / "right.mp4", whole.substr(0, bytes));
+    const ProcessResult result = run_videos("mp4", {"--quiet"});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_TRUE(is_one_line(result, "run"));
+    EXPECT_THAT(result.err, HasSubstr("right.mp4"));
+    EXPECT_FALSE(fs::exists(out_));
+  }
+}
+
+class RunResumed : public RunSources {
+ protected:
+  void SetUp() override { ASSERT_EQ(run(out_, {"--frames", "0-9"}).exit_code, 0); }
+};
+
+TEST_F(RunResumed, InputsThatChangedAreRefusedUnlessForced) {
+  const FolderContent before = results_in(out_);
+  fs::copy_file(file("left", 0), file("left", 15), fs::copy_options::overwrite_existing);
+  const ProcessResult refused = run(out_, {"--resume", "--quiet"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_TRUE(is_one_line(refused, "run"));
+  EXPECT_THAT(refused.err, HasSubstr("holds a run that differs: the input was"));
+  EXPECT_THAT(refused.err, HasSubstr("left"));
+  EXPECT_TRUE(same_files(results_in(out_), before));
+  const ProcessResult forced = run(out_, {"--resume", "--force", "--report", folder_ / "r.json"});
+  EXPECT_EQ(forced.exit_code, 0) << forced.err;
+  EXPECT_EQ(read_report(folder_ / "r.json")["results"]["frames"], 10);
+  EXPECT_EQ(run(out_, {"--resume"}).exit_code, 0);
+}
+
+TEST_F(RunResumed, FramesThatWereAddedAreAChangedInput) {
+  for (const std::string side : {"left", "right"}) {
+    fs::copy_file(file(side, 0), file(side, kFrames));
+  }
+  const ProcessResult refused = run(out_, {"--resume", "--quiet"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("21 files"));
+  EXPECT_EQ(run(out_, {"--resume", "--force"}).exit_code, 0);
+  EXPECT_EQ(journalled_frames(out_), numbers(0, kFrames + 1));
+}
+
+TEST_F(RunResumed, SettingsThatDifferAreRefusedAndNamed) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> changes = {
+      {{"--window", "7"}, "window was"},
+      {{"--format", "png"}, "format was \"pfm\", now \"png\""},
+      {{"--save", "disparity,preview"}, "save was"},
+      {{"--chunk-frames", "10"}, "chunk-frames was 50, now 10"},
+      {{"--temporal-prior", "1"}, "temporal-prior was 0.0, now 1.0"},
+      {{"--disparities=0:8"}, "disparities was"}};
+  for (const auto& [change, says] : changes) {
+    std::vector<std::string> changed = arguments(out_, {"--resume", "--quiet"});
+    if (change.size() == 1) {
+      std::ranges::replace(changed, std::string("--disparities=0:9"), change.front());
+    } else {
+      changed = joined(changed, change);
+    }
+    const ProcessResult refused = run_vantage(changed);
+    EXPECT_EQ(refused.exit_code, 1) << says;
+    EXPECT_TRUE(is_one_line(refused, "run"));
+    EXPECT_THAT(refused.err, HasSubstr(says));
+  }
+  EXPECT_EQ(run(out_, {"--resume", "--threads", "3", "--executor", "openmp", "--in-flight", "7",
+                       "--strip-width", "9", "--memory", "2G", "--keep-going", "--progress", "none",
+                       "--isa", "SSE4"})
+                .exit_code,
+            0);
+  EXPECT_TRUE(same_files(results_in(out_), undisturbed({})));
+}
+
+TEST_F(RunResumed, AFolderWithARunIsNotWrittenToByAccident) {
+  const FolderContent before = results_in(out_);
+  ASSERT_EQ(run(folder_ / "whole").exit_code, 0);
+  const ProcessResult refused = run(folder_ / "whole", {"--quiet"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_TRUE(is_one_line(refused, "run"));
+  EXPECT_THAT(refused.err, HasSubstr("--resume to continue it or --overwrite to begin anew"));
+  EXPECT_EQ(run(out_, {"--quiet", "--overwrite", "--resume"}).exit_code, 2);
+  EXPECT_EQ(run(out_, {"--quiet", "--overwrite", "--shard", "1/2"}).exit_code, 2);
+  EXPECT_TRUE(same_files(results_in(out_), before));
+  // Inputs may be moved: they are known by what is in them.
+  fs::rename(left_, folder_ / "moved-left");
+  fs::create_directory(folder_ / "sub");
+  fs::rename(folder_ / "moved-left", folder_ / "sub/left");
+  EXPECT_EQ(run_vantage({"run", "--left", folder_ / "sub/left", "--right", right_, "-o", out_,
+                         "--disparities=0:9", "--resume"})
+                .exit_code,
+            0);
+  EXPECT_EQ(journalled_frames(out_), numbers(0, kFrames));
+}
+
+}  // namespace
+}  // namespace vantage

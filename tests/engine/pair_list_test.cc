@@ -1,0 +1,105 @@
+#include "engine/sequence/pair_list.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/engine/io_test_support.h"
+
+namespace vantage {
+namespace {
+
+using test::error_of;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using namespace std::string_literals;
+
+/// "left|right" of every pair.
+std::vector<std::string> parsed(const std::string& text) {
+  std::vector<std::string> pairs;
+  for (const ListedPair& pair : parse_pair_list(text, "list.csv")) {
+    pairs.push_back(pair.left.string() + "|" + pair.right.string());
+  }
+  return pairs;
+}
+
+std::string problem(const std::string& text) {
+  return error_of([&] { parse_pair_list(text, "list.csv"); });
+}
+
+TEST(PairList, LinesWithAndWithoutHeading) {
+  EXPECT_THAT(parsed("a.png,b.png\nc.png,d.png\n"), ElementsAre("a.png|b.png", "c.png|d.png"));
+  EXPECT_THAT(parsed("left,right\na,b"), ElementsAre("a|b"));
+  EXPECT_THAT(parsed("Left, RIGHT\na,b"), ElementsAre("a|b"));
+  EXPECT_THAT(parsed("a,b\nleft,right\n"), ElementsAre("a|b", "left|right"));
+  EXPECT_THAT(parsed("l/a b.png , r/c.png\t\n"), ElementsAre("l/a b.png|r/c.png"));
+}
+
+TEST(PairList, EmptyLinesCommentsAndMark) {
+  EXPECT_THAT(parsed("\xEF\xBB\xBFleft,right\n\n# a comment, \"with a quote\n  \t\na,b\n\n#"),
+              ElementsAre("a|b"));
+  EXPECT_THAT(parsed("\xEF\xBB\xBF# one\n#two\na#,#b\n"), ElementsAre("a#|#b"));
+  EXPECT_THAT(parsed("\"#a\",b"), ElementsAre("#a|b"));
+}
+
+TEST(PairList, LineEnds) {
+  EXPECT_THAT(parsed("a,b\r\nc,d\r\n"), ElementsAre("a|b", "c|d"));
+  EXPECT_THAT(parsed("a,b\rc,d\r"), ElementsAre("a|b", "c|d"));
+  EXPECT_THAT(parsed("#x\r\n\r\na,b\r\n\n\rc,d"), ElementsAre("a|b", "c|d"));
+}
+
+TEST(PairList, Quotes) {
+  EXPECT_THAT(parsed("\"a,1.png\",\"b \"\"2\"\".png\"\n"), ElementsAre("a,1.png|b \"2\".png"));
+  EXPECT_THAT(parsed(" \"a\" , \" b \" \n\"c\nd\",\"e\r\nf\"\ng,h"),
+              ElementsAre("a| b ", "c\nd|e\r\nf", "g|h"));
+  EXPECT_THAT(parsed("\"\"\"\",\"\"\"\"\"\""), ElementsAre("\"|\"\""));
+  EXPECT_THAT(parsed("\"left\",\"right\"\na,b"), ElementsAre("a|b"));
+}
+
+TEST(PairList, MalformedLinesAreNamed) {
+  EXPECT_EQ(problem("a,b\n\n#\nc\n"), "list.csv line 4: 1 field, expected two: left,right");
+  EXPECT_EQ(problem("a,b,c"), "list.csv line 1: 3 fields, expected two: left,right");
+  EXPECT_EQ(problem("a,b,"), "list.csv line 1: 3 fields, expected two: left,right");
+  EXPECT_THAT(problem("\"a\nb\",c\n,d"), HasSubstr("line 3: the left name is empty"));
+  EXPECT_THAT(problem("a,\"\""), HasSubstr("line 1: the right name is empty"));
+  EXPECT_THAT(problem("a,b\r\nc,\"d\r\ne,f\r\n"), HasSubstr("line 2: a quote is not closed"));
+  EXPECT_THAT(problem("a,b\r\n\"c\r\nd\"e,f\n"), HasSubstr("line 3: text after a closing quote"));
+  EXPECT_THAT(problem("a,b\rc,d\"e\n"), HasSubstr("line 2: a quote inside of 'd\"e'"));
+  EXPECT_THAT(problem("a,b\0"s), HasSubstr("list.csv: holds a zero byte"));
+  for (const char* nothing : {"", "\n", "left,right\n", "# a,b", "\xEF\xBB\xBF", "\r\n\r\n"}) {
+    EXPECT_THAT(problem(nothing), HasSubstr("list.csv: holds no pairs")) << nothing;
+  }
+}
+
+TEST(PairList, AnyTextIsPairsOrAnErrorOfOneLine) {
+  std::mt19937 generator(3);
+  const std::string characters = "a,b\"#\r\n \0"s;
+  for (int i = 0; i < 20000; ++i) {
+    std::string text;
+    for (unsigned length = generator() % 16; length > 0; --length) {
+      text.push_back(characters[generator() % characters.size()]);
+    }
+    if (const std::string error = problem(text); !error.empty()) {
+      EXPECT_TRUE(error.starts_with("list.csv")) << error;
+      EXPECT_EQ(error.find_first_of("\r\n"), std::string::npos) << error;
+    } else {
+      EXPECT_FALSE(parsed(text).empty());
+    }
+  }
+}
+
+TEST(PairList, FilesAreReadOrNamed) {
+  const TemporaryFolder folder;
+  test::put_text(folder / "list.csv", "a,b\n");
+  EXPECT_EQ(read_pair_list(folder / "list.csv").size(), 1U);
+  EXPECT_THAT(error_of([&] { read_pair_list(folder / "no.csv"); }), HasSubstr("no such file"));
+  test::put_text(folder / "list.csv", "a\n");
+  EXPECT_THAT(error_of([&] { read_pair_list(folder / "list.csv"); }),
+              HasSubstr(folder / "list.csv" + " line 1: "));
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,258 @@
+#include "engine/sequence/run_journal.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "engine/error.h"
+#include "engine/sequence/delivered_frames.h"
+#include "tests/temporary_folder.h"
+
+namespace vantage {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class RunJournalTest : public testing::Test {
+ protected:
+  RunJournalTest() {
+    identity_.settings = R"({"format":"pfm","window":7})";
+    identity_.inputs = {"left: 3 files"};
+    identity_.frame_count = 9;
+    options_.save = {SequenceOutput::kDisparity};
+  }
+
+  RunJournal open(JournalOpening opening, const std::string& part = "all") const {
+    return {journal_, identity_, opening, part};
+  }
+  [[nodiscard]] std::string refusal(JournalOpening opening, const std::string& part = "all") const {
+    try {
+      open(opening, part);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+  static void append(RunJournal& journal, const JournalRecord& record) {
+    journal.append({&record, 1});
+  }
+  /// A frame with one file, which is made.
+  void deliver(RunJournal& journal, int frame) const {
+    FrameRecord record{.frame = frame};
+    record.files = {"disparity/" + std::to_string(frame) + ".pfm"};
+    std::filesystem::create_directories(folder_ / "disparity");
+    std::ofstream(folder_ / record.files.front()) << "map";
+    append(journal, record);
+  }
+  [[nodiscard]] DeliveredFrames delivered() const {
+    return DeliveredFrames(SequenceLayout(folder_, options_));
+  }
+  static void write(const std::filesystem::path& path, const std::string& text,
+                    std::ios::openmode mode = std::ios::trunc) {
+    std::ofstream(path, mode | std::ios::binary) << text;
+  }
+
+  TemporaryFolder temporary_;
+  const std::filesystem::path& folder_ = temporary_.path();
+  std::filesystem::path journal_ = folder_ / ".vantage";
+  RunIdentity identity_;
+  SequenceOptions options_;
+};
+
+TEST_F(RunJournalTest, BringsBackWhatWasRecorded) {
+  FrameRecord odd{.frame = 4};
+  odd.remarks = {"2 frames are missing before it", "non-UTF-8 \xff"};
+  odd.files = {"disparity/000004.pfm", "views/000004.png"};
+  odd.flicker.frames = 1;
+  odd.flicker.pixels = 1000000007LL * 4096;
+  odd.flicker.compared = 12;
+  odd.flicker.views.resize(2);
+  odd.flicker.views[1].grey_change = -5;
+  FrameRecord skipped{.frame = 5};
+  skipped.skipped = true;
+  skipped.problem = "right/5.png: is \"truncated\"";
+  {
+    RunJournal journal = open(JournalOpening::kNew);
+    const std::vector<JournalRecord> records = {odd, skipped, SegmentRecord{{0, 9}}};
+    journal.append(records);
+    append(journal, JoinRecord{{0, 9}});
+  }
+  const auto records = RunJournal::read_records(journal_);
+  ASSERT_EQ(records.size(), 4U);
+  const auto& first = std::get<FrameRecord>(records[0]);
+  EXPECT_EQ(first.frame, 4);
+  EXPECT_FALSE(first.skipped);
+  EXPECT_EQ(first.files, odd.files);
+  EXPECT_EQ(first.remarks.front(), odd.remarks.front());
+  EXPECT_EQ(first.flicker, odd.flicker);
+  const auto& second = std::get<FrameRecord>(records[1]);
+  EXPECT_TRUE(second.skipped);
+  EXPECT_EQ(second.problem, skipped.problem);
+  EXPECT_EQ(std::get<SegmentRecord>(records[2]).frames, (FrameRange{0, 9}));
+  EXPECT_EQ(std::get<JoinRecord>(records[3]).frames, (FrameRange{0, 9}));
+}
+
+TEST_F(RunJournalTest, TheIdentityIsKept) {
+  identity_.sound_file = "/films/left.mp4";
+  identity_.sound_first_frame = 3;
+  identity_.sound_rate = {30000, 1001};
+  open(JournalOpening::kNew);
+  const RunIdentity read = RunJournal::read_identity(journal_);
+  EXPECT_EQ(read.settings, identity_.settings);
+  EXPECT_EQ(read.inputs, identity_.inputs);
+  EXPECT_EQ(read.frame_count, 9);
+  EXPECT_EQ(read.sound_file, identity_.sound_file);
+  EXPECT_EQ(read.sound_first_frame, 3);
+  EXPECT_EQ(read.sound_rate, identity_.sound_rate);
+}
+
+TEST_F(RunJournalTest, ARunIsNotBegunTwiceUnasked) {
+  open(JournalOpening::kNew);
+  EXPECT_THAT(refusal(JournalOpening::kNew), HasSubstr("expected --resume"));
+  EXPECT_EQ(refusal(JournalOpening::kResume), "");
+  {
+    RunJournal journal = open(JournalOpening::kResume);
+    append(journal, FrameRecord{.frame = 0});
+  }
+  open(JournalOpening::kOverwrite);
+  EXPECT_THAT(RunJournal::read_records(journal_), IsEmpty());
+}
+
+TEST_F(RunJournalTest, PartsJoinARunTheyAgreeWith) {
+  open(JournalOpening::kNew, "1-of-2");
+  EXPECT_EQ(refusal(JournalOpening::kNew, "2-of-2"), "");
+  EXPECT_THAT(refusal(JournalOpening::kNew, "2-of-2"), HasSubstr("expected --resume"));
+  identity_.settings = R"({"format":"png","window":7})";
+  EXPECT_THAT(refusal(JournalOpening::kNew, "3-of-3"), HasSubstr(R"(format was "pfm", now "png")"));
+}
+
+TEST_F(RunJournalTest, DifferencesAreNamed) {
+  open(JournalOpening::kNew);
+  identity_.settings = R"({"format":"pfm","window":9,"crf":18})";
+  EXPECT_THAT(refusal(JournalOpening::kResume),
+              HasSubstr("window was 7, now 9 (and 1 more); expected the same, --force"));
+  identity_.settings = R"({"format":"pfm"})";
+  EXPECT_THAT(refusal(JournalOpening::kResume), HasSubstr("window was 7, now not set"));
+  identity_.settings = R"({"format":"pfm","window":7})";
+  identity_.inputs = {"left: 4 files"};
+  EXPECT_THAT(refusal(JournalOpening::kResume),
+              HasSubstr("the input was 'left: 3 files', now 'left: 4 files'"));
+  identity_.inputs = {"left, seen from elsewhere: 3 files"};
+  EXPECT_EQ(refusal(JournalOpening::kResume), "");
+  identity_.frame_count = 8;
+  EXPECT_THAT(refusal(JournalOpening::kResume), HasSubstr("9 frames, now 8"));
+  EXPECT_EQ(refusal(JournalOpening::kForce), "");
+  EXPECT_EQ(refusal(JournalOpening::kResume), "");  // the folder is now that run's
+}
+
+TEST_F(RunJournalTest, OneProcessPerPart) {
+  const RunJournal journal = open(JournalOpening::kNew);
+  EXPECT_THAT(refusal(JournalOpening::kResume), HasSubstr("another process works"));
+  EXPECT_EQ(refusal(JournalOpening::kResume, "1-of-2"), "");
+}
+
+TEST_F(RunJournalTest, LinesThatACrashCutOffDoNotCount) {
+  const auto file = journal_ / "frames-all.jsonl";
+  {
+    RunJournal journal = open(JournalOpening::kNew);
+    append(journal, FrameRecord{.frame = 0});
+  }
+  write(file, R"({"frame":1,"fi)", std::ios::app);
+  EXPECT_EQ(RunJournal::read_records(journal_).size(), 1U);
+  {
+    RunJournal journal = open(JournalOpening::kResume);
+    append(journal, FrameRecord{.frame = 2});
+  }
+  write(file, "garbage\n{\"frame\":\"x\"}\n{}\n[1]\n\n", std::ios::app);
+  const auto records = RunJournal::read_records(journal_);
+  ASSERT_EQ(records.size(), 2U);
+  EXPECT_EQ(std::get<FrameRecord>(records[1]).frame, 2);
+}
+
+TEST_F(RunJournalTest, ADamagedDescriptionIsAnError) {
+  EXPECT_THAT(
+      [&] {
+        try {
+          RunJournal::read_identity(journal_);
+        } catch (const Error& error) {
+          return std::string(error.what());
+        }
+        return std::string();
+      }(),
+      HasSubstr("holds no run"));
+  open(JournalOpening::kNew);
+  for (const std::string text : {"", "{", "[]", R"({"format":1})", R"({"format":"1"})"}) {
+    write(journal_ / "run.json", text);
+    EXPECT_THAT(refusal(JournalOpening::kResume), HasSubstr("is damaged")) << text;
+  }
+  write(journal_ / "run.json", R"({"format":77,"version":"9.9"})");
+  EXPECT_THAT(refusal(JournalOpening::kResume), HasSubstr("is of format 77, expected 1"));
+}
+
+TEST_F(RunJournalTest, DeliveredIsWhatIsThereAndRecorded) {
+  {
+    RunJournal journal = open(JournalOpening::kNew, "1-of-2");
+    deliver(journal, 0);
+    deliver(journal, 1);
+    FrameRecord skipped{.frame = 2};
+    skipped.skipped = true;
+    append(journal, skipped);
+    RunJournal other = open(JournalOpening::kNew, "2-of-2");
+    deliver(other, 5);
+    deliver(other, 7);
+  }
+  EXPECT_TRUE(delivered().is_done(0));
+  EXPECT_FALSE(delivered().is_done(2));
+  EXPECT_FALSE(delivered().is_done(3));
+  EXPECT_EQ(to_string(delivered().missing({0, 9})), "3-4, 6, 8");
+  EXPECT_EQ(to_string(delivered().missing({3, 6})), "3-4");
+  EXPECT_THAT(delivered().missing({0, 3}), IsEmpty());
+  std::filesystem::remove(folder_ / "disparity/1.pfm");
+  write(folder_ / "disparity/7.pfm", "");
+  EXPECT_EQ(to_string(delivered().missing({0, 9})), "1, 3-4, 6-8");
+}
+
+TEST_F(RunJournalTest, ARepairedFrameIsDone) {
+  RunJournal journal = open(JournalOpening::kNew);
+  FrameRecord skipped{.frame = 0};
+  skipped.skipped = true;
+  append(journal, skipped);
+  deliver(journal, 0);
+  EXPECT_TRUE(delivered().is_done(0));
+}
+
+TEST_F(RunJournalTest, FramesOfVideosAreDoneWithTheirSegment) {
+  options_.save = {SequenceOutput::kDisparity, SequenceOutput::kPreview};
+  options_.video = {SequenceOutput::kPreview};
+  const SequenceLayout layout(folder_, options_);
+  layout.make_folders();
+  RunJournal journal = open(JournalOpening::kNew);
+  for (int frame = 0; frame < 4; ++frame) {
+    deliver(journal, frame);
+  }
+  EXPECT_FALSE(delivered().is_done(0));
+  const auto add_segment = [&](FrameRange frames) {
+    write(layout.segment(layout.streams()[1], frames), "video");
+    append(journal, SegmentRecord{frames});
+  };
+  add_segment({0, 2});
+  EXPECT_TRUE(delivered().is_done(1));
+  EXPECT_FALSE(delivered().is_done(2));
+  add_segment({0, 4});
+  EXPECT_THAT(delivered().segments(), ElementsAre(FrameRange{0, 4}));
+  std::filesystem::remove(layout.segment(layout.streams()[1], {0, 4}));
+  EXPECT_THAT(delivered().segments(), ElementsAre(FrameRange{0, 2}));
+  append(journal, JoinRecord{{0, 4}});
+  EXPECT_TRUE(delivered().joined().empty());
+  write(layout.video(layout.streams()[1]), "joined");
+  EXPECT_EQ(delivered().joined(), (FrameRange{0, 4}));
+  EXPECT_TRUE(delivered().is_done(3));
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,425 @@
+#include "engine/sequence/sequence_runner.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "engine/error.h"
+#include "engine/io/disparity_io.h"
+#include "engine/io/photograph_io.h"
+#include "engine/io/video_io.h"
+#include "engine/sequence/busy_clock.h"
+#include "engine/sequence/delivered_frames.h"
+#include "engine/sequence/sequence_join.h"
+#include "tests/engine/made_up_pairs.h"
+#include "tests/temporary_folder.h"
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+struct Way {
+  ExecutionOptions execution = {.threads = 3};
+  int in_flight = 3;
+  bool keep_going = false;
+  std::optional<FrameRange> frames = {};
+  std::optional<Shard> shard = {};
+  int stop_after = 1 << 30;  ///< frames delivered
+};
+
+class SequenceRunnerTest : public testing::Test {
+ protected:
+  SequenceRunnerTest() {
+    options_.match.disparities = {0, 9};
+    options_.match.parameters.window_px = 5;
+    options_.chunk_frames = 4;
+  }
+
+  /// Runs what is missing in `folder`; joins videos when nothing is any more.
+  SequenceReport run(MadeUpPairs& pairs, const fs::path& folder, const Way& way) {
+    Execution execution(way.execution);
+    std::atomic<bool> stop{false};
+    const SequenceLayout layout(folder, options_);
+    const std::string part =
+        way.shard ? "part-" + std::to_string(way.shard->index) : std::string("all");
+    RunIdentity identity;
+    identity.frame_count = pairs.pair_count();
+    RunJournal journal(layout.journal_folder(), identity, JournalOpening::kResume, part);
+    SequenceRun sequence{.pairs = pairs,
+                         .selection = {.frame_count = pairs.pair_count(),
+                                       .chunk_frames = options_.chunk_frames,
+                                       .frames = way.frames,
+                                       .shard = way.shard},
+                         .frame_size = ImageExtent{37, 23},
+                         .in_flight = way.in_flight,
+                         .keep_going = way.keep_going,
+                         .on_progress =
+                             [&](const SequenceProgress& now) {
+                               progress_ = now;
+                               stop.store(now.frames_done >= way.stop_after);
+                             },
+                         .stop = &stop};
+    SequenceReport report = SequenceRunner(options_, execution).run(sequence, layout, journal);
+    const DeliveredFrames delivered(layout);
+    if (report.frames > 0 && delivered.missing({0, pairs.pair_count()}).empty()) {
+      join_segments(options_, layout, identity, {0, pairs.pair_count()}, true, journal);
+    }
+    return report;
+  }
+  SequenceReport run(MadeUpPairs& pairs, const fs::path& folder) { return run(pairs, folder, {}); }
+
+  /// What run() throws as Error; empty if it does not.
+  std::string error_of(MadeUpPairs& pairs, const fs::path& folder, const Way& way = {}) {
+    try {
+      run(pairs, folder, way);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  /// Relative name → content of all files but the journal's.
+  static std::map<std::string, std::string> files(const fs::path& folder) {
+    std::map<std::string, std::string> contents;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      const std::string name = entry.path().lexically_relative(folder).string();
+      if (entry.is_regular_file() && !name.starts_with(".vantage")) {
+        std::ostringstream text;
+        text << std::ifstream(entry.path(), std::ios::binary).rdbuf();
+        contents[name] = text.str();
+      }
+    }
+    return contents;
+  }
+  static std::vector<std::string> names(const fs::path& folder) {
+    std::vector<std::string> list;
+    for (const auto& [name, content] : files(folder)) {
+      list.push_back(name);
+    }
+    return list;
+  }
+  [[nodiscard]] fs::path folder(const std::string& name) const { return temporary_ / name; }
+
+  TemporaryFolder temporary_;
+  SequenceOptions options_;
+  SequenceProgress progress_;
+};
+
+TEST_F(SequenceRunnerTest, WritesWhatTheMatcherComputes) {
+  options_.save = {SequenceOutput::kDisparity, SequenceOutput::kUnmatched};
+  options_.match.reference = Reference::kRight;
+  MadeUpPairs pairs(4);
+  const SequenceReport report = run(pairs, folder("a"));
+  EXPECT_EQ(progress_.frames_done, 4);
+  EXPECT_EQ(progress_.frames_total, 4);
+  EXPECT_EQ(progress_.cells, report.cells);
+  EXPECT_EQ(report.frames, 4);
+  EXPECT_FALSE(report.interrupted);
+  EXPECT_EQ(report.cells, 4.0 * 37 * 23 * 10 * 2);
+  EXPECT_GT(report.compute_seconds, 0);
+
+  MadeUpPairs again(4);
+  Execution serial({.executor = scheduler::ExecutorKind::kSerial});
+  const StereoMatcher matcher(options_.match, serial);
+  FramePair pair;
+  DisparityMaps maps;
+  for (int frame = 0; frame < 4; ++frame) {
+    ASSERT_TRUE(again.fetch(pair));
+    again.decode(pair);
+    matcher.match(pair.left, pair.right, {}, maps);
+    const std::string name = "00000" + std::to_string(frame);
+    const DisparityMap map = read_disparity(folder("a") / "disparity" / (name + ".pfm"));
+    const Photograph mask = read_photograph(folder("a") / "unmatched" / (name + ".png"));
+    for (int y = 0; y < map.height(); ++y) {
+      for (int x = 0; x < map.width(); ++x) {
+        ASSERT_EQ(map.at(x, y), maps.right.at(x, y));
+        ASSERT_EQ(std::get<Image<std::uint8_t>>(mask.pixels).at(x, y),
+                  maps.right_unmatched.at(x, y));
+      }
+    }
+  }
+}
+
+TEST_F(SequenceRunnerTest, OutputsGoToFoldersOfTheirOwn) {
+  options_.save = {SequenceOutput::kViews, SequenceOutput::kHoles, SequenceOutput::kStereo,
+                   SequenceOutput::kRightUnmatched};
+  options_.views = {ViewTrack::fixed(0.25), ViewTrack::fixed(-1), parse_view_track("0=0,9=1")};
+  options_.stereo_packing.above_below = true;
+  MadeUpPairs pairs(1);
+  run(pairs, folder("a"));
+  EXPECT_THAT(names(folder("a")),
+              ElementsAre("holes/-1/000000.png", "holes/0.25/000000.png", "holes/path-1/000000.png",
+                          "right-unmatched/000000.png", "stereo/000000.png", "views/-1/000000.png",
+                          "views/0.25/000000.png", "views/path-1/000000.png"));
+  EXPECT_EQ(read_photograph(folder("a") / "stereo/000000.png").height(), 46);
+  options_.views.resize(1);
+  options_.save = {SequenceOutput::kViews};
+  run(pairs, folder("b"));
+  EXPECT_THAT(names(folder("b")), ElementsAre("views/000000.png"));
+  EXPECT_EQ(files(folder("b"))["views/000000.png"], files(folder("a"))["views/0.25/000000.png"]);
+}
+
+TEST_F(SequenceRunnerTest, AMovingViewIsTheFixedOneOfEachFrame) {
+  options_.save = {SequenceOutput::kViews};
+  options_.views = {parse_view_track("1=0.5,3=1.5")};
+  MadeUpPairs pairs(4);
+  run(pairs, folder("path"), {.frames = FrameRange{2, 4}});
+  options_.views = {ViewTrack::fixed(1)};
+  run(pairs, folder("fixed"));
+  EXPECT_THAT(names(folder("path")), ElementsAre("views/000002.png", "views/000003.png"));
+  EXPECT_EQ(files(folder("path"))["views/000002.png"], files(folder("fixed"))["views/000002.png"]);
+}
+
+TEST_F(SequenceRunnerTest, TheFirstBadFrameEndsTheRun) {
+  MadeUpPairs pairs(6);
+  pairs.bad_to_decode = {4};
+  pairs.uneven = {2};
+  const std::string error = error_of(pairs, folder("a"));
+  EXPECT_THAT(error, HasSubstr("frame 2 (left 2, right 2): the left image is 7x23"));
+  EXPECT_THAT(error, HasSubstr("expected 37x23"));
+  EXPECT_THAT(names(folder("a")), ElementsAre("disparity/000000.pfm", "disparity/000001.pfm"));
+  MadeUpPairs unreadable(6);
+  unreadable.bad_to_fetch = {1};
+  EXPECT_EQ(error_of(unreadable, folder("b")), "frame 1 (left 1, right 1): the stream is damaged");
+  MadeUpPairs narrow(6);
+  narrow.narrow = {0};
+  EXPECT_THAT(error_of(narrow, folder("c")), HasSubstr("is 29x23, expected 37x23 as at the start"));
+}
+
+TEST_F(SequenceRunnerTest, ASourceThatEndsEarlyNamesTheFrame) {
+  MadeUpPairs pairs(6);
+  pairs.ends_at = 3;
+  EXPECT_THAT(error_of(pairs, folder("a")), HasSubstr("frame 3 (left 3, right 3): the sequence has "
+                                                      "ended before it, expected 6 frames"));
+  EXPECT_EQ(names(folder("a")).size(), 3U);
+  const SequenceReport report = run(pairs, folder("a"), {.keep_going = true});
+  EXPECT_EQ(report.frames, 0);
+  EXPECT_EQ(report.frames_before, 3);
+  EXPECT_EQ(report.skipped.size(), 3U);
+}
+
+TEST_F(SequenceRunnerTest, BadFramesAreSkippedWhereAskedAndMadeOnceRepaired) {
+  options_.save = {SequenceOutput::kDisparity, SequenceOutput::kPreview};
+  for (const bool video : {false, true}) {
+    options_.video.clear();
+    if (video) {
+      options_.video = {SequenceOutput::kPreview};
+    }
+    const std::string name = video ? "video" : "images";
+    MadeUpPairs whole(11);
+    run(whole, folder(name + "-whole"));
+    MadeUpPairs pairs(11);
+    pairs.bad_to_fetch = {0, 6};
+    pairs.bad_to_decode = {1, 5, 8, 9, 10};
+    const SequenceReport report = run(pairs, folder(name), {.keep_going = true});
+    EXPECT_EQ(report.frames, 4);
+    ASSERT_EQ(report.skipped.size(), 7U);
+    EXPECT_EQ(report.skipped[1].frame, 1);
+    EXPECT_THAT(report.skipped[1].text, HasSubstr("left 1: is truncated"));
+    if (video) {
+      VideoReader reader(folder(name) / "preview.mp4");
+      EXPECT_EQ(reader.frame_count(), 11);
+    }
+    MadeUpPairs repaired(11);
+    const SequenceReport again = run(repaired, folder(name), {.keep_going = true});
+    EXPECT_EQ(again.frames, video ? 11 : 7);  // all chunks have a bad frame
+    EXPECT_THAT(again.skipped, IsEmpty());
+    EXPECT_EQ(files(folder(name)), files(folder(name + "-whole")));
+  }
+}
+
+TEST_F(SequenceRunnerTest, SkippedFramesOfAVideoShowANeighbour) {
+  options_.save = {SequenceOutput::kViews};
+  options_.video = options_.save;
+  options_.views = {ViewTrack::fixed(0)};
+  options_.crf = 0;
+  const auto frames_of = [&](const std::set<int>& bad) {
+    MadeUpPairs pairs(8);
+    pairs.bad_to_decode = bad;
+    const fs::path out = folder("bad" + std::to_string(bad.size()));
+    run(pairs, out, {.keep_going = true});
+    VideoReader reader(out / "views.mp4");
+    std::vector<Photograph> frames(8);
+    for (Photograph& frame : frames) {
+      EXPECT_TRUE(reader.read(frame));
+    }
+    return frames;
+  };
+  const auto distance = [](const Photograph& a, const Photograph& b) {
+    double sum = 0;
+    const auto& first = std::get<Image<std::uint8_t>>(a.pixels);
+    const auto& second = std::get<Image<std::uint8_t>>(b.pixels);
+    for (int y = 0; y < first.height(); ++y) {
+      for (int x = 0; x < first.width(); ++x) {
+        sum += std::abs(first.at(x, y) - second.at(x, y));
+      }
+    }
+    return sum / (first.width() * first.height());
+  };
+  const auto good = frames_of({});
+  ASSERT_GT(distance(good[1], good[2]), 20);
+  const auto some = frames_of({0, 1, 3});
+  for (const auto& [frame, shows] :
+       std::map<int, int>{{0, 2}, {1, 2}, {2, 2}, {3, 2}, {4, 4}, {7, 7}}) {
+    EXPECT_LT(
+        distance(some[static_cast<std::size_t>(frame)], good[static_cast<std::size_t>(shows)]), 2)
+        << frame;
+  }
+  const auto none = frames_of({4, 5, 6, 7});  // a segment without a good frame
+  EXPECT_LT(distance(none[3], good[3]), 2);
+  const auto& black = std::get<Image<std::uint8_t>>(none[5].pixels);
+  EXPECT_LT(black.at(3, 3), 3);
+}
+
+TEST_F(SequenceRunnerTest, PartsAndInterruptionsLeaveNoTrace) {
+  options_.save = {SequenceOutput::kDisparity, SequenceOutput::kRightDisparity,
+                   SequenceOutput::kPreview, SequenceOutput::kViews};
+  options_.views = {ViewTrack::fixed(0.5)};
+  options_.video = {SequenceOutput::kPreview};
+  options_.temporal.weight = 1;
+  options_.measure_flicker = true;
+  const auto flicker_in = [&](const fs::path& out) {
+    return total_flicker(DeliveredFrames(SequenceLayout(out, options_)));
+  };
+  MadeUpPairs pairs(14);
+  pairs.repeat = {3, 9, 10};
+  run(pairs, folder("whole"));
+  const auto expected = files(folder("whole"));
+  const FlickerSums flicker = flicker_in(folder("whole"));
+  EXPECT_EQ(expected.size(), 14U * 3 + 1);
+  EXPECT_EQ(flicker.frames, 14 - 4);  // all but the first of each chunk
+  for (const int shards : {1, 2, 7}) {
+    const fs::path out = folder("shards" + std::to_string(shards));
+    for (int index = shards; index >= 1; --index) {
+      run(pairs, out, {.in_flight = 1 + index % 4, .shard = Shard{index, shards}});
+    }
+    EXPECT_EQ(files(out), expected) << shards;
+    EXPECT_EQ(flicker_in(out), flicker) << shards;
+  }
+  const fs::path out = folder("interrupted");
+  int runs = 0;
+  for (bool done = false; !done && runs < 40; ++runs) {
+    done = !run(pairs, out, {.in_flight = 2, .stop_after = 1 + runs}).interrupted;
+  }
+  EXPECT_GT(runs, 1);
+  EXPECT_EQ(files(out), expected);
+  EXPECT_EQ(flicker_in(out), flicker);
+}
+
+TEST_F(SequenceRunnerTest, LostFilesAreMadeAgain) {
+  MadeUpPairs pairs(9);
+  run(pairs, folder("a"));
+  const auto expected = files(folder("a"));
+  fs::remove(folder("a") / "disparity/000003.pfm");
+  std::ofstream(folder("a") / "disparity/000005.pfm").close();  // empty
+  pairs.fetched = 0;
+  pairs.skip_to(0);
+  EXPECT_EQ(run(pairs, folder("a")).frames, 2);
+  EXPECT_EQ(pairs.fetched, 2);
+  EXPECT_EQ(files(folder("a")), expected);
+}
+
+TEST_F(SequenceRunnerTest, LeftoversOfAKilledProcessAreRemoved) {
+  const fs::path disparity = folder("a") / "disparity";
+  fs::create_directories(disparity);
+  for (const char* name : {".000001.pfm.4711.pending", ".000002.tmp-12-0.pfm",
+                           ".000007.pfm.4711.pending", ".keep", ".notes.tmp-x"}) {
+    std::ofstream(disparity / name) << "x";
+  }
+  MadeUpPairs pairs(9);
+  run(pairs, folder("a"), {.frames = FrameRange{0, 4}});
+  const auto left = names(folder("a"));
+  EXPECT_THAT(left,
+              ElementsAre("disparity/.000007.pfm.4711.pending", "disparity/.keep",
+                          "disparity/.notes.tmp-x", "disparity/000000.pfm", "disparity/000001.pfm",
+                          "disparity/000002.pfm", "disparity/000003.pfm"));
+}
+
+TEST_F(SequenceRunnerTest, AResultThatCannotBeWrittenEndsTheRunEvenWhenItKeepsGoing) {
+  fs::create_directories(folder("a") / "disparity/000002.pfm");
+  MadeUpPairs pairs(40);
+  const std::string error = error_of(pairs, folder("a"), {.keep_going = true});
+  EXPECT_THAT(error, HasSubstr("cannot write"));
+  EXPECT_THAT(error, HasSubstr("disparity/000002.pfm"));
+  EXPECT_THAT(names(folder("a")), ElementsAre("disparity/000000.pfm", "disparity/000001.pfm"));
+  fs::remove(folder("a") / "disparity/000002.pfm");
+  EXPECT_EQ(run(pairs, folder("a")).frames_before, 2);
+}
+
+TEST_F(SequenceRunnerTest, RepeatedFramesAreRemarked) {
+  MadeUpPairs pairs(6);
+  pairs.repeat = {2, 5};
+  const SequenceReport report = run(pairs, folder("a"));
+  ASSERT_EQ(report.remarks.size(), 2U);
+  EXPECT_EQ(report.remarks[0].frame, 2);
+  EXPECT_EQ(report.remarks[1].text, "both images are the same as in frame 4");
+}
+
+TEST_F(SequenceRunnerTest, StopFinishesWhatIsUnderWay) {
+  MadeUpPairs pairs(1000);
+  const SequenceReport report = run(pairs, folder("a"), {.stop_after = 1});
+  EXPECT_TRUE(report.interrupted);
+  EXPECT_GE(report.frames, 1);
+  EXPECT_LT(report.frames, 200);
+  EXPECT_EQ(names(folder("a")).size(), static_cast<std::size_t>(report.frames));
+  const DeliveredFrames delivered(SequenceLayout(folder("a"), options_));
+  EXPECT_EQ(delivered.records().size(), static_cast<std::size_t>(report.frames));
+}
+
+TEST_F(SequenceRunnerTest, OptionsAreChecked) {
+  Execution execution({});
+  const auto refusal = [&](const std::function<void(SequenceOptions&)>& change) {
+    SequenceOptions options = options_;
+    change(options);
+    try {
+      SequenceRunner(options, execution);
+    } catch (const UsageError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  using Options = SequenceOptions;
+  EXPECT_EQ(refusal([](Options&) {}), "");
+  EXPECT_THAT(refusal([](Options& o) { o.save = {}; }), HasSubstr("save is empty"));
+  EXPECT_THAT(refusal([](Options& o) { o.views = {ViewTrack::fixed(0)}; }),
+              HasSubstr("save has no views"));
+  EXPECT_THAT(refusal([](Options& o) { o.save = {SequenceOutput::kHoles}; }),
+              HasSubstr("no view is given"));
+  EXPECT_THAT(refusal([](Options& o) { o.map_format = "bmp"; }), HasSubstr("format is 'bmp'"));
+  EXPECT_THAT(refusal([](Options& o) { o.match.parameters.window_px = 4; }), HasSubstr("window"));
+  EXPECT_THAT(refusal([](Options& o) { o.video = {SequenceOutput::kDisparity}; }),
+              HasSubstr("a video cannot hold"));
+  EXPECT_THAT(refusal([](Options& o) { o.video = {SequenceOutput::kPreview}; }),
+              HasSubstr("--save …,preview"));
+  EXPECT_THAT(refusal([](Options& o) { o.crf = 52; }), HasSubstr("crf is 52"));
+  EXPECT_THAT(refusal([](Options& o) { o.chunk_frames = 0; }), HasSubstr("chunk-frames is 0"));
+  EXPECT_THAT(refusal([](Options& o) { o.stereo_views_x = {0, 17}; }), HasSubstr("stereo-views"));
+  EXPECT_THAT(refusal([](Options& o) { o.temporal.weight = -1; }), HasSubstr("-1"));
+}
+
+TEST(BusyClock, CountsOverlappingActivitiesOnce) {
+  BusyClock clock;
+  const auto start = std::chrono::steady_clock::now();
+  {
+    const BusyClock::Activity outer(clock);
+    const BusyClock::Activity inner(clock);
+  }
+  const double elapsed =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_GT(clock.seconds(), 0);
+  EXPECT_LE(clock.seconds(), elapsed);
+}
+
+}  // namespace
+}  // namespace vantage

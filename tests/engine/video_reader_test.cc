@@ -1,0 +1,355 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "engine/io/video_io.h"
+#include "tests/engine/video_test_support.h"
+
+namespace vantage {
+namespace {
+
+using test::bytes_of;
+using test::error_of;
+using test::frame_numbers;
+using test::noise;
+using test::number_of_frame;
+using test::put_bytes;
+using test::put_numbered_video;
+using test::put_open_groups_video;
+using test::put_raw_video;
+using test::RawVideo;
+using test::remux_video;
+using test::video_packets;
+using test::VideoPacket;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// RGB in 0..1 of luma and chroma, by the definition of the standards.
+std::array<double, 3> rgb_of(const RawVideo& video, double luma, double blue, double red) {
+  const bool high_definition = video.height >= 720;
+  const double red_weight = high_definition ? 0.2126 : 0.299;
+  const double blue_weight = high_definition ? 0.0722 : 0.114;
+  const double unit = std::ldexp(1.0, video.bits - 8);
+  const double white = std::ldexp(1.0, video.bits) - 1;
+  const double y = video.full_range ? luma / white : (luma - 16 * unit) / (219 * unit);
+  const double chroma_span = video.full_range ? white : 224 * unit;
+  const double r = y + 2 * (1 - red_weight) * (red - 128 * unit) / chroma_span;
+  const double b = y + 2 * (1 - blue_weight) * (blue - 128 * unit) / chroma_span;
+  const double g = (y - red_weight * r - blue_weight * b) / (1 - red_weight - blue_weight);
+  return {std::clamp(r, 0.0, 1.0), std::clamp(g, 0.0, 1.0), std::clamp(b, 0.0, 1.0)};
+}
+
+RawVideo random_video(const std::string& colours, int bits, bool full_range, int width, int height,
+                      std::size_t planes) {
+  RawVideo video{colours, bits, full_range, width, height, {}};
+  std::mt19937 generator(7);
+  video.frames.emplace_back(planes);
+  for (auto& plane : video.frames[0]) {
+    for (int i = 0; i < width * height; ++i) {
+      plane.push_back(static_cast<int>(generator() >> (32 - bits)));
+    }
+  }
+  return video;
+}
+
+template <typename T>
+void expect_colours(const Photograph& photograph, const RawVideo& video) {
+  ASSERT_TRUE(std::holds_alternative<Image<T>>(photograph.pixels));
+  const auto& image = std::get<Image<T>>(photograph.pixels);
+  ASSERT_EQ(image.channels(), 3);
+  const auto& planes = video.frames[0];
+  for (int y = 0; y < video.height; ++y) {
+    for (int x = 0; x < video.width; ++x) {
+      const auto i = static_cast<std::size_t>(y * video.width + x);
+      const auto expected = rgb_of(video, planes[0][i], planes[1][i], planes[2][i]);
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        const double value = expected.at(channel) * std::numeric_limits<T>::max();
+        // Rounded, not cut off.
+        ASSERT_NEAR(image.at(x, y, static_cast<int>(channel)), value, 0.53)
+            << x << "," << y << " channel " << channel;
+      }
+    }
+  }
+}
+
+TEST(VideoReader, ConvertsColoursByTheDefinition) {
+  const TemporaryFolder folder;
+  for (const bool full_range : {false, true}) {
+    for (const auto& [width, height] : {std::pair{37, 11}, std::pair{1, 1}, std::pair{6, 720}}) {
+      SCOPED_TRACE(testing::Message() << width << "x" << height << " full " << full_range);
+      Photograph frame;
+      const RawVideo video = random_video("444", 8, full_range, width, height, 3);
+      put_raw_video(folder / "8.y4m", video);
+      VideoReader reader(folder / "8.y4m");
+      ASSERT_TRUE(reader.read(frame));
+      expect_colours<std::uint8_t>(frame, video);
+      const RawVideo deep = random_video("444p10", 10, full_range, width, height, 3);
+      put_raw_video(folder / "10.y4m", deep);
+      VideoReader deep_reader(folder / "10.y4m");
+      ASSERT_TRUE(deep_reader.read(frame));
+      expect_colours<std::uint16_t>(frame, deep);
+    }
+  }
+}
+
+template <typename T>
+void expect_grey_levels(const Photograph& photograph, const RawVideo& video) {
+  ASSERT_TRUE(std::holds_alternative<Image<T>>(photograph.pixels));
+  const auto& image = std::get<Image<T>>(photograph.pixels);
+  ASSERT_EQ(image.channels(), 1);
+  for (int i = 0; i < video.width * video.height; ++i) {
+    const int sample = video.frames[0][0][static_cast<std::size_t>(i)];
+    const double unit = std::ldexp(1.0, video.bits - 8);
+    const double level = video.full_range ? sample / (std::ldexp(1.0, video.bits) - 1)
+                                          : (sample - 16 * unit) / (219 * unit);
+    EXPECT_NEAR(image.at(i % video.width, i / video.width),
+                std::numeric_limits<T>::max() * std::clamp(level, 0.0, 1.0), 0.501);
+  }
+}
+
+TEST(VideoReader, GreyStreamsHaveOneChannelOfTheFullRange) {
+  const TemporaryFolder folder;
+  for (const bool full_range : {false, true}) {
+    Photograph frame;
+    const RawVideo video = random_video("mono", 8, full_range, 29, 13, 1);
+    put_raw_video(folder / "8.y4m", video);
+    VideoReader reader(folder / "8.y4m");
+    ASSERT_TRUE(reader.read(frame));
+    expect_grey_levels<std::uint8_t>(frame, video);
+    for (const int bits : {10, 12, 16}) {
+      const RawVideo deep =
+          random_video("mono" + std::to_string(bits), bits, full_range, 29, 13, 1);
+      put_raw_video(folder / "deep.y4m", deep);
+      VideoReader deep_reader(folder / "deep.y4m");
+      ASSERT_TRUE(deep_reader.read(frame));
+      expect_grey_levels<std::uint16_t>(frame, deep);
+    }
+  }
+}
+
+/// A ramp of chroma along x with the samples at even columns, as H.264 and MPEG-2 have them: the
+/// interpolated value at each column tells where the reader takes them to be.
+TEST(VideoReader, PutsChromaWhereItWasSampled) {
+  const TemporaryFolder folder;
+  constexpr int kWidth = 64;
+  constexpr int kHeight = 16;
+  RawVideo video{"420mpeg2", 8,       true,
+                 kWidth,     kHeight, {{std::vector<int>(kWidth * kHeight, 128), {}, {}}}};
+  for (int i = 0; i < kWidth / 2 * kHeight / 2; ++i) {
+    video.frames[0][1].push_back(128);
+    video.frames[0][2].push_back(96 + 2 * (i % (kWidth / 2)));
+  }
+  put_raw_video(folder / "a.y4m", video);
+  VideoReader reader(folder / "a.y4m");
+  Photograph frame;
+  ASSERT_TRUE(reader.read(frame));
+  const auto& image = std::get<Image<std::uint8_t>>(frame.pixels);
+  for (int x = 8; x < kWidth - 8; ++x) {
+    EXPECT_NEAR(image.at(x, 8, 0), rgb_of(video, 128, 128, 96 + x)[0] * 255, 1.0) << x;
+  }
+}
+
+TEST(VideoReader, CountsFramesThatAreMissingByTheirTimes) {
+  const TemporaryFolder folder;
+  constexpr FrameRate kRate{10, 1};
+  put_numbered_video(folder / "a.mp4", 12, kRate);
+  const auto time_of = [](int frame) {
+    return frame < 4 ? frame : frame < 9 ? frame + 1 : frame + 8;
+  };
+  for (const char* container : {"mp4", "matroska", "mov", "nut"}) {
+    SCOPED_TRACE(container);
+    remux_video(folder / "a.mp4", folder / "gaps", container, kRate, {}, time_of);
+    VideoReader reader(folder / "gaps");
+    EXPECT_EQ(reader.frame_count(), 12);
+    ASSERT_TRUE(reader.frame_rate().has_value());
+    EXPECT_NEAR(reader.frame_rate()->per_second(), 10, 0.2);
+    std::vector<int> missing;
+    Photograph frame;
+    for (int i = 0; reader.read(frame); ++i) {
+      EXPECT_EQ(number_of_frame(frame), i);
+      missing.push_back(reader.frames_missing());
+    }
+    EXPECT_THAT(missing, ElementsAre(0, 0, 0, 0, 1, 0, 0, 0, 0, 7, 0, 0));
+  }
+}
+
+TEST(VideoReader, CountsFramesAndKnowsTheRateInOtherContainers) {
+  const TemporaryFolder folder;
+  for (const FrameRate rate : {FrameRate{24, 1}, FrameRate{30000, 1001}, FrameRate{15, 2}}) {
+    put_numbered_video(folder / "a.mp4", 21, rate);
+    for (const char* container : {"matroska", "mpegts", "mov", "nut", "flv", "h264"}) {
+      SCOPED_TRACE(container + (" " + to_string(rate)));
+      ASSERT_NO_THROW(remux_video(folder / "a.mp4", folder / "b", container, rate));
+      VideoReader reader(folder / "b");
+      EXPECT_EQ(reader.frame_count(), 21);
+      if (container != std::string("h264")) {
+        ASSERT_TRUE(reader.frame_rate());
+        EXPECT_NEAR(reader.frame_rate()->per_second() / rate.per_second(), 1, 1e-3);
+      }
+      EXPECT_EQ(frame_numbers(folder / "b").size(), 21U);
+      EXPECT_EQ(frame_numbers(folder / "b").back(), 20);
+    }
+  }
+}
+
+TEST(VideoReader, ShowsWhatAnEditListShows) {
+  const TemporaryFolder folder;
+  put_numbered_video(folder / "a.mp4", 12, {10, 1});
+  remux_video(folder / "a.mp4", folder / "b.mp4", "mp4", {10, 1}, {},
+              [](int frame) { return frame - 3; });
+  VideoReader reader(folder / "b.mp4");
+  EXPECT_EQ(reader.frame_count(), 9);
+  EXPECT_THAT(frame_numbers(folder / "b.mp4"), ElementsAre(3, 4, 5, 6, 7, 8, 9, 10, 11));
+}
+
+TEST(VideoReader, SkippedFramesAreTheSameFrames) {
+  const TemporaryFolder folder;
+  put_numbered_video(folder / "a.mp4", 15, {10, 1});
+  VideoReader reader(folder / "a.mp4");
+  Photograph frame;
+  for (int i = 0; i < 15; ++i) {
+    if (i % 4 == 2) {
+      ASSERT_TRUE(reader.read(frame));
+      EXPECT_EQ(number_of_frame(frame), i);
+    } else {
+      ASSERT_TRUE(reader.skip());
+    }
+  }
+  EXPECT_FALSE(reader.skip());
+  EXPECT_FALSE(reader.read(frame));
+}
+
+/// The container is whole and most of what is in it is not.
+TEST(VideoReader, DamagedFramesAreAnErrorThatNamesTheFrame) {
+  const TemporaryFolder folder;
+  {
+    VideoWriter writer(folder / "a.mp4", 64, 48, {});
+    for (unsigned i = 0; i < 20; ++i) {
+      writer.write(noise<std::uint8_t>(64, 48, 3, i));
+    }
+    writer.finish();
+  }
+  auto bytes = bytes_of(folder / "a.mp4");
+  const std::string text(bytes.begin(), bytes.end());
+  const std::size_t begin = text.find("mdat") + 4;
+  const std::size_t end = bytes.size();  // the index comes first
+  ASSERT_LT(begin, end);
+  std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(begin + (end - begin) / 4),
+            bytes.begin() + static_cast<std::ptrdiff_t>(end - 4), std::uint8_t{0});
+  put_bytes(folder / "a.mp4", bytes);
+  const std::string error = error_of([&] {
+    VideoReader reader(folder / "a.mp4");
+    Photograph frame;
+    while (reader.read(frame)) {
+    }
+  });
+  EXPECT_THAT(error, testing::AllOf(HasSubstr("frame "), HasSubstr("expected 20")));
+}
+
+/// Frames before the damaged one are given out, and that one is named, whatever the threads.
+TEST(VideoReader, OneDamagedPacketIsAnErrorAtItsFrame) {
+  const TemporaryFolder folder;
+  constexpr int kFrames = 24;
+  put_numbered_video(folder / "a.mp4", kFrames, {25, 1});
+  const std::vector<VideoPacket> packets = video_packets(folder / "a.mp4");
+  ASSERT_EQ(packets.size(), static_cast<std::size_t>(kFrames));
+  const auto whole = bytes_of(folder / "a.mp4");
+  for (const std::size_t damaged : {0, 1, 7, 13, 23}) {
+    // The length of the part that the packet begins with: no such part.
+    auto bytes = whole;
+    std::fill_n(bytes.begin() + packets[damaged].offset, 4, std::uint8_t{0xFF});
+    put_bytes(folder / "b.mp4", bytes);
+    int first_lost = kFrames;
+    for (std::size_t i = damaged; i < packets.size(); ++i) {
+      first_lost = std::min(first_lost, packets[i].frame);
+    }
+    testing::internal::CaptureStderr();
+    VideoReader reader(folder / "b.mp4");
+    Photograph frame;
+    for (int i = 0; i < first_lost; ++i) {
+      ASSERT_TRUE(reader.read(frame)) << damaged;
+      EXPECT_EQ(number_of_frame(frame), i);
+    }
+    EXPECT_THAT(error_of([&] { reader.read(frame); }),
+                AllOf(HasSubstr("b.mp4"), HasSubstr("frame " + std::to_string(first_lost) + " "),
+                      HasSubstr("expected 24")));
+    EXPECT_FALSE(reader.read(frame)) << "a video ends with its damage";
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  }
+}
+
+TEST(VideoReader, AVideoCutWithoutEncodingIsAnErrorAndNotGrey) {
+  const TemporaryFolder folder;
+  put_numbered_video(folder / "a.mp4", 12, {25, 1});
+  remux_video(
+      folder / "a.mp4", folder / "b.mp4", "mp4", {25, 1}, {}, [](int frame) { return frame - 4; },
+      [](int frame) { return frame >= 4; });
+  const std::string error = error_of([&] { frame_numbers(folder / "b.mp4"); });
+  EXPECT_THAT(error, AllOf(HasSubstr("b.mp4"), HasSubstr("frame 0")));
+}
+
+/// Cut at a frame to decode from, it begins with frames that cannot be decoded: those are left out,
+/// the others are right.
+TEST(VideoReader, AVideoCutAtAnOpenGroupBeginsWithItsFirstWholeFrame) {
+  const TemporaryFolder folder;
+  put_open_groups_video(folder / "a.mp4", 24, {10, 1});
+  EXPECT_EQ(frame_numbers(folder / "a.mp4").size(), 24U);
+  const std::vector<VideoPacket> packets = video_packets(folder / "a.mp4");
+  const auto cut =
+      std::find_if(packets.begin() + 1, packets.end(), [](const auto& p) { return p.key; });
+  ASSERT_NE(cut, packets.end());
+  const int first_whole = cut->frame;
+  std::set<int> kept;
+  std::for_each(cut, packets.end(), [&](const auto& packet) { kept.insert(packet.frame); });
+  ASSERT_LT(*kept.begin(), first_whole) << "no frame is shown before the one to decode from";
+  for (const char* container : {"matroska", "mp4"}) {
+    SCOPED_TRACE(container);
+    remux_video(
+        folder / "a.mp4", folder / "b", container, {10, 1}, {},
+        [&](int frame) { return frame - *kept.begin(); },
+        [&](int frame) { return kept.contains(frame); });
+    std::vector<int> expected;
+    for (int i = first_whole; i < 24; ++i) {
+      expected.push_back(i);
+    }
+    EXPECT_EQ(frame_numbers(folder / "b"), expected);
+  }
+  remux_video(
+      folder / "a.mp4", folder / "b", "matroska", {10, 1}, {},
+      [&](int frame) { return frame - *kept.begin(); },
+      [&](int frame) { return kept.contains(frame); });
+  EXPECT_EQ(VideoReader(folder / "b").frame_count(), 24 - first_whole);
+}
+
+TEST(VideoReader, OpensOnlyVideos) {
+  const TemporaryFolder folder;
+  put_numbered_video(folder / "a.mp4", 2, {25, 1});
+  const std::string name = folder / "a.mp4";
+  for (const std::string& text :
+       {"ffconcat version 1.0\nfile " + name + "\n",
+        "#EXTM3U\n#EXT-X-TARGETDURATION:10\n#EXTINF:1,\n" + name + "\n#EXT-X-ENDLIST\n",
+        std::string("plain text in a file that is called so\n")}) {
+    for (const char* file : {"list.txt", "list.m3u8", "list.mp4"}) {
+      test::put_text(folder / file, text);
+      EXPECT_THAT(error_of([&] { VideoReader(folder / file); }), HasSubstr("not a video")) << text;
+    }
+  }
+}
+
+TEST(VideoReader, RefusesAbsurdSizes) {
+  const TemporaryFolder folder;
+  test::put_text(folder / "a.y4m", "YUV4MPEG2 W60000 H60000 F25:1 C444\nFRAME\nxxxx");
+  EXPECT_THAT(error_of([&] { VideoReader(folder / "a.y4m"); }), HasSubstr("a.y4m"));
+}
+
+}  // namespace
+}  // namespace vantage

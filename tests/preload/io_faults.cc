@@ -1,0 +1,159 @@
+// Preloaded into a program under test: ends it, or lets the disk be full, at a chosen call that
+// changes files below a folder. Which calls count does not depend on time, so tests can go through
+// them one by one. Environment:
+//   IO_FAULTS_FOLDER  only files below it count
+//   IO_FAULTS_KILL    number (from 1) of the call before which the process is killed
+//   IO_FAULTS_FULL    number of the call from which on nothing can be written
+//   IO_FAULTS_COUNT   file that the number of calls is written to at the end
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace {
+
+// The calls come from C code anywhere in the process: there is nothing to hand a state through.
+std::atomic<long> calls{0};  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+
+long number_in(const char* variable) {
+  const char* text = std::getenv(variable);
+  return text == nullptr ? 0 : std::atol(text);
+}
+
+bool is_below_folder(const char* path) {
+  const char* folder = std::getenv("IO_FAULTS_FOLDER");
+  return folder != nullptr && std::strncmp(path, folder, std::strlen(folder)) == 0;
+}
+
+/// Counts a call; true when it has to fail because the disk is full.
+bool fails(const char* path, bool needs_space) {
+  if (!is_below_folder(path)) {
+    return false;
+  }
+  const long call = ++calls;
+  if (call == number_in("IO_FAULTS_KILL")) {
+    std::raise(SIGKILL);
+  }
+  const long full = number_in("IO_FAULTS_FULL");
+  if (needs_space && full > 0 && call >= full) {
+    errno = ENOSPC;
+    return true;
+  }
+  return false;
+}
+
+bool fails(int descriptor, bool needs_space) {
+  char link[64];
+  char path[4096];
+  std::snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
+  const ssize_t length = ::readlink(link, path, sizeof path - 1);
+  if (length < 0) {
+    return false;
+  }
+  path[length] = 0;
+  return fails(path, needs_space);
+}
+
+template <typename Function>
+Function* next(const char* name) {
+  return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
+}
+
+struct CountAtEnd {
+  ~CountAtEnd() {
+    if (const char* path = std::getenv("IO_FAULTS_COUNT")) {
+      if (std::FILE* file = std::fopen(path, "w")) {
+        std::fprintf(file, "%ld\n", calls.load());
+        std::fclose(file);
+      }
+    }
+  }
+};
+const CountAtEnd count_at_end;
+
+mode_t mode_of(int flags, va_list arguments) {
+  return (flags & O_CREAT) != 0 ? static_cast<mode_t>(va_arg(arguments, unsigned)) : 0;
+}
+
+}  // namespace
+
+extern "C" {
+
+int open(const char* path, int flags, ...) {
+  va_list arguments;
+  va_start(arguments, flags);
+  const mode_t mode = mode_of(flags, arguments);
+  va_end(arguments);
+  if ((flags & O_CREAT) != 0 && fails(path, true)) {
+    return -1;
+  }
+  return next<int(const char*, int, ...)>("open")(path, flags, mode);
+}
+
+int open64(const char* path, int flags, ...) {
+  va_list arguments;
+  va_start(arguments, flags);
+  const mode_t mode = mode_of(flags, arguments);
+  va_end(arguments);
+  if ((flags & O_CREAT) != 0 && fails(path, true)) {
+    return -1;
+  }
+  return next<int(const char*, int, ...)>("open64")(path, flags, mode);
+}
+
+ssize_t write(int descriptor, const void* bytes, size_t size) {
+  return fails(descriptor, true)
+             ? -1
+             : next<ssize_t(int, const void*, size_t)>("write")(descriptor, bytes, size);
+}
+
+ssize_t writev(int descriptor, const iovec* parts, int count) {
+  return fails(descriptor, true)
+             ? -1
+             : next<ssize_t(int, const iovec*, int)>("writev")(descriptor, parts, count);
+}
+
+int fsync(int descriptor) {
+  return fails(descriptor, false) ? -1 : next<int(int)>("fsync")(descriptor);
+}
+
+int fdatasync(int descriptor) {
+  return fails(descriptor, false) ? -1 : next<int(int)>("fdatasync")(descriptor);
+}
+
+int ftruncate(int descriptor, off_t length) {
+  return fails(descriptor, false) ? -1 : next<int(int, off_t)>("ftruncate")(descriptor, length);
+}
+
+int rename(const char* from, const char* to) {
+  return fails(to, false) ? -1 : next<int(const char*, const char*)>("rename")(from, to);
+}
+
+int link(const char* from, const char* to) {
+  return fails(to, true) ? -1 : next<int(const char*, const char*)>("link")(from, to);
+}
+
+int remove(const char* path) {
+  return fails(path, false) ? -1 : next<int(const char*)>("remove")(path);
+}
+
+int unlinkat(int folder, const char* path, int flags) {
+  return fails(folder, false) ? -1
+                              : next<int(int, const char*, int)>("unlinkat")(folder, path, flags);
+}
+
+int mkdir(const char* path, mode_t mode) {
+  return fails(path, true) ? -1 : next<int(const char*, mode_t)>("mkdir")(path, mode);
+}
+
+}  // extern "C"
