@@ -13,7 +13,7 @@ struct CalibrationEntry {
   int rows = 0;  ///< 0: the file does not say
   int columns = 0;
   std::vector<double> values = {};  ///< row by row, all finite
-  std::string problem = "";         ///< why there are no values, empty if there are
+  std::string problem = {};         ///< why there are no values, empty if there are
 };
 
 /// By name; the first one counts where a name comes twice.

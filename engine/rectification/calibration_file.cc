@@ -45,7 +45,8 @@ class CalibrationFile {
       throw Error(
           fmt::format("there is no {} in it, expected a {}x{} matrix", name, rows, columns));
     }
-    if (entry->values.size() != static_cast<std::size_t>(rows * columns)) {
+    if (entry->values.size() !=
+        static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns)) {
       throw Error(fmt::format("{} has {} values, expected {}x{}", name, entry->values.size(), rows,
                               columns));
     }

@@ -18,6 +18,12 @@ constexpr double kRayStep = 1.0 / 512;
 
 enum Coefficient { kK1, kK2, kP1, kP2, kK3, kK4, kK5, kK6, kS1, kS2, kS3, kS4, kTauX, kTauY };
 
+std::array<double, 14> all_coefficients(const Camera& camera) {
+  std::array<double, 14> coefficients{};
+  std::copy(camera.distortion.begin(), camera.distortion.end(), coefficients.begin());
+  return coefficients;
+}
+
 /// The sensor turned by τx about its x axis, then by τy about its y axis, and the projection from
 /// the lens' image plane onto it.
 Eigen::Matrix3d tilt_projection(double tau_x, double tau_y) {
@@ -88,12 +94,12 @@ void Camera::validate(const std::string& name) const {
 }
 
 LensModel::LensModel(const Camera& camera)
-    : matrix_(camera.matrix), inverse_matrix_(camera.matrix.inverse()) {
-  std::copy(camera.distortion.begin(), camera.distortion.end(), coefficients_.begin());
-  is_tilted_ = coefficients_[kTauX] != 0 || coefficients_[kTauY] != 0;
-  tilt_ = tilt_projection(coefficients_[kTauX], coefficients_[kTauY]);
-  largest_ray_ = growing_up_to(coefficients_);
-}
+    : matrix_(camera.matrix),
+      inverse_matrix_(camera.matrix.inverse()),
+      coefficients_(all_coefficients(camera)),
+      tilt_(tilt_projection(coefficients_[kTauX], coefficients_[kTauY])),
+      is_tilted_(coefficients_[kTauX] != 0 || coefficients_[kTauY] != 0),
+      largest_ray_(growing_up_to(coefficients_)) {}
 
 Eigen::Vector2d LensModel::distorted(const Eigen::Vector2d& ray) const {
   const auto& k = coefficients_;

@@ -47,10 +47,10 @@ class LensModel {
 
   Eigen::Matrix3d matrix_;
   Eigen::Matrix3d inverse_matrix_;
-  std::array<double, 14> coefficients_{};
+  std::array<double, 14> coefficients_;
   Eigen::Matrix3d tilt_;
-  bool is_tilted_ = false;
-  double largest_ray_ = 0;
+  bool is_tilted_;
+  double largest_ray_;
 };
 
 }  // namespace vantage

@@ -91,6 +91,7 @@ RayPolygon seen_rays(const LensModel& lens, int width_px, int height_px) {
   };
   // Evenly all around, and to the corners of the image, where the outline has its own.
   std::vector<double> angles;
+  angles.reserve(kDirections + 4);
   for (int i = 0; i < kDirections; ++i) {
     angles.push_back(2 * std::numbers::pi * i / kDirections - std::numbers::pi);
   }

@@ -179,7 +179,10 @@ template <class D, typename T>
 HWY_INLINE void sum_along_grey(D d, const Block& block, int first, int count, T* values) {
   const int step = static_cast<int>(hn::Lanes(d));
   for (int i = first; i + step <= count; i += step) {
-    hn::VFromD<D> tap0, tap1, tap2, tap3;
+    hn::VFromD<D> tap0;
+    hn::VFromD<D> tap1;
+    hn::VFromD<D> tap2;
+    hn::VFromD<D> tap3;
     hn::LoadInterleaved4(d, block.sum_down + 4 * i, tap0, tap1, tap2, tap3);
     const auto sum = hn::Add(hn::Add(hn::Mul(hn::LoadU(d, block.weight_x[0] + i), tap0),
                                      hn::Mul(hn::LoadU(d, block.weight_x[1] + i), tap1)),
