@@ -1,0 +1,363 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/pair_fixture.h"
+
+namespace vantage {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::IsSupersetOf;
+using testing::Not;
+
+constexpr int kFrames = 6;
+
+/// Exit code of a shell command; its output goes to `log`.
+int shell(const std::string& command, const std::string& log) {
+  const std::string line = "{ " + command + "\n} >>'" + log + "' 2>&1";
+  const int status = std::system(line.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+/// Puts programs of a test's own in front of those of the system.
+class SubmitCommand : public testing::Test {
+ protected:
+  SubmitCommand() {
+    for (int frame = 0; frame < kFrames; ++frame) {
+      BookPairOptions options;
+      options.width_px = 47;
+      options.height_px = 29;
+      options.seed = static_cast<std::uint64_t>(frame + 1);
+      const BookPair pair = make_book_pair(options);
+      const std::string name = "/frame" + std::to_string(frame) + ".png";
+      std::filesystem::create_directories(left_);
+      std::filesystem::create_directories(right_);
+      write_photograph(left_ + name, pair.left);
+      write_photograph(right_ + name, pair.right);
+    }
+    std::filesystem::create_directory(programs_);
+    ::setenv("PATH", (programs_ + ":" + path_).c_str(), 1);
+    add_program("sbatch", "echo 4$(wc -l <" + calls_ + ")");
+    add_program("squeue", "exit 1");
+    add_program("scancel", "");
+    add_program("scontrol", "");
+  }
+  ~SubmitCommand() override { ::setenv("PATH", path_.c_str(), 1); }
+
+  /// A shell script that also notes how it was called.
+  void add_program(const std::string& name, const std::string& body) const {
+    const std::string file = programs_ + "/" + name;
+    write_file(file, "#!/bin/bash\necho \"" + name + " $*\" >>" + calls_ + "\n" + body + "\n");
+    std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+  }
+  [[nodiscard]] std::string calls() const { return read_file(calls_); }
+
+  [[nodiscard]] std::vector<std::string> run_options(const std::string& out) const {
+    return {"--left",         left_, "--right", right_, "-o", out, "--disparities=0:9",
+            "--chunk-frames", "2"};
+  }
+  [[nodiscard]] ProcessResult submit(const std::string& out,
+                                     const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = run_options(out);
+    arguments.insert(arguments.begin(), {"submit", "--engine", "slurm", "--shards", "3"});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_vantage(arguments);
+  }
+  static std::string slurm(const std::string& out, const std::string& file) {
+    return out + "/.vantage/slurm/" + file;
+  }
+
+  /// Runs the script of a task that has been submitted to `out`, and `meanwhile`, which knows the
+  /// script as $task.
+  [[nodiscard]] static int run_task(const std::string& out, const std::string& meanwhile = "") {
+    return shell("SLURM_ARRAY_JOB_ID=41 SLURM_ARRAY_TASK_ID=2 SLURM_CPUS_ON_NODE=5 bash '" +
+                     slurm(out, "array.sh") + "' &\ntask=$!\n" + meanwhile + "\nwait $task",
+                 slurm(out, "task-2.log"));
+  }
+  /// A vantage that says "ready" and goes on until TERM or INT; then it notes a finished frame in
+  /// `frames` and ends, unless it `stays`.
+  void add_patient_vantage(const std::string& frames, bool stays = false) const {
+    // Not in bash: it cannot catch INT when it has been started with INT ignored.
+    const std::string at_signal =
+        "(open('" + frames + "', 'a').write('{}\\n')," + (stays ? "0" : "sys.exit(130)") + ")";
+    add_program("vantage",
+                "exec python3 -c \"import signal, sys, time\nfor s in (signal.SIGINT, "
+                "signal.SIGTERM): signal.signal(s, lambda *_: " +
+                    at_signal + ")\nopen('" + folder_ / "ready" + "', 'w')\ntime.sleep(60)\"");
+  }
+  [[nodiscard]] std::string send_when_ready(const std::string& signal) const {
+    return "for wait in $(seq 1000); do [ -e " + folder_ / "ready" +
+           " ] && break; sleep 0.02; done; kill -" + signal + " $task";
+  }
+
+  TemporaryFolder folder_;
+  std::string left_ = folder_ / "left";
+  std::string right_ = folder_ / "right";
+  std::string programs_ = folder_ / "programs";
+  std::string calls_ = folder_ / "calls";
+  std::string path_ = std::getenv("PATH");
+};
+
+TEST_F(SubmitCommand, TheJobFileHoldsTheWholeRunWithAbsolutePaths) {
+  const std::filesystem::path start = std::filesystem::current_path();
+  std::filesystem::current_path(folder_.path());
+  const ProcessResult result =
+      run_vantage({"submit", "--left", "left", "--right", "right/*.png", "-o", "out", "--shards",
+                   "1", "--no-submit", "--window", "7", "--keep-going", "--disparities=0:9"});
+  std::filesystem::current_path(start);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string out = folder_ / "out";
+  EXPECT_THAT(files_below(out),
+              ElementsAre(".vantage/slurm/array.sh", ".vantage/slurm/job.toml",
+                          ".vantage/slurm/merge.sh", ".vantage/slurm/submit.toml"));
+  const ProcessResult of_file = run_vantage({"run", slurm(out, "job.toml"), "--print-config"});
+  EXPECT_EQ(of_file.exit_code, 0) << of_file.err;
+  EXPECT_EQ(of_file.out,
+            run_vantage({"run", "--left", left_, "--right", right_ + "/*.png", "-o", out,
+                         "--window", "7", "--keep-going", "--disparities=0:9", "--print-config"})
+                .out);
+  EXPECT_EQ(run_vantage({"submit", slurm(out, "submit.toml"), "--print-config"}).out,
+            read_file(slurm(out, "submit.toml")));
+  EXPECT_EQ(calls(), "");
+  EXPECT_THAT(result.out, HasSubstr("sbatch --parsable " + slurm(out, "array.sh")));
+}
+
+TEST_F(SubmitCommand, OptionsBecomeDirectives) {
+  const std::string out = folder_ / "an 'odd' 50% folder";
+  const ProcessResult result = submit(
+      out, {"--no-submit", "--partition", "long", "--account", "film", "--time", "1-12", "--cpus",
+            "16", "--slurm-memory", "8G", "--concurrent", "2", "--sbatch-option", "--qos=low",
+            "--sbatch-option", "--constraint=avx2", "--program", "/opt/vantage"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string array = read_file(slurm(out, "array.sh"));
+  for (const std::string directive :
+       {"--array=1-3%2", "--partition=long", "--account=film", "--time=1-12", "--cpus-per-task=16",
+        "--mem=8G", "--qos=low", "--constraint=avx2", "--signal=B:USR1@120", "--requeue",
+        "--open-mode=append"}) {
+    EXPECT_THAT(array, HasSubstr("\n#SBATCH " + directive + "\n"));
+  }
+  EXPECT_THAT(array, HasSubstr("an 'odd' 50%% folder/.vantage/slurm/task-%a.log\"\n"));
+  EXPECT_THAT(array, HasSubstr("\nprogram=/opt/vantage\n"));
+  const std::string merge = read_file(slurm(out, "merge.sh"));
+  EXPECT_THAT(merge, HasSubstr("\n#SBATCH --partition=long\n"));
+  EXPECT_THAT(merge, Not(HasSubstr("cpus-per-task")));
+  EXPECT_THAT(merge, HasSubstr("exec /opt/vantage merge '"));
+  EXPECT_EQ(shell("bash -n '" + slurm(folder_ / "an '\\''odd'\\'' 50% folder", "array.sh") + "'",
+                  folder_ / "log"),
+            0);
+  // A short time limit leaves less time to finish; --threads are processors unless told otherwise.
+  ASSERT_EQ(submit(out, {"--no-submit", "--time", "4", "--threads", "3"}).exit_code, 0);
+  EXPECT_THAT(read_file(slurm(out, "array.sh")), HasSubstr("--signal=B:USR1@60\n"));
+  EXPECT_THAT(read_file(slurm(out, "array.sh")), HasSubstr("--cpus-per-task=3\n"));
+  EXPECT_THAT(read_file(slurm(out, "array.sh")), HasSubstr("\nthreads=()\n"));
+}
+
+TEST_F(SubmitCommand, SubmitsTheArrayAndTheMergeAfterIt) {
+  const std::string out = folder_ / "out";
+  const ProcessResult result = submit(out);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(calls(), "sbatch --parsable " + slurm(out, "array.sh") +
+                         "\nsbatch --parsable --dependency=afterok:41 --kill-on-invalid-dep=yes " +
+                         slurm(out, "merge.sh") + "\n");
+  const auto jobs = nlohmann::json::parse(read_file(slurm(out, "submitted.json")));
+  EXPECT_EQ(jobs, (nlohmann::json{{"array_job", "41"}, {"merge_job", "42"}}));
+  for (const std::string says :
+       {"squeue --array --jobs=41,42", "scancel 41 42", "*.log", "vantage submit --config"}) {
+    EXPECT_THAT(result.out, HasSubstr(says));
+  }
+  EXPECT_EQ(submit(out, {"--quiet"}).out, "");
+  EXPECT_THAT(read_file(slurm(out, "job.toml")), HasSubstr("quiet = false"));
+
+  add_program("squeue", "echo running");
+  const ProcessResult again = submit(out);
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_TRUE(is_one_line(again, "submit"));
+  EXPECT_THAT(again.err, HasSubstr("still in the queue"));
+}
+
+TEST_F(SubmitCommand, WhatSlurmRefusesIsOneLine) {
+  const std::string out = folder_ / "out";
+  add_program("sbatch", "echo 'sbatch: error: no such thing' >&2; echo 'really' >&2; exit 1");
+  const ProcessResult first = submit(out);
+  EXPECT_EQ(first.exit_code, 1);
+  EXPECT_TRUE(is_one_line(first, "submit"));
+  EXPECT_THAT(first.err, HasSubstr("no such thing really"));
+  EXPECT_THAT(calls(), Not(HasSubstr("scancel")));
+
+  // An array without its merge must not stay.
+  add_program("sbatch", "[[ $* == *array.sh ]] && echo '41;cluster' || exit 1");
+  const ProcessResult second = submit(out);
+  EXPECT_EQ(second.exit_code, 1);
+  EXPECT_TRUE(is_one_line(second, "submit"));
+  EXPECT_THAT(calls(), HasSubstr("afterok:41 "));
+  EXPECT_THAT(calls(), HasSubstr("scancel 41"));
+  EXPECT_FALSE(std::filesystem::exists(slurm(out, "submitted.json")));
+
+  add_program("sbatch", "echo 'good morning'");
+  EXPECT_THAT(submit(out).err, HasSubstr("expected the number of a job"));
+
+  ::setenv("PATH", (folder_ / "nothing").c_str(), 1);
+  const ProcessResult missing = submit(folder_ / "other");
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_TRUE(is_one_line(missing, "submit"));
+  EXPECT_THAT(missing.err, HasSubstr("sbatch is not in the PATH"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "other"));
+}
+
+TEST_F(SubmitCommand, WrongUsageIsOneLineAndExit2) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {
+      {{"--shard", "1/3"}, "--shard cannot be submitted"},
+      {{"--dry-run"}, "--dry-run cannot be submitted"},
+      {{"--report", "r.json"}, "--report cannot be submitted"},
+      {{"--overwrite", "--no-submit"}, "--overwrite cannot be submitted"},
+      {{"--time", "1:2:3:4"}, "--time is '1:2:3:4'"},
+      {{"--time", "0"}, "--time is '0'"},
+      {{"--slurm-memory", "8"}, "--slurm-memory is '8'"},
+      {{"--sbatch-option", "qos"}, "--sbatch-option is 'qos'"},
+      {{"--sbatch-option", "--a\nb"}, "--sbatch-option is"},
+      {{"--partition", "a b"}, "--partition is 'a b'"},
+      {{"--cpus", "0"}, "--cpus is 0"},
+      {{"--concurrent", "0"}, "--concurrent is 0"},
+      {{"--retries", "-1"}, "--retries is -1"},
+      {{"--drain-time", "0"}, "--drain-time is 0"},
+      {{"--engine", "pbs"}, "--engine"},
+      {{"--chunk-frames", "4"}, "--chunk-frames is given 2 times"},
+      {{"--frames", "0-3"}, "--shards is 3, expected at most 2: there are 4 frames"},
+      {{"--window", "4"}, "window is 4"},
+      {{"--left", right_}, "--left is given 2 times"}};
+  const std::string out = folder_ / "out";
+  for (const auto& [more, says] : misuses) {
+    const ProcessResult result = submit(out, more);
+    EXPECT_EQ(result.exit_code, 2) << says << result.err;
+    EXPECT_TRUE(is_one_line(result, "submit"));
+    EXPECT_THAT(result.err, HasSubstr(says));
+  }
+  EXPECT_FALSE(std::filesystem::exists(out));
+  EXPECT_EQ(submit(folder_ / "a\"b").exit_code, 2);
+  EXPECT_EQ(calls(), "");
+
+  write_file(folder_ / "file", "not a folder");
+  const ProcessResult result = submit(folder_ / "file");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(is_one_line(result, "submit"));
+}
+
+TEST_F(SubmitCommand, TheFolderOfAnotherRunIsRefused) {
+  const std::string out = folder_ / "out";
+  std::vector<std::string> run = run_options(out);
+  run.insert(run.begin(), {"run", "--quiet"});
+  ASSERT_EQ(run_vantage(run).exit_code, 0);
+  EXPECT_EQ(submit(out).exit_code, 0);
+  const ProcessResult other = submit(out, {"--window", "5"});
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_TRUE(is_one_line(other, "submit"));
+  EXPECT_THAT(other.err, HasSubstr("window"));
+  EXPECT_EQ(submit(out, {"--window", "5", "--overwrite"}).exit_code, 0);
+  // Only the submission begins anew, not its tasks nor its repetition.
+  EXPECT_THAT(read_file(slurm(out, "job.toml")), HasSubstr("overwrite = false"));
+  EXPECT_THAT(read_file(slurm(out, "submit.toml")), HasSubstr("overwrite = false"));
+}
+
+TEST_F(SubmitCommand, TasksMakeTheShardsOfTheRun) {
+  const std::string out = folder_ / "out";
+  const std::string whole = folder_ / "whole";
+  std::vector<std::string> run = run_options(whole);
+  run.insert(run.begin(), {"run", "--quiet"});
+  ASSERT_EQ(run_vantage(run).exit_code, 0);
+  ASSERT_EQ(submit(out).exit_code, 0);
+  for (const std::string task : {"3", "1", "2"}) {
+    EXPECT_EQ(shell("SLURM_ARRAY_JOB_ID=41 SLURM_ARRAY_TASK_ID=" + task + " bash '" +
+                        slurm(out, "array.sh") + "'",
+                    folder_ / "log"),
+              0)
+        << read_file(folder_ / "log");
+  }
+  EXPECT_EQ(shell("bash '" + slurm(out, "merge.sh") + "'", folder_ / "log"), 0)
+      << read_file(folder_ / "log");
+  for (const std::string& file : files_below(whole + "/disparity")) {
+    EXPECT_EQ(read_file(out + "/disparity/" + file), read_file(whole + "/disparity/" + file));
+  }
+  EXPECT_EQ(files_below(out + "/disparity"), files_below(whole + "/disparity"));
+  EXPECT_THAT(files_below(out + "/.vantage/slurm"),
+              IsSupersetOf({"report-1.json", "report-2.json", "report-3.json"}));
+}
+
+TEST_F(SubmitCommand, ATaskEndsAsItsRunDoes) {
+  const std::string out = folder_ / "out";
+  ASSERT_EQ(submit(out, {"--program", programs_ + "/vantage", "--frames", "0-5"}).exit_code, 0);
+  add_program("vantage", "exit 0");
+  EXPECT_EQ(run_task(out), 0);
+  EXPECT_THAT(calls(), HasSubstr("vantage run " + slurm(out, "job.toml") +
+                                 " --shard 2/3 --resume --progress plain --report " +
+                                 slurm(out, "report-2.json") + " --threads 5\n"));
+  add_program("vantage", "exit 3");
+  EXPECT_EQ(run_task(out), 0);
+  EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("frames were skipped"));
+  add_program("vantage", "exit 2");
+  EXPECT_EQ(run_task(out), 2);
+  EXPECT_THAT(calls(), Not(HasSubstr("scontrol")));
+}
+
+TEST_F(SubmitCommand, AFailedTaskIsTriedAgainAndThenGivenUp) {
+  const std::string out = folder_ / "out";
+  ASSERT_EQ(submit(out, {"--program", programs_ + "/vantage", "--retries", "1"}).exit_code, 0);
+  add_program("vantage", "kill -SEGV $$");
+  EXPECT_EQ(run_task(out), 0);
+  EXPECT_THAT(calls(), HasSubstr("scontrol requeue 41_2\n"));
+  EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("exit code 139, is tried again"));
+  std::filesystem::remove(calls_);
+  EXPECT_EQ(run_task(out), 139);
+  EXPECT_THAT(calls(), Not(HasSubstr("scontrol")));
+  EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("given up after 2 attempts"));
+
+  // A later submission starts counting anew; Slurm may refuse, though.
+  add_program("scontrol", "exit 1");
+  std::filesystem::remove(slurm(out, "failures-41_2"));
+  EXPECT_EQ(run_task(out), 1);
+  EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("cannot be put back"));
+}
+
+TEST_F(SubmitCommand, ATaskContinuesAfterItsTimeLimitIfItGotAnythingDone) {
+  const std::string out = folder_ / "out";
+  ASSERT_EQ(submit(out, {"--program", programs_ + "/vantage", "--retries", "0"}).exit_code, 0);
+  const std::string frames = out + "/.vantage/frames-2-of-3.jsonl";
+  add_patient_vantage(frames);
+  EXPECT_EQ(run_task(out, send_when_ready("USR1")), 0);
+  EXPECT_THAT(calls(), HasSubstr("scontrol requeue 41_2\n"));
+  std::filesystem::remove(calls_);
+  std::filesystem::remove(folder_ / "ready");
+  add_patient_vantage("/dev/null");
+  EXPECT_EQ(run_task(out, send_when_ready("USR1")), 130);
+  EXPECT_THAT(calls(), Not(HasSubstr("scontrol")));
+  EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("no frame was finished"));
+}
+
+TEST_F(SubmitCommand, FramesThatDoNotEndInTimeAreGivenUp) {
+  const std::string out = folder_ / "out";
+  ASSERT_EQ(
+      submit(out, {"--program", programs_ + "/vantage", "--drain-time", "1", "--frames", "0-5"})
+          .exit_code,
+      0);
+  add_patient_vantage(out + "/.vantage/frames-frames-0-5-2-of-3.jsonl", true);
+  EXPECT_EQ(run_task(out, send_when_ready("USR1")), 0);
+  EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("goes on in a new job"));
+  EXPECT_THAT(calls(), HasSubstr("scontrol requeue 41_2\n"));
+}
+
+TEST_F(SubmitCommand, ACancelledTaskStaysCancelled) {
+  const std::string out = folder_ / "out";
+  ASSERT_EQ(submit(out, {"--program", programs_ + "/vantage"}).exit_code, 0);
+  add_patient_vantage("/dev/null");
+  EXPECT_EQ(run_task(out, send_when_ready("TERM")), 130);
+  EXPECT_THAT(calls(), Not(HasSubstr("scontrol")));
+  EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("stopped by Slurm"));
+}
+
+}  // namespace
+}  // namespace vantage

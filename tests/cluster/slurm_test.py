@@ -1,0 +1,239 @@
+"""Runs on two Slurm nodes end with the bytes of a run on one machine, whatever happens to them.
+
+usage: slurm_test.py VANTAGE FRAMES
+
+Exits with 77 where this machine cannot have a cluster.
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import slurm_cluster
+from slurm_cluster import NODES, SlurmCluster, kill, processes_with, wait_until
+
+CHUNK_FRAMES = 4
+SIZE = {"width": 240, "height": 180}
+MATCHING = ["--method", "bayes", "--disparities", "0:31", "--iterations", "20"]
+TASKS = 3
+JOB_SECONDS = 300  # of a machine that is busy with other tests
+
+
+def vantage(*arguments, environment=None):
+    return subprocess.run([VANTAGE, *map(str, arguments)], env=environment, capture_output=True,
+                          text=True, timeout=300, check=False)
+
+
+def must_succeed(result):
+    if result.returncode != 0:
+        raise AssertionError(f"{result.args} exits with {result.returncode}: {result.stderr}")
+    return result
+
+
+def results(folder):
+    """Path → bytes of everything in a run's folder that is not hidden."""
+    return {str(file.relative_to(folder)): file.read_bytes() for file in sorted(folder.rglob("*"))
+            if file.is_file() and ".vantage" not in file.relative_to(folder).parts}
+
+
+def command_line(process):
+    try:
+        return Path(f"/proc/{process}/cmdline").read_text(encoding="utf-8").split("\0")
+    except OSError:
+        return []
+
+
+class Run:
+    """A run that has been submitted, as its folder and the cluster show it."""
+
+    def __init__(self, cluster, folder):
+        self.cluster = cluster
+        self.folder = folder
+        self.slurm_folder = folder / ".vantage" / "slurm"
+
+    def jobs(self):
+        return json.loads((self.slurm_folder / "submitted.json").read_text(encoding="utf-8"))
+
+    def log(self, task):
+        file = self.slurm_folder / f"task-{task}.log"
+        return file.read_text(encoding="utf-8") if file.exists() else ""
+
+    def logs(self):
+        return "".join(f"-- {file.name}\n{file.read_text(encoding='utf-8')}"
+                       for file in sorted(self.slurm_folder.glob("*.log")))
+
+    def finished_frames(self, task):
+        file = self.folder / ".vantage" / f"frames-{task}-of-{TASKS}.jsonl"
+        return len(file.read_text(encoding="utf-8").splitlines()) if file.exists() else 0
+
+    def processes(self, task):
+        """The vantage processes of a task."""
+        job = self.jobs()["array_job"]
+        of_task = (set(processes_with(f"SLURM_ARRAY_TASK_ID={task}"))
+                   & set(processes_with(f"SLURM_ARRAY_JOB_ID={job}"))
+                   & set(processes_with(self.cluster.marker)))
+        return [process for process in of_task if "--shard" in command_line(process)]
+
+    def node(self, task):
+        return self.cluster.slurm("squeue", "--noheader", "--format=%N", "--jobs",
+                                  f"{self.jobs()['array_job']}_{task}").strip()
+
+    def in_queue(self):
+        jobs = self.jobs()
+        ids = f"{jobs['array_job']},{jobs['merge_job']}"
+        return self.cluster.slurm("squeue", "--noheader", "--array", "--format=%i %T %r",
+                                  "--jobs", ids, check=False).splitlines()
+
+    def job(self, name):
+        """The fields that Slurm keeps of a job."""
+        fields = self.cluster.slurm("scontrol", "--oneliner", "show", "job", str(name)).split()
+        return dict(field.split("=", 1) for field in fields if "=" in field)
+
+    def wait_for_end(self, actions=()):
+        """Until Slurm has nothing left to do; each action is done once, when it says it can."""
+        waiting = list(actions)
+        next_look = time.monotonic()
+
+        def at_end():
+            nonlocal next_look
+            waiting[:] = [action for action in waiting if not action()]
+            if time.monotonic() < next_look:
+                return False
+            next_look = time.monotonic() + 1
+            return not self.in_queue()
+        try:
+            wait_until(at_end, JOB_SECONDS, f"the end of {self.jobs()}")
+        except slurm_cluster.ClusterError as error:
+            raise AssertionError(f"{error}\n{self.in_queue()}\n{self.logs()}") from None
+        if waiting:
+            names = [action.__name__ for action in waiting]
+            raise AssertionError(f"did not come to {names}\n{self.logs()}")
+
+
+class SlurmTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.cluster = cls.enterClassContext(SlurmCluster())
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
+        cls.scene = cls.folder / "scene"
+        must_succeed(vantage("generate", "scene", "-o", cls.scene, "--frames", FRAMES,
+                             *(f"--{name}={value}" for name, value in SIZE.items())))
+        cls.reference = cls.folder / "reference"
+        must_succeed(vantage("run", *cls.settings(), "-o", cls.reference))
+
+    @classmethod
+    def settings(cls):
+        return ["--left", cls.scene / "left", "--right", cls.scene / "right", "--view", "0.5",
+                "--save", "disparity,views", "--video", "views", "--chunk-frames", CHUNK_FRAMES,
+                *MATCHING]
+
+    def submit(self, folder, *more):
+        return vantage("submit", "--engine", "slurm", *self.settings(), "-o", folder,
+                       "--shards", TASKS, *more, environment=self.cluster.environment)
+
+    def expect_reference(self, run):
+        expected, made = results(self.reference), results(run.folder)
+        self.assertEqual(sorted(made), sorted(expected), run.logs())
+        self.assertGreater(len(expected), int(FRAMES))
+        for name, content in expected.items():
+            self.assertTrue(made[name] == content, f"{name} differs\n{run.logs()}")
+
+    def test_a_dead_node_a_dead_process_and_the_time_limit(self):
+        run = Run(self.cluster, self.folder / "what's 100% done")
+        must_succeed(self.submit(run.folder, "--time", "1", "--drain-time", "40"))
+        jobs = run.jobs()
+        again = self.submit(run.folder)
+        self.assertEqual(again.returncode, 1)
+        self.assertIn("still in the queue", again.stderr)
+        killed_nodes = []
+
+        # Frozen, it has its time limit before it, however fast this machine is.
+        def freeze_first():
+            if run.finished_frames(1) == 0:
+                return False
+            for process in run.processes(1):
+                os.kill(process, signal.SIGSTOP)
+            return True
+
+        def thaw_first():
+            if "the time limit is near" not in run.log(1):
+                return False
+            for process in run.processes(1):
+                os.kill(process, signal.SIGCONT)
+            return True
+
+        def kill_node_of_second():
+            if run.finished_frames(2) == 0:
+                return False
+            killed_nodes.append(run.node(2))
+            self.cluster.kill_node(killed_nodes[0])
+            return True
+
+        def repair_node():
+            states = self.cluster.node_states() if killed_nodes else {}
+            if not any(states[node].startswith("down") for node in killed_nodes):
+                return False
+            self.cluster.start_node(killed_nodes[0])
+            return True
+
+        def kill_third():
+            if run.finished_frames(3) == 0:
+                return False
+            kill(run.processes(3))
+            return True
+
+        run.wait_for_end([freeze_first, thaw_first, kill_node_of_second, repair_node, kill_third])
+        self.expect_reference(run)
+        self.assertIn(killed_nodes[0], NODES)
+        self.assertIn("goes on in a new job", run.log(1))
+        self.assertIn("failed with exit code 137, is tried again", run.log(3))
+        for task in range(1, TASKS + 1):
+            job = run.job(f"{jobs['array_job']}_{task}")
+            self.assertEqual(job["JobState"], "COMPLETED", run.log(task))
+            self.assertGreaterEqual(int(job["Restarts"]), 1, run.log(task))
+        self.assertEqual(run.job(jobs["merge_job"])["JobState"], "COMPLETED")
+
+    def test_a_task_that_cannot_succeed_is_given_up_and_continued_later(self):
+        bad_frame = self.scene / "right" / f"{CHUNK_FRAMES + 1:06}.png"
+        content = bad_frame.read_bytes()
+        self.addCleanup(bad_frame.write_bytes, content)
+        bad_frame.write_bytes(content[:len(content) // 2])
+        run = Run(self.cluster, self.folder / "given-up")
+        must_succeed(self.submit(run.folder, "--retries", "1"))
+        run.wait_for_end()
+        jobs = run.jobs()
+        self.assertIn("given up after 2 attempts", run.logs())
+        self.assertEqual(run.job(f"{jobs['array_job']}_1")["JobState"], "FAILED")
+        self.assertEqual(run.job(f"{jobs['array_job']}_3")["JobState"], "COMPLETED")
+        self.assertEqual(run.job(jobs["merge_job"])["JobState"], "CANCELLED")
+        bad_frame.write_bytes(content)
+        # Of the submission before, but for the input.
+        again = ["submit", "--config", run.slurm_folder / "submit.toml"]
+        result = vantage(*again, environment=self.cluster.environment)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("differs", result.stderr)
+        must_succeed(vantage(*again, "--force", environment=self.cluster.environment))
+        self.assertNotEqual(run.jobs(), jobs)
+        run.wait_for_end()
+        self.expect_reference(run)
+
+    def test_what_slurm_refuses_is_one_line(self):
+        result = self.submit(self.folder / "refused", "--partition", "nowhere")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        self.assertIn("nvalid partition", result.stderr)
+        self.assertFalse((self.folder / "refused/.vantage/slurm/submitted.json").exists())
+
+
+if __name__ == "__main__":
+    VANTAGE, FRAMES = sys.argv[1:3]
+    if reason := slurm_cluster.why_impossible():
+        print(f"skipped: {reason}")
+        sys.exit(slurm_cluster.EXIT_SKIPPED)
+    unittest.main(argv=sys.argv[:1], verbosity=2)
