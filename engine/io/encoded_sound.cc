@@ -78,7 +78,6 @@ EncodedSound::EncodedSound(SoundInput input) : input_(std::move(input)) {
   open_decoder();
   open_encoder();
   open_resampler();
-  samples_of_part_ = std::llround(input_.length_seconds() * encoder_->sample_rate);
 }
 
 void EncodedSound::open_decoder() {
@@ -117,6 +116,7 @@ void EncodedSound::open_encoder() {
   if (const int result = avcodec_open2(encoder_.get(), codec, nullptr); result < 0) {
     input_.fail("AAC: " + libav_message(result));
   }
+  samples_of_part_ = std::llround(input_.length_seconds() * encoder_->sample_rate);
   parameters_ = avcodec_parameters_alloc();
   queue_.reset(av_audio_fifo_alloc(AV_SAMPLE_FMT_FLTP, channels, encoder_->frame_size));
   if (parameters_ == nullptr || queue_ == nullptr ||

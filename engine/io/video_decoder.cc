@@ -65,8 +65,7 @@ LibavCodec open_decoder(const AVStream& stream, int threads, const std::string& 
 }  // namespace
 
 VideoDecoder::VideoDecoder(const std::filesystem::path& path, int threads)
-    : threads_(threads), input_(open_media_file(path)) {
-  stream_ = find_video_stream(*input_);
+    : threads_(threads), input_(open_media_file(path)), stream_(find_video_stream(*input_)) {
   if (stream_ == nullptr) {
     throw Error(fmt::format("{}: holds no video", path.string()));
   }
@@ -86,13 +85,12 @@ VideoDecoder::VideoDecoder(const std::filesystem::path& path, int threads)
   codec_ = open_decoder(*stream_, threads_, path.string());
 }
 
-bool VideoDecoder::read_packet() {
+void VideoDecoder::read_packet() {
   do {
     av_packet_unref(packet_.get());
     read_result_ = av_read_frame(input_.get(), packet_.get());
   } while (read_result_ >= 0 && packet_->stream_index != stream_->index);
   packet_is_cut_off_ = read_result_ >= 0 && cut_->is_cut_off(*packet_);
-  return read_result_ >= 0;
 }
 
 VideoDecoder::Step VideoDecoder::next() {
@@ -112,14 +110,14 @@ VideoDecoder::Step VideoDecoder::next() {
 }
 
 VideoDecoder::Step VideoDecoder::check_frame() {
-  if (!problem_.empty()) {
-    return frame_->best_effort_timestamp < damaged_time_ ? Step::kFrame : Step::kDamaged;
-  }
-  if (frame_->decode_error_flags != 0 || (frame_->flags & AV_FRAME_FLAG_CORRUPT) != 0) {
+  const bool incomplete =
+      frame_->decode_error_flags != 0 || (frame_->flags & AV_FRAME_FLAG_CORRUPT) != 0;
+  if (problem_.empty() && incomplete) {
     problem_ = "the frame is incomplete";
     return Step::kDamaged;
   }
-  return Step::kFrame;
+  const bool behind_damage = !problem_.empty() && frame_->best_effort_timestamp >= damaged_time_;
+  return incomplete || behind_damage ? Step::kDamaged : Step::kFrame;
 }
 
 void VideoDecoder::feed() {

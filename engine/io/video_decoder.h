@@ -17,9 +17,9 @@ class VideoDecoder {
  public:
   enum class Step { kFrame, kEnd, kDamaged };
 
-  /// Videos that begin in the middle of a sequence are decoded with one thread anyway.
   /// With one thread all frames before a damaged one are given out; with more, the frames under
-  /// way are lost. Throws Error when the file has no video, or none that can be decoded.
+  /// way are lost. A video that was cut where decoders miss frames is decoded with one thread
+  /// anyway. Throws Error when the file has no video, or none that can be decoded.
   VideoDecoder(const std::filesystem::path& path, int threads);
 
   [[nodiscard]] AVFormatContext& input() { return *input_; }
@@ -35,9 +35,9 @@ class VideoDecoder {
 
  private:
   Step check_frame();
-  /// Reads the next packet of the video; false after the last one, and when reading fails.
-  bool read_packet();
-  /// Gives the decoder the next packet, or tells it that there is none.
+  /// Reads the next packet of the video, or the reason why there is none.
+  void read_packet();
+  /// Gives the decoder the packet read, or tells it that there is none, and reads the next.
   void feed();
   /// From now on only frames before `damaged_time`, in the stream's unit, are given out. False when
   /// that has been said before.
@@ -45,13 +45,13 @@ class VideoDecoder {
 
   int threads_;
   LibavInput input_;
-  AVStream* stream_ = nullptr;
+  AVStream* stream_;
   LibavCodec codec_;
   LibavFrame frame_ = make_libav_frame();
   LibavPacket packet_ = make_libav_packet();
   std::optional<CutVideo> cut_;
+  int read_result_ = 0;  ///< FFmpeg's, of the packet
   bool packet_is_cut_off_ = false;
-  int read_result_ = 0;
   std::int64_t packet_time_ = 0;  ///< when the last packet given to the decoder is shown
   std::string problem_;
   std::int64_t damaged_time_ = 0;

@@ -13,9 +13,9 @@ namespace vantage {
 /// rotation flag is ignored): RGB, 8-bit, or 16-bit where the stream has more bits. Grey streams
 /// have one channel, as far as their decoder tells. Colours are converted by the matrix, range and
 /// place of chroma the stream is flagged with, and rounded; unspecified, they are BT.601 below 720
-/// rows, BT.709 from there, with limited range. Thread rule: one thread at a time; different
-/// readers are independent. Up to four threads decode; they change nothing, not even which frame is
-/// found damaged.
+/// rows, BT.709 from there, with limited range.
+/// Up to four threads decode; they change nothing, not even which frame is found damaged.
+/// Thread rule: one thread at a time; different readers are independent.
 class VideoReader {
  public:
   /// Throws Error when the file is missing, not a video, cut off, or has frames of absurd size.
@@ -27,8 +27,8 @@ class VideoReader {
   /// Empty where the container does not say.
   [[nodiscard]] std::optional<FrameRate> frame_rate() const;
   /// Frames the index of an MP4 or MOV lists; in other containers the packets of the video are
-  /// counted, for which the whole file is read. Interlaced videos may have fewer, and, by up to 2
-  /// %, recordings that begin in mid-programme.
+  /// counted, for which the whole file is read. Interlaced videos may have fewer, and recordings
+  /// that begin in mid-programme, by up to a fiftieth.
   [[nodiscard]] int frame_count() const;
 
   /// Decodes the next frame into `frame`, whose memory is reused; false after the last one. Throws

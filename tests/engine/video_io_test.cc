@@ -241,6 +241,7 @@ TEST(VideoIo, IsH264In420InMp4) {
   const auto bytes = bytes_of(folder / "a.mp4");
   const std::string text(bytes.begin(), bytes.end());
   EXPECT_EQ(text.substr(4, 4), "ftyp");
+  EXPECT_EQ(text.find("Lavf"), std::string::npos) << "the version of a library";
   const std::size_t configuration = text.find("avcC");
   ASSERT_NE(configuration, std::string::npos);
   // Of the profiles of H.264, 66, 77 and 100 have 4:2:0 only with 8 bits: what browsers play.
