@@ -18,6 +18,7 @@ namespace vantage {
 struct FrameSlot {
   int frame = 0;
   bool is_lead_in = false;  ///< computed for the frames behind it only
+  bool is_absent = false;   ///< the input ends before it: nothing is made of it
   FramePair pair;
   std::array<Photograph, 2> rectified;  ///< where a calibration is applied
   const Photograph* left = nullptr;     ///< what is matched: of `pair` or `rectified`

@@ -61,6 +61,9 @@ FrameWorker::FrameWorker(const FrameTools& tools)
       temporal_(tools.options.temporal) {}
 
 void FrameWorker::prepare(FrameSlot& slot) const {
+  if (slot.is_absent) {
+    return;
+  }
   {
     const TimedStep step(slot, "decode");
     pairs_.decode(slot.pair);
@@ -83,6 +86,9 @@ void FrameWorker::prepare(FrameSlot& slot) const {
 }
 
 void FrameWorker::compute(FrameSlot& slot) {
+  if (slot.is_absent) {
+    return;
+  }
   const BusyClock::Activity activity(compute_clock_);
   match(slot);
   if (slot.is_lead_in && !options_.measure_flicker) {
@@ -248,7 +254,7 @@ std::vector<std::uint8_t> FrameWorker::encoded(const FrameSlot& slot, const Outp
 void FrameWorker::encode(FrameSlot& slot) const {
   slot.files.discard();  // left by a frame that was given up
   slot.file_names.clear();
-  if (slot.is_lead_in) {
+  if (slot.is_lead_in || slot.is_absent) {
     return;
   }
   const TimedStep step(slot, "encode");

@@ -1,5 +1,7 @@
 #include "engine/sequence/segment_writer.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -22,6 +24,14 @@ struct SegmentWriter::Stream {
 };
 
 namespace {
+
+/// Encoders take much memory on whichever thread they work, and the allocator keeps what they free
+/// per thread: without this a run grows from segment to segment for a while.
+void return_free_memory() {
+#ifdef __GLIBC__
+  (void)::malloc_trim(0);
+#endif
+}
 
 /// Videos have two pixels a side at least: smaller pictures are repeated.
 Photograph at_least_two_a_side(Photograph picture) {
@@ -120,7 +130,8 @@ Photograph SegmentWriter::black_picture(const OutputStream& output) const {
 void SegmentWriter::finish() {
   for (Stream& stream : streams_) {
     if (!stream.writer) {
-      write(stream, black_picture(*stream.output), stream.leading_skipped);
+      // A segment whose frames the input does not have must hold one all the same.
+      write(stream, black_picture(*stream.output), std::max(1, stream.leading_skipped));
     }
     try {
       stream.writer->finish();
@@ -129,6 +140,7 @@ void SegmentWriter::finish() {
     }
     stream.writer.reset();
   }
+  return_free_memory();
 }
 
 }  // namespace vantage

@@ -135,15 +135,17 @@ class Run {
       run_.pairs.skip_to(slot.frame);
     }
     next_pair_ = slot.frame + 1;
-    if (!run_.pairs.fetch(slot.pair)) {
-      throw Error(fmt::format("the sequence has ended before it, expected {} frames",
-                              run_.selection.frame_count));
-    }
+    // Some containers promise a few frames more than there are; a file that is cut off throws.
+    slot.is_absent = !run_.pairs.fetch(slot.pair);
     slot.times.push_back({"read", seconds_since(start)});
     return true;
   }
 
   void write(FrameSlot& slot) {
+    if (slot.is_absent) {
+      note_absence(slot);
+      return;
+    }
     const Clock::time_point start = Clock::now();
     FrameRecord record{.frame = slot.frame, .files = std::move(slot.file_names)};
     measure_flicker(slot, record);
@@ -158,6 +160,20 @@ class Run {
     slot.times.push_back({"write", seconds_since(start)});
     add_to_report(slot);
     deliver(std::move(slot.files), std::move(record), slot.match.cells);
+  }
+
+  /// Frames that never were are done with: nobody is to wait for them.
+  void note_absence(const FrameSlot& slot) {
+    if (slot.is_lead_in) {
+      return;
+    }
+    if (layout_.has_videos()) {
+      segment_of(slot.frame);
+    }
+    FrameRecord record{.frame = slot.frame};
+    record.remarks = {"the input ends before it, although its container promises it"};
+    report_.remarks.push_back({slot.frame, record.remarks.front()});
+    deliver({}, std::move(record), 0);
   }
 
   /// Compares with the frame before it in its chunk.

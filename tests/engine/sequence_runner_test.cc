@@ -197,16 +197,21 @@ TEST_F(SequenceRunnerTest, TheFirstBadFrameEndsTheRun) {
   EXPECT_THAT(error_of(narrow, folder("c")), HasSubstr("is 29x23, expected 37x23 as at the start"));
 }
 
-TEST_F(SequenceRunnerTest, ASourceThatEndsEarlyNamesTheFrame) {
-  MadeUpPairs pairs(6);
-  pairs.ends_at = 3;
-  EXPECT_THAT(error_of(pairs, folder("a")), HasSubstr("frame 3 (left 3, right 3): the sequence has "
-                                                      "ended before it, expected 6 frames"));
-  EXPECT_EQ(names(folder("a")).size(), 3U);
-  const SequenceReport report = run(pairs, folder("a"), {.keep_going = true});
-  EXPECT_EQ(report.frames, 0);
-  EXPECT_EQ(report.frames_before, 3);
-  EXPECT_EQ(report.skipped.size(), 3U);
+TEST_F(SequenceRunnerTest, FramesThatASourceOnlyPromisedAreDoneWith) {
+  options_.save = {SequenceOutput::kDisparity, SequenceOutput::kPreview};
+  options_.video = {SequenceOutput::kPreview};
+  MadeUpPairs pairs(8);
+  pairs.ends_at = 6;
+  const SequenceReport report = run(pairs, folder("a"));
+  EXPECT_EQ(report.frames, 6);
+  ASSERT_EQ(report.remarks.size(), 2U);
+  EXPECT_EQ(report.remarks[0].frame, 6);
+  EXPECT_THAT(report.remarks[0].text, HasSubstr("the input ends before it"));
+  EXPECT_EQ(names(folder("a")).size(), 6U + 1);
+  EXPECT_EQ(VideoReader(folder("a") / "preview.mp4").frame_count(), 6);
+  const SequenceReport again = run(pairs, folder("a"));
+  EXPECT_EQ(again.frames, 0);
+  EXPECT_EQ(again.frames_before, 8);
 }
 
 TEST_F(SequenceRunnerTest, BadFramesAreSkippedWhereAskedAndMadeOnceRepaired) {
