@@ -117,8 +117,7 @@ std::vector<std::uint8_t> encode_disparity(const std::filesystem::path& path,
   }
   const std::string extension = lower_case_extension(path);
   if (extension == ".pfm") {
-    const auto map = with_unknown_as(disparity, std::numeric_limits<float>::infinity());
-    return encode_pfm(map.view());
+    return encode_pfm(disparity, std::numeric_limits<float>::infinity());
   }
   if (extension == ".npy") {
     return encode_npy(with_unknown_as(disparity, kUnknown).view());

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "engine/io/text_header.h"
 
@@ -62,16 +64,26 @@ Image<float> decode_pfm(const FileBytes& file) {
   return image;
 }
 
-std::vector<std::uint8_t> encode_pfm(ImageView<const float> image) {
+std::vector<std::uint8_t> encode_pfm(ImageView<const float> image, std::optional<float> unknown) {
   const std::string header = fmt::format("{}\n{} {}\n-1.0\n", image.channels() == 3 ? "PF" : "Pf",
                                          image.width(), image.height());
-  std::vector<std::uint8_t> bytes(header.begin(), header.end());
-  const std::size_t row_bytes =
-      sizeof(float) * static_cast<std::size_t>(image.width()) * image.channels();
-  bytes.reserve(bytes.size() + row_bytes * static_cast<std::size_t>(image.height()));
+  const std::size_t row_values =
+      static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.channels());
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(header.size() +
+                row_values * sizeof(float) * static_cast<std::size_t>(image.height()));
+  bytes.insert(bytes.end(), header.begin(), header.end());
+  std::vector<float> replaced(unknown ? row_values : 0);
   for (int y = image.height() - 1; y >= 0; --y) {
-    const auto* row = reinterpret_cast<const std::uint8_t*>(image.row(y));
-    bytes.insert(bytes.end(), row, row + row_bytes);
+    const float* row = image.row(y);
+    if (unknown) {
+      std::transform(row, row + row_values, replaced.begin(), [value = *unknown](float stored) {
+        return std::abs(stored) <= std::numeric_limits<float>::max() ? stored : value;
+      });
+      row = replaced.data();
+    }
+    const auto* row_bytes = reinterpret_cast<const std::uint8_t*>(row);
+    bytes.insert(bytes.end(), row_bytes, row_bytes + row_values * sizeof(float));
   }
   return bytes;
 }

@@ -29,8 +29,9 @@ struct Delivery {
 };
 
 /// Makes deliveries safe, one after the other, on a thread of its own, so that no thread of the
-/// pool waits for the disk: files are flushed and named, folders flushed, then the journal written
-/// and flushed. Deliveries that have piled up meanwhile share the flushes of folders and journal.
+/// pool waits for the disk: files are flushed, several at a time, and named, folders flushed, then
+/// the journal written and flushed. Deliveries that have piled up meanwhile are worked off
+/// together.
 ///
 /// Thread rule: push() from one thread at a time; `on_delivered` is called on the queue's thread.
 class CommitQueue {

@@ -162,10 +162,11 @@ struct FlickerMeter::State {
         continue;
       }
       // (3.5): what a view shows at x was at x + XS · d in the left image.
-      const auto [near, far] =
-          std::minmax(now.views_x[v] * map.least_px, now.views_x[v] * map.most_px);
-      kernels::still_view_row(is_still, width, static_cast<int>(std::floor(near)),
-                              static_cast<int>(std::ceil(far)), still_view);
+      const double first = now.views_x[v] * map.least_px;
+      const double second = now.views_x[v] * map.most_px;
+      kernels::still_view_row(is_still, width,
+                              static_cast<int>(std::floor(std::min(first, second))),
+                              static_cast<int>(std::ceil(std::max(first, second))), still_view);
       const kernels::LevelChange view = kernels::level_change_row(
           now.views[v].levels.row(y), before.views[v].levels.row(y), still_view, width);
       sums.views[v].compared += view.compared;

@@ -13,7 +13,7 @@ namespace {
 constexpr int kMostInFlight = 64;
 constexpr int kDefaultMostInFlight = 34;  // more only help to even out unequal frames
 /// The program, its libraries and what they set up at first use.
-constexpr std::size_t kProcessBytes = std::size_t{56} << 20;
+constexpr std::size_t kProcessBytes = std::size_t{64} << 20;
 /// Of a thread: stack, arena of the allocator.
 constexpr std::size_t kThreadBytes = std::size_t{3} << 20;
 
@@ -57,6 +57,19 @@ std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) 
   return pixels * channels * kPlanes * sizeof(float);
 }
 
+/// What is kept of the frame before, and to compare with it.
+std::size_t past_bytes(const SequenceOptions& options, const PairShape& shape) {
+  const auto pixels = static_cast<std::size_t>(shape.source.width_px) *
+                      static_cast<std::size_t>(shape.source.height_px);
+  // Per image: its levels before and now, differences and mask; two maps.
+  const std::size_t side = 5 + 2 * sizeof(float);
+  std::size_t bytes = options.temporal.weight > 0 ? 2 * side * pixels : 0;
+  if (options.measure_flicker) {
+    bytes += (side + 3 * options.views.size()) * pixels;
+  }
+  return bytes;
+}
+
 /// What the encoders of the videos hold back and reconstruct.
 std::size_t video_bytes(const SequenceOptions& options, const PairShape& shape) {
   const auto pixels = static_cast<std::size_t>(shape.source.width_px) *
@@ -78,7 +91,7 @@ MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& requ
   ExecutionOptions limited = execution;
   MemoryPlan plan;
   plan.frame_bytes = frame_bytes(options, shape);
-  std::size_t fixed = kProcessBytes + video_bytes(options, shape);
+  std::size_t fixed = kProcessBytes + video_bytes(options, shape) + past_bytes(options, shape);
   int threads = 1;
   {
     Execution probe(execution);

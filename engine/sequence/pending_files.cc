@@ -48,7 +48,7 @@ void PendingFiles::add(const fs::path& path, std::span<const std::uint8_t> bytes
   // The process in the name: a requeued job may begin while the one before it still ends.
   const fs::path hidden =
       path.parent_path() / fmt::format(".{}.{}.pending", path.filename().string(), ::getpid());
-  files_.push_back({hidden, path});
+  files_.push_back({.hidden = hidden, .path = path});
   const FileDescriptor file(hidden, O_WRONLY | O_CREAT | O_TRUNC);
   if (file.get() < 0) {
     fail(path, errno);
@@ -60,15 +60,26 @@ void PendingFiles::add(const fs::path& path, std::span<const std::uint8_t> bytes
     }
     bytes = bytes.subspan(static_cast<std::size_t>(std::max<ssize_t>(written, 0)));
   }
+  // On its way to the disk by the time it is flushed. Where that cannot be, flushing does it all.
+  (void)::sync_file_range(file.get(), 0, 0, SYNC_FILE_RANGE_WRITE);
+}
+
+void PendingFiles::flush(std::size_t index) noexcept {
+  File& file = files_[index];
+  const FileDescriptor written(file.hidden, O_RDONLY);
+  const bool is_safe = written.get() >= 0 && ::fsync(written.get()) == 0;
+  file.flush_error = is_safe ? 0 : errno;
+  file.is_flushed = true;
 }
 
 void PendingFiles::commit(std::set<fs::path>& folders) {
-  for (const File& file : files_) {
-    {
-      const FileDescriptor written(file.hidden, O_RDONLY);
-      if (written.get() < 0 || ::fsync(written.get()) != 0) {
-        fail(file.path, errno);
-      }
+  for (std::size_t index = 0; index < files_.size(); ++index) {
+    const File& file = files_[index];
+    if (!file.is_flushed) {
+      flush(index);
+    }
+    if (file.flush_error != 0) {
+      fail(file.path, file.flush_error);
     }
     if (::rename(file.hidden.c_str(), file.path.c_str()) != 0) {
       fail(file.path, errno);

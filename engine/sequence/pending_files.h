@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <set>
@@ -29,8 +30,13 @@ class PendingFiles {
   /// Writes `bytes` under a hidden name beside `path`. Throws OutputError naming `path`.
   void add(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
-  /// Flushes all files to disk and gives them their names, in the order of add(). The names
-  /// themselves are safe once the folders, which are added to `folders`, are flushed. Throws
+  [[nodiscard]] std::size_t count() const { return files_.size(); }
+  /// Flushes file number `index` to disk; commit() tells if that fails. Flushing several at a time
+  /// takes little longer than one. Thread rule: concurrently for different files.
+  void flush(std::size_t index) noexcept;
+
+  /// Flushes what has not been flushed and gives all files their names, in the order of add(). The
+  /// names themselves are safe once the folders, which are added to `folders`, are flushed. Throws
   /// OutputError naming the file that failed.
   void commit(std::set<std::filesystem::path>& folders);
 
@@ -41,6 +47,8 @@ class PendingFiles {
   struct File {
     std::filesystem::path hidden;
     std::filesystem::path path;
+    bool is_flushed = false;
+    int flush_error = 0;  ///< errno, 0: none
   };
   std::vector<File> files_;
 };

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
@@ -31,6 +32,12 @@ constexpr const char* kIdentityFile = "run.json";
 
 std::string system_message(int error_number) {
   return std::generic_category().message(error_number);
+}
+
+/// Throws what nlohmann throws unless it is a whole number from 0 on.
+int count_of(const Json& json) {
+  constexpr Json::number_unsigned_t kMost = std::numeric_limits<int>::max() - 1;
+  return static_cast<int>(std::min(json.get_ref<const Json::number_unsigned_t&>(), kMost));
 }
 
 Json range_json(FrameRange frames) { return Json::array({frames.first, frames.end}); }
@@ -101,7 +108,7 @@ JournalRecord record_of(const Json& json) {
     return JoinRecord{range_of(json.at("joined"))};
   }
   FrameRecord record;
-  record.frame = json.at("frame").get<int>();
+  record.frame = count_of(json.at("frame"));
   record.skipped = json.contains("skipped");
   record.problem = json.value("skipped", "");
   record.files = json.value("files", record.files);
@@ -375,7 +382,7 @@ RunIdentity RunJournal::read_identity(const fs::path& journal_folder) {
     // Throws unless it is an object.
     identity.settings = Json(json.at("settings").get_ref<const Json::object_t&>()).dump();
     identity.inputs = json.at("inputs").get<std::vector<std::string>>();
-    identity.frame_count = json.at("frame_count").get<int>();
+    identity.frame_count = count_of(json.at("frame_count"));
     identity.sound_file = json.at("sound").at("file").get<std::string>();
     identity.sound_first_frame = json.at("sound").at("first_frame").get<int>();
     identity.sound_rate =

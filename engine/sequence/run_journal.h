@@ -16,7 +16,7 @@ namespace vantage {
 
 /// What the files of a run depend on. Two processes that work in one folder must agree on it.
 struct RunIdentity {
-  std::string settings = "{}";       ///< a JSON object: the settings that results depend on
+  std::string settings = "{}";  ///< a JSON object: the settings that results depend on
   /// A line per source, see FrameSource::identity(). What follows the last ": " must be the same.
   std::vector<std::string> inputs;
   int frame_count = 0;               ///< of the whole input

@@ -8,11 +8,11 @@
 namespace vantage {
 namespace {
 
-constexpr double kUnrelated = 0.5;
-constexpr double kStandsOut = 2.5;
+constexpr double kUnrelated = 0.3;
+constexpr double kStandsOut = 2;
 constexpr int kStepsAround = 3;
 /// Variance in grey levels² that counts as no content.
-constexpr double kNoContent = 4;
+constexpr double kNoContent = 25;
 
 /// First pixel of part k of `parts` equal ones, which may be less than a pixel wide.
 int part_begin(int k, int parts, int pixels) {

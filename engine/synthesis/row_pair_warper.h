@@ -20,32 +20,30 @@ struct StereoSource {
 
 /// Brings both images of a pair to a new view on the baseline, a scanline at a time.
 ///
-/// Thread rule: one thread. Does not own `memory`, which must outlive it. T is uint8_t, uint16_t or
-/// float.
+/// Thread rule: one thread. Does not own any memory it is given, which must outlive it. T is
+/// uint8_t, uint16_t or float.
 template <typename T>
 class RowPairWarper {
  public:
-  /// What `memory` must have. It holds no state between rows.
+  /// What `scratch` must have. It holds no state between rows.
   static std::size_t scratch_floats(int width, int channels);
+  /// What a pair of warped scanlines takes.
+  static std::size_t pair_floats(int width, int channels);
 
-  /// `memory`: scratch_floats(width, channels) values.
+  /// `scratch`: scratch_floats(width, channels) values.
   RowPairWarper(const StereoSource<T>& source, const SynthesisOptions& options, double view_x,
-                std::span<float> memory);
+                std::span<float> scratch);
 
-  /// Both scanlines y at the new view. Valid until the next call.
-  kernels::WarpedPairRow warp(int y);
+  /// Both scanlines y at the new view, in `memory` of pair_floats(width, channels) values.
+  kernels::WarpedPairRow warp(int y, float* memory);
 
-  /// Room for one value per column that warp() does not touch.
-  [[nodiscard]] float* spare_row() const { return spare_; }
+  /// What warp() returned for `memory`, from a warper of the same source and options.
+  static kernels::WarpedPairRow warped_in(const StereoSource<T>& source,
+                                          const SynthesisOptions& options, const float* memory);
 
  private:
-  struct WarpedRow {
-    float* colours = nullptr;
-    float* disparity_px = nullptr;
-  };
-
-  void warp_one(const T* pixels, const float* disparity_px, double camera_offset,
-                const WarpedRow& warped);
+  void warp_one(const T* pixels, const float* disparity_px, double camera_offset, float* colours,
+                float* warped_disparity_px);
 
   const StereoSource<T>& source_;
   const SynthesisOptions& options_;
@@ -55,9 +53,6 @@ class RowPairWarper {
   float* source_pixels_;     // of x = 0; margins on both sides
   float* source_disparity_;  // likewise
   float* source_column_;
-  WarpedRow left_;
-  WarpedRow right_;
-  float* spare_;
 };
 
 }  // namespace vantage

@@ -22,6 +22,10 @@ namespace {
 
 constexpr double kFarthestView = 16;  // baselines
 
+/// Warped rows are kept between the two passes over an image as long as the caches hold a good part
+/// of them: more would take several times the memory of all inputs, and as long as warping again.
+constexpr std::size_t kMostKeptBytes = std::size_t{32} << 20;
+
 void require_same_shape(const Photograph& left, const Photograph& right,
                         ImageView<const float> left_disparity,
                         ImageView<const float> right_disparity) {
@@ -101,12 +105,11 @@ class Synthesis {
   }
 
   void run(Image<T>& image, SynthesizedView& view, const std::array<IntensityFit, 4>* given_fit) {
-    // Both passes warp anew: keeping the warped colours of the first would take several times the
-    // memory of all inputs, and warping is cheap.
     view.intensity = {};
     if (given_fit != nullptr) {
       view.intensity = *given_fit;
     } else if (options_.match_intensities) {
+      keep_warped_rows();
       view.intensity = fit_channels(intensity_sums(), channels_, double{kGreyLevelsPerUnit<T>});
     }
     image.resize(width_, height_, channels_);
@@ -123,7 +126,7 @@ class Synthesis {
   }
 
   kernels::IntensitySums intensity_sums() {
-    for_each_warped_row([&](int y, const kernels::WarpedPairRow& pair, float*) {
+    for_each_warped_row([&](int y, const kernels::WarpedPairRow& pair) {
       records_[static_cast<std::size_t>(y)].sums = kernels::intensity_sums_row(pair);
     });
     kernels::IntensitySums total;
@@ -134,16 +137,47 @@ class Synthesis {
   }
 
  private:
-  // Calls body(y, warped scanline pair, a free row) for all rows.
+  // So that they need not be warped again.
+  void keep_warped_rows() {
+    const std::size_t bytes = pair_floats() * sizeof(float) * static_cast<std::size_t>(height_);
+    if (bytes <= kMostKeptBytes) {
+      kept_memory_ = execution_.scratch().lease(bytes);
+      kept_ = reinterpret_cast<float*>(kept_memory_.data());
+    }
+  }
+
+  [[nodiscard]] std::size_t pair_floats() const {
+    return RowPairWarper<T>::pair_floats(width_, channels_);
+  }
+  [[nodiscard]] float* kept_row(int y) const {
+    return kept_ + pair_floats() * static_cast<std::size_t>(y);
+  }
+
+  // Calls body(y, warped scanline pair) for all rows.
   template <typename Body>
   void for_each_warped_row(const Body& body) {
-    const std::size_t floats = RowPairWarper<T>::scratch_floats(width_, channels_);
+    const std::size_t scratch_floats = RowPairWarper<T>::scratch_floats(width_, channels_);
     execution_.for_each_band(height_, [&](int first_row, int end_row) {
-      const auto memory = execution_.scratch().lease(floats * sizeof(float));
-      RowPairWarper<T> warper(source_, options_, view_x_,
-                              {reinterpret_cast<float*>(memory.data()), floats});
+      const auto memory =
+          execution_.scratch().lease((scratch_floats + pair_floats()) * sizeof(float));
+      auto* scratch = reinterpret_cast<float*>(memory.data());
+      RowPairWarper<T> warper(source_, options_, view_x_, {scratch, scratch_floats});
       for (int y = first_row; y < end_row; ++y) {
-        body(y, warper.warp(y), warper.spare_row());
+        body(y, warper.warp(y, kept_ != nullptr ? kept_row(y) : scratch + scratch_floats));
+      }
+    });
+  }
+
+  // The same once they have been warped, if they were kept.
+  template <typename Body>
+  void for_each_warped_row_again(const Body& body) {
+    if (kept_ == nullptr) {
+      for_each_warped_row(body);
+      return;
+    }
+    execution_.for_each_band(height_, [&](int first_row, int end_row) {
+      for (int y = first_row; y < end_row; ++y) {
+        body(y, RowPairWarper<T>::warped_in(source_, options_, kept_row(y)));
       }
     });
   }
@@ -151,7 +185,10 @@ class Synthesis {
   void combine(const std::array<IntensityFit, 4>& intensity, Image<T>& image, Mask& holes) {
     const kernels::BlendWeights weights =
         blend_weights(intensity, view_x_, options_.gamma, double{kGreyLevelsPerUnit<T>});
-    for_each_warped_row([&](int y, const kernels::WarpedPairRow& pair, float* disparity_px) {
+    for_each_warped_row_again([&](int y, const kernels::WarpedPairRow& pair) {
+      const auto memory =
+          execution_.scratch().lease(static_cast<std::size_t>(width_) * sizeof(float));
+      auto* disparity_px = reinterpret_cast<float*>(memory.data());
       const int row_holes = kernels::blend_row(
           pair, weights, channels_,
           kernels::BlendedRow<T>{
@@ -202,6 +239,8 @@ class Synthesis {
   int channels_;
   scheduler::ScratchPool::Lease records_memory_;
   std::span<RowRecord> records_;
+  scheduler::ScratchPool::Lease kept_memory_;
+  float* kept_ = nullptr;  // warped scanline pairs of all rows, where they are kept
 };
 
 /// The photographs and maps of one call.

@@ -16,6 +16,7 @@ struct BicubicFetchRow {
   double camera_offset = 0;     ///< s, as in forward_warp_row()
   float gradient_limit_px = 1;  ///< taps whose disparity differs by more show another surface
   float largest_value = 255;    ///< of the pixel type
+  bool is_in_range = false;     ///< all pixels are known to lie in 0..largest_value
 };
 
 /// One bicubic interpolation (Keys, a = −½) along the row. A tap outside the image or on another

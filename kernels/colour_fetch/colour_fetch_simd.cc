@@ -5,7 +5,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include "kernels/colour_fetch/colour_fetch.h"
 
@@ -18,36 +18,6 @@ void fetch_bicubic(const BicubicFetchRow& row, float* colours) {
 }
 #else
 namespace hn = hwy::HWY_NAMESPACE;
-
-struct Taps {
-  const float* pixel[4];
-};
-
-// The rare case: a tap lies outside the image or on another surface.
-HWY_NOINLINE Taps taps_on_surface(const BicubicFetchRow& row, int whole, float f, float d) {
-  int tap[4] = {whole - 1, whole, whole + 1, whole + 2};
-  bool on_surface[4];
-  for (int k = 0; k < 4; ++k) {
-    on_surface[k] = std::abs(row.source_disparity_px[tap[k]] - d) <= row.gradient_limit_px;
-  }
-  if (!on_surface[1] && !on_surface[2]) {
-    tap[1] = tap[2] = std::clamp(f < 0.5F ? tap[1] : tap[2], 0, row.width - 1);
-    on_surface[0] = on_surface[3] = false;
-  } else if (!on_surface[1]) {
-    tap[1] = tap[2];
-    on_surface[0] = false;
-  } else if (!on_surface[2]) {
-    tap[2] = tap[1];
-    on_surface[3] = false;
-  }
-  tap[0] = on_surface[0] ? tap[0] : tap[1];
-  tap[3] = on_surface[3] ? tap[3] : tap[2];
-  Taps taps;
-  for (int k = 0; k < 4; ++k) {
-    taps.pixel[k] = row.pixels + tap[k] * row.lanes;
-  }
-  return taps;
-}
 
 // Positions whose columns and weights are computed at a time; a multiple of every vector's length.
 constexpr int kBlock = 64;
@@ -97,59 +67,204 @@ HWY_INLINE void weigh_taps(D64 d64, const BicubicFetchRow& row, int begin, int f
   }
 }
 
-// One vector is one pixel: its four taps are neighbours in memory, so nothing is gathered.
-template <class D>
-HWY_INLINE void fetch_any(D d_pixel, const BicubicFetchRow& row, float* HWY_RESTRICT colours) {
-  constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
+constexpr int kGroup = 4;  // positions whose taps are looked at together
+using Group = hn::FixedTag<float, kGroup>;
+using GroupInt = hn::FixedTag<std::int32_t, kGroup>;
+using GroupVec = hn::VFromD<Group>;
+using GroupMask = hn::MFromD<Group>;
+
+// Four values from each of four places: tap k of all positions in element k.
+struct FourTaps {
+  GroupVec tap[4];
+};
+
+HWY_INLINE FourTaps load_taps(const float* row, const std::int32_t* HWY_RESTRICT first) {
+  const Group d;
+  const auto a = hn::LoadU(d, row + first[0] - 1);
+  const auto b = hn::LoadU(d, row + first[1] - 1);
+  const auto c = hn::LoadU(d, row + first[2] - 1);
+  const auto e = hn::LoadU(d, row + first[3] - 1);
+  const auto even_low = hn::InterleaveLower(d, a, c);
+  const auto odd_low = hn::InterleaveLower(d, b, e);
+  const auto even_high = hn::InterleaveUpper(d, a, c);
+  const auto odd_high = hn::InterleaveUpper(d, b, e);
+  return {{hn::InterleaveLower(d, even_low, odd_low), hn::InterleaveUpper(d, even_low, odd_low),
+           hn::InterleaveLower(d, even_high, odd_high),
+           hn::InterleaveUpper(d, even_high, odd_high)}};
+}
+
+// Where taps come from. Branches would be mispredicted wherever surfaces end or are rough.
+struct TapChoice {
+  GroupMask own0;      // tap 0 is on the surface, else it is as tap 1
+  GroupMask own1;      // tap 1 is, else it is as tap 2, or as the nearest where `neither`
+  GroupMask own2;      // likewise, as tap 1
+  GroupMask own3;      // as tap 0, for tap 2
+  GroupMask neither;   // tap 1 nor tap 2 is
+  GroupMask nearest1;  // of these two inside the image, tap 1 is the nearest
+};
+
+HWY_INLINE TapChoice choose_taps(const BicubicFetchRow& row, const BlockWeights& block, int i,
+                                 GroupVec disparity_px) {
+  const Group d;
+  const GroupInt d_int;
+  const FourTaps taps = load_taps(row.source_disparity_px, block.whole + i);
+  const auto limit = hn::Set(d, row.gradient_limit_px);
+  const auto on_surface = [&](GroupVec tap) HWY_ATTR {
+    return hn::Le(hn::Abs(hn::Sub(tap, disparity_px)), limit);
+  };
+  const auto on_surface1 = on_surface(taps.tap[1]);
+  const auto on_surface2 = on_surface(taps.tap[2]);
+  const auto whole = hn::LoadU(d_int, block.whole + i);
+  const auto first_half = hn::Lt(hn::LoadU(d, block.fraction + i), hn::Set(d, 0.5F));
+  const auto at_left_border = hn::RebindMask(d, hn::Lt(whole, hn::Zero(d_int)));
+  const auto at_right_border =
+      hn::RebindMask(d, hn::Eq(whole, hn::Set(d_int, static_cast<std::int32_t>(row.width - 1))));
+  return {hn::And(on_surface(taps.tap[0]), on_surface1),
+          on_surface1,
+          on_surface2,
+          hn::And(on_surface(taps.tap[3]), on_surface2),
+          hn::Not(hn::Or(on_surface1, on_surface2)),
+          hn::Or(hn::AndNot(at_left_border, first_half), at_right_border)};
+}
+
+// Applies a choice to what the four taps hold: values or columns.
+template <class V, class M>
+HWY_INLINE void apply_choice(const M (&own)[4], M neither, M nearest1, V (&tap)[4]) {
+  const auto nearest = hn::IfThenElse(nearest1, tap[1], tap[2]);
+  const auto tap1 = hn::IfThenElse(own[1], tap[1], hn::IfThenElse(neither, nearest, tap[2]));
+  const auto tap2 = hn::IfThenElse(own[2], tap[2], hn::IfThenElse(neither, nearest, tap[1]));
+  tap[0] = hn::IfThenElse(own[0], tap[0], tap1);
+  tap[3] = hn::IfThenElse(own[3], tap[3], tap2);
+  tap[1] = tap1;
+  tap[2] = tap2;
+}
+
+// Weighted taps, kept within the range of values. kInRange: that of the pixel type holds all taps.
+template <bool kInRange, class D, class V>
+HWY_INLINE V interpolate(D d, const V (&value)[4], const V (&weight)[4], V largest_value) {
+  // Mul and Add, never MulAdd: results must not depend on the instruction set.
+  const auto sum = hn::Add(hn::Add(hn::Mul(weight[0], value[0]), hn::Mul(weight[1], value[1])),
+                           hn::Add(hn::Mul(weight[2], value[2]), hn::Mul(weight[3], value[3])));
+  if constexpr (kInRange) {
+    return hn::Min(hn::Max(sum, hn::Zero(d)), largest_value);
+  }
+  const auto smallest =
+      hn::Min(hn::Zero(d), hn::Min(hn::Min(value[0], value[1]), hn::Min(value[2], value[3])));
+  const auto largest =
+      hn::Max(largest_value, hn::Max(hn::Max(value[0], value[1]), hn::Max(value[2], value[3])));
+  return hn::Min(hn::Max(sum, smallest), largest);
+}
+
+// One value per position: the group's four positions are a vector.
+template <bool kInRange>
+HWY_INLINE void fetch_grey_group(const BicubicFetchRow& row, const BlockWeights& block, int i,
+                                 GroupVec disparity_px, float* HWY_RESTRICT colours) {
+  const Group d;
+  const TapChoice choice = choose_taps(row, block, i, disparity_px);
+  FourTaps values = load_taps(row.pixels, block.whole + i);
+  const GroupMask own[4] = {choice.own0, choice.own1, choice.own2, choice.own3};
+  apply_choice(own, choice.neither, choice.nearest1, values.tap);
+  const GroupVec weight[4] = {hn::LoadU(d, block.weight[0] + i), hn::LoadU(d, block.weight[1] + i),
+                              hn::LoadU(d, block.weight[2] + i), hn::LoadU(d, block.weight[3] + i)};
+  const auto colour = interpolate<kInRange>(d, values.tap, weight, hn::Set(d, row.largest_value));
+  hn::StoreU(hn::IfThenElseZero(hn::Eq(disparity_px, disparity_px), colour), d, colours);
+}
+
+// Four values per position: a vector is a pixel, whose taps are neighbours in memory.
+template <bool kInRange>
+HWY_INLINE void fetch_colour_group(const BicubicFetchRow& row, const BlockWeights& block, int i,
+                                   GroupVec disparity_px, float* HWY_RESTRICT colours) {
+  const Group d;
+  const GroupInt d_int;
+  const auto largest_value = hn::Set(d, row.largest_value);
+  const auto fetch_pixel = [&](int p, const GroupVec(&value)[4]) HWY_ATTR {
+    const GroupVec weight[4] = {
+        hn::Set(d, block.weight[0][i + p]), hn::Set(d, block.weight[1][i + p]),
+        hn::Set(d, block.weight[2][i + p]), hn::Set(d, block.weight[3][i + p])};
+    return interpolate<kInRange>(d, value, weight, largest_value);
+  };
+  const TapChoice choice = choose_taps(row, block, i, disparity_px);
+  if (hn::AllTrue(d, hn::And(choice.own0, choice.own3))) {
+    // Inside a surface; so no position is a hole.
+    for (int p = 0; p < kGroup; ++p) {
+      const float* first = row.pixels + (block.whole[i + p] - 1) * 4;
+      const GroupVec value[4] = {hn::LoadU(d, first), hn::LoadU(d, first + 4),
+                                 hn::LoadU(d, first + 8), hn::LoadU(d, first + 12)};
+      hn::StoreU(fetch_pixel(p, value), d, colours + p * 4);
+    }
+    return;
+  }
+  const auto whole = hn::LoadU(d_int, block.whole + i);
+  const auto one = hn::Set(d_int, 1);
+  hn::VFromD<GroupInt> columns[4] = {hn::Sub(whole, one), whole, hn::Add(whole, one),
+                                     hn::Add(whole, hn::Add(one, one))};
+  const hn::MFromD<GroupInt> own[4] = {
+      hn::RebindMask(d_int, choice.own0), hn::RebindMask(d_int, choice.own1),
+      hn::RebindMask(d_int, choice.own2), hn::RebindMask(d_int, choice.own3)};
+  apply_choice(own, hn::RebindMask(d_int, choice.neither), hn::RebindMask(d_int, choice.nearest1),
+               columns);
+  HWY_ALIGN std::int32_t places[4][kGroup];
+  HWY_ALIGN float disparities[kGroup];
+  for (int k = 0; k < 4; ++k) {
+    hn::Store(hn::ShiftLeft<2>(columns[k]), d_int, places[k]);
+  }
+  hn::Store(disparity_px, d, disparities);
+  for (int p = 0; p < kGroup; ++p) {
+    const GroupVec value[4] = {
+        hn::LoadU(d, row.pixels + places[0][p]), hn::LoadU(d, row.pixels + places[1][p]),
+        hn::LoadU(d, row.pixels + places[2][p]), hn::LoadU(d, row.pixels + places[3][p])};
+    const auto known = hn::Set(d, disparities[p]);
+    const auto colour = hn::IfThenElseZero(hn::Eq(known, known), fetch_pixel(p, value));
+    hn::StoreU(colour, d, colours + p * 4);
+  }
+}
+
+template <int kLanes, bool kInRange>
+HWY_INLINE void fetch_any(const BicubicFetchRow& given, float* HWY_RESTRICT colours) {
+  const BicubicFetchRow row = given;  // which stores to colours cannot change
   const hn::ScalableTag<double> d64;
   const hn::FixedTag<double, 1> d64_one;
-  const hn::FixedTag<float, 4> d_taps;
-  const auto limit = hn::Set(d_taps, row.gradient_limit_px);
-  const auto zero = hn::Zero(d_pixel);
-  const auto largest_value = hn::Set(d_pixel, row.largest_value);
-
+  const Group d;
   HWY_ALIGN BlockWeights block;
   for (int begin = 0; begin < row.width; begin += kBlock) {
     const int count = std::min(kBlock, row.width - begin);
     const int whole_vectors = count - count % static_cast<int>(hn::Lanes(d64));
     weigh_taps(d64, row, begin, 0, whole_vectors, block);
     weigh_taps(d64_one, row, begin, whole_vectors, count, block);
-    for (int i = 0; i < count; ++i, colours += kLanes) {
-      const float d = row.warped_disparity_px[begin + i];
-      if (d != d) {
-        hn::StoreU(zero, d_pixel, colours);
-        continue;
+    const auto fetch = [&](int i, GroupVec disparity_px, float* to) HWY_ATTR {
+      if constexpr (kLanes == 1) {
+        fetch_grey_group<kInRange>(row, block, i, disparity_px, to);
+      } else {
+        fetch_colour_group<kInRange>(row, block, i, disparity_px, to);
       }
-      const int whole = block.whole[i];
-      const auto difference = hn::Abs(
-          hn::Sub(hn::LoadU(d_taps, row.source_disparity_px + whole - 1), hn::Set(d_taps, d)));
-      const float* first = row.pixels + (whole - 1) * kLanes;
-      Taps taps = {{first, first + kLanes, first + 2 * kLanes, first + 3 * kLanes}};
-      if (HWY_UNLIKELY(!hn::AllTrue(d_taps, hn::Le(difference, limit)))) {
-        taps = taps_on_surface(row, whole, block.fraction[i], d);
+    };
+    int i = 0;
+    for (; i + kGroup <= count; i += kGroup) {
+      fetch(i, hn::LoadU(d, row.warped_disparity_px + begin + i), colours + (begin + i) * kLanes);
+    }
+    if (i < count) {
+      // A group that is not full: the places behind it are holes.
+      HWY_ALIGN float disparity_px[kGroup];
+      HWY_ALIGN float last_colours[kGroup * kLanes];
+      for (int p = 0; p < kGroup; ++p) {
+        const bool is_there = i + p < count;
+        disparity_px[p] = is_there ? row.warped_disparity_px[begin + i + p]
+                                   : std::numeric_limits<float>::quiet_NaN();
+        if (!is_there) {
+          block.whole[i + p] = 0;
+        }
       }
-      const auto value0 = hn::LoadU(d_pixel, taps.pixel[0]);
-      const auto value1 = hn::LoadU(d_pixel, taps.pixel[1]);
-      const auto value2 = hn::LoadU(d_pixel, taps.pixel[2]);
-      const auto value3 = hn::LoadU(d_pixel, taps.pixel[3]);
-      const auto sum = hn::Add(hn::Add(hn::Mul(hn::Set(d_pixel, block.weight[0][i]), value0),
-                                       hn::Mul(hn::Set(d_pixel, block.weight[1][i]), value1)),
-                               hn::Add(hn::Mul(hn::Set(d_pixel, block.weight[2][i]), value2),
-                                       hn::Mul(hn::Set(d_pixel, block.weight[3][i]), value3)));
-      const auto smallest =
-          hn::Min(zero, hn::Min(hn::Min(value0, value1), hn::Min(value2, value3)));
-      const auto largest =
-          hn::Max(largest_value, hn::Max(hn::Max(value0, value1), hn::Max(value2, value3)));
-      hn::StoreU(hn::Min(hn::Max(sum, smallest), largest), d_pixel, colours);
+      fetch(i, hn::Load(d, disparity_px), last_colours);
+      std::copy_n(last_colours, (count - i) * kLanes, colours + (begin + i) * kLanes);
     }
   }
 }
 
 void fetch_bicubic(const BicubicFetchRow& row, float* colours) {
   if (row.lanes == 1) {
-    fetch_any(hn::FixedTag<float, 1>(), row, colours);
+    row.is_in_range ? fetch_any<1, true>(row, colours) : fetch_any<1, false>(row, colours);
   } else {
-    fetch_any(hn::FixedTag<float, 4>(), row, colours);
+    row.is_in_range ? fetch_any<4, true>(row, colours) : fetch_any<4, false>(row, colours);
   }
 }
 #endif

@@ -8,17 +8,18 @@
 
 namespace vantage::kernels {
 
-// Draws pixels towards disparities they are expected to have. Both forms are the same distribution
-// of k = d − d_prior, a Gaussian of σ = 1 px with a floor at its value two pixels away, e⁻² = 0.14:
-// beyond that a prior no longer tells one candidate from another, and a pixel's own costs (whose
-// contamination is of that size, εM = 0.1) can outweigh it. Near d_prior it is a parabola in the
-// energies, so that sub-pixel positions found with a parabola stay where they were. Identical on
-// every instruction set.
+// Draws pixels towards disparities they are expected to have. Both forms are the same function of
+// k = d − d_prior, a parabola with a floor: the energy of a Gaussian that is cut off two pixels
+// away. Beyond that a prior no longer tells one candidate from another. As a likelihood its floor
+// is e⁻¹ = 0.37 at weight 1: less than what a pixel's own costs can say (whose contamination is εM
+// = 0.1), so that a surface that is gone does not stay in the map where the images speak against
+// it. And a parabola does not move the vertex of a parabola that is where the prior is: sub-pixel
+// positions stay where they were. Identical on every instruction set.
 
 /// Of the prior's energy: it grows as (k / kPriorReachPx)² up to 1.
 inline constexpr float kPriorReachPx = 2.0F;
 /// −log of the floor of the prior's likelihood.
-inline constexpr float kPriorDepth = 2.0F;
+inline constexpr float kPriorDepth = 1.0F;
 
 /// Cells of one row, `lanes` floats a column, and what their columns are drawn towards.
 struct DisparityPriorRow {
@@ -53,7 +54,7 @@ inline float prior_exponent_scale(float weight) {
   return std::max(-kPriorDepth * kLog2E * weight, kLeast);
 }
 
-/// Likelihoods: p *= exp(−w · min(k²/4, 1)), w = 2 · weight, at most 20 log 2.
+/// Likelihoods: p *= exp(−w · min(k²/4, 1)), w = weight, at most 20 log 2.
 void likelihoods_with_prior_row(const DisparityPriorRow& row, float* cells);
 void likelihoods_with_prior_row_ref(const DisparityPriorRow& row, float* cells);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace vantage::kernels {
 namespace {
@@ -12,6 +13,22 @@ void interpolate(int begin, int end, float* disparity_px) {
   for (int x = begin; x < end; ++x) {
     disparity_px[x] = before + slope * static_cast<float>(x - begin + 1);
   }
+}
+
+/// The first unmatched pixel from `x` on, or `width`.
+int next_unmatched(const std::uint8_t* unmatched, int x, int width) {
+  constexpr int kWordBytes = 8;
+  for (; x + kWordBytes <= width; x += kWordBytes) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, unmatched + x, kWordBytes);
+    if (word != 0) {
+      break;
+    }
+  }
+  while (x < width && unmatched[x] == 0) {
+    ++x;
+  }
+  return x;
 }
 
 }  // namespace
@@ -26,10 +43,11 @@ bool fill_unmatched_row_linearly(const std::uint8_t* unmatched, BackgroundSide s
                                  int width, float* disparity_px) {
   bool any_matched = false;
   for (int begin = 0; begin < width;) {
-    if (unmatched[begin] == 0) {
-      any_matched = true;
-      ++begin;
-      continue;
+    const int matched_from = begin;
+    begin = next_unmatched(unmatched, begin, width);
+    any_matched = any_matched || begin > matched_from;
+    if (begin == width) {
+      break;
     }
     int end = begin;
     while (end < width && unmatched[end] != 0) {

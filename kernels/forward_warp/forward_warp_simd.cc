@@ -19,29 +19,66 @@ constexpr int kBlock = 64;
 // Farther than any row is wide, and safe to convert and to add to a column.
 constexpr double kFarColumns = 1 << 29;
 
-// floor(½ − s·d) for `count` disparities; 0 where unknown.
+// Neighbouring columns with one more on either side: those at the ends of the blocks beside it.
+struct Block {
+  int begin = 0;  // column of element 1
+  int count = 0;
+  float disparity_px[kBlock + 2];   // NaN where unknown
+  std::int32_t target[kBlock + 2];  // −1 and width stand for everything outside the view
+};
+
+// floor(x − s·d + ½) for the columns [first, first + count) of a block.
 template <class D64>
-HWY_INLINE void shifts_of(D64 d64, const float* disparity_px, int count, double camera_offset,
-                          std::int32_t* HWY_RESTRICT shifts) {
+HWY_INLINE void find_targets(D64 d64, const ForwardWarpRow& row, int first, int count,
+                             Block& block) {
   const hn::Rebind<float, D64> d32;
   const hn::Rebind<std::int32_t, D64> di32;
   const auto largest = hn::Set(d32, std::numeric_limits<float>::max());
-  const auto offset = hn::Set(d64, camera_offset);
+  const auto unknown = hn::Set(d32, std::numeric_limits<float>::quiet_NaN());
+  const auto offset = hn::Set(d64, row.camera_offset);
   const auto far = hn::Set(d64, kFarColumns);
-  for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d64))) {
-    const auto read = hn::LoadU(d32, disparity_px + i);
-    const auto disparity = hn::IfThenElseZero(hn::Le(hn::Abs(read), largest), read);
-    const auto exact = hn::Mul(offset, hn::PromoteTo(d64, disparity));
-    const auto shift = hn::Floor(hn::Sub(hn::Set(d64, 0.5), exact));
-    hn::StoreU(hn::DemoteTo(di32, hn::Min(hn::Max(shift, hn::Neg(far)), far)), di32, shifts + i);
+  const auto before = hn::Set(di32, -1);
+  const auto behind = hn::Set(di32, row.width);
+  for (int i = first; i < first + count; i += static_cast<int>(hn::Lanes(d64))) {
+    const auto read = hn::LoadU(d32, row.disparity_px + block.begin + i);
+    const auto known = hn::Le(hn::Abs(read), largest);
+    const auto exact = hn::Mul(offset, hn::PromoteTo(d64, hn::IfThenElseZero(known, read)));
+    const auto floored = hn::Floor(hn::Sub(hn::Set(d64, 0.5), exact));
+    const auto shift = hn::DemoteTo(di32, hn::Min(hn::Max(floored, hn::Neg(far)), far));
+    // Not Iota(di32, x): only a constant start avoids a detour through memory.
+    const auto column = hn::Add(hn::Iota(di32, 0), hn::Set(di32, block.begin + i));
+    const auto target = hn::Min(hn::Max(hn::Add(column, shift), before), behind);
+    hn::StoreU(hn::IfThenElse(known, read, unknown), d32, block.disparity_px + 1 + i);
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(di32, known), target, before), di32,
+               block.target + 1 + i);
   }
 }
 
-struct Sample {
-  int column = 0;
-  int target = 0;  // −1 and width stand for everything outside the view
-  float disparity_px = std::numeric_limits<float>::quiet_NaN();
-};
+// Bit i: the sampling gap between column i and the one walked before it is to be filled.
+template <int kStep>
+HWY_INLINE std::uint64_t find_gaps(float gradient_limit_px, const Block& block) {
+  const hn::CappedTag<float, 16> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  constexpr int kLanes = static_cast<int>(hn::MaxLanes(d));
+  const auto limit = hn::Set(d, gradient_limit_px);
+  const auto one = hn::Set(di, 1);
+  std::uint64_t gaps = 0;
+  for (int i = 0; i < block.count; i += kLanes) {
+    const int here = 1 + i;
+    const int previous = here - kStep;
+    const auto target = hn::LoadU(di, block.target + here);
+    const auto previous_target = hn::LoadU(di, block.target + previous);
+    const auto distance =
+        kStep > 0 ? hn::Sub(target, previous_target) : hn::Sub(previous_target, target);
+    const auto rise = hn::Abs(hn::Sub(hn::LoadU(d, block.disparity_px + here),
+                                      hn::LoadU(d, block.disparity_px + previous)));
+    const auto is_gap = hn::And(hn::RebindMask(d, hn::Gt(distance, one)), hn::Le(rise, limit));
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, is_gap, bits);
+    gaps |= (std::uint64_t{bits[0]} | std::uint64_t{bits[1]} << 8) << i;
+  }
+  return block.count < kBlock ? gaps & ((std::uint64_t{1} << block.count) - 1) : gaps;
+}
 
 // Where a walk writes; kColumns: whether source columns are wanted.
 template <bool kColumns>
@@ -57,57 +94,83 @@ struct Output {
   }
 };
 
+// Between column i of a block and its neighbour i − step.
 template <bool kColumns>
-HWY_NOINLINE void fill_sampling_gap(const ForwardWarpRow& row, Sample previous, Sample sample,
+HWY_NOINLINE void fill_sampling_gap(const ForwardWarpRow& row, const Block& block, int i, int step,
                                     Output<kColumns> output) {
-  const double from = previous.column - row.camera_offset * previous.disparity_px;
-  const double spacing = (sample.column - row.camera_offset * sample.disparity_px) - from;
-  const double rise = double{sample.disparity_px} - previous.disparity_px;
-  const int first = std::min(previous.target, sample.target) + 1;
-  const int end = std::max(previous.target, sample.target);
-  for (int n = first; n < end; ++n) {
+  const int column = block.begin + i;
+  const int previous_column = column - step;
+  const float disparity_px = block.disparity_px[1 + i];
+  const float previous_disparity_px = block.disparity_px[1 + i - step];
+  const int target = block.target[1 + i];
+  const int previous_target = block.target[1 + i - step];
+  const double from = previous_column - row.camera_offset * previous_disparity_px;
+  const double spacing = (column - row.camera_offset * disparity_px) - from;
+  const double rise = double{disparity_px} - previous_disparity_px;
+  const int end = std::max(previous_target, target);
+  for (int n = std::min(previous_target, target) + 1; n < end; ++n) {
     const double fraction = (n - from) / spacing;
-    output.write(
-        n, static_cast<float>(previous.disparity_px + fraction * rise),
-        static_cast<float>(previous.column + fraction * (sample.column - previous.column)));
+    output.write(n, static_cast<float>(previous_disparity_px + fraction * rise),
+                 static_cast<float>(previous_column + fraction * (column - previous_column)));
+  }
+}
+
+// Columns [first, end) of a block, in the direction kStep.
+template <int kStep, bool kColumns>
+HWY_INLINE void write_columns(const Block& block, int first, int end, int width,
+                              Output<kColumns> output) {
+  const float* disparity_px = block.disparity_px + 1;
+  const std::int32_t* target = block.target + 1;
+  for (int k = 0; k < end - first; ++k) {
+    const int i = kStep > 0 ? first + k : end - 1 - k;
+    if (HWY_LIKELY(static_cast<unsigned>(target[i]) < static_cast<unsigned>(width))) {
+      output.write(target[i], disparity_px[i], static_cast<float>(block.begin + i));
+    }
   }
 }
 
 // Walks one scanline; kStep is the direction.
 template <int kStep, bool kColumns>
 HWY_INLINE void walk(const ForwardWarpRow& row, Output<kColumns> output) {
-  HWY_ALIGN std::int32_t shifts[kBlock];
   const hn::ScalableTag<double> d64;
   const hn::CappedTag<double, 1> d64_one;
-  const int width = row.width;
-  const float limit = row.gradient_limit_px;
-  const int blocks = (width + kBlock - 1) / kBlock;
-  Sample previous;
+  HWY_ALIGN Block block = {};
+  const int blocks = (row.width + kBlock - 1) / kBlock;
+  float previous_disparity_px = std::numeric_limits<float>::quiet_NaN();
+  std::int32_t previous_target = 0;
   for (int b = 0; b < blocks; ++b) {
-    const int begin = (kStep > 0 ? b : blocks - 1 - b) * kBlock;
-    const int count = std::min(kBlock, width - begin);
-    const float* disparities = row.disparity_px + begin;
-    const int whole_vectors = count - count % static_cast<int>(hn::Lanes(d64));
-    shifts_of(d64, disparities, whole_vectors, row.camera_offset, shifts);
-    shifts_of(d64_one, disparities + whole_vectors, count - whole_vectors, row.camera_offset,
-              shifts + whole_vectors);
-    for (int k = 0; k < count; ++k) {
-      const int i = kStep > 0 ? k : count - 1 - k;
-      Sample sample;
-      if (std::abs(disparities[i]) <= std::numeric_limits<float>::max()) {
-        sample.column = begin + i;
-        sample.target = std::clamp(sample.column + shifts[i], -1, width);
-        sample.disparity_px = disparities[i];
-        if (HWY_UNLIKELY((sample.target - previous.target) * kStep > 1) &&
-            std::abs(sample.disparity_px - previous.disparity_px) <= limit) {
-          fill_sampling_gap(row, previous, sample, output);
-        }
-        if (HWY_LIKELY(sample.target >= 0 && sample.target < width)) {
-          output.write(sample.target, sample.disparity_px, static_cast<float>(sample.column));
-        }
+    block.begin = (kStep > 0 ? b : blocks - 1 - b) * kBlock;
+    block.count = std::min(kBlock, row.width - block.begin);
+    const int whole_vectors = block.count - block.count % static_cast<int>(hn::Lanes(d64));
+    find_targets(d64, row, 0, whole_vectors, block);
+    find_targets(d64_one, row, whole_vectors, block.count - whole_vectors, block);
+    const int previous = kStep > 0 ? 0 : block.count + 1;
+    block.disparity_px[previous] = previous_disparity_px;
+    block.target[previous] = previous_target;
+
+    std::uint64_t gaps = find_gaps<kStep>(row.gradient_limit_px, block);
+    int first = 0;
+    int end = block.count;
+    while (gaps != 0) {
+      // Everything up to the gap, then the gap, as its column comes behind it.
+      if (kStep > 0) {
+        const auto gap = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(gaps));
+        write_columns<kStep>(block, first, gap, row.width, output);
+        fill_sampling_gap(row, block, gap, kStep, output);
+        first = gap;
+        gaps &= gaps - 1;
+      } else {
+        const auto gap = static_cast<int>(63 - hwy::Num0BitsAboveMS1Bit_Nonzero64(gaps));
+        write_columns<kStep>(block, gap + 1, end, row.width, output);
+        fill_sampling_gap(row, block, gap, kStep, output);
+        end = gap + 1;
+        gaps &= ~(std::uint64_t{1} << gap);
       }
-      previous = sample;
     }
+    write_columns<kStep>(block, first, end, row.width, output);
+    const int last = kStep > 0 ? block.count : 1;
+    previous_disparity_px = block.disparity_px[last];
+    previous_target = block.target[last];
   }
 }
 

@@ -70,9 +70,14 @@ HWY_INLINE void store_pixel(D d, bool room, hn::VFromD<D> value, hn::VFromD<D> l
   if constexpr (std::is_same_v<T, float>) {
     const auto lower = hn::Min(zero, hn::Min(left, right));
     const auto upper = hn::Max(largest, hn::Max(left, right));
-    float values[4];
-    hn::StoreU(hn::Min(hn::Max(value, lower), upper), d, values);
-    std::memcpy(pixel, values, kChannels * sizeof(T));
+    const auto clamped = hn::Min(hn::Max(value, lower), upper);
+    if constexpr (kChannels == 1) {
+      hn::StoreU(clamped, d, pixel);
+    } else {
+      float values[4];
+      hn::StoreU(clamped, d, values);
+      std::memcpy(pixel, values, kChannels * sizeof(T));
+    }
   } else {
     const hn::Rebind<std::int32_t, D> d32;
     const hn::Rebind<T, D> d_pixel;
@@ -87,6 +92,25 @@ HWY_INLINE void store_pixel(D d, bool room, hn::VFromD<D> value, hn::VFromD<D> l
       std::memcpy(pixel, values, kChannels * sizeof(T));
     }
   }
+}
+
+// Grey of the positions [x, x + lanes).
+template <typename T, class D>
+HWY_INLINE void blend_grey(D d, const WarpedPairRow& pair, const BlendWeights& weights, int x,
+                           const float* HWY_RESTRICT left_weights, T* pixels) {
+  const auto left = hn::LoadU(d, pair.left_colours + x);
+  const auto right = hn::LoadU(d, pair.right_colours + x);
+  const auto left_weight = hn::LoadU(d, left_weights);
+  const auto transformed = [d](hn::VFromD<D> value, float scale, float offset) HWY_ATTR {
+    return hn::Add(hn::Mul(hn::Set(d, scale), value), hn::Set(d, offset));
+  };
+  // Mul and Add, never MulAdd: results must not depend on the instruction set.
+  const auto left_part =
+      hn::Mul(left_weight, transformed(left, weights.left_scale[0], weights.left_offset[0]));
+  const auto right_part =
+      hn::Mul(hn::Sub(hn::Set(d, 1.0F), left_weight),
+              transformed(right, weights.right_scale[0], weights.right_offset[0]));
+  store_pixel<1>(d, true, hn::Add(left_part, right_part), left, right, pixels + x);
 }
 
 // Colours of the positions [x, x + count): one vector is one pixel.
@@ -126,7 +150,11 @@ HWY_INLINE int blend_any(const WarpedPairRow& pair, const BlendWeights& weights,
     const int count = static_cast<int>(hn::Lanes(tag));
     const int block_holes =
         weigh(tag, pair, weights.alpha, x, view.disparity_px, view.holes, left_weights);
-    blend_pixels<kChannels>(pair, weights, x, count, left_weights, view.pixels);
+    if constexpr (kChannels == 1) {
+      blend_grey(tag, pair, weights, x, left_weights, view.pixels);
+    } else {
+      blend_pixels<kChannels>(pair, weights, x, count, left_weights, view.pixels);
+    }
     if (block_holes > 0) {
       for (int i = x; i < x + count; ++i) {
         if (view.holes[i] != 0) {

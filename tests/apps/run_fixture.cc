@@ -79,7 +79,7 @@ std::vector<int> journalled_frames(const fs::path& folder, bool skipped) {
     std::istringstream lines(read_file(folder / ".vantage" / name));
     for (std::string line; std::getline(lines, line);) {
       const auto record = nlohmann::json::parse(line, nullptr, false);
-      if (record.is_object() && record.contains("frame")) {
+      if (record.is_object() && record.contains("frame") && record["frame"].is_number()) {
         frames[record["frame"]] = record.contains("skipped");
       }
     }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -41,6 +42,27 @@ TEST(IntensityFit, IdentityWhereDegenerate) {
   // A constant image whose sums do not cancel exactly.
   const std::vector<double> constant(100000, 0.1);
   expect_identity(fit_intensities(sums_of(constant, constant), 0, 255));
+}
+
+TEST(FitChannels, AlphaHasTheIdentity) {
+  kernels::IntensitySums sums = sums_of({10, 20, 40}, {15, 20, 30});
+  for (int c = 1; c < 4; ++c) {
+    sums.left[c] = sums.left[0];
+    sums.right[c] = c * sums.right[0];
+    sums.left_left[c] = sums.left_left[0];
+    sums.left_right[c] = c * sums.left_right[0];
+  }
+  for (const int channels : {1, 3, 4}) {
+    const auto fits = fit_channels(sums, channels, 2);
+    for (int c = 0; c < 4; ++c) {
+      if (c < std::min(channels, 3)) {
+        EXPECT_EQ(fits[static_cast<std::size_t>(c)], fit_intensities(sums, c, 2));
+        EXPECT_NEAR(fits[static_cast<std::size_t>(c)].gain, 0.5 * std::max(1, c), 1e-12);
+      } else {
+        expect_identity(fits[static_cast<std::size_t>(c)]);
+      }
+    }
+  }
 }
 
 }  // namespace

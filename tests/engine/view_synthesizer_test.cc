@@ -380,5 +380,68 @@ TEST(ViewSynthesizer, WildDisparitiesDoNoHarm) {
   }
 }
 
+template <typename T>
+void expect_given_fits_to_act(int channels) {
+  std::mt19937 random(28);
+  Execution execution({.threads = 3});
+  const Pair pair = random_pair<T>(random, 67, 23, channels);
+  const ViewSynthesizer synthesizer({}, execution);
+  const auto synthesize = [&](const ViewSynthesizer& with, double x,
+                              const std::array<IntensityFit, 4>* fit) {
+    SynthesizedView view;
+    with.synthesize(pair.left, pair.right, pair.left_disparity.view(), pair.right_disparity.view(),
+                    x, view, fit);
+    return view;
+  };
+  for (const double x : {0.5, 0.2}) {
+    const SynthesizedView own = synthesize(synthesizer, x, nullptr);
+    // The same fit given is the same view.
+    const SynthesizedView given = synthesize(synthesizer, x, &own.intensity);
+    EXPECT_EQ(given.intensity, own.intensity);
+    EXPECT_EQ(bytes_of(given), bytes_of(own));
+    // Another one is another view, also of a synthesizer that does without.
+    std::array<IntensityFit, 4> other = own.intensity;
+    other[0].offset += 30;
+    EXPECT_NE(bytes_of(synthesize(synthesizer, x, &other)), bytes_of(own));
+    const ViewSynthesizer plain({.match_intensities = false}, execution);
+    EXPECT_EQ(bytes_of(synthesize(plain, x, &other)), bytes_of(synthesize(synthesizer, x, &other)));
+    // The sums lead to the fit.
+    const kernels::IntensitySums sums = synthesizer.intensity_sums(
+        pair.left, pair.right, pair.left_disparity.view(), pair.right_disparity.view(), x);
+    EXPECT_GT(sums.pixels, 0);
+    const auto fits = fit_channels(sums, channels, 1);
+    for (std::size_t c = 0; c < 4; ++c) {
+      EXPECT_NEAR(fits[c].gain, own.intensity[c].gain, 1e-9);
+      EXPECT_NEAR(fits[c].offset, own.intensity[c].offset, 1e-7);
+    }
+  }
+}
+
+TEST(ViewSynthesizer, TakesAGivenFit) {
+  expect_given_fits_to_act<std::uint8_t>(1);
+  expect_given_fits_to_act<std::uint8_t>(4);
+  expect_given_fits_to_act<std::uint16_t>(3);
+  expect_given_fits_to_act<float>(3);
+}
+
+/// Rows of small images are kept between the two passes, those of large ones warped again.
+TEST(ViewSynthesizer, LargeImagesAreNoOtherCase) {
+  std::mt19937 random(29);
+  Execution execution({.threads = 2});
+  const Pair pair = random_pair<std::uint8_t>(random, 1000, 870, 3);  // 40 bytes a pixel: 33 MiB
+  const ViewSynthesizer synthesizer({}, execution);
+  const auto synthesize = [&](const std::array<IntensityFit, 4>* fit) {
+    SynthesizedView view;
+    synthesizer.synthesize(pair.left, pair.right, pair.left_disparity.view(),
+                           pair.right_disparity.view(), 0.4, view, fit);
+    return view;
+  };
+  const SynthesizedView own = synthesize(nullptr);
+  EXPECT_EQ(bytes_of(synthesize(&own.intensity)), bytes_of(own));
+  const kernels::IntensitySums sums = synthesizer.intensity_sums(
+      pair.left, pair.right, pair.left_disparity.view(), pair.right_disparity.view(), 0.4);
+  EXPECT_EQ(fit_channels(sums, 3, 1), own.intensity);
+}
+
 }  // namespace
 }  // namespace vantage

@@ -68,13 +68,16 @@ TEST(FetchBicubic, EqualOnEveryInstructionSetAndToReference) {
         const Scanline line(random_disparities(random, width, -5, 20),
                             random_values(random, width * lanes), lanes, s);
         for (const float limit : {0.0F, 1.0F}) {
-          const BicubicFetchRow row = line.bicubic(lanes, s, limit);
+          BicubicFetchRow row = line.bicubic(lanes, s, limit);
           std::vector<float> expected(static_cast<std::size_t>(width * lanes));
           fetch_bicubic_row_ref(row, expected.data());
           for_each_target([&] {
-            std::vector<float> colours(expected.size(), -1.0F);
-            fetch_bicubic_row(row, colours.data());
-            ASSERT_EQ(colours, expected) << width << " wide, " << lanes << " lanes, s " << s;
+            for (const bool is_in_range : {false, true}) {
+              row.is_in_range = is_in_range;
+              std::vector<float> colours(expected.size(), -1.0F);
+              fetch_bicubic_row(row, colours.data());
+              ASSERT_EQ(colours, expected) << width << " wide, " << lanes << " lanes, s " << s;
+            }
           });
         }
       }

@@ -43,13 +43,19 @@ bool matched(const std::vector<float>& own, const std::vector<float>& other, int
 std::vector<std::uint8_t> checked(const std::vector<float>& own, const std::vector<float>& other,
                                   int direction, double tolerance_px) {
   GuardedRow<std::uint8_t> unmatched(own.size(), 3, kSentinel);
-  cross_check_row(own.data(), other.data(), direction, tolerance_px, static_cast<int>(own.size()),
-                  unmatched.data());
+  GuardedRow<std::uint8_t> reference(own.size(), 3, kSentinel);
+  const int width = static_cast<int>(own.size());
+  cross_check_row(own.data(), other.data(), direction, tolerance_px, width, unmatched.data());
+  cross_check_row_ref(own.data(), other.data(), direction, tolerance_px, width, reference.data());
   EXPECT_TRUE(unmatched.intact());
+  EXPECT_EQ(unmatched.values(), reference.values());
   return unmatched.values();
 }
 
-TEST(CrossCheck, EqualsPlainTranscription) {
+class CrossCheck : public EveryTarget {};
+VANTAGE_ON_EVERY_TARGET(CrossCheck);
+
+TEST_P(CrossCheck, EqualsPlainTranscription) {
   std::mt19937 random(51);
   for (int width = 1; width <= 70; ++width) {
     for (int round = 0; round < 40; ++round) {
@@ -80,7 +86,7 @@ TEST(CrossCheck, EqualsPlainTranscription) {
   }
 }
 
-TEST(CrossCheck, MarksWhatHasNoPartner) {
+TEST_P(CrossCheck, MarksWhatHasNoPartner) {
   using Mask = std::vector<std::uint8_t>;
   // Single columns: the partner is the pixel itself or outside.
   EXPECT_EQ(checked({0.0F}, {0.0F}, -1, 1), Mask{0});
@@ -93,7 +99,7 @@ TEST(CrossCheck, MarksWhatHasNoPartner) {
   EXPECT_EQ(checked({0, 0, 0, 0}, {infinity, -infinity, 3e38F, 0}, 1, 1), (Mask{255, 255, 255, 0}));
 }
 
-TEST(CrossCheck, ToleranceItselfIsTooMuch) {
+TEST_P(CrossCheck, ToleranceItselfIsTooMuch) {
   using Mask = std::vector<std::uint8_t>;
   EXPECT_EQ(checked({0, 0}, {1.0F, 0.9375F}, -1, 1), (Mask{255, 0}));
   EXPECT_EQ(checked({0, 0}, {-1.0F, -0.9375F}, 1, 1), (Mask{255, 0}));

@@ -106,7 +106,7 @@ double energy(const DisparityPriorRow& row, double cell, double share, double co
   return cell + row.weight * std::min<double>(contrast, row.most_contrast) * share;
 }
 double likelihood(const DisparityPriorRow& row, double cell, double share, double /*contrast*/) {
-  return cell * std::exp(std::max(-2.0 * row.weight, -20 * std::log(2.0)) * share);
+  return cell * std::exp(std::max<double>(-row.weight, -20 * std::log(2.0)) * share);
 }
 
 TEST(DisparityPriorReference, FollowsTheDefinitions) {

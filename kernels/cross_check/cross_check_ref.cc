@@ -4,8 +4,8 @@
 
 namespace vantage::kernels {
 
-void cross_check_row(const float* own_px, const float* other_px, int direction, double tolerance_px,
-                     int width, std::uint8_t* unmatched) {
+void cross_check_row_ref(const float* own_px, const float* other_px, int direction,
+                         double tolerance_px, int width, std::uint8_t* unmatched) {
   for (int x = 0; x < width; ++x) {
     const double own = own_px[x];
     const double partner = std::floor(x + direction * own + 0.5);

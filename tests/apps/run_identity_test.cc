@@ -1,0 +1,131 @@
+// The same bytes whatever a run is done with and in however many parts.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+
+#include "tests/apps/run_fixture.h"
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of threads, executor and frames in flight.
+struct Way {
+  std::string executor;
+  int threads;
+  int in_flight;
+
+  [[nodiscard]] std::vector<std::string> arguments() const {
+    return {"--executor",  executor,
+            "--threads",   std::to_string(threads),
+            "--in-flight", std::to_string(in_flight)};
+  }
+};
+
+/// All executors with all numbers of threads, each with one number of frames in flight; with the
+/// rotations 0, 1 and 2 each with each.
+std::vector<Way> ways_of(int rotation) {
+  constexpr std::array<int, 3> kInFlight = {1, 2, 5};
+  std::vector<Way> ways = {{"serial", 1, 0}};
+  for (const std::string executor : {"tbb", "openmp"}) {
+    for (const int threads : {1, 2, 3}) {
+      ways.push_back({executor, threads, 0});
+    }
+  }
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    ways[i].in_flight = kInFlight[(i + static_cast<std::size_t>(rotation)) % kInFlight.size()];
+  }
+  return ways;
+}
+
+struct Outputs {
+  std::string name;
+  int rotation;  ///< see ways_of()
+  std::vector<std::string> arguments;
+};
+
+class RunIdentity : public RunTest, public testing::WithParamInterface<Outputs> {
+ protected:
+  [[nodiscard]] std::vector<std::string> with(const std::vector<std::string>& more) const {
+    return joined(joined(GetParam().arguments, {"--measure-flicker"}), more);
+  }
+  [[nodiscard]] nlohmann::json flicker() const {
+    return read_report(report_)["results"]["flicker"];
+  }
+
+  /// What all others must be like.
+  void SetUp() override {
+    const std::string out = folder_ / "expected";
+    ASSERT_EQ(
+        run(out, with({"--executor", "serial", "--in-flight", "1", "--report", report_})).exit_code,
+        0);
+    expected_ = results_in(out);
+    expected_flicker_ = flicker();
+    ASSERT_EQ(expected_flicker_["frames"], kFrames - kFrames / 5);
+    ASSERT_GT(expected_flicker_["share_compared"], 0);
+  }
+
+  std::string report_ = folder_ / "report.json";
+  FolderContent expected_;
+  nlohmann::json expected_flicker_;
+};
+
+TEST_P(RunIdentity, ForAnyExecutionAndFramesInFlight) {
+  for (const Way& way : ways_of(GetParam().rotation)) {
+    const std::string out = folder_ / "out";
+    const ProcessResult result = run(out, with(joined(way.arguments(), {"--report", report_})));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(same_files(results_in(out), expected_))
+        << way.executor << " " << way.threads << " " << way.in_flight;
+    EXPECT_EQ(flicker(), expected_flicker_);
+    fs::remove_all(out);
+  }
+}
+
+TEST_P(RunIdentity, ForAnyNumberOfParts) {
+  const std::vector<Way> ways = ways_of(GetParam().rotation);
+  std::size_t next_way = 1;
+  for (const int shards : {1, 2, 7}) {
+    const std::string out = folder_ / "out";
+    // Two at a time, each in its own way.
+    for (int shard = 1; shard <= shards; shard += 2) {
+      std::vector<std::unique_ptr<TemporaryFolder>> streams;
+      std::vector<std::unique_ptr<VantageProcess>> processes;
+      for (int index = shard; index < shard + 2 && index <= shards; ++index) {
+        const Way& way = ways[next_way];
+        next_way = (next_way + 4) % ways.size();
+        streams.push_back(std::make_unique<TemporaryFolder>());
+        processes.push_back(std::make_unique<VantageProcess>(
+            arguments(out, with(joined(way.arguments(), {"--shard", std::to_string(index) + "/" +
+                                                                        std::to_string(shards)}))),
+            streams.back()->path()));
+      }
+      for (const auto& process : processes) {
+        const ProcessResult result = process->wait();
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+      }
+    }
+    const ProcessResult merged = run_vantage({"merge", out, "--report", report_});
+    ASSERT_EQ(merged.exit_code, 0) << merged.err;
+    EXPECT_TRUE(same_files(results_in(out), expected_)) << shards;
+    EXPECT_EQ(flicker(), expected_flicker_) << shards;
+    fs::remove_all(out);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Outputs, RunIdentity,
+    testing::Values(Outputs{"Images", 0, kImageOutputs}, Outputs{"Videos", 1, kVideoOutputs},
+                    Outputs{"Shots", 1,
+                            joined(kVideoOutputs,
+                                   {"--intensity-fit", "shot", "--preview-range", "shot"})},
+                    Outputs{"TemporalPrior", 2,
+                            joined(kVideoOutputs, {"--temporal-prior", "1", "--method", "diffusion",
+                                                   "--iterations", "4"})}),
+    [](const auto& instance) { return instance.param.name; });
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,160 @@
+// Runs that are asked to stop, and clocks that jump.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "tests/apps/preloaded.h"
+#include "tests/apps/run_fixture.h"
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+class InterruptedRun : public RunTest {
+ protected:
+  static constexpr int kMany = kIsSanitized ? 200 : 400;
+
+  InterruptedRun() {
+    for (int frame = kFrames; frame < kMany; ++frame) {
+      for (const std::string& side : {left_, right_}) {
+        fs::create_hard_link(side + "/" + frame_file(frame % kFrames),
+                             side + "/" + frame_file(frame));
+      }
+    }
+  }
+
+  /// Waits until the process has recorded a frame.
+  void wait_for_results(const VantageProcess& process) const {
+    std::error_code ignored;
+    while (!process.has_ended()) {
+      for (const auto& entry : fs::directory_iterator(out_ + "/.vantage", ignored)) {
+        if (entry.path().extension() == ".jsonl" && fs::file_size(entry.path(), ignored) > 0) {
+          return;
+        }
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+
+  /// Stops the run by `signal` and goes on with it.
+  void interrupt(int signal, const std::vector<std::string>& outputs) {
+    const std::string report = folder_ / "report.json";
+    const TemporaryFolder streams;
+    const VantageProcess process(
+        arguments(out_, joined(outputs, {"--report", report, "--progress", "plain"})),
+        streams.path());
+    wait_for_results(process);
+    process.send(signal);
+    const ProcessResult stopped = process.wait();
+    EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
+    EXPECT_THAT(stopped.err, HasSubstr("(interrupted, --resume continues)"));
+    EXPECT_THAT(leftovers_in(out_), IsEmpty());
+    const nlohmann::json results = read_report(report)["results"];
+    EXPECT_EQ(results["interrupted"], true);
+    const std::vector<int> done = journalled_frames(out_);
+    EXPECT_FALSE(done.empty());
+    EXPECT_LT(done.size(), static_cast<std::size_t>(kMany));
+    // In order and without a gap.
+    EXPECT_EQ(done.back() + 1, static_cast<int>(done.size()));
+    const ProcessResult resumed = run(out_, joined(outputs, {"--resume", "--report", report}));
+    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    EXPECT_EQ(read_report(report)["results"]["frames_before"], done.size());
+    EXPECT_THAT(leftovers_in(out_), IsEmpty());
+    EXPECT_EQ(journalled_frames(out_).size(), static_cast<std::size_t>(kMany));
+    expect_maps_of_their_sources();
+  }
+
+  void expect_maps_of_their_sources() const {
+    const FolderContent maps = results_in(out_ + "/disparity");
+    ASSERT_EQ(maps.size(), static_cast<std::size_t>(kMany));
+    for (int frame = kFrames; frame < kMany; ++frame) {
+      EXPECT_EQ(maps.at(frame_file(frame, "pfm")), maps.at(frame_file(frame % kFrames, "pfm")));
+    }
+  }
+
+  std::string out_ = folder_ / "out";
+};
+
+TEST_F(InterruptedRun, CtrlCFinishesWhatIsUnderWay) {
+  interrupt(SIGINT, {});
+  fs::remove_all(out_);
+  interrupt(SIGTERM, {});
+}
+
+TEST_F(InterruptedRun, CtrlCWithVideos) {
+  interrupt(SIGINT, {"--save", "disparity,preview", "--video", "preview", "--chunk-frames", "5"});
+  EXPECT_FALSE(fs::exists(out_ + "/.vantage/segments"));
+  EXPECT_GT(fs::file_size(out_ + "/preview.mp4"), 1000U);
+}
+
+TEST_F(InterruptedRun, ASecondSignalKills) {
+  // A membrane with many iterations: draining would take long.
+  const TemporaryFolder streams;
+  const VantageProcess process(arguments(out_, {"--method", "membrane", "--iterations", "3000"}),
+                               streams.path());
+  wait_for_results(process);
+  process.send(SIGINT);
+  // The first one must have been taken, or both count as one.
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  while (!process.has_ended()) {
+    process.send(SIGINT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  const int exit_code = process.wait().exit_code;
+  EXPECT_TRUE(exit_code == 128 + SIGINT || exit_code == 130) << exit_code;
+}
+
+class ClockJump : public RunTest {};
+
+TEST_F(ClockJump, NothingChangesButTheDate) {
+  const std::vector<std::string> outputs =
+      joined(kVideoOutputs, {"--temporal-prior", "1", "--progress", "bar"});
+  const FolderContent expected = undisturbed(outputs);
+  const std::string out = folder_ / "out";
+  const std::vector<std::string> environment =
+      preloaded(PRELOAD_CLOCK_JUMP, {"CLOCK_JUMP_COUNT=" + (folder_ / "count")});
+  const std::string report = folder_ / "report.json";
+  const ProcessResult half = run_vantage(
+      arguments(out, joined(outputs, {"--frames", "0-9", "--report", report})), environment);
+  ASSERT_EQ(half.exit_code, 0) << half.err;
+  const ProcessResult rest =
+      run_vantage(arguments(out, joined(outputs, {"--resume", "--report", report})), environment);
+  ASSERT_EQ(rest.exit_code, 0) << rest.err;
+  EXPECT_TRUE(same_files(results_in(out), expected));
+  for (const ProcessResult& result : {half, rest}) {
+    EXPECT_THAT(result.err, HasSubstr(" frames/s"));
+    EXPECT_THAT(result.err, Not(ContainsRegex("[ ,]-[0-9]")));
+    EXPECT_THAT(result.err, Not(HasSubstr("nan")));
+    EXPECT_THAT(result.err, Not(HasSubstr("inf")));
+  }
+  const nlohmann::json seconds = read_report(report)["seconds"];
+  EXPECT_GE(seconds["wall"], 0);
+  // No hour has passed, whatever the clock says.
+  EXPECT_LT(seconds["wall"], 3600);
+  EXPECT_GE(seconds["compute"], 0);
+  for (const auto& [stage, time] : seconds["stages"].items()) {
+    EXPECT_GE(time, 0) << stage;
+    EXPECT_LT(time, 3600) << stage;
+  }
+}
+
+/// The test above is worth nothing where the library is not loaded.
+TEST_F(ClockJump, TheClockDoesJump) {
+  const std::string count = folder_ / "count";
+  EXPECT_EQ(run_vantage({"--version"}, preloaded(PRELOAD_CLOCK_JUMP, {"CLOCK_JUMP_COUNT=" + count}))
+                .exit_code,
+            0);
+  EXPECT_TRUE(fs::exists(count));
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,151 @@
+// What runs take of memory.
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "tests/apps/preloaded.h"
+#include "tests/apps/run_fixture.h"
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RunMemory : public RunTest {
+ protected:
+  static constexpr int kMany = 400;
+  static constexpr int kLargeWidth = 400;
+  static constexpr int kLargeHeight = 300;
+
+  void SetUp() override {
+    if (kIsSanitized) {
+      GTEST_SKIP() << "sanitizers have memory of their own";
+    }
+    add_links(left_, kFrames);
+    add_links(right_, kFrames);
+    BookPairOptions options;
+    options.width_px = kLargeWidth;
+    options.height_px = kLargeHeight;
+    const BookPair pair = make_book_pair(options);
+    fs::create_directory(large_left_);
+    fs::create_directory(large_right_);
+    write_photograph(large_left_ + "/000000.png", pair.left);
+    write_photograph(large_right_ + "/000000.png", pair.right);
+    add_links(large_left_, 1);
+    add_links(large_right_, 1);
+  }
+
+  /// Further names of the files that there are, up to frame kMany.
+  static void add_links(const std::string& side, int files) {
+    for (int frame = files; frame < kMany; ++frame) {
+      fs::create_hard_link(side + "/" + frame_file(frame % files), side + "/" + frame_file(frame));
+    }
+  }
+
+  [[nodiscard]] nlohmann::json report_of(const std::vector<std::string>& arguments,
+                                         const std::vector<std::string>& environment = {}) const {
+    const std::string report = folder_ / "report.json";
+    const ProcessResult result =
+        run_vantage(joined(arguments, {"--report", report, "--threads", "2"}), environment);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    fs::remove_all(out_);
+    return read_report(report);
+  }
+
+  [[nodiscard]] std::vector<std::string> large_arguments(
+      const std::vector<std::string>& more) const {
+    return joined(
+        {"run", "--left", large_left_, "--right", large_right_, "-o", out_, "--disparities=0:19"},
+        more);
+  }
+
+  /// Allocations of a run: those of at least `bytes` (a power of two).
+  [[nodiscard]] double allocations(const std::vector<std::string>& arguments,
+                                   std::size_t bytes) const {
+    const std::string counts = folder_ / "counts";
+    (void)report_of(arguments, preloaded(PRELOAD_ALLOCATION_COUNT, {"ALLOCATION_COUNT=" + counts}));
+    std::istringstream lines(read_file(counts));
+    std::size_t size = 0;
+    double count = 0;
+    double sum = 0;
+    while (lines >> size >> count) {
+      sum += size >= bytes ? count : 0;
+    }
+    EXPECT_GT(sum, 0);
+    return sum;
+  }
+
+  /// What a frame adds when all that is reused is there.
+  [[nodiscard]] double allocations_per_frame(const std::vector<std::string>& arguments,
+                                             std::size_t bytes) const {
+    constexpr int kFew = 50;
+    constexpr int kMore = 100;
+    const auto up_to = [&](int frames) {
+      return allocations(joined(arguments, {"--frames", "0-" + std::to_string(frames - 1)}), bytes);
+    };
+    return (up_to(kMore) - up_to(kFew)) / (kMore - kFew);
+  }
+
+  std::string out_ = folder_ / "out";
+  std::string large_left_ = folder_ / "large-left";
+  std::string large_right_ = folder_ / "large-right";
+};
+
+TEST_F(RunMemory, StaysFlat) {
+  for (const auto& outputs : {kImageOutputs, joined(kVideoOutputs, {"--temporal-prior", "1"})}) {
+    const std::vector<std::string> common = arguments(out_, joined(outputs, {"--in-flight", "4"}));
+    const double few = report_of(joined(common, {"--frames", "0-49"}))["peak_memory_bytes"];
+    const double many = report_of(common)["peak_memory_bytes"];
+    EXPECT_LT(many, 1.05 * few) << many << " bytes for " << kMany << " frames";
+  }
+}
+
+TEST_F(RunMemory, IsNotMoreThanAllowed) {
+  const std::vector<std::vector<std::string>> jobs = {
+      {"--frames", "0-29"},
+      {"--frames", "0-9", "--method", "membrane", "--iterations", "10", "--save",
+       "disparity,right-disparity,confidence,preview,views,stereo", "--view", "0.5"},
+      {"--frames", "0-59", "--save", "preview,views", "--view", "0.5", "--video", "preview,views"},
+      {"--frames", "0-29", "--method", "diffusion", "--temporal-prior", "1", "--measure-flicker"}};
+  for (const std::vector<std::string>& job : jobs) {
+    const ProcessResult refused =
+        run_vantage(large_arguments(joined(job, {"--memory", "10M", "--quiet"})));
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_TRUE(is_one_line(refused, "run"));
+    EXPECT_FALSE(fs::exists(out_));
+    const std::string says = "memory is 10 MiB, expected at least ";
+    const std::size_t least = refused.err.find(says);
+    ASSERT_NE(least, std::string::npos) << refused.err;
+    const int least_mib = std::stoi(refused.err.substr(least + says.size()));
+    for (const int mib : {least_mib, least_mib * 5 / 4, least_mib * 2}) {
+      const nlohmann::json report =
+          report_of(large_arguments(joined(job, {"--memory", std::to_string(mib) + "M"})));
+      EXPECT_LE(report["peak_memory_bytes"], mib * 1048576.0) << job[3];
+      EXPECT_LE(report["results"]["planned_memory_bytes"], mib * 1048576.0) << job[3];
+    }
+  }
+}
+
+/// Messages, names, tasks, file formats: what a frame allocates is small and does not grow.
+TEST_F(RunMemory, FramesAllocateLittle) {
+  EXPECT_LT(allocations_per_frame(arguments(out_, {}), 1), 450);
+  EXPECT_LT(allocations_per_frame(arguments(out_, kImageOutputs), 1), 800);
+  // In which every fiftieth frame begins videos anew.
+  EXPECT_LT(allocations_per_frame(arguments(out_, {"--save", "preview,views", "--view", "0.5",
+                                                   "--video", "preview,views"}),
+                                  1),
+            800);
+}
+
+/// Pictures on their way from and to files are all that takes blocks of this size anew.
+TEST_F(RunMemory, FramesAllocateFewLargeBlocks) {
+  constexpr std::size_t kLarge = std::size_t{64} << 10;
+  EXPECT_LT(allocations_per_frame(large_arguments({}), kLarge), 12);
+  EXPECT_LT(allocations_per_frame(
+                large_arguments({"--save", "disparity,preview,views", "--view", "0.5"}), kLarge),
+            30);
+}
+
+}  // namespace
+}  // namespace vantage
