@@ -203,8 +203,7 @@ RunIdentity read_run(const std::string& folder, Settings& settings, RunJob& job)
   try {
     settings.set_values(SettingValue::parse(identity.settings));
     job.output = folder;
-    job.input.left = job.input.right = "-";  // not opened
-    complete(job);
+    complete_sequence(job);
   } catch (const UsageError& error) {
     throw Error(fmt::format("{}: cannot be read as the settings of a run: {}",
                             (journal / "run.json").string(), error.what()));

@@ -356,7 +356,7 @@ void add_run_settings(Settings& settings, RunJob& job) {
   add_common_settings(settings, job.common);
 }
 
-void complete(RunJob& job) {
+void complete_sequence(RunJob& job) {
   SequenceOptions& sequence = job.sequence;
   sequence.views.clear();
   for (const double view_x : job.fixed_views_x) {
@@ -371,8 +371,12 @@ void complete(RunJob& job) {
       sequence.save.push_back(SequenceOutput::kViews);
     }
   }
-  job.input.validate();
   sequence.validate();
+}
+
+void complete(RunJob& job) {
+  complete_sequence(job);
+  job.input.validate();
   job.common.execution.validate();
   if (job.in_flight && (*job.in_flight < 1 || *job.in_flight > kMaxInFlight)) {
     throw UsageError(fmt::format("in-flight is {}, expected a number from 1 to {}", *job.in_flight,

@@ -41,7 +41,10 @@ struct RunJob {
 /// Binds all of it: the options of 'vantage run'.
 void add_run_settings(Settings& settings, RunJob& job);
 
-/// Fills in what follows from other fields. Throws UsageError where fields are wrong or do not go
+/// Fills in what of `job.sequence` follows from other fields. Throws UsageError where it is wrong.
+void complete_sequence(RunJob& job);
+
+/// The same of all fields. Throws UsageError where fields are wrong or do not go
 /// together; files are not looked at but to keep results out of the folders they are made from.
 void complete(RunJob& job);
 

@@ -51,7 +51,9 @@ DeliveredFrames::DeliveredFrames(const SequenceLayout& layout) {
     } else if (const auto* segment = std::get_if<SegmentRecord>(&record)) {
       segments_.push_back(segment->frames);
     } else {
-      joined_ = std::get<JoinRecord>(record).frames;
+      // Parts are read in no particular order; what was joined last is what was joined most of.
+      const FrameRange frames = std::get<JoinRecord>(record).frames;
+      joined_ = frames.count() > joined_.count() ? frames : joined_;
     }
   }
   if (!has_videos(layout, [&](const OutputStream& stream) { return layout.video(stream); })) {

@@ -68,6 +68,7 @@ void join_videos_of(const SequenceOptions& options, const SequenceLayout& layout
       continue;
     }
     std::vector<std::filesystem::path> paths;
+    paths.reserve(segments.size());
     for (const FrameRange segment : segments) {
       paths.push_back(layout.segment(stream, segment));
     }

@@ -322,6 +322,7 @@ TEST_F(RunCommand, EveryKindOfInputGivesTheSame) {
   EXPECT_EQ(made_from({"--pairs", folder_ / "pairs.csv"}, "list"), expected);
   EXPECT_EQ(made_from({"--stereo", folder_ / "packed", "--packing", "abr"}, "packed-out"),
             expected);
+  EXPECT_EQ(run_vantage({"merge", folder_ / "packed-out"}).exit_code, 0);
   auto walked = made_from({"--sequence", folder_ / "walk", "--step", "1"}, "walk-out");
   ASSERT_EQ(walked.size(), 2U * (2 * kFrames - 1));
   EXPECT_EQ(walked["disparity/000004.pfm"], expected.at("disparity/000002.pfm"));

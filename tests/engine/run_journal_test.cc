@@ -252,6 +252,9 @@ TEST_F(RunJournalTest, FramesOfVideosAreDoneWithTheirSegment) {
   write(layout.video(layout.streams()[1]), "joined");
   EXPECT_EQ(delivered().joined(), (FrameRange{0, 4}));
   EXPECT_TRUE(delivered().is_done(3));
+  RunJournal later = open(JournalOpening::kNew, "frames-0-1");  // read after "all"
+  append(later, JoinRecord{{0, 2}});
+  EXPECT_EQ(delivered().joined(), (FrameRange{0, 4}));
 }
 
 }  // namespace
