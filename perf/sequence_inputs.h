@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -75,13 +77,18 @@ inline SequenceInputs generate_sequence(const std::filesystem::path& folder) {
   return sequence_inputs("generated, 1226x370", folders[0], folders[1], video);
 }
 
-/// A sequence several times over, so that a short one shows what a long one would do.
+/// A sequence several times over, so that a short one shows what a long one would do. `on_fetch` is
+/// told each pair that is asked for.
 class RepeatedPairs final : public PairSource {
  public:
-  RepeatedPairs(const PairSourceOptions& options, int pair_count)
-      : source_(open_pair_source(options)), pair_count_(pair_count) {}
+  RepeatedPairs(const PairSourceOptions& options, int pair_count,
+                std::function<void(int index)> on_fetch)
+      : source_(open_pair_source(options)),
+        pair_count_(pair_count),
+        on_fetch_(std::move(on_fetch)) {}
 
   bool fetch(FramePair& pair) override {
+    on_fetch_(next_index_);
     if (next_index_ == pair_count_) {
       return false;
     }
@@ -113,6 +120,7 @@ class RepeatedPairs final : public PairSource {
  private:
   std::unique_ptr<PairSource> source_;
   int pair_count_;
+  std::function<void(int index)> on_fetch_;
   int next_index_ = 0;
 };
 

@@ -30,9 +30,12 @@ namespace fs = std::filesystem;
 
 constexpr DisparityRange kRange = {0, 79};
 constexpr double kViewX = 0.5;
-constexpr int kChunkFrames = 24;
-/// Delivered before the clock of a run starts: by then all memory has been allocated.
-constexpr int kWarmUpFrames = 8;
+/// Frames fetched before the clock of a run starts: by then memory has been allocated, and as many
+/// frames wait for the disk as ever do.
+constexpr int kWarmUpFrames = 24;
+/// Videos are delivered by chunks.
+constexpr int kChunkFrames = 50;
+constexpr int kVideoFrames = 2 * kChunkFrames + kWarmUpFrames;
 
 /// Of one frame, in seconds: by the wall clock, and of all the process's threads together. The
 /// second hardly depends on what else the machine does.
@@ -75,16 +78,18 @@ struct Method {
   std::string name;
   MatchOptions match;
   int frames;  ///< of a run, warm-up included
+  /// Also time views as video: where frames take long, encoding them does not matter.
+  bool with_video = false;
 };
 
 std::vector<Method> all_methods() {
   std::vector<Method> methods(4);
-  methods[0] = {.name = "ssd", .match = {}, .frames = 104};
-  methods[1] = {.name = "preset fast", .match = {}, .frames = 104};
+  methods[0] = {.name = "ssd", .match = {}, .frames = 144, .with_video = true};
+  methods[1] = {.name = "preset fast", .match = {}, .frames = 72};
   methods[1].match.preset = MatchPreset::kFast;
-  methods[2] = {.name = "preset balanced", .match = {}, .frames = 56};
+  methods[2] = {.name = "preset balanced", .match = {}, .frames = 60};
   methods[2].match.preset = MatchPreset::kBalanced;
-  methods[3] = {.name = "bayes", .match = {}, .frames = 24};
+  methods[3] = {.name = "bayes", .match = {}, .frames = 36};
   methods[3].match.method = MatchMethod::kBayes;
   for (Method& method : methods) {
     method.match.disparities = kRange;
@@ -141,11 +146,20 @@ class Computation {
   ObjectPool<Results> results_;
 };
 
-/// From files to files. The clock starts when the first frames have been delivered.
+/// From files to files: between fetching the first frame behind the warm-up and the last one, that
+/// is, the rate at which frames go in and so come out.
 FrameTime time_run(const PairSourceOptions& input, const SequenceOptions& options, int frames,
                    int threads, int in_flight, const fs::path& folder) {
   fs::remove_all(folder);
-  RepeatedPairs pairs(input, frames);
+  std::optional<Stopwatch> watch;
+  FrameTime time;
+  RepeatedPairs pairs(input, frames, [&](int index) {
+    if (index == kWarmUpFrames) {
+      watch.emplace();
+    } else if (index == frames - 1) {
+      time = watch->per_frame(index - kWarmUpFrames);
+    }
+  });
   Execution execution({.threads = threads});
   FramePair first;
   pairs.fetch(first);
@@ -156,23 +170,16 @@ FrameTime time_run(const PairSourceOptions& input, const SequenceOptions& option
   RunIdentity identity;
   identity.frame_count = frames;
   RunJournal journal(layout.journal_folder(), identity, JournalOpening::kNew, "all");
-  std::optional<Stopwatch> watch;
-  int frames_before = 0;
-  SequenceRun run{.pairs = pairs,
-                  .selection = {.frame_count = frames,
-                                .chunk_frames = kChunkFrames,
-                                .frames = std::nullopt,
-                                .shard = std::nullopt},
-                  .frame_size = size,
-                  .in_flight = in_flight,
-                  .on_progress = [&](const SequenceProgress& progress) {
-                    if (!watch && progress.frames_done >= kWarmUpFrames) {
-                      watch.emplace();
-                      frames_before = progress.frames_done;
-                    }
-                  }};
+  const SequenceRun run{.pairs = pairs,
+                        .selection = {.frame_count = frames,
+                                      .chunk_frames = kChunkFrames,
+                                      .frames = std::nullopt,
+                                      .shard = std::nullopt},
+                        .frame_size = size,
+                        .in_flight = in_flight,
+                        .on_progress = {}};
   SequenceRunner(options, execution).run(run, layout, journal);
-  return watch->per_frame(frames - frames_before);
+  return time;
 }
 
 /// The loop over PNG files or over a packed video, which OpenCV's own reader would decode with the
@@ -252,7 +259,8 @@ std::vector<double> of(const std::vector<FrameTime>& rounds, double FrameTime::*
   return values;
 }
 
-/// Round by round: cores × wall time of `contender` over processor time of `reference`, inverted.
+/// The rate of `contender` over what all cores together would reach if each took the time of
+/// `reference` per frame; round by round.
 double median_efficiency(const Contender& reference, const Contender& contender, int cores) {
   std::vector<double> values;
   for (std::size_t round = 0; round < contender.rounds.size(); ++round) {
@@ -304,15 +312,20 @@ nlohmann::json time_input(const SequenceInputs& inputs, bool from_video, const S
   const PairSourceOptions& input = from_video ? inputs.video : inputs.images;
   const int in_flight = settings.in_flight.value_or(settings.threads + 2);
   const std::string form = from_video ? "packed MP4" : "PNG pairs";
-  const std::vector<FramePair> pairs = decode_pairs(input, 16);
+  const std::vector<FramePair> pairs = decode_pairs(input, 8);
   std::vector<std::unique_ptr<Computation>> computations;
   std::vector<Contender> contenders;
-  std::vector<std::pair<std::string, std::size_t>> groups;
+  struct Group {
+    std::string name;
+    std::size_t begin;
+    std::size_t end;
+  };
+  std::vector<Group> groups;
   for (const Method& method : all_methods()) {
     if (!settings.only.empty() && settings.only != method.name) {
       continue;
     }
-    groups.emplace_back(method.name, contenders.size());
+    const std::size_t begin = contenders.size();
     for (const int threads : {1, settings.threads}) {
       computations.push_back(std::make_unique<Computation>(method, threads));
       contenders.push_back(
@@ -324,21 +337,25 @@ nlohmann::json time_input(const SequenceInputs& inputs, bool from_video, const S
                             return time_run(input, run_options(method, false), method.frames,
                                             settings.threads, in_flight, folder / "run");
                           }});
-    contenders.push_back({form + " to PFM and MP4", [&, method] {
-                            return time_run(input, run_options(method, true), method.frames,
-                                            settings.threads, in_flight, folder / "run");
-                          }});
+    if (method.with_video) {
+      contenders.push_back({form + " to PFM and MP4", [&, method] {
+                              return time_run(input, run_options(method, true), kVideoFrames,
+                                              settings.threads, in_flight, folder / "run");
+                            }});
+    }
+    groups.push_back({method.name, begin, contenders.size()});
   }
   contenders.push_back({"OpenCV StereoSGBM loop", [&, from_video] {
-                          return time_opencv(inputs, from_video, 25, settings.threads,
+                          return time_opencv(inputs, from_video, 13, settings.threads,
                                              folder / "opencv");
                         }});
   run_interleaved(contenders, settings.rounds);
   nlohmann::json tables = nlohmann::json::array();
-  for (const auto& [name, first] : groups) {
-    const auto begin = contenders.begin() + static_cast<std::ptrdiff_t>(first);
-    tables.push_back(print_table(fmt::format("{}, {}: {}", inputs.name, form, name),
-                                 {begin, begin + 4}, contenders.back(), settings.threads));
+  for (const Group& group : groups) {
+    const std::vector<Contender> rows(contenders.begin() + static_cast<std::ptrdiff_t>(group.begin),
+                                      contenders.begin() + static_cast<std::ptrdiff_t>(group.end));
+    tables.push_back(print_table(fmt::format("{}, {}: {}", inputs.name, form, group.name), rows,
+                                 contenders.back(), settings.threads));
   }
   return tables;
 }
@@ -346,7 +363,7 @@ nlohmann::json time_input(const SequenceInputs& inputs, bool from_video, const S
 int usage() {
   fmt::print(stderr,
              "sequence_speed [FOLDER with left/, right/ and a packed .mp4] [--json FILE] [--rounds "
-             "N] [--output FOLDER] [--threads N] [--in-flight N] [--only METHOD] \n");
+             "N] [--output FOLDER] [--threads N] [--in-flight N] [--only METHOD]\n");
   return 2;
 }
 

@@ -6,6 +6,7 @@
 
 #include "engine/error.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/synthesis/view_synthesizer.h"
 
 namespace vantage {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 constexpr int kMostInFlight = 64;
 constexpr int kDefaultMostInFlight = 34;  // more only help to even out unequal frames
 /// The program, its libraries and what they set up at first use.
-constexpr std::size_t kProcessBytes = std::size_t{64} << 20;
+constexpr std::size_t kProcessBytes = std::size_t{68} << 20;
 /// Of a thread: stack, arena of the allocator.
 constexpr std::size_t kThreadBytes = std::size_t{3} << 20;
 
@@ -55,6 +56,15 @@ std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) 
   // Levels with lower and upper bounds or gradients, of both images, and mirrored copies.
   constexpr std::size_t kPlanes = 4 * 2;
   return pixels * channels * kPlanes * sizeof(float);
+}
+
+/// What rendering the views of one frame, one after the other, takes.
+std::size_t view_bytes(const SequenceOptions& options, const PairShape& shape) {
+  const bool has_views = !options.views.empty() || options.saves(SequenceOutput::kStereo);
+  return has_views && options.intensity_fit == FitScope::kFrame
+             ? ViewSynthesizer::working_bytes(shape.source.width_px, shape.source.height_px,
+                                              shape.channels)
+             : 0;
 }
 
 /// What is kept of the frame before, and to compare with it.
@@ -102,7 +112,7 @@ MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& requ
   for (plan.in_flight = std::min(wanted, kMostInFlight); plan.in_flight >= 1; --plan.in_flight) {
     const auto matched = static_cast<std::size_t>(std::min(plan.in_flight, threads));
     const std::size_t frames = static_cast<std::size_t>(plan.in_flight) * plan.frame_bytes +
-                               matched * match_bytes(options, shape);
+                               matched * (match_bytes(options, shape) + view_bytes(options, shape));
     plan.chain_bytes = scheduler::kDefaultMemoryBytes;
     if (request.memory_bytes) {
       const std::size_t limit = *request.memory_bytes;

@@ -139,8 +139,8 @@ class Synthesis {
  private:
   // So that they need not be warped again.
   void keep_warped_rows() {
-    const std::size_t bytes = pair_floats() * sizeof(float) * static_cast<std::size_t>(height_);
-    if (bytes <= kMostKeptBytes) {
+    const std::size_t bytes = ViewSynthesizer::working_bytes(width_, height_, channels_);
+    if (bytes > 0) {
       kept_memory_ = execution_.scratch().lease(bytes);
       kept_ = reinterpret_cast<float*>(kept_memory_.data());
     }
@@ -277,6 +277,13 @@ void with_synthesis(const PairOfMaps& pair, const SynthesisOptions& options, dou
 ViewSynthesizer::ViewSynthesizer(const SynthesisOptions& options, Execution& execution)
     : options_(options), execution_(execution) {
   options_.validate();
+}
+
+std::size_t ViewSynthesizer::working_bytes(int width, int height, int channels) {
+  // Of any pixel type: rows are floats.
+  const std::size_t bytes = RowPairWarper<float>::pair_floats(width, channels) * sizeof(float) *
+                            static_cast<std::size_t>(height);
+  return bytes <= kMostKeptBytes ? bytes : 0;
 }
 
 void ViewSynthesizer::synthesize(const Photograph& left, const Photograph& right,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
@@ -52,6 +53,10 @@ class ViewSynthesizer {
                                                       ImageView<const float> left_disparity,
                                                       ImageView<const float> right_disparity,
                                                       double view_x) const;
+
+  /// Memory that synthesize() works in for an image of this shape, unless it is given a fit; beside
+  /// rows per thread.
+  [[nodiscard]] static std::size_t working_bytes(int width, int height, int channels);
 
   [[nodiscard]] const SynthesisOptions& options() const { return options_; }
 
