@@ -85,6 +85,32 @@ TEST(FetchBicubic, EqualOnEveryInstructionSetAndToReference) {
   }
 }
 
+TEST(FetchBicubic, EqualsReferenceForAnyDisparitiesAndValues) {
+  std::mt19937 random(7);
+  for (const int width : kAwkwardWidths) {
+    for (const int lanes : {1, 4}) {
+      for (const double s : {-1.3, 0.4}) {
+        // Disparities that no warp gave: columns off the surface and beyond the image's borders.
+        Scanline line(random_disparities(random, width, -5, 20),
+                      random_values(random, width * lanes), lanes, s);
+        for (float& d : line.warped_disparity_px) {
+          d = random() % 8 == 0 ? kUnknownDisparity : static_cast<float>(random() % 160) / 8 - 5;
+        }
+        BicubicFetchRow row = line.bicubic(lanes, s, 1.0F);
+        row.largest_value =
+            100;  // many pixels are outside the range of their type, as floats may be
+        std::vector<float> expected(static_cast<std::size_t>(width * lanes));
+        fetch_bicubic_row_ref(row, expected.data());
+        for_each_target([&] {
+          std::vector<float> colours(expected.size(), -1.0F);
+          fetch_bicubic_row(row, colours.data());
+          ASSERT_EQ(colours, expected) << width << " wide, " << lanes << " lanes, s " << s;
+        });
+      }
+    }
+  }
+}
+
 TEST(FetchBicubic, IsKeysConvolutionWithReplicatedBorder) {
   std::mt19937 random(5);
   for (const int width : {1, 2, 3, 17, 80}) {
