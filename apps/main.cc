@@ -26,7 +26,7 @@ std::string help() {
   }
   return text +
          "\n'vantage COMMAND --help' lists its options; --version tells the version.\n"
-         "Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted.\n";
+         "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 frames skipped, 130 interrupted.\n";
 }
 
 /// The command that the arguments begin with; its words are taken off. Null if there is none.

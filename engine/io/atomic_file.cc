@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "engine/error.h"
+#include "engine/io/file_descriptor.h"
 
 namespace vantage {
 namespace {
@@ -19,23 +20,6 @@ namespace fs = std::filesystem;
   throw Error(fmt::format("cannot write {}: {}", path.string(),
                           std::generic_category().message(error_number)));
 }
-
-class FileDescriptor {
- public:
-  explicit FileDescriptor(int descriptor) : descriptor_(descriptor) {}
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
-  ~FileDescriptor() {
-    if (descriptor_ >= 0) {
-      ::close(descriptor_);
-    }
-  }
-  [[nodiscard]] int get() const { return descriptor_; }
-  [[nodiscard]] bool valid() const { return descriptor_ >= 0; }
-
- private:
-  int descriptor_;
-};
 
 fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");

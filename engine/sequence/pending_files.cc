@@ -9,6 +9,8 @@
 #include <string>
 #include <system_error>
 
+#include "engine/io/file_descriptor.h"
+
 namespace vantage {
 namespace {
 
@@ -18,23 +20,6 @@ namespace fs = std::filesystem;
   throw OutputError(fmt::format("cannot write {}: {}", path.string(),
                                 std::generic_category().message(error_number)));
 }
-
-class FileDescriptor {
- public:
-  FileDescriptor(const fs::path& path, int flags)
-      : descriptor_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
-  ~FileDescriptor() {
-    if (descriptor_ >= 0) {
-      ::close(descriptor_);
-    }
-  }
-  [[nodiscard]] int get() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
 
 }  // namespace
 
@@ -49,7 +34,7 @@ void PendingFiles::add(const fs::path& path, std::span<const std::uint8_t> bytes
   const fs::path hidden =
       path.parent_path() / fmt::format(".{}.{}.pending", path.filename().string(), ::getpid());
   files_.push_back({.hidden = hidden, .path = path});
-  const FileDescriptor file(hidden, O_WRONLY | O_CREAT | O_TRUNC);
+  const FileDescriptor file(::open(hidden.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
   if (file.get() < 0) {
     fail(path, errno);
   }
@@ -66,7 +51,7 @@ void PendingFiles::add(const fs::path& path, std::span<const std::uint8_t> bytes
 
 void PendingFiles::flush(std::size_t index) noexcept {
   File& file = files_[index];
-  const FileDescriptor written(file.hidden, O_RDONLY);
+  const FileDescriptor written(::open(file.hidden.c_str(), O_RDONLY | O_CLOEXEC, 0666));
   const bool is_safe = written.get() >= 0 && ::fsync(written.get()) == 0;
   file.flush_error = is_safe ? 0 : errno;
   if (is_safe) {
@@ -103,7 +88,8 @@ void PendingFiles::discard() noexcept {
 }
 
 void flush_folder(const fs::path& folder) {
-  const FileDescriptor open_folder(folder, O_RDONLY | O_DIRECTORY);
+  const FileDescriptor open_folder(
+      ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC, 0666));
   if (open_folder.get() >= 0) {
     (void)::fsync(open_folder.get());
   }
