@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,7 @@
 namespace vantage {
 namespace {
 
+using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
@@ -31,27 +33,37 @@ void require_between(const char* field, double value, double low, double high) {
   }
 }
 
-void require_valid(SceneView view) {
-  require_between("view x", view.x, -kMaxBaselines, kMaxBaselines);
-  require_between("view y", view.y, -kMaxBaselines, kMaxBaselines);
-}
+// Rays and image positions of a camera.
+class RayCaster {
+ public:
+  // Adding 0 leaves no −0: noise is seeded with the bits of the position.
+  explicit RayCaster(const PosedCamera& camera)
+      : camera_(camera), position_(camera.centre() + Vector3d::Zero()) {}
 
-// A pinhole camera in the plane Z = 0 that looks along Z.
-struct Camera {
-  Vector3d position;
-  double focal_length_px;
-  Vector2d principal_point;
-
-  // t is the depth of the point along Z.
+  [[nodiscard]] const Vector3d& position() const { return position_; }
+  // t is the depth of the point in the camera.
   [[nodiscard]] Ray ray_through(double x_px, double y_px) const {
-    return {position,
-            {(x_px - principal_point.x()) / focal_length_px,
-             (y_px - principal_point.y()) / focal_length_px, 1}};
+    const Matrix3d& k = camera_.matrix;
+    const double v = (y_px - k(1, 2)) / k(1, 1);
+    const double u = (x_px - k(0, 2) - k(0, 1) * v) / k(0, 0);
+    return {position_, camera_.rotation.transpose() * Vector3d(u, v, 1)};
   }
-  [[nodiscard]] Vector2d project(const Vector3d& point) const {
-    const Vector3d relative = point - position;
-    return principal_point + focal_length_px / relative.z() * relative.head<2>();
+  /// Right, down and forward of the camera.
+  [[nodiscard]] Vector3d relative(const Vector3d& point) const {
+    return camera_.rotation * (point - position_);
   }
+  /// The image position of a point given by relative().
+  [[nodiscard]] Vector2d project(const Vector3d& relative) const {
+    return (camera_.matrix * (relative / relative.z())).head<2>();
+  }
+  [[nodiscard]] bool has_in_frame(const Vector2d& position) const {
+    return position.x() >= -0.5 && position.x() < camera_.width_px - 0.5 && position.y() >= -0.5 &&
+           position.y() < camera_.height_px - 0.5;
+  }
+
+ private:
+  PosedCamera camera_;
+  Vector3d position_;
 };
 
 struct Hit {
@@ -68,14 +80,15 @@ struct Box {
   }
 };
 
-Box box_of(const Ball& ball, const Camera& camera) {
-  if (!(ball.centre.z() > ball.radius)) {
+Box box_of(const Ball& ball, const RayCaster& camera) {
+  const Vector3d centre = camera.relative(ball.centre);
+  if (!(centre.z() > ball.radius)) {
     return {Vector2d::Constant(-kNoHit), Vector2d::Constant(kNoHit)};
   }
   Box box{Vector2d::Constant(kNoHit), Vector2d::Constant(-kNoHit)};
   for (int corner = 0; corner < 8; ++corner) {
     const Vector3d sign((corner & 1) * 2 - 1, (corner & 2) - 1, ((corner >> 1) & 2) - 1);
-    const Vector2d position = camera.project(ball.centre + ball.radius * sign);
+    const Vector2d position = camera.project(centre + ball.radius * sign);
     box.low = box.low.cwiseMin(position);
     box.high = box.high.cwiseMax(position);
   }
@@ -85,14 +98,14 @@ Box box_of(const Ball& ball, const Camera& camera) {
 // One camera before the scene at one time.
 class Shot {
  public:
-  Shot(const std::vector<SceneObject>& objects, Camera camera)
-      : objects_(objects), camera_(std::move(camera)) {
+  Shot(const std::vector<SceneObject>& objects, const PosedCamera& camera)
+      : objects_(objects), camera_(camera) {
     for (const SceneObject& object : objects_) {
       boxes_.push_back(box_of(object.surface->bounds(), camera_));
     }
   }
 
-  [[nodiscard]] const Camera& camera() const { return camera_; }
+  [[nodiscard]] const RayCaster& camera() const { return camera_; }
 
   /// `ray` begins at the camera and passes through the image position.
   [[nodiscard]] Hit first_hit(const Ray& ray, double x_px, double y_px) const {
@@ -109,15 +122,20 @@ class Shot {
     return first;
   }
 
+  /// In its frame and not hidden.
   [[nodiscard]] bool sees(const Vector3d& point) const {
-    const Vector2d position = camera_.project(point);
-    const Ray ray{camera_.position, point - camera_.position};
+    const Vector3d relative = camera_.relative(point);
+    const Vector2d position = camera_.project(relative);
+    if (!(relative.z() > 0) || !camera_.has_in_frame(position)) {
+      return false;
+    }
+    const Ray ray{camera_.position(), point - camera_.position()};
     return first_hit(ray, position.x(), position.y()).t >= kVisibleShare;
   }
 
  private:
   const std::vector<SceneObject>& objects_;
-  Camera camera_;
+  RayCaster camera_;
   std::vector<Box> boxes_;
 };
 
@@ -136,12 +154,6 @@ struct LayeredScene::Content {
     }
     return compose_scene(options, centre, frame);
   }
-  [[nodiscard]] Camera camera_at(SceneView view) const {
-    require_valid(view);
-    return {Vector3d(view.x, view.y, 0), centre.focal_length_px,
-            Vector2d((options.width_px - 1) / 2.0, (options.height_px - 1) / 2.0)};
-  }
-
   LayeredSceneOptions options;
   CentreView centre;
   SceneTexture texture;
@@ -179,21 +191,37 @@ LayeredScene::LayeredScene(LayeredScene&&) noexcept = default;
 
 double LayeredScene::focal_length_px() const { return content_->centre.focal_length_px; }
 
-SceneRendering LayeredScene::render(SceneView view, int frame) const {
+PosedCamera LayeredScene::camera(SceneView view) const {
+  require_between("view x", view.x, -kMaxBaselines, kMaxBaselines);
+  require_between("view y", view.y, -kMaxBaselines, kMaxBaselines);
+  PosedCamera camera{.translation = Vector3d(-view.x, -view.y, 0),
+                     .width_px = options_.width_px,
+                     .height_px = options_.height_px};
+  camera.matrix << focal_length_px(), 0, (options_.width_px - 1) / 2.0, 0, focal_length_px(),
+      (options_.height_px - 1) / 2.0, 0, 0, 1;
+  return camera;
+}
+
+SceneRendering LayeredScene::render(const PosedCamera& camera, int frame) const {
+  camera.validate("camera of the scene");
   const std::vector<SceneObject> objects = content_->objects_at(frame);
-  const Shot shot(objects, content_->camera_at(view));
+  const Shot shot(objects, camera);
+  const Vector3d position = shot.camera().position();
   const int samples = options_.samples_per_side;
-  const double towards_right = std::clamp(view.x, 0.0, 1.0);
+  const double towards_right = std::clamp(position.x(), 0.0, 1.0);
   const double gain = 1 + towards_right * (options_.right_gain - 1);
   const double offset = towards_right * options_.right_offset;
   const std::uint64_t noise_seed =
       mix_bits(mix_bits(mix_bits(options_.seed + static_cast<std::uint64_t>(frame)) ^
-                        std::bit_cast<std::uint64_t>(view.x)) ^
-               std::bit_cast<std::uint64_t>(view.y));
+                        std::bit_cast<std::uint64_t>(position.x())) ^
+               std::bit_cast<std::uint64_t>(position.y()));
 
   const auto colour_at = [&](double x_px, double y_px) {
     const Ray ray = shot.camera().ray_through(x_px, y_px);
     const Hit hit = shot.first_hit(ray, x_px, y_px);
+    if (hit.t == kNoHit) {
+      return Vector3d(Vector3d::Zero());
+    }
     const SceneObject& object = objects[static_cast<std::size_t>(hit.object)];
     const Vector3d colour =
         content_->texture.colour(object.palette, object.surface->detail(ray.at(hit.t)));
@@ -201,14 +229,16 @@ SceneRendering LayeredScene::render(SceneView view, int frame) const {
     return Vector3d(colour.cwiseMax(0.0).cwiseMin(255.0));
   };
 
-  Image<std::uint8_t> image(options_.width_px, options_.height_px, 3);
-  SceneRendering rendering{{}, DisparityMap(options_.width_px, options_.height_px)};
-  execution_->for_each_band(options_.height_px, [&](int first_row, int end_row) {
+  Image<std::uint8_t> image(camera.width_px, camera.height_px, 3);
+  SceneRendering rendering{{}, DisparityMap(camera.width_px, camera.height_px)};
+  execution_->for_each_band(camera.height_px, [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
       PortableRandom noise(noise_seed, static_cast<std::uint64_t>(y));
-      for (int x = 0; x < options_.width_px; ++x) {
+      for (int x = 0; x < camera.width_px; ++x) {
         const Hit centre_hit = shot.first_hit(shot.camera().ray_through(x, y), x, y);
-        rendering.disparity.at(x, y) = static_cast<float>(focal_length_px() / centre_hit.t);
+        rendering.disparity.at(x, y) = centre_hit.t == kNoHit
+                                           ? std::numeric_limits<float>::quiet_NaN()
+                                           : static_cast<float>(focal_length_px() / centre_hit.t);
 
         Vector3d sum = Vector3d::Zero();
         for (int j = 0; j < samples; ++j) {
@@ -231,31 +261,35 @@ SceneRendering LayeredScene::render(SceneView view, int frame) const {
   return rendering;
 }
 
-Mask LayeredScene::occlusion(SceneView from, SceneView in, int frame) const {
+SceneRendering LayeredScene::render(SceneView view, int frame) const {
+  return render(camera(view), frame);
+}
+
+Mask LayeredScene::occlusion(const PosedCamera& from, const PosedCamera& in, int frame) const {
   const std::vector<SceneObject> objects = content_->objects_at(frame);
-  const Shot shot(objects, content_->camera_at(from));
-  const Shot other(objects, content_->camera_at(in));
-  const auto is_in_frame = [&](const Vector2d& position) {
-    return position.x() >= -0.5 && position.x() < options_.width_px - 0.5 && position.y() >= -0.5 &&
-           position.y() < options_.height_px - 0.5;
-  };
-  Mask occluded(options_.width_px, options_.height_px);
-  execution_->for_each_band(options_.height_px, [&](int first_row, int end_row) {
+  const Shot shot(objects, from);
+  const Shot other(objects, in);
+  Mask occluded(from.width_px, from.height_px);
+  execution_->for_each_band(from.height_px, [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
-      for (int x = 0; x < options_.width_px; ++x) {
+      for (int x = 0; x < from.width_px; ++x) {
         const Ray ray = shot.camera().ray_through(x, y);
-        const Vector3d point = ray.at(shot.first_hit(ray, x, y).t);
-        const bool visible = is_in_frame(other.camera().project(point)) && other.sees(point);
-        occluded.at(x, y) = visible ? 0 : 255;
+        const Hit hit = shot.first_hit(ray, x, y);
+        const bool is_visible = hit.t != kNoHit && other.sees(ray.at(hit.t));
+        occluded.at(x, y) = is_visible ? 0 : 255;
       }
     }
   });
   return occluded;
 }
 
+Mask LayeredScene::occlusion(SceneView from, SceneView in, int frame) const {
+  return occlusion(camera(from), camera(in), frame);
+}
+
 ScenePoint LayeredScene::point_at(SceneView view, int frame, double x_px, double y_px) const {
   const std::vector<SceneObject> objects = content_->objects_at(frame);
-  const Shot shot(objects, content_->camera_at(view));
+  const Shot shot(objects, camera(view));
   const Ray ray = shot.camera().ray_through(x_px, y_px);
   const Hit hit = shot.first_hit(ray, x_px, y_px);
   const Vector3d point = ray.at(hit.t);

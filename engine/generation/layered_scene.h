@@ -7,6 +7,7 @@
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
+#include "engine/view_geometry/posed_camera.h"
 
 namespace vantage {
 
@@ -74,11 +75,19 @@ class LayeredScene {
   /// In pixels, the same in x and y; the principal point is the centre of the image.
   [[nodiscard]] double focal_length_px() const;
 
-  /// `frame` ≥ 0; view within ±16 baselines in x and y. Throws UsageError otherwise.
+  /// The camera of a view, in the world's coordinates. Throws UsageError unless x and y are within
+  /// ±16 baselines.
+  [[nodiscard]] PosedCamera camera(SceneView view) const;
+
+  /// What any camera in the world sees; black, and disparity NaN, where it looks past the scene.
+  /// Its disparities are those the pair has at equal depth. `frame` ≥ 0. Throws Error for an
+  /// invalid camera, UsageError for a frame or view out of range.
+  [[nodiscard]] SceneRendering render(const PosedCamera& camera, int frame) const;
   [[nodiscard]] SceneRendering render(SceneView view, int frame) const;
 
-  /// 255 at the pixels of view `from` whose surface point is hidden in view `in` or falls outside
+  /// 255 at the pixels of `from` whose surface point is hidden in `in` or falls outside
   /// its frame (nearest pixel outside the image). Decided by a ray from `in` to the point.
+  [[nodiscard]] Mask occlusion(const PosedCamera& from, const PosedCamera& in, int frame) const;
   [[nodiscard]] Mask occlusion(SceneView from, SceneView in, int frame) const;
 
   /// The point seen at position (x_px, y_px), which need not be a pixel centre nor in the frame.

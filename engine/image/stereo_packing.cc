@@ -130,6 +130,22 @@ void unpack_half(ImageView<const T> half, StereoPacking packing, Image<T>& image
   }
 }
 
+/// Takes the first or second image, in full size, out of `packed`.
+void unpack_image(const Photograph& packed, StereoPacking packing, bool second, Photograph& image) {
+  const int divided = packing.above_below ? packed.height() : packed.width();
+  if (divided < 2 || divided % 2 != 0) {
+    throw Error(fmt::format("packed image is {}x{}, expected an even {} that both images share",
+                            packed.width(), packed.height(),
+                            packing.above_below ? "height" : "width"));
+  }
+  std::visit(
+      [&]<typename T>(const Image<T>& pixels) {
+        unpack_half(half_of(pixels.view(), packing.above_below, second), packing,
+                    pixels_of<T>(image));
+      },
+      packed.pixels);
+}
+
 template <typename T>
 T mean_of(T a, T b) {
   if constexpr (std::is_same_v<T, float>) {
@@ -165,20 +181,6 @@ void pack_half(const Image<T>& image, StereoPacking packing, ImageView<T> half) 
   }
 }
 
-void require_equal_shapes(const Photograph& left, const Photograph& right) {
-  constexpr std::string_view kDepths[] = {"8-bit", "16-bit", "float"};
-  const auto shape = [&](const Photograph& photograph) {
-    return fmt::format("{}x{} with {} {} channel{}", photograph.width(), photograph.height(),
-                       photograph.channels(), kDepths[photograph.pixels.index()],
-                       photograph.channels() == 1 ? "" : "s");
-  };
-  if (left.pixels.index() != right.pixels.index() || left.width() != right.width() ||
-      left.height() != right.height() || left.channels() != right.channels()) {
-    throw Error(fmt::format("left image is {} but right image is {}, expected equal shapes",
-                            shape(left), shape(right)));
-  }
-}
-
 }  // namespace
 
 const std::vector<std::pair<std::string_view, StereoPacking>>& stereo_packing_names() {
@@ -198,23 +200,28 @@ const std::vector<std::pair<std::string_view, StereoPacking>>& stereo_packing_na
   return kNames;
 }
 
+void require_equal_shapes(const Photograph& left, const Photograph& right) {
+  constexpr std::string_view kDepths[] = {"8-bit", "16-bit", "float"};
+  const auto shape = [&](const Photograph& photograph) {
+    return fmt::format("{}x{} with {} {} channel{}", photograph.width(), photograph.height(),
+                       photograph.channels(), kDepths[photograph.pixels.index()],
+                       photograph.channels() == 1 ? "" : "s");
+  };
+  if (left.pixels.index() != right.pixels.index() || left.width() != right.width() ||
+      left.height() != right.height() || left.channels() != right.channels()) {
+    throw Error(fmt::format("left image is {} but right image is {}, expected equal shapes",
+                            shape(left), shape(right)));
+  }
+}
+
 void unpack_stereo(const Photograph& packed, StereoPacking packing, Photograph& left,
                    Photograph& right) {
-  const int divided = packing.above_below ? packed.height() : packed.width();
-  if (divided < 2 || divided % 2 != 0) {
-    throw Error(fmt::format("packed image is {}x{}, expected an even {} that both images share",
-                            packed.width(), packed.height(),
-                            packing.above_below ? "height" : "width"));
-  }
-  std::visit(
-      [&]<typename T>(const Image<T>& image) {
-        const bool above_below = packing.above_below;
-        unpack_half(half_of(image.view(), above_below, packing.right_first), packing,
-                    pixels_of<T>(left));
-        unpack_half(half_of(image.view(), above_below, !packing.right_first), packing,
-                    pixels_of<T>(right));
-      },
-      packed.pixels);
+  unpack_image(packed, packing, packing.right_first, left);
+  unpack_image(packed, packing, !packing.right_first, right);
+}
+
+void unpack_left(const Photograph& packed, StereoPacking packing, Photograph& left) {
+  unpack_image(packed, packing, packing.right_first, left);
 }
 
 void pack_stereo(const Photograph& left, const Photograph& right, StereoPacking packing,

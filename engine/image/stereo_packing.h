@@ -27,6 +27,13 @@ const std::vector<std::pair<std::string_view, StereoPacking>>& stereo_packing_na
 /// reused. Thread rule: concurrently for different results.
 void unpack_stereo(const Photograph& packed, StereoPacking packing, Photograph& left,
                    Photograph& right);
+/// unpack_stereo() of the left image alone.
+void unpack_left(const Photograph& packed, StereoPacking packing, Photograph& left);
+/// The same for the left image alone.
+void unpack_left(const Photograph& packed, StereoPacking packing, Photograph& left);
+
+/// Throws Error unless both have one size, depth and number of channels.
+void require_equal_shapes(const Photograph& left, const Photograph& right);
 
 /// Puts both images (equal size, depth and channels) into one. For half size each pixel is the mean
 /// of two (the last one of an odd size counts twice). Throws Error when shapes differ.

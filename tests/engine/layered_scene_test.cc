@@ -393,5 +393,52 @@ TEST(LayeredScene, RejectsWrongOptions) {
   EXPECT_THROW((void)scene.occlusion(kLeft, {0, 17}, 0), UsageError);
 }
 
+// From one place everything is seen along the same rays, whatever way the camera is turned.
+TEST(LayeredScene, ATurnedCameraSeesTheSamePoints) {
+  Execution execution({});
+  const LayeredScene scene({.width_px = 97, .height_px = 61}, execution);
+  const SceneView view{0.5, -0.25};
+  PosedCamera turned = scene.camera(view);
+  turned.matrix << 140, 1.5, 30, 0, 130, 22, 0, 0, 1;
+  turned.rotation = (Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY()) *
+                     Eigen::AngleAxisd(-0.15, Eigen::Vector3d::UnitX()))
+                        .toRotationMatrix();
+  turned.translation = -turned.rotation * Eigen::Vector3d(0.5, -0.25, 0);
+  turned.width_px = 83;
+  turned.height_px = 47;
+  const SceneRendering rendering = scene.render(turned, 3);
+  ASSERT_EQ(rendering.disparity.width(), 83);
+  ASSERT_EQ(rendering.disparity.height(), 47);
+  const Mask hidden = scene.occlusion(turned, scene.camera(view), 3);
+  for (int y = 0; y < 47; ++y) {
+    for (int x = 0; x < 83; ++x) {
+      const Eigen::Vector3d ray = turned.matrix.inverse() * Eigen::Vector3d(x, y, 1);
+      const double depth = scene.focal_length_px() / rendering.disparity.at(x, y);
+      const Eigen::Vector3d relative = depth * (turned.rotation.transpose() * ray);
+      const Eigen::Vector2d position(
+          (97 - 1) / 2.0 + scene.focal_length_px() * relative.x() / relative.z(),
+          (61 - 1) / 2.0 + scene.focal_length_px() * relative.y() / relative.z());
+      const ScenePoint point = scene.point_at(view, 3, position.x(), position.y());
+      EXPECT_NEAR(point.x - 0.5, relative.x(), 1e-4 * depth);
+      EXPECT_NEAR(point.y + 0.25, relative.y(), 1e-4 * depth);
+      EXPECT_NEAR(point.z, relative.z(), 1e-4 * depth);
+      const bool is_in_frame = position.x() >= -0.5 && position.x() < 96.5 &&
+                               position.y() >= -0.5 && position.y() < 60.5;
+      EXPECT_EQ(hidden.at(x, y), is_in_frame ? 0 : 255) << x << ' ' << y;
+    }
+  }
+}
+
+TEST(LayeredScene, IsBlackAndUnknownWhereACameraLooksPastIt) {
+  Execution execution({});
+  const LayeredScene scene({.width_px = 33, .height_px = 21}, execution);
+  PosedCamera backward = scene.camera({0, 0});
+  backward.rotation = Eigen::AngleAxisd(3.14, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  const SceneRendering rendering = scene.render(backward, 0);
+  const auto& image = std::get<Image<std::uint8_t>>(rendering.image.pixels);
+  EXPECT_TRUE(std::isnan(rendering.disparity.at(16, 3)));
+  EXPECT_EQ(image.at(16, 3, 0), 0);
+}
+
 }  // namespace
 }  // namespace vantage

@@ -54,6 +54,9 @@ TYPED_TEST(StereoPackingTest, FullSizesComeBack) {
         Photograph left_again;
         Photograph right_again;
         unpack_stereo(packed, packing, left_again, right_again);
+        Photograph left_alone;
+        unpack_left(packed, packing, left_alone);
+        EXPECT_TRUE(same(left_alone, left_again)) << name;
         if (!packing.half_size) {
           EXPECT_TRUE(same(left, left_again)) << name << " " << size.width << "x" << size.height;
           EXPECT_TRUE(same(right, right_again)) << name << " " << size.width << "x" << size.height;

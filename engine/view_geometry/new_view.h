@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "engine/rectification/rectified_pair.h"
+#include "engine/view_geometry/posed_camera.h"
+
+namespace vantage {
+
+/// Where a new view sees what one image of a rectified pair shows: a pixel (x, y) of disparity d
+/// lies at λ (u, v, 1) = homography · (x, y, 1) + d · parallax. The homography is that of the
+/// points at d = 0; for a rectified pair without offset, of the points at infinity.
+struct ViewWarp {
+  Eigen::Matrix3d homography = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d parallax = Eigen::Vector3d::Zero();
+
+  /// True where the new view is a camera of equal orientation and focal length on the baseline's
+  /// plane: λ = 1, u = x − s_x d, v = y − s_y d (3.5).
+  [[nodiscard]] bool is_translation() const;
+};
+
+/// A new view of a rectified pair.
+///
+/// What is seen along one ray of the new view is ordered by nearness
+/// q = (d − infinity_disparity_px) / λ. In both warps λ is depth in the new camera ÷ depth in the
+/// pair, so q is the disparity that the pair would see at the depth which the point has in the new
+/// camera: one scale for both images, and d itself for views that are mere translations.
+struct NewView {
+  int width_px = 0;
+  int height_px = 0;
+  ViewWarp from_left;
+  ViewWarp from_right;
+  double infinity_disparity_px = 0;  ///< disparity of points at infinity
+  /// Distances of the new camera from the left and the right one, in baselines (3.13).
+  double distance_from_left = 0;
+  double distance_from_right = 1;
+
+  /// α = dR / (dL + dR) (3.14).
+  [[nodiscard]] double alpha() const {
+    return distance_from_right / (distance_from_left + distance_from_right);
+  }
+};
+
+/// The view at (XS, YS) baselines with the orientation, focal length and size of the pair's images
+/// (EQUATIONS §6, warp): from_left moves pixels by −d (XS, YS), from_right by −d (XS − 1, YS).
+/// Throws UsageError unless both are within ±16.
+NewView baseline_view(double view_x, double view_y, int width_px, int height_px);
+
+/// The view of any camera: what three-view rectification, warp and derectification (3.8, 3.5) do
+/// one after the other, as one product. Unlike those it has no plane that must not cut the scene.
+/// Throws Error, naming quantity and limit, for an invalid camera, one more than 16 baselines away,
+/// or one that has everything behind it that an image of the pair's size can show.
+NewView camera_view(const RectifiedPair& pair, const PosedCamera& camera);
+
+}  // namespace vantage

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "engine/view_geometry/posed_camera.h"
+
+namespace vantage {
+
+/// Three cameras turned and cropped so that what each of them sees lies on one common image plane,
+/// parallel to the plane through their centres (three-view rectification, 3.8). A point at
+/// disparity d between the rectified images of cameras 1 and 2 has p3 = p1 − d · (XS, YS) and
+/// p3 = p2 − d · (XS − 1, YS) (3.5).
+///
+/// The frame: origin C1, X towards C2, lengths in baselines, C3 in the plane Z = 0, Y = Z × X; of
+/// both directions of Z the one for which cameras 1 and 2 look towards growing Z on average. With
+/// C3 on the baseline Z is the part of the mean viewing direction orthogonal to it.
+struct TrifocalRectification {
+  Eigen::Matrix3d rotation;  ///< frame ← reference frame of the cameras
+  double baseline = 0;       ///< |C2 − C1| in the cameras' unit
+  double view_x = 0;         ///< XS: C3 in the frame
+  double view_y = 0;         ///< YS
+  /// Pixels per unit of X/Z and of Y/Z: d = focal_length_px / Z with Z in baselines.
+  double focal_length_px = 0;
+  /// Of the X/Z = Y/Z = 0 ray in all three rectified images.
+  Eigen::Vector2d principal_point_px;
+  /// Size of all three rectified images: the bounding box of what the cameras see.
+  int width_px = 0;
+  int height_px = 0;
+  /// H1, H2, H3: rectified pixel ← pixel of the camera, homogeneous.
+  std::array<Eigen::Matrix3d, 3> homographies;
+};
+
+/// `first` and `second` have seen the scene, `view` is the new camera; all in one reference frame.
+/// The common scale keeps the resolution that cameras 1 and 2 have in the middle of their images.
+/// Throws Error of one line, naming quantity and limit: cameras 1 and 2 at one place; an image any
+/// part of which is seen less than 5° above the plane of the three centres, which then cuts the
+/// scene; rectified images of more than 16384 pixels either way.
+TrifocalRectification trifocal_rectification(const PosedCamera& first, const PosedCamera& second,
+                                             const PosedCamera& view);
+
+}  // namespace vantage
