@@ -3,20 +3,11 @@
 #include <type_traits>
 
 #include "kernels/bicubic_remap/bicubic_remap.h"
+#include "kernels/keys_weights.h"
 #include "kernels/pixel_row/pixel_row.h"
 
 namespace vantage::kernels {
 namespace {
-
-struct Weights {
-  float at[4];
-};
-
-// Of the taps at −1, 0, 1 and 2 for a position at f in [0, 1).
-Weights keys_weights(float f) {
-  return {{f * (f * (1.0F - 0.5F * f) - 0.5F), f * f * (1.5F * f - 2.5F) + 1.0F,
-           f * (f * (2.0F - 1.5F * f) + 0.5F), f * f * (0.5F * f - 0.5F)}};
-}
 
 template <typename T>
 T stored(float sum, float smallest_tap, float largest_tap) {
@@ -39,8 +30,8 @@ void remap(const RemapRow<T>& row, T* result) {
     }
     const float whole_x = std::floor(x);
     const float whole_y = std::floor(y);
-    const Weights weight_x = keys_weights(x - whole_x);
-    const Weights weight_y = keys_weights(y - whole_y);
+    const KeysWeights weight_x = keys_weights(x - whole_x);
+    const KeysWeights weight_y = keys_weights(y - whole_y);
     for (int c = 0; c < row.channels; ++c) {
       float sum_down[4];
       float smallest = 0.0F;

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "kernels/colour_fetch/colour_fetch.h"
+#include "kernels/keys_weights.h"
 
 namespace vantage::kernels {
 
@@ -34,19 +35,14 @@ void fetch_bicubic_row_ref(const BicubicFetchRow& row, float* colours) {
     tap[0] = on_surface[0] ? tap[0] : tap[1];
     tap[3] = on_surface[3] ? tap[3] : tap[2];
 
-    const float weight[4] = {
-        f * (f * (1.0F - 0.5F * f) - 0.5F),
-        f * f * (1.5F * f - 2.5F) + 1.0F,
-        f * (f * (2.0F - 1.5F * f) + 0.5F),
-        f * f * (0.5F * f - 0.5F),
-    };
+    const KeysWeights weight = keys_weights(f);
     for (int c = 0; c < row.lanes; ++c) {
       float value[4];
       for (int k = 0; k < 4; ++k) {
         value[k] = row.pixels[tap[k] * row.lanes + c];
       }
-      const float sum = (weight[0] * value[0] + weight[1] * value[1]) +
-                        (weight[2] * value[2] + weight[3] * value[3]);
+      const float sum = (weight.at[0] * value[0] + weight.at[1] * value[1]) +
+                        (weight.at[2] * value[2] + weight.at[3] * value[3]);
       const float smallest = std::min(0.0F, *std::min_element(value, value + 4));
       const float largest = std::max(row.largest_value, *std::max_element(value, value + 4));
       colours[n * row.lanes + c] = std::clamp(sum, smallest, largest);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "kernels/colour_fetch/colour_fetch.h"
+#include "kernels/keys_weights-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
@@ -37,9 +38,6 @@ HWY_INLINE void weigh_taps(D64 d64, const BicubicFetchRow& row, int begin, int f
   const auto offset = hn::Set(d64, row.camera_offset);
   const auto least = hn::Set(d64, -1.0);
   const auto most = hn::Set(d64, row.width - 0.5);
-  const auto half = hn::Set(d32, 0.5F);
-  const auto one = hn::Set(d32, 1.0F);
-  const auto one_and_half = hn::Set(d32, 1.5F);
   const int step = static_cast<int>(hn::Lanes(d64));
   for (int i = first; i + step <= count; i += step) {
     const auto read = hn::LoadU(d32, row.warped_disparity_px + begin + i);
@@ -52,18 +50,11 @@ HWY_INLINE void weigh_taps(D64 d64, const BicubicFetchRow& row, int begin, int f
     hn::StoreU(hn::DemoteTo(di32, whole), di32, block.whole + i);
     const auto f = hn::DemoteTo(d32, hn::Sub(column, whole));
     hn::StoreU(f, d32, block.fraction + i);
-    // Mul, Add and Sub, never fused: results must not depend on the instruction set.
-    const auto half_f = hn::Mul(half, f);
-    const auto squared = hn::Mul(f, f);
-    const auto inner = hn::Mul(one_and_half, f);
-    const auto weight0 = hn::Mul(f, hn::Sub(hn::Mul(f, hn::Sub(one, half_f)), half));
-    const auto weight1 = hn::Add(hn::Mul(squared, hn::Sub(inner, hn::Set(d32, 2.5F))), one);
-    const auto weight2 = hn::Mul(f, hn::Add(hn::Mul(f, hn::Sub(hn::Set(d32, 2.0F), inner)), half));
-    const auto weight3 = hn::Mul(squared, hn::Sub(half_f, half));
-    hn::StoreU(weight0, d32, block.weight[0] + i);
-    hn::StoreU(weight1, d32, block.weight[1] + i);
-    hn::StoreU(weight2, d32, block.weight[2] + i);
-    hn::StoreU(weight3, d32, block.weight[3] + i);
+    const auto weights = keys_weights(d32, f);
+    hn::StoreU(weights.at[0], d32, block.weight[0] + i);
+    hn::StoreU(weights.at[1], d32, block.weight[1] + i);
+    hn::StoreU(weights.at[2], d32, block.weight[2] + i);
+    hn::StoreU(weights.at[3], d32, block.weight[3] + i);
   }
 }
 

@@ -24,12 +24,27 @@ void fill_hole(const HoleFillRow<T>& row, int begin, int end, bool mirror) {
   const bool has_right = end < row.width;
   const bool from_left =
       has_left && !(has_right && row.disparity_px[end] < row.disparity_px[begin - 1]);
-  const int start = from_left ? begin - 1 : end;
+  int start = from_left ? begin - 1 : end;
   const int step = from_left ? -1 : 1;
+  if (row.mixed_px > 0 && has_left && has_right &&
+      std::abs(row.disparity_px[end] - row.disparity_px[begin - 1]) > row.gradient_limit_px) {
+    const int mixed = run_length(row.disparity_px, row.width, start, step, row.mixed_px + 1,
+                                 row.gradient_limit_px) -
+                      1;
+    start += mixed * step;
+    begin -= from_left ? mixed : 0;
+    end += from_left ? 0 : mixed;
+  }
   const int count = end - begin;
   const int run =
       mirror ? run_length(row.disparity_px, row.width, start, step, count, row.gradient_limit_px)
              : 1;
+  if (row.filled_disparity_px != nullptr) {
+    std::fill_n(row.filled_disparity_px + begin, count, row.disparity_px[start]);
+  }
+  if (row.filled != nullptr) {
+    std::fill_n(row.filled + begin, count, std::uint8_t{255});
+  }
   int position = 0;  // within s0 … s(run−1), which is walked to and fro
   int direction = 1;
   for (int k = 0; k < count; ++k) {
@@ -46,6 +61,12 @@ void fill_hole(const HoleFillRow<T>& row, int begin, int end, bool mirror) {
 
 template <typename T>
 void fill_holes(const HoleFillRow<T>& row, bool mirror) {
+  if (row.filled_disparity_px != nullptr) {
+    std::copy_n(row.disparity_px, row.width, row.filled_disparity_px);
+  }
+  if (row.filled != nullptr) {
+    std::fill_n(row.filled, row.width, std::uint8_t{0});
+  }
   int x = 0;
   while (x < row.width) {
     if (!std::isnan(row.disparity_px[x])) {

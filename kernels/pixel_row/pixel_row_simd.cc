@@ -5,24 +5,13 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <type_traits>
 
+#include "kernels/pixel_row/load_as_float-inl.h"
 #include "kernels/pixel_row/pixel_row.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-template <class D, typename T>
-HWY_INLINE hn::VFromD<D> load_as_float(D d, const T* values) {
-  if constexpr (std::is_same_v<T, float>) {
-    return hn::LoadU(d, values);
-  } else {
-    const hn::Rebind<std::int32_t, D> d32;
-    const hn::Rebind<T, D> d_pixel;
-    return hn::ConvertTo(d, hn::PromoteTo(d32, hn::LoadU(d_pixel, values)));
-  }
-}
 
 template <typename T>
 HWY_INLINE void load_grey(const T* HWY_RESTRICT pixels, int width, float* HWY_RESTRICT row) {

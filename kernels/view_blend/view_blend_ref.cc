@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <type_traits>
 
@@ -9,7 +10,19 @@
 namespace vantage::kernels {
 namespace {
 
-float left_weight(float left_d, float right_d, float alpha, float limit) {
+// Whether the surface that a warped image has at x goes on to both sides; the row's ends count as
+// going on.
+bool goes_on(const float* disparity_px, int width, int x, float limit) {
+  const float before = disparity_px[std::max(x - 1, 0)];
+  const float behind = disparity_px[std::min(x + 1, width - 1)];
+  return std::abs(before - disparity_px[x]) <= limit && std::abs(behind - disparity_px[x]) <= limit;
+}
+
+float left_weight(const WarpedPairRow& pair, int x, const BlendWeights& weights) {
+  const float left_d = pair.left_disparity_px[x];
+  const float right_d = pair.right_disparity_px[x];
+  const float alpha = weights.alpha;
+  const float limit = pair.gradient_limit_px;
   if (std::isnan(left_d) || std::isnan(right_d)) {
     return std::isnan(right_d) ? 1.0F : 0.0F;
   }
@@ -17,7 +30,14 @@ float left_weight(float left_d, float right_d, float alpha, float limit) {
     return alpha >= 1.0F ? 1.0F : 0.0F;
   }
   if (std::abs(left_d - right_d) <= limit) {
-    return alpha;
+    const bool left_on = goes_on(pair.left_disparity_px, pair.width, x, limit);
+    const bool right_on = goes_on(pair.right_disparity_px, pair.width, x, limit);
+    if (left_on == right_on) {
+      return alpha;
+    }
+    const float left = alpha * (left_on ? 1.0F : weights.trust_at_ends);
+    const float right = (1.0F - alpha) * (right_on ? 1.0F : weights.trust_at_ends);
+    return left / (left + right);
   }
   return left_d > right_d ? 1.0F : 0.0F;
 }
@@ -44,12 +64,19 @@ int blend_plain(const WarpedPairRow& pair, const BlendWeights& weights, int chan
       ++holes;
       view.holes[x] = 255;
       view.disparity_px[x] = std::numeric_limits<float>::quiet_NaN();
+      if (view.sources != nullptr) {
+        view.sources[x] = 0;
+      }
       std::fill_n(pixel, channels, T{0});
       continue;
     }
-    const float left = left_weight(left_d, right_d, weights.alpha, pair.gradient_limit_px);
+    const float left = left_weight(pair, x, weights);
     const float right = 1.0F - left;
     view.holes[x] = 0;
+    if (view.sources != nullptr) {
+      view.sources[x] =
+          static_cast<std::uint8_t>((left > 0.0F ? kFromLeft : 0) + (left < 1.0F ? kFromRight : 0));
+    }
     view.disparity_px[x] = left * (std::isnan(left_d) ? 0.0F : left_d) +
                            right * (std::isnan(right_d) ? 0.0F : right_d);
     for (int c = 0; c < channels; ++c) {

@@ -12,9 +12,12 @@
 #include "kernels/pixel_row/pixel_row.h"
 #include "tests/kernels/kernel_test_utils.h"
 #include "tests/kernels/synthesis_rows.h"
+#include "tests/keys_kernel.h"
 
 namespace vantage::kernels {
 namespace {
+
+using test::keys;
 
 /// An image that ends where its memory ends, and positions for a row of another one.
 template <typename T>
@@ -83,15 +86,6 @@ struct Scene {
             .count = static_cast<int>(x_px.size())};
   }
 };
-
-// Keys' cubic convolution kernel, a = −½, as the paper defines it.
-double keys(double t) {
-  t = std::abs(t);
-  if (t < 1) {
-    return 1.5 * t * t * t - 2.5 * t * t + 1;
-  }
-  return t < 2 ? -0.5 * t * t * t + 2.5 * t * t - 4 * t + 2 : 0;
-}
 
 template <typename T>
 class BicubicRemap : public testing::Test {};

@@ -9,9 +9,12 @@
 
 #include "kernels/forward_warp/forward_warp.h"
 #include "tests/kernels/synthesis_rows.h"
+#include "tests/keys_kernel.h"
 
 namespace vantage::kernels {
 namespace {
+
+using test::keys;
 
 std::vector<float> random_values(std::mt19937& random, int count) {
   std::vector<float> values(static_cast<std::size_t>(count));
@@ -50,15 +53,6 @@ struct Scanline {
             .largest_value = 255};
   }
 };
-
-// Keys' cubic convolution kernel, a = −½, as the paper defines it.
-double keys(double t) {
-  t = std::abs(t);
-  if (t < 1) {
-    return 1.5 * t * t * t - 2.5 * t * t + 1;
-  }
-  return t < 2 ? -0.5 * t * t * t + 2.5 * t * t - 4 * t + 2 : 0;
-}
 
 TEST(FetchBicubic, EqualOnEveryInstructionSetAndToReference) {
   std::mt19937 random(4);

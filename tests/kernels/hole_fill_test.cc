@@ -15,7 +15,8 @@ namespace vantage::kernels {
 namespace {
 
 // One letter per pixel; disparities as digits, '.' = hole.
-std::string fill(std::string pixels, const std::string& disparities, bool mirror = true) {
+std::string fill(std::string pixels, const std::string& disparities, bool mirror = true,
+                 int mixed_px = 0) {
   std::vector<std::uint8_t> values(pixels.begin(), pixels.end());
   std::vector<float> d;
   for (const char digit : disparities) {
@@ -25,7 +26,8 @@ std::string fill(std::string pixels, const std::string& disparities, bool mirror
                                            .disparity_px = d.data(),
                                            .width = static_cast<int>(d.size()),
                                            .channels = 1,
-                                           .gradient_limit_px = 1},
+                                           .gradient_limit_px = 1,
+                                           .mixed_px = mixed_px},
                  mirror);
   return {values.begin(), values.end()};
 }
@@ -53,6 +55,37 @@ TEST(HoleFill, ASlopeIsNoJump) { EXPECT_EQ(fill("abcd____", "4321...."), "abcddc
 
 TEST(HoleFill, SpreadRepeatsTheBorderPixel) {
   EXPECT_EQ(fill("abcd___xyz", "1111...555", false), "abcddddxyz");
+}
+
+// The background's pixel beside the hole is taken for a mixture.
+TEST(HoleFill, ReplacesMixedPixels) {
+  EXPECT_EQ(fill("abcd___xyz", "1111...555", true, 1), "abccbaaxyz");
+  EXPECT_EQ(fill("abc___wxyz", "555...1111", true, 1), "abczzyxxyz");
+  EXPECT_EQ(fill("abcd___xyz", "1111...555", false, 2), "abbbbbbxyz");
+  EXPECT_EQ(fill("abc__xyz", "333..333", true, 1), "abccbxyz");  // one surface on both sides
+  EXPECT_EQ(fill("__abcd", "..9999", true, 1), "baabcd");        // nothing hid the rest
+  EXPECT_EQ(fill("pa____xy", "71....55", true, 1), "paaaaaxy");  // no other pixel behind it
+  EXPECT_EQ(fill("a____xy", "1....55", true, 1), "aaaaaxy");
+}
+
+TEST(HoleFill, TellsWhatItHasFilled) {
+  std::vector<std::uint8_t> pixels = {1, 2, 3, 0, 0, 6, 0};
+  const std::vector<float> d = {
+      1, 1, 2, kUnknownDisparity, kUnknownDisparity, 7, kUnknownDisparity};
+  std::vector<float> filled_d(7);
+  std::vector<std::uint8_t> filled(7, 9);
+  fill_holes_row(HoleFillRow<std::uint8_t>{.pixels = pixels.data(),
+                                           .disparity_px = d.data(),
+                                           .width = 7,
+                                           .channels = 1,
+                                           .gradient_limit_px = 1,
+                                           .mixed_px = 1,
+                                           .filled_disparity_px = filled_d.data(),
+                                           .filled = filled.data()},
+                 true);
+  EXPECT_EQ(filled_d, (std::vector<float>{1, 1, 1, 1, 1, 7, 7}));
+  EXPECT_EQ(filled, (std::vector<std::uint8_t>{0, 0, 255, 255, 255, 0, 255}));
+  EXPECT_EQ(pixels, (std::vector<std::uint8_t>{1, 2, 2, 1, 1, 6, 6}));
 }
 
 TEST(HoleFill, NothingToCopyFrom) { EXPECT_EQ(fill("___", "..."), "___"); }

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/view_projection/view_projection.h"
+
+namespace vantage::kernels {
+
+/// The way back of a ViewProjection: (x, y, 1) = λ · (homography · (u, v, 1) − q · parallax).
+struct SourceProjection {
+  double homography[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< inverse of that of points at infinity
+  double parallax[3] = {};                             ///< homography · ViewProjection::parallax
+  double infinity_disparity_px = 0;
+  /// The view is a translation: x = u − parallax_x · d, y = v − parallax_y · d, with the parallax
+  /// and the disparity at infinity of the ViewProjection.
+  bool is_translation = true;
+};
+
+/// One line of a new view and the image it is made from.
+struct SourcePositionRow {
+  const float* nearness = nullptr;  ///< q from column 0; −inf = hole
+  int count = 0;                    ///< ≥ 0
+  int line = 0;
+  int source_width = 0;
+  int source_height = 0;
+};
+
+/// Where a row of the new view finds its pixels, `count` values each. The position is limited to
+/// [−1, size − ½] in x and y. Holes, and places in front of the source camera's plane, where it
+/// cannot see, have NaN in both `nearness` and `disparity_px`, and the position (0, 0).
+struct SourcePositions {
+  std::int32_t* column = nullptr;  ///< whole part (floor) of x
+  std::int32_t* line = nullptr;    ///< of y
+  float* fraction_x = nullptr;     ///< what is left of x
+  float* fraction_y = nullptr;
+  float* disparity_px = nullptr;  ///< the surface's there
+  float* nearness = nullptr;      ///< q
+};
+
+/// Identical on every instruction set and to the reference.
+void source_positions_row(const SourceProjection& source, const SourcePositionRow& row,
+                          const SourcePositions& positions);
+void source_positions_row_ref(const SourceProjection& source, const SourcePositionRow& row,
+                              const SourcePositions& positions);
+
+}  // namespace vantage::kernels

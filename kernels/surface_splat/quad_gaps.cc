@@ -1,0 +1,204 @@
+#include "kernels/surface_splat/quad_gaps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <initializer_list>
+
+namespace vantage::kernels {
+namespace {
+
+// Positions so little outside a triangle, by share of its area, are on its border.
+constexpr double kOnBorder = 1e-9;
+
+struct Corner {
+  double u;
+  double v;
+  double nearness;
+  int column;
+  int line;
+  float disparity_px;
+};
+
+Corner corner_of(const SplatRows& rows, const ProjectedRow& row, int i, int line) {
+  const ExactTarget target =
+      exact_target(rows.view, rows.first_column + i, line, row.disparity_px[i]);
+  return {.u = target.u,
+          .v = target.v,
+          .nearness = row.nearness[i],
+          .column = row.column[i],
+          .line = row.line[i],
+          .disparity_px = row.disparity_px[i]};
+}
+
+void add_sample(const SplatBand& band, int column, int line, double nearness) {
+  float& nearest = band.nearness[(line - band.first_line) * band.stride + column];
+  nearest = std::max(nearest, static_cast<float>(nearness));
+}
+
+// Positions between the targets of two neighbours along the axis of their edge.
+void fill_edge(const Corner& from, const Corner& to, EdgeDirection direction,
+               const SplatBand& band) {
+  const bool along_lines = direction.along_lines;
+  const int begin = along_lines ? from.line : from.column;
+  const int end = along_lines ? to.line : to.column;
+  const double first = along_lines ? from.v : from.u;
+  const double spacing = (along_lines ? to.v : to.u) - first;
+  const double other = along_lines ? from.u : from.v;
+  const double rise_of_other = (along_lines ? to.u : to.v) - other;
+  const double rise = to.nearness - from.nearness;
+  const int least = along_lines ? band.first_line : 0;
+  const int most = along_lines ? band.first_line + band.lines - 1 : band.width - 1;
+  const int last = std::min(std::max(begin, end) - 1, most);
+  for (int n = std::max(std::min(begin, end) + 1, least); n <= last; ++n) {
+    const double fraction = (n - first) / spacing;
+    const double exact = other + fraction * rise_of_other;
+    const double rounded = std::floor(exact + 0.5);
+    const double limit = along_lines ? band.width : band.first_line + band.lines;
+    if (rounded >= (along_lines ? 0 : band.first_line) && rounded < limit) {
+      const int whole = static_cast<int>(rounded);
+      add_sample(band, along_lines ? whole : n, along_lines ? n : whole,
+                 from.nearness + fraction * rise);
+    }
+  }
+}
+
+bool is_gap(const Corner& first, const Corner& second, EdgeDirection direction) {
+  const int distance =
+      direction.along_lines ? second.line - first.line : second.column - first.column;
+  return distance * direction.sign > 1;
+}
+
+/// Twice the area of the triangle of two corners and a position, as a linear function of the
+/// position: positive on the side where a third corner lies that turns as (right, down) does.
+struct Border {
+  double u;
+  double v;
+  double rise_u;
+  double rise_v;
+
+  Border(const Corner& from, const Corner& to)
+      : u(from.u), v(from.v), rise_u(from.v - to.v), rise_v(to.u - from.u) {}
+  [[nodiscard]] double at(double position_u, double position_v) const {
+    return rise_u * (position_u - u) + rise_v * (position_v - v);
+  }
+};
+
+void fill_triangle(const Corner& a, const Corner& b, const Corner& c,
+                   std::initializer_list<const Corner*> left_out, const SplatBand& band) {
+  const int least_column = std::min({a.column, b.column, c.column});
+  const int most_column = std::max({a.column, b.column, c.column});
+  const int least_line = std::min({a.line, b.line, c.line});
+  const int most_line = std::max({a.line, b.line, c.line});
+  if (most_column - least_column <= 1 && most_line - least_line <= 1) {
+    return;
+  }
+  // Opposite to each corner.
+  const Border of_a(b, c);
+  const Border of_b(c, a);
+  const Border of_c(a, b);
+  const double area = of_a.at(a.u, a.v);
+  if (!(area > 0)) {
+    return;
+  }
+  const double on_border = -kOnBorder * area;
+  const int last_line = std::min(most_line, band.first_line + band.lines - 1);
+  const int first_column = std::max(least_column, 0);
+  const int last_column = std::min(most_column, band.width - 1);
+  for (int v = std::max(least_line, band.first_line); v <= last_line; ++v) {
+    double weight_a = of_a.at(first_column, v);
+    double weight_b = of_b.at(first_column, v);
+    double weight_c = of_c.at(first_column, v);
+    for (int u = first_column; u <= last_column; ++u) {
+      if (weight_a >= on_border && weight_b >= on_border && weight_c >= on_border) {
+        const auto lands_here = [&](const Corner* corner) {
+          return corner->column == u && corner->line == v;
+        };
+        if (std::none_of(left_out.begin(), left_out.end(), lands_here)) {
+          add_sample(band, u, v,
+                     (weight_a * a.nearness + weight_b * b.nearness + weight_c * c.nearness) /
+                         (weight_a + weight_b + weight_c));
+        }
+      }
+      weight_a += of_a.rise_u;
+      weight_b += of_b.rise_u;
+      weight_c += of_c.rise_u;
+    }
+  }
+}
+
+// Derivatives (∂u, ∂v) · λ of points at infinity along x (k = 0) or y (k = 1).
+EdgeDirection direction_of(const ViewProjection& view, double x, double y, int k) {
+  double far[9];  // homography of the points at infinity
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      far[3 * row + column] = view.homography[3 * row + column] +
+                              (column == 2 ? view.infinity_disparity_px * view.parallax[row] : 0.0);
+    }
+  }
+  const auto at = [&](int row) {
+    return far[3 * row] * x + far[3 * row + 1] * y + far[3 * row + 2];
+  };
+  const double depth_ratio = at(2);
+  const double rise_u = far[k] * depth_ratio - far[6 + k] * at(0);
+  const double rise_v = far[3 + k] * depth_ratio - far[6 + k] * at(1);
+  const bool along_lines =
+      k == 0 ? std::abs(rise_v) > std::abs(rise_u) : std::abs(rise_v) >= std::abs(rise_u);
+  return {.along_lines = along_lines, .sign = (along_lines ? rise_v : rise_u) >= 0 ? 1 : -1};
+}
+
+}  // namespace
+
+EdgeDirection right_edge_direction(const ViewProjection& view, double x, double y) {
+  return direction_of(view, x, y, 0);
+}
+
+EdgeDirection lower_edge_direction(const ViewProjection& view, double x, double y) {
+  return direction_of(view, x, y, 1);
+}
+
+void fill_quad_gaps(const SplatRows& rows, int i, const SplatBand& band) {
+  const Corner a = corner_of(rows, rows.upper, i, rows.line);
+  const Corner b = corner_of(rows, rows.upper, i + 1, rows.line);
+  const Corner c = corner_of(rows, rows.lower, i, rows.line + 1);
+  const Corner d = corner_of(rows, rows.lower, i + 1, rows.line + 1);
+  // False for points that were dropped: their disparity is NaN.
+  const auto joined = [&](const Corner& p, const Corner& q) {
+    return std::abs(p.disparity_px - q.disparity_px) <= rows.gradient_limit_px;
+  };
+  const bool ab = joined(a, b);
+  const bool ac = joined(a, c);
+  // Edges are walked as rows are in ordered forward mapping: from the side that is walked first.
+  if (ab && is_gap(a, b, rows.right_edge)) {
+    const bool forward = rows.view.parallax[0] <= 0;
+    fill_edge(forward ? a : b, forward ? b : a, rows.right_edge, band);
+  }
+  if (ac && is_gap(a, c, rows.lower_edge)) {
+    const bool forward = rows.view.parallax[1] <= 0;
+    fill_edge(forward ? a : c, forward ? c : a, rows.lower_edge, band);
+  }
+  if (rows.view.is_translation && rows.view.parallax[1] == 0) {
+    return;  // nothing lies between two rows
+  }
+  const bool bd = joined(b, d);
+  const bool cd = joined(c, d);
+  if (ab && ac && bd && cd) {
+    fill_triangle(a, b, c, {&a, &b, &c, &d}, band);
+    fill_triangle(b, d, c, {&a, &b, &c, &d}, band);
+    return;
+  }
+  if (ab && ac) {
+    fill_triangle(a, b, c, {&a, &b, &c}, band);
+  }
+  if (ab && bd) {
+    fill_triangle(a, b, d, {&a, &b, &d}, band);
+  }
+  if (ac && cd) {
+    fill_triangle(a, d, c, {&a, &c, &d}, band);
+  }
+  if (bd && cd) {
+    fill_triangle(b, d, c, {&b, &c, &d}, band);
+  }
+}
+
+}  // namespace vantage::kernels

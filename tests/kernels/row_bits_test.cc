@@ -1,0 +1,91 @@
+#include "kernels/row_bits/row_bits.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "tests/kernels/kernel_test_utils.h"
+
+namespace vantage::kernels {
+namespace {
+
+using Bits = std::vector<std::uint64_t>;
+constexpr std::uint64_t kSentinel = 0xA5A5A5A5A5A5A5A5U;
+
+class RowBits : public EveryTarget {};
+VANTAGE_ON_EVERY_TARGET(RowBits);
+
+/// The bits of `answers`, one word after the other.
+Bits packed(const std::vector<bool>& answers) {
+  Bits words((answers.size() + 63) / 64, 0);
+  for (std::size_t x = 0; x < answers.size(); ++x) {
+    if (answers[x]) {
+      words[x / 64] += std::uint64_t{1} << (x % 64);
+    }
+  }
+  return words;
+}
+
+/// What a function and its reference write, which must be the same and nothing else.
+template <typename Function, typename Reference>
+Bits written(int width, const Function& function, const Reference& reference) {
+  GuardedRow<std::uint64_t> bits(static_cast<std::size_t>(row_words(width)), 1, kSentinel);
+  GuardedRow<std::uint64_t> expected(static_cast<std::size_t>(row_words(width)), 1, kSentinel);
+  function(bits.data());
+  reference(expected.data());
+  EXPECT_TRUE(bits.intact());
+  EXPECT_EQ(bits.values(), expected.values());
+  return bits.values();
+}
+
+TEST_P(RowBits, NearIsADifferenceUpToTheLimit) {
+  std::mt19937 random(1);
+  const float odd[] = {std::numeric_limits<float>::quiet_NaN(),
+                       std::numeric_limits<float>::infinity(),
+                       -std::numeric_limits<float>::infinity(), 3e38F, -3e38F};
+  for (int width = 0; width <= 150; ++width) {
+    // Ends of memory, so that the address sanitizer sees any access behind the row.
+    UnalignedRow<float> a(static_cast<std::size_t>(width), 1);
+    UnalignedRow<float> b(static_cast<std::size_t>(width), 3);
+    std::vector<bool> is_near;
+    for (std::size_t x = 0; x < a.size(); ++x) {
+      for (UnalignedRow<float>* row : {&a, &b}) {
+        (*row)[x] = random() % 9 == 0 ? odd[random() % 5]
+                                      : 0.25F * static_cast<float>(random_int(random, -8, 8));
+      }
+      is_near.push_back(std::abs(a[x] - b[x]) <= 1.25F);
+    }
+    ASSERT_EQ(
+        written(
+            width,
+            [&](std::uint64_t* bits) { near_bits_row(a.data(), b.data(), 1.25F, width, bits); },
+            [&](std::uint64_t* bits) {
+              near_bits_row_ref(a.data(), b.data(), 1.25F, width, bits);
+            }),
+        packed(is_near))
+        << "width " << width;
+  }
+}
+
+TEST_P(RowBits, ZeroIsNothingElse) {
+  std::mt19937 random(2);
+  for (int width = 0; width <= 150; ++width) {
+    UnalignedRow<std::uint8_t> values(static_cast<std::size_t>(width), 5);
+    std::vector<bool> is_zero;
+    for (std::size_t x = 0; x < values.size(); ++x) {
+      values[x] = random() % 2 == 0 ? 0 : static_cast<std::uint8_t>(1U << (random() % 8));
+      is_zero.push_back(values[x] == 0);
+    }
+    ASSERT_EQ(written(
+                  width, [&](std::uint64_t* bits) { zero_bits_row(values.data(), width, bits); },
+                  [&](std::uint64_t* bits) { zero_bits_row_ref(values.data(), width, bits); }),
+              packed(is_zero))
+        << "width " << width;
+  }
+}
+
+}  // namespace
+}  // namespace vantage::kernels

@@ -1,0 +1,274 @@
+#include "kernels/surface_fetch/surface_fetch.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <random>
+#include <type_traits>
+#include <vector>
+
+#include "kernels/colour_fetch/colour_fetch.h"
+#include "kernels/pixel_row/pixel_row.h"
+#include "tests/kernels/kernel_test_utils.h"
+#include "tests/kernels/projection_cases.h"
+#include "tests/keys_kernel.h"
+
+namespace vantage::kernels {
+namespace {
+
+using test::keys;
+
+/// An image with its map, both ending where their memory ends, and positions in it.
+template <typename T>
+struct Scene {
+  int width;
+  int height;
+  int channels;
+  std::ptrdiff_t stride;
+  std::vector<T> pixels;
+  std::vector<float> map;
+  std::vector<std::int32_t> column, line;
+  std::vector<float> fraction_x, fraction_y, disparity_px;
+
+  Scene(std::mt19937& random, int w, int h, int c)
+      : width(w),
+        height(h),
+        channels(c),
+        stride(w * c + random_int(random, 0, 3)),
+        pixels(static_cast<std::size_t>(stride * (h - 1) + w * c)),
+        map(random_map(random, w, h)) {
+    for (T& value : pixels) {
+      if constexpr (std::is_same_v<T, float>) {
+        value = static_cast<float>(random_int(random, -20, 130)) / 100;
+      } else {
+        value = static_cast<T>(random());
+      }
+    }
+  }
+
+  [[nodiscard]] T pixel(int x, int y, int c) const {
+    return pixels[static_cast<std::size_t>(y * stride + x * channels + c)];
+  }
+  [[nodiscard]] float at(int x, int y) const {
+    return map[static_cast<std::size_t>(y * width + x)];
+  }
+
+  void add(double x, double y, float d) {
+    column.push_back(static_cast<std::int32_t>(std::floor(x)));
+    line.push_back(static_cast<std::int32_t>(std::floor(y)));
+    fraction_x.push_back(static_cast<float>(x - std::floor(x)));
+    fraction_y.push_back(static_cast<float>(y - std::floor(y)));
+    disparity_px.push_back(d);
+  }
+
+  /// Positions whose disparity is mostly that of a pixel near them, as in a warped row.
+  void add_random(std::mt19937& random, int count) {
+    for (int n = 0; n < count; ++n) {
+      const double x = std::min(random_int(random, -8, 8 * width) / 8.0, width - 0.5);
+      const double y = std::min(random_int(random, -8, 8 * height) / 8.0, height - 0.5);
+      const float near = at(std::clamp(static_cast<int>(x), 0, width - 1),
+                            std::clamp(static_cast<int>(y), 0, height - 1));
+      add(x, y, random() % 6 == 0 ? near + 1.5F : near);
+    }
+  }
+
+  [[nodiscard]] SurfaceFetchRow<T> row(float limit) const {
+    return {.pixels = pixels.data(),
+            .stride = stride,
+            .map_px = map.data(),
+            .map_stride = width,
+            .width = width,
+            .height = height,
+            .channels = channels,
+            .column = column.data(),
+            .line = line.data(),
+            .fraction_x = fraction_x.data(),
+            .fraction_y = fraction_y.data(),
+            .disparity_px = disparity_px.data(),
+            .count = static_cast<int>(column.size()),
+            .gradient_limit_px = limit};
+  }
+  [[nodiscard]] std::size_t values() const {
+    return column.size() * static_cast<std::size_t>(pixel_lanes(channels));
+  }
+};
+
+template <typename T>
+class SurfaceFetch : public testing::Test {};
+using PixelTypes = testing::Types<std::uint8_t, std::uint16_t, float>;
+TYPED_TEST_SUITE(SurfaceFetch, PixelTypes);
+
+TYPED_TEST(SurfaceFetch, EqualOnEveryInstructionSetAndToReference) {
+  using T = TypeParam;
+  std::mt19937 random(1);
+  for (const auto& [width, height] :
+       {std::pair{1, 1}, {1, 9}, {9, 1}, {2, 2}, {3, 5}, {4, 4}, {5, 7}, {13, 11}, {150, 9}}) {
+    for (const int channels : {1, 3, 4}) {
+      for (const int count : {0, 1, 5, 63, 64, 65, 200}) {
+        Scene<T> scene(random, width, height, channels);
+        scene.add_random(random, count);
+        for (const float limit : {0.0F, 1.0F, 100.0F}) {
+          std::vector<float> expected(scene.values());
+          fetch_surface_row_ref(scene.row(limit), expected.data());
+          for_each_target([&] {
+            GuardedRow<float> result(expected.size(), 1, -77.0F);
+            fetch_surface_row(scene.row(limit), result.data());
+            ASSERT_EQ(result.values(), expected)
+                << width << "x" << height << ", " << channels << " channels, " << count;
+            ASSERT_TRUE(result.intact());
+          });
+        }
+      }
+    }
+  }
+}
+
+// It reads more than it needs inside the image, and must not do so behind it.
+TYPED_TEST(SurfaceFetch, ReadsNothingBehindTheImage) {
+  using T = TypeParam;
+  std::mt19937 random(2);
+  for (const int channels : {1, 3, 4}) {
+    for (int from_right = 1; from_right <= 6; ++from_right) {
+      Scene<T> scene(random, 96, 4, channels);
+      std::fill(scene.map.begin(), scene.map.end(), 5.0F);
+      for (int n = 0; n < 64; ++n) {
+        scene.add(95.25 - from_right, 1.5, 5);
+      }
+      std::vector<float> expected(scene.values());
+      fetch_surface_row_ref(scene.row(1), expected.data());
+      for_each_target([&] {
+        std::vector<float> result(expected.size());
+        fetch_surface_row(scene.row(1), result.data());
+        ASSERT_EQ(result, expected) << channels << " channels, " << from_right;
+      });
+    }
+  }
+}
+
+TYPED_TEST(SurfaceFetch, InsideASurfaceIsKeysConvolution) {
+  using T = TypeParam;
+  std::mt19937 random(3);
+  for (const auto& [width, height] : {std::pair{1, 1}, {2, 7}, {7, 2}, {30, 20}}) {
+    for (const int channels : {1, 3, 4}) {
+      Scene<T> scene(random, width, height, channels);
+      std::fill(scene.map.begin(), scene.map.end(), 3.0F);
+      for (int n = 0; n < 150; ++n) {
+        // Not beyond the outer pixels' centres, where taps outside are not the nearest pixel's.
+        scene.add(random_int(random, 0, 8 * width - 8) / 8.0,
+                  random_int(random, 0, 8 * height - 8) / 8.0, 3.4F);
+      }
+      std::vector<float> result(scene.values());
+      fetch_surface_row(scene.row(1), result.data());
+      const int lanes = pixel_lanes(channels);
+      for (std::size_t n = 0; n < 150; ++n) {
+        const double x = scene.column[n] + double{scene.fraction_x[n]};
+        const double y = scene.line[n] + double{scene.fraction_y[n]};
+        for (int c = 0; c < lanes; ++c) {
+          double sum = 0;
+          double least = 0;
+          double most = kLargestValue<T>;
+          for (int j = -3; c < channels && j <= height + 2; ++j) {
+            for (int i = -3; i <= width + 2; ++i) {
+              const double value = static_cast<double>(
+                  scene.pixel(std::clamp(i, 0, width - 1), std::clamp(j, 0, height - 1), c));
+              sum += keys(x - i) * keys(y - j) * value;
+              if (std::abs(i - std::floor(x) - 0.5) < 2 && std::abs(j - std::floor(y) - 0.5) < 2) {
+                least = std::min(least, value);
+                most = std::max(most, value);
+              }
+            }
+          }
+          ASSERT_NEAR(result[n * static_cast<std::size_t>(lanes) + static_cast<std::size_t>(c)],
+                      std::clamp(sum, least, most), kLargestValue<T> * 2e-6)
+              << width << "x" << height << " at " << x << ", " << y;
+        }
+      }
+    }
+  }
+}
+
+// Along one row it is the fetch of views on the baseline, jumps and borders included.
+TYPED_TEST(SurfaceFetch, InOneRowIsTheFetchAlongIt) {
+  using T = TypeParam;
+  std::mt19937 random(4);
+  for (const int width : {1, 3, 8, 65, 130}) {
+    for (const int channels : {1, 3, 4}) {
+      const int height = 5;
+      Scene<T> scene(random, width, height, channels);
+      if constexpr (std::is_same_v<T, float>) {
+        for (T& value : scene.pixels) {
+          value = std::clamp(value, 0.0F, 1.0F);
+        }
+      }
+      const int lanes = pixel_lanes(channels);
+      const int y = random_int(random, 0, height - 1);
+      std::vector<float> pixels(static_cast<std::size_t>((width + 2 * kRowMarginPx) * lanes));
+      load_pixel_row(scene.pixels.data() + y * scene.stride, width, channels,
+                     pixels.data() + kRowMarginPx * lanes);
+      const float* map_row = scene.map.data() + y * width;
+      const RowWithMargins map(std::vector<float>(map_row, map_row + width), 1, kUnknownDisparity);
+      const double s = 0.37;
+      std::vector<float> warped(static_cast<std::size_t>(width));
+      for (int n = 0; n < width; ++n) {
+        // A disparity that one of the two pixels around the position has.
+        const float d = scene.at(std::clamp(n + random_int(random, -1, 1), 0, width - 1), y);
+        const double x = std::clamp(n + s * d, -1.0, width - 0.5);
+        const auto seen = [&](double column) {
+          return column >= 0 && column < width &&
+                 std::abs(scene.at(static_cast<int>(column), y) - d) <= 1;
+        };
+        const bool is_on = seen(std::floor(x)) || seen(std::floor(x) + 1);
+        warped[static_cast<std::size_t>(n)] = is_on ? d : kUnknownDisparity;
+        scene.add(x, y, warped[static_cast<std::size_t>(n)]);
+      }
+      std::vector<float> expected(scene.values());
+      fetch_bicubic_row({.pixels = pixels.data() + kRowMarginPx * lanes,
+                         .source_disparity_px = map.row(),
+                         .warped_disparity_px = warped.data(),
+                         .width = width,
+                         .lanes = lanes,
+                         .camera_offset = s,
+                         .gradient_limit_px = 1,
+                         .largest_value = kLargestValue<T>},
+                        expected.data());
+      std::vector<float> result(scene.values());
+      fetch_surface_row(scene.row(1), result.data());
+      ASSERT_EQ(result, expected) << width << " wide, " << channels << " channels";
+    }
+  }
+}
+
+// A disc of 200 at d = 8 before 50 at d = 0: only these two colours may appear.
+TEST(SurfaceFetchColours, DoesNotMixSurfaces) {
+  std::mt19937 random(5);
+  Scene<std::uint8_t> scene(random, 40, 30, 3);
+  const auto is_front = [](double x, double y) { return std::hypot(x - 20, y - 15) < 8; };
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      scene.map[static_cast<std::size_t>(y * 40 + x)] = is_front(x, y) ? 8.0F : 0.0F;
+      for (int c = 0; c < 3; ++c) {
+        scene.pixels[static_cast<std::size_t>(y * scene.stride + x * 3 + c)] =
+            is_front(x, y) ? 200 : 50;
+      }
+    }
+  }
+  for (int y = 0; y < 30 * 4 - 4; ++y) {
+    for (int x = 0; x < 40 * 4 - 4; ++x) {
+      // The disparity of the nearest pixel.
+      const bool front = is_front(std::floor(x / 4.0 + 0.5), std::floor(y / 4.0 + 0.5));
+      scene.add(x / 4.0, y / 4.0, front ? 8.0F : 0.0F);
+    }
+  }
+  std::vector<float> result(scene.values());
+  fetch_surface_row(scene.row(1), result.data());
+  for (std::size_t n = 0; n < scene.column.size(); ++n) {
+    ASSERT_NEAR(result[4 * n], scene.disparity_px[n] > 4 ? 200.0F : 50.0F, 1e-3F) << n;
+    ASSERT_EQ(result[4 * n + 3], 0.0F);
+  }
+}
+
+}  // namespace
+}  // namespace vantage::kernels
