@@ -7,14 +7,13 @@
 
 #include "apps/commands.h"
 #include "apps/experiment_files.h"
-#include "apps/generated_files.h"
 #include "apps/interrupt.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
-#include "engine/error.h"
+#include "engine/sequence/sequence_layout.h"
 #include "engine/simd.h"
 
 namespace vantage::apps {

@@ -8,9 +8,11 @@
 #include "apps/interrupt.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
+#include "apps/pose_file.h"
 #include "apps/progress.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
+#include "apps/wanted_views.h"
 #include "engine/error.h"
 #include "engine/generation/layered_scene.h"
 #include "engine/simd.h"
@@ -23,7 +25,9 @@ struct SceneJob {
   CommonOptions common;
   std::string output;
   std::optional<int> frames;
-  std::vector<double> views_x;
+  std::vector<BaselinePosition> views;
+  std::string pose_file;
+  std::vector<PosedCamera> cameras;  ///< of the pose file
 };
 
 constexpr int kMaxFrames = 1000000;
@@ -39,7 +43,10 @@ void add_scene_settings(Settings& settings, SceneJob& job) {
                    "Write a sequence of N frames (DIR/left/000000.png …); single: one pair "
                    "(DIR/left.png …)",
                    "single");
-  add_view_setting(settings, job.views_x);
+  add_view_setting(settings, job.views);
+  settings.text("pose", job.pose_file, "FILE",
+                "Also what the cameras of a file of poses see (as for 'vantage synth'; t in "
+                "baselines), as camera-0, camera-1, ...");
 
   settings.begin_group("Scene");
   LayeredSceneOptions& scene = job.scene;
@@ -66,21 +73,44 @@ void check(const SceneJob& job) {
     throw UsageError(
         fmt::format("--frames is {}, expected a number from 1 to {}", *job.frames, kMaxFrames));
   }
-  for (auto view = job.views_x.begin(); view != job.views_x.end(); ++view) {
-    if (std::abs(*view) > 16 || std::find(job.views_x.begin(), view, *view) != view) {
-      throw UsageError(fmt::format("--view is {}, expected different numbers within ±16", *view));
+  for (auto view = job.views.begin(); view != job.views.end(); ++view) {
+    if (std::find(job.views.begin(), view, *view) != view) {
+      throw UsageError(
+          fmt::format("--view is {} twice, expected different positions", to_string(*view)));
     }
   }
   FileChecks checks;
   checks.add_output(job.common.report, "--report", OutputKind::kText);
 }
 
-/// Views are named as those of 'vantage run' are, so that they can be compared file by file.
-std::string view_name(const SceneJob& job, double view_x) {
-  if (!job.frames) {
-    return fmt::format("view-{}", view_x);
+std::vector<PosedCamera> cameras_of(const SceneJob& job) {
+  std::vector<PosedCamera> cameras;
+  if (job.pose_file.empty()) {
+    return cameras;
   }
-  return job.views_x.size() == 1 ? "views" : fmt::format("views/{}", view_x);
+  for (const PoseEntry& entry : read_poses(job.pose_file)) {
+    const auto* camera = std::get_if<PosedCamera>(&entry.pose);
+    if (camera == nullptr) {
+      throw UsageError(
+          fmt::format("{}: view {} is a position, expected cameras by K, R and t; "
+                      "--view takes positions",
+                      job.pose_file, cameras.size() + 1));
+    }
+    cameras.push_back(*camera);
+    if (camera->width_px == 0) {
+      cameras.back().width_px = job.scene.width_px;
+      cameras.back().height_px = job.scene.height_px;
+    }
+  }
+  return cameras;
+}
+
+/// Views are named as those of 'vantage run' are, so that they can be compared file by file.
+std::string view_name(const SceneJob& job, BaselinePosition view) {
+  if (!job.frames) {
+    return "view-" + to_string(view);
+  }
+  return job.views.size() == 1 ? "views" : "views/" + to_string(view);
 }
 
 void make_frame(const SceneJob& job, const LayeredScene& scene, int frame,
@@ -98,13 +128,27 @@ void make_frame(const SceneJob& job, const LayeredScene& scene, int frame,
   };
   make_camera("left", kLeftCamera, kRightCamera);
   make_camera("right", kRightCamera, kLeftCamera);
-  for (const double view_x : job.views_x) {
-    const SceneRendering rendering = report.timed_compute("render", [&] {
-      return scene.render({view_x, 0}, frame);
-    });
-    report.timed_file_access("write",
-                             [&] { files.write(view_name(job, view_x), frame, rendering.image); });
+  const auto make_view = [&](const std::string& name, const PosedCamera& camera) {
+    const SceneRendering rendering =
+        report.timed_compute("render", [&] { return scene.render(camera, frame); });
+    report.timed_file_access("write", [&] { files.write(name, frame, rendering.image); });
+  };
+  for (const BaselinePosition view : job.views) {
+    make_view(view_name(job, view), scene.camera({view.x, view.y}));
   }
+  for (std::size_t i = 0; i < job.cameras.size(); ++i) {
+    make_view(fmt::format("camera-{}", i), job.cameras[i]);
+  }
+}
+
+/// As Middlebury writes it, lengths in baselines.
+std::string calibration_text(const LayeredScene& scene) {
+  const PosedCamera camera = scene.camera(kLeftCamera);
+  const std::string matrix =
+      fmt::format("[{} 0 {}; 0 {} {}; 0 0 1]", camera.matrix(0, 0), camera.matrix(0, 2),
+                  camera.matrix(1, 1), camera.matrix(1, 2));
+  return fmt::format("cam0={}\ncam1={}\ndoffs=0\nbaseline=1\nwidth={}\nheight={}\n", matrix, matrix,
+                     camera.width_px, camera.height_px);
 }
 
 }  // namespace
@@ -119,6 +163,7 @@ int command_generate_scene(const Arguments& arguments) {
     return kExitDone;
   }
   check(job);
+  job.cameras = cameras_of(job);
   RunReport report(settings.command(), settings.values());
   force_instruction_set(job.common.isa);
   Execution execution(job.common.execution);
@@ -126,6 +171,8 @@ int command_generate_scene(const Arguments& arguments) {
   const LayeredScene scene(job.scene, execution);
   const GeneratedFiles files(job.output, job.frames.has_value());
 
+  report.timed_file_access("write",
+                           [&] { files.write_text("calib.txt", calibration_text(scene)); });
   const std::atomic<bool>& interrupted = interrupt_flag();
   const int frames = job.frames.value_or(1);
   int frames_done = 0;

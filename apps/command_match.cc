@@ -4,6 +4,7 @@
 #include "apps/commands.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
+#include "apps/rectification_check.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
 #include "engine/error.h"
@@ -30,6 +31,7 @@ struct MatchJob {
   std::string unmatched;
   std::string unmatched_right;
   std::string preview;
+  bool check_rectification = true;
 
   [[nodiscard]] bool has_several() const { return !baselines.empty() || !more.empty(); }
   [[nodiscard]] std::vector<std::string> inputs() const {
@@ -101,6 +103,7 @@ void add_file_settings(Settings& settings, MatchJob& job) {
                 "The same of the map of the right image");
   settings.text("preview", job.preview, "FILE",
                 "Write the map as a picture whose colours span the search range");
+  add_rectification_check_setting(settings, job.check_rectification);
 }
 
 void check_several(const MatchJob& job) {
@@ -249,8 +252,12 @@ int command_match(const Arguments& arguments) {
   }
   require_equal_sizes(job, images);
   const bool first_is_left = !job.has_several() || job.is_left();
-  choose_disparities(settings, job.common, images[first_is_left ? 0 : 1],
-                     images[first_is_left ? 1 : 0], job.match, execution, report);
+  const Photograph& left = images[first_is_left ? 0 : 1];
+  const Photograph& right = images[first_is_left ? 1 : 0];
+  if (job.check_rectification && !job.match.disparities_y) {
+    warn_unless_rectified(settings, job.common, left, right, report);
+  }
+  choose_disparities(settings, job.common, left, right, job.match, execution, report);
   const StereoMatcher matcher(job.match, execution);
   DisparityMaps maps;
   const MatchReport match = report.timed_compute([&] {

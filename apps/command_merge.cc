@@ -33,16 +33,6 @@ void add_merge_settings(Settings& settings, MergeJob& job) {
   settings.flag("quiet", job.quiet, "Print errors only");
 }
 
-std::vector<int> skipped_frames(const DeliveredFrames& delivered, FrameRange frames) {
-  std::vector<int> skipped;
-  for (const auto& [frame, record] : delivered.records()) {
-    if (record.skipped && frames.contains(frame)) {
-      skipped.push_back(frame);
-    }
-  }
-  return skipped;
-}
-
 }  // namespace
 
 int command_merge(const Arguments& arguments) {
@@ -86,7 +76,7 @@ int command_merge(const Arguments& arguments) {
     report.timed_file_access(
         "join", [&] { join_segments(run.sequence, layout, identity, frames, true, journal); });
   }
-  const std::vector<int> skipped = skipped_frames(delivered, frames);
+  const std::vector<int> skipped = delivered.skipped(frames);
   SettingValue results = {{"frames", frames.count() - static_cast<int>(skipped.size())},
                           {"first_frame", frames.first},
                           {"skipped", skipped}};
@@ -96,8 +86,11 @@ int command_merge(const Arguments& arguments) {
   report.set_results(std::move(results));
   report.write(job.report);
   if (!job.quiet) {
-    fmt::print(stderr, "merge: {} frames, {} skipped, are complete in {}\n", frames.count(),
-               skipped.size(), job.folder);
+    fmt::print(
+        stderr, "merge: {} holds {}{}\n", job.folder,
+        frames == all ? fmt::format("all {} frames", all.count())
+                      : fmt::format("frames {} of {}", to_string({frames}), all.count()),
+        skipped.empty() ? "" : fmt::format(", but {} of them could not be made", skipped.size()));
   }
   return skipped.empty() ? kExitDone : kExitSkipped;
 }

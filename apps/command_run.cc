@@ -2,8 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "apps/commands.h"
 #include "apps/interrupt.h"
@@ -14,7 +12,6 @@
 #include "apps/run_session.h"
 #include "apps/run_settings.h"
 #include "engine/error.h"
-#include "engine/io/atomic_file.h"
 #include "engine/sequence/sequence_join.h"
 #include "engine/simd.h"
 
@@ -32,14 +29,13 @@ JournalOpening opening_of(const RunJob& job) {
 std::optional<ShotTable> find_shots(const RunJob& job, RunSession& session,
                                     const SequenceLayout& layout, Execution& execution,
                                     RunReport& report) {
-  const std::filesystem::path path = layout.journal_folder() / "shots.json";
-  if (std::ifstream stored(path, std::ios::binary); stored) {
-    std::ostringstream text;
-    text << stored.rdbuf();
-    return shot_table_from_json(text.str());
+  const std::filesystem::path path = layout.journal_folder() / kShotsFile;
+  if (auto stored = read_shot_table(path)) {
+    return stored;
   }
-  Progress progress("run: looking for shots", "frames", job.progress);
+  Progress progress("run: looking for shots", "frames", job.shown_progress());
   SurveyHooks hooks;
+  hooks.in_flight = session.memory.in_flight;
   hooks.progress = [&](const SurveyProgress& now) {
     progress.update(now.frames_done, now.frames_total, 0);
   };
@@ -57,10 +53,10 @@ std::optional<ShotTable> find_shots(const RunJob& job, RunSession& session,
     return survey_shots(*session.pairs, 0, session.selection.frame_count, job.sequence, hooks,
                         execution);
   });
-  if (shots) {
-    write_text_file(path, to_json(*shots));
+  if (!shots) {
+    return std::nullopt;
   }
-  return shots;
+  return keep_shot_table(path, *shots);
 }
 
 /// Joins videos once all frames are there that the folder is to have.
@@ -113,12 +109,15 @@ int command_run(const Arguments& arguments) {
   if (job.sequence.needs_shots()) {
     shots = find_shots(job, session, layout, execution, report);
     if (!shots) {
+      if (!job.common.quiet) {
+        fmt::print(stderr, "run: interrupted while looking for shots, --resume begins with that\n");
+      }
       return kExitInterrupted;
     }
   }
   SequenceReport sequence;
   {
-    Progress progress("run", "frames", job.common.quiet ? ProgressStyle::kNone : job.progress);
+    Progress progress("run", "frames", job.shown_progress());
     SequenceRun run = session.run(job, shots ? &*shots : nullptr);
     run.stop = &interrupted;
     run.on_progress = [&](const SequenceProgress& now) {
@@ -130,7 +129,7 @@ int command_run(const Arguments& arguments) {
   fill_report(job, session, sequence, DeliveredFrames(layout), report);
   report.write(job.common.report);
   if (!job.common.quiet) {
-    print_summary(job, session, sequence);
+    print_summary(job, session, sequence, report.wall_seconds());
     report.print_summary();
   }
   if (sequence.interrupted) {

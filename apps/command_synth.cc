@@ -1,278 +1,280 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <chrono>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "apps/automatic_disparities.h"
 #include "apps/commands.h"
 #include "apps/frame_rate_setting.h"
 #include "apps/interrupt.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
+#include "apps/pair_input.h"
 #include "apps/progress.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
 #include "apps/view_output.h"
+#include "apps/view_renderer.h"
+#include "apps/wanted_views.h"
 #include "engine/error.h"
-#include "engine/io/disparity_io.h"
-#include "engine/io/photograph_io.h"
-#include "engine/matching/stereo_matcher.h"
+#include "engine/image/stereo_display.h"
+#include "engine/sequence/busy_clock.h"
 #include "engine/simd.h"
-#include "engine/synthesis/view_synthesizer.h"
+#include "engine/view_geometry/view_pose.h"
+#include "scheduler/frame_pipeline.h"
 
 namespace vantage::apps {
 namespace {
 
-/// Views at equal steps from one position to another, both included.
-struct Sweep {
-  double first_x = 0;
-  double last_x = 1;
-  int views = 0;
-};
-
 struct SynthJob {
-  MatchOptions match;
+  PairInput pair;
   SynthesisOptions synthesis;
   CommonOptions common;
-  std::string left;
-  std::string right;
   std::string output;
-  std::vector<double> views_x;
-  std::optional<Sweep> sweep;
-  std::string left_disparity;
-  std::string right_disparity;
-  std::optional<double> disparity_scale;
+  WantedViews views;
+  std::optional<StereoDisplay> stereo_packing;
+  double eye_separation_baselines = 1;
   std::string hole_mask;
+  std::string source_mask;
   FrameRate frame_rate;
-
-  [[nodiscard]] bool has_maps() const { return !left_disparity.empty(); }
 };
 
-constexpr int kMaxSweepViews = 10000;
+/// A mask that is written beside the views.
+struct MaskOutput {
+  const char* option;
+  Mask SynthesizedView::*mask;
+  ViewOutput output;
+};
 
-Sweep to_sweep(const SettingValue& value) {
-  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ':');
-  try {
-    if (parts.size() == 3) {
-      const Sweep sweep{to_number(parts[0]), to_number(parts[1]), to_integer(parts[2])};
-      if (sweep.views >= 2 && sweep.views <= kMaxSweepViews) {
-        return sweep;
-      }
-    }
-  } catch (const UsageError&) {  // the message below says more
+std::vector<MaskOutput> masks_of(const SynthJob& job, int views) {
+  std::vector<MaskOutput> masks;
+  if (!job.hole_mask.empty()) {
+    masks.push_back({"--hole-mask", &SynthesizedView::holes, ViewOutput(job.hole_mask, views)});
   }
-  reject_value(value,
-               fmt::format("FIRST:LAST:VIEWS with 2 to {} views, such as 0:1:25", kMaxSweepViews));
+  if (!job.source_mask.empty()) {
+    masks.push_back(
+        {"--source-mask", &SynthesizedView::sources, ViewOutput(job.source_mask, views)});
+  }
+  return masks;
 }
 
 void add_view_settings(Settings& settings, SynthJob& job) {
   settings.begin_group("Views");
-  add_view_setting(settings, job.views_x);
-  Setting& sweep = settings.add("sweep", "A:B:N", "N views at equal steps from XS = A to XS = B");
-  sweep.set = [&job](const SettingValue& value) { job.sweep = to_sweep(value); };
-  sweep.get = [&job]() -> SettingValue {
-    return job.sweep ? SettingValue(fmt::format("{}:{}:{}", job.sweep->first_x, job.sweep->last_x,
-                                                job.sweep->views))
-                     : SettingValue();
-  };
+  add_wanted_views(settings, job.views);
+  settings.choice<StereoDisplay>("stereo-packing", job.stereo_packing, stereo_display_names(),
+                                 "Two eyes for every view, in one picture: side by side, one above "
+                                 "the other, interleaved or as an anaglyph",
+                                 "none");
+  settings.number("eye-separation", job.eye_separation_baselines, "S",
+                  "Distance of the two eyes in baselines, the view in their middle");
   add_frame_rate_setting(settings, "fps", job.frame_rate, "Views per second of a video");
 }
 
 void add_file_settings(Settings& settings, SynthJob& job) {
   settings.begin_group("Files");
-  settings.positional("left", job.left, "Left image").required = true;
-  settings.positional("right", job.right, "Right image of the same size").required = true;
+  add_pair_settings(settings, job.pair);
   Setting& output =
       settings.text("output", job.output, "FILE",
                     "Image to write; for several views a pattern (views/%03d.png) or an .mp4");
   output.short_name = 'o';
   output.required = true;
-  settings.text("left-disparity", job.left_disparity, "FILE",
-                "Disparity map of the left image; without maps the pair is matched");
-  settings.text("right-disparity", job.right_disparity, "FILE", "Disparity map of the right image");
-  settings.number("disparity-scale", job.disparity_scale, "S",
-                  "Divides the values of integer disparity files; auto: 256 for 16-bit PNG");
   settings.text("hole-mask", job.hole_mask, "MASK.png",
                 "Write a mask of the pixels that no image shows; a pattern for several views");
-}
-
-/// Matching options that the command line gives beside maps would have no effect.
-void refuse_idle_match_options(const Settings& settings) {
-  Settings matching("match", "");
-  MatchOptions unused;
-  add_match_settings(matching, unused);
-  const SettingValue options = matching.values();
-  for (const auto& [name, value] : options.items()) {
-    if (settings.given_on_command_line(name)) {
-      throw UsageError(
-          fmt::format("--{} has no effect with --left-disparity and --right-disparity", name));
-    }
-  }
-}
-
-std::vector<double> views_of(const SynthJob& job) {
-  if (job.sweep.has_value() == !job.views_x.empty()) {
-    throw UsageError(job.sweep ? "--view and --sweep are both given, expected one of them"
-                               : "no view is given, expected --view XS or --sweep A:B:N");
-  }
-  std::vector<double> views = job.views_x;
-  if (job.sweep) {
-    for (int i = 0; i < job.sweep->views; ++i) {
-      const double t = static_cast<double>(i) / (job.sweep->views - 1);
-      views.push_back(job.sweep->first_x + t * (job.sweep->last_x - job.sweep->first_x));
-    }
-  }
-  for (const double view_x : views) {
-    if (std::abs(view_x) > 16) {
-      throw UsageError(fmt::format("view is {}, expected a number within ±16", view_x));
-    }
-  }
-  return views;
+  settings.text("source-mask", job.source_mask, "MASK.png",
+                "Write which images the pixels are made of: 0 none, 85 left, 170 right, 255 both");
 }
 
 void check(const SynthJob& job, const Settings& settings, const ViewOutput& output,
-           const std::optional<ViewOutput>& hole_mask) {
+           const std::vector<MaskOutput>& masks) {
   job.synthesis.validate();
   job.common.execution.validate();
-  if (job.left_disparity.empty() != job.right_disparity.empty()) {
-    throw UsageError(
-        "one of --left-disparity and --right-disparity is missing, expected both or "
-        "none");
+  constexpr double kLargestSeparation = 16;
+  if (!(job.eye_separation_baselines > 0 && job.eye_separation_baselines <= kLargestSeparation)) {
+    throw UsageError(fmt::format("--eye-separation is {}, expected more than 0, at most {}",
+                                 job.eye_separation_baselines, kLargestSeparation));
   }
-  if (job.disparity_scale && !(*job.disparity_scale > 0)) {
+  if (job.stereo_packing && !masks.empty()) {
     throw UsageError(
-        fmt::format("--disparity-scale is {}, expected a number above 0", *job.disparity_scale));
+        fmt::format("{} is the mask of one view, expected no --stereo-packing", masks[0].option));
   }
-  if (job.has_maps()) {
-    refuse_idle_match_options(settings);
-  } else {
-    job.match.validate();
-    if (job.match.disparities_y) {
-      throw UsageError("--disparities-y has no use here: views come from rectified pairs");
-    }
-    if (job.disparity_scale) {
-      throw UsageError("--disparity-scale has no effect without --left-disparity");
-    }
+  if (!job.stereo_packing && settings.given_on_command_line("eye-separation")) {
+    throw UsageError("--eye-separation has no effect without --stereo-packing");
   }
   FileChecks files;
-  for (const std::string& input : {job.left, job.right, job.left_disparity, job.right_disparity}) {
-    files.add_input(input);
-  }
+  check_pair(job.pair, settings, files);
   output.check(files, "--output");
-  if (hole_mask) {
-    hole_mask->check(files, "--hole-mask");
+  for (const MaskOutput& mask : masks) {
+    mask.output.check(files, mask.option);
   }
   files.add_output(job.common.report, "--report", OutputKind::kText);
 }
 
-DisparityMaps maps_of(const SynthJob& job, const Photograph& left, const Photograph& right,
-                      Execution& execution, RunReport& report) {
-  DisparityMaps maps;
-  if (job.has_maps()) {
-    report.timed_file_access("read", [&] {
-      const double scale = job.disparity_scale.value_or(0);
-      maps.left = read_disparity(job.left_disparity, scale);
-      maps.right = read_disparity(job.right_disparity, scale);
-    });
-    return maps;
+SettingValue rows_of(const Eigen::Matrix3d& matrix) {
+  SettingValue rows = SettingValue::array();
+  for (int row = 0; row < 3; ++row) {
+    rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2)});
   }
-  const StereoMatcher matcher(job.match, execution);
-  report.add_match(report.timed_compute([&] {
-    MatchReport result;
-    matcher.match(left, right, {}, maps, &result);
-    return result;
-  }));
-  return maps;
+  return rows;
 }
 
-SettingValue describe(double view_x, const SynthesizedView& view) {
+SettingValue describe(const ViewPose& pose, const SynthesizedView& view) {
+  SettingValue entry = SettingValue::object();
+  if (const auto* camera = std::get_if<PosedCamera>(&pose)) {
+    const Eigen::Vector3d& t = camera->translation;
+    entry["K"] = rows_of(camera->matrix);
+    entry["R"] = rows_of(camera->rotation);
+    entry["t"] = {t.x(), t.y(), t.z()};
+  } else {
+    entry["view_x"] = std::get<BaselinePosition>(pose).x;
+    entry["view_y"] = std::get<BaselinePosition>(pose).y;
+  }
+  entry["hole_fraction"] = view.hole_fraction;
   SettingValue fits = SettingValue::array();
   const int channels = std::min(view.image.channels(), static_cast<int>(view.intensity.size()));
   for (int channel = 0; channel < channels; ++channel) {
     const IntensityFit& fit = view.intensity[static_cast<std::size_t>(channel)];
     fits.push_back({{"offset", fit.offset}, {"gain", fit.gain}});
   }
-  return {{"view_x", view_x}, {"hole_fraction", view.hole_fraction}, {"intensity", fits}};
+  entry["intensity"] = fits;
+  return entry;
 }
+
+/// Renders and delivers all views, several at a time; false when interrupted.
+class Rendering {
+ public:
+  Rendering(const SynthJob& job, const std::vector<ViewPose>& poses, const ViewRenderer& renderer,
+            ViewOutput& output, std::vector<MaskOutput>& masks)
+      : job_(job), poses_(poses), renderer_(renderer), output_(output), masks_(masks) {}
+
+  bool run(Execution& execution, RunReport& report) {
+    // Two more than threads: one being encoded, one waiting for it.
+    const int in_flight =
+        std::min(execution.executor().thread_count() + 2, static_cast<int>(poses_.size()));
+    slots_.resize(static_cast<std::size_t>(in_flight));
+    Progress progress(
+        "synth", "views",
+        job_.common.quiet || poses_.size() == 1 ? ProgressStyle::kNone : ProgressStyle::kAuto);
+    scheduler::FrameSteps steps;
+    steps.read = [&](int slot) {
+      slot_of(slot).index = next_++;
+      return slot_of(slot).index < static_cast<int>(poses_.size());
+    };
+    steps.prepare = [](int /*slot*/) {};
+    steps.compute = [&](int slot) {
+      const BusyClock::Activity activity(computing_);
+      renderer_.render(pose_of(slot_of(slot)), slot_of(slot).view);
+    };
+    steps.encode = [&](int slot) { write(slot_of(slot), /*in_order=*/false); };
+    steps.write = [&](int slot) {
+      write(slot_of(slot), /*in_order=*/true);
+      report.add_stage("views", slot_of(slot).view.seconds);
+      report.add_stage("write", std::exchange(slot_of(slot).write_seconds, 0));
+      results_.push_back(describe(pose_of(slot_of(slot)), slot_of(slot).view.eyes[0]));
+      progress.update(static_cast<int>(results_.size()), static_cast<int>(poses_.size()), 0);
+    };
+    const scheduler::FrameOutcome outcome =
+        scheduler::run_frames(execution.executor(), in_flight, steps, {}, &interrupt_flag());
+    report.add_compute_seconds(computing_.seconds());
+    return !outcome.interrupted;
+  }
+
+  [[nodiscard]] const SettingValue& results() const { return results_; }
+
+ private:
+  struct Slot {
+    int index = 0;
+    RenderedView view;
+    double write_seconds = 0;
+  };
+
+  [[nodiscard]] Slot& slot_of(int slot) { return slots_[static_cast<std::size_t>(slot)]; }
+  [[nodiscard]] const ViewPose& pose_of(const Slot& slot) const {
+    return poses_[static_cast<std::size_t>(slot.index)];
+  }
+
+  // Images are files of their own, frames of a video follow each other.
+  void write(Slot& slot, bool in_order) {
+    const auto start = std::chrono::steady_clock::now();
+    if (output_.needs_order() == in_order) {
+      output_.write(slot.index, slot.view.picture(job_.stereo_packing.has_value()),
+                    job_.frame_rate);
+    }
+    for (MaskOutput& mask : masks_) {
+      if (mask.output.needs_order() == in_order) {
+        mask.output.write(slot.index, {(slot.view.eyes[0].*mask.mask).copy()}, job_.frame_rate);
+      }
+    }
+    slot.write_seconds +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  const SynthJob& job_;
+  const std::vector<ViewPose>& poses_;
+  const ViewRenderer& renderer_;
+  ViewOutput& output_;
+  std::vector<MaskOutput>& masks_;
+  std::vector<Slot> slots_;
+  int next_ = 0;
+  BusyClock computing_;
+  SettingValue results_ = SettingValue::array();
+};
 
 }  // namespace
 
 int command_synth(const Arguments& arguments) {
   SynthJob job;
-  Settings settings("synth", "Renders new views on the baseline of a rectified stereo pair.");
+  Settings settings("synth", "Renders new views of a stereo pair: stills, or movies along a path.");
   add_file_settings(settings, job);
   add_view_settings(settings, job);
   add_synthesis_settings(settings, job.synthesis);
-  add_match_settings(settings, job.match);
+  add_match_settings(settings, job.pair.match);
   add_common_settings(settings, job.common);
   if (!settings.read(arguments)) {
     return kExitDone;
   }
-  const std::vector<double> views_x = views_of(job);
-  const int views = static_cast<int>(views_x.size());
+  std::vector<ViewPose> poses = poses_of(job.views);
+  const int views = static_cast<int>(poses.size());
   ViewOutput output(job.output, views);
-  std::optional<ViewOutput> hole_mask;
-  if (!job.hole_mask.empty()) {
-    hole_mask.emplace(job.hole_mask, views);
-  }
-  check(job, settings, output, hole_mask);
-  RunReport report(settings.command(),
-                   job.has_maps() ? settings.values() : reported_settings(settings, job.match));
+  std::vector<MaskOutput> masks = masks_of(job, views);
+  check(job, settings, output, masks);
+  RunReport report(settings.command(), reported_settings(settings, job.pair));
   force_instruction_set(job.common.isa);
   Execution execution(job.common.execution);
   report.set_execution(execution);
-  const ViewSynthesizer synthesizer(job.synthesis, execution);
-
-  const auto read = [&](const std::string& path) {
-    return report.timed_file_access("read", [&] { return read_photograph(path); });
-  };
-  const Photograph left = read(job.left);
-  const Photograph right = read(job.right);
-  if (!job.has_maps()) {
-    choose_disparities(settings, job.common, left, right, job.match, execution, report);
+  const PairWithMaps input = read_pair(job.pair, settings, job.common, execution, report);
+  complete_poses(job.views, input.cameras ? &*input.cameras : nullptr, input.left.width(),
+                 input.left.height(), poses);
+  std::optional<TwoEyes> two_eyes;
+  if (job.stereo_packing) {
+    two_eyes = {*job.stereo_packing, job.eye_separation_baselines};
   }
-  const DisparityMaps maps = maps_of(job, left, right, execution, report);
-
-  const std::atomic<bool>& interrupted = interrupt_flag();
-  SettingValue results = SettingValue::array();
-  SynthesizedView view;
-  {
-    Progress progress("synth", "views",
-                      job.common.quiet || views == 1 ? ProgressStyle::kNone : ProgressStyle::kAuto);
-    for (int index = 0; index < views && !interrupted.load(); ++index) {
-      const double view_x = views_x[static_cast<std::size_t>(index)];
-      report.timed_compute("views", [&] {
-        synthesizer.synthesize(left, right, maps.left.view(), maps.right.view(), view_x, view);
-      });
-      report.timed_file_access("write", [&] {
-        output.write(index, view.image, job.frame_rate);
-        if (hole_mask) {
-          hole_mask->write(index, {view.holes.copy()}, job.frame_rate);
-        }
-      });
-      results.push_back(describe(view_x, view));
-      progress.update(index + 1, views, 0);
-    }
+  ViewRenderer renderer(input, job.synthesis, two_eyes, execution);
+  if (views > 1) {
+    report.timed_compute("views", [&] { renderer.fix_intensities(); });
   }
-  if (interrupted.load()) {
+  Rendering rendering(job, poses, renderer, output, masks);
+  if (!rendering.run(execution, report)) {
     if (!job.common.quiet) {
-      fmt::print(stderr, "synth: interrupted after {} of {} views\n", results.size(), views);
+      fmt::print(stderr, "synth: interrupted after {} of {} views\n", rendering.results().size(),
+                 views);
     }
     return kExitInterrupted;
   }
   report.timed_file_access("write", [&] {
     output.finish();
-    if (hole_mask) {
-      hole_mask->finish();
+    for (MaskOutput& mask : masks) {
+      mask.output.finish();
     }
   });
 
-  report.set_results({{"views", results}});
+  report.set_results({{"views", rendering.results()}});
   report.write(job.common.report);
   if (!job.common.quiet) {
-    fmt::print(stderr, "synth: {}x{} pixels, {} view{} -> {}\n", left.width(), left.height(), views,
-               views == 1 ? "" : "s", job.output);
+    fmt::print(stderr, "synth: {}x{} pixels, {} view{} -> {}\n", input.left.width(),
+               input.left.height(), views, views == 1 ? "" : "s", job.output);
     report.print_summary();
   }
   return kExitDone;

@@ -29,8 +29,13 @@ std::span<const Command> commands();
 
 int command_match(const Arguments& arguments);
 int command_synth(const Arguments& arguments);
+int command_view(const Arguments& arguments);
 int command_run(const Arguments& arguments);
+int command_rectify(const Arguments& arguments);
 int command_eval(const Arguments& arguments);
+int command_scene_build(const Arguments& arguments);
+int command_scene_view(const Arguments& arguments);
+int command_scene_info(const Arguments& arguments);
 int command_generate_book(const Arguments& arguments);
 int command_generate_scene(const Arguments& arguments);
 int command_response(const Arguments& arguments);

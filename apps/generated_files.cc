@@ -5,20 +5,12 @@
 #include <utility>
 #include <variant>
 
-#include "engine/error.h"
+#include "engine/io/atomic_file.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/photograph_io.h"
+#include "engine/sequence/sequence_layout.h"
 
 namespace vantage::apps {
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder, error)) {
-    throw Error(fmt::format("{}: cannot be made a folder{}{}", folder.string(), error ? ": " : "",
-                            error ? error.message() : ""));
-  }
-}
 
 GeneratedFiles::GeneratedFiles(std::filesystem::path folder, bool sequence)
     : folder_(std::move(folder)), sequence_(sequence) {
@@ -46,6 +38,10 @@ void GeneratedFiles::write(const std::string& name, int frame,
 
 void GeneratedFiles::write(const std::string& name, int frame, const Mask& mask) const {
   write_mask(file(name, frame, "png"), mask.view());
+}
+
+void GeneratedFiles::write_text(const std::string& name, const std::string& text) const {
+  write_text_file(folder_ / name, text);
 }
 
 }  // namespace vantage::apps

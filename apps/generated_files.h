@@ -8,9 +8,6 @@
 
 namespace vantage::apps {
 
-/// Makes a folder and those above it, unless they are there. Throws Error.
-void make_folder(const std::filesystem::path& folder);
-
 /// Where generated pictures go: DIR/left.png for a single frame, DIR/left/000000.png for a
 /// sequence. Folders are made when the first file is written to them.
 class GeneratedFiles {
@@ -23,6 +20,8 @@ class GeneratedFiles {
   void write(const std::string& name, int frame, const Photograph& photograph) const;
   void write(const std::string& name, int frame, const DisparityMap& disparity) const;
   void write(const std::string& name, int frame, const Mask& mask) const;
+  /// Writes DIR/NAME, which belongs to all frames. Throws Error.
+  void write_text(const std::string& name, const std::string& text) const;
 
  private:
   [[nodiscard]] std::filesystem::path file(const std::string& name, int frame,

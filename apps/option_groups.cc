@@ -33,15 +33,35 @@ void add_synthesis_settings(Settings& settings, SynthesisOptions& options) {
   settings.choice<WarpColour>(
       "warp", options.warp, {{"one-pass", WarpColour::kOnePass}, {"forward", WarpColour::kForward}},
       "one-pass: one bicubic interpolation of the photograph; forward: moves whole pixels");
+  add_holes_setting(settings, options.holes);
+  add_soft_edges_setting(settings, options.soft_edges);
+  add_combining_settings(settings, options);
+}
+
+void add_soft_edges_setting(Settings& settings, bool& soft_edges) {
+  settings.choice<bool>("soft-edges", soft_edges, {{"on", true}, {"off", false}},
+                        "Outlines as soft as a photograph's, without traces of old ones");
+}
+
+void add_holes_setting(Settings& settings, HoleFilling& holes) {
   settings.choice<HoleFilling>(
-      "holes", options.holes,
+      "holes", holes,
       {{"mirror", HoleFilling::kMirror},
        {"spread", HoleFilling::kSpread},
+       {"inpaint", HoleFilling::kInpaint},
        {"none", HoleFilling::kNone}},
-      "What fills places that no image shows: the background mirrored, spread, or nothing");
+      "What fills places that no image shows: the background mirrored or spread along the row or "
+      "painted on from all sides, or nothing");
+}
+
+void add_combining_settings(Settings& settings, SynthesisOptions& options) {
   settings.number("gamma", options.gamma, "G",
                   "Whose brightness a view has, 1 left to 0 right; alpha: moves with the view",
                   "alpha");
+  add_surface_settings(settings, options);
+}
+
+void add_surface_settings(Settings& settings, SynthesisOptions& options) {
   settings.number("gradient-limit", options.disparity_gradient_limit_px, "PX",
                   "Neighbours whose disparities differ by no more are one surface");
   Setting& no_matching = settings.add("no-intensity-matching", "",
@@ -51,41 +71,6 @@ void add_synthesis_settings(Settings& settings, SynthesisOptions& options) {
     options.match_intensities = !to_truth(value);
   };
   no_matching.get = [&options] { return !options.match_intensities; };
-}
-
-double to_view_x(const SettingValue& value) {
-  if (value.is_number()) {
-    return to_number(value);
-  }
-  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ',');
-  double view_y = 0;
-  double view_x = 0;
-  try {
-    view_x = to_number(parts[0]);
-    view_y = parts.size() > 1 ? to_number(parts[1]) : 0;
-  } catch (const UsageError&) {
-    reject_value(value, "a position on the baseline such as 0.5");
-  }
-  if (view_y != 0 || parts.size() > 2) {
-    reject_value(value, "XS or XS,0: views off the baseline are not available");
-  }
-  return view_x;
-}
-
-void add_view_setting(Settings& settings, std::vector<double>& views_x) {
-  Setting& view =
-      settings.add("view", "XS",
-                   "Position of a new view in baselines: 0 left camera, 1 right camera, "
-                   "0.5 between them; repeatable");
-  view.list = true;
-  view.set = [&views_x](const SettingValue& value) {
-    std::vector<double> views;
-    for (const SettingValue& member : to_list(value)) {
-      views.push_back(to_view_x(member));
-    }
-    views_x = std::move(views);
-  };
-  view.get = [&views_x] { return views_x; };
 }
 
 void add_seed_setting(Settings& settings, std::uint64_t& seed) {

@@ -22,12 +22,14 @@ struct CommonOptions {
 // Each binds the fields of one option struct to its settings: the only list of them.
 void add_common_settings(Settings& settings, CommonOptions& options);
 void add_synthesis_settings(Settings& settings, SynthesisOptions& options);
+// Parts of the latter, in the group that has begun.
+void add_holes_setting(Settings& settings, HoleFilling& holes);
+void add_soft_edges_setting(Settings& settings, bool& soft_edges);
+/// How two warped images become one.
+void add_combining_settings(Settings& settings, SynthesisOptions& options);
+/// The same without gamma.
+void add_surface_settings(Settings& settings, SynthesisOptions& options);
 
-/// XS of a view given as a number or as "XS,YS". Throws UsageError unless YS is 0: views off the
-/// baseline are not available.
-double to_view_x(const SettingValue& value);
-/// --view, repeatable.
-void add_view_setting(Settings& settings, std::vector<double>& views_x);
 /// --seed, a whole number of at least 0.
 void add_seed_setting(Settings& settings, std::uint64_t& seed);
 

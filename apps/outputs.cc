@@ -31,19 +31,14 @@ std::vector<std::string> extensions_of(OutputKind kind) {
       return {".mp4"};
     case OutputKind::kTable:
       return {".csv", ".npy"};
+    case OutputKind::kPage:
+      return {".html", ".htm"};
     case OutputKind::kPlot:
       return {".svg", ".png", ".jpg", ".jpeg", ".tiff", ".tif", ".bmp", ".ppm", ".webp"};
     case OutputKind::kText:
       break;
   }
   return {};
-}
-
-fs::path resolved(const fs::path& path) {
-  std::error_code ignored;
-  const fs::path absolute = fs::absolute(path, ignored);
-  const fs::path canonical = fs::weakly_canonical(absolute, ignored);
-  return canonical.empty() ? absolute.lexically_normal() : canonical;
 }
 
 void require_writable(const fs::path& path) {
@@ -99,6 +94,13 @@ void FileChecks::add_output(const std::string& path, const std::string& option, 
     throw UsageError(fmt::format("{} and {} are the same file '{}'", other->second, option, path));
   }
   require_writable(path);
+}
+
+fs::path resolved(const fs::path& path) {
+  std::error_code ignored;
+  const fs::path absolute = fs::absolute(path, ignored);
+  const fs::path canonical = fs::weakly_canonical(absolute, ignored);
+  return canonical.empty() ? absolute.lexically_normal() : canonical;
 }
 
 bool is_pattern(const std::string& path) { return path.find('%') != std::string::npos; }

@@ -16,6 +16,7 @@ enum class OutputKind {
   kMask,
   kVideo,
   kTable,  ///< numbers: .csv or .npy
+  kPage,   ///< .html
   kPlot,   ///< a chart: .svg or a picture
   kText
 };
@@ -34,6 +35,9 @@ class FileChecks {
   std::vector<std::filesystem::path> inputs_;
   std::map<std::filesystem::path, std::string> outputs_;  ///< resolved path → option
 };
+
+/// `path`, absolute and without links as far as it exists: equal for equal places.
+std::filesystem::path resolved(const std::filesystem::path& path);
 
 /// Whether `path` is a printf pattern: it has a '%'.
 bool is_pattern(const std::string& path);

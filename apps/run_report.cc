@@ -26,6 +26,11 @@ long long peak_memory_bytes() {
   return 0;
 }
 
+/// Milliseconds of what is over soon, seconds of what takes long.
+std::string time_text(double seconds) {
+  return seconds < 10 ? fmt::format("{:.1f} ms", seconds * 1e3) : fmt::format("{:.1f} s", seconds);
+}
+
 }  // namespace
 
 RunReport::RunReport(std::string command, SettingValue settings)
@@ -95,13 +100,15 @@ SettingValue RunReport::json() const {
       {"plan", plan_},
       {"isa", isa_},
       {"threads", threads_},
-      {"seconds",
-       {{"wall", seconds_since(start_)}, {"compute", compute_seconds_}, {"stages", stages}}},
+      {"seconds", {{"wall", wall_seconds()}, {"compute", compute_seconds_}, {"stages", stages}}},
       {"cells", cells_},
       {"cells_per_second", cells_per_second()},
       {"peak_memory_bytes", peak_memory_bytes()}};
   if (!results_.is_null()) {
     document["results"] = results_;
+  }
+  for (const auto& [name, value] : more_results_.items()) {
+    document["results"][name] = value;
   }
   return document;
 }
@@ -118,9 +125,9 @@ void RunReport::print_summary() const {
   std::string line =
       fmt::format("{}: {} thread{}, {};", command_, threads_, threads_ == 1 ? "" : "s", isa_);
   for (const auto& [name, seconds] : stages_) {
-    line += fmt::format(" {} {:.1f} ms,", name, seconds * 1e3);
+    line += fmt::format(" {} {},", name, time_text(seconds));
   }
-  line += fmt::format(" total {:.1f} ms", seconds_since(start_) * 1e3);
+  line += " total " + time_text(wall_seconds());
   if (cells_ > 0) {
     line += fmt::format("; {:.0f} million cells/s", cells_per_second() * 1e-6);
   }

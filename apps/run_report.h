@@ -52,12 +52,19 @@ class RunReport {
   void set_execution(Execution& execution);
   /// Command-specific findings under the key `results`.
   void set_results(SettingValue results) { results_ = std::move(results); }
+  /// One more of them, which set_results() does not replace.
+  void add_result(const std::string& name, SettingValue value) {
+    more_results_[name] = std::move(value);
+  }
 
-  /// The JSON document of DESIGN §6.
+  /// Seconds since this object was created.
+  [[nodiscard]] double wall_seconds() const { return seconds_since(start_); }
+
+  /// The JSON document of --report.
   [[nodiscard]] SettingValue json() const;
   /// Writes json() to `path`, whole or not at all; nothing for an empty path.
   void write(const std::string& path) const;
-  /// One line per stage and one with the totals, on stderr.
+  /// One line on stderr: threads, stages, total, cells per second.
   void print_summary() const;
 
  private:
@@ -83,6 +90,7 @@ class RunReport {
   Clock::time_point start_ = Clock::now();
   SettingValue plan_;
   SettingValue results_;
+  SettingValue more_results_ = SettingValue::object();
   std::string isa_;
   int threads_ = 0;
   double compute_seconds_ = 0;

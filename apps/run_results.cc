@@ -78,12 +78,16 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
   report.set_results(std::move(results));
 }
 
-void print_summary(const RunJob& job, const RunSession& session, const SequenceReport& sequence) {
+void print_summary(const RunJob& job, const RunSession& session, const SequenceReport& sequence,
+                   double wall_seconds) {
   print_remarks("", sequence.remarks);
   print_remarks("skipped ", sequence.skipped);
   std::string line = fmt::format("run: {} frame{} of {}x{} pixels", sequence.frames,
                                  sequence.frames == 1 ? "" : "s", session.shape.source.width_px,
                                  session.shape.source.height_px);
+  if (sequence.frames > 0) {
+    line += fmt::format(", {:.2f} frames/s", sequence.frames / wall_seconds);
+  }
   if (sequence.frames_before > 0) {
     line += fmt::format(", {} had been done before", sequence.frames_before);
   }

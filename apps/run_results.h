@@ -12,8 +12,9 @@ namespace vantage::apps {
 void fill_report(const RunJob& job, const RunSession& session, const SequenceReport& sequence,
                  const DeliveredFrames& delivered, RunReport& report);
 
-/// The same in a few lines on stderr.
-void print_summary(const RunJob& job, const RunSession& session, const SequenceReport& sequence);
+/// The same in a few lines on stderr. `wall_seconds`: from the start of the command on.
+void print_summary(const RunJob& job, const RunSession& session, const SequenceReport& sequence,
+                   double wall_seconds);
 
 /// How much results flicker, as a report shows it; null where it was not measured.
 SettingValue flicker_values(const FlickerSums& sums);

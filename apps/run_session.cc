@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "apps/automatic_disparities.h"
+#include "apps/rectification_check.h"
 #include "engine/error.h"
 #include "engine/io/file_identity.h"
 #include "engine/sequence/delivered_frames.h"
@@ -139,6 +140,7 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   FramePair first;
   report.timed_file_access("open", [&] { read_first_pair(*session.pairs, first); });
   session.shape = shape_of(first.left);
+  session.shape.frames_kept = session.pairs->frames_kept();
   session.selection = {.frame_count = session.pairs->pair_count(),
                        .chunk_frames = job.sequence.chunk_frames,
                        .frames = job.frames,
@@ -154,7 +156,7 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
                                  execution.executor().name());
   if (!job.calibration.empty()) {
     const StereoCalibration calibration = read_stereo_calibration(job.calibration);
-    Rectifier rectifier(calibration, first.left.width(), first.left.height());
+    Rectifier rectifier(calibration, first.left.width(), first.left.height(), job.rectification);
     if (rectifier.needs_rectification()) {
       session.rectifier.emplace(std::move(rectifier));
       session.shape.is_rectified_here = true;
@@ -162,6 +164,9 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
       session.rectifier->apply(source.left, Side::kLeft, first.left, execution);
       session.rectifier->apply(source.right, Side::kRight, first.right, execution);
     }
+  }
+  if (job.check_rectification) {
+    warn_unless_rectified(settings, job.common, first.left, first.right, report);
   }
   choose_disparities(settings, job.common, first.left, first.right, job.sequence.match, execution,
                      report);

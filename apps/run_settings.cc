@@ -10,6 +10,9 @@
 
 #include "apps/frame_rate_setting.h"
 #include "apps/match_settings.h"
+#include "apps/outputs.h"
+#include "apps/rectification_check.h"
+#include "apps/wanted_views.h"
 #include "engine/error.h"
 #include "engine/sequence/sequence_layout.h"
 
@@ -25,7 +28,7 @@ constexpr int kMaxShards = 100000;
 std::string known_outputs() {
   std::string names;
   for (const auto& [name, output] : sequence_output_names()) {
-    names += (names.empty() ? "" : ",") + std::string(name);
+    names += (names.empty() ? "" : ", ") + std::string(name);
   }
   return names;
 }
@@ -37,7 +40,7 @@ std::vector<SequenceOutput> to_outputs(const SettingValue& value) {
       const auto known = std::ranges::find(sequence_output_names(), name,
                                            &std::pair<std::string_view, SequenceOutput>::first);
       if (known == sequence_output_names().end()) {
-        reject_value(name, "a list of " + known_outputs());
+        reject_value(name, "some of " + known_outputs());
       }
       if (std::ranges::find(outputs, known->second) == outputs.end()) {
         outputs.push_back(known->second);
@@ -139,12 +142,17 @@ void add_input_settings(Settings& settings, RunJob& job) {
                    "Frame t is the left image and frame t + K the right one");
   path("calibration", job.calibration, "FILE",
        "Rectifies the pairs first: OpenCV YAML or XML, Middlebury or KITTI calib.txt");
+  add_rectification_check_setting(settings, job.check_rectification);
+  settings.number("kept-outline", job.rectification.kept_outline, "SHARE",
+                  "What rectified images show: 0 only what both cameras see, 1 all they see, with "
+                  "black around it, which is matched like a picture");
 }
 
 void add_view_path_setting(Settings& settings, std::vector<ViewTrack>& tracks) {
   Setting& setting =
       settings.add("view-path", "KEYS",
-                   "New view that moves: FRAME=XS,FRAME=XS…, linear in between; repeatable");
+                   "New view that moves: FRAME=XS,FRAME=XS…, or FRAME=XS,YS,…, linear in between; "
+                   "repeatable");
   setting.list = true;
   setting.set = [&tracks](const SettingValue& value) {
     std::vector<ViewTrack> read;
@@ -208,11 +216,13 @@ void add_output_settings(Settings& settings, RunJob& job) {
   video.list = true;
   video.set = [&job](const SettingValue& value) { job.sequence.video = to_outputs(value); };
   video.get = [&job] { return output_names(job.sequence.video); };
-  add_view_setting(settings, job.fixed_views_x);
+  add_view_setting(settings, job.fixed_views);
   add_view_path_setting(settings, job.moving_views);
   add_stereo_views_setting(settings, job.sequence.stereo_views_x);
-  settings.choice<StereoPacking>("stereo-packing", job.sequence.stereo_packing,
-                                 stereo_packing_names(), "How the stereo output holds them");
+  settings.choice<StereoDisplay>("stereo-packing", job.sequence.stereo_packing,
+                                 stereo_display_names(),
+                                 "How the stereo output holds them: side by side, one above the "
+                                 "other, interleaved or as an anaglyph");
   settings.text("format", job.sequence.map_format, "EXT",
                 "File format of the maps: pfm, png, tiff, exr or npy");
   add_frame_rate_setting(settings, "fps", job.frame_rate,
@@ -314,11 +324,6 @@ void add_pipeline_settings(Settings& settings, RunJob& job) {
                                  "terminal, else lines");
 }
 
-fs::path resolved(const fs::path& path) {
-  std::error_code ignored;
-  return fs::weakly_canonical(fs::absolute(path, ignored), ignored);
-}
-
 /// Results must not land among the frames they are made from.
 void require_separate_folders(const RunJob& job) {
   const SequenceLayout layout(job.output, job.sequence);
@@ -359,8 +364,8 @@ void add_run_settings(Settings& settings, RunJob& job) {
 void complete_sequence(RunJob& job) {
   SequenceOptions& sequence = job.sequence;
   sequence.views.clear();
-  for (const double view_x : job.fixed_views_x) {
-    sequence.views.push_back(ViewTrack::fixed(view_x));
+  for (const BaselinePosition position : job.fixed_views) {
+    sequence.views.push_back(ViewTrack::fixed(position));
   }
   sequence.views.insert(sequence.views.end(), job.moving_views.begin(), job.moving_views.end());
   if (job.save) {
@@ -377,6 +382,10 @@ void complete_sequence(RunJob& job) {
 void complete(RunJob& job) {
   complete_sequence(job);
   job.input.validate();
+  job.rectification.validate();
+  if (job.rectification.kept_outline > 0 && job.calibration.empty()) {
+    throw UsageError("--kept-outline is for pairs that are rectified, expected --calibration");
+  }
   job.common.execution.validate();
   if (job.in_flight && (*job.in_flight < 1 || *job.in_flight > kMaxInFlight)) {
     throw UsageError(fmt::format("in-flight is {}, expected a number from 1 to {}", *job.in_flight,

@@ -8,6 +8,7 @@
 #include "apps/option_groups.h"
 #include "apps/progress.h"
 #include "apps/settings.h"
+#include "engine/rectification/rectified_pair.h"
 #include "engine/sequence/pair_source.h"
 #include "engine/sequence/sequence_options.h"
 #include "engine/sequence/work_plan.h"
@@ -18,11 +19,12 @@ namespace vantage::apps {
 struct RunJob {
   PairSourceOptions input;
   std::string calibration;  ///< file, empty = rectified pairs
-  std::string output;       ///< folder
+  RectificationOptions rectification;
+  std::string output;  ///< folder
   SequenceOptions sequence;
   /// Empty: the disparity map, and the views when there are any.
   std::optional<std::vector<SequenceOutput>> save;
-  std::vector<double> fixed_views_x;
+  std::vector<BaselinePosition> fixed_views;
   std::vector<ViewTrack> moving_views;
   std::optional<FrameRate> frame_rate;  ///< empty: the input's, else 25
   std::optional<FrameRange> frames;
@@ -34,8 +36,14 @@ struct RunJob {
   bool overwrite = false;
   bool force = false;
   bool keep_going = false;
+  bool check_rectification = true;
   ProgressStyle progress = ProgressStyle::kAuto;
   CommonOptions common;
+
+  /// `progress`, or none where only errors are wanted.
+  [[nodiscard]] ProgressStyle shown_progress() const {
+    return common.quiet ? ProgressStyle::kNone : progress;
+  }
 };
 
 /// Binds all of it: the options of 'vantage run'.

@@ -38,14 +38,32 @@ std::string option_names(const Setting& setting) {
   return short_name + "--" + setting.name;
 }
 
+/// `text` in lines that fit beside the names of the options.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t kColumns = 70;
+  std::string lines;
+  std::size_t column = 0;
+  for (const std::string& word : split(text, ' ')) {
+    if (column > 0) {
+      const bool fits = column + 1 + word.size() <= kColumns;
+      lines += fits ? ' ' : '\n';
+      column = fits ? column + 1 : 0;
+    }
+    lines += word;
+    column += word.size();
+  }
+  return lines;
+}
+
 CLI::Option* add_option(CLI::App& app, const Setting& setting) {
   CLI::Option* option = nullptr;
+  const std::string help = wrapped(setting.help);
   if (setting.flag) {
-    option = app.add_flag(option_names(setting), setting.help);
+    option = app.add_flag(option_names(setting), help);
   } else {
     // Texts are only collected here: they are applied after the configuration file.
     option = app.add_option(
-        option_names(setting), [](const CLI::results_t&) { return true; }, setting.help);
+        option_names(setting), [](const CLI::results_t&) { return true; }, help);
     option->type_name(setting.positional ? "" : setting.value_name);
     option->default_str(shown_default(setting.get()));
     if (setting.positional && setting.list) {
@@ -225,6 +243,9 @@ bool Settings::read(const std::vector<std::string>& arguments) {
     options.push_back(add_option(app, setting));
     if (!setting.positional) {
       known.push_back("--" + setting.name);
+    }
+    if (setting.short_name != 0) {
+      known.push_back(fmt::format("-{}", setting.short_name));
     }
   }
   app.add_option("--config", config_path, "Read settings from this TOML file; options override it")

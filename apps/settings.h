@@ -85,8 +85,8 @@ class Settings {
   [[nodiscard]] SettingValue values() const;
   /// Those that change results, without those that are not set.
   [[nodiscard]] SettingValue result_values() const;
-  /// Sets what result_values() gave. Throws Error naming a key that is not known or a value that is
-  /// not accepted.
+  /// Sets what result_values() gave. Throws UsageError naming a key that is not known or a value
+  /// that is not accepted.
   void set_values(const SettingValue& values);
   /// All settings as --print-config writes them.
   [[nodiscard]] std::string toml() const;

@@ -93,7 +93,12 @@ int SlurmOptions::drain_seconds_or_default() const {
 
 void add_slurm_settings(Settings& settings, SlurmOptions& options) {
   settings.begin_group("Slurm");
-  settings.integer("shards", options.shards, "N", "Tasks that the run is divided into");
+  Setting& shards =
+      settings.integer("shards", options.shards, "N", "Tasks that the run is divided into");
+  shards.required = true;
+  shards.get = [&options] {
+    return options.shards == 0 ? SettingValue() : SettingValue(options.shards);
+  };
   settings.integer("concurrent", options.concurrent, "N", "Tasks at once; auto: all");
   settings.text("partition", options.partition, "NAME", "Partition of the cluster");
   settings.text("account", options.account, "NAME", "Account to charge");

@@ -10,7 +10,7 @@ namespace vantage::apps {
 
 /// How a run is divided and what its tasks ask Slurm for.
 struct SlurmOptions {
-  int shards = 0;  ///< tasks of the job array, 1..100000
+  int shards = 0;  ///< tasks of the job array, 1..100000; 0: not set yet
   /// Empty texts leave the choice to the cluster.
   std::string partition;
   std::string account;

@@ -11,6 +11,9 @@ namespace vantage::apps {
 /// (tables, dates).
 SettingValue read_toml(const std::string& path);
 
+/// Any TOML file, tables as objects. Throws likewise, for dates only.
+SettingValue read_toml_document(const std::string& path);
+
 /// `value` (a truth value, number, text or array of these) as TOML.
 std::string to_toml(const SettingValue& value);
 

@@ -39,6 +39,8 @@ void ViewOutput::check(FileChecks& checks, const std::string& option) const {
   }
 }
 
+bool ViewOutput::needs_order() const { return is_video(path_); }
+
 void ViewOutput::write(int index, const Photograph& image, FrameRate rate) {
   if (!is_video(path_)) {
     write_photograph(file(index), image);

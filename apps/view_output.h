@@ -18,7 +18,10 @@ class ViewOutput {
   /// Adds every file to be written to `checks`. `option` names the setting in messages.
   void check(FileChecks& checks, const std::string& option) const;
 
-  /// View `index`, in order.
+  /// Whether views must be written one by one in their order, as into a video; else write() may be
+  /// called concurrently and in any order.
+  [[nodiscard]] bool needs_order() const;
+  /// View `index`.
   void write(int index, const Photograph& image, FrameRate rate);
   /// Call it after the last view; without it no video is left.
   void finish();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <variant>
 
 #include "engine/image/image.h"
@@ -21,6 +22,23 @@ struct Photograph {
     return std::visit([](const auto& image) { return image.channels(); }, pixels);
   }
 };
+
+/// An image of that shape, in the memory that `photograph` has where it is of this type; contents
+/// are undefined. The photograph is not to be used before it has pixels again.
+struct ImageShape {
+  int width = 0;
+  int height = 0;
+  int channels = 1;
+};
+template <typename T>
+Image<T> take_image(Photograph& photograph, ImageShape shape) {
+  Image<T> image;
+  if (auto* same = std::get_if<Image<T>>(&photograph.pixels)) {
+    image = std::move(*same);
+  }
+  image.resize(shape.width, shape.height, shape.channels);
+  return image;
+}
 
 /// Grey levels (0..255, EQUATIONS §0) per unit of a stored value.
 template <typename T>

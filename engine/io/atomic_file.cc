@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <system_error>
 
@@ -30,6 +29,19 @@ fs::path resolve_links(const fs::path& path) {
   std::error_code ignored;
   const fs::path resolved = fs::canonical(path, ignored);
   return ignored ? path : resolved;
+}
+
+std::span<const std::uint8_t> bytes_of(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+/// Fills the file `target`, which is there; messages name `path`.
+void fill(const fs::path& target, std::span<const std::uint8_t> bytes, const fs::path& path) {
+  // Created anew where somebody has cleared it away.
+  const FileDescriptor file(::open(target.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
+  if (!file.valid() || !write_all(file.get(), bytes)) {
+    fail(path, errno);
+  }
 }
 
 }  // namespace
@@ -71,46 +83,63 @@ AtomicFile::~AtomicFile() {
   }
 }
 
+int AtomicFile::flush() const {
+  const FileDescriptor file(::open(temporary_path_.c_str(), O_RDONLY | O_CLOEXEC));
+  return file.valid() && ::fsync(file.get()) == 0 ? 0 : errno;
+}
+
+void AtomicFile::flush_name() const {
+  // Makes the new name itself survive a power cut. Some file systems cannot do this for folders;
+  // the file is complete either way.
+  flush_folder(folder_of(final_path_));
+}
+
 void AtomicFile::commit() {
-  {
-    const FileDescriptor file(::open(temporary_path_.c_str(), O_RDONLY | O_CLOEXEC));
-    if (!file.valid() || ::fsync(file.get()) != 0) {
-      fail(given_path_, errno);
-    }
+  if (const int error = flush(); error != 0) {
+    fail(given_path_, error);
   }
   if (::rename(temporary_path_.c_str(), final_path_.c_str()) != 0) {
     fail(given_path_, errno);
   }
   committed_ = true;
-  // Makes the new name itself survive a power cut. Some file systems cannot do this for folders;
-  // the file is complete either way.
-  const FileDescriptor folder(
-      ::open(folder_of(final_path_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (folder.valid()) {
-    (void)::fsync(folder.get());
+  flush_name();
+}
+
+bool AtomicFile::commit_if_absent() {
+  const int flush_error = flush();
+  if (flush_error == 0 && ::link(temporary_path_.c_str(), final_path_.c_str()) == 0) {
+    flush_name();
+    return true;  // the temporary name goes with this object
   }
+  std::error_code ignored;
+  if (fs::exists(final_path_, ignored)) {
+    return false;
+  }
+  if (flush_error != 0) {
+    fail(given_path_, flush_error);
+  }
+  commit();
+  return true;
 }
 
 void write_binary_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
   AtomicFile target(path);
-  {
-    const FileDescriptor file(::open(target.temporary_path().c_str(), O_WRONLY | O_CLOEXEC));
-    if (!file.valid()) {
-      fail(path, errno);
-    }
-    while (!bytes.empty()) {
-      const ssize_t written = ::write(file.get(), bytes.data(), bytes.size());
-      if (written < 0 && errno != EINTR) {
-        fail(path, errno);
-      }
-      bytes = bytes.subspan(static_cast<std::size_t>(std::max<ssize_t>(written, 0)));
-    }
-  }
+  fill(target.temporary_path(), bytes, path);
   target.commit();
 }
 
 void write_text_file(const fs::path& path, std::string_view text) {
-  write_binary_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  write_binary_file(path, bytes_of(text));
+}
+
+bool create_text_file(const fs::path& path, std::string_view text) {
+  std::error_code ignored;
+  if (fs::exists(path, ignored)) {
+    return false;
+  }
+  AtomicFile target(path);
+  fill(target.temporary_path(), bytes_of(text), path);
+  return target.commit_if_absent();
 }
 
 }  // namespace vantage

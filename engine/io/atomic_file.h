@@ -27,7 +27,16 @@ class AtomicFile {
   /// wrote the file has closed it. Throws Error (a full disk, say).
   void commit();
 
+  /// commit() unless something has the final name already, which then stays; false in that case,
+  /// also when the temporary file has been cleared away since. Of several processes one succeeds;
+  /// where the file system has no links, two at the very same moment may both do.
+  bool commit_if_absent();
+
  private:
+  /// 0 or what went wrong.
+  [[nodiscard]] int flush() const;
+  void flush_name() const;
+
   std::filesystem::path given_path_;  ///< as the caller wrote it, for messages
   std::filesystem::path final_path_;
   std::filesystem::path temporary_path_;
@@ -39,5 +48,8 @@ void write_binary_file(const std::filesystem::path& path, std::span<const std::u
 
 /// Writes `text` as the file `path`; whole or not at all. Throws Error.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
+
+/// write_text_file() unless there is such a file, which then stays as it is; false in that case.
+bool create_text_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace vantage

@@ -47,14 +47,21 @@ bool has_fresh_start(std::span<const std::uint8_t> bytes) {
   return false;
 }
 
+}  // namespace
+
 bool begins_afresh(const AVPacket& packet, const AVCodecParameters& parameters) {
+  const AVCodecDescriptor* coding = avcodec_descriptor_get(parameters.codec_id);
+  if (coding != nullptr && (coding->props & AV_CODEC_PROP_INTRA_ONLY) != 0) {
+    return true;
+  }
+  if (parameters.codec_id != AV_CODEC_ID_H264) {
+    return false;
+  }
   const std::span<const std::uint8_t> bytes(packet.data, static_cast<std::size_t>(packet.size));
   const bool has_lengths = parameters.extradata_size >= 7 && parameters.extradata[0] == 1;
   return has_lengths ? has_fresh_start(bytes, (parameters.extradata[4] & 3U) + 1)
                      : has_fresh_start(bytes);
 }
-
-}  // namespace
 
 bool CutVideo::is_cut_off(const AVPacket& packet) {
   if (parameters_->codec_id != AV_CODEC_ID_H264) {

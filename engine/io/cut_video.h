@@ -7,6 +7,11 @@ struct AVPacket;
 
 namespace vantage {
 
+/// Whether decoding that begins with this packet gives the same frames as decoding that comes from
+/// before it, and shows none from before it later. Known of H.264 and of codings without
+/// references.
+bool begins_afresh(const AVPacket& packet, const AVCodecParameters& parameters);
+
 /// Judges the packets, one after the other, of a video that may have been cut without encoding it
 /// again. Only H.264 is known that well.
 class CutVideo {

@@ -102,8 +102,8 @@ DisparityMap read_disparity(const std::filesystem::path& path, double scale) {
       stored.photograph.pixels);
 }
 
-std::vector<std::uint8_t> encode_disparity(const std::filesystem::path& path,
-                                           ImageView<const float> disparity) {
+void encode_disparity(const std::filesystem::path& path, ImageView<const float> disparity,
+                      std::vector<std::uint8_t>& bytes) {
   if (!is_disparity_extension(path)) {
     throw UsageError(fmt::format(
         "cannot write {}: unknown disparity extension '{}', expected .pfm .png .tiff .exr or .npy",
@@ -117,19 +117,20 @@ std::vector<std::uint8_t> encode_disparity(const std::filesystem::path& path,
   }
   const std::string extension = lower_case_extension(path);
   if (extension == ".pfm") {
-    return encode_pfm(disparity, std::numeric_limits<float>::infinity());
+    encode_pfm(disparity, bytes, std::numeric_limits<float>::infinity());
+  } else if (extension == ".npy") {
+    bytes = encode_npy(with_unknown_as(disparity, kUnknown).view());
+  } else if (extension == ".png") {
+    encode_image(path, Photograph{to_kitti(path, disparity)}, bytes);
+  } else {
+    encode_image(path, Photograph{with_unknown_as(disparity, kUnknown)}, bytes);
   }
-  if (extension == ".npy") {
-    return encode_npy(with_unknown_as(disparity, kUnknown).view());
-  }
-  if (extension == ".png") {
-    return encode_image(path, Photograph{to_kitti(path, disparity)});
-  }
-  return encode_image(path, Photograph{with_unknown_as(disparity, kUnknown)});
 }
 
 void write_disparity(const std::filesystem::path& path, ImageView<const float> disparity) {
-  write_binary_file(path, encode_disparity(path, disparity));
+  std::vector<std::uint8_t> bytes;
+  encode_disparity(path, disparity, bytes);
+  write_binary_file(path, bytes);
 }
 
 bool is_disparity_extension(const std::filesystem::path& path) {

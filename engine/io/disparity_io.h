@@ -22,10 +22,10 @@ DisparityMap read_disparity(const std::filesystem::path& path, double scale = 0)
 /// or not at all. Throws UsageError for another extension, Error when the file cannot be written.
 void write_disparity(const std::filesystem::path& path, ImageView<const float> disparity);
 
-/// The bytes of a file named `path` that holds the map; what write_disparity() writes, and it
-/// throws alike.
-std::vector<std::uint8_t> encode_disparity(const std::filesystem::path& path,
-                                           ImageView<const float> disparity);
+/// Makes `bytes`, whose memory is reused, those of a file named `path` that holds the map: what
+/// write_disparity() writes, and it throws alike.
+void encode_disparity(const std::filesystem::path& path, ImageView<const float> disparity,
+                      std::vector<std::uint8_t>& bytes);
 
 /// True when write_disparity() knows the extension.
 bool is_disparity_extension(const std::filesystem::path& path);

@@ -98,7 +98,9 @@ void write_displacements(const std::filesystem::path& path, const DisplacementVi
   if (extension == ".npy") {
     write_binary_file(path, encode_npy(values.view()));
   } else {
-    write_binary_file(path, encode_image(path, Photograph{with_validity(values)}));
+    std::vector<std::uint8_t> bytes;
+    encode_image(path, Photograph{with_validity(values)}, bytes);
+    write_binary_file(path, bytes);
   }
 }
 

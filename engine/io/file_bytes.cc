@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "engine/io/file_descriptor.h"
 #include "engine/io/photograph_io.h"
 
 namespace vantage {
@@ -44,18 +45,14 @@ std::vector<std::uint8_t> read_file_bytes(const fs::path& path) {
   if (size > static_cast<std::uintmax_t>(kMaxImagePixels) * 16 + (1U << 20)) {
     fail_to_read(path, fmt::format("{} bytes are too many for an image", size));
   }
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) {
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.valid()) {
     fail_to_read(path, std::generic_category().message(errno));
   }
-  struct Closer {
-    int descriptor;
-    ~Closer() { ::close(descriptor); }
-  } const closer{descriptor};
   std::vector<std::uint8_t> bytes(size);
   std::size_t filled = 0;
   while (filled < bytes.size()) {
-    const ssize_t count = ::read(descriptor, bytes.data() + filled, bytes.size() - filled);
+    const ssize_t count = ::read(file.get(), bytes.data() + filled, bytes.size() - filled);
     if (count == 0) {
       break;
     }

@@ -2,6 +2,10 @@
 
 #include <unistd.h>
 
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
 namespace vantage {
 
 /// Closes a file of the operating system when it goes. Owns it.
@@ -21,5 +25,11 @@ class FileDescriptor {
  private:
   int descriptor_;
 };
+
+/// False when that fails; errno then tells why.
+bool write_all(int descriptor, std::span<const std::uint8_t> bytes);
+
+/// Makes names in `folder` survive a power cut, where the file system can do that.
+void flush_folder(const std::filesystem::path& folder);
 
 }  // namespace vantage

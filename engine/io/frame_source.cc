@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "engine/error.h"
 #include "engine/io/image_sequence.h"
 #include "engine/io/photograph_io.h"
@@ -11,7 +13,7 @@ namespace vantage {
 
 void FetchedFrame::decode() {
   if (!file.empty()) {
-    photograph = read_photograph(file);
+    photograph = read_photograph(file, std::move(photograph));
   }
 }
 

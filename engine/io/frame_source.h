@@ -34,13 +34,15 @@ class FrameSource {
 
   /// Fetches the next frame; false after the last one, which in some videos comes a few frames
   /// before frame_count(). Throws Error naming the frame when it is bad; the call after that goes
-  /// on with the frame behind it. Behind a bad frame of a video all others are bad too.
+  /// on with the frame behind it. Behind a bad frame of a video others are bad too, up to the
+  /// next that can be decoded without it.
   virtual bool fetch(FetchedFrame& frame) = 0;
   /// fetch() and decode().
   bool next(Photograph& frame);
 
   /// Has the next fetch() give frame `index` (0 ≤ index ≤ frame_count()), the same as after that
-  /// many calls of fetch(). Forward and backward; a video may have to decode all frames before it.
+  /// many calls of fetch(). Forward and backward; a video may have to decode frames before it, all
+  /// of them where VideoReader::go_to_start() knows none to begin with.
   virtual void skip_to(int index) = 0;
 
   /// Frames there are in all. Some containers promise a few more than their videos have.

@@ -29,8 +29,8 @@ cv::Mat wrap(const Image<T>& image) {
 }
 
 template <typename T>
-Image<T> from_bgr(const cv::Mat& decoded) {
-  Image<T> image(decoded.cols, decoded.rows, decoded.channels());
+Image<T> from_bgr(const cv::Mat& decoded, Photograph& memory) {
+  Image<T> image = take_image<T>(memory, {decoded.cols, decoded.rows, decoded.channels()});
   cv::Mat target = wrap(image);
   switch (decoded.channels()) {
     case 3:
@@ -45,7 +45,8 @@ Image<T> from_bgr(const cv::Mat& decoded) {
   return image;
 }
 
-Photograph decode_with_opencv(const FileBytes& file, std::span<const std::uint8_t> bytes) {
+Photograph decode_with_opencv(const FileBytes& file, std::span<const std::uint8_t> bytes,
+                              Photograph& memory) {
   prepare_opencv();
   if (bytes.size() > INT_MAX) {
     file.fail(
@@ -74,20 +75,21 @@ Photograph decode_with_opencv(const FileBytes& file, std::span<const std::uint8_
   }
   switch (decoded.depth()) {
     case CV_8U:
-      return {from_bgr<std::uint8_t>(decoded)};
+      return {from_bgr<std::uint8_t>(decoded, memory)};
     case CV_16U:
-      return {from_bgr<std::uint16_t>(decoded)};
+      return {from_bgr<std::uint16_t>(decoded, memory)};
     case CV_32F:
-      return {from_bgr<float>(decoded)};
+      return {from_bgr<float>(decoded, memory)};
     default:
       file.fail("holds values that are neither 8- or 16-bit without sign nor float");
   }
 }
 
-std::vector<std::uint8_t> encode_with_opencv(const std::string& extension,
-                                             const Photograph& photograph) {
+/// Leaves `bytes` empty when the image does not fit the format.
+void encode_with_opencv(const std::string& extension, const Photograph& photograph,
+                        std::vector<std::uint8_t>& bytes) {
   prepare_opencv();
-  return std::visit(
+  std::visit(
       [&](const auto& image) {
         cv::Mat pixels = wrap(image);
         cv::Mat reordered;
@@ -104,11 +106,9 @@ std::vector<std::uint8_t> encode_with_opencv(const std::string& extension,
           constexpr int kLzw = 5;
           parameters = {cv::IMWRITE_TIFF_COMPRESSION, kLzw};
         }
-        std::vector<std::uint8_t> bytes;
         if (!cv::imencode(extension, pixels, bytes, parameters)) {
           bytes.clear();
         }
-        return bytes;
       },
       photograph.pixels);
 }
@@ -155,7 +155,7 @@ void check_capability(const std::filesystem::path& path, const std::string& exte
 
 }  // namespace
 
-StoredImage decode_image(const FileBytes& file) {
+StoredImage decode_image(const FileBytes& file, Photograph memory) {
   const ImageFormat format = detect_image_format(file);
   StoredImage result;
   switch (format) {
@@ -168,14 +168,14 @@ StoredImage decode_image(const FileBytes& file) {
     }
     case ImageFormat::kPng: {
       const PngStructure structure = check_png_structure(file);
-      std::optional<Photograph> usual = decode_usual_png(structure);
+      std::optional<Photograph> usual = decode_usual_png(structure, memory);
       result.photograph =
-          usual ? std::move(*usual) : decode_with_opencv(file, strip_png(structure));
+          usual ? std::move(*usual) : decode_with_opencv(file, strip_png(structure), memory);
       break;
     }
     default:
       check_image_header(file, format);
-      result.photograph = decode_with_opencv(file, file.all());
+      result.photograph = decode_with_opencv(file, file.all(), memory);
   }
   if (std::holds_alternative<Image<std::uint16_t>>(result.photograph.pixels)) {
     result.max_value = 65535;
@@ -183,22 +183,23 @@ StoredImage decode_image(const FileBytes& file) {
   return result;
 }
 
-std::vector<std::uint8_t> encode_image(const std::filesystem::path& path,
-                                       const Photograph& photograph) {
+void encode_image(const std::filesystem::path& path, const Photograph& photograph,
+                  std::vector<std::uint8_t>& bytes) {
   if (photograph.width() < 1 || photograph.height() < 1) {
     throw Error(fmt::format("cannot write {}: the image has no pixels", path.string()));
   }
   const std::string extension = lower_case_extension(path);
   check_capability(path, extension, photograph);
   if (extension == ".pfm") {
-    return encode_pfm(std::get<Image<float>>(photograph.pixels).view());
+    encode_pfm(std::get<Image<float>>(photograph.pixels).view(), bytes);
+    return;
   }
   if (extension == ".pgm" || extension == ".ppm" || extension == ".pnm") {
-    return encode_pnm(photograph);
+    bytes = encode_pnm(photograph);
+    return;
   }
-  std::vector<std::uint8_t> bytes;
   try {
-    bytes = encode_with_opencv(extension, photograph);
+    encode_with_opencv(extension, photograph, bytes);
   } catch (const cv::Exception&) {
     bytes.clear();
   }
@@ -206,7 +207,6 @@ std::vector<std::uint8_t> encode_image(const std::filesystem::path& path,
     throw Error(fmt::format("cannot write {}: an image of {}x{} pixels does not fit a {} file",
                             path.string(), photograph.width(), photograph.height(), extension));
   }
-  return bytes;
 }
 
 }  // namespace vantage

@@ -17,12 +17,13 @@ struct StoredImage {
 };
 
 /// Decodes an image of any format that read_photograph() knows. Throws Error.
-StoredImage decode_image(const FileBytes& file);
+/// The image takes the memory of `memory` where that has its depth and size.
+StoredImage decode_image(const FileBytes& file, Photograph memory = {});
 
-/// The bytes of an image file of the format that the extension of `path` says. Floats of any value.
-/// Throws UsageError for an unknown extension, Error when the format cannot hold the depth or
-/// channels; both name `path`.
-std::vector<std::uint8_t> encode_image(const std::filesystem::path& path,
-                                       const Photograph& photograph);
+/// Makes `bytes`, whose memory is reused, those of an image file of the format that the extension
+/// of `path` says. Floats of any value. Throws UsageError for an unknown extension, Error when the
+/// format cannot hold the depth or channels; both name `path`.
+void encode_image(const std::filesystem::path& path, const Photograph& photograph,
+                  std::vector<std::uint8_t>& bytes);
 
 }  // namespace vantage

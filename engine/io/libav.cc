@@ -123,7 +123,12 @@ void silence_libav() {
 LibavInput open_media_file(const fs::path& path) {
   silence_libav();
   check_is_video_file(path);
-  check_video_is_whole(path);
+  if (find_video_extent(path) == VideoExtent::kWithoutIndex) {
+    throw Error(
+        fmt::format("{}: is an MP4 without index (moov): truncated after {} bytes, or its "
+                    "recording was never finished",
+                    path.string(), fs::file_size(path)));
+  }
   AVFormatContext* opened = avformat_alloc_context();
   if (opened == nullptr) {
     throw std::bad_alloc();

@@ -47,8 +47,8 @@ void silence_libav();
 
 /// Opens a video file and finds out what streams it has. Only files are opened, and only the
 /// containers that hold one video: no play lists, which name other files, no text, no images.
-/// Throws Error when the file is missing, empty, cut off
-/// where its container tells, or not a video.
+/// A file that is cut off opens where its container allows it. Throws Error when the file is
+/// missing, empty or not a video.
 LibavInput open_media_file(const std::filesystem::path& path);
 
 /// Its only or main video; null when there is none, a cover picture of a song aside.

@@ -6,6 +6,7 @@
 
 #include "engine/error.h"
 #include "engine/io/video_io.h"
+#include "engine/io/video_structure.h"
 
 extern "C" {
 #include <libavformat/avformat.h>
@@ -83,6 +84,7 @@ void Mp4Muxer::finish(int frames) {
   }
   int stored = 0;
   try {
+    check_video_is_whole(file_.temporary_path());
     stored = VideoReader(file_.temporary_path()).frame_count();
   } catch (const Error&) {
     stored = 0;

@@ -64,12 +64,13 @@ Image<float> decode_pfm(const FileBytes& file) {
   return image;
 }
 
-std::vector<std::uint8_t> encode_pfm(ImageView<const float> image, std::optional<float> unknown) {
+void encode_pfm(ImageView<const float> image, std::vector<std::uint8_t>& bytes,
+                std::optional<float> unknown) {
   const std::string header = fmt::format("{}\n{} {}\n-1.0\n", image.channels() == 3 ? "PF" : "Pf",
                                          image.width(), image.height());
   const std::size_t row_values =
       static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.channels());
-  std::vector<std::uint8_t> bytes;
+  bytes.clear();
   bytes.reserve(header.size() +
                 row_values * sizeof(float) * static_cast<std::size_t>(image.height()));
   bytes.insert(bytes.end(), header.begin(), header.end());
@@ -85,7 +86,6 @@ std::vector<std::uint8_t> encode_pfm(ImageView<const float> image, std::optional
     const auto* row_bytes = reinterpret_cast<const std::uint8_t*>(row);
     bytes.insert(bytes.end(), row_bytes, row_bytes + row_values * sizeof(float));
   }
-  return bytes;
 }
 
 }  // namespace vantage

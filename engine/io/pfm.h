@@ -14,9 +14,9 @@ namespace vantage {
 /// is usual for disparities. Throws Error for anything else or too short a payload.
 Image<float> decode_pfm(const FileBytes& file);
 
-/// Encodes 1 or 3 channels: little-endian, scale 1. `unknown` is stored for NaN and ±inf; without
-/// it they are stored as they are.
-std::vector<std::uint8_t> encode_pfm(ImageView<const float> image,
-                                     std::optional<float> unknown = std::nullopt);
+/// Encodes 1 or 3 channels into `bytes`, whose memory is reused: little-endian, scale 1. `unknown`
+/// is stored for NaN and ±inf; without it they are stored as they are.
+void encode_pfm(ImageView<const float> image, std::vector<std::uint8_t>& bytes,
+                std::optional<float> unknown = std::nullopt);
 
 }  // namespace vantage

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <type_traits>
+#include <utility>
 
 #include "engine/io/atomic_file.h"
 #include "engine/io/file_bytes.h"
@@ -41,10 +42,10 @@ void stretch(Image<T>& image, unsigned max_value) {
 
 }  // namespace
 
-Photograph read_photograph(const std::filesystem::path& path) {
+Photograph read_photograph(const std::filesystem::path& path, Photograph memory) {
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
   const FileBytes file(bytes, path.string());
-  StoredImage stored = decode_image(file);
+  StoredImage stored = decode_image(file, std::move(memory));
   std::visit(
       [&]<typename T>(Image<T>& image) {
         if constexpr (std::is_same_v<T, float>) {
@@ -57,13 +58,15 @@ Photograph read_photograph(const std::filesystem::path& path) {
   return std::move(stored.photograph);
 }
 
-std::vector<std::uint8_t> encode_photograph(const std::filesystem::path& path,
-                                            const Photograph& photograph) {
-  return encode_image(path, photograph);
+void encode_photograph(const std::filesystem::path& path, const Photograph& photograph,
+                       std::vector<std::uint8_t>& bytes) {
+  encode_image(path, photograph, bytes);
 }
 
 void write_photograph(const std::filesystem::path& path, const Photograph& photograph) {
-  write_binary_file(path, encode_image(path, photograph));
+  std::vector<std::uint8_t> bytes;
+  encode_image(path, photograph, bytes);
+  write_binary_file(path, bytes);
 }
 
 void write_mask(const std::filesystem::path& path, ImageView<const std::uint8_t> mask) {

@@ -18,11 +18,13 @@ inline constexpr long long kMaxImagePixels = 1LL << 28;
 /// file's largest value to the type's. EXIF orientation, gamma and colour profiles are ignored.
 /// Thread rule: may be called concurrently. Throws Error naming the file when it is missing, empty,
 /// truncated, not an image, absurdly large in its header, or float with NaN or infinity.
-Photograph read_photograph(const std::filesystem::path& path);
+/// The photograph takes the memory of `memory` where that has its depth and size.
+Photograph read_photograph(const std::filesystem::path& path, Photograph memory = {});
 
-/// The bytes of an image file named `path`; what write_photograph() writes, and it throws alike.
-std::vector<std::uint8_t> encode_photograph(const std::filesystem::path& path,
-                                            const Photograph& photograph);
+/// Makes `bytes`, whose memory is reused, those of an image file named `path`: what
+/// write_photograph() writes, and it throws alike.
+void encode_photograph(const std::filesystem::path& path, const Photograph& photograph,
+                       std::vector<std::uint8_t>& bytes);
 
 /// Writes by extension (.png .jpg .tiff .bmp .ppm .pgm .webp .exr .pfm); whole or not at all.
 /// Throws Error when the folder cannot be written or the format cannot hold the depth or channels,

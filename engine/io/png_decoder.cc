@@ -32,6 +32,11 @@ bool decompress(std::span<const std::span<const std::uint8_t>> parts, std::span<
   std::vector<std::uint8_t> joined;
   std::span<const std::uint8_t> compressed = parts.front();
   if (parts.size() > 1) {
+    std::size_t bytes = 0;
+    for (const auto part : parts) {
+      bytes += part.size();
+    }
+    joined.reserve(bytes);
     for (const auto part : parts) {
       joined.insert(joined.end(), part.begin(), part.end());
     }
@@ -135,9 +140,9 @@ void copy_row(const std::uint8_t* bytes, std::size_t count, std::uint16_t* value
 }
 
 template <typename T>
-Photograph to_photograph(const FilteredRows& rows, int width, int height, int channels) {
-  Image<T> image(width, height, channels);
-  for (int y = 0; y < height; ++y) {
+Photograph to_photograph(const FilteredRows& rows, ImageShape shape, Photograph& memory) {
+  Image<T> image = take_image<T>(memory, shape);
+  for (int y = 0; y < shape.height; ++y) {
     copy_row(rows.row(y) + 1, rows.row_bytes, image.row(y));
   }
   return {std::move(image)};
@@ -145,7 +150,7 @@ Photograph to_photograph(const FilteredRows& rows, int width, int height, int ch
 
 }  // namespace
 
-std::optional<Photograph> decode_usual_png(const PngStructure& structure) {
+std::optional<Photograph> decode_usual_png(const PngStructure& structure, Photograph& memory) {
   const bool usual_colour =
       structure.colour_type == 0 || structure.colour_type == 2 || structure.colour_type == 6;
   if (!usual_colour || structure.bit_depth < 8 || structure.interlaced ||
@@ -163,9 +168,9 @@ std::optional<Photograph> decode_usual_png(const PngStructure& structure) {
       !undo_filters(pixel_bytes, rows, structure.height)) {
     return std::nullopt;
   }
-  return structure.bit_depth == 8
-             ? to_photograph<std::uint8_t>(rows, structure.width, structure.height, channels)
-             : to_photograph<std::uint16_t>(rows, structure.width, structure.height, channels);
+  const ImageShape shape{structure.width, structure.height, channels};
+  return structure.bit_depth == 8 ? to_photograph<std::uint8_t>(rows, shape, memory)
+                                  : to_photograph<std::uint16_t>(rows, shape, memory);
 }
 
 }  // namespace vantage

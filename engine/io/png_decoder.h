@@ -10,7 +10,8 @@ namespace vantage {
 /// The pixels of a PNG file of the usual kinds (8 or 16 bits of grey, RGB or RGBA; no palette, no
 /// transparent colour, not interlaced), in a third of the time that a decoder of all kinds takes.
 /// Empty for other kinds, and when the compressed data is not exactly what the header promises: a
-/// general decoder has the last word about those.
-std::optional<Photograph> decode_usual_png(const PngStructure& structure);
+/// general decoder has the last word about those. The pixels take the memory of `memory` where that
+/// has their depth and size.
+std::optional<Photograph> decode_usual_png(const PngStructure& structure, Photograph& memory);
 
 }  // namespace vantage

@@ -48,6 +48,10 @@ bool SoundInput::read(AVPacket& packet) {
     if (result == AVERROR_EOF) {
       return false;
     }
+    if (result >= 0 && (packet.flags & AV_PKT_FLAG_CORRUPT) != 0 && avio_feof(input_->pb) != 0) {
+      av_packet_unref(&packet);
+      return false;
+    }
     if (result < 0) {
       fail(libav_message(result));
     }

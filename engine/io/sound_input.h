@@ -18,7 +18,8 @@ class SoundInput {
   /// Null when there is no sound.
   [[nodiscard]] AVStream* stream() const { return stream_; }
   [[nodiscard]] double length_seconds() const { return length_seconds_; }
-  /// Reads the next packet that begins before the end of the part; false when there is none.
+  /// Reads the next packet that begins before the end of the part; false when there is none. A file
+  /// that is cut off has sound up to the cut.
   bool read(AVPacket& packet);
   /// When something at `time`, in the stream's unit, is heard.
   [[nodiscard]] double seconds(long long time) const;

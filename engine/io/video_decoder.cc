@@ -93,6 +93,30 @@ void VideoDecoder::read_packet() {
   packet_is_cut_off_ = read_result_ >= 0 && cut_->is_cut_off(*packet_);
 }
 
+bool VideoDecoder::begin_at(const PossibleStart& start) {
+  if (cut_->misses_frames()) {
+    return false;
+  }
+  // Some containers look for when packets are shown, which is later by what packets before say.
+  std::int64_t lag = 0;
+  for (int tries = 0; tries < 3; ++tries) {
+    if (av_seek_frame(input_.get(), stream_->index, start.time + tries * lag,
+                      AVSEEK_FLAG_BACKWARD) < 0) {
+      return false;
+    }
+    read_packet();
+    if (read_result_ < 0 || packet_->pts == AV_NOPTS_VALUE || packet_->dts > start.time) {
+      return false;
+    }
+    if (packet_->dts == start.time && packet_->pos == start.position) {
+      return (packet_->flags & AV_PKT_FLAG_CORRUPT) == 0 &&
+             begins_afresh(*packet_, *stream_->codecpar);
+    }
+    lag = packet_->pts - packet_->dts;
+  }
+  return false;
+}
+
 VideoDecoder::Step VideoDecoder::next() {
   for (;;) {
     const int result = avcodec_receive_frame(codec_.get(), frame_.get());
@@ -103,7 +127,7 @@ VideoDecoder::Step VideoDecoder::next() {
       feed();
     } else if (result == AVERROR_EOF) {
       return problem_.empty() ? Step::kEnd : Step::kDamaged;
-    } else if (!stop_feeding(libav_message(result), packet_time_)) {
+    } else if (!stop_feeding(libav_message(result), packet_time_, FoundBy::kDecoder)) {
       return Step::kDamaged;
     }
   }
@@ -112,12 +136,13 @@ VideoDecoder::Step VideoDecoder::next() {
 VideoDecoder::Step VideoDecoder::check_frame() {
   const bool incomplete =
       frame_->decode_error_flags != 0 || (frame_->flags & AV_FRAME_FLAG_CORRUPT) != 0;
-  if (problem_.empty() && incomplete) {
-    problem_ = "the frame is incomplete";
+  if (incomplete) {
+    problem_ = problem_.empty() ? "the frame is incomplete" : problem_;
+    gave_all_before_damage_ = gave_all_before_damage_ && threads_ == 1;
     return Step::kDamaged;
   }
   const bool behind_damage = !problem_.empty() && frame_->best_effort_timestamp >= damaged_time_;
-  return incomplete || behind_damage ? Step::kDamaged : Step::kFrame;
+  return behind_damage ? Step::kDamaged : Step::kFrame;
 }
 
 void VideoDecoder::feed() {
@@ -126,28 +151,35 @@ void VideoDecoder::feed() {
     return;
   }
   if (read_result_ < 0) {
-    stop_feeding(libav_message(read_result_), std::numeric_limits<std::int64_t>::max());
+    stop_feeding(libav_message(read_result_), std::numeric_limits<std::int64_t>::max(),
+                 FoundBy::kFile);
     return;
   }
   if (!packet_is_cut_off_) {
-    packet_time_ = packet_->pts;
+    packet_time_ = packet_->pts != AV_NOPTS_VALUE ? packet_->pts : packet_->dts;
     codec_->err_recognition = cut_->misses_frames() ? 0 : AV_EF_EXPLODE;
     if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) {
-      stop_feeding("the file is damaged there", packet_time_);
+      const bool at_end = avio_feof(input_->pb) != 0;
+      stop_feeding(at_end ? "the file ends in the middle of it" : "the file is damaged there",
+                   packet_time_, FoundBy::kFile);
     } else if (const int sent = avcodec_send_packet(codec_.get(), packet_.get()); sent < 0) {
-      stop_feeding(libav_message(sent), packet_time_);
+      stop_feeding(libav_message(sent), packet_time_, FoundBy::kDecoder);
     }
   }
   read_packet();
 }
 
-bool VideoDecoder::stop_feeding(const std::string& problem, std::int64_t damaged_time) {
+bool VideoDecoder::stop_feeding(const std::string& problem, std::int64_t damaged_time,
+                                FoundBy found_by) {
+  // What the decoder finds with several threads may be in any of the packets under way.
+  const bool is_exact =
+      threads_ == 1 || (found_by == FoundBy::kFile && damaged_time != AV_NOPTS_VALUE);
+  gave_all_before_damage_ = gave_all_before_damage_ && is_exact;
   if (!problem_.empty()) {
     return false;
   }
   problem_ = problem;
-  // With several threads the packets behind the damaged one are under way.
-  damaged_time_ = threads_ == 1 ? damaged_time : AV_NOPTS_VALUE;
+  damaged_time_ = is_exact ? damaged_time : AV_NOPTS_VALUE;
   avcodec_send_packet(codec_.get(), nullptr);
   return true;
 }

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
+#include <optional>
 #include <utility>
 
 #include "engine/error.h"
@@ -19,10 +21,7 @@ bool VideoFrames::fetch(FetchedFrame& frame) {
   frame.file.clear();
   frame.frames_missing = 0;
   frame.remarks.clear();
-  if (!damage_.empty()) {
-    if (next_index_ >= frame_count_) {
-      return false;
-    }
+  if (next_index_ < next_good_) {
     throw Error(fmt::format("{}: lies behind damage ({})", describe(next_index_++), damage_));
   }
   try {
@@ -30,7 +29,7 @@ bool VideoFrames::fetch(FetchedFrame& frame) {
       return false;
     }
   } catch (const Error& error) {
-    damage_ = error.what();
+    note_damage(error.what());
     ++next_index_;
     throw;
   }
@@ -46,20 +45,36 @@ bool VideoFrames::fetch(FetchedFrame& frame) {
 
 void VideoFrames::skip_to(int index) {
   assert(index >= 0 && index <= frame_count_);
-  if (index < next_index_) {
-    reader_ = std::make_unique<VideoReader>(name_);
-    next_index_ = 0;
-    damage_.clear();
+  // One frame before it is read: only then a gap between the two shows.
+  const int last_start = std::max(0, index - 1);
+  const std::optional<int> start = index < next_index_
+                                       ? reader_->go_to_start(0, last_start)
+                                       : reader_->go_to_start(next_index_ + 1, last_start);
+  if (start) {
+    next_index_ = *start;
+    next_good_ = 0;
   }
-  try {
-    while (next_index_ < index && damage_.empty() && reader_->skip()) {
-      ++next_index_;
+  while (next_index_ < index) {
+    if (next_index_ < next_good_) {
+      next_index_ = std::min(next_good_, index);
+      continue;
     }
-  } catch (const Error& error) {
-    damage_ = error.what();
+    try {
+      if (!reader_->skip()) {
+        break;
+      }
+    } catch (const Error& error) {
+      note_damage(error.what());
+    }
+    ++next_index_;
   }
   // Where the video has ended on the way, fetch() finds that out again.
   next_index_ = index;
+}
+
+void VideoFrames::note_damage(const std::string& problem) {
+  damage_ = problem;
+  next_good_ = reader_->go_to_next_start(next_index_ + 1).value_or(frame_count_);
 }
 
 std::string VideoFrames::describe(int index) const {

@@ -9,14 +9,15 @@
 
 namespace vantage {
 
-/// The frames of a video file. They are decoded by fetch(), each from those before it.
+/// The frames of a video file. They are decoded by fetch(), each from those before it. Damage loses
+/// the frames up to the next one that decoding is known to be able to begin with.
 class VideoFrames : public FrameSource {
  public:
   /// Throws Error as VideoReader does.
   explicit VideoFrames(std::string name);
 
   bool fetch(FetchedFrame& frame) override;
-  /// Backward opens the file anew.
+  /// Where no frame on the way is known that decoding can begin with, all of them are decoded.
   void skip_to(int index) override;
   [[nodiscard]] int frame_count() const override { return frame_count_; }
   [[nodiscard]] std::string describe(int index) const override;
@@ -32,7 +33,11 @@ class VideoFrames : public FrameSource {
   std::unique_ptr<VideoReader> reader_;
   int frame_count_;
   int next_index_ = 0;
-  std::string damage_;  // what was wrong with the frame that nothing can be decoded behind
+  /// Notes what is wrong with the next frame.
+  void note_damage(const std::string& problem);
+
+  int next_good_ = 0;   ///< frames before it lie behind damage; the reader is there
+  std::string damage_;  ///< what was wrong with the last bad frame that lay behind none
 };
 
 }  // namespace vantage

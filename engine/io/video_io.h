@@ -18,7 +18,8 @@ namespace vantage {
 /// Thread rule: one thread at a time; different readers are independent.
 class VideoReader {
  public:
-  /// Throws Error when the file is missing, not a video, cut off, or has frames of absurd size.
+  /// Throws Error when the file is missing, not a video, an MP4 or MOV whose index is cut off, or
+  /// has frames of absurd size. Other files that are cut off can be read up to the cut.
   explicit VideoReader(const std::filesystem::path& path);
   ~VideoReader();
 
@@ -28,15 +29,24 @@ class VideoReader {
   [[nodiscard]] std::optional<FrameRate> frame_rate() const;
   /// Frames the index of an MP4 or MOV lists; in other containers the packets of the video are
   /// counted, for which the whole file is read. Interlaced videos may have fewer, and recordings
-  /// that begin in mid-programme, by up to a fiftieth.
+  /// that begin in mid-programme, by up to a fiftieth. Where the packets of a file that is cut off
+  /// are counted, the frame that is cut counts.
   [[nodiscard]] int frame_count() const;
 
   /// Decodes the next frame into `frame`, whose memory is reused; false after the last one. Throws
-  /// Error naming the frame when it is damaged or the file ends before the frames it promised: the
-  /// video ends there, as later frames are made from the damaged one.
+  /// Error naming the frame when it is damaged or cut off, or the file ends before the frames it
+  /// promised: the video ends there, as later frames are made from the damaged one.
   bool read(Photograph& frame);
   /// read() without the picture.
   bool skip();
+
+  /// Goes to the last frame of first..last that can be decoded without those before it, which is
+  /// then the next one read; the same frames follow as from the beginning. Frame 0 is
+  /// one, others are known of H.264 and of codings without references, in MP4 and MOV. Empty, and
+  /// nothing happens, where there is none. Leaves damage behind. Throws Error.
+  std::optional<int> go_to_start(int first, int last);
+  /// Likewise to the first such frame from `first` on.
+  std::optional<int> go_to_next_start(int first);
 
   /// Frames that should lie between the last frame read and the one before it, by their times and
   /// the frame rate; 0 where nothing is missing or times are unknown.
@@ -70,6 +80,10 @@ class VideoWriter {
   /// dropped). Throws Error when its size is not the one given at construction, or the disk is
   /// full.
   void write(const Photograph& frame);
+
+  /// Encodes what the encoder has held back and gives back its memory: no frame may follow.
+  /// finish() then has nothing left to do but to wait for the disk.
+  void end_encoding();
 
   /// Ends the file, checks that it reads back as a video of as many frames as were written, and
   /// gives it its name. Call it once, after at least one frame. Throws Error.

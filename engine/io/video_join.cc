@@ -12,6 +12,7 @@
 #include "engine/io/libav.h"
 #include "engine/io/mp4_muxer.h"
 #include "engine/io/sound_packets.h"
+#include "engine/io/video_structure.h"
 
 extern "C" {
 #include <libavformat/avformat.h>
@@ -30,6 +31,7 @@ class Segment {
         frame_unit_(frame_unit),
         input_(open_media_file(path)),
         stream_(find_video_stream(*input_)) {
+    check_video_is_whole(path);
     if (stream_ == nullptr || stream_->codecpar->codec_id != AV_CODEC_ID_H264) {
       fail("holds no H.264 video");
     }

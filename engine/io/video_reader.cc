@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "engine/error.h"
 #include "engine/io/frame_to_photograph.h"
@@ -35,7 +37,6 @@ struct VideoReader::State {
 
   std::filesystem::path path;
   std::unique_ptr<VideoDecoder> decoder;
-  bool decodes_exactly = false;  ///< with one thread, to find out which frame is damaged
   int width = 0;
   int height = 0;
   VideoTiming timing;
@@ -50,22 +51,72 @@ struct VideoReader::State {
     throw Error(fmt::format("{}: {}", path.string(), problem));
   }
 
+  [[noreturn]] void fail_cut_off() {
+    fail(
+        fmt::format("frame {} cannot be decoded (the file is cut off in or before it), expected "
+                    "{} frames",
+                    frames_read, timing.frames));
+  }
+
   /// Decodes the next frame; false after the last one.
   bool advance();
   VideoDecoder::Step decode_exactly();
+  /// Has decoding begin anew with one of the starts in first..last, the `which` one of those it can
+  /// begin with. Empty, and nothing happens, when there is none.
+  enum class Which { kFirst, kLast };
+  std::optional<int> begin_within(int first, int last, Which which, int threads);
+  /// Likewise with the last start up to `last`; frame 0 always is one.
+  void begin_up_to(int last, int threads);
+  void forget_last_frame();
   void note_time();
 };
 
-/// Decodes the file anew with one thread up to the frame due, which is then the damaged one or
-/// still good.
+/// Decodes anew with one thread up to the frame due, which is then the damaged one or still good.
 VideoDecoder::Step VideoReader::State::decode_exactly() {
-  decodes_exactly = true;
-  decoder = std::make_unique<VideoDecoder>(path, 1);
+  const int frame_due = frames_read;
+  begin_up_to(frame_due, 1);
   auto step = decoder->next();
-  for (int i = 0; i < frames_read && step == VideoDecoder::Step::kFrame; ++i) {
+  while (frames_read < frame_due && step == VideoDecoder::Step::kFrame) {
+    ++frames_read;
     step = decoder->next();
   }
+  frames_read = frame_due;
   return step;
+}
+
+std::optional<int> VideoReader::State::begin_within(int first, int last, Which which, int threads) {
+  std::vector<PossibleStart>& starts = timing.starts;
+  std::unique_ptr<VideoDecoder> begun;
+  for (;;) {
+    const auto begin = std::ranges::lower_bound(starts, first, {}, &PossibleStart::frame);
+    const auto end = std::ranges::upper_bound(starts, last, {}, &PossibleStart::frame);
+    if (begin >= end) {
+      return std::nullopt;
+    }
+    if (!begun) {
+      begun = std::make_unique<VideoDecoder>(path, threads);
+    }
+    const auto start = which == Which::kFirst ? begin : end - 1;
+    if (begun->begin_at(*start)) {
+      decoder = std::move(begun);
+      frames_read = start->frame;
+      return frames_read;
+    }
+    starts.erase(start);
+  }
+}
+
+void VideoReader::State::begin_up_to(int last, int threads) {
+  if (!begin_within(0, last, Which::kLast, threads)) {
+    decoder = std::make_unique<VideoDecoder>(path, threads);
+    frames_read = 0;
+  }
+}
+
+void VideoReader::State::forget_last_frame() {
+  ended = false;
+  frame_seconds.reset();
+  frames_missing = 0;
 }
 
 bool VideoReader::State::advance() {
@@ -73,7 +124,7 @@ bool VideoReader::State::advance() {
     return false;
   }
   VideoDecoder::Step step = decoder->next();
-  if (step == VideoDecoder::Step::kDamaged && !decodes_exactly) {
+  if (step == VideoDecoder::Step::kDamaged && !decoder->gave_all_before_damage()) {
     step = decode_exactly();
   }
   if (step == VideoDecoder::Step::kDamaged) {
@@ -81,6 +132,9 @@ bool VideoReader::State::advance() {
                      decoder->problem(), timing.frames));
   }
   if (step == VideoDecoder::Step::kEnd) {
+    if (timing.cut_time) {
+      fail_cut_off();
+    }
     const int uncertain = timing.frames_uncertain + decoder->frames_cut_off();
     if (frames_read == 0 || frames_read < timing.frames - uncertain) {
       fail(
@@ -97,6 +151,9 @@ bool VideoReader::State::advance() {
                      frame.height, width, height));
   }
   note_time();
+  if (timing.cut_time && frame.best_effort_timestamp >= *timing.cut_time && frames_missing > 0) {
+    fail_cut_off();
+  }
   ++frames_read;
   return true;
 }
@@ -148,5 +205,26 @@ bool VideoReader::read(Photograph& frame) {
 }
 
 bool VideoReader::skip() { return state_->advance(); }
+
+std::optional<int> VideoReader::go_to_start(int first, int last) {
+  State& state = *state_;
+  if (first == 0) {
+    state.begin_up_to(last, decoder_threads());
+  } else if (!state.begin_within(first, last, State::Which::kLast, decoder_threads())) {
+    return std::nullopt;
+  }
+  state.forget_last_frame();
+  return state.frames_read;
+}
+
+std::optional<int> VideoReader::go_to_next_start(int first) {
+  State& state = *state_;
+  const std::optional<int> start = state.begin_within(first, std::numeric_limits<int>::max(),
+                                                      State::Which::kFirst, decoder_threads());
+  if (start) {
+    state.forget_last_frame();
+  }
+  return start;
+}
 
 }  // namespace vantage

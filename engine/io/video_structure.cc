@@ -6,6 +6,8 @@
 #include <bit>
 #include <cstdint>
 #include <fstream>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "engine/error.h"
@@ -21,11 +23,11 @@ class SparseFile {
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
 
-  [[noreturn]] void fail_truncated() const {
-    throw Error(fmt::format("{}: is truncated, the video file ends after {} bytes before its end",
-                            path_.string(), size_));
+  [[nodiscard]] bool holds(std::uint64_t offset, std::uint64_t bytes) const {
+    return offset <= size_ && bytes <= size_ - offset;
   }
 
+  /// `bytes` ≤ 8 that the file holds.
   std::uint64_t big_endian(std::uint64_t offset, int bytes) {
     std::uint64_t value = 0;
     for (const char c : text(offset, bytes)) {
@@ -34,11 +36,8 @@ class SparseFile {
     return value;
   }
 
-  /// `count` ≤ 8 bytes.
+  /// `count` ≤ 8 bytes that the file holds.
   std::string_view text(std::uint64_t offset, int count) {
-    if (offset + static_cast<std::uint64_t>(count) > size_) {
-      fail_truncated();
-    }
     stream_.seekg(static_cast<std::streamoff>(offset));
     if (!stream_.read(buffer_.data(), count)) {
       throw Error(fmt::format("cannot read {}", path_.string()));
@@ -53,66 +52,138 @@ class SparseFile {
   std::array<char, 8> buffer_{};
 };
 
-void check_boxes(SparseFile& file) {
+/// Length of the box at `offset`; empty when it is not there to its end.
+std::optional<std::uint64_t> whole_box(SparseFile& file, std::uint64_t offset) {
+  if (!file.holds(offset, 8)) {
+    return std::nullopt;
+  }
+  std::uint64_t header = 8;
+  std::uint64_t length = file.big_endian(offset, 4);
+  if (length == 0) {
+    length = file.size() - offset;  // a last box that reaches to the end, however long that is
+  } else if (length == 1) {
+    header = 16;
+    if (!file.holds(offset, header)) {
+      return std::nullopt;
+    }
+    length = file.big_endian(offset + 8, 8);
+  }
+  return length >= header && file.holds(offset, length) ? std::optional(length) : std::nullopt;
+}
+
+VideoExtent extent_of_boxes(SparseFile& file) {
+  bool has_index = false;
   for (std::uint64_t offset = 0; offset < file.size();) {
-    std::uint64_t length = file.big_endian(offset, 4);
-    if (length == 0) {
-      return;  // a last box that reaches to the end of the file, however long that is
+    const std::optional<std::uint64_t> length = whole_box(file, offset);
+    if (!length) {
+      return has_index ? VideoExtent::kCutOff : VideoExtent::kWithoutIndex;
     }
-    if (length == 1) {
-      length = file.big_endian(offset + 8, 8);
+    has_index = has_index || file.text(offset + 4, 4) == "moov";
+    offset += *length;
+  }
+  return has_index ? VideoExtent::kWhole : VideoExtent::kWithoutIndex;
+}
+
+/// An element of Matroska: where its contents begin and how long they are.
+struct Element {
+  std::string id;  ///< empty: its head is not there
+  std::uint64_t begin = 0;
+  std::uint64_t length = 0;
+  bool has_length = false;  ///< else it reaches to the end of what it lies in
+};
+
+/// Bytes of a number at `offset` that says in its first bits how long it is; 0 when it is not
+/// there.
+int number_bytes(SparseFile& file, std::uint64_t offset) {
+  if (!file.holds(offset, 1)) {
+    return 0;
+  }
+  const int bytes = std::countl_zero(static_cast<std::uint8_t>(file.big_endian(offset, 1))) + 1;
+  return bytes <= 8 && file.holds(offset, static_cast<std::uint64_t>(bytes)) ? bytes : 0;
+}
+
+Element read_element(SparseFile& file, std::uint64_t offset) {
+  const int id_bytes = number_bytes(file, offset);
+  const std::uint64_t length_offset = offset + static_cast<std::uint64_t>(id_bytes);
+  const int length_bytes = id_bytes == 0 ? 0 : number_bytes(file, length_offset);
+  if (length_bytes == 0) {
+    return {};
+  }
+  const std::uint64_t mask = (std::uint64_t{1} << (7 * length_bytes)) - 1;
+  Element element;
+  element.id = file.text(offset, id_bytes);
+  element.begin = length_offset + static_cast<std::uint64_t>(length_bytes);
+  element.length = file.big_endian(length_offset, length_bytes) & mask;
+  element.has_length = element.length != mask;
+  return element;
+}
+
+/// Where only what follows the frames is cut off (the index for seeking, tags) nothing is missing.
+bool has_whole_clusters(SparseFile& file) {
+  const Element header = read_element(file, 0);
+  const Element segment = read_element(file, header.begin + header.length);
+  if (header.id.empty() || segment.id != "\x18\x53\x80\x67" || !segment.has_length ||
+      file.holds(segment.begin, segment.length)) {
+    return true;
+  }
+  bool has_cluster = false;
+  for (std::uint64_t offset = segment.begin;;) {
+    const Element element = read_element(file, offset);
+    const bool is_cluster = element.id == "\x1F\x43\xB6\x75";
+    if (element.id.empty() || !element.has_length || !file.holds(element.begin, element.length)) {
+      const bool is_index = element.id == "\x1C\x53\xBB\x6B";
+      const bool is_tags = element.id == "\x12\x54\xC3\x67";
+      return has_cluster && (is_index || is_tags);
     }
-    if (length < 8 || length > file.size() - offset) {
-      file.fail_truncated();
-    }
-    offset += length;
+    has_cluster = has_cluster || is_cluster;
+    offset = element.begin + element.length;
   }
 }
 
-/// Value of an EBML length at `offset`; `bytes` becomes how many bytes it takes.
-std::uint64_t ebml_length(SparseFile& file, std::uint64_t offset, int& bytes, bool& unknown) {
-  const auto first = static_cast<std::uint8_t>(file.big_endian(offset, 1));
-  bytes = std::countl_zero(first) + 1;
-  if (bytes > 8) {
-    file.fail_truncated();
+/// Likewise: behind the chunk of the frames comes the index.
+bool has_whole_movie(SparseFile& file) {
+  const auto length_at = [&](std::uint64_t offset) {
+    return std::uint64_t{__builtin_bswap32(static_cast<std::uint32_t>(file.big_endian(offset, 4)))};
+  };
+  if (file.holds(8, length_at(4))) {
+    return true;
   }
-  const std::uint64_t mask = (std::uint64_t{1} << (7 * bytes)) - 1;
-  const std::uint64_t value = file.big_endian(offset, bytes) & mask;
-  unknown = value == mask;
-  return value;
-}
-
-void check_matroska(SparseFile& file) {
-  int length_bytes = 0;
-  bool unknown = false;
-  const std::uint64_t header = ebml_length(file, 4, length_bytes, unknown);
-  const std::uint64_t segment = 4 + static_cast<std::uint64_t>(length_bytes) + header;
-  if (segment > file.size() || file.text(segment, 4) != "\x18\x53\x80\x67") {
-    return;
+  for (std::uint64_t offset = 12; file.holds(offset, 12);) {
+    const std::uint64_t length = length_at(offset + 4);
+    if (file.text(offset, 4) == "LIST" && file.text(offset + 8, 4) == "movi") {
+      return file.holds(offset + 8, length);
+    }
+    offset += 8 + length + length % 2;
   }
-  const std::uint64_t length = ebml_length(file, segment + 4, length_bytes, unknown);
-  const std::uint64_t begin = segment + 4 + static_cast<std::uint64_t>(length_bytes);
-  if (!unknown && (begin > file.size() || length > file.size() - begin)) {
-    file.fail_truncated();
-  }
+  return false;
 }
 
 }  // namespace
 
-void check_video_is_whole(const std::filesystem::path& path) {
+VideoExtent find_video_extent(const std::filesystem::path& path) {
   SparseFile file(path);
-  if (file.size() < 12) {
-    return;
+  const auto extent = [](bool is_whole) {
+    return is_whole ? VideoExtent::kWhole : VideoExtent::kCutOff;
+  };
+  if (!file.holds(0, 12)) {
+    return VideoExtent::kWhole;
   }
   if (file.text(4, 4) == "ftyp") {
-    check_boxes(file);
-  } else if (file.text(0, 4) == "\x1A\x45\xDF\xA3") {
-    check_matroska(file);
-  } else if (file.text(0, 4) == "RIFF" && file.text(8, 4) == "AVI ") {
-    const auto length = __builtin_bswap32(static_cast<std::uint32_t>(file.big_endian(4, 4)));
-    if (length + std::uint64_t{8} > file.size()) {
-      file.fail_truncated();
-    }
+    return extent_of_boxes(file);
+  }
+  if (file.text(0, 4) == "\x1A\x45\xDF\xA3") {
+    return extent(has_whole_clusters(file));
+  }
+  if (file.text(0, 4) == "RIFF" && file.text(8, 4) == "AVI ") {
+    return extent(has_whole_movie(file));
+  }
+  return VideoExtent::kWhole;
+}
+
+void check_video_is_whole(const std::filesystem::path& path) {
+  if (find_video_extent(path) != VideoExtent::kWhole) {
+    throw Error(fmt::format("{}: is truncated, the video file ends after {} bytes before its end",
+                            path.string(), std::filesystem::file_size(path)));
   }
 }
 

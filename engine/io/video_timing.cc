@@ -12,6 +12,7 @@
 #include "engine/error.h"
 #include "engine/io/cut_video.h"
 #include "engine/io/libav.h"
+#include "engine/io/video_structure.h"
 
 extern "C" {
 #include <libavformat/avformat.h>
@@ -23,6 +24,8 @@ namespace {
 struct PacketTimes {
   std::vector<std::int64_t> times;  ///< in the stream's unit, of the packets that have one
   std::size_t packets = 0;          ///< that show a frame
+  /// When the first packet that is cut off is decoded, at the earliest; it is shown later.
+  std::optional<std::int64_t> cut_time;
 
   void add(std::int64_t time) {
     ++packets;
@@ -37,7 +40,7 @@ bool has_whole_index(const AVFormatContext& input, const AVStream& stream) {
          stream.nb_frames > 0 && avformat_index_get_entries_count(&stream) > 0;
 }
 
-PacketTimes read_index(AVStream& stream) {
+PacketTimes read_index(AVStream& stream, std::uint64_t file_bytes) {
   PacketTimes result;
   for (int i = 0; i < avformat_index_get_entries_count(&stream); ++i) {
     const AVIndexEntry* entry = avformat_index_get_entry(&stream, i);
@@ -45,8 +48,33 @@ PacketTimes read_index(AVStream& stream) {
     if ((entry->flags & AVINDEX_DISCARD_FRAME) == 0 && entry->size > 0) {
       result.add(entry->timestamp);
     }
+    if (!result.cut_time && static_cast<std::uint64_t>(entry->pos + entry->size) > file_bytes) {
+      result.cut_time = entry->timestamp;
+    }
   }
   return result;
+}
+
+bool is_interlaced(const AVStream& stream) {
+  const AVFieldOrder order = stream.codecpar->field_order;
+  return order != AV_FIELD_UNKNOWN && order != AV_FIELD_PROGRESSIVE;
+}
+
+/// Of an index. Packets before a start are shown before it, so its number is theirs.
+std::vector<PossibleStart> find_starts(AVStream& stream) {
+  std::vector<PossibleStart> starts;
+  int frame = 0;
+  for (int i = 0; i < avformat_index_get_entries_count(&stream); ++i) {
+    const AVIndexEntry* entry = avformat_index_get_entry(&stream, i);
+    if ((entry->flags & AVINDEX_DISCARD_FRAME) != 0 || entry->size == 0) {
+      continue;
+    }
+    if (frame > 0 && (entry->flags & AVINDEX_KEYFRAME) != 0) {
+      starts.push_back({frame, entry->timestamp, entry->pos});
+    }
+    ++frame;
+  }
+  return starts;
 }
 
 bool shows_a_frame(const AVPacket& packet, AVCodecID codec) {
@@ -57,7 +85,14 @@ bool shows_a_frame(const AVPacket& packet, AVCodecID codec) {
   return codec != AV_CODEC_ID_VP8 || (packet.data[0] & 0x10) != 0;
 }
 
-PacketTimes read_packets(const std::filesystem::path& path, int stream_index) {
+/// Whether something follows the last whole frame of raw video, `frames_end` bytes into the file.
+bool is_cut_raw_video(const AVFormatContext& input, std::int64_t frames_end,
+                      std::uint64_t file_bytes) {
+  return std::string_view(input.iformat->name) == "yuv4mpegpipe" &&
+         file_bytes > static_cast<std::uint64_t>(frames_end);
+}
+
+PacketTimes read_packets(const std::filesystem::path& path, int stream_index, bool is_whole) {
   const LibavInput input = open_media_file(path);
   if (static_cast<unsigned>(stream_index) >= input->nb_streams) {
     return {};
@@ -68,17 +103,26 @@ PacketTimes read_packets(const std::filesystem::path& path, int stream_index) {
   const AVCodecID codec = stream.codecpar->codec_id;
   CutVideo cut(*stream.codecpar);
   bool key_seen = false;
+  std::int64_t last_decoded = AV_NOPTS_VALUE;
+  std::int64_t frames_end = std::numeric_limits<std::int64_t>::max();
   PacketTimes result;
   while (av_read_frame(input.get(), packet.get()) >= 0) {
-    if (packet->stream_index == stream_index && !cut.is_cut_off(*packet) &&
+    const bool is_torn = !is_whole && (packet->flags & AV_PKT_FLAG_CORRUPT) != 0;
+    if (packet->stream_index == stream_index && !is_torn && !cut.is_cut_off(*packet) &&
         shows_a_frame(*packet, codec)) {
       if (!key_seen && (packet->flags & AV_PKT_FLAG_KEY) != 0) {
         result = {};  // what a recording in mid-programme begins with cannot be decoded
         key_seen = true;
       }
       result.add(packet->pts != AV_NOPTS_VALUE ? packet->pts : packet->dts);
+      last_decoded = packet->dts;
+      frames_end = packet->pos + packet->size;
     }
     av_packet_unref(packet.get());
+  }
+  if (!is_whole || is_cut_raw_video(*input, frames_end, std::filesystem::file_size(path))) {
+    result.cut_time = last_decoded == AV_NOPTS_VALUE ? last_decoded : last_decoded + 1;
+    ++result.packets;
   }
   return result;
 }
@@ -130,8 +174,8 @@ std::optional<FrameRate> choose_rate(const AVStream& stream, double step_seconds
 
 /// Packets of interlaced video may hold half a frame. Elsewhere than in an index, some of the
 /// packets may be no frames.
-int uncertain_frames(int frames, bool from_index, AVFieldOrder order) {
-  if (order != AV_FIELD_UNKNOWN && order != AV_FIELD_PROGRESSIVE) {
+int uncertain_frames(int frames, bool from_index, bool interlaced) {
+  if (interlaced) {
     return (frames + 1) / 2;
   }
   return from_index ? 0 : std::max(2, frames / 50);
@@ -141,15 +185,20 @@ int uncertain_frames(int frames, bool from_index, AVFieldOrder order) {
 
 VideoTiming examine_video_timing(AVFormatContext& input, AVStream& stream,
                                  const std::filesystem::path& path) {
+  const bool is_whole = find_video_extent(path) == VideoExtent::kWhole;
   const bool from_index = has_whole_index(input, stream);
-  PacketTimes packets = from_index ? read_index(stream) : read_packets(path, stream.index);
+  PacketTimes packets = from_index ? read_index(stream, std::filesystem::file_size(path))
+                                   : read_packets(path, stream.index, is_whole);
   if (packets.packets == 0 || packets.packets > std::numeric_limits<int>::max()) {
     throw Error(fmt::format("{}: is a video without frames", path.string()));
   }
   VideoTiming timing;
   timing.frames = static_cast<int>(packets.packets);
-  timing.frames_uncertain =
-      uncertain_frames(timing.frames, from_index, stream.codecpar->field_order);
+  timing.frames_uncertain = uncertain_frames(timing.frames, from_index, is_interlaced(stream));
+  if (from_index && !is_interlaced(stream)) {
+    timing.starts = find_starts(stream);
+  }
+  timing.cut_time = packets.cut_time;
   timing.rate =
       choose_rate(stream, usual_step(std::move(packets.times)) * av_q2d(stream.time_base));
   return timing;

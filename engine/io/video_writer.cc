@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <new>
+#include <optional>
+#include <utility>
 
 #include "engine/error.h"
 #include "engine/io/file_bytes.h"
@@ -69,7 +71,7 @@ struct VideoWriter::State {
   int width;
   int height;
   AVRational time_unit;
-  PhotographToFrame conversion;
+  std::optional<PhotographToFrame> conversion;  ///< until encoding has ended
   LibavCodec encoder;
   LibavPacket packet = make_libav_packet();
   Mp4Muxer file;
@@ -80,7 +82,7 @@ struct VideoWriter::State {
       : width(frame_width),
         height(frame_height),
         time_unit(time_unit_of(encoding.rate)),
-        conversion(frame_width, frame_height),
+        conversion(std::in_place, frame_width, frame_height),
         file(path) {
     open_encoder(encoding);
     AVCodecParameters* parameters = avcodec_parameters_alloc();
@@ -155,18 +157,27 @@ void VideoWriter::write(const Photograph& frame) {
     state.file.fail(fmt::format("frame {} is {}x{}, expected {}x{}", state.frames_written,
                                 frame.width(), frame.height(), state.width, state.height));
   }
-  AVFrame& converted = state.conversion.convert(frame);
+  AVFrame& converted = state.conversion->convert(frame);
   converted.pts = state.frames_written;
   state.encode(&converted);
   ++state.frames_written;
 }
 
-void VideoWriter::finish() {
+void VideoWriter::end_encoding() {
   State& state = *state_;
   if (state.frames_written == 0) {
     state.file.fail("the video has no frames");
   }
-  state.encode(nullptr);
+  if (state.encoder) {
+    state.encode(nullptr);
+    state.encoder.reset();
+    state.conversion.reset();
+  }
+}
+
+void VideoWriter::finish() {
+  end_encoding();
+  State& state = *state_;
   state.file.finish(state.frames_written);
 }
 

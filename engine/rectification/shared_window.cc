@@ -105,13 +105,15 @@ RayPolygon seen_rays(const LensModel& lens, int width_px, int height_px) {
   std::sort(angles.begin(), angles.end());
 
   RayPolygon polygon;
-  const double step = lens.largest_ray() / 64;
+  constexpr int kSteps = 64;
+  const double step = lens.largest_ray() / kSteps;  // 0 where the lens folds back at once
   for (const double angle : angles) {
     const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
-    double inside = 0;
-    while (inside + step <= lens.largest_ray() && is_seen((inside + step) * direction)) {
-      inside += step;
+    int steps = 0;
+    while (steps < kSteps && is_seen((steps + 1) * step * direction)) {
+      ++steps;
     }
+    double inside = steps * step;
     double outside = std::min(inside + step, lens.largest_ray());
     for (int halving = 0; halving < 32; ++halving) {
       const double middle = (inside + outside) / 2;

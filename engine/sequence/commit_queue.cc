@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "engine/io/file_descriptor.h"
+
 namespace vantage {
 namespace {
 
@@ -33,6 +35,23 @@ void flush_together(std::size_t count, const Flush& flush) {
     others.emplace_back(take_turns);
   }
   take_turns();
+}
+
+/// Gives the videos their names, safely: what journal records tell of next is there.
+void finish_videos(const std::vector<std::unique_ptr<VideoWriter>>& videos) {
+  std::vector<std::exception_ptr> errors(videos.size());
+  flush_together(videos.size(), [&](std::size_t i) {
+    try {
+      videos[i]->finish();
+    } catch (...) {
+      errors[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& error : errors) {
+    if (error) {
+      std::rethrow_exception(error);
+    }
+  }
 }
 
 }  // namespace
@@ -128,7 +147,8 @@ void CommitQueue::deliver(std::vector<Delivery>& batch) {
   for (Delivery& delivery : batch) {
     try {
       delivery.files.commit(folders);
-    } catch (const OutputError& error) {
+      finish_videos(delivery.videos);
+    } catch (const Error& error) {
       record_delivered();  // what came before the failure counts
       throw DeliveryError(fmt::format("frame {}: {}", delivery.frame, error.what()));
     }

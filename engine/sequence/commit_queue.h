@@ -4,10 +4,12 @@
 #include <deque>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
 
+#include "engine/io/video_io.h"
 #include "engine/sequence/pending_files.h"
 #include "engine/sequence/run_journal.h"
 
@@ -22,6 +24,7 @@ class DeliveryError : public OutputError {
 /// Results that are to become visible together, and what the journal is to say then.
 struct Delivery {
   PendingFiles files;
+  std::vector<std::unique_ptr<VideoWriter>> videos;  ///< that have all their frames
   std::vector<JournalRecord> records;
   int frame = 0;     ///< the newest one it is about, for messages
   int frames = 0;    ///< so many frames are finished by it, and
@@ -29,9 +32,9 @@ struct Delivery {
 };
 
 /// Makes deliveries safe, one after the other, on a thread of its own, so that no thread of the
-/// pool waits for the disk: files are flushed, several at a time, and named, folders flushed, then
-/// the journal written and flushed. Deliveries that have piled up meanwhile are worked off
-/// together.
+/// pool waits for the disk unless that is slower for long: files are flushed, several at a time,
+/// and named, videos finished, folders flushed, then the journal written and flushed. Deliveries
+/// that have piled up meanwhile are worked off together.
 ///
 /// Thread rule: push() from one thread at a time; `on_delivered` is called on the queue's thread.
 class CommitQueue {

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <system_error>
+#include <utility>
 
 namespace vantage {
 namespace {
@@ -14,6 +16,11 @@ bool has_content(const fs::path& path) {
   std::error_code error;
   const auto bytes = fs::file_size(path, error);
   return !error && bytes > 0;
+}
+
+bool is_whole(const fs::path& path, std::uintmax_t bytes) {
+  std::error_code error;
+  return bytes > 0 && fs::file_size(path, error) == bytes && !error;
 }
 
 /// Whether all videos are there, whole or in this segment.
@@ -52,8 +59,14 @@ DeliveredFrames::DeliveredFrames(const SequenceLayout& layout) {
       segments_.push_back(segment->frames);
     } else {
       // Parts are read in no particular order; what was joined last is what was joined most of.
-      const FrameRange frames = std::get<JoinRecord>(record).frames;
-      joined_ = frames.count() > joined_.count() ? frames : joined_;
+      // Of the same frames the one with fewer skipped ones.
+      auto& join = std::get<JoinRecord>(record);
+      const auto rank = [](const JoinRecord& joined) {
+        return std::pair(joined.frames.count(), -static_cast<int>(joined.skipped.size()));
+      };
+      if (rank(join) > rank(joined_)) {
+        joined_ = std::move(join);
+      }
     }
   }
   if (!has_videos(layout, [&](const OutputStream& stream) { return layout.video(stream); })) {
@@ -66,11 +79,10 @@ DeliveredFrames::DeliveredFrames(const SequenceLayout& layout) {
   segments_ = outermost(std::move(segments_));
   std::erase_if(records_, [&](const auto& entry) {
     const auto& [frame, record] = entry;
-    const bool in_video =
-        !layout.has_videos() || joined_.contains(frame) ||
-        std::ranges::any_of(segments_, [&](FrameRange part) { return part.contains(frame); });
-    return !in_video || !std::ranges::all_of(record.files, [&](const std::string& file) {
-      return has_content(layout.folder() / file);
+    const bool in_video = !layout.has_videos() || record.absent || joined_.frames.contains(frame) ||
+                          !segment_with(frame).empty();
+    return !in_video || !std::ranges::all_of(record.files, [&](const FileRecord& file) {
+      return is_whole(layout.folder() / file.name, file.bytes);
     });
   });
 }
@@ -78,6 +90,38 @@ DeliveredFrames::DeliveredFrames(const SequenceLayout& layout) {
 bool DeliveredFrames::is_done(int frame) const {
   const auto known = records_.find(frame);
   return known != records_.end() && !known->second.skipped;
+}
+
+std::vector<int> DeliveredFrames::skipped(FrameRange frames) const {
+  std::vector<int> skipped;
+  for (const auto& [frame, record] : records_) {
+    if (record.skipped && frames.contains(frame)) {
+      skipped.push_back(frame);
+    }
+  }
+  return skipped;
+}
+
+FrameRange DeliveredFrames::segment_with(int frame) const {
+  // None is within another: the last one that begins early enough ends last.
+  const auto next = std::ranges::upper_bound(segments_, frame, {}, &FrameRange::first);
+  const bool is_found = next != segments_.begin() && std::prev(next)->contains(frame);
+  return is_found ? *std::prev(next) : FrameRange{};
+}
+
+int DeliveredFrames::input_end(FrameRange frames) const {
+  int end = frames.end;
+  for (auto known = records_.find(end - 1);
+       end > frames.first && known != records_.end() && known->second.absent;
+       known = records_.find(end - 1)) {
+    --end;
+  }
+  return end;
+}
+
+bool DeliveredFrames::is_in_one_piece(FrameRange frames) const {
+  return joined_.frames.contains(frames) || segment_with(frames.first).contains(frames) ||
+         input_end(frames) == frames.first;
 }
 
 std::vector<FrameRange> DeliveredFrames::missing(FrameRange frames) const {

@@ -14,24 +14,37 @@ namespace vantage {
 class DeliveredFrames {
  public:
   /// Reads the journal of the layout's folder and looks for every file it tells of. Frames whose
-  /// files are gone, or that are of no video segment where there are videos, do not count.
+  /// files are gone or of another size, or that are of no video segment where there are videos, do
+  /// not count.
   explicit DeliveredFrames(const SequenceLayout& layout);
 
   /// Delivered and not skipped.
   [[nodiscard]] bool is_done(int frame) const;
   /// Newest record of every frame that is done or skipped.
   [[nodiscard]] const std::map<int, FrameRecord>& records() const { return records_; }
+  /// The skipped ones of `frames`, in order.
+  [[nodiscard]] std::vector<int> skipped(FrameRange frames) const;
   /// Those of `frames` that are neither done nor skipped, as ranges in order.
   [[nodiscard]] std::vector<FrameRange> missing(FrameRange frames) const;
   /// Segments that are there, in order, none within another.
   [[nodiscard]] const std::vector<FrameRange>& segments() const { return segments_; }
   /// Frames of the joined videos, if they are there; else empty.
-  [[nodiscard]] FrameRange joined() const { return joined_; }
+  [[nodiscard]] FrameRange joined() const { return joined_.frames; }
+  /// Of those, the ones that had been skipped then.
+  [[nodiscard]] const std::vector<int>& joined_skipped() const { return joined_.skipped; }
+  /// Whether the videos of `frames`, whose records are all there, are joined or one segment:
+  /// segments made of pieces have other bytes.
+  [[nodiscard]] bool is_in_one_piece(FrameRange frames) const;
+  /// Where the input ends if that is within `frames`; else their end.
+  [[nodiscard]] int input_end(FrameRange frames) const;
 
  private:
+  /// Empty when there is none.
+  [[nodiscard]] FrameRange segment_with(int frame) const;
+
   std::map<int, FrameRecord> records_;
   std::vector<FrameRange> segments_;
-  FrameRange joined_;
+  JoinRecord joined_;
 };
 
 /// "0-11, 36, 40-49": for messages.

@@ -46,7 +46,7 @@ struct Levels {
 struct Frame {
   Levels left;
   DisparityMap map;  ///< empty: none
-  std::vector<double> views_x;
+  std::vector<BaselinePosition> positions;
   std::vector<Levels> views;
 
   void take(const Photograph& left_image, ImageView<const float> left_map,
@@ -56,10 +56,10 @@ struct Frame {
     for (int y = 0; y < left_map.height(); ++y) {
       std::copy_n(left_map.row(y), left_map.width(), map.row(y));
     }
-    views_x.resize(frame_views.size());
+    positions.resize(frame_views.size());
     views.resize(frame_views.size());
     for (std::size_t v = 0; v < views.size(); ++v) {
-      views_x[v] = frame_views[v].view_x;
+      positions[v] = frame_views[v].position;
       views[v].take(*frame_views[v].image, execution);
     }
   }
@@ -158,12 +158,13 @@ struct FlickerMeter::State {
       return;
     }
     for (std::size_t v = 0; v < sums.views.size(); ++v) {
-      if (!has_same_camera(v)) {
+      // Off the baseline the rows do not correspond.
+      if (!has_same_camera(v) || now.positions[v].y != 0) {
         continue;
       }
       // (3.5): what a view shows at x was at x + XS · d in the left image.
-      const double first = now.views_x[v] * map.least_px;
-      const double second = now.views_x[v] * map.most_px;
+      const double first = now.positions[v].x * map.least_px;
+      const double second = now.positions[v].x * map.most_px;
       kernels::still_view_row(is_still, width,
                               static_cast<int>(std::floor(std::min(first, second))),
                               static_cast<int>(std::ceil(std::max(first, second))), still_view);
@@ -175,7 +176,7 @@ struct FlickerMeter::State {
   }
 
   [[nodiscard]] bool has_same_camera(std::size_t view) const {
-    return now.views_x[view] == before.views_x[view];
+    return now.positions[view] == before.positions[view];
   }
   /// Of the means over all pixels, in units.
   [[nodiscard]] std::int64_t brightness_jump(std::size_t view) const {

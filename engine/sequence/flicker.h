@@ -9,6 +9,7 @@
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
+#include "engine/view_geometry/view_pose.h"
 
 namespace vantage {
 
@@ -56,7 +57,7 @@ struct FlickerSums {
 
 /// One new view of a frame.
 struct ViewOfFrame {
-  double view_x = 0;  ///< XS in baselines
+  BaselinePosition position;
   const Photograph* image = nullptr;
 };
 

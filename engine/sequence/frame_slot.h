@@ -10,7 +10,9 @@
 #include "engine/matching/stereo_matcher.h"
 #include "engine/sequence/pair_source.h"
 #include "engine/sequence/pending_files.h"
+#include "engine/sequence/run_journal.h"
 #include "engine/synthesis/view_synthesizer.h"
+#include "engine/view_geometry/view_pose.h"
 
 namespace vantage {
 
@@ -29,12 +31,13 @@ struct FrameSlot {
   /// The new views of SequenceOptions::views, then those of the stereo picture that are no
   /// photographs.
   std::vector<SynthesizedView> views;
-  std::vector<double> views_x;
+  std::vector<BaselinePosition> view_positions;
   Photograph preview;
   Photograph stereo;
+  std::vector<std::uint8_t> encoded;  ///< the file being written
   PendingFiles files;
-  std::vector<std::string> file_names;  ///< of `files`, relative to the run's folder
-  std::vector<StageTime> times;         ///< of everything but matching
+  std::vector<FileRecord> file_records;  ///< of `files`
+  std::vector<StageTime> times;          ///< of everything but matching
 };
 
 }  // namespace vantage

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -11,7 +12,7 @@
 
 #include "engine/error.h"
 #include "engine/image/content_hash.h"
-#include "engine/image/stereo_packing.h"
+#include "engine/image/stereo_display.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/photograph_io.h"
 #include "engine/io/preview.h"
@@ -44,6 +45,17 @@ void require_size(const Photograph& photograph, std::string_view side, ImageExte
                             side, photograph.width(), photograph.height(), expected.width_px,
                             expected.height_px));
   }
+}
+
+template <typename T>
+void copy_image(const Image<T>& image, Photograph& copy) {
+  Image<T> pixels = take_image<T>(copy, {image.width(), image.height(), image.channels()});
+  const auto row_values =
+      static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.channels());
+  for (int y = 0; y < image.height(); ++y) {
+    std::copy_n(image.row(y), row_values, pixels.row(y));
+  }
+  copy.pixels = std::move(pixels);
 }
 
 }  // namespace
@@ -131,27 +143,30 @@ const Photograph* FrameWorker::photograph_at(const FrameSlot& slot, double view_
 }
 
 void FrameWorker::synthesize(FrameSlot& slot) const {
-  slot.views_x.clear();
+  slot.view_positions.clear();
   for (const ViewTrack& track : options_.views) {
-    slot.views_x.push_back(track.at(slot.frame));
+    slot.view_positions.push_back(track.at(slot.frame));
   }
   if (options_.saves(SequenceOutput::kStereo)) {
     for (const double view_x : options_.stereo_views_x) {
       if (photograph_at(slot, view_x) == nullptr) {
-        slot.views_x.push_back(view_x);
+        slot.view_positions.push_back({view_x, 0});
       }
     }
   }
-  if (slot.views_x.empty()) {
+  if (slot.view_positions.empty()) {
     return;
   }
   const TimedStep step(slot, "views");
-  slot.views.resize(slot.views_x.size());
+  slot.views.resize(slot.view_positions.size());
   const std::array<IntensityFit, 4>* fit =
       options_.intensity_fit == FitScope::kShot ? &shots_->shot_of(slot.frame).intensity : nullptr;
   for (std::size_t view = 0; view < slot.views.size(); ++view) {
-    synthesizer_.synthesize(*slot.left, *slot.right, slot.maps.left.view(), slot.maps.right.view(),
-                            slot.views_x[view], slot.views[view], fit);
+    const BaselinePosition position = slot.view_positions[view];
+    synthesizer_.synthesize(
+        *slot.left, *slot.right, slot.maps.left.view(), slot.maps.right.view(),
+        baseline_view(position.x, position.y, slot.left->width(), slot.left->height()),
+        slot.views[view], fit);
   }
 }
 
@@ -178,7 +193,7 @@ void FrameWorker::pack_stereo_picture(FrameSlot& slot) const {
   };
   const Photograph* left = picture_at(options_.stereo_views_x[0]);
   const Photograph* right = picture_at(options_.stereo_views_x[1]);
-  pack_stereo(*left, *right, options_.stereo_packing, slot.stereo);
+  show_stereo(*left, *right, options_.stereo_packing, slot.stereo);
 }
 
 const DisparityMap& FrameWorker::primary_map(const FrameSlot& slot) const {
@@ -209,11 +224,13 @@ const Photograph* FrameWorker::stored_picture(const FrameSlot& slot,
   }
 }
 
-Photograph FrameWorker::picture_of(const FrameSlot& slot, const OutputStream& stream) const {
-  if (const Photograph* picture = stored_picture(slot, stream)) {
-    return std::visit([](const auto& image) { return Photograph{image.copy()}; }, picture->pixels);
+void FrameWorker::copy_picture(const FrameSlot& slot, const OutputStream& stream,
+                               Photograph& picture) const {
+  if (const Photograph* stored = stored_picture(slot, stream)) {
+    std::visit([&](const auto& image) { copy_image(image, picture); }, stored->pixels);
+  } else {
+    copy_image(mask_of(slot, stream), picture);
   }
-  return {mask_of(slot, stream).copy()};
 }
 
 std::string FrameWorker::extension_of(const FrameSlot& slot, const OutputStream& stream) const {
@@ -231,29 +248,36 @@ std::string FrameWorker::extension_of(const FrameSlot& slot, const OutputStream&
                                                                                      : "png";
 }
 
-std::vector<std::uint8_t> FrameWorker::encoded(const FrameSlot& slot, const OutputStream& stream,
-                                               const std::filesystem::path& path) const {
+/// Into the slot's `encoded`.
+void FrameWorker::encode_stream(FrameSlot& slot, const OutputStream& stream,
+                                const std::filesystem::path& path) const {
   switch (stream.output) {
     case SequenceOutput::kDisparity:
-      return encode_disparity(path, primary_map(slot).view());
+      encode_disparity(path, primary_map(slot).view(), slot.encoded);
+      return;
     case SequenceOutput::kRightDisparity:
-      return encode_disparity(path, slot.maps.right.view());
+      encode_disparity(path, slot.maps.right.view(), slot.encoded);
+      return;
     case SequenceOutput::kConfidence:
-      return encode_disparity(path, options_.match.reference == Reference::kLeft
-                                        ? slot.maps.left_confidence.view()
-                                        : slot.maps.right_confidence.view());
+      encode_disparity(path,
+                       options_.match.reference == Reference::kLeft
+                           ? slot.maps.left_confidence.view()
+                           : slot.maps.right_confidence.view(),
+                       slot.encoded);
+      return;
     default:
       break;
   }
   if (const Photograph* picture = stored_picture(slot, stream)) {
-    return encode_photograph(path, *picture);
+    encode_photograph(path, *picture, slot.encoded);
+    return;
   }
-  return encode_photograph(path, picture_of(slot, stream));
+  encode_photograph(path, Photograph{mask_of(slot, stream).copy()}, slot.encoded);
 }
 
 void FrameWorker::encode(FrameSlot& slot) const {
   slot.files.discard();  // left by a frame that was given up
-  slot.file_names.clear();
+  slot.file_records.clear();
   if (slot.is_lead_in || slot.is_absent) {
     return;
   }
@@ -265,8 +289,9 @@ void FrameWorker::encode(FrameSlot& slot) const {
     const std::filesystem::path name =
         SequenceLayout::file(stream, slot.frame, extension_of(slot, stream));
     const std::filesystem::path path = layout_.folder() / name;
-    slot.files.add(path, encoded(slot, stream, path));
-    slot.file_names.push_back(name.string());
+    encode_stream(slot, stream, path);
+    slot.files.add(path, slot.encoded);
+    slot.file_records.push_back({name.string(), slot.encoded.size()});
   }
 }
 

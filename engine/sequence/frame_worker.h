@@ -58,8 +58,8 @@ class FrameWorker {
 
   /// Of the reference's map.
   [[nodiscard]] const DisparityMap& primary_map(const FrameSlot& slot) const;
-  /// What `stream`, none of floats, shows of the frame.
-  [[nodiscard]] Photograph picture_of(const FrameSlot& slot, const OutputStream& stream) const;
+  /// Copies what `stream`, none of floats, shows of the frame to `picture`, whose memory is reused.
+  void copy_picture(const FrameSlot& slot, const OutputStream& stream, Photograph& picture) const;
 
  private:
   void match(FrameSlot& slot);
@@ -67,8 +67,8 @@ class FrameWorker {
   void paint_preview(FrameSlot& slot) const;
   void pack_stereo_picture(FrameSlot& slot) const;
   [[nodiscard]] const Photograph* photograph_at(const FrameSlot& slot, double view_x) const;
-  [[nodiscard]] std::vector<std::uint8_t> encoded(const FrameSlot& slot, const OutputStream& stream,
-                                                  const std::filesystem::path& path) const;
+  void encode_stream(FrameSlot& slot, const OutputStream& stream,
+                     const std::filesystem::path& path) const;
   [[nodiscard]] std::string extension_of(const FrameSlot& slot, const OutputStream& stream) const;
   [[nodiscard]] const Photograph* stored_picture(const FrameSlot& slot,
                                                  const OutputStream& stream) const;

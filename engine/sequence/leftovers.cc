@@ -46,7 +46,9 @@ void remove_leftovers(const SequenceLayout& layout, FrameRange frames) {
                                             : layout.folder() / stream.name;
     remove_files(folder, [&](const std::string& name) { return is_of_frames(name, frames); });
   }
-  remove_leftovers_of(layout.journal_folder() / "run.json");
+  for (const char* name : {"run.json", kShotsFile}) {
+    remove_leftovers_of(layout.journal_folder() / name);
+  }
 }
 
 void remove_leftovers_of(const fs::path& file) {

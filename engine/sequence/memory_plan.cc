@@ -14,17 +14,22 @@ namespace {
 constexpr int kMostInFlight = 64;
 constexpr int kDefaultMostInFlight = 34;  // more only help to even out unequal frames
 /// The program, its libraries and what they set up at first use.
-constexpr std::size_t kProcessBytes = std::size_t{68} << 20;
+constexpr std::size_t kProcessBytes = std::size_t{77} << 20;
 /// Of a thread: stack, arena of the allocator.
 constexpr std::size_t kThreadBytes = std::size_t{3} << 20;
+
+std::size_t photograph_bytes(const PairShape& shape) {
+  return static_cast<std::size_t>(shape.source.width_px) *
+         static_cast<std::size_t>(shape.source.height_px) *
+         static_cast<std::size_t>(shape.channels) * static_cast<std::size_t>(shape.bytes_per_value);
+}
 
 /// What one frame holds from reading to the last of its files. Sums what FrameSlot has, and what
 /// encoding adds while it runs.
 std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) {
   const auto pixels = static_cast<std::size_t>(shape.source.width_px) *
                       static_cast<std::size_t>(shape.source.height_px);
-  const std::size_t photograph = pixels * static_cast<std::size_t>(shape.channels) *
-                                 static_cast<std::size_t>(shape.bytes_per_value);
+  const std::size_t photograph = photograph_bytes(shape);
   // Fetched and decoded; a packed frame holds both images once more.
   std::size_t bytes = 4 * photograph;
   if (shape.is_rectified_here) {
@@ -37,7 +42,7 @@ std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) 
     views += 2;
     bytes += 2 * photograph;
   }
-  bytes += views * (photograph + pixels);
+  bytes += views * (photograph + 2 * pixels);  // with masks of holes and sources
   if (options.saves(SequenceOutput::kPreview)) {
     bytes += 3 * pixels;
   }
@@ -60,11 +65,25 @@ std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) 
 
 /// What rendering the views of one frame, one after the other, takes.
 std::size_t view_bytes(const SequenceOptions& options, const PairShape& shape) {
-  const bool has_views = !options.views.empty() || options.saves(SequenceOutput::kStereo);
-  return has_views && options.intensity_fit == FitScope::kFrame
-             ? ViewSynthesizer::working_bytes(shape.source.width_px, shape.source.height_px,
-                                              shape.channels)
-             : 0;
+  if (options.views.empty() && !options.saves(SequenceOutput::kStereo)) {
+    return 0;
+  }
+  const int width = shape.source.width_px;
+  const int height = shape.source.height_px;
+  const std::size_t filling =
+      ViewSynthesizer::filling_bytes(options.synthesis, width, height, shape.channels);
+  for (const ViewTrack& track : options.views) {
+    for (const ViewTrack::Key& key : track.keys) {
+      if (key.position.y != 0) {
+        return filling + ViewSynthesizer::working_bytes(
+                             baseline_view(key.position.x, key.position.y, width, height), width,
+                             height, shape.channels);
+      }
+    }
+  }
+  return filling + (options.intensity_fit == FitScope::kFrame
+                        ? ViewSynthesizer::working_bytes(width, height, shape.channels)
+                        : 0);
 }
 
 /// What is kept of the frame before, and to compare with it.
@@ -101,7 +120,8 @@ MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& requ
   ExecutionOptions limited = execution;
   MemoryPlan plan;
   plan.frame_bytes = frame_bytes(options, shape);
-  std::size_t fixed = kProcessBytes + video_bytes(options, shape) + past_bytes(options, shape);
+  std::size_t fixed = kProcessBytes + video_bytes(options, shape) + past_bytes(options, shape) +
+                      static_cast<std::size_t>(shape.frames_kept) * photograph_bytes(shape);
   int threads = 1;
   {
     Execution probe(execution);

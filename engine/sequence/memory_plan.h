@@ -27,6 +27,7 @@ struct PairShape {
   int channels = 1;
   int bytes_per_value = 1;
   bool is_rectified_here = false;  ///< a calibration is applied
+  int frames_kept = 0;             ///< PairSource::frames_kept()
 };
 
 struct MemoryRequest {

@@ -64,11 +64,12 @@ bool MovingCameraImages::fetch(FramePair& pair) {
 }
 
 void MovingCameraImages::decode(FramePair& pair) const {
-  for (FetchedFrame& frame : pair.fetched) {
-    frame.decode();
-  }
+  pair.fetched[0].decode();
   std::swap(pair.left, pair.fetched[0].photograph);
-  std::swap(pair.right, pair.fetched[1].photograph);
+  if (pair.wants_right) {
+    pair.fetched[1].decode();
+    std::swap(pair.right, pair.fetched[1].photograph);
+  }
 }
 
 MovingCameraVideo::MovingCameraVideo(std::unique_ptr<FrameSource> source, int step)

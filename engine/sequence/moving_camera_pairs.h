@@ -63,6 +63,7 @@ class MovingCameraVideo : public MovingCameraPairs {
   bool fetch(FramePair& pair) override;
   void decode(FramePair& pair) const override;
   void skip_to(int index) override;
+  [[nodiscard]] int frames_kept() const override { return static_cast<int>(kept_.size()); }
 
  private:
   struct KeptFrame {

@@ -30,7 +30,11 @@ void PackedPairs::decode(FramePair& pair) const {
   FetchedFrame& frame = pair.fetched[0];
   frame.decode();
   try {
-    unpack_stereo(frame.photograph, packing_, pair.left, pair.right);
+    if (pair.wants_right) {
+      unpack_stereo(frame.photograph, packing_, pair.left, pair.right);
+    } else {
+      unpack_left(frame.photograph, packing_, pair.left);
+    }
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", describe(pair.index), error.what()));
   }

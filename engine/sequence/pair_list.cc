@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <string>
 
 #include "engine/error.h"
+#include "engine/io/csv_records.h"
 #include "engine/io/file_bytes.h"
 
 namespace vantage {
@@ -13,158 +13,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-bool ends_line(char c) { return c == '\n' || c == '\r'; }
-
-bool equals_ignoring_case(std::string_view text, std::string_view lower_case) {
-  if (text.size() != lower_case.size()) {
-    return false;
-  }
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool is_upper = text[i] >= 'A' && text[i] <= 'Z';
-    if ((is_upper ? static_cast<char>(text[i] - 'A' + 'a') : text[i]) != lower_case[i]) {
-      return false;
-    }
-  }
-  return true;
-}
-
-/// Reads comma separated values record by record.
-class Parser {
- public:
-  Parser(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {
-    if (text_.starts_with("\xEF\xBB\xBF")) {
-      position_ = 3;
-    }
-  }
-
-  /// The line that the record of the last next_record() begins on, from 1.
-  [[nodiscard]] int record_line() const { return record_line_; }
-
-  /// Skips empty lines and comments; false at the end.
-  bool next_record(std::vector<std::string>& fields) {
-    fields.clear();
-    skip_lines_without_record();
-    if (at_end()) {
-      return false;
-    }
-    record_line_ = line_;
-    fields.push_back(read_field());
-    while (!at_end() && text_[position_] == ',') {
-      ++position_;
-      fields.push_back(read_field());
-    }
-    skip_line_end();
-    return true;
-  }
-
-  [[noreturn]] void fail(int line, const std::string& problem) const {
-    throw Error(fmt::format("{} line {}: {}", file_, line, problem));
-  }
-
- private:
-  [[nodiscard]] bool at_end() const { return position_ == text_.size(); }
-
-  void skip_blanks() {
-    while (!at_end() && is_blank(text_[position_])) {
-      ++position_;
-    }
-  }
-
-  void skip_line_end() {
-    if (at_end()) {
-      return;
-    }
-    position_ += text_.substr(position_).starts_with("\r\n") ? 2 : 1;
-    ++line_;
-  }
-
-  void skip_lines_without_record() {
-    for (;;) {
-      if (!at_end() && text_[position_] == '#') {
-        position_ = std::min(text_.find_first_of("\r\n", position_), text_.size());
-      }
-      skip_blanks();
-      if (at_end() || !ends_line(text_[position_])) {
-        return;
-      }
-      skip_line_end();
-    }
-  }
-
-  /// Ends at a comma, the end of the line or the end of the text.
-  std::string read_field() {
-    skip_blanks();
-    return !at_end() && text_[position_] == '"' ? read_quoted() : read_unquoted();
-  }
-
-  std::string read_unquoted() {
-    const std::size_t end = std::min(text_.find_first_of(",\r\n", position_), text_.size());
-    std::string_view field = text_.substr(position_, end - position_);
-    position_ = end;
-    while (!field.empty() && is_blank(field.back())) {
-      field.remove_suffix(1);
-    }
-    if (field.find('"') != std::string_view::npos) {
-      fail(line_, fmt::format("a quote inside of '{}', expected \"\" in a quoted name", field));
-    }
-    return std::string(field);
-  }
-
-  std::string read_quoted() {
-    const int first_line = line_;
-    std::string field;
-    for (++position_;; ++position_) {
-      if (at_end()) {
-        fail(first_line, "a quote is not closed");
-      }
-      const char c = text_[position_];
-      if (c == '"') {
-        if (!text_.substr(position_).starts_with("\"\"")) {
-          break;
-        }
-        ++position_;
-      }
-      const bool is_first_of_two = c == '\r' && text_.substr(position_).starts_with("\r\n");
-      line_ += ends_line(c) && !is_first_of_two ? 1 : 0;
-      field.push_back(c);
-    }
-    ++position_;
-    skip_blanks();
-    if (!at_end() && text_[position_] != ',' && !ends_line(text_[position_])) {
-      fail(line_, "text after a closing quote, expected a comma or the end of the line");
-    }
-    return field;
-  }
-
-  std::string_view text_;
-  std::string file_;
-  std::size_t position_ = 0;
-  int line_ = 1;
-  int record_line_ = 1;
-};
-
 }  // namespace
 
 std::vector<ListedPair> parse_pair_list(std::string_view text, const fs::path& file) {
-  Parser parser(text, file.string());
-  if (text.find('\0') != std::string_view::npos) {
-    throw Error(fmt::format("{}: holds a zero byte, expected UTF-8 text", file.string()));
-  }
+  CsvRecords records(text, file.string());
   std::vector<ListedPair> pairs;
   std::vector<std::string> fields;
-  for (bool is_first = true; parser.next_record(fields); is_first = false) {
+  for (bool is_first = true; records.next(fields); is_first = false) {
     if (fields.size() != 2) {
-      parser.fail(parser.record_line(), fmt::format("{} field{}, expected two: left,right",
-                                                    fields.size(), fields.size() == 1 ? "" : "s"));
+      records.fail(records.record_line(),
+                   fmt::format("{} field{}, expected two: left,right", fields.size(),
+                               fields.size() == 1 ? "" : "s"));
     }
     if (is_first && equals_ignoring_case(fields[0], "left") &&
         equals_ignoring_case(fields[1], "right")) {
       continue;
     }
     if (fields[0].empty() || fields[1].empty()) {
-      parser.fail(parser.record_line(), fmt::format("the {} name is empty, expected an image file",
-                                                    fields[0].empty() ? "left" : "right"));
+      records.fail(records.record_line(),
+                   fmt::format("the {} name is empty, expected an image file",
+                               fields[0].empty() ? "left" : "right"));
     }
     pairs.push_back({fields[0], fields[1]});
   }

@@ -15,6 +15,9 @@ namespace vantage {
 /// A pair of frames on its way from a source: fetched in order by one thread, decoded by any.
 /// Memory is reused from pair to pair.
 struct FramePair {
+  /// Whether whoever fetches it wants the right image too. Without it fetch() and decode() save the
+  /// work where they can: `right` is then anything, and that it is bad may go unnoticed.
+  bool wants_right = true;
   int index = 0;                        ///< of the pair, counted from 0
   std::array<FetchedFrame, 2> fetched;  ///< what decode() makes the pair of
   Photograph left;
@@ -67,6 +70,8 @@ class PairSource {
   virtual void skip_to(int index) = 0;
   /// Pairs there are in all: frames that have a partner.
   [[nodiscard]] virtual int pair_count() const = 0;
+  /// Decoded frames that the source itself keeps in memory.
+  [[nodiscard]] virtual int frames_kept() const { return 0; }
   /// "left/000012.png, right/000012.png" or "film.mp4 frame 12".
   [[nodiscard]] virtual std::string describe(int index) const = 0;
   /// What is odd about the pairing as a whole, a line each: frames left over on one side ("the left

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <string>
 #include <system_error>
@@ -35,15 +34,8 @@ void PendingFiles::add(const fs::path& path, std::span<const std::uint8_t> bytes
       path.parent_path() / fmt::format(".{}.{}.pending", path.filename().string(), ::getpid());
   files_.push_back({.hidden = hidden, .path = path});
   const FileDescriptor file(::open(hidden.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
-  if (file.get() < 0) {
+  if (!file.valid() || !write_all(file.get(), bytes)) {
     fail(path, errno);
-  }
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(file.get(), bytes.data(), bytes.size());
-    if (written < 0 && errno != EINTR) {
-      fail(path, errno);
-    }
-    bytes = bytes.subspan(static_cast<std::size_t>(std::max<ssize_t>(written, 0)));
   }
   // On its way to the disk by the time it is flushed. Where that cannot be, flushing does it all.
   (void)::sync_file_range(file.get(), 0, 0, SYNC_FILE_RANGE_WRITE);
@@ -51,8 +43,8 @@ void PendingFiles::add(const fs::path& path, std::span<const std::uint8_t> bytes
 
 void PendingFiles::flush(std::size_t index) noexcept {
   File& file = files_[index];
-  const FileDescriptor written(::open(file.hidden.c_str(), O_RDONLY | O_CLOEXEC, 0666));
-  const bool is_safe = written.get() >= 0 && ::fsync(written.get()) == 0;
+  const FileDescriptor written(::open(file.hidden.c_str(), O_RDONLY | O_CLOEXEC));
+  const bool is_safe = written.valid() && ::fsync(written.get()) == 0;
   file.flush_error = is_safe ? 0 : errno;
   if (is_safe) {
     // The next files then take the same pages, which are at hand: a long run would otherwise fill
@@ -85,14 +77,6 @@ void PendingFiles::discard() noexcept {
     fs::remove(file.hidden, ignored);
   }
   files_.clear();
-}
-
-void flush_folder(const fs::path& folder) {
-  const FileDescriptor open_folder(
-      ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC, 0666));
-  if (open_folder.get() >= 0) {
-    (void)::fsync(open_folder.get());
-  }
 }
 
 }  // namespace vantage

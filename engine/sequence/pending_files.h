@@ -53,7 +53,4 @@ class PendingFiles {
   std::vector<File> files_;
 };
 
-/// Makes names in `folder` survive a power cut, where the file system can do that.
-void flush_folder(const std::filesystem::path& folder);
-
 }  // namespace vantage

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -25,14 +26,22 @@ struct RunIdentity {
   FrameRate sound_rate;              ///< of the frames of that video
 };
 
+/// A result of a frame.
+struct FileRecord {
+  std::string name;  ///< relative to the run's folder
+  std::uint64_t bytes = 0;
+  friend bool operator==(const FileRecord&, const FileRecord&) = default;
+};
+
 /// How one frame ended.
 struct FrameRecord {
   int frame = 0;
   bool skipped = false;
-  std::string problem = {};               ///< why it was skipped
+  bool absent = false;       ///< the input ends before it: there is nothing to be made of it
+  std::string problem = {};  ///< why it was skipped
   std::vector<std::string> remarks = {};  ///< what was odd about a frame that is done
-  std::vector<std::string> files = {};    ///< relative to the run's folder
-  FlickerSums flicker = {};               ///< all 0 where it was not measured
+  std::vector<FileRecord> files = {};
+  FlickerSums flicker = {};  ///< all 0 where it was not measured
 };
 
 /// All videos have a segment of these frames.
@@ -43,6 +52,7 @@ struct SegmentRecord {
 /// The videos of these frames have been joined and their segments removed.
 struct JoinRecord {
   FrameRange frames;
+  std::vector<int> skipped = {};  ///< of `frames`, those of which the videos show a neighbour
 };
 
 using JournalRecord = std::variant<FrameRecord, SegmentRecord, JoinRecord>;
@@ -79,7 +89,7 @@ class RunJournal {
   /// Throws Error when there is none or it is damaged.
   static RunIdentity read_identity(const std::filesystem::path& journal_folder);
   /// The records of all parts, each part's in order. Lines that were cut off by a crash are not
-  /// counted.
+  /// counted. Throws Error when a file cannot be read.
   static std::vector<JournalRecord> read_records(const std::filesystem::path& journal_folder);
 
  private:

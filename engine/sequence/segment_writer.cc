@@ -10,7 +10,7 @@
 #include <variant>
 
 #include "engine/error.h"
-#include "engine/image/stereo_packing.h"
+#include "engine/image/stereo_display.h"
 #include "engine/sequence/pending_files.h"
 
 namespace vantage {
@@ -100,7 +100,8 @@ void SegmentWriter::add(const FrameSlot& slot) {
   // One task per video: an encoder uses one thread, so that its bytes depend on nothing else.
   execution_.executor().parallel_for(static_cast<int>(streams_.size()), [&](int index) {
     Stream& stream = streams_[static_cast<std::size_t>(index)];
-    stream.last = at_least_two_a_side(worker_.picture_of(slot, *stream.output));
+    worker_.copy_picture(slot, *stream.output, stream.last);
+    stream.last = at_least_two_a_side(std::move(stream.last));
     write(stream, stream.last, 1 + std::exchange(stream.leading_skipped, 0));
   });
 }
@@ -123,24 +124,30 @@ Photograph SegmentWriter::black_picture(const OutputStream& output) const {
     return at_least_two_a_side(std::move(black));
   }
   Photograph packed;
-  pack_stereo(black, black, options_.stereo_packing, packed);
+  show_stereo(black, black, options_.stereo_packing, packed);
   return at_least_two_a_side(std::move(packed));
 }
 
-void SegmentWriter::finish() {
-  for (Stream& stream : streams_) {
+std::vector<std::unique_ptr<VideoWriter>> SegmentWriter::end() {
+  std::vector<std::unique_ptr<VideoWriter>> videos(streams_.size());
+  // The streams have the same frames: all have pictures, or none has.
+  if (!streams_.front().writer && streams_.front().leading_skipped == 0) {
+    return {};
+  }
+  execution_.executor().parallel_for(static_cast<int>(streams_.size()), [&](int index) {
+    Stream& stream = streams_[static_cast<std::size_t>(index)];
     if (!stream.writer) {
-      // A segment whose frames the input does not have must hold one all the same.
-      write(stream, black_picture(*stream.output), std::max(1, stream.leading_skipped));
+      write(stream, black_picture(*stream.output), std::exchange(stream.leading_skipped, 0));
     }
     try {
-      stream.writer->finish();
+      stream.writer->end_encoding();
     } catch (const Error& error) {
       throw OutputError(error.what());
     }
-    stream.writer.reset();
-  }
+    videos[static_cast<std::size_t>(index)] = std::move(stream.writer);
+  });
   return_free_memory();
+  return videos;
 }
 
 }  // namespace vantage

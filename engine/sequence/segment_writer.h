@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "engine/io/video_io.h"
@@ -9,9 +10,10 @@
 
 namespace vantage {
 
-/// Writes the videos of a run, segment by segment. A segment has one picture for each of its
-/// frames: a frame that is skipped shows the one before it, at the beginning of a segment the next
-/// good one, and in a segment without any good one black.
+/// Writes the videos of a run, segment by segment. A segment has one picture for each of its frames
+/// that the input has, so that frames of the video are those of the input: a frame that is skipped
+/// shows the one before it, at the beginning of a segment the next good one, and in a segment
+/// without any good one black.
 ///
 /// Thread rule: one thread at a time.
 class SegmentWriter {
@@ -26,8 +28,10 @@ class SegmentWriter {
   /// The next frame of the segment. Throws OutputError.
   void add(const FrameSlot& slot);
   void add_skipped();
-  /// Gives the segment's files their names. Throws OutputError.
-  void finish();
+  /// The videos of the segment when all its frames have been added, everything encoded: what is
+  /// left is to finish() them, which waits for the disk. None if the input has none of its frames.
+  /// Throws OutputError.
+  [[nodiscard]] std::vector<std::unique_ptr<VideoWriter>> end();
 
  private:
   struct Stream;

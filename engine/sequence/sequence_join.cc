@@ -98,21 +98,24 @@ void join_segments(const SequenceOptions& options, const SequenceLayout& layout,
   const DeliveredFrames delivered(layout);
   const std::vector<FrameRange> segments = segments_of(delivered, frames);
   const int segments_end = segments.empty() ? frames.first : segments.back().end;
-  const bool is_complete = frames == FrameRange{0, identity.frame_count} &&
-                           std::ranges::none_of(delivered.records(), [](const auto& entry) {
-                             return entry.second.skipped;
-                           });
-  const bool stays = delivered.joined() == frames &&
-                     (!made_segments || (is_complete && segments_end != frames.end));
+  const int end = delivered.input_end(frames);
+  if (end == frames.first) {
+    return;
+  }
+  const std::vector<int> skipped = delivered.skipped(frames);
+  const bool is_complete = frames == FrameRange{0, identity.frame_count} && skipped.empty();
+  const bool stays = delivered.joined() == frames && delivered.joined_skipped() == skipped &&
+                     (!made_segments || (is_complete && segments_end < end));
   if (!stays) {
-    if (segments_end != frames.end) {
+    if (segments_end < end) {
       throw Error(
           fmt::format("frame {} is of no video segment that begins where another ends, "
-                      "expected segments of frames {}-{}",
-                      segments_end, frames.first, frames.end - 1));
+                      "expected segments of frames {}-{}; 'vantage run --resume' without --frames "
+                      "makes them",
+                      segments_end, frames.first, end - 1));
     }
-    join_videos_of(options, layout, sound_of(options, identity, frames), segments);
-    const JournalRecord joined = JoinRecord{frames};
+    join_videos_of(options, layout, sound_of(options, identity, {frames.first, end}), segments);
+    const JournalRecord joined = JoinRecord{frames, skipped};
     journal.append({&joined, 1});
   }
   if (is_complete) {

@@ -17,8 +17,9 @@ FrameRange contiguous_frames(const DeliveredFrames& delivered, int frame_count);
 /// the input where the options want it and the videos have its frame rate, and says so in the
 /// journal. Segments of a run that is complete, without skipped frames that may be repaired, are
 /// removed. Does nothing when there are no videos or `frames` is empty, and leaves joined videos
-/// alone unless segments may have been made since (`made_segments`): those of a complete run have
-/// the same pictures whenever they are made, so it takes all of them to join them anew. Processes
+/// alone unless other frames are skipped now or segments may have been made since
+/// (`made_segments`): those of a complete run have the same pictures whenever they are made, so it
+/// takes all of them to join them anew. Processes
 /// wait for each other. Throws Error naming the first frame that no segment has.
 void join_segments(const SequenceOptions& options, const SequenceLayout& layout,
                    const RunIdentity& identity, FrameRange frames, bool made_segments,

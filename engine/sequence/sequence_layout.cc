@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "engine/error.h"
+#include "engine/io/file_descriptor.h"
 
 namespace vantage {
 namespace {
@@ -17,7 +19,7 @@ namespace fs = std::filesystem;
 std::string view_name(const std::vector<ViewTrack>& views, int view) {
   const auto track = views.begin() + view;
   if (!track->moves()) {
-    return fmt::format("{}", track->at(0));
+    return to_string(track->at(0));
   }
   const auto number =
       std::count_if(views.begin(), track + 1, [](const ViewTrack& other) { return other.moves(); });
@@ -76,10 +78,16 @@ void SequenceLayout::make_folders() const {
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
+  std::vector<fs::path> changed;  // in which a new folder gets its name
+  for (fs::path made = fs::absolute(folder, error); !error && !fs::exists(made, error);
+       made = made.parent_path()) {
+    changed.push_back(made.parent_path());
+  }
   fs::create_directories(folder, error);
   if (error) {
     throw Error(fmt::format("{}: cannot be made a folder: {}", folder.string(), error.message()));
   }
+  std::ranges::for_each(changed, flush_folder);
 }
 
 }  // namespace vantage

@@ -9,6 +9,9 @@
 
 namespace vantage {
 
+/// The table of shots, in the folder of the journal.
+inline constexpr const char* kShotsFile = "shots.json";
+
 /// One picture per frame that a run writes: as files of their own, or as a video.
 struct OutputStream {
   SequenceOutput output = SequenceOutput::kDisparity;
@@ -23,6 +26,7 @@ struct OutputStream {
 ///   DIR/disparity/000000.pfm, DIR/views/000000.png (one view) or DIR/views/0.25/000000.png …
 ///   DIR/preview.mp4, DIR/views/0.25.mp4 …            what is written as video
 ///   DIR/.vantage/run.json, frames-*.jsonl            the journal
+///   DIR/.vantage/shots.json                          what the frames of a shot share
 ///   DIR/.vantage/segments/NAME/000000-000049.mp4     parts of videos until they are joined
 class SequenceLayout {
  public:
@@ -49,7 +53,7 @@ class SequenceLayout {
   std::vector<OutputStream> streams_;
 };
 
-/// Makes `folder` and its parents. Throws Error.
+/// Makes `folder` and its parents, so that they survive a power cut. Throws Error.
 void make_folder(const std::filesystem::path& folder);
 
 }  // namespace vantage

@@ -42,9 +42,8 @@ void check_views(const SequenceOptions& options) {
   for (auto view = options.views.begin(); view != options.views.end(); ++view) {
     view->validate();
     if (std::find(options.views.begin(), view, *view) != view) {
-      throw UsageError(fmt::format("view {} is given twice", view->moves()
-                                                                 ? to_string(*view)
-                                                                 : fmt::format("{}", view->at(0))));
+      throw UsageError(fmt::format("view {} is given twice",
+                                   view->moves() ? to_string(*view) : to_string(view->at(0))));
     }
   }
   for (const double view_x : options.stereo_views_x) {

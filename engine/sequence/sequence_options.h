@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/image/stereo_packing.h"
+#include "engine/image/stereo_display.h"
 #include "engine/io/frame_rate.h"
 #include "engine/matching/match_options.h"
 #include "engine/sequence/temporal_options.h"
@@ -50,7 +50,7 @@ struct SequenceOptions {
   std::vector<ViewTrack> views;
   /// The positions XS of the two views of kStereo; 0 and 1 are the photographs themselves.
   std::array<double, 2> stereo_views_x = {0, 1};
-  StereoPacking stereo_packing;
+  StereoDisplay stereo_packing;
   FitScope intensity_fit = FitScope::kFrame;  ///< of the new views (3.9–3.11)
   bool preview_range_per_shot = false;        ///< else the range of the search
   TemporalOptions temporal;

@@ -11,6 +11,7 @@
 #include "engine/error.h"
 #include "engine/sequence/commit_queue.h"
 #include "engine/sequence/delivered_frames.h"
+#include "engine/sequence/frame_feed.h"
 #include "engine/sequence/leftovers.h"
 #include "engine/sequence/segment_writer.h"
 #include "scheduler/frame_pipeline.h"
@@ -33,56 +34,15 @@ FrameDependence dependence_of(const SequenceOptions& options, const SequenceLayo
 }
 
 /// Whether a frame was made without one that it depends on, because that one was skipped.
-bool lacks_past(const DeliveredFrames& delivered, int frame, int chunk_begin,
+bool lacks_past(const std::vector<int>& skipped, int frame, int chunk_begin,
                 FrameDependence::Past past) {
   using Past = FrameDependence::Past;
   const int first = past == Past::kNone  ? frame
                     : past == Past::kOne ? std::max(chunk_begin, frame - 1)
                                          : chunk_begin;
-  const auto begin = delivered.records().lower_bound(first);
-  const auto end = delivered.records().lower_bound(frame);
-  return std::any_of(begin, end, [](const auto& entry) { return entry.second.skipped; });
+  const auto next = std::ranges::lower_bound(skipped, first);
+  return next != skipped.end() && *next < frame;
 }
-
-/// Hands out the frames to work on, one after the other.
-class FrameFeed {
- public:
-  explicit FrameFeed(std::vector<FrameRun> runs) : runs_(std::move(runs)) {
-    for (const FrameRun& run : runs_) {
-      frames_total_ += run.frames.count();
-    }
-    begin_run();
-  }
-
-  /// Of the frames to deliver.
-  [[nodiscard]] int frames_total() const { return frames_total_; }
-
-  /// Names the next frame; false at the end.
-  bool next(int& frame, bool& is_lead_in) {
-    if (run_ == runs_.size()) {
-      return false;
-    }
-    frame = next_frame_++;
-    is_lead_in = frame < runs_[run_].frames.first;
-    if (next_frame_ == runs_[run_].frames.end) {
-      ++run_;
-      begin_run();
-    }
-    return true;
-  }
-
- private:
-  void begin_run() {
-    if (run_ < runs_.size()) {
-      next_frame_ = runs_[run_].frames.first - runs_[run_].lead_in;
-    }
-  }
-
-  std::vector<FrameRun> runs_;
-  std::size_t run_ = 0;
-  int next_frame_ = 0;
-  int frames_total_ = 0;
-};
 
 /// One run: the steps of a frame that are taken in order, and what all add up to.
 class Run {
@@ -120,6 +80,7 @@ class Run {
         scheduler::run_frames(execution_.executor(), run_.in_flight, steps, skip, run_.stop);
     queue_.finish();
     report_.interrupted = outcome.interrupted;
+    report_.frames -= frames_of_segment_;  // the videos of an unfinished chunk are given up
     report_.compute_seconds = worker_.compute_seconds();
     return std::move(report_);
   }
@@ -147,7 +108,7 @@ class Run {
       return;
     }
     const Clock::time_point start = Clock::now();
-    FrameRecord record{.frame = slot.frame, .files = std::move(slot.file_names)};
+    FrameRecord record{.frame = slot.frame, .files = std::move(slot.file_records)};
     measure_flicker(slot, record);
     if (slot.is_lead_in) {
       return;
@@ -159,6 +120,7 @@ class Run {
     }
     slot.times.push_back({"write", seconds_since(start)});
     add_to_report(slot);
+    frames_of_segment_ += layout_.has_videos() ? 1 : 0;
     deliver(std::move(slot.files), std::move(record), slot.match.cells);
   }
 
@@ -170,7 +132,7 @@ class Run {
     if (layout_.has_videos()) {
       segment_of(slot.frame);
     }
-    FrameRecord record{.frame = slot.frame};
+    FrameRecord record{.frame = slot.frame, .absent = true};
     record.remarks = {"the input ends before it, although its container promises it"};
     report_.remarks.push_back({slot.frame, record.remarks.front()});
     deliver({}, std::move(record), 0);
@@ -181,14 +143,13 @@ class Run {
     if (!options_.measure_flicker) {
       return;
     }
-    const int chunk = slot.frame / options_.chunk_frames;
-    if (chunk != flicker_chunk_) {
+    if (slot.frame != next_flicker_frame_ || slot.frame % options_.chunk_frames == 0) {
       flicker_.restart();
-      flicker_chunk_ = chunk;
     }
+    next_flicker_frame_ = slot.frame + 1;
     std::vector<ViewOfFrame> views;
     for (std::size_t view = 0; view < options_.views.size(); ++view) {
-      views.push_back({slot.views_x[view], &slot.views[view].image});
+      views.push_back({slot.view_positions[view], &slot.views[view].image});
     }
     record.flicker = flicker_.add(*slot.left, slot.maps.left.view(), views, execution_);
   }
@@ -267,9 +228,12 @@ class Run {
       segment_records_.emplace_back(std::move(record));
       const FrameRange chunk = run_.selection.chunk_of(frame);
       if (frame + 1 == chunk.end) {
-        segments_.finish();
-        segment_records_.emplace_back(SegmentRecord{chunk});
+        delivery.videos = segments_.end();
+        if (!delivery.videos.empty()) {
+          segment_records_.emplace_back(SegmentRecord{chunk});
+        }
         delivery.records = std::exchange(segment_records_, {});
+        frames_of_segment_ = 0;
       }
     }
     queue_.push(std::move(delivery));
@@ -316,8 +280,9 @@ class Run {
   // What follows, up to the slots, only the writing step touches.
   SegmentWriter segments_;
   std::vector<JournalRecord> segment_records_;
+  int frames_of_segment_ = 0;  // counted in the report though the segment is unfinished
   FlickerMeter flicker_;
-  int flicker_chunk_ = -1;
+  int next_flicker_frame_ = -1;
   int last_frame_ = -2;
   std::array<std::uint64_t, 2> last_content_ = {};
   SequenceReport report_;
@@ -340,9 +305,14 @@ SequenceReport SequenceRunner::run(const SequenceRun& run, const SequenceLayout&
   remove_leftovers(layout, own);
   const DeliveredFrames delivered(layout);
   const FrameDependence dependence = dependence_of(options_, layout);
+  const std::vector<int> skipped = delivered.skipped({0, run.selection.frame_count});
   std::vector<FrameRun> work = plan_work(run.selection, dependence, [&](int frame) {
-    return delivered.is_done(frame) &&
-           !lacks_past(delivered, frame, run.selection.chunk_begin(frame), dependence.past);
+    if (!delivered.is_done(frame) ||
+        lacks_past(skipped, frame, run.selection.chunk_begin(frame), dependence.past)) {
+      return false;
+    }
+    const FrameRange chunk = run.selection.chunk_of(frame);
+    return !layout.has_videos() || frame != chunk.first || delivered.is_in_one_piece(chunk);
   });
   int before = own.count();
   for (const FrameRun& part : work) {

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/error.h"
+#include "engine/io/atomic_file.h"
+#include "engine/io/file_bytes.h"
 #include "engine/sequence/shots.h"
 
 namespace vantage {
@@ -90,6 +92,31 @@ ShotTable shot_table_from_json(const std::string& text) {
   }
   check(table);
   return table;
+}
+
+std::optional<ShotTable> read_shot_table(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) {
+    return std::nullopt;
+  }
+  const std::vector<std::uint8_t> bytes = read_file_bytes(file);
+  try {
+    return shot_table_from_json({bytes.begin(), bytes.end()});
+  } catch (const Error& error) {
+    throw Error(
+        fmt::format("{}: is damaged ({}), expected the shots of the run; without the file "
+                    "they are found anew",
+                    file.string(), error.what()));
+  }
+}
+
+ShotTable keep_shot_table(const std::filesystem::path& file, const ShotTable& table) {
+  create_text_file(file, to_json(table));
+  const std::optional<ShotTable> kept = read_shot_table(file);
+  if (!kept) {
+    throw Error(fmt::format("{}: has been removed while the run began", file.string()));
+  }
+  return *kept;
 }
 
 }  // namespace vantage

@@ -18,11 +18,15 @@ constexpr double kViewOfFit = 0.5;  // baselines
 constexpr double kOutside = 0.01;   // share of the disparities on either side of the range
 constexpr float kWidening = 0.05F;
 constexpr float kLeastWideningPx = 0.5F;
+constexpr std::size_t kMostSamples = 3;  // of a shot
 
 /// The disparities of some maps, and the range that shows them.
 class DisparitySamples {
  public:
   void add(ImageView<const float> map_px) {
+    // At once: growing would take twice as much.
+    values_.reserve(kMostSamples * static_cast<std::size_t>(map_px.width()) *
+                    static_cast<std::size_t>(map_px.height()));
     for (int y = 0; y < map_px.height(); ++y) {
       std::copy_if(map_px.row(y), map_px.row(y) + map_px.width(), std::back_inserter(values_),
                    [](float d) { return std::isfinite(d); });
@@ -118,7 +122,8 @@ class Survey {
       bool is_good = false;
       std::optional<Thumbnail> thumbnail;
     };
-    std::vector<Slot> slots(static_cast<std::size_t>(execution_.executor().thread_count()));
+    std::vector<Slot> slots(static_cast<std::size_t>(
+        std::clamp(execution_.executor().thread_count(), 1, hooks_.in_flight)));
     ShotCuts cuts;
     pairs_.skip_to(first_frame);
     for (int frame = first_frame; frame < end_frame;) {
@@ -128,6 +133,7 @@ class Survey {
       int count = 0;
       while (count < static_cast<int>(slots.size()) && frame < end_frame) {
         Slot& slot = slots[static_cast<std::size_t>(count)];
+        slot.pair.wants_right = false;
         if (!fetch(slot.pair, slot.is_good)) {
           frame = end_frame;
           break;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <atomic>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -38,6 +39,14 @@ struct ShotTable {
 std::string to_json(const ShotTable& table);
 ShotTable shot_table_from_json(const std::string& text);
 
+/// The table in `file`; empty where there is no such file. Throws Error naming the file when it
+/// cannot be read.
+std::optional<ShotTable> read_shot_table(const std::filesystem::path& file);
+
+/// Writes `table` as `file`, whole or not at all, unless another process has been quicker. Returns
+/// what the file holds then: all parts of a run must go by the same table. Throws Error.
+ShotTable keep_shot_table(const std::filesystem::path& file, const ShotTable& table);
+
 /// Where a survey stands: it looks at all frames, then at a few more closely.
 struct SurveyProgress {
   int frames_done = 0;
@@ -50,18 +59,19 @@ struct SurveyHooks {
   std::function<void(FramePair&)> prepare;
   std::function<void(const SurveyProgress&)> progress;  ///< never concurrently
   const std::atomic<bool>* stop = nullptr;
+  int in_flight = 64;  ///< most pairs held at once, ≥ 1; no more than threads are
 };
 
 /// Finds the shots of frames [first_frame, end_frame) of `pairs`, 0 ≤ first < end ≤ pair_count(),
-/// by their left images (shot_cuts.h), and matches up to three frames of each (first, middle, last)
-/// with options.match: the sums of the regression (3.11), taken at XS = 0.5 as options.synthesis
-/// says, are added up over them; the preview range is that of the 1st to the 99th percentile of
-/// the disparities of their primary maps, widened on both sides by 1/20 and at least ½ px.
-/// Frames that cannot be read are left out: they are no cut, and a shot without any sample has the
-/// identity and the search range.
+/// by their left images (shot_cuts.h), the only ones then decoded, and matches up to three frames
+/// of each (first, middle, last) with options.match: the sums of the regression (3.11), taken at XS
+/// = 0.5 as options.synthesis says, are added up over them; the preview range is that of the 1st to
+/// the 99th percentile of the disparities of their primary maps, widened on both sides by 1/20 and
+/// at least ½ px. Frames that cannot be read are left out: they are no cut, and a shot without any
+/// sample has the identity and the search range.
 ///
 /// Identical for any `execution`. Leaves `pairs` anywhere: use skip_to(). Empty when `stop` was
-/// raised. Throws Error when matching fails for other reasons than an unreadable frame.
+/// raised. Throws UsageError where the options do not suit the images.
 std::optional<ShotTable> survey_shots(PairSource& pairs, int first_frame, int end_frame,
                                       const SequenceOptions& options, const SurveyHooks& hooks,
                                       Execution& execution);

@@ -57,6 +57,13 @@ TwoCameraPairs::TwoCameraPairs(std::unique_ptr<FrameSource> left,
   skip_to(0);
 }
 
+bool TwoCameraPairs::fetch_right(FetchedFrame& frame, std::exception_ptr& problem) {
+  if (std::exchange(right_lags_, false)) {
+    right_->skip_to(first_right_ + next_index_);
+  }
+  return fetch_from(*right_, frame, problem);
+}
+
 bool TwoCameraPairs::fetch(FramePair& pair) {
   if (next_index_ >= pair_count_) {
     return false;
@@ -65,13 +72,18 @@ bool TwoCameraPairs::fetch(FramePair& pair) {
   pair.remarks.clear();
   std::exception_ptr problem;
   const bool has_left = fetch_from(*left_, pair.fetched[0], problem);
-  const bool has_right = fetch_from(*right_, pair.fetched[1], problem);
+  const bool has_right = !pair.wants_right || fetch_right(pair.fetched[1], problem);
+  right_lags_ = right_lags_ || !pair.wants_right;
   if (!has_left || !has_right) {
     return false;
   }
   ++next_index_;
   if (problem) {
     std::rethrow_exception(problem);
+  }
+  if (!pair.wants_right) {
+    pair.remarks = pair.fetched[0].remarks;
+    return true;
   }
   for (const FetchedFrame& frame : pair.fetched) {
     pair.remarks.insert(pair.remarks.end(), frame.remarks.begin(), frame.remarks.end());
@@ -91,11 +103,12 @@ bool TwoCameraPairs::fetch(FramePair& pair) {
 }
 
 void TwoCameraPairs::decode(FramePair& pair) const {
-  for (FetchedFrame& frame : pair.fetched) {
-    frame.decode();
-  }
+  pair.fetched[0].decode();
   std::swap(pair.left, pair.fetched[0].photograph);
-  std::swap(pair.right, pair.fetched[1].photograph);
+  if (pair.wants_right) {
+    pair.fetched[1].decode();
+    std::swap(pair.right, pair.fetched[1].photograph);
+  }
 }
 
 void TwoCameraPairs::skip_to(int index) {
@@ -103,6 +116,7 @@ void TwoCameraPairs::skip_to(int index) {
   left_->skip_to(first_left_ + index);
   right_->skip_to(first_right_ + index);
   next_index_ = index;
+  right_lags_ = false;
 }
 
 std::string TwoCameraPairs::describe(int index) const {

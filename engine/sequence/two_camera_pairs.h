@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ class TwoCameraPairs final : public PairSource {
   [[nodiscard]] std::vector<std::string> identities() const override;
 
  private:
+  /// Fetches the right frame of the next pair, from where the left source is.
+  bool fetch_right(FetchedFrame& frame, std::exception_ptr& problem);
   /// Frames at the end of the left (right) source that have no partner.
   [[nodiscard]] int left_over() const { return left_->frame_count() - first_left_ - pair_count_; }
   [[nodiscard]] int right_over() const {
@@ -41,6 +44,7 @@ class TwoCameraPairs final : public PairSource {
   int first_right_;
   int pair_count_;
   int next_index_ = 0;
+  bool right_lags_ = false;  // it is still where the last fetch() that wanted it left it
 };
 
 }  // namespace vantage

@@ -22,17 +22,18 @@ bool read_number(std::string_view text, T& number) {
 
 }  // namespace
 
-double ViewTrack::at(int frame) const {
+BaselinePosition ViewTrack::at(int frame) const {
   const auto next = std::ranges::upper_bound(keys, frame, {}, &Key::frame);
   if (next == keys.begin()) {
-    return keys.front().view_x;
+    return keys.front().position;
   }
   const Key& before = *std::prev(next);
   if (next == keys.end() || before.frame == frame) {
-    return before.view_x;
+    return before.position;
   }
   const double share = static_cast<double>(frame - before.frame) / (next->frame - before.frame);
-  return before.view_x + share * (next->view_x - before.view_x);
+  return {before.position.x + share * (next->position.x - before.position.x),
+          before.position.y + share * (next->position.y - before.position.y)};
 }
 
 void ViewTrack::validate() const {
@@ -40,9 +41,11 @@ void ViewTrack::validate() const {
     throw UsageError("view path is empty, expected keys like 0=0,48=1");
   }
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (!(std::abs(keys[i].view_x) <= kFarthestView)) {
-      throw UsageError(
-          fmt::format("view is {}, expected a number within ±{}", keys[i].view_x, kFarthestView));
+    for (const double coordinate : {keys[i].position.x, keys[i].position.y}) {
+      if (!(std::abs(coordinate) <= kFarthestView)) {
+        throw UsageError(fmt::format("view is {}, expected numbers within ±{}",
+                                     to_string(keys[i].position), kFarthestView));
+      }
     }
     if (keys[i].frame < 0 || (i > 0 && keys[i].frame <= keys[i - 1].frame)) {
       throw UsageError(fmt::format(
@@ -54,17 +57,27 @@ void ViewTrack::validate() const {
 
 ViewTrack parse_view_track(std::string_view text) {
   ViewTrack track;
+  bool may_have_y = false;  // XS of the last key has just been read
   for (std::string_view rest = text;;) {
     const std::size_t end = rest.find(',');
     const std::string_view part = rest.substr(0, end);
     const std::size_t equals = part.find('=');
-    ViewTrack::Key key;
-    if (equals == std::string_view::npos || !read_number(part.substr(0, equals), key.frame) ||
-        !read_number(part.substr(equals + 1), key.view_x)) {
-      throw UsageError(
-          fmt::format("is '{}', expected keys FRAME=XS like 0=0,48=1,96=0 (at '{}')", text, part));
+    bool is_read = false;
+    if (equals != std::string_view::npos) {
+      ViewTrack::Key key;
+      is_read = read_number(part.substr(0, equals), key.frame) &&
+                read_number(part.substr(equals + 1), key.position.x);
+      track.keys.push_back(key);
+      may_have_y = true;
+    } else if (may_have_y) {
+      is_read = read_number(part, track.keys.back().position.y);
+      may_have_y = false;
     }
-    track.keys.push_back(key);
+    if (!is_read) {
+      throw UsageError(
+          fmt::format("is '{}', expected keys FRAME=XS or FRAME=XS,YS like 0=0,48=1,96=0 (at '{}')",
+                      text, part));
+    }
     if (end == std::string_view::npos) {
       return track;
     }
@@ -75,7 +88,7 @@ ViewTrack parse_view_track(std::string_view text) {
 std::string to_string(const ViewTrack& track) {
   std::vector<std::string> keys;
   for (const ViewTrack::Key& key : track.keys) {
-    keys.push_back(fmt::format("{}={}", key.frame, key.view_x));
+    keys.push_back(fmt::format("{}={}", key.frame, to_string(key.position)));
   }
   return fmt::format("{}", fmt::join(keys, ","));
 }

@@ -1,11 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 
 #include "engine/image/image.h"
 #include "engine/synthesis/synthesis_options.h"
-#include "kernels/intensity_sums/intensity_sums.h"
 
 namespace vantage {
 
@@ -20,39 +20,36 @@ struct StereoSource {
 
 /// Brings both images of a pair to a new view on the baseline, a scanline at a time.
 ///
-/// Thread rule: one thread. Does not own any memory it is given, which must outlive it. T is
+/// Thread rule: immutable. Does not own any memory it is given, which must outlive it. T is
 /// uint8_t, uint16_t or float.
 template <typename T>
 class RowPairWarper {
  public:
-  /// What `scratch` must have. It holds no state between rows.
-  static std::size_t scratch_floats(int width, int channels);
-  /// What a pair of warped scanlines takes.
-  static std::size_t pair_floats(int width, int channels);
+  RowPairWarper(const StereoSource<T>& source, const SynthesisOptions& options, double view_x);
 
-  /// `scratch`: scratch_floats(width, channels) values.
-  RowPairWarper(const StereoSource<T>& source, const SynthesisOptions& options, double view_x,
-                std::span<float> scratch);
+  /// Of the new view, which is of the images' size.
+  [[nodiscard]] int width() const { return source_.left.width(); }
+  [[nodiscard]] int height() const { return source_.left.height(); }
+  /// Share of the left image (3.14) for YS = 0.
+  [[nodiscard]] double alpha() const;
+  /// s of the left and the right camera.
+  [[nodiscard]] std::array<double, 2> camera_offsets() const { return {view_x_, view_x_ - 1}; }
 
-  /// Both scanlines y at the new view, in `memory` of pair_floats(width, channels) values.
-  kernels::WarpedPairRow warp(int y, float* memory);
+  /// What a call of warp() works in; it holds nothing afterwards.
+  [[nodiscard]] std::size_t scratch_floats() const;
 
-  /// What warp() returned for `memory`, from a warper of the same source and options.
-  static kernels::WarpedPairRow warped_in(const StereoSource<T>& source,
-                                          const SynthesisOptions& options, const float* memory);
+  /// Both scanlines y at the new view, in `memory`, laid out as WarpedPairLayout has it.
+  void warp(int y, std::span<float> scratch, float* memory) const;
 
  private:
-  void warp_one(const T* pixels, const float* disparity_px, double camera_offset, float* colours,
-                float* warped_disparity_px);
+  struct SourceRows;
+  void warp_one(const T* pixels, const float* disparity_px, double camera_offset,
+                const SourceRows& rows, float* colours, float* warped_disparity_px) const;
 
   const StereoSource<T>& source_;
   const SynthesisOptions& options_;
   double view_x_;
-  int width_;
   int lanes_;
-  float* source_pixels_;     // of x = 0; margins on both sides
-  float* source_disparity_;  // likewise
-  float* source_column_;
 };
 
 }  // namespace vantage

@@ -8,7 +8,8 @@ namespace vantage {
 enum class HoleFilling {
   kMirror,  ///< the background side mirrored along the scanline
   kSpread,  ///< the background side's border pixel repeated
-  kNone     ///< left black
+  kNone,    ///< left black
+  kInpaint  ///< continued from the background around them in all directions
 };
 
 /// How colour reaches the new view once disparity has been forward-mapped.
@@ -26,6 +27,10 @@ struct SynthesisOptions {
   double disparity_gradient_limit_px = 1.0;
   /// Regress the right image's intensities on the left's (3.9–3.11); off: a = 0, b = 1.
   bool match_intensities = true;
+  /// Outlines like a photograph's: pixels beside them that are mixtures of two surfaces count less
+  /// than clean ones, and the surfaces on both sides are mixed over a pixel (kernels/soft_edges).
+  /// Off: surfaces meet without a transition.
+  bool soft_edges = true;
 
   /// Throws UsageError naming the field, its value and its limit.
   void validate() const;

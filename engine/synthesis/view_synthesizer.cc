@@ -13,7 +13,9 @@
 
 #include "engine/error.h"
 #include "engine/synthesis/row_pair_warper.h"
-#include "kernels/hole_fill/hole_fill.h"
+#include "engine/synthesis/surface_warper.h"
+#include "engine/synthesis/view_finisher.h"
+#include "engine/synthesis/warped_pair_layout.h"
 #include "kernels/intensity_sums/intensity_sums.h"
 #include "kernels/view_blend/view_blend.h"
 
@@ -63,13 +65,9 @@ struct RowRecord {
 };
 
 // (3.12): each image's colours move towards the other's by its share of γ.
-kernels::BlendWeights blend_weights(const std::array<IntensityFit, 4>& intensity, double view_x,
+kernels::BlendWeights blend_weights(const std::array<IntensityFit, 4>& intensity, double alpha,
                                     std::optional<double> chosen_gamma,
                                     double grey_levels_per_unit) {
-  // (3.13), (3.14) for YS = 0.
-  const double left_distance = std::abs(view_x);
-  const double right_distance = std::abs(view_x - 1);
-  const double alpha = right_distance / (left_distance + right_distance);
   const double gamma = chosen_gamma.value_or(alpha);
 
   kernels::BlendWeights weights;
@@ -85,18 +83,19 @@ kernels::BlendWeights blend_weights(const std::array<IntensityFit, 4>& intensity
   return weights;
 }
 
-template <typename T>
+/// Makes one view from what `Warper`, RowPairWarper or SurfaceWarper, makes of the two images.
+template <typename T, typename Warper>
 class Synthesis {
  public:
-  Synthesis(const StereoSource<T>& source, const SynthesisOptions& options, double view_x,
+  Synthesis(const Warper& warper, const SynthesisOptions& options, int channels,
             Execution& execution)
-      : source_(source),
+      : warper_(warper),
         options_(options),
-        view_x_(view_x),
         execution_(execution),
-        width_(source.left.width()),
-        height_(source.left.height()),
-        channels_(source.left.channels()),
+        width_(warper.width()),
+        height_(warper.height()),
+        channels_(channels),
+        layout_(width_, channels),
         records_memory_(
             execution.scratch().lease(sizeof(RowRecord) * static_cast<std::size_t>(height_))),
         records_(reinterpret_cast<RowRecord*>(records_memory_.data()),
@@ -114,8 +113,9 @@ class Synthesis {
     }
     image.resize(width_, height_, channels_);
     view.holes.resize(width_, height_);
-    combine(view.intensity, image, view.holes);
-    if (options_.holes != HoleFilling::kNone) {
+    view.sources.resize(width_, height_);
+    combine(image, view);
+    if (options_.holes == HoleFilling::kMirror || options_.holes == HoleFilling::kSpread) {
       fill_empty_rows(image);
     }
     std::int64_t holes = 0;
@@ -146,24 +146,25 @@ class Synthesis {
     }
   }
 
-  [[nodiscard]] std::size_t pair_floats() const {
-    return RowPairWarper<T>::pair_floats(width_, channels_);
-  }
   [[nodiscard]] float* kept_row(int y) const {
-    return kept_ + pair_floats() * static_cast<std::size_t>(y);
+    return kept_ + layout_.floats * static_cast<std::size_t>(y);
+  }
+  [[nodiscard]] kernels::WarpedPairRow warped_in(const float* memory) const {
+    return layout_.row_in(memory, options_.disparity_gradient_limit_px);
   }
 
   // Calls body(y, warped scanline pair) for all rows.
   template <typename Body>
   void for_each_warped_row(const Body& body) {
-    const std::size_t scratch_floats = RowPairWarper<T>::scratch_floats(width_, channels_);
+    const std::size_t scratch_floats = warper_.scratch_floats();
     execution_.for_each_band(height_, [&](int first_row, int end_row) {
       const auto memory =
-          execution_.scratch().lease((scratch_floats + pair_floats()) * sizeof(float));
+          execution_.scratch().lease((scratch_floats + layout_.floats) * sizeof(float));
       auto* scratch = reinterpret_cast<float*>(memory.data());
-      RowPairWarper<T> warper(source_, options_, view_x_, {scratch, scratch_floats});
       for (int y = first_row; y < end_row; ++y) {
-        body(y, warper.warp(y, kept_ != nullptr ? kept_row(y) : scratch + scratch_floats));
+        float* pair = kept_ != nullptr ? kept_row(y) : scratch + scratch_floats;
+        warper_.warp(y, {scratch, scratch_floats}, pair);
+        body(y, warped_in(pair));
       }
     });
   }
@@ -177,33 +178,36 @@ class Synthesis {
     }
     execution_.for_each_band(height_, [&](int first_row, int end_row) {
       for (int y = first_row; y < end_row; ++y) {
-        body(y, RowPairWarper<T>::warped_in(source_, options_, kept_row(y)));
+        body(y, warped_in(kept_row(y)));
       }
     });
   }
 
-  void combine(const std::array<IntensityFit, 4>& intensity, Image<T>& image, Mask& holes) {
-    const kernels::BlendWeights weights =
-        blend_weights(intensity, view_x_, options_.gamma, double{kGreyLevelsPerUnit<T>});
+  void combine(Image<T>& image, SynthesizedView& view) {
+    const double alpha = warper_.alpha();
+    kernels::BlendWeights weights =
+        blend_weights(view.intensity, alpha, options_.gamma, double{kGreyLevelsPerUnit<T>});
+    weights.trust_at_ends = ViewFinisher<T>::trust_at_ends(options_, alpha);
+    std::optional<std::array<double, 2>> camera_offsets;
+    if constexpr (requires { warper_.camera_offsets(); }) {
+      camera_offsets = warper_.camera_offsets();
+    }
+    ViewFinisher<T> finisher(options_, alpha, camera_offsets, image.view(), view.sources.view(),
+                             execution_);
     for_each_warped_row_again([&](int y, const kernels::WarpedPairRow& pair) {
       const auto memory =
           execution_.scratch().lease(static_cast<std::size_t>(width_) * sizeof(float));
       auto* disparity_px = reinterpret_cast<float*>(memory.data());
-      const int row_holes = kernels::blend_row(
-          pair, weights, channels_,
-          kernels::BlendedRow<T>{
-              .pixels = image.row(y), .disparity_px = disparity_px, .holes = holes.row(y)});
+      const int row_holes =
+          kernels::blend_row(pair, weights, channels_,
+                             kernels::BlendedRow<T>{.pixels = image.row(y),
+                                                    .disparity_px = disparity_px,
+                                                    .holes = view.holes.row(y),
+                                                    .sources = view.sources.row(y)});
       records_[static_cast<std::size_t>(y)].holes = row_holes;
-      if (row_holes > 0 && options_.holes != HoleFilling::kNone) {
-        kernels::fill_holes_row(
-            kernels::HoleFillRow<T>{.pixels = image.row(y),
-                                    .disparity_px = disparity_px,
-                                    .width = width_,
-                                    .channels = channels_,
-                                    .gradient_limit_px = pair.gradient_limit_px},
-            options_.holes == HoleFilling::kMirror);
-      }
+      finisher.finish_row({y, pair, disparity_px, row_holes});
     });
+    finisher.finish_view();
   }
 
   [[nodiscard]] bool empty_row(int y) const {
@@ -230,13 +234,13 @@ class Synthesis {
     }
   }
 
-  const StereoSource<T>& source_;
+  const Warper& warper_;
   const SynthesisOptions& options_;
-  double view_x_;
   Execution& execution_;
   int width_;
   int height_;
   int channels_;
+  WarpedPairLayout layout_;
   scheduler::ScratchPool::Lease records_memory_;
   std::span<RowRecord> records_;
   scheduler::ScratchPool::Lease kept_memory_;
@@ -251,6 +255,35 @@ struct PairOfMaps {
   ImageView<const float> right_disparity;
 };
 
+/// XS of a view that RowPairWarper can make: on the baseline, with the images' orientation, focal
+/// length and size.
+std::optional<double> scanline_position(const NewView& view, const Photograph& left) {
+  const auto moves_along_rows = [](const ViewWarp& warp) {
+    return warp.is_translation() && warp.parallax.y() == 0;
+  };
+  const double view_x = -view.from_left.parallax.x();
+  if (moves_along_rows(view.from_left) && moves_along_rows(view.from_right) &&
+      view.from_right.parallax.x() == -(view_x - 1) && view.infinity_disparity_px == 0 &&
+      view.width_px == left.width() && view.height_px == left.height()) {
+    return view_x;
+  }
+  return std::nullopt;
+}
+
+/// Checks the pair, then calls body(source) with its images of their pixel type.
+template <typename Body>
+void with_source(const PairOfMaps& pair, const Body& body) {
+  require_same_shape(pair.left, pair.right, pair.left_disparity, pair.right_disparity);
+  std::visit(
+      [&]<typename T>(const Image<T>& left_image) {
+        body(StereoSource<T>{.left = left_image.view(),
+                             .right = std::get<Image<T>>(pair.right.pixels).view(),
+                             .left_disparity = pair.left_disparity,
+                             .right_disparity = pair.right_disparity});
+      },
+      pair.left.pixels);
+}
+
 /// Checks the pair and the position, then calls body(synthesis) with a Synthesis of its pixel type.
 template <typename Body>
 void with_synthesis(const PairOfMaps& pair, const SynthesisOptions& options, double view_x,
@@ -259,17 +292,84 @@ void with_synthesis(const PairOfMaps& pair, const SynthesisOptions& options, dou
     throw UsageError(fmt::format("view is at {} baselines, expected -{}..{}", view_x, kFarthestView,
                                  kFarthestView));
   }
-  require_same_shape(pair.left, pair.right, pair.left_disparity, pair.right_disparity);
+  with_source(pair, [&]<typename T>(const StereoSource<T>& source) {
+    const RowPairWarper<T> warper(source, options, view_x);
+    body(Synthesis<T, RowPairWarper<T>>(warper, options, source.left.channels(), execution));
+  });
+}
+
+/// The same for any view.
+template <typename Body>
+void with_synthesis(const PairOfMaps& pair, const SynthesisOptions& options, const NewView& view,
+                    Execution& execution, const Body& body) {
+  if (const std::optional<double> view_x = scanline_position(view, pair.left)) {
+    with_synthesis(pair, options, *view_x, execution, body);
+    return;
+  }
+  with_source(pair, [&]<typename T>(const StereoSource<T>& source) {
+    const SurfaceWarper<T> warper(source, options, view, execution);
+    body(Synthesis<T, SurfaceWarper<T>>(warper, options, source.left.channels(), execution));
+  });
+}
+
+/// Checks the triple, then calls body(synthesis) with a Synthesis of its pixel type.
+template <typename Body>
+void with_synthesis(const PhotographTriple& triple, const SynthesisOptions& options,
+                    const TripleView& view, const std::array<IntensityFit, 4>& second_on_first,
+                    Execution& execution, const Body& body) {
+  const Photograph& first = *triple.images[0];
+  for (std::size_t k = 1; k < triple.images.size(); ++k) {
+    require_same_shape(first, *triple.images[k], triple.disparity_px[0], triple.disparity_px[k]);
+  }
   std::visit(
-      [&]<typename T>(const Image<T>& left_image) {
-        const StereoSource<T> source{.left = left_image.view(),
-                                     .right = std::get<Image<T>>(pair.right.pixels).view(),
-                                     .left_disparity = pair.left_disparity,
-                                     .right_disparity = pair.right_disparity};
-        Synthesis<T> synthesis(source, options, view_x, execution);
-        body(synthesis);
+      [&]<typename T>(const Image<T>& /*image*/) {
+        TripleSource<T> source{.images = {}, .disparity_px = triple.disparity_px};
+        for (std::size_t k = 0; k < triple.images.size(); ++k) {
+          source.images[k] = std::get<Image<T>>(triple.images[k]->pixels).view();
+        }
+        const TripleWarper<T> warper(source, second_on_first, options, view, execution);
+        body(Synthesis<T, TripleWarper<T>>(warper, options, first.channels(), execution));
       },
-      pair.left.pixels);
+      first.pixels);
+}
+
+/// `position`: XS or a NewView.
+template <typename Position>
+void synthesize_at(const PairOfMaps& pair, const SynthesisOptions& options,
+                   const Position& position, Execution& execution, SynthesizedView& view,
+                   const std::array<IntensityFit, 4>* given_fit) {
+  with_synthesis(pair, options, position, execution,
+                 [&]<typename T, typename Warper>(Synthesis<T, Warper>&& synthesis) {
+                   if (!std::holds_alternative<Image<T>>(view.image.pixels)) {
+                     view.image.pixels.template emplace<Image<T>>();
+                   }
+                   synthesis.run(std::get<Image<T>>(view.image.pixels), view, given_fit);
+                 });
+}
+
+/// In grey levels.
+template <typename T, typename Warper>
+kernels::IntensitySums grey_level_sums(Synthesis<T, Warper>& synthesis) {
+  kernels::IntensitySums sums = synthesis.intensity_sums();
+  const double unit{kGreyLevelsPerUnit<T>};
+  for (int c = 0; c < 4; ++c) {
+    sums.left[c] *= unit;
+    sums.right[c] *= unit;
+    sums.left_right[c] *= unit * unit;
+    sums.left_left[c] *= unit * unit;
+  }
+  return sums;
+}
+
+template <typename Position>
+kernels::IntensitySums intensity_sums_at(const PairOfMaps& pair, const SynthesisOptions& options,
+                                         const Position& position, Execution& execution) {
+  kernels::IntensitySums sums;
+  with_synthesis(pair, options, position, execution,
+                 [&]<typename T, typename Warper>(Synthesis<T, Warper>&& synthesis) {
+                   sums = grey_level_sums(synthesis);
+                 });
+  return sums;
 }
 
 }  // namespace
@@ -281,9 +381,20 @@ ViewSynthesizer::ViewSynthesizer(const SynthesisOptions& options, Execution& exe
 
 std::size_t ViewSynthesizer::working_bytes(int width, int height, int channels) {
   // Of any pixel type: rows are floats.
-  const std::size_t bytes = RowPairWarper<float>::pair_floats(width, channels) * sizeof(float) *
-                            static_cast<std::size_t>(height);
+  const std::size_t bytes =
+      WarpedPairLayout(width, channels).floats * sizeof(float) * static_cast<std::size_t>(height);
   return bytes <= kMostKeptBytes ? bytes : 0;
+}
+
+std::size_t ViewSynthesizer::working_bytes(const NewView& view, int width, int height,
+                                           int channels) {
+  return working_bytes(view.width_px, view.height_px, channels) +
+         SurfaceWarper<float>::working_bytes(view, width, height);
+}
+
+std::size_t ViewSynthesizer::filling_bytes(const SynthesisOptions& options, int width, int height,
+                                           int channels) {
+  return ViewFinisher<float>::working_bytes(options, width, height, channels);
 }
 
 void ViewSynthesizer::synthesize(const Photograph& left, const Photograph& right,
@@ -291,13 +402,53 @@ void ViewSynthesizer::synthesize(const Photograph& left, const Photograph& right
                                  ImageView<const float> right_disparity, double view_x,
                                  SynthesizedView& view,
                                  const std::array<IntensityFit, 4>* given_fit) const {
-  with_synthesis({left, right, left_disparity, right_disparity}, options_, view_x, execution_,
-                 [&]<typename T>(Synthesis<T>& synthesis) {
+  synthesize_at({left, right, left_disparity, right_disparity}, options_, view_x, execution_, view,
+                given_fit);
+}
+
+void ViewSynthesizer::synthesize(const Photograph& left, const Photograph& right,
+                                 ImageView<const float> left_disparity,
+                                 ImageView<const float> right_disparity, const NewView& new_view,
+                                 SynthesizedView& view,
+                                 const std::array<IntensityFit, 4>* given_fit) const {
+  synthesize_at({left, right, left_disparity, right_disparity}, options_, new_view, execution_,
+                view, given_fit);
+}
+
+void ViewSynthesizer::synthesize(const PhotographTriple& triple, const TripleView& new_view,
+                                 SynthesizedView& view, const TripleFit& fit) const {
+  SynthesisOptions options = options_;
+  options.gamma.reset();
+  with_synthesis(triple, options, new_view, fit.second_on_first, execution_,
+                 [&]<typename T, typename Warper>(Synthesis<T, Warper>&& synthesis) {
                    if (!std::holds_alternative<Image<T>>(view.image.pixels)) {
                      view.image.pixels.template emplace<Image<T>>();
                    }
-                   synthesis.run(std::get<Image<T>>(view.image.pixels), view, given_fit);
+                   synthesis.run(std::get<Image<T>>(view.image.pixels), view, &fit.third_on_others);
                  });
+}
+
+TripleFit ViewSynthesizer::fit_triple(const PhotographTriple& triple,
+                                      const TripleView& new_view) const {
+  TripleFit fit;
+  if (!options_.match_intensities) {
+    return fit;
+  }
+  const Photograph& first = *triple.images[0];
+  const NewView first_two{.width_px = new_view.width_px,
+                          .height_px = new_view.height_px,
+                          .from_left = new_view.from[0],
+                          .from_right = new_view.from[1]};
+  fit.second_on_first =
+      fit_channels(intensity_sums(first, *triple.images[1], triple.disparity_px[0],
+                                  triple.disparity_px[1], first_two),
+                   first.channels(), 1);
+  with_synthesis(triple, options_, new_view, fit.second_on_first, execution_,
+                 [&]<typename T, typename Warper>(Synthesis<T, Warper>&& synthesis) {
+                   fit.third_on_others =
+                       fit_channels(grey_level_sums(synthesis), first.channels(), 1);
+                 });
+  return fit;
 }
 
 kernels::IntensitySums ViewSynthesizer::intensity_sums(const Photograph& left,
@@ -305,19 +456,17 @@ kernels::IntensitySums ViewSynthesizer::intensity_sums(const Photograph& left,
                                                        ImageView<const float> left_disparity,
                                                        ImageView<const float> right_disparity,
                                                        double view_x) const {
-  kernels::IntensitySums sums;
-  with_synthesis({left, right, left_disparity, right_disparity}, options_, view_x, execution_,
-                 [&]<typename T>(Synthesis<T>& synthesis) {
-                   sums = synthesis.intensity_sums();
-                   const double unit{kGreyLevelsPerUnit<T>};
-                   for (int c = 0; c < 4; ++c) {
-                     sums.left[c] *= unit;
-                     sums.right[c] *= unit;
-                     sums.left_right[c] *= unit * unit;
-                     sums.left_left[c] *= unit * unit;
-                   }
-                 });
-  return sums;
+  return intensity_sums_at({left, right, left_disparity, right_disparity}, options_, view_x,
+                           execution_);
+}
+
+kernels::IntensitySums ViewSynthesizer::intensity_sums(const Photograph& left,
+                                                       const Photograph& right,
+                                                       ImageView<const float> left_disparity,
+                                                       ImageView<const float> right_disparity,
+                                                       const NewView& new_view) const {
+  return intensity_sums_at({left, right, left_disparity, right_disparity}, options_, new_view,
+                           execution_);
 }
 
 }  // namespace vantage

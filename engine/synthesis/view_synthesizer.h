@@ -8,25 +8,46 @@
 #include "engine/image/photograph.h"
 #include "engine/synthesis/intensity_fit.h"
 #include "engine/synthesis/synthesis_options.h"
+#include "engine/synthesis/triple_warper.h"
+#include "engine/view_geometry/new_view.h"
 
 namespace vantage {
 
 /// One new view and how it came about. Reused from call to call without allocating.
 struct SynthesizedView {
-  Photograph image;                       ///< size, depth and channels of the left photograph
-  Mask holes;                             ///< 255 where neither image is defined, before filling
+  Photograph image;  ///< depth and channels of the left photograph
+  Mask holes;        ///< 255 where neither image is defined, before filling
+  /// Which images a pixel is made of: 0 none (filled or black), 85 the left, 170 the right one, 255
+  /// both. Of three images, 85 is what the first two have become.
+  Mask sources;
   std::array<IntensityFit, 4> intensity;  ///< per channel; a = 0, b = 1 where degenerate or alpha
   double hole_fraction = 0;               ///< share of all positions
 };
 
-/// Renders new views on the baseline from a rectified pair and its two disparity maps
-/// (EQUATIONS §6, YS = 0).
+/// Three photographs of one size, depth and number of channels whose cameras stand in one plane and
+/// look the same way, and their disparity maps, in pixels for one common baseline. Nothing is
+/// owned.
+struct PhotographTriple {
+  std::array<const Photograph*, 3> images{};
+  std::array<ImageView<const float>, 3> disparity_px;
+};
+
+/// How the intensities of three photographs follow from each other.
+struct TripleFit {
+  std::array<IntensityFit, 4> second_on_first;
+  std::array<IntensityFit, 4> third_on_others;  ///< on what the first two become in the view
+};
+
+/// Renders new views from a rectified pair and its two disparity maps (EQUATIONS §6).
 ///
-/// Every scanline stands for itself: both are forward-mapped (3.5), their colours regressed on each
-/// other over the whole image (3.9–3.11), combined (3.12–3.14), and the holes filled. At XS = 0 and
-/// 1 the view shows that camera's own pixels wherever its map is known; with γ = α unaltered. A row
-/// that neither image reaches takes the nearest row that has pixels, unless holes are left black
-/// (all channels 0). An alpha channel is warped and blended like a colour, but not regressed.
+/// Both images are warped to the view: along scanlines where it is on the baseline and looks as the
+/// images do (RowPairWarper), else in one pass through all homographies (SurfaceWarper). Their
+/// colours are regressed on each other over the whole view (3.9–3.11), combined (3.12–3.14), and
+/// the holes filled along its scanlines. What images of a surface agree on within the gradient
+/// limit is disparity, or off the baseline nearness (NewView). At XS = 0 and 1 the view shows that
+/// camera's own pixels wherever its map is known; with γ = α unaltered. A row that neither image
+/// reaches takes the nearest row that has pixels, unless holes are left black (all channels 0). An
+/// alpha channel is warped and blended like a colour, but not regressed.
 ///
 /// Thread rule: synthesize() may be called concurrently for different results. Results are
 /// identical for any ExecutionOptions and on any instruction set.
@@ -45,6 +66,25 @@ class ViewSynthesizer {
                   double view_x, SynthesizedView& view,
                   const std::array<IntensityFit, 4>* given_fit = nullptr) const;
 
+  /// The same for any view, of any size, whose result has the view's size. A view from
+  /// baseline_view(XS, 0) of the images' size is that at view_x = XS. Other views with
+  /// WarpColour::kForward are a UsageError: source pixels themselves are moved along scanlines
+  /// only. Throws Error for a view without pixels, larger than 65500 pixels in width or height, or
+  /// that cannot be inverted.
+  void synthesize(const Photograph& left, const Photograph& right,
+                  ImageView<const float> left_disparity, ImageView<const float> right_disparity,
+                  const NewView& new_view, SynthesizedView& view,
+                  const std::array<IntensityFit, 4>* given_fit = nullptr) const;
+
+  /// A view among three cameras (TripleWarper), with γ = α whatever the options say: the brightness
+  /// moves with the weights, to the photograph's own where one of them is 1. Errors as above.
+  void synthesize(const PhotographTriple& triple, const TripleView& new_view, SynthesizedView& view,
+                  const TripleFit& fit) const;
+  /// The regressions that such views need, as they are at `new_view`; identities without
+  /// match_intensities.
+  [[nodiscard]] TripleFit fit_triple(const PhotographTriple& triple,
+                                     const TripleView& new_view) const;
+
   /// The sums of the regression (3.11) at view_x, in grey levels: those of several pairs can be
   /// added up for one fit_channels(sums, channels, 1). Errors as synthesize(). Identical for any
   /// execution.
@@ -53,10 +93,22 @@ class ViewSynthesizer {
                                                       ImageView<const float> left_disparity,
                                                       ImageView<const float> right_disparity,
                                                       double view_x) const;
+  [[nodiscard]] kernels::IntensitySums intensity_sums(const Photograph& left,
+                                                      const Photograph& right,
+                                                      ImageView<const float> left_disparity,
+                                                      ImageView<const float> right_disparity,
+                                                      const NewView& new_view) const;
 
   /// Memory that synthesize() works in for an image of this shape, unless it is given a fit; beside
   /// rows per thread.
   [[nodiscard]] static std::size_t working_bytes(int width, int height, int channels);
+  /// At most the same for any view of images of this shape; the kept rows, which a given fit
+  /// spares, and maps of both images.
+  [[nodiscard]] static std::size_t working_bytes(const NewView& view, int width, int height,
+                                                 int channels);
+  /// What filling the holes takes beside that.
+  [[nodiscard]] static std::size_t filling_bytes(const SynthesisOptions& options, int width,
+                                                 int height, int channels);
 
   [[nodiscard]] const SynthesisOptions& options() const { return options_; }
 

@@ -16,6 +16,8 @@ readonly BUILD_PACKAGES=(
 # What some tests need beside that; without these they are skipped.
 # shellcheck disable=SC2034
 readonly TEST_PACKAGES=(slurmctld slurmd slurm-client munge)
+# shellcheck disable=SC2034
+readonly BROWSER_PACKAGES=(chromium)
 
 can_be_root() {
   [[ $(id -u) -eq 0 ]] || command -v sudo >/dev/null

@@ -50,16 +50,16 @@ TEST(GenerateCommand, ScenesAsPairsAndSequences) {
   ProcessResult result = run_vantage(single);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("--disparities="));
-  EXPECT_THAT(
-      files_below(folder / "single"),
-      ElementsAre("left-disparity.pfm", "left-occluded.png", "left.png", "right-disparity.pfm",
-                  "right-occluded.png", "right.png", "view--1.png", "view-0.5.png"));
+  EXPECT_THAT(files_below(folder / "single"),
+              ElementsAre("calib.txt", "left-disparity.pfm", "left-occluded.png", "left.png",
+                          "right-disparity.pfm", "right-occluded.png", "right.png", "view--1.png",
+                          "view-0.5.png"));
 
   auto sequence = scene;
   sequence.insert(sequence.end(), {"--frames", "3", "-o", folder / "sequence"});
   result = run_vantage(sequence);
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(files_below(folder / "sequence").size(), 3U * 8);
+  EXPECT_EQ(files_below(folder / "sequence").size(), 3U * 8 + 1);
   EXPECT_EQ(read_file(folder / "sequence/left/000000.png"), read_file(folder / "single/left.png"));
   EXPECT_EQ(read_file(folder / "sequence/views/0.5/000000.png"),
             read_file(folder / "single/view-0.5.png"));
@@ -69,6 +69,30 @@ TEST(GenerateCommand, ScenesAsPairsAndSequences) {
   result = run_vantage({"run", "--left", folder / "sequence/left", "--right",
                         folder / "sequence/right", "-o", folder / "out", "--disparities=0:3"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
+// Cameras like the pair's see what views on and off its baseline see.
+TEST(GenerateCommand, AnyCameraLooksAtTheScene) {
+  const TemporaryFolder folder;
+  write_file(folder / "cameras.toml",
+             "[[view]]\nK = [33, 0, 16, 0, 33, 10, 0, 0, 1]\n"
+             "R = [1, 0, 0, 0, 1, 0, 0, 0, 1]\nt = [-0.5, 0.25, 0]\n"
+             "[[view]]\nK = [33, 0, 16, 0, 33, 10, 0, 0, 1]\n"
+             "R = [1, 0, 0, 0, 1, 0, 0, 0, 1]\nt = [0, 0, 0.1]\nsize = [20, 11]\n");
+  const ProcessResult result = run_vantage(
+      {"generate", "scene", "--width", "33", "--height", "21", "--samples", "1", "--view",
+       "0.5,-0.25", "--pose", folder / "cameras.toml", "-o", folder / "scene", "--quiet"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(read_file(folder / "scene/camera-0.png"),
+            read_file(folder / "scene/view-0.5,-0.25.png"));
+  EXPECT_EQ(read_photograph(folder / "scene/camera-1.png").width(), 20);
+  // What it writes is what other commands read.
+  const ProcessResult synth = run_vantage(
+      {"synth", folder / "scene/left.png", folder / "scene/right.png", "--left-disparity",
+       folder / "scene/left-disparity.pfm", "--right-disparity",
+       folder / "scene/right-disparity.pfm", "--calibration", folder / "scene/calib.txt", "--pose",
+       folder / "cameras.toml", "-o", folder / "v%d.png", "--quiet"});
+  EXPECT_EQ(synth.exit_code, 0) << synth.err;
 }
 
 TEST(GenerateCommand, WrongUsageIsOneLineAndExit2) {

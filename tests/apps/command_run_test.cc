@@ -14,6 +14,7 @@
 namespace vantage {
 namespace {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -77,7 +78,7 @@ TEST_F(RunCommand, EveryFrameEqualsTheSingleCommands) {
       run(out, {"--save", "disparity,right-disparity,unmatched,preview,views", "--view", "0.5",
                 "--report", folder_ / "r.json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("6 frames"));
+  EXPECT_THAT(result.err, ContainsRegex("6 frames of 47x29 pixels, [0-9.]+ frames/s -> "));
   for (int frame = 0; frame < kFrames; ++frame) {
     const std::string left = left_ + name(frame);
     const std::string right = right_ + name(frame);
@@ -105,6 +106,13 @@ TEST_F(RunCommand, EveryFrameEqualsTheSingleCommands) {
   EXPECT_EQ(report["results"]["frames"], kFrames);
   EXPECT_EQ(report["cells"], 47.0 * 29 * 10 * 2 * kFrames);
   EXPECT_LE(report["seconds"]["compute"], report["seconds"]["wall"]);
+}
+
+TEST_F(RunCommand, QuietIsQuietInTheSurveyToo) {
+  const ProcessResult result = run(folder_ / "out", {"--save", "preview", "--preview-range", "shot",
+                                                     "--progress", "bar", "--quiet"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.err, "");
 }
 
 TEST_F(RunCommand, FilesDoNotDependOnExecutionNorFramesInFlight) {
@@ -257,6 +265,7 @@ TEST_F(RunCommand, WrongUsageIsOneLineAndExit2) {
       {{"--progress", "loud"}, "--progress is 'loud'"},
       {{"--step", "2"}, "step"},
       {{"--stereo", "x.mp4"}, "stereo"},
+      {{"-p", "2"}, "unknown option '-p', the nearest known one is '-o'"},
       {{"--overwrite", "--resume"}, "--overwrite and --resume"},
       {{"--overwrite", "--shard", "1/2"}, "--overwrite with --shard"}};
   for (const auto& [more, says] : misuses) {
@@ -437,6 +446,7 @@ TEST_F(RunCommand, MergeChecksAndJoinsWhatPartsHaveMade) {
   ASSERT_EQ(part({"--frames", "2-3"}), 0);
   const ProcessResult complete = run_vantage({"merge", out, "--report", folder_ / "m.json"});
   EXPECT_EQ(complete.exit_code, 0) << complete.err;
+  EXPECT_THAT(complete.err, HasSubstr("parts holds all 6 frames\n"));
   EXPECT_EQ(results_in(out), results_in(folder_ / "whole"));
   EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "m.json"))["results"]["frames"], 6);
   EXPECT_EQ(run_vantage({"merge", out}).exit_code, 0);

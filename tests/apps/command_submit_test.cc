@@ -238,6 +238,10 @@ TEST_F(SubmitCommand, WrongUsageIsOneLineAndExit2) {
     EXPECT_TRUE(is_one_line(result, "submit"));
     EXPECT_THAT(result.err, HasSubstr(says));
   }
+  const ProcessResult undivided =
+      run_vantage({"submit", "--engine", "slurm", "--left", left_, "--right", right_, "-o", out});
+  EXPECT_EQ(undivided.exit_code, 2);
+  EXPECT_EQ(undivided.err, "vantage submit: --shards is missing, expected --shards N\n");
   EXPECT_FALSE(std::filesystem::exists(out));
   EXPECT_EQ(submit(folder_ / "a\"b").exit_code, 2);
   EXPECT_EQ(calls(), "");

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <variant>
 
+#include "engine/image/stereo_packing.h"
 #include "engine/io/video_io.h"
 #include "tests/apps/pair_fixture.h"
 
@@ -66,6 +67,9 @@ TEST_F(SynthCommand, SeveralViewsNeedAPattern) {
   const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
   EXPECT_EQ(report["results"]["views"].size(), 3U);
   EXPECT_EQ(report["results"]["views"][1]["view_x"], -0.5);
+  EXPECT_EQ(report["results"]["views"][1]["view_y"], 0);
+  // One brightness for all of them.
+  EXPECT_EQ(report["results"]["views"][0]["intensity"], report["results"]["views"][2]["intensity"]);
   EXPECT_TRUE(report["plan"].is_null());  // the maps were given
 
   arguments = views;
@@ -116,17 +120,48 @@ TEST_F(SynthCommand, OptionsReachTheSynthesis) {
   const std::string mirrored = view({});
   EXPECT_NE(view({"--holes", "spread"}), mirrored);
   EXPECT_NE(view({"--holes", "none"}), mirrored);
+  EXPECT_NE(view({"--holes", "inpaint"}), mirrored);
+  EXPECT_NE(view({"--soft-edges", "off"}), mirrored);
   EXPECT_EQ(view({"--holes", "mirror", "--warp", "one-pass", "--gamma", "0.5"}), mirrored);
+  EXPECT_EQ(view({"--soft-edges", "on"}), mirrored);
+}
+
+TEST_F(SynthCommand, SourceMaskNamesTheImages) {
+  const ProcessResult result =
+      synth_from_maps({"-o", outputs_ + "/v.png", "--view", "0.5", "--soft-edges", "off",
+                       "--hole-mask", outputs_ + "/h.png", "--source-mask", outputs_ + "/s.png"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Photograph holes = read_photograph(outputs_ + "/h.png");
+  const Photograph sources = read_photograph(outputs_ + "/s.png");
+  int both = 0;
+  for (int y = 0; y < sources.height(); ++y) {
+    for (int x = 0; x < sources.width(); ++x) {
+      const int value = std::get<Image<std::uint8_t>>(sources.pixels).at(x, y);
+      EXPECT_EQ(value == 0, std::get<Image<std::uint8_t>>(holes.pixels).at(x, y) == 255);
+      EXPECT_TRUE(value == 0 || value == 85 || value == 170 || value == 255) << value;
+      both += value == 255 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(both, sources.width() * sources.height() / 2);
 }
 
 TEST_F(SynthCommand, WrongUsageIsOneLineAndExit2) {
   const std::string out = outputs_ + "/v.png";
   const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {
       {{"-o", out}, "no view is given"},
-      {{"-o", out, "--view", "0.5,0.25"}, "views off the baseline are not available"},
+      {{"-o", out, "--view", "0.5,0.25,1"}, "--view is '0.5,0.25,1', expected a position XS or"},
       {{"-o", out, "--view", "middle"}, "--view is"},
-      {{"-o", out, "--view", "17"}, "view is 17"},
-      {{"-o", out, "--view", "0.5", "--sweep", "0:1:3"}, "expected one of them"},
+      {{"-o", out, "--view", "17"}, "--view is '17', expected a position XS or"},
+      {{"-o", out, "--view", "0.5", "--sweep", "0:1:3"}, "views are given in several ways"},
+      {{"-o", out, "--orbit", "0:9"}, "--orbit is '0:9', expected RADIUS:VIEWS"},
+      {{"-o", out, "--view", "0.5", "--look-at", "4"}, "expected --calibration"},
+      {{"-o", out, "--pose", "absent.toml", "--look-at", "4"}, "--look-at turns the cameras of"},
+      {{"-o", out, "--view", "0.5", "--eye-separation", "0.5"}, "no effect without --stereo-pa"},
+      {{"-o", out, "--view", "0.5", "--kept-outline", "0.5"}, "no effect without --calibration"},
+      {{"-o", out, "--view", "0.5", "--stereo-packing", "arcd", "--eye-separation", "0"},
+       "--eye-separation is 0, expected more than 0"},
+      {{"-o", out, "--view", "0.5", "--stereo-packing", "abl", "--hole-mask", out + ".png"},
+       "expected no --stereo-packing"},
       {{"-o", out, "--sweep", "0:1"}, "--sweep is '0:1'"},
       {{"-o", out, "--sweep", "0:1:1"}, "--sweep is '0:1:1'"},
       {{"-o", outputs_ + "/%s.png", "--sweep", "0:1:3"}, "expected one %d"},
@@ -140,8 +175,7 @@ TEST_F(SynthCommand, WrongUsageIsOneLineAndExit2) {
         "--window", "5"},
        "--window has no effect"},
       {{"-o", out, "--view", "0.5", "--gamma", "2"}, "gamma"},
-      {{"-o", out, "--view", "0.5", "--gradient-limit", "-1"}, "gradient"},
-      {{"-o", out, "--view", "0.5", "--calibration", "c.yml"}, "unknown option '--calibration'"}};
+      {{"-o", out, "--view", "0.5", "--gradient-limit", "-1"}, "gradient"}};
   for (const auto& [arguments, says] : misuses) {
     const ProcessResult result = synth(arguments);
     EXPECT_EQ(result.exit_code, 2) << says;
@@ -149,6 +183,101 @@ TEST_F(SynthCommand, WrongUsageIsOneLineAndExit2) {
     EXPECT_THAT(result.err, HasSubstr(says));
   }
   EXPECT_THAT(files_below(outputs_), IsEmpty());
+}
+
+TEST_F(SynthCommand, PosesOfAFileAreTheViewsTheyName) {
+  write_file(folder_ / "poses.toml", "[[view]]\nat = [0.25, 0]\n[[view]]\nat = [0.5, -0.25]\n");
+  write_file(folder_ / "poses.json", R"({"view": [{"at": [0.25, 0]}, {"at": [0.5, -0.25]}]})");
+  write_file(folder_ / "path.toml",
+             "[[view]]\nframe = 0\nat = [0, 0]\n[[view]]\nframe = 2\nat = [0.5, 0]\n");
+  const std::vector<std::vector<std::string>> runs = {
+      {"-o", outputs_ + "/t%d.png", "--pose", folder_ / "poses.toml"},
+      {"-o", outputs_ + "/j%d.png", "--pose", folder_ / "poses.json"},
+      {"-o", outputs_ + "/v%d.png", "--view", "0.25", "--view", "0.5,-0.25"},
+      {"-o", outputs_ + "/p%d.png", "--path", folder_ / "path.toml"}};
+  for (const auto& arguments : runs) {
+    const ProcessResult result = synth_from_maps(arguments);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+  }
+  for (const char* number : {"0.png", "1.png"}) {
+    EXPECT_EQ(read_file(outputs_ + "/t" + number), read_file(outputs_ + "/v" + number));
+    EXPECT_EQ(read_file(outputs_ + "/j" + number), read_file(outputs_ + "/v" + number));
+  }
+  EXPECT_EQ(read_file(outputs_ + "/p1.png"), read_file(outputs_ + "/v0.png"));
+  EXPECT_FALSE(std::filesystem::exists(outputs_ + "/p3.png"));
+}
+
+TEST_F(SynthCommand, CamerasAndTurnedViewsNeedACalibration) {
+  write_file(folder_ / "calib.txt",
+             "cam0=[80 0 35; 0 80 26; 0 0 1]\ncam1=[80 0 35; 0 80 26; 0 0 1]\ndoffs=0\n"
+             "baseline=2\nwidth=71\nheight=53\n");
+  write_file(
+      folder_ / "camera.toml",
+      "[[view]]\nK = [80, 0, 35, 0, 80, 26, 0, 0, 1]\nR = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n"
+      "t = [-1, 0, 0]\n");
+  const std::vector<std::string> camera = {"-o", outputs_ + "/c.png", "--pose",
+                                           folder_ / "camera.toml"};
+  const ProcessResult refused = synth_from_maps(camera);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("need calibrated cameras, expected --calibration"));
+
+  auto calibrated = camera;
+  calibrated.insert(calibrated.end(), {"--calibration", folder_ / "calib.txt"});
+  ASSERT_EQ(synth_from_maps(calibrated).exit_code, 0);
+  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/b.png", "--view", "0.5"}).exit_code, 0);
+  EXPECT_EQ(read_file(outputs_ + "/c.png"), read_file(outputs_ + "/b.png"));
+  // Straight ahead of the middle the camera need not turn.
+  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/l.png", "--view", "0.5", "--look-at", "4",
+                             "--calibration", folder_ / "calib.txt"})
+                .exit_code,
+            0);
+  EXPECT_EQ(read_file(outputs_ + "/l.png"), read_file(outputs_ + "/b.png"));
+  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/t.png", "--view", "0.75", "--look-at", "4",
+                             "--calibration", folder_ / "calib.txt"})
+                .exit_code,
+            0);
+  EXPECT_EQ(read_photograph(outputs_ + "/t.png").width(), 71);
+}
+
+TEST_F(SynthCommand, WhatIsWrongInAFileOfPosesIsNamed) {
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"", "expected a list 'view' of poses"},
+      {"[[view]]\nxy = [0, 0]", "p.toml: view 1: unknown key 'xy', the nearest known one is 'at'"},
+      {"[[view]]\nat = [0]", "p.toml: view 1: at is [0], expected a list of 2 numbers"},
+      {"[[view]]\nat = [0, 0]\n[[view]]\nK = 1", "p.toml: view 2 has no R, expected at = [XS, YS]"},
+      {"[[view]]\nat = [0, 0]\nsize = [3, 4]", "p.toml: view 1 has both 'at' and 'size'"},
+      {"[[view]]\nat = [0, 0]\nframe = 1", "p.toml: view 1 has a frame, which only --path uses"},
+      {"[[view]", "not TOML"}};
+  for (const auto& [text, says] : files) {
+    write_file(folder_ / "p.toml", text);
+    const ProcessResult result =
+        synth_from_maps({"-o", outputs_ + "/v.png", "--pose", folder_ / "p.toml"});
+    EXPECT_EQ(result.exit_code, 2) << text;
+    EXPECT_TRUE(is_one_line(result, "synth"));
+    EXPECT_THAT(result.err, HasSubstr(says));
+  }
+  const ProcessResult path =
+      synth_from_maps({"-o", outputs_ + "/v.mp4", "--path", folder_ / "absent.toml"});
+  EXPECT_EQ(path.exit_code, 1);
+  EXPECT_THAT(files_below(outputs_), IsEmpty());
+}
+
+TEST_F(SynthCommand, TwoEyesBecomeOnePicture) {
+  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/s.png", "--view", "0.5", "--eye-separation", "0.5",
+                             "--stereo-packing", "sbsl", "--no-intensity-matching"})
+                .exit_code,
+            0);
+  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/e%d.png", "--view", "0.25", "--view", "0.75",
+                             "--no-intensity-matching"})
+                .exit_code,
+            0);
+  Photograph left;
+  Photograph right;
+  unpack_stereo(read_photograph(outputs_ + "/s.png"), {}, left, right);
+  write_photograph(outputs_ + "/l.png", left);
+  write_photograph(outputs_ + "/r.png", right);
+  EXPECT_EQ(read_file(outputs_ + "/l.png"), read_file(outputs_ + "/e0.png"));
+  EXPECT_EQ(read_file(outputs_ + "/r.png"), read_file(outputs_ + "/e1.png"));
 }
 
 TEST_F(SynthCommand, MapsOfAnotherSizeAreAnError) {

@@ -105,6 +105,7 @@ TEST_F(Config, EveryOptionOfTheHelpIsPrinted) {
       }
     }
     EXPECT_GT(options, 8);
+    EXPECT_FALSE(std::regex_search(help, std::regex("(^|\n) {30}[^\n]{71}"))) << arguments.front();
   }
 }
 

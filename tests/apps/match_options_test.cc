@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "tests/apps/pair_fixture.h"
 
@@ -116,7 +117,8 @@ TEST_F(MatchCommandOptions, ReportShowsWhatWasSetAndWhatIsInForce) {
 }
 
 TEST_F(MatchCommandOptions, ThePresetIsWhatItsHelpSays) {
-  const std::string help = run_vantage({"match", "--help"}).out;
+  const std::string help =
+      std::regex_replace(run_vantage({"match", "--help"}).out, std::regex("\n {12,}"), " ");
   for (const std::string preset : {"fast", "balanced", "quality"}) {
     const std::size_t begin = help.find("; " + preset + ": ") + 4 + preset.size();
     const std::string text = help.substr(begin, help.find_first_of(";\n", begin) - begin);

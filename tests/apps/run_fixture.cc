@@ -19,7 +19,8 @@ bool is_unnamed(const std::string& name) {
 }
 
 void write_bytes(const std::string& path, const Photograph& photograph) {
-  const auto bytes = encode_photograph(path, photograph);
+  std::vector<std::uint8_t> bytes;
+  encode_photograph(path, photograph, bytes);
   write_file(path, std::string(bytes.begin(), bytes.end()));
 }
 

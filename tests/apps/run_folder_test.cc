@@ -275,7 +275,7 @@ TEST_F(RunFolder, ATableOfShotsThatIsDamagedIsAClearError) {
     const ProcessResult result = run(out_, joined(outputs, {"--resume", "--quiet"}));
     EXPECT_EQ(result.exit_code, 1) << text;
     EXPECT_TRUE(is_one_line(result, "run"));
-    EXPECT_THAT(result.err, HasSubstr("shots")) << text;
+    EXPECT_THAT(result.err, HasSubstr(shots)) << text;
   }
   // Where it is missing it is made again.
   fs::remove(shots);

@@ -53,6 +53,21 @@ TEST_F(RunResumed, FramesThatWereAddedAreAChangedInput) {
   expect_all_done(kFrames + 1);
 }
 
+TEST_F(RunResumed, WhatShotsShareIsFoundAnewWhenForced) {
+  const std::vector<std::string> outputs = {"--save", "preview", "--preview-range", "shot"};
+  const std::string out = folder_ / "shots";
+  const auto end_of_last_shot = [&] {
+    return read_report(out + "/.vantage/shots.json")["shots"].back()["end_frame"];
+  };
+  ASSERT_EQ(run(out, joined(outputs, {"--frames", "0-9"})).exit_code, 0);
+  EXPECT_EQ(end_of_last_shot(), kFrames);
+  for (const std::string side : {"left", "right"}) {
+    fs::copy_file(file(side, 0), file(side, kFrames));
+  }
+  ASSERT_EQ(run(out, joined(outputs, {"--resume", "--force"})).exit_code, 0);
+  EXPECT_EQ(end_of_last_shot(), kFrames + 1);
+}
+
 TEST_F(RunResumed, SettingsThatDifferAreRefusedAndNamed) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> changes = {
       {{"--window", "7"}, "window was"},

@@ -62,7 +62,7 @@ FlickerSums add(FlickerMeter& meter, const MadeUpFrame& frame, const std::vector
                 Execution& execution) {
   std::vector<ViewOfFrame> views;
   for (std::size_t v = 0; v < frame.views.size(); ++v) {
-    views.push_back({views_x[v], &frame.views[v]});
+    views.push_back({{views_x[v], 0}, &frame.views[v]});
   }
   return meter.add(frame.left, frame.map.view(), views, execution);
 }
@@ -216,7 +216,7 @@ TEST(FlickerMeter, WhatCannotBeCompared) {
   EXPECT_EQ(sums.compared, 0);
   EXPECT_EQ(sums.mean_disparity_change_px(), 0);
   EXPECT_THROW(meter.add(small, frame.map.view(), {}, execution), Error);
-  const ViewOfFrame view{0.5, &frame.left};
+  const ViewOfFrame view{{0.5, 0}, &frame.left};
   EXPECT_THROW(meter.add(small, {}, {&view, 1}, execution), Error);
   EXPECT_THROW(FlickerMeter(-1), UsageError);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ class MadeUpPairs : public PairSource {
   std::set<int> repeat;  ///< that are the pair before
   int ends_at = 1 << 30;
   int fetched = 0;
+  std::function<void()> after_fetch = [] {};
 
   bool fetch(FramePair& pair) override {
     if (next_ >= std::min(count_, ends_at)) {
@@ -30,6 +32,7 @@ class MadeUpPairs : public PairSource {
     pair.index = next_++;
     pair.remarks.clear();
     ++fetched;
+    after_fetch();
     if (bad_to_fetch.contains(pair.index)) {
       throw Error("the stream is damaged");
     }

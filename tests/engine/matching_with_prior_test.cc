@@ -2,19 +2,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <string>
 
 #include "engine/error.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/simd.h"
+#include "tests/engine/identical_maps.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
 namespace {
 
+using testing::identical;
 using testing::method_cases;
 using testing::MethodCase;
 using testing::PhotographPair;
@@ -23,23 +24,6 @@ using testing::textured_pair;
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr DisparityRange kRange{-3, 17};
-
-bool identical(const Image<float>& a, const Image<float>& b) {
-  if (a.width() != b.width() || a.height() != b.height()) {
-    return false;
-  }
-  for (int y = 0; y < a.height(); ++y) {
-    if (std::memcmp(a.row(y), b.row(y), sizeof(float) * static_cast<std::size_t>(a.width())) != 0) {
-      return false;
-    }
-  }
-  return true;
-}
-bool identical(const DisparityMaps& a, const DisparityMaps& b) {
-  return identical(a.left, b.left) && identical(a.right, b.right) &&
-         identical(a.left_confidence, b.left_confidence) &&
-         identical(a.right_confidence, b.right_confidence);
-}
 
 /// Stripes: unknown, in the range with fractions, at its ends, outside.
 DisparityMap striped_prior(int width, int height) {

@@ -4,17 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "engine/matching/match_chain.h"
 #include "scheduler/strip_pipeline.h"
 #include "scheduler/whole_image_pipeline.h"
+#include "tests/engine/identical_maps.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
 namespace {
 
+using testing::identical;
 using testing::method_cases;
 using testing::MethodCase;
 using testing::PhotographPair;
@@ -27,15 +28,6 @@ using testing::tolerance_of;
 constexpr int kWidth = 57;
 constexpr int kHeight = 39;
 constexpr DisparityRange kRange{-3, 21};
-
-bool identical(const Image<float>& a, const Image<float>& b) {
-  for (int y = 0; y < a.height(); ++y) {
-    if (std::memcmp(a.row(y), b.row(y), sizeof(float) * static_cast<std::size_t>(a.width())) != 0) {
-      return false;
-    }
-  }
-  return true;
-}
 
 struct Outputs {
   Image<float> disparity_px{kWidth, kHeight};

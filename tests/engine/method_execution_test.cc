@@ -3,40 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <string>
 
 #include "engine/matching/stereo_matcher.h"
 #include "engine/simd.h"
+#include "tests/engine/identical_maps.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
 namespace {
 
+using testing::identical;
 using testing::method_cases;
 using testing::MethodCase;
 using testing::PhotographPair;
 using testing::PixelKind;
 using testing::textured_pair;
-
-bool identical(const Image<float>& a, const Image<float>& b) {
-  if (a.width() != b.width() || a.height() != b.height()) {
-    return false;
-  }
-  for (int y = 0; y < a.height(); ++y) {
-    if (std::memcmp(a.row(y), b.row(y), sizeof(float) * static_cast<std::size_t>(a.width())) != 0) {
-      return false;
-    }
-  }
-  return true;
-}
-
-bool identical(const DisparityMaps& a, const DisparityMaps& b) {
-  return identical(a.left, b.left) && identical(a.right, b.right) &&
-         identical(a.left_confidence, b.left_confidence) &&
-         identical(a.right_confidence, b.right_confidence);
-}
 
 DisparityMaps maps_of(const PhotographPair& pair, const MatchOptions& options,
                       const ExecutionOptions& execution_options) {

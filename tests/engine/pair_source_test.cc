@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -115,6 +116,59 @@ void expect_to_skip_everywhere(const PairSourceOptions& options) {
   }
 }
 
+/// Left values as pairs_of() gives them, whether or not the right images are wanted, which may
+/// change from pair to pair.
+void expect_left_images_alone(const PairSourceOptions& options) {
+  const Values all = pairs_of(options);
+  const auto source = open_pair_source(options);
+  for (const unsigned wanted : {0U, 0b01001U, 0b10110U}) {
+    source->skip_to(0);
+    for (unsigned index = 0; index < all.size(); ++index) {
+      FramePair pair;
+      pair.wants_right = (wanted >> index & 1U) != 0;
+      ASSERT_TRUE(source->fetch(pair));
+      source->decode(pair);
+      EXPECT_EQ(pair.index, static_cast<int>(index));
+      EXPECT_EQ(value_of(pair.left), all[index].first) << wanted << " " << index;
+      if (pair.wants_right) {
+        EXPECT_EQ(value_of(pair.right), all[index].second) << wanted << " " << index;
+      }
+    }
+    FramePair pair;
+    EXPECT_FALSE(source->fetch(pair));
+  }
+}
+
+TEST(PairSource, LeftImagesAlone) {
+  const TemporaryFolder folder;
+  put_images(folder / "l", {0, 1, 2, 3, 4});
+  put_images(folder / "r", {99, 100, 101, 102, 103, 104});
+  put_video(folder / "l.mp4", counting(20, 5));
+  put_video(folder / "r.mp4", counting(30, 6));
+  expect_left_images_alone(two_cameras(folder / "l", folder / "r", 1));
+  expect_left_images_alone(two_cameras(folder / "l.mp4", folder / "r.mp4", 1));
+  expect_left_images_alone(two_cameras(folder / "l", folder / "r.mp4", 1));
+  for (const int step : {1, -2}) {
+    expect_left_images_alone(moving_camera(folder / "r", step));
+    expect_left_images_alone(moving_camera(folder / "r.mp4", step));
+  }
+  // What is not wanted is not read.
+  put_text(folder / "r/000003.png", "garbage");
+  for (const PairSourceOptions& options :
+       {two_cameras(folder / "l", folder / "r"), moving_camera(folder / "r", -1)}) {
+    const auto source = open_pair_source(options);
+    FramePair pair;
+    pair.wants_right = false;
+    source->skip_to(3);
+    ASSERT_TRUE(source->fetch(pair));
+    EXPECT_NO_THROW(source->decode(pair));
+    pair.wants_right = true;
+    source->skip_to(3);
+    ASSERT_TRUE(source->fetch(pair));
+    EXPECT_THROW(source->decode(pair), Error);
+  }
+}
+
 TEST(PairSource, TwoFoldersByIndex) {
   const TemporaryFolder folder;
   put_images(folder / "l", {0, 1, 2, 3});
@@ -125,6 +179,7 @@ TEST(PairSource, TwoFoldersByIndex) {
   EXPECT_EQ(source->describe(1), folder / "l/000001.png" + ", " + folder / "r/000001.png");
   EXPECT_EQ(source->unpaired_frames(), 0);
   EXPECT_THAT(source->remarks(), IsEmpty());
+  EXPECT_EQ(source->frames_kept(), 0);
   EXPECT_EQ(source->frame_rate(), std::nullopt);
   EXPECT_EQ(source->sound().file, "");
   EXPECT_THAT(source->identities(),
@@ -276,6 +331,7 @@ TEST(PairSource, PackedImages) {
   EXPECT_EQ(source->describe(2), folder / "p/2.png");
   EXPECT_EQ(pairs_of(*source), (Values{{0, 100}, {1, 101}, {2, 102}}));
   expect_to_skip_everywhere(options);
+  expect_left_images_alone(options);
   put_image(folder / "p/1.png", 7);
   EXPECT_EQ(pairs_of(options), (Values{{0, 100}, kBad, {2, 102}}));
   FramePair pair;
@@ -361,6 +417,7 @@ TEST(PairSource, OneMovingCameraFromAVideo) {
     }
     EXPECT_EQ(rounded(pairs_of(options), 20, 20), expected) << step;
     EXPECT_EQ(open_pair_source(options)->sound().first_frame, std::max(0, -step));
+    EXPECT_EQ(open_pair_source(options)->frames_kept(), std::abs(step) + 1);
     expect_to_skip_everywhere(options);
   }
 }

@@ -61,6 +61,35 @@ TEST(PhotographIo, LosslessFormatsReturnWhatWasWritten) {
   EXPECT_EQ(folder.entries(), 9U);
 }
 
+TEST(PhotographIo, MemoryOfPhotographsAndFilesIsReused) {
+  const TemporaryFolder folder;
+  const Photograph first = noise<std::uint8_t>(40, 30, 3, 1);
+  const Photograph second = noise<std::uint8_t>(40, 30, 3, 2);
+  for (const char* name : {"a.png", "a.tiff"}) {
+    write_photograph(folder / name, first);
+    Photograph photograph = read_photograph(folder / name);
+    const std::uint8_t* memory = std::get<Image<std::uint8_t>>(photograph.pixels).row(0);
+    write_photograph(folder / name, second);
+    photograph = read_photograph(folder / name, std::move(photograph));
+    EXPECT_EQ(std::get<Image<std::uint8_t>>(photograph.pixels).row(0), memory);
+    EXPECT_TRUE(same(photograph, second));
+    // Of another type and size.
+    photograph = read_photograph(folder / name, noise<std::uint16_t>(3, 2, 1));
+    EXPECT_TRUE(same(photograph, second));
+  }
+  for (const char* name : {"a.png", "a.tiff", "a.ppm"}) {
+    std::vector<std::uint8_t> bytes(100000, 7);
+    encode_photograph(folder / name, second, bytes);
+    write_photograph(folder / name, second);
+    EXPECT_EQ(bytes, bytes_of(folder / name)) << name;
+  }
+  std::vector<std::uint8_t> bytes(100000, 7);
+  const Photograph floats = noise<float>(9, 7, 1);
+  encode_photograph(folder / "a.pfm", floats, bytes);
+  write_photograph(folder / "a.pfm", floats);
+  EXPECT_EQ(bytes, bytes_of(folder / "a.pfm"));
+}
+
 TEST(PhotographIo, JpegKeepsSmoothColoursAndTheirOrder) {
   const TemporaryFolder folder;
   Photograph photograph{Image<std::uint8_t>(37, 21, 3)};

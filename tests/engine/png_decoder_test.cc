@@ -59,7 +59,8 @@ cv::Mat to_bgr(const Image<T>& image) {
 }
 
 std::optional<Photograph> decoded(const Bytes& bytes) {
-  return decode_usual_png(check_png_structure(FileBytes(bytes, "a.png")));
+  Photograph memory;
+  return decode_usual_png(check_png_structure(FileBytes(bytes, "a.png")), memory);
 }
 
 template <typename T>

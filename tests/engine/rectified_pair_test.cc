@@ -194,6 +194,11 @@ TEST(RectifiedPair, RefusesCamerasThatCannotBeRectified) {
   // Each looks 30 degrees inwards and sees 33 to the side.
   EXPECT_NE(error_with({-std::sqrt(0.75), 0, 0.5}, 60).find("common view"), std::string::npos);
   EXPECT_NE(error_with({-1, 0, 0}, 0, 300).find("principal point"), std::string::npos);
+  // Distortion that folds back at once: the camera sees nothing.
+  StereoCalibration folded = rig;
+  folded.right.distortion = {-1e6, 0, 0, 0};
+  EXPECT_NE(error_of([&] { rectified_pair(folded, 640, 480); }).find("common view is 0.0 %"),
+            std::string::npos);
   EXPECT_EQ(error_of([&] { rectified_pair(rig, 640, 480, {.kept_outline = 1.5}); }),
             "kept-outline is 1.5, expected 0 to 1");
 }

@@ -12,11 +12,13 @@
 #include "engine/generation/layered_scene.h"
 #include "tests/engine/calibration_cases.h"
 #include "tests/engine/io_test_support.h"
+#include "tests/keys_kernel.h"
 
 namespace vantage {
 namespace {
 
 using test::error_of;
+using test::keys;
 using test::noise;
 using test::plain_projection;
 using test::same;
@@ -24,15 +26,6 @@ using test::same;
 Execution& execution() {
   static Execution instance({.threads = 2});
   return instance;
-}
-
-/// Keys' kernel, a = −½.
-double keys(double t) {
-  t = std::abs(t);
-  if (t < 1) {
-    return 1.5 * t * t * t - 2.5 * t * t + 1;
-  }
-  return t < 2 ? -0.5 * t * t * t + 2.5 * t * t - 4 * t + 2 : 0;
 }
 
 /// Bicubic interpolation in double; 0 outside of the image.

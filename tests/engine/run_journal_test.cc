@@ -44,9 +44,9 @@ class RunJournalTest : public testing::Test {
   /// A frame with one file, which is made.
   void deliver(RunJournal& journal, int frame) const {
     FrameRecord record{.frame = frame};
-    record.files = {"disparity/" + std::to_string(frame) + ".pfm"};
+    record.files = {{"disparity/" + std::to_string(frame) + ".pfm", 3}};
     std::filesystem::create_directories(folder_ / "disparity");
-    std::ofstream(folder_ / record.files.front()) << "map";
+    std::ofstream(folder_ / record.files.front().name) << "map";
     append(journal, record);
   }
   [[nodiscard]] DeliveredFrames delivered() const {
@@ -67,7 +67,7 @@ class RunJournalTest : public testing::Test {
 TEST_F(RunJournalTest, BringsBackWhatWasRecorded) {
   FrameRecord odd{.frame = 4};
   odd.remarks = {"2 frames are missing before it", "non-UTF-8 \xff"};
-  odd.files = {"disparity/000004.pfm", "views/000004.png"};
+  odd.files = {{"views/000004.png", 7}, {"disparity/000004.pfm", 5000000000}};
   odd.flicker.frames = 1;
   odd.flicker.pixels = 1000000007LL * 4096;
   odd.flicker.compared = 12;
@@ -75,15 +75,16 @@ TEST_F(RunJournalTest, BringsBackWhatWasRecorded) {
   odd.flicker.views[1].grey_change = -5;
   FrameRecord skipped{.frame = 5};
   skipped.skipped = true;
+  FrameRecord absent{.frame = 6, .absent = true};
   skipped.problem = "right/5.png: is \"truncated\"";
   {
     RunJournal journal = open(JournalOpening::kNew);
-    const std::vector<JournalRecord> records = {odd, skipped, SegmentRecord{{0, 9}}};
+    const std::vector<JournalRecord> records = {odd, skipped, absent, SegmentRecord{{0, 9}}};
     journal.append(records);
-    append(journal, JoinRecord{{0, 9}});
+    append(journal, JoinRecord{{0, 9}, {5}});
   }
   const auto records = RunJournal::read_records(journal_);
-  ASSERT_EQ(records.size(), 4U);
+  ASSERT_EQ(records.size(), 5U);
   const auto& first = std::get<FrameRecord>(records[0]);
   EXPECT_EQ(first.frame, 4);
   EXPECT_FALSE(first.skipped);
@@ -93,8 +94,11 @@ TEST_F(RunJournalTest, BringsBackWhatWasRecorded) {
   const auto& second = std::get<FrameRecord>(records[1]);
   EXPECT_TRUE(second.skipped);
   EXPECT_EQ(second.problem, skipped.problem);
-  EXPECT_EQ(std::get<SegmentRecord>(records[2]).frames, (FrameRange{0, 9}));
-  EXPECT_EQ(std::get<JoinRecord>(records[3]).frames, (FrameRange{0, 9}));
+  EXPECT_FALSE(first.absent);
+  EXPECT_TRUE(std::get<FrameRecord>(records[2]).absent);
+  EXPECT_EQ(std::get<SegmentRecord>(records[3]).frames, (FrameRange{0, 9}));
+  EXPECT_EQ(std::get<JoinRecord>(records[4]).frames, (FrameRange{0, 9}));
+  EXPECT_THAT(std::get<JoinRecord>(records[4]).skipped, ElementsAre(5));
 }
 
 TEST_F(RunJournalTest, TheIdentityIsKept) {
@@ -121,6 +125,33 @@ TEST_F(RunJournalTest, ARunIsNotBegunTwiceUnasked) {
   }
   open(JournalOpening::kOverwrite);
   EXPECT_THAT(RunJournal::read_records(journal_), IsEmpty());
+}
+
+TEST_F(RunJournalTest, RecordsThatNothingDescribesAreNotTakenOver) {
+  {
+    RunJournal journal = open(JournalOpening::kNew, "1-of-2");
+    deliver(journal, 0);
+  }
+  std::filesystem::remove(journal_ / "run.json");
+  for (const JournalOpening opening : {JournalOpening::kNew, JournalOpening::kResume}) {
+    EXPECT_THAT(refusal(opening), HasSubstr("has records of a run but no run.json"));
+  }
+  EXPECT_TRUE(delivered().is_done(0));
+  open(JournalOpening::kOverwrite);
+  EXPECT_FALSE(delivered().is_done(0));
+}
+
+TEST_F(RunJournalTest, ARunIsNotBegunAnewWhileAPartIsWorkedOn) {
+  RunJournal journal = open(JournalOpening::kNew, "1-of-2");
+  deliver(journal, 0);
+  EXPECT_THAT(refusal(JournalOpening::kOverwrite), HasSubstr("another process works on this run"));
+  EXPECT_TRUE(delivered().is_done(0));
+}
+
+TEST_F(RunJournalTest, AJournalThatCannotBeReadIsNotAnEmptyOne) {
+  open(JournalOpening::kNew);
+  std::filesystem::create_directory(journal_ / "frames-1-of-2.jsonl");
+  EXPECT_THROW(RunJournal::read_records(journal_), Error);
 }
 
 TEST_F(RunJournalTest, PartsJoinARunTheyAgreeWith) {

@@ -35,7 +35,8 @@ struct Way {
   bool keep_going = false;
   std::optional<FrameRange> frames = {};
   std::optional<Shard> shard = {};
-  int stop_after = 1 << 30;  ///< frames delivered
+  int stop_after = 1 << 30;           ///< frames delivered
+  int stop_after_fetching = 1 << 30;  ///< frames
 };
 
 class SequenceRunnerTest : public testing::Test {
@@ -67,10 +68,18 @@ class SequenceRunnerTest : public testing::Test {
                          .on_progress =
                              [&](const SequenceProgress& now) {
                                progress_ = now;
-                               stop.store(now.frames_done >= way.stop_after);
+                               if (now.frames_done >= way.stop_after) {
+                                 stop.store(true);
+                               }
                              },
                          .stop = &stop};
+    pairs.after_fetch = [&, before = pairs.fetched] {
+      if (pairs.fetched - before >= way.stop_after_fetching) {
+        stop.store(true);
+      }
+    };
     SequenceReport report = SequenceRunner(options_, execution).run(sequence, layout, journal);
+    pairs.after_fetch = [] {};
     const DeliveredFrames delivered(layout);
     if (report.frames > 0 && delivered.missing({0, pairs.pair_count()}).empty()) {
       join_segments(options_, layout, identity, {0, pairs.pair_count()}, true, journal);
@@ -154,8 +163,9 @@ TEST_F(SequenceRunnerTest, WritesWhatTheMatcherComputes) {
 TEST_F(SequenceRunnerTest, OutputsGoToFoldersOfTheirOwn) {
   options_.save = {SequenceOutput::kViews, SequenceOutput::kHoles, SequenceOutput::kStereo,
                    SequenceOutput::kRightUnmatched};
-  options_.views = {ViewTrack::fixed(0.25), ViewTrack::fixed(-1), parse_view_track("0=0,9=1")};
-  options_.stereo_packing.above_below = true;
+  options_.views = {ViewTrack::fixed({0.25, 0}), ViewTrack::fixed({-1, 0}),
+                    parse_view_track("0=0,9=1")};
+  options_.stereo_packing = StereoPacking{.above_below = true};
   MadeUpPairs pairs(1);
   run(pairs, folder("a"));
   EXPECT_THAT(names(folder("a")),
@@ -175,7 +185,7 @@ TEST_F(SequenceRunnerTest, AMovingViewIsTheFixedOneOfEachFrame) {
   options_.views = {parse_view_track("1=0.5,3=1.5")};
   MadeUpPairs pairs(4);
   run(pairs, folder("path"), {.frames = FrameRange{2, 4}});
-  options_.views = {ViewTrack::fixed(1)};
+  options_.views = {ViewTrack::fixed({1, 0})};
   run(pairs, folder("fixed"));
   EXPECT_THAT(names(folder("path")), ElementsAre("views/000002.png", "views/000003.png"));
   EXPECT_EQ(files(folder("path"))["views/000002.png"], files(folder("fixed"))["views/000002.png"]);
@@ -212,6 +222,52 @@ TEST_F(SequenceRunnerTest, FramesThatASourceOnlyPromisedAreDoneWith) {
   const SequenceReport again = run(pairs, folder("a"));
   EXPECT_EQ(again.frames, 0);
   EXPECT_EQ(again.frames_before, 8);
+  // A whole chunk that is not there.
+  pairs.ends_at = 4;
+  EXPECT_EQ(run(pairs, folder("b")).frames, 4);
+  EXPECT_EQ(VideoReader(folder("b") / "preview.mp4").frame_count(), 4);
+  EXPECT_EQ(run(pairs, folder("b")).frames_before, 8);
+  EXPECT_EQ(run(pairs, folder("c"), {.frames = FrameRange{4, 8}}).remarks.size(), 4U);
+  EXPECT_EQ(run(pairs, folder("c")).frames, 4);
+  EXPECT_EQ(files(folder("c")), files(folder("b")));
+}
+
+TEST_F(SequenceRunnerTest, VideosOfPiecesOfAChunkAreMadeAnew) {
+  options_.save = {SequenceOutput::kDisparity, SequenceOutput::kPreview};
+  options_.video = {SequenceOutput::kPreview};
+  MadeUpPairs pairs(4);
+  run(pairs, folder("whole"));
+  run(pairs, folder("a"), {.frames = FrameRange{0, 3}});
+  EXPECT_THAT(error_of(pairs, folder("a"), {.frames = FrameRange{1, 4}}),
+              HasSubstr("frame 3 is of no video segment that begins where another ends"));
+  EXPECT_EQ(run(pairs, folder("a")).frames, 4);
+  EXPECT_EQ(files(folder("a")), files(folder("whole")));
+}
+
+TEST_F(SequenceRunnerTest, FramesOfAnUnfinishedVideoAreNotReported) {
+  options_.save = {SequenceOutput::kPreview};
+  options_.video = options_.save;
+  MadeUpPairs pairs(400);
+  const SequenceReport report = run(pairs, folder("a"), {.stop_after = 6});
+  EXPECT_TRUE(report.interrupted);
+  EXPECT_GE(report.frames, 4);
+  EXPECT_EQ(report.frames % 4, 0);
+  const DeliveredFrames delivered(SequenceLayout(folder("a"), options_));
+  EXPECT_EQ(delivered.records().size(), static_cast<std::size_t>(report.frames));
+}
+
+TEST_F(SequenceRunnerTest, FlickerBehindASkippedFrameIsTheSameAfterAnInterruption) {
+  options_.measure_flicker = true;
+  const auto flicker_in = [&](const std::string& name) {
+    return total_flicker(DeliveredFrames(SequenceLayout(folder(name), options_)));
+  };
+  MadeUpPairs pairs(4);
+  pairs.bad_to_decode = {1};
+  run(pairs, folder("whole"), {.keep_going = true});
+  run(pairs, folder("parts"), {.keep_going = true, .frames = FrameRange{0, 2}});
+  run(pairs, folder("parts"), {.keep_going = true});
+  EXPECT_EQ(flicker_in("whole").frames, 1);  // frames 2 and 3
+  EXPECT_EQ(flicker_in("parts"), flicker_in("whole"));
 }
 
 TEST_F(SequenceRunnerTest, BadFramesAreSkippedWhereAskedAndMadeOnceRepaired) {
@@ -247,7 +303,7 @@ TEST_F(SequenceRunnerTest, BadFramesAreSkippedWhereAskedAndMadeOnceRepaired) {
 TEST_F(SequenceRunnerTest, SkippedFramesOfAVideoShowANeighbour) {
   options_.save = {SequenceOutput::kViews};
   options_.video = options_.save;
-  options_.views = {ViewTrack::fixed(0)};
+  options_.views = {ViewTrack::fixed({0, 0})};
   options_.crf = 0;
   const auto frames_of = [&](const std::set<int>& bad) {
     MadeUpPairs pairs(8);
@@ -290,7 +346,7 @@ TEST_F(SequenceRunnerTest, SkippedFramesOfAVideoShowANeighbour) {
 TEST_F(SequenceRunnerTest, PartsAndInterruptionsLeaveNoTrace) {
   options_.save = {SequenceOutput::kDisparity, SequenceOutput::kRightDisparity,
                    SequenceOutput::kPreview, SequenceOutput::kViews};
-  options_.views = {ViewTrack::fixed(0.5)};
+  options_.views = {ViewTrack::fixed({0.5, 0})};
   options_.video = {SequenceOutput::kPreview};
   options_.temporal.weight = 1;
   options_.measure_flicker = true;
@@ -315,7 +371,7 @@ TEST_F(SequenceRunnerTest, PartsAndInterruptionsLeaveNoTrace) {
   const fs::path out = folder("interrupted");
   int runs = 0;
   for (bool done = false; !done && runs < 40; ++runs) {
-    done = !run(pairs, out, {.in_flight = 2, .stop_after = 1 + runs}).interrupted;
+    done = !run(pairs, out, {.in_flight = 2, .stop_after_fetching = 1 + runs}).interrupted;
   }
   EXPECT_GT(runs, 1);
   EXPECT_EQ(files(out), expected);
@@ -328,10 +384,11 @@ TEST_F(SequenceRunnerTest, LostFilesAreMadeAgain) {
   const auto expected = files(folder("a"));
   fs::remove(folder("a") / "disparity/000003.pfm");
   std::ofstream(folder("a") / "disparity/000005.pfm").close();  // empty
+  fs::resize_file(folder("a") / "disparity/000007.pfm", 700);
   pairs.fetched = 0;
   pairs.skip_to(0);
-  EXPECT_EQ(run(pairs, folder("a")).frames, 2);
-  EXPECT_EQ(pairs.fetched, 2);
+  EXPECT_EQ(run(pairs, folder("a")).frames, 3);
+  EXPECT_EQ(pairs.fetched, 3);
   EXPECT_EQ(files(folder("a")), expected);
 }
 
@@ -397,7 +454,9 @@ TEST_F(SequenceRunnerTest, OptionsAreChecked) {
   using Options = SequenceOptions;
   EXPECT_EQ(refusal([](Options&) {}), "");
   EXPECT_THAT(refusal([](Options& o) { o.save = {}; }), HasSubstr("save is empty"));
-  EXPECT_THAT(refusal([](Options& o) { o.views = {ViewTrack::fixed(0)}; }),
+  EXPECT_THAT(refusal([](Options& o) {
+                o.views = {ViewTrack::fixed({0, 0})};
+              }),
               HasSubstr("save has no views"));
   EXPECT_THAT(refusal([](Options& o) { o.save = {SequenceOutput::kHoles}; }),
               HasSubstr("no view is given"));

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <filesystem>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <string>
@@ -15,6 +17,8 @@
 #include "engine/generation/layered_scene.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/synthesis/view_synthesizer.h"
+#include "tests/engine/io_test_support.h"
+#include "tests/temporary_folder.h"
 
 namespace vantage {
 namespace {
@@ -29,6 +33,9 @@ class TwoShots : public PairSource {
  public:
   std::set<int> bad;
   std::vector<int> fetched;
+  std::vector<int> with_right;           // those of them whose right image was wanted too
+  int most_held = 0;                     // fetched and not decoded yet
+  mutable std::atomic<int> decoded = 0;  // or found to be bad
 
   bool fetch(FramePair& pair) override {
     if (next_ >= kFrames) {
@@ -36,6 +43,10 @@ class TwoShots : public PairSource {
     }
     pair.index = next_++;
     fetched.push_back(pair.index);
+    if (pair.wants_right) {
+      with_right.push_back(pair.index);
+    }
+    most_held = std::max(most_held, static_cast<int>(fetched.size()) - decoded);
     if (bad.contains(pair.index) && pair.index % 2 == 0) {
       throw Error("damaged");
     }
@@ -43,6 +54,7 @@ class TwoShots : public PairSource {
   }
   void decode(FramePair& pair) const override {
     const int index = pair.index;
+    ++decoded;
     if (bad.contains(index)) {
       throw Error("damaged");
     }
@@ -59,7 +71,7 @@ class TwoShots : public PairSource {
     const LayeredScene scene(options, execution);
     const int time = index < kCut ? index : index + 40;
     pair.left = scene.render({0, 0}, time).image;
-    pair.right = scene.render({1, 0}, time).image;
+    pair.right = pair.wants_right ? scene.render({1, 0}, time).image : Photograph();
   }
   void skip_to(int index) override { next_ = index; }
   [[nodiscard]] int pair_count() const override { return kFrames; }
@@ -159,6 +171,7 @@ TEST_F(Shots, LookAtAllFramesOnceAndAtThreeOfEachShotAgain) {
     expected.push_back(frame);
   }
   EXPECT_EQ(pairs_.fetched, expected);
+  EXPECT_EQ(pairs_.with_right, (std::vector<int>{0, 3, 6, 7, 11, 15}));
   EXPECT_EQ(progress.back().frames_done, kFrames + 6);
   EXPECT_EQ(progress.back().frames_total, kFrames + 6);
 }
@@ -167,6 +180,19 @@ TEST_F(Shots, DoNotDependOnTheExecution) {
   const auto table = survey();
   EXPECT_EQ(survey(0, kFrames, 1), table);
   EXPECT_EQ(survey(0, kFrames, 5), table);
+}
+
+TEST_F(Shots, HoldNoMorePairsThanTheyMay) {
+  const auto table = survey();
+  EXPECT_EQ(pairs_.most_held, 3);
+  for (const int in_flight : {1, 2}) {
+    pairs_.most_held = 0;
+    pairs_.fetched.clear();
+    pairs_.decoded = 0;
+    hooks_.in_flight = in_flight;
+    EXPECT_EQ(survey(), table);
+    EXPECT_EQ(pairs_.most_held, in_flight);
+  }
 }
 
 TEST_F(Shots, OfAPartOfTheFrames) {
@@ -228,6 +254,27 @@ TEST(ShotTableJson, ComesBackTheSame) {
   table.shots[0].intensity[1] = {.offset = 0.1 + 0.2, .gain = 1 / 3.};
   table.shots[1].intensity[3] = {.offset = -1e-300, .gain = 16};
   EXPECT_EQ(shot_table_from_json(to_json(table)), table);
+}
+
+TEST(ShotTableFile, IsThatOfTheFirstWhoKeepsOne) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "shots.json";
+  EXPECT_EQ(read_shot_table(file), std::nullopt);
+  ShotTable first;
+  first.shots.push_back({.first_frame = 0, .end_frame = 5, .preview_range = {1, 2}});
+  ShotTable second = first;
+  second.shots[0].preview_range = {1, 3};
+  EXPECT_EQ(keep_shot_table(file, first), first);
+  EXPECT_EQ(keep_shot_table(file, second), first);
+  EXPECT_EQ(read_shot_table(file), first);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+  test::put_text(file, to_json(first).substr(0, 40));
+  EXPECT_THAT(test::error_of([&] { read_shot_table(file); }),
+              HasSubstr(file.string() + ": is damaged (shots: "));
+  test::put_text(file, "");
+  EXPECT_THAT(test::error_of([&] { read_shot_table(file); }), HasSubstr(file.string()));
+  EXPECT_THAT(test::error_of([&] { keep_shot_table(folder / "none/shots.json", first); }),
+              HasSubstr("there is no folder"));
 }
 
 TEST(ShotTableJson, MalformedTextIsRefused) {

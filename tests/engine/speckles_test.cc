@@ -5,75 +5,141 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace vantage {
 namespace {
 
-/// Sizes of regions by relaxation: every pixel takes the smallest number of its region until
-/// nothing changes.
-std::vector<int> region_sizes(const DisparityMap& map, const Mask& unmatched) {
-  const int width = map.width();
-  const int pixels = width * map.height();
-  std::vector<int> label(static_cast<std::size_t>(pixels));
-  for (int i = 0; i < pixels; ++i) {
-    label[static_cast<std::size_t>(i)] = i;
+/// A map of one or two components and which of its pixels are matched.
+struct Case {
+  DisparityMap map;
+  DisparityMap map_y;  ///< may be empty
+  Mask unmatched;
+
+  [[nodiscard]] bool connects(int x, int y, int other_x, int other_y) const {
+    const auto is_near = [&](const DisparityMap& component) {
+      return component.empty() ||
+             std::abs(component.at(x, y) - component.at(other_x, other_y)) <= 1;
+    };
+    return unmatched.at(other_x, other_y) == 0 && is_near(map) && is_near(map_y);
   }
-  const auto joined = [&](int a, int b) {
-    return unmatched.at(a % width, a / width) == 0 && unmatched.at(b % width, b / width) == 0 &&
-           std::abs(map.at(a % width, a / width) - map.at(b % width, b / width)) <= 1;
-  };
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (int i = 0; i < pixels; ++i) {
-      for (const int j : {i % width + 1 < width ? i + 1 : i, i + width < pixels ? i + width : i}) {
-        int& a = label[static_cast<std::size_t>(i)];
-        int& b = label[static_cast<std::size_t>(j)];
-        if (a != b && joined(i, j)) {
-          a = b = std::min(a, b);
-          changed = true;
+
+  /// The size of each matched pixel's region, by flooding; 0 elsewhere.
+  [[nodiscard]] Image<float> region_sizes() const {
+    Image<float> sizes(map.width(), map.height());
+    sizes.fill(0);
+    std::vector<std::pair<int, int>> region;
+    const auto visit = [&](int x, int y) {
+      if (sizes.at(x, y) == 0) {
+        sizes.at(x, y) = -1;
+        region.emplace_back(x, y);
+      }
+    };
+    for (int first_y = 0; first_y < map.height(); ++first_y) {
+      for (int first_x = 0; first_x < map.width(); ++first_x) {
+        region.clear();
+        if (unmatched.at(first_x, first_y) == 0) {
+          visit(first_x, first_y);
+        }
+        for (std::size_t i = 0; i < region.size(); ++i) {
+          const auto [x, y] = region[i];
+          for (const auto& [step_x, step_y] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+            const int to_x = x + step_x;
+            const int to_y = y + step_y;
+            if (to_x >= 0 && to_x < map.width() && to_y >= 0 && to_y < map.height() &&
+                connects(x, y, to_x, to_y)) {
+              visit(to_x, to_y);
+            }
+          }
+        }
+        for (const auto& [x, y] : region) {
+          sizes.at(x, y) = static_cast<float>(region.size());
+        }
+      }
+    }
+    return sizes;
+  }
+};
+
+/// Of 100 pixels `holes` are unmatched, half of them unknown; disparities have so many levels, of
+/// which neighbours, but no others, are one surface.
+Case random_case(std::mt19937& random, int width, int height, unsigned holes, unsigned levels,
+                 bool is_two_dimensional) {
+  Case made{DisparityMap(width, height), DisparityMap(), Mask(width, height)};
+  if (is_two_dimensional) {
+    made.map_y.resize(width, height);
+  }
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      made.unmatched.at(x, y) = random() % 100 < holes ? 255 : 0;
+      const bool is_known = made.unmatched.at(x, y) == 0 || random() % 2 == 0;
+      for (DisparityMap* component : {&made.map, &made.map_y}) {
+        if (!component->empty()) {
+          component->at(x, y) = is_known ? 0.75F * static_cast<float>(random() % levels)
+                                         : std::numeric_limits<float>::quiet_NaN();
         }
       }
     }
   }
-  std::vector<int> count(static_cast<std::size_t>(pixels), 0);
-  for (const int one : label) {
-    ++count[static_cast<std::size_t>(one)];
+  return made;
+}
+
+void expect_marked(Case& made, int least, SpeckleWork& work) {
+  const Image<float> sizes = made.region_sizes();
+  mark_speckles(made.map.view(), made.map_y.view(), least, work, made.unmatched);
+  for (int y = 0; y < made.map.height(); ++y) {
+    for (int x = 0; x < made.map.width(); ++x) {
+      const bool is_kept = sizes.at(x, y) > 0 && sizes.at(x, y) >= static_cast<float>(least);
+      ASSERT_EQ(made.unmatched.at(x, y), is_kept ? 0 : 255)
+          << made.map.width() << "x" << made.map.height() << ", least " << least << ", at " << x
+          << ", " << y;
+    }
   }
-  std::vector<int> sizes;
-  for (const int one : label) {
-    sizes.push_back(count[static_cast<std::size_t>(one)]);
-  }
-  return sizes;
 }
 
 TEST(Speckles, AreTheRegionsBelowTheLimit) {
   std::mt19937 random(1);
-  SpeckleWork work;
-  for (const auto& [width, height] :
-       {std::pair{1, 1}, {1, 9}, {9, 1}, {2, 3}, {17, 13}, {40, 31}}) {
-    for (const int least : {0, 1, 2, 3, 7, 30, 10000}) {
-      DisparityMap map(width, height);
-      Mask unmatched(width, height);
-      for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-          unmatched.at(x, y) = random() % 5 == 0 ? 255 : 0;
-          map.at(x, y) = unmatched.at(x, y) != 0 && random() % 2 == 0
-                             ? std::numeric_limits<float>::quiet_NaN()
-                             : 0.75F * static_cast<float>(random() % 5);
-        }
-      }
-      const std::vector<int> sizes = region_sizes(map, unmatched);
-      const Mask before = unmatched.copy();
-      mark_speckles(map.view(), {}, least, work, unmatched);
-      for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-          const bool small = sizes[static_cast<std::size_t>(y * width + x)] < least;
-          ASSERT_EQ(unmatched.at(x, y), before.at(x, y) != 0 || small ? 255 : 0)
-              << width << "x" << height << ", least " << least << ", at " << x << ", " << y;
+  SpeckleWork work;  // of one case after the other
+  for (const auto& [width, height] : {std::pair{1, 1},
+                                      {1, 9},
+                                      {9, 1},
+                                      {2, 3},
+                                      {40, 31},
+                                      {63, 6},
+                                      {64, 9},
+                                      {65, 8},
+                                      {128, 5},
+                                      {129, 7},
+                                      {200, 23},
+                                      {17, 13}}) {
+    for (const int least : {0, 1, 2, 3, 7, 30, 100, 10000}) {
+      for (const auto& [holes, levels] : {std::pair{0U, 4U}, {3U, 3U}, {20U, 4U}, {60U, 2U}}) {
+        for (const bool is_two_dimensional : {false, true}) {
+          Case made = random_case(random, width, height, holes, levels, is_two_dimensional);
+          expect_marked(made, least, work);
+          ASSERT_FALSE(HasFatalFailure());
         }
       }
     }
+  }
+}
+
+// Parts of a region that are found to be one only at its end.
+TEST(Speckles, ACombIsOneRegion) {
+  constexpr int kWidth = 131;
+  constexpr int kHeight = 20;
+  SpeckleWork work;
+  for (const bool has_back : {false, true}) {
+    Case comb{DisparityMap(kWidth, kHeight), DisparityMap(), Mask(kWidth, kHeight)};
+    comb.map.fill(3);
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        comb.unmatched.at(x, y) = x % 2 == 0 || (has_back && y == kHeight - 1) ? 0 : 255;
+      }
+    }
+    expect_marked(comb, kHeight + 1, work);
+    EXPECT_EQ(comb.unmatched.at(0, 0), has_back ? 0 : 255);
   }
 }
 

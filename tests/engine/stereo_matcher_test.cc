@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
 #include <ostream>
 #include <string>
@@ -15,12 +14,14 @@
 #include "scheduler/strip_pipeline.h"
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/brute_force_ssd.h"
+#include "tests/engine/identical_maps.h"
 
 namespace vantage {
 namespace {
 
 using testing::BruteForceSsd;
 using testing::grey_levels_of;
+using testing::identical;
 using testing::random_grey;
 
 MatchOptions raw_options(DisparityRange range, int window, Border border, Subpixel subpixel) {
@@ -203,20 +204,6 @@ TEST_P(SsdDepths, AgreeWithDoubleArithmetic) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, SsdDepths, ::testing::Range(0, 5));
-
-bool identical(const DisparityMap& a, const DisparityMap& b) {
-  if (a.width() != b.width() || a.height() != b.height()) {
-    return false;
-  }
-  for (int y = 0; y < a.height(); ++y) {
-    for (int x = 0; x < a.width(); ++x) {
-      if (std::bit_cast<std::uint32_t>(a.at(x, y)) != std::bit_cast<std::uint32_t>(b.at(x, y))) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
 
 TEST(StereoMatcher, ResultsDoNotDependOnExecution) {
   using scheduler::ExecutorKind;

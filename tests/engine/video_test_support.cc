@@ -83,9 +83,10 @@ void write_sound(AVFormatContext& output, const Sound& sound) {
   }
 }
 
-}  // namespace
-
-void put_open_groups_video(const std::filesystem::path& path, int frames, FrameRate rate) {
+/// put_numbered_video() with options of x264.
+void put_grouped_video(const std::filesystem::path& path, int frames, FrameRate rate,
+                       const std::string& x264_options) {
+  silence_libav();
   PhotographToFrame conversion(64, 48);
   const LibavCodec encoder(avcodec_alloc_context3(avcodec_find_encoder_by_name("libx264")));
   encoder->width = 64;
@@ -95,7 +96,7 @@ void put_open_groups_video(const std::filesystem::path& path, int frames, FrameR
   encoder->thread_count = 1;
   encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   AVDictionary* options = nullptr;
-  av_dict_set(&options, "x264-params", "open_gop=1:keyint=6:bframes=2:b-adapt=0:scenecut=0", 0);
+  av_dict_set(&options, "x264-params", x264_options.c_str(), 0);
   require(avcodec_open2(encoder.get(), encoder->codec, &options));
   av_dict_free(&options);
 
@@ -121,6 +122,18 @@ void put_open_groups_video(const std::filesystem::path& path, int frames, FrameR
     }
   }
   require(av_write_trailer(output.get()));
+}
+
+}  // namespace
+
+void put_open_groups_video(const std::filesystem::path& path, int frames, FrameRate rate) {
+  put_grouped_video(path, frames, rate, "open_gop=1:keyint=6:bframes=2:b-adapt=0:scenecut=0");
+}
+
+void put_closed_groups_video(const std::filesystem::path& path, int frames, FrameRate rate,
+                             int group) {
+  put_grouped_video(path, frames, rate,
+                    "keyint=" + std::to_string(group) + ":bframes=3:b-adapt=0:scenecut=0");
 }
 
 std::vector<VideoPacket> video_packets(const std::filesystem::path& path) {

@@ -91,6 +91,11 @@ inline std::vector<int> frame_numbers(const std::filesystem::path& path) {
 /// it refer to the ones before that too, so that only the first one is a fresh start.
 void put_open_groups_video(const std::filesystem::path& path, int frames, FrameRate rate);
 
+/// The same frames again, with every `group` frames one that decoding can begin with; B-frames
+/// between them.
+void put_closed_groups_video(const std::filesystem::path& path, int frames, FrameRate rate,
+                             int group);
+
 /// A packet of a video, in decoding order.
 struct VideoPacket {
   int frame = 0;            ///< its number in order of presentation

@@ -87,6 +87,7 @@ std::vector<std::uint8_t> bytes_of(const SynthesizedView& view) {
   };
   std::visit(append, view.image.pixels);
   append(view.holes);
+  append(view.sources);
   const auto* fit = reinterpret_cast<const std::uint8_t*>(view.intensity.data());
   bytes.insert(bytes.end(), fit, fit + sizeof(view.intensity));
   return bytes;
@@ -114,6 +115,7 @@ TYPED_TEST(ViewSynthesizerDepth, EqualsPlainTranscription) {
         options.holes = static_cast<HoleFilling>(variant % 3);
         options.gamma = variant % 5 == 0 ? std::optional<double>() : 0.25 * (variant % 5);
         options.match_intensities = variant % 4 != 0;
+        options.soft_edges = false;  // view_finisher_test.cc
         ++variant;
         SynthesizedView view;
         pair.synthesize(options, view_x, execution, view);
@@ -178,20 +180,22 @@ TEST(ViewSynthesizer, IdenticalForAnyExecutionAndInstructionSet) {
   std::mt19937 random(23);
   const Pair pair = random_pair<std::uint8_t>(random, 203, 70, 3);
   Execution serial({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
-  for (const WarpColour warp : {WarpColour::kOnePass, WarpColour::kForward}) {
+  const SynthesisOptions variants[] = {
+      {}, {.warp = WarpColour::kForward, .soft_edges = false}, {.holes = HoleFilling::kInpaint}};
+  for (const SynthesisOptions& options : variants) {
     SynthesizedView view;
-    pair.synthesize({.warp = warp}, 0.4, serial, view);
+    pair.synthesize(options, 0.4, serial, view);
     const std::vector<std::uint8_t> expected = bytes_of(view);
     for (const auto kind : {scheduler::ExecutorKind::kTbb, scheduler::ExecutorKind::kOpenMp}) {
       for (const int threads : {1, 2, 7}) {
         Execution execution({.threads = threads, .executor = kind});
-        pair.synthesize({.warp = warp}, 0.4, execution, view);
+        pair.synthesize(options, 0.4, execution, view);
         ASSERT_EQ(bytes_of(view), expected) << threads << " threads";
       }
     }
     for (const std::string& name : available_instruction_sets()) {
       force_instruction_set(name);
-      pair.synthesize({.warp = warp}, 0.4, serial, view);
+      pair.synthesize(options, 0.4, serial, view);
       ASSERT_EQ(bytes_of(view), expected) << name;
     }
     force_instruction_set("best");

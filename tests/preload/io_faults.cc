@@ -81,8 +81,12 @@ struct CountAtEnd {
 };
 const CountAtEnd count_at_end;
 
-mode_t mode_of(int flags, va_list arguments) {
-  return (flags & O_CREAT) != 0 ? static_cast<mode_t>(va_arg(arguments, unsigned)) : 0;
+/// open() or open64(), whichever `name` says; their mode comes third when there is one.
+int open_as(const char* name, const char* path, int flags, va_list arguments) {
+  const bool creates = (flags & O_CREAT) != 0;
+  const mode_t mode = creates ? static_cast<mode_t>(va_arg(arguments, unsigned)) : 0;
+  return creates && fails(path, true) ? -1
+                                      : next<int(const char*, int, ...)>(name)(path, flags, mode);
 }
 
 }  // namespace
@@ -92,23 +96,17 @@ extern "C" {
 int open(const char* path, int flags, ...) {
   va_list arguments;
   va_start(arguments, flags);
-  const mode_t mode = mode_of(flags, arguments);
+  const int descriptor = open_as("open", path, flags, arguments);
   va_end(arguments);
-  if ((flags & O_CREAT) != 0 && fails(path, true)) {
-    return -1;
-  }
-  return next<int(const char*, int, ...)>("open")(path, flags, mode);
+  return descriptor;
 }
 
 int open64(const char* path, int flags, ...) {
   va_list arguments;
   va_start(arguments, flags);
-  const mode_t mode = mode_of(flags, arguments);
+  const int descriptor = open_as("open64", path, flags, arguments);
   va_end(arguments);
-  if ((flags & O_CREAT) != 0 && fails(path, true)) {
-    return -1;
-  }
-  return next<int(const char*, int, ...)>("open64")(path, flags, mode);
+  return descriptor;
 }
 
 ssize_t write(int descriptor, const void* bytes, size_t size) {

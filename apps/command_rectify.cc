@@ -1,0 +1,322 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "apps/commands.h"
+#include "apps/generated_files.h"
+#include "apps/interrupt.h"
+#include "apps/option_groups.h"
+#include "apps/outputs.h"
+#include "apps/progress.h"
+#include "apps/rectify_results.h"
+#include "apps/run_report.h"
+#include "apps/sampled_matches.h"
+#include "apps/settings.h"
+#include "engine/error.h"
+#include "engine/io/atomic_file.h"
+#include "engine/io/photograph_io.h"
+#include "engine/rectification/feature_matches.h"
+#include "engine/rectification/rectification_file.h"
+#include "engine/rectification/rectifier.h"
+#include "engine/rectification/uncalibrated_rig.h"
+#include "engine/sequence/pair_source.h"
+#include "engine/simd.h"
+
+namespace vantage::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RectifyJob {
+  PairSourceOptions input;
+  std::string calibration;  ///< file; empty: from the images alone
+  int sample_pairs = 10;
+  RectificationOptions rectification;
+  std::string output;  ///< folder
+  std::string matrices;
+  std::string valid_mask;
+  CommonOptions common;
+};
+
+constexpr int kMostSamplePairs = 1000;
+/// Rows of an estimate that are off by more show that it is none.
+constexpr double kMostRemaining_px = 2;
+
+void add_rectify_settings(Settings& settings, RectifyJob& job) {
+  settings.begin_group("Input");
+  settings
+      .positional("left", job.input.left,
+                  "Left photograph; or those of a rig that does not change: a folder, a pattern "
+                  "(left/%06d.png), a glob or a video")
+      .required = true;
+  settings
+      .positional("right", job.input.right, "Right photograph, or photographs, of the same size")
+      .required = true;
+  settings.text("calibration", job.calibration, "FILE",
+                "OpenCV YAML or XML, Middlebury or KITTI calib.txt; without it the cameras are "
+                "estimated from the images");
+  settings.integer("sample-pairs", job.sample_pairs, "N",
+                   "Of several pairs, so many are looked at to estimate and to measure");
+  settings.begin_group("Output: at least one of these");
+  settings
+      .text("output", job.output, "DIR",
+            "Folder for the rectified images: DIR/left.png and DIR/right.png, of several pairs "
+            "DIR/left/000000.png and so on")
+      .short_name = 'o';
+  settings.text("matrices", job.matrices, "FILE",
+                "Write cameras, rectifying rotations, homographies and the valid region as OpenCV "
+                "does: .yml .yaml .xml .json; YAML and XML serve as --calibration");
+  settings.text("valid-mask", job.valid_mask, "MASK.png",
+                "Write a mask of the pixels that both rectified images show something at");
+  settings.number("kept-outline", job.rectification.kept_outline, "S",
+                  "0: nothing black comes in; 1: nothing of the photographs is lost");
+}
+
+/// Results must not replace the photographs they are made from.
+void require_separate_files(const RectifyJob& job) {
+  for (const std::string& source : {job.input.left, job.input.right}) {
+    std::error_code ignored;
+    const fs::path folder =
+        fs::is_directory(source, ignored) ? fs::path(source) : fs::path(source).parent_path();
+    for (const char* side : {"left", "right"}) {
+      const fs::path written = fs::path(job.output) / side;
+      const bool is_file = resolved(written.string() + ".png") == resolved(source) ||
+                           resolved(written.string() + ".pfm") == resolved(source);
+      if (is_file || resolved(written) == resolved(folder)) {
+        throw UsageError(fmt::format("--output is '{}', but '{}' is an input and would be replaced",
+                                     job.output, source));
+      }
+    }
+  }
+}
+
+void check(const RectifyJob& job) {
+  job.rectification.validate();
+  job.common.execution.validate();
+  job.input.validate();
+  if (job.sample_pairs < 1 || job.sample_pairs > kMostSamplePairs) {
+    throw UsageError(fmt::format("--sample-pairs is {}, expected a number from 1 to {}",
+                                 job.sample_pairs, kMostSamplePairs));
+  }
+  if (job.output.empty() && job.matrices.empty() && job.valid_mask.empty()) {
+    throw UsageError(
+        "there is nothing to write, expected at least one of --output, --matrices and "
+        "--valid-mask");
+  }
+  if (!job.matrices.empty() && !is_rectification_extension(job.matrices)) {
+    throw UsageError(
+        fmt::format("--matrices is '{}', expected a file name that ends in .yml .yaml .xml .json",
+                    job.matrices));
+  }
+  if (!job.output.empty()) {
+    require_separate_files(job);
+  }
+  FileChecks files;
+  for (const std::string& input : {job.input.left, job.input.right, job.calibration}) {
+    files.add_input(input);
+  }
+  files.add_output(job.matrices, "--matrices", OutputKind::kText);
+  files.add_output(job.valid_mask, "--valid-mask", OutputKind::kMask);
+  files.add_output(job.common.report, "--report", OutputKind::kText);
+}
+
+/// Runs `work`; its errors say which input they are about.
+template <typename Work>
+auto about(const std::string& what, const Work& work) {
+  try {
+    return work();
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", what, error.what()));
+  }
+}
+
+void rectify_pair(const Rectifier& rectifier, FramePair& pair, Execution& execution) {
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    Photograph& image = side == Side::kLeft ? pair.left : pair.right;
+    Photograph result;
+    rectifier.apply(image, side, result, execution);
+    image = std::move(result);
+  }
+}
+
+/// Pixels whose positions lie in both photographs.
+Mask valid_mask(const Rectifier& rectifier) {
+  const int width = rectifier.pair().width_px;
+  const int height = rectifier.pair().height_px;
+  const auto is_seen = [&](Side side, int x, int y) {
+    const auto p = rectifier.source_position(side, {x, y});
+    return p && p->x() >= -0.5 && p->x() <= width - 0.5 && p->y() >= -0.5 && p->y() <= height - 0.5;
+  };
+  Mask mask(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      mask.at(x, y) = is_seen(Side::kLeft, x, y) && is_seen(Side::kRight, x, y) ? 255 : 0;
+    }
+  }
+  return mask;
+}
+
+/// Estimates anew from points that were found in the images as `rectifier` makes them: there they
+/// are in nearly the same rows, so wrong ones are easily told, and exactly placed. Kept if rows
+/// then correspond better.
+void improve(Rectification& rectification, Rectifier& rectifier,
+             const std::vector<PointMatch>& found, const RectificationOptions& options) {
+  constexpr double kNearRowsPerSide = 10.0 / 640;
+  const RectifiedPair& pair = rectifier.pair();
+  const double near_px = kNearRowsPerSide * std::max(pair.width_px, pair.height_px);
+  std::vector<PointMatch> in_photographs;
+  std::vector<PointMatch> near;
+  for (const PointMatch& match : found) {
+    const auto left = rectifier.source_position(Side::kLeft, match.left);
+    const auto right = rectifier.source_position(Side::kRight, match.right);
+    if (left && right) {
+      in_photographs.push_back({*left, *right});
+      if (std::abs(match.left.y() - match.right.y()) <= near_px) {
+        near.push_back(in_photographs.back());
+      }
+    }
+  }
+  try {
+    UncalibratedRig rig = estimate_rig(near, pair.width_px, pair.height_px);
+    Rectifier better(rig.calibration, pair.width_px, pair.height_px, options);
+    std::vector<PointMatch> rectified;
+    for (const PointMatch& match : in_photographs) {
+      const auto left = better.rectified_position(Side::kLeft, match.left);
+      const auto right = better.rectified_position(Side::kRight, match.right);
+      if (left && right) {
+        rectified.push_back({*left, *right});
+      }
+    }
+    const auto remaining = vertical_error(rectified);
+    if (remaining &&
+        (!rectification.remaining || remaining->rms_px < rectification.remaining->rms_px)) {
+      rectification.matches = static_cast<int>(near.size());
+      rectification.calibration = rig.calibration;
+      rectification.estimate = std::move(rig);
+      rectification.remaining = remaining;
+      rectifier = std::move(better);
+    }
+  } catch (const Error&) {
+    // The first estimate stays; whether it is good enough is looked at next.
+  }
+}
+
+/// Throws Error when what has been estimated does not rectify.
+void require_success(const Rectification& rectification, std::size_t matches,
+                     const std::string& inputs) {
+  if (!rectification.remaining) {
+    throw Error(
+        fmt::format("{}: the rectified images have {} points in common, expected at least {}",
+                    inputs, matches, kLeastMatches));
+  }
+  if (rectification.remaining->rms_px > kMostRemaining_px) {
+    throw Error(
+        fmt::format("{}: rows would still be off by {:.1f} px RMS, expected at most {}: the images "
+                    "show too little to estimate cameras from, a calibration is needed",
+                    inputs, rectification.remaining->rms_px, kMostRemaining_px));
+  }
+}
+
+}  // namespace
+
+int command_rectify(const Arguments& arguments) {
+  RectifyJob job;
+  Settings settings("rectify",
+                    "Turns photographs of two cameras so that their rows correspond, and tells how "
+                    "well they do.");
+  add_rectify_settings(settings, job);
+  add_common_settings(settings, job.common);
+  if (!settings.read(arguments)) {
+    return kExitDone;
+  }
+  check(job);
+  RunReport report(settings.command(), settings.values());
+  force_instruction_set(job.common.isa);
+  Execution execution(job.common.execution);
+  report.set_execution(execution);
+
+  const std::unique_ptr<PairSource> pairs = open_pair_source(job.input);
+  const int pair_count = pairs->pair_count();
+  FramePair pair;
+  report.timed_file_access("read", [&] { read_equal_pair(*pairs, 0, pair); });
+  const ImageSize size = {pair.left.width(), pair.left.height()};
+  const std::vector<int> sample = sampled_pairs(pair_count, job.sample_pairs);
+  const std::string inputs = fmt::format("{} and {}", job.input.left, job.input.right);
+
+  Rectification rectification;
+  if (job.calibration.empty()) {
+    const std::vector<PointMatch> matches =
+        gather_matches(*pairs, sample, size, execution, report,
+                       [](FramePair& one) { return match_features(one.left, one.right); });
+    rectification.matches = static_cast<int>(matches.size());
+    rectification.estimate = about(inputs, [&] {
+      return report.timed_compute(
+          "estimate", [&] { return estimate_rig(matches, size.width_px, size.height_px); });
+    });
+    rectification.calibration = rectification.estimate->calibration;
+  } else {
+    rectification.calibration = read_stereo_calibration(job.calibration);
+  }
+  Rectifier rectifier = about(job.calibration.empty() ? inputs : job.calibration, [&] {
+    return report.timed_compute("maps", [&] {
+      return Rectifier(rectification.calibration, size.width_px, size.height_px, job.rectification);
+    });
+  });
+  const std::vector<PointMatch> found =
+      gather_matches(*pairs, sample, size, execution, report, [&](FramePair& one) {
+        rectify_pair(rectifier, one, execution);
+        return match_features(one.left, one.right);
+      });
+  rectification.remaining = vertical_error(found);
+  if (rectification.estimate) {
+    report.timed_compute("estimate",
+                         [&] { improve(rectification, rectifier, found, job.rectification); });
+    require_success(rectification, found.size(), inputs);
+  } else {
+    rectification.matches = static_cast<int>(found.size());
+  }
+
+  report.timed_file_access("write", [&] {
+    if (!job.matrices.empty()) {
+      write_text_file(job.matrices, rectification_text(job.matrices, rectification.calibration,
+                                                       rectifier.pair()));
+    }
+    if (!job.valid_mask.empty()) {
+      write_mask(job.valid_mask, valid_mask(rectifier).view());
+    }
+  });
+  const std::atomic<bool>& interrupted = interrupt_flag();
+  if (!job.output.empty()) {
+    const GeneratedFiles files(job.output, pair_count > 1);
+    Progress progress(
+        "rectify", "pairs",
+        job.common.quiet || pair_count == 1 ? ProgressStyle::kNone : ProgressStyle::kAuto);
+    for (int index = 0; index < pair_count && !interrupted.load(); ++index) {
+      report.timed_file_access("read", [&] { read_equal_pair(*pairs, index, pair); });
+      about(pairs->describe(index), [&] {
+        report.timed_compute("remap", [&] { rectify_pair(rectifier, pair, execution); });
+      });
+      report.timed_file_access("write", [&] {
+        files.write("left", index, pair.left);
+        files.write("right", index, pair.right);
+      });
+      progress.update(index + 1, pair_count, 0);
+    }
+  }
+  report.set_results(results_of(rectification, rectifier.pair(), pair_count));
+  report.write(job.common.report);
+  if (!job.common.quiet) {
+    for (const std::string& remark : pairs->remarks()) {
+      fmt::print(stderr, "rectify: note: {}\n", remark);
+    }
+    print_results(rectification, rectifier.pair(), pair_count, job.calibration);
+    report.print_summary();
+  }
+  return interrupted.load() ? kExitInterrupted : kExitDone;
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "apps/commands.h"
+#include "apps/interrupt.h"
+#include "apps/option_groups.h"
+#include "apps/outputs.h"
+#include "apps/progress.h"
+#include "apps/run_report.h"
+#include "apps/scene_images.h"
+#include "apps/settings.h"
+#include "engine/error.h"
+#include "engine/scene_graph/scene_builder.h"
+#include "engine/simd.h"
+
+namespace vantage::apps {
+namespace {
+
+struct SceneBuildJob {
+  SceneImagesInput images;
+  MatchOptions match;
+  CommonOptions common;
+  std::string output;
+};
+
+void add_file_settings(Settings& settings, SceneBuildJob& job) {
+  settings.begin_group("Files");
+  add_scene_images_settings(settings, job.images);
+  Setting& output = settings.text("output", job.output, "SCENE",
+                                  "Folder of the scene; what it holds already is kept");
+  output.short_name = 'o';
+  output.required = true;
+}
+
+/// What decides an edge's maps, as JSON.
+std::string match_settings_of(MatchOptions match) {
+  Settings settings("match", "");
+  add_match_settings(settings, match);
+  return settings.result_values().dump();
+}
+
+void check(const SceneBuildJob& job) {
+  job.common.execution.validate();
+  FileChecks files;
+  if (!job.images.positions.empty()) {
+    files.add_input(job.images.positions);
+  }
+  files.add_output(job.common.report, "--report", OutputKind::kText);
+  const std::filesystem::path folder = job.output;
+  if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder)) {
+    throw UsageError(fmt::format("--output is '{}', a file; expected a folder", job.output));
+  }
+}
+
+SettingValue describe(const StoredEdge& edge) {
+  return {{"first", edge.edge.first},
+          {"second", edge.edge.second},
+          {"length", edge.edge.length},
+          {"disparities", fmt::format("{}:{}", edge.disparities.min, edge.disparities.max)}};
+}
+
+}  // namespace
+
+int command_scene_build(const Arguments& arguments) {
+  SceneBuildJob job;
+  Settings settings("scene build",
+                    "Matches the neighbours among many images of a row or grid of cameras, whose "
+                    "--disparities are those of the nearest neighbours.");
+  add_file_settings(settings, job);
+  add_match_settings(settings, job.match);
+  add_common_settings(settings, job.common);
+  if (!settings.read(arguments)) {
+    return kExitDone;
+  }
+  check(job);
+  RunReport report(settings.command(), reported_settings(settings, job.match));
+  const SceneBuildOptions options{.match = job.match, .settings = match_settings_of(job.match)};
+  options.validate();
+  force_instruction_set(job.common.isa);
+  Execution execution(job.common.execution);
+  report.set_execution(execution);
+
+  SceneBuilder builder = report.timed_file_access("read", [&] {
+    return SceneBuilder(job.output, scene_images(job.images, settings), options, execution);
+  });
+  const std::atomic<bool>& interrupted = interrupt_flag();
+  const int edges = static_cast<int>(builder.layout().edges().size());
+  const int to_match = static_cast<int>(builder.edges_to_match().size());
+  SettingValue matched = SettingValue::array();
+  {
+    Progress progress("scene build", "edges",
+                      job.common.quiet ? ProgressStyle::kNone : ProgressStyle::kAuto);
+    double cells = 0;
+    for (const int edge : builder.edges_to_match()) {
+      if (interrupted.load()) {
+        break;
+      }
+      MatchReport match;
+      const StoredEdge stored = report.timed_compute([&] { return builder.build(edge, &match); });
+      report.add_match(match);
+      cells += match.cells;
+      matched.push_back(describe(stored));
+      progress.update(static_cast<int>(matched.size()), to_match, cells);
+    }
+  }
+  const int done = static_cast<int>(matched.size());
+  if (done < to_match) {
+    if (!job.common.quiet) {
+      fmt::print(stderr,
+                 "scene build: interrupted after {} of {} edges; the same command goes on there\n",
+                 edges - to_match + done, edges);
+    }
+    return kExitInterrupted;
+  }
+  report.set_results({{"images", builder.layout().positions().size()},
+                      {"triangles", builder.layout().triangles().size()},
+                      {"edges", edges},
+                      {"edges_kept", edges - to_match},
+                      {"edges_matched", matched}});
+  report.write(job.common.report);
+  if (!job.common.quiet) {
+    fmt::print(stderr, "scene build: {} images, {} edges, {} of them matched now -> {}\n",
+               builder.layout().positions().size(), edges, done, job.output);
+    report.print_summary();
+  }
+  return kExitDone;
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "apps/commands.h"
+#include "apps/option_groups.h"
+#include "apps/outputs.h"
+#include "apps/pair_input.h"
+#include "apps/run_report.h"
+#include "apps/settings.h"
+#include "apps/view_page.h"
+#include "engine/error.h"
+#include "engine/io/atomic_file.h"
+#include "engine/simd.h"
+
+namespace vantage::apps {
+namespace {
+
+struct ViewJob {
+  PairInput pair;
+  ViewPageOptions page;
+  CommonOptions common;
+  std::string output;
+};
+
+ViewRange to_view_range(const SettingValue& value) {
+  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ':');
+  try {
+    if (parts.size() == 2) {
+      return {to_number(parts[0]), to_number(parts[1])};
+    }
+  } catch (const UsageError&) {  // the message below says more
+  }
+  reject_value(value, "A:B with two positions in baselines, such as -0.5:1.5");
+}
+
+void add_range_setting(Settings& settings, const std::string& name, ViewRange& range,
+                       const std::string& help) {
+  Setting& setting = settings.add(name, "A:B", help);
+  setting.set = [&range](const SettingValue& value) { range = to_view_range(value); };
+  setting.get = [&range]() -> SettingValue {
+    return fmt::format("{}:{}", range.first, range.last);
+  };
+}
+
+void add_page_settings(Settings& settings, ViewPageOptions& page) {
+  settings.begin_group("Page");
+  add_range_setting(settings, "range", page.range_x,
+                    "Positions along the baseline: 0 left camera, 1 right camera");
+  add_range_setting(settings, "vertical-range", page.range_y,
+                    "Positions across it, in baselines, below where positive; 0:0: none");
+  settings.choice<PageImages>(
+      "images", page.images, {{"png", PageImages::kPng}, {"jpeg", PageImages::kJpeg}},
+      "How the page holds the photographs: without loss, or in a fraction of the size");
+  settings.begin_group("View synthesis");
+  settings.choice<HoleFilling>(
+      "holes", page.synthesis.holes,
+      {{"mirror", HoleFilling::kMirror},
+       {"spread", HoleFilling::kSpread},
+       {"none", HoleFilling::kNone}},
+      "What fills places that no image shows: the background mirrored, spread, or nothing");
+  add_combining_settings(settings, page.synthesis);
+}
+
+std::string file_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+}  // namespace
+
+int command_view(const Arguments& arguments) {
+  ViewJob job;
+  Settings settings("view", "Writes a page that renders new views of a rectified pair by itself.");
+  settings.begin_group("Files");
+  add_pair_settings(settings, job.pair);
+  Setting& output = settings.text("output", job.output, "FILE.html",
+                                  "Page to write; it holds everything it needs");
+  output.short_name = 'o';
+  output.required = true;
+  add_page_settings(settings, job.page);
+  add_match_settings(settings, job.pair.match);
+  add_common_settings(settings, job.common);
+  if (!settings.read(arguments)) {
+    return kExitDone;
+  }
+  job.page.validate();
+  job.common.execution.validate();
+  FileChecks files;
+  check_pair(job.pair, settings, files);
+  files.add_output(job.output, "--output", OutputKind::kPage);
+  files.add_output(job.common.report, "--report", OutputKind::kText);
+
+  RunReport report(settings.command(), reported_settings(settings, job.pair));
+  force_instruction_set(job.common.isa);
+  Execution execution(job.common.execution);
+  report.set_execution(execution);
+  const PairWithMaps pair = read_pair(job.pair, settings, job.common, execution, report);
+  const std::string names = file_name(job.pair.left) + " and " + file_name(job.pair.right);
+  const std::string page = report.timed_compute(
+      "page", [&] { return make_view_page(pair, names, job.page, execution); });
+  report.timed_file_access("write", [&] { write_text_file(job.output, page); });
+
+  report.set_results({{"page_bytes", page.size()}});
+  report.write(job.common.report);
+  if (!job.common.quiet) {
+    fmt::print(stderr, "view: {}x{} pixels, {:.1f} MB -> {}\n", pair.left.width(),
+               pair.left.height(), static_cast<double>(page.size()) / 1e6, job.output);
+    report.print_summary();
+  }
+  return kExitDone;
+}
+
+}  // namespace vantage::apps

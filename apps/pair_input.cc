@@ -1,0 +1,133 @@
+#include "apps/pair_input.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "apps/automatic_disparities.h"
+#include "apps/match_settings.h"
+#include "apps/rectification_check.h"
+#include "engine/error.h"
+#include "engine/io/disparity_io.h"
+#include "engine/io/photograph_io.h"
+#include "engine/rectification/rectifier.h"
+#include "engine/rectification/stereo_calibration.h"
+
+namespace vantage::apps {
+namespace {
+
+void refuse_idle_match_options(const Settings& settings) {
+  Settings matching("match", "");
+  MatchOptions unused;
+  add_match_settings(matching, unused);
+  const SettingValue options = matching.values();
+  for (const auto& [name, value] : options.items()) {
+    if (settings.given_on_command_line(name)) {
+      throw UsageError(
+          fmt::format("--{} has no effect with --left-disparity and --right-disparity", name));
+    }
+  }
+}
+
+RectifiedPair rectify(const StereoCalibration& calibration, const RectificationOptions& options,
+                      Execution& execution, RunReport& report, PairWithMaps& pair) {
+  const Rectifier rectifier(calibration, pair.left.width(), pair.left.height(), options);
+  if (rectifier.needs_rectification()) {
+    report.timed_compute("rectify", [&] {
+      const Photograph left = std::move(pair.left);
+      const Photograph right = std::move(pair.right);
+      rectifier.apply(left, Side::kLeft, pair.left, execution);
+      rectifier.apply(right, Side::kRight, pair.right, execution);
+    });
+  }
+  return rectifier.pair();
+}
+
+}  // namespace
+
+void add_pair_settings(Settings& settings, PairInput& pair) {
+  settings.positional("left", pair.left, "Left image").required = true;
+  settings.positional("right", pair.right, "Right image of the same size").required = true;
+  settings.text("left-disparity", pair.left_disparity, "FILE",
+                "Disparity map of the left image; without maps the pair is matched");
+  settings.text("right-disparity", pair.right_disparity, "FILE",
+                "Disparity map of the right image");
+  settings.number("disparity-scale", pair.disparity_scale, "S",
+                  "Divides the values of integer disparity files; auto: 256 for 16-bit PNG");
+  settings.text(
+      "calibration", pair.calibration, "FILE",
+      "Cameras of the pair: OpenCV YAML or XML, Middlebury or KITTI text. Images that are "
+      "not rectified are rectified first; maps in files are of rectified images");
+  settings.number("kept-outline", pair.rectification.kept_outline, "SHARE",
+                  "What is kept where images are rectified: 0 what both cameras see, 1 all, with "
+                  "black around it");
+  add_rectification_check_setting(settings, pair.check_rectification);
+}
+
+void check_pair(const PairInput& pair, const Settings& settings, FileChecks& files) {
+  if (pair.left_disparity.empty() != pair.right_disparity.empty()) {
+    throw UsageError(
+        "one of --left-disparity and --right-disparity is missing, expected both or "
+        "none");
+  }
+  if (pair.disparity_scale && !(*pair.disparity_scale > 0)) {
+    throw UsageError(
+        fmt::format("--disparity-scale is {}, expected a number above 0", *pair.disparity_scale));
+  }
+  if (pair.has_maps()) {
+    refuse_idle_match_options(settings);
+  } else {
+    pair.match.validate();
+    if (pair.match.disparities_y) {
+      throw UsageError("--disparities-y has no use here: views come from rectified pairs");
+    }
+    if (pair.disparity_scale) {
+      throw UsageError("--disparity-scale has no effect without --left-disparity");
+    }
+  }
+  pair.rectification.validate();
+  if (settings.given_on_command_line("kept-outline") && pair.calibration.empty()) {
+    throw UsageError("--kept-outline has no effect without --calibration");
+  }
+  for (const std::string& input :
+       {pair.left, pair.right, pair.left_disparity, pair.right_disparity, pair.calibration}) {
+    files.add_input(input);
+  }
+}
+
+SettingValue reported_settings(const Settings& settings, const PairInput& pair) {
+  return pair.has_maps() ? settings.values() : reported_settings(settings, pair.match);
+}
+
+PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOptions& common,
+                       Execution& execution, RunReport& report) {
+  PairWithMaps result;
+  report.timed_file_access("read", [&] {
+    result.left = read_photograph(pair.left);
+    result.right = read_photograph(pair.right);
+    if (pair.has_maps()) {
+      const double scale = pair.disparity_scale.value_or(0);
+      result.maps.left = read_disparity(pair.left_disparity, scale);
+      result.maps.right = read_disparity(pair.right_disparity, scale);
+    }
+  });
+  if (!pair.calibration.empty()) {
+    result.cameras = rectify(read_stereo_calibration(pair.calibration), pair.rectification,
+                             execution, report, result);
+  }
+  if (pair.check_rectification) {
+    warn_unless_rectified(settings, common, result.left, result.right, report);
+  }
+  if (!pair.has_maps()) {
+    choose_disparities(settings, common, result.left, result.right, pair.match, execution, report);
+    const StereoMatcher matcher(pair.match, execution);
+    report.add_match(report.timed_compute([&] {
+      MatchReport match;
+      matcher.match(result.left, result.right, {}, result.maps, &match);
+      return match;
+    }));
+  }
+  return result;
+}
+
+}  // namespace vantage::apps

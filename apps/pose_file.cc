@@ -1,0 +1,136 @@
+#include "apps/pose_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+
+#include "apps/outputs.h"
+#include "apps/setting_value.h"
+#include "apps/toml_file.h"
+#include "engine/error.h"
+
+namespace vantage::apps {
+namespace {
+
+const std::vector<std::string> kKeys = {"at", "K", "R", "t", "size", "frame"};
+
+SettingValue read_json(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  file.peek();  // a folder opens like a file and fails here
+  if (!file.is_open() || file.bad()) {
+    throw Error(fmt::format("{}: cannot be read, expected a file of poses", path));
+  }
+  try {
+    return SettingValue::parse(file);
+  } catch (const nlohmann::json::exception& error) {
+    throw UsageError(fmt::format("{}: not JSON: {}", path, error.what()));
+  }
+}
+
+// The numbers of a value, which may be nested one deep as rows.
+std::vector<double> numbers_of(const SettingValue& value, std::size_t count,
+                               const std::string& what) {
+  std::vector<double> numbers;
+  bool all_are_numbers = value.is_array();
+  for (const SettingValue& member : value) {
+    for (const SettingValue& number : to_list(member)) {
+      all_are_numbers = all_are_numbers && number.is_number();
+      numbers.push_back(number.is_number() ? number.get<double>() : 0);
+    }
+  }
+  if (!all_are_numbers || numbers.size() != count) {
+    throw UsageError(
+        fmt::format("{} is {}, expected a list of {} numbers", what, value.dump(), count));
+  }
+  return numbers;
+}
+
+int whole_number_of(double number, const std::string& what) {
+  constexpr double kLargest = 1e9;
+  if (!(number >= 0 && number <= kLargest) || number != static_cast<int>(number)) {
+    throw UsageError(fmt::format("{} is {}, expected a whole number from 0", what, number));
+  }
+  return static_cast<int>(number);
+}
+
+Eigen::Matrix3d matrix_of(const SettingValue& value, const std::string& what) {
+  const std::vector<double> numbers = numbers_of(value, 9, what);
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(numbers.data());
+}
+
+PosedCamera camera_of(const SettingValue& entry, const std::string& where) {
+  for (const char* key : {"K", "R", "t"}) {
+    if (!entry.contains(key)) {
+      throw UsageError(
+          fmt::format("{} has no {}, expected at = [XS, YS] or all of K, R and t", where, key));
+    }
+  }
+  PosedCamera camera;
+  camera.matrix = matrix_of(entry["K"], where + ": K");
+  camera.rotation = matrix_of(entry["R"], where + ": R");
+  const std::vector<double> translation = numbers_of(entry["t"], 3, where + ": t");
+  camera.translation = Eigen::Vector3d(translation[0], translation[1], translation[2]);
+  if (entry.contains("size")) {
+    const std::vector<double> size = numbers_of(entry["size"], 2, where + ": size");
+    camera.width_px = whole_number_of(size[0], where + ": size");
+    camera.height_px = whole_number_of(size[1], where + ": size");
+  }
+  return camera;
+}
+
+PoseEntry entry_of(const SettingValue& entry, const std::string& where) {
+  if (!entry.is_object()) {
+    throw UsageError(fmt::format("{} is {}, expected a table", where, entry.dump()));
+  }
+  for (const auto& [key, value] : entry.items()) {
+    if (std::ranges::find(kKeys, key) == kKeys.end()) {
+      throw UsageError(fmt::format("{}: unknown key '{}', the nearest known one is '{}'", where,
+                                   key, nearest_name(key, kKeys)));
+    }
+  }
+  PoseEntry result;
+  if (entry.contains("frame")) {
+    if (!entry["frame"].is_number()) {
+      throw UsageError(fmt::format("{}: frame is {}, expected a whole number from 0", where,
+                                   entry["frame"].dump()));
+    }
+    result.frame = whole_number_of(entry["frame"].get<double>(), where + ": frame");
+  }
+  if (!entry.contains("at")) {
+    result.pose = camera_of(entry, where);
+    return result;
+  }
+  for (const char* key : {"K", "R", "t", "size"}) {
+    if (entry.contains(key)) {
+      throw UsageError(
+          fmt::format("{} has both 'at' and '{}', expected a position or a camera", where, key));
+    }
+  }
+  const std::vector<double> at = numbers_of(entry["at"], 2, where + ": at");
+  result.pose = BaselinePosition{at[0], at[1]};
+  return result;
+}
+
+}  // namespace
+
+std::vector<PoseEntry> read_poses(const std::string& path) {
+  const SettingValue document =
+      has_extension(path, {".json"}) ? read_json(path) : read_toml_document(path);
+  if (!document.is_object() || !document.contains("view") || !document["view"].is_array() ||
+      document["view"].empty() || document.size() != 1) {
+    throw UsageError(fmt::format(
+        "{}: expected a list 'view' of poses, [[view]] in TOML, and nothing else", path));
+  }
+  std::vector<PoseEntry> poses;
+  for (const SettingValue& entry : document["view"]) {
+    poses.push_back(entry_of(entry, fmt::format("{}: view {}", path, poses.size() + 1)));
+  }
+  return poses;
+}
+
+}  // namespace vantage::apps

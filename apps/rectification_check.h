@@ -1,0 +1,21 @@
+#pragma once
+
+#include "apps/option_groups.h"
+#include "apps/run_report.h"
+#include "apps/settings.h"
+#include "engine/image/photograph.h"
+
+namespace vantage::apps {
+
+/// --no-rectification-check; `wanted` is true without it.
+void add_rectification_check_setting(Settings& settings, bool& wanted);
+
+/// Looks whether the rows of a pair that ought to be rectified correspond. The report gets the
+/// numbers as `results.rectification`; where rows are off by more than 0.3 pixels (the systematic
+/// part of the error, RMS) a warning on stderr says by how much. Results and exit codes do not
+/// depend on it. Its time is a stage of its own ("check"), not compute time. Says nothing about
+/// pairs with too few points in common to tell.
+void warn_unless_rectified(const Settings& settings, const CommonOptions& common,
+                           const Photograph& left, const Photograph& right, RunReport& report);
+
+}  // namespace vantage::apps

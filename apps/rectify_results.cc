@@ -1,0 +1,71 @@
+#include "apps/rectify_results.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "apps/vertical_error_report.h"
+
+namespace vantage::apps {
+namespace {
+
+SettingValue rows_of(const Eigen::Matrix3d& matrix) {
+  SettingValue rows = SettingValue::array();
+  for (int row = 0; row < 3; ++row) {
+    rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2)});
+  }
+  return rows;
+}
+
+}  // namespace
+
+SettingValue results_of(const Rectification& rectification, const RectifiedPair& pair,
+                        int pair_count) {
+  SettingValue results = {
+      {"pairs", pair_count},
+      {"cameras", rectification.calibration.format},
+      {"matches", rectification.matches},
+      {"inliers", nullptr},
+      {"epipolar_rms_px", nullptr},
+      {"vertical_error", nullptr},
+      {"disparities", nullptr},
+      {"valid",
+       {{"x", pair.valid.x},
+        {"y", pair.valid.y},
+        {"width", pair.valid.width},
+        {"height", pair.valid.height}}},
+      {"focal_length_px", pair.left.matrix(0, 0)},
+      {"baseline", pair.baseline},
+      {"homographies",
+       {{"left", rows_of(pair.left.homography)}, {"right", rows_of(pair.right.homography)}}}};
+  if (rectification.estimate) {
+    results["inliers"] = rectification.estimate->inliers;
+    results["epipolar_rms_px"] = rectification.estimate->rms_px;
+  }
+  if (rectification.remaining) {
+    results["vertical_error"] = vertical_error_values(*rectification.remaining);
+    results["disparities"] = disparities_text(*rectification.remaining);
+  }
+  return results;
+}
+
+void print_results(const Rectification& rectification, const RectifiedPair& pair, int pair_count,
+                   const std::string& calibration) {
+  fmt::print(stderr, "rectify: {} pair{} of {}x{} pixels, {}\n", pair_count,
+             pair_count == 1 ? "" : "s", pair.width_px, pair.height_px,
+             rectification.estimate
+                 ? fmt::format("cameras estimated from {} of {} points",
+                               rectification.estimate->inliers, rectification.matches)
+                 : "cameras from " + calibration);
+  if (rectification.remaining) {
+    fmt::print(stderr, "rectify: rows are off by {}; disparities {}\n",
+               vertical_error_text(*rectification.remaining),
+               disparities_text(*rectification.remaining));
+  } else {
+    fmt::print(stderr, "rectify: too few points in common to measure what rows are off by\n");
+  }
+  fmt::print(stderr, "rectify: valid are {}x{} pixels from ({}, {})\n", pair.valid.width,
+             pair.valid.height, pair.valid.x, pair.valid.y);
+}
+
+}  // namespace vantage::apps

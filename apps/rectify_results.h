@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/setting_value.h"
+#include "engine/rectification/rectified_pair.h"
+#include "engine/rectification/uncalibrated_rig.h"
+#include "engine/rectification/vertical_error.h"
+
+namespace vantage::apps {
+
+/// What the rectification is made from, and what it gives.
+struct Rectification {
+  StereoCalibration calibration;
+  std::optional<UncalibratedRig> estimate;  ///< without a calibration file
+  int matches = 0;                          ///< that the estimate is made from
+  std::optional<VerticalError> remaining;
+};
+
+/// What the report of 'rectify' says under `results`.
+SettingValue results_of(const Rectification& rectification, const RectifiedPair& pair,
+                        int pair_count);
+
+/// The same for people, on stderr. `calibration` is the file's name, if there is one.
+void print_results(const Rectification& rectification, const RectifiedPair& pair, int pair_count,
+                   const std::string& calibration);
+
+}  // namespace vantage::apps

@@ -1,0 +1,116 @@
+#include "apps/scene_images.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "engine/error.h"
+#include "engine/io/frame_source.h"
+#include "engine/scene_graph/position_list.h"
+
+namespace vantage::apps {
+namespace {
+
+GridSize to_grid(const SettingValue& value) {
+  const auto parts = split(value.is_string() ? value.get<std::string>() : "", 'x');
+  try {
+    if (parts.size() == 2) {
+      const GridSize grid{to_integer(parts[0]), to_integer(parts[1])};
+      if (grid.columns >= 1 && grid.rows >= 1 && grid.columns <= SceneLayout::kMostVertices &&
+          grid.rows <= SceneLayout::kMostVertices) {
+        return grid;
+      }
+    }
+  } catch (const UsageError&) {  // the message below says more
+  }
+  reject_value(value, "COLUMNSxROWS such as 5x3");
+}
+
+ScenePosition to_spacing(const SettingValue& value) {
+  try {
+    const ScenePosition spacing = to_scene_position(value);
+    if (spacing.x > 0 && spacing.y > 0) {
+      return spacing;
+    }
+  } catch (const UsageError&) {  // the message below says more
+  }
+  reject_value(value, "SX,SY with two lengths above 0 such as 10,12.5");
+}
+
+std::vector<SceneImage> images_on_grid(const SceneImagesInput& input) {
+  const std::unique_ptr<FrameSource> source = open_frame_source(input.images);
+  if (!source->video_file().empty()) {
+    throw UsageError(fmt::format("--images is '{}', a video; expected image files", input.images));
+  }
+  const int count = source->frame_count();
+  const GridSize grid = input.grid.value_or(GridSize{count, 1});
+  if (static_cast<long long>(grid.columns) * grid.rows != count) {
+    throw Error(fmt::format("{} has {} images, expected {} for a grid of {}x{}", input.images,
+                            count, static_cast<long long>(grid.columns) * grid.rows, grid.columns,
+                            grid.rows));
+  }
+  std::vector<SceneImage> images;
+  for (int i = 0; i < count; ++i) {
+    images.push_back({.file = source->describe(i),
+                      .position = {.x = (i % grid.columns) * input.spacing.x,
+                                   .y = (i / grid.columns) * input.spacing.y}});
+  }
+  return images;
+}
+
+}  // namespace
+
+ScenePosition to_scene_position(const SettingValue& value) {
+  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ',');
+  try {
+    if (parts.size() == 2) {
+      return {to_number(parts[0]), to_number(parts[1])};
+    }
+  } catch (const UsageError&) {  // the message below says more
+  }
+  reject_value(value, "a position X,Y such as 1.5,0");
+}
+
+void add_scene_images_settings(Settings& settings, SceneImagesInput& input) {
+  settings.text("images", input.images, "SOURCE",
+                "Folder, pattern (images/%03d.png) or glob of the images, row by row from the "
+                "upper left");
+  Setting& grid = settings.add("grid", "COLSxROWS", "How they stand; row: all in one row");
+  grid.set = [&input](const SettingValue& value) {
+    if (value.is_string() && value.get_ref<const std::string&>() == "row") {
+      input.grid.reset();
+    } else {
+      input.grid = to_grid(value);
+    }
+  };
+  grid.get = [&input]() -> SettingValue {
+    return input.grid ? fmt::format("{}x{}", input.grid->columns, input.grid->rows) : "row";
+  };
+  Setting& spacing = settings.add("spacing", "SX,SY",
+                                  "Distances of neighbours along rows and columns, in any unit");
+  spacing.set = [&input](const SettingValue& value) { input.spacing = to_spacing(value); };
+  spacing.get = [&input]() -> SettingValue {
+    return fmt::format("{},{}", input.spacing.x, input.spacing.y);
+  };
+  settings.text("positions", input.positions, "FILE.csv",
+                "Instead: lines image,x,y, y down; names are relative to the file's folder");
+}
+
+std::vector<SceneImage> scene_images(const SceneImagesInput& input, const Settings& settings) {
+  if (input.images.empty() == input.positions.empty()) {
+    throw UsageError(input.images.empty()
+                         ? "no images are given, expected --images or --positions"
+                         : "--images and --positions are both given, expected one of them");
+  }
+  if (input.positions.empty()) {
+    return images_on_grid(input);
+  }
+  for (const char* option : {"grid", "spacing"}) {
+    if (settings.given_on_command_line(option)) {
+      throw UsageError(fmt::format("--{} has no effect with --positions", option));
+    }
+  }
+  return read_position_list(input.positions);
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "apps/setting_value.h"
+#include "engine/rectification/vertical_error.h"
+
+namespace vantage::apps {
+
+/// The numbers by name, for reports.
+SettingValue vertical_error_values(const VerticalError& error);
+
+/// "0.15 px RMS (mean 0.02, 95 % within 0.30, at most 0.91; 240 points)".
+std::string vertical_error_text(const VerticalError& error);
+
+/// The disparities that the pair shows, as whole numbers for --disparities: "-3:17".
+std::string disparities_text(const VerticalError& error);
+
+}  // namespace vantage::apps

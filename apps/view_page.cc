@@ -1,0 +1,278 @@
+#include "apps/view_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string_view>
+#include <variant>
+
+#include "apps/embedded_files.h"
+#include "engine/build_info.h"
+#include "engine/error.h"
+#include "engine/io/base64.h"
+#include "engine/io/photograph_io.h"
+#include "engine/io/preview.h"
+#include "engine/synthesis/view_synthesizer.h"
+
+namespace vantage::apps {
+namespace {
+
+constexpr double kFarthestView = 16;  // baselines, as the engine has it
+constexpr int kMaxSide = 16384;       // the largest texture of nearly all graphics
+constexpr int kLargestNumber = 65535;
+constexpr double kCoarsestStepPx = 1.0 / 16;
+constexpr double kFinestStepPx = 1.0 / 4096;
+
+void check_range(std::string_view option, const ViewRange& range) {
+  if (!(range.first <= range.last && range.first >= -kFarthestView &&
+        range.last <= kFarthestView)) {
+    throw UsageError(
+        fmt::format("{} is {}:{}, expected two numbers within ±{}, the smaller one first", option,
+                    range.first, range.last, kFarthestView));
+  }
+}
+
+template <typename T>
+std::uint8_t to_8_bit(T value) {
+  const float levels = static_cast<float>(value) * kGreyLevelsPerUnit<T>;
+  return static_cast<std::uint8_t>(std::clamp(levels, 0.0F, 255.0F) + 0.5F);
+}
+
+// Browsers show 8 bits, and would mix transparent pixels with the page.
+Image<std::uint8_t> for_browser(const Photograph& photograph) {
+  return std::visit(
+      []<typename T>(const Image<T>& image) {
+        const int channels = image.channels();
+        const int kept = std::min(channels, 3);
+        Image<std::uint8_t> result(image.width(), image.height(), kept);
+        for (int y = 0; y < image.height(); ++y) {
+          for (int x = 0; x < image.width(); ++x) {
+            for (int c = 0; c < kept; ++c) {
+              result.at(x, y, c) = to_8_bit(image.at(x, y, c));
+            }
+          }
+        }
+        return result;
+      },
+      photograph.pixels);
+}
+
+Image<std::uint8_t> as_numbers(ImageView<const float> map, const DisparityNumbers& numbers) {
+  Image<std::uint8_t> result(map.width(), map.height(), 3);
+  for (int y = 0; y < map.height(); ++y) {
+    for (int x = 0; x < map.width(); ++x) {
+      const double d = map.at(x, y);
+      const int number =
+          std::isfinite(d)
+              ? 1 + static_cast<int>(std::lround((d - numbers.smallest_px) / numbers.step_px))
+              : 0;
+      result.at(x, y, 0) = static_cast<std::uint8_t>(number >> 8);
+      result.at(x, y, 1) = static_cast<std::uint8_t>(number & 0xFF);
+      result.at(x, y, 2) = 0;
+    }
+  }
+  return result;
+}
+
+// All colours of a preview, from far to near.
+Image<std::uint8_t> make_palette() {
+  constexpr int kColours = 256;
+  DisparityMap ramp(kColours, 1);
+  for (int x = 0; x < kColours; ++x) {
+    ramp.at(x, 0) = static_cast<float>(x);
+  }
+  return colour_preview(ramp.view(), 0, kColours - 1);
+}
+
+std::string as_base64(const std::string& file_name, Image<std::uint8_t> pixels) {
+  std::vector<std::uint8_t> bytes;
+  encode_photograph(file_name, Photograph{std::move(pixels)}, bytes);
+  return encode_base64(bytes);
+}
+
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char letter : text) {
+    switch (letter) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += letter;
+    }
+  }
+  return result;
+}
+
+// The template with every {{name}} replaced. What is put in is not looked at again.
+std::string filled_in(std::string_view page, const std::map<std::string_view, std::string>& parts) {
+  std::string result;
+  while (true) {
+    const std::size_t begin = page.find("{{");
+    result += page.substr(0, begin);
+    if (begin == std::string_view::npos) {
+      return result;
+    }
+    const std::size_t end = page.find("}}", begin);
+    result += parts.at(page.substr(begin + 2, end - begin - 2));
+    page.remove_prefix(end + 2);
+  }
+}
+
+SettingValue intensity_of(const PairWithMaps& pair, const SynthesisOptions& options,
+                          Execution& execution) {
+  std::array<IntensityFit, 4> fits;
+  const int channels = pair.left.channels();
+  const ViewSynthesizer synthesizer(options, execution);
+  // Also where they are not wanted: this checks that the pair and its maps fit together.
+  const auto sums = synthesizer.intensity_sums(pair.left, pair.right, pair.maps.left.view(),
+                                               pair.maps.right.view(), 0.5);
+  if (options.match_intensities) {
+    fits = fit_channels(sums, channels, 1);
+  }
+  SettingValue offset = SettingValue::array();
+  SettingValue gain = SettingValue::array();
+  for (std::size_t c = 0; c < 3; ++c) {
+    const IntensityFit& fit = fits[channels == 1 ? 0 : c];
+    offset.push_back(fit.offset / 255);
+    gain.push_back(fit.gain);
+  }
+  return {{"offset", offset}, {"gain", gain}};
+}
+
+std::string_view name_of(HoleFilling holes) {
+  switch (holes) {
+    case HoleFilling::kSpread:
+      return "spread";
+    case HoleFilling::kNone:
+      return "none";
+    default:
+      return "mirror";
+  }
+}
+
+std::string shader_elements() {
+  std::string result;
+  for (const std::string_view name :
+       {"disparity.glsl", "warp.vert", "warp.frag", "screen.vert", "combine.frag", "fill.frag",
+        "soften.frag", "rows.frag", "show.frag"}) {
+    result += fmt::format("<script type=\"text/plain\" id=\"{}\">\n{}</script>\n", name,
+                          embedded_file(name));
+  }
+  return result;
+}
+
+// No "</script>" may end the element that holds it.
+std::string json_in_html(const SettingValue& value) {
+  std::string result;
+  for (const char letter : value.dump()) {
+    if (letter == '<') {
+      result += "\\u003c";
+    } else {
+      result += letter;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+void ViewPageOptions::validate() const {
+  check_range("--range", range_x);
+  check_range("--vertical-range", range_y);
+  synthesis.validate();
+}
+
+DisparityNumbers choose_disparity_numbers(ImageView<const float> left,
+                                          ImageView<const float> right) {
+  double smallest = std::numeric_limits<double>::infinity();
+  double largest = -smallest;
+  for (const ImageView<const float>& map : {left, right}) {
+    for (int y = 0; y < map.height(); ++y) {
+      for (int x = 0; x < map.width(); ++x) {
+        const double d = map.at(x, y);
+        if (std::isfinite(d)) {
+          smallest = std::min(smallest, d);
+          largest = std::max(largest, d);
+        }
+      }
+    }
+  }
+  if (!(smallest <= largest)) {
+    return {};
+  }
+  for (double step = kFinestStepPx; step <= kCoarsestStepPx; step *= 2) {
+    const double begin = std::floor(smallest / step) * step;
+    if ((largest - begin) / step <= kLargestNumber - 2) {
+      return {.smallest_px = begin, .step_px = step};
+    }
+  }
+  throw Error(
+      fmt::format("disparities of the maps span {} to {} pixels, expected at most 4095 "
+                  "from the smallest to the largest",
+                  smallest, largest));
+}
+
+std::string make_view_page(const PairWithMaps& pair, const std::string& names,
+                           const ViewPageOptions& options, Execution& execution) {
+  options.validate();
+  const SettingValue intensity = intensity_of(pair, options.synthesis, execution);
+  const int width = pair.left.width();
+  const int height = pair.left.height();
+  if (std::max(width, height) > kMaxSide) {
+    throw Error(
+        fmt::format("left image is {}×{}, expected at most {} pixels on a side: graphics "
+                    "of browsers draw no larger",
+                    width, height, kMaxSide));
+  }
+  const DisparityNumbers numbers =
+      choose_disparity_numbers(pair.maps.left.view(), pair.maps.right.view());
+  const PreviewRange palette_range = choose_preview_range(pair.maps.left.view());
+  const SynthesisOptions& synthesis = options.synthesis;
+  const SettingValue scene = {
+      {"width", width},
+      {"height", height},
+      {"rangeX", {options.range_x.first, options.range_x.last}},
+      {"rangeY", {options.range_y.first, options.range_y.last}},
+      {"disparity", {{"smallest", numbers.smallest_px}, {"step", numbers.step_px}}},
+      {"paletteRange", {palette_range.min_px, palette_range.max_px}},
+      {"gradientLimit", synthesis.disparity_gradient_limit_px},
+      {"gamma", synthesis.gamma ? SettingValue(*synthesis.gamma) : SettingValue()},
+      {"intensity", intensity},
+      {"holes", name_of(synthesis.holes)},
+      {"softEdges", synthesis.soft_edges}};
+
+  const bool lossless = options.images == PageImages::kPng;
+  const std::string image_name = lossless ? "image.png" : "image.jpg";
+  return filled_in(
+      embedded_file("page.html"),
+      {{"title", escaped(names + " – Vantage")},
+       {"names", escaped(names)},
+       {"version", build_info().version},
+       {"style", std::string(embedded_file("page.css"))},
+       {"image_type", lossless ? "image/png" : "image/jpeg"},
+       {"left_image", as_base64(image_name, for_browser(pair.left))},
+       {"right_image", as_base64(image_name, for_browser(pair.right))},
+       {"left_map", as_base64("map.png", as_numbers(pair.maps.left.view(), numbers))},
+       {"right_map", as_base64("map.png", as_numbers(pair.maps.right.view(), numbers))},
+       {"palette", as_base64("palette.png", make_palette())},
+       {"scene", json_in_html(scene)},
+       {"shaders", shader_elements()},
+       {"renderer", std::string(embedded_file("renderer.js"))},
+       {"script", std::string(embedded_file("page.js"))}});
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "apps/pair_input.h"
+#include "engine/execution.h"
+#include "engine/image/stereo_display.h"
+#include "engine/synthesis/view_synthesizer.h"
+#include "engine/view_geometry/view_pose.h"
+
+namespace vantage::apps {
+
+/// How both eyes' views of a pose become one picture.
+struct TwoEyes {
+  StereoDisplay display;
+  double separation_baselines = 1;  ///< the pose lies in their middle
+};
+
+/// A new view, or those of two eyes in one picture. Reused from call to call without allocating.
+struct RenderedView {
+  std::array<SynthesizedView, 2> eyes;  ///< without TwoEyes the first one is the view
+  Photograph both;
+  double seconds = 0;
+
+  [[nodiscard]] const Photograph& picture(bool has_two_eyes) const {
+    return has_two_eyes ? both : eyes[0].image;
+  }
+};
+
+/// Renders the views of one pair. Thread rule: render() may be called concurrently for different
+/// results; `pair` and `execution` outlive the renderer.
+class ViewRenderer {
+ public:
+  /// Throws UsageError for invalid options.
+  ViewRenderer(const PairWithMaps& pair, const SynthesisOptions& options,
+               std::optional<TwoEyes> two_eyes, Execution& execution);
+
+  /// One brightness for all views from now on: that of the view half-way between the cameras.
+  /// Estimated view by view it would jump in a movie.
+  void fix_intensities();
+
+  /// Errors as new_view() and ViewSynthesizer::synthesize().
+  void render(const ViewPose& pose, RenderedView& result) const;
+
+ private:
+  void synthesize(const ViewPose& pose, SynthesizedView& view) const;
+
+  const PairWithMaps& pair_;
+  std::optional<TwoEyes> two_eyes_;
+  ViewSynthesizer synthesizer_;
+  std::optional<std::array<IntensityFit, 4>> fit_;
+};
+
+}  // namespace vantage::apps

@@ -1,0 +1,220 @@
+#include "apps/wanted_views.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "apps/pose_file.h"
+#include "engine/error.h"
+
+namespace vantage::apps {
+namespace {
+
+constexpr int kMostViews = 10000;
+constexpr double kFarthestView = 16;  // baselines
+
+// `text` as "A:B:N".
+Sweep to_sweep(const SettingValue& value) {
+  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ':');
+  try {
+    if (parts.size() == 3) {
+      const Sweep sweep{to_position(parts[0]), to_position(parts[1]), to_integer(parts[2])};
+      if (sweep.views >= 2 && sweep.views <= kMostViews) {
+        return sweep;
+      }
+    }
+  } catch (const UsageError&) {  // the message below says more
+  }
+  reject_value(value, fmt::format("FIRST:LAST:VIEWS with 2 to {} views, such as 0:1:25 or "
+                                  "0,-0.5:0,0.5:25",
+                                  kMostViews));
+}
+
+Orbit to_orbit(const SettingValue& value) {
+  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ':');
+  try {
+    if (parts.size() == 2) {
+      const Orbit orbit{to_number(parts[0]), to_integer(parts[1])};
+      if (orbit.radius_baselines > 0 && orbit.radius_baselines <= kFarthestView &&
+          orbit.views >= 2 && orbit.views <= kMostViews) {
+        return orbit;
+      }
+    }
+  } catch (const UsageError&) {  // the message below says more
+  }
+  reject_value(value, fmt::format("RADIUS:VIEWS with a radius of up to {} baselines and 2 to {} "
+                                  "views, such as 0.3:60",
+                                  kFarthestView, kMostViews));
+}
+
+std::vector<ViewPose> poses_of_path(const std::string& file) {
+  ViewPath path;
+  for (PoseEntry& entry : read_poses(file)) {
+    if (!entry.frame) {
+      throw UsageError(
+          fmt::format("{}: view {} has no frame, expected one for every pose of a path", file,
+                      path.keys.size() + 1));
+    }
+    path.keys.push_back({*entry.frame, std::move(entry.pose)});
+  }
+  try {
+    path.validate();
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", file, error.what()));
+  }
+  if (path.frames() > kMostViews) {
+    throw UsageError(fmt::format("{}: path has {} frames, expected at most {}", file, path.frames(),
+                                 kMostViews));
+  }
+  std::vector<ViewPose> poses;
+  for (int frame = 0; frame < path.frames(); ++frame) {
+    poses.push_back(path.at(frame));
+  }
+  return poses;
+}
+
+std::vector<ViewPose> poses_of_file(const std::string& file) {
+  std::vector<ViewPose> poses;
+  for (PoseEntry& entry : read_poses(file)) {
+    if (entry.frame) {
+      throw UsageError(fmt::format("{}: view {} has a frame, which only --path uses; expected none",
+                                   file, poses.size() + 1));
+    }
+    poses.push_back(std::move(entry.pose));
+  }
+  return poses;
+}
+
+std::vector<ViewPose> poses_of_sweep(const Sweep& sweep) {
+  std::vector<ViewPose> poses;
+  for (int i = 0; i < sweep.views; ++i) {
+    poses.push_back(
+        pose_between(sweep.first, sweep.last, static_cast<double>(i) / (sweep.views - 1)));
+  }
+  return poses;
+}
+
+}  // namespace
+
+BaselinePosition to_position(const SettingValue& value) {
+  std::vector<std::string> parts;
+  try {
+    if (!value.is_string()) {
+      const double x = to_number(value);
+      return {x, 0};
+    }
+    parts = split(value.get<std::string>(), ',');
+    if (parts.size() <= 2) {
+      const BaselinePosition position{to_number(parts[0]),
+                                      parts.size() == 2 ? to_number(parts[1]) : 0};
+      if (std::abs(position.x) <= kFarthestView && std::abs(position.y) <= kFarthestView) {
+        return position;
+      }
+    }
+  } catch (const UsageError&) {  // the message below says more
+  }
+  reject_value(value, fmt::format("a position XS or XS,YS in baselines, within ±{}, such as 0.5",
+                                  kFarthestView));
+}
+
+void add_view_setting(Settings& settings, std::vector<BaselinePosition>& views) {
+  Setting& view =
+      settings.add("view", "XS[,YS]",
+                   "Position of a new view in baselines: 0 left camera, 1 right camera, "
+                   "0.5 between them; YS above 0 is below; repeatable");
+  view.list = true;
+  view.set = [&views](const SettingValue& value) {
+    std::vector<BaselinePosition> positions;
+    for (const SettingValue& member : to_list(value)) {
+      positions.push_back(to_position(member));
+    }
+    views = std::move(positions);
+  };
+  view.get = [&views] {
+    SettingValue values = SettingValue::array();
+    for (const BaselinePosition position : views) {
+      values.push_back(position.y == 0 ? SettingValue(position.x)
+                                       : SettingValue(to_string(position)));
+    }
+    return values;
+  };
+}
+
+void add_wanted_views(Settings& settings, WantedViews& wanted) {
+  add_view_setting(settings, wanted.at);
+  Setting& sweep =
+      settings.add("sweep", "A:B:N", "N views at equal steps from position A to position B");
+  sweep.set = [&wanted](const SettingValue& value) { wanted.sweep = to_sweep(value); };
+  sweep.get = [&wanted]() -> SettingValue {
+    return wanted.sweep
+               ? SettingValue(fmt::format("{}:{}:{}", to_string(wanted.sweep->first),
+                                          to_string(wanted.sweep->last), wanted.sweep->views))
+               : SettingValue();
+  };
+  Setting& orbit = settings.add(
+      "orbit", "R:N", "N views on a circle of R baselines about the middle between the cameras");
+  orbit.set = [&wanted](const SettingValue& value) { wanted.orbit = to_orbit(value); };
+  orbit.get = [&wanted]() -> SettingValue {
+    return wanted.orbit ? SettingValue(fmt::format("{}:{}", wanted.orbit->radius_baselines,
+                                                   wanted.orbit->views))
+                        : SettingValue();
+  };
+  settings.number("look-at", wanted.look_at_px, "PX",
+                  "Turn the cameras of --view, --sweep or --orbit towards the point at this "
+                  "disparity in the middle; needs --calibration",
+                  "ahead");
+  settings.text("pose", wanted.pose_file, "FILE",
+                "A view for every pose in a TOML or JSON file: positions, or cameras by K, R and "
+                "t, which need --calibration");
+  settings.text("path", wanted.path_file, "FILE",
+                "A movie along the poses of such a file, each with its frame");
+}
+
+std::vector<ViewPose> poses_of(const WantedViews& wanted) {
+  const int ways = (wanted.at.empty() ? 0 : 1) + (wanted.sweep ? 1 : 0) + (wanted.orbit ? 1 : 0) +
+                   (wanted.pose_file.empty() ? 0 : 1) + (wanted.path_file.empty() ? 0 : 1);
+  if (ways != 1) {
+    throw UsageError(
+        fmt::format("{}, expected one of --view, --sweep, --orbit, --pose and --path",
+                    ways == 0 ? "no view is given" : "views are given in several ways"));
+  }
+  if (wanted.look_at_px && (!wanted.pose_file.empty() || !wanted.path_file.empty())) {
+    throw UsageError("--look-at turns the cameras of --view, --sweep and --orbit only");
+  }
+  if (wanted.sweep) {
+    return poses_of_sweep(*wanted.sweep);
+  }
+  if (!wanted.pose_file.empty()) {
+    return poses_of_file(wanted.pose_file);
+  }
+  if (!wanted.path_file.empty()) {
+    return poses_of_path(wanted.path_file);
+  }
+  const std::vector<BaselinePosition> positions =
+      wanted.orbit ? orbit(wanted.orbit->radius_baselines, wanted.orbit->views) : wanted.at;
+  return {positions.begin(), positions.end()};
+}
+
+void complete_poses(const WantedViews& wanted, const RectifiedPair* pair, int width_px,
+                    int height_px, std::vector<ViewPose>& poses) {
+  if (wanted.look_at_px && pair == nullptr) {
+    throw UsageError("--look-at needs the focal length, expected --calibration");
+  }
+  for (ViewPose& pose : poses) {
+    if (auto* camera = std::get_if<PosedCamera>(&pose)) {
+      if (pair == nullptr) {
+        throw UsageError("poses with K, R and t need calibrated cameras, expected --calibration");
+      }
+      if (camera->width_px == 0) {
+        camera->width_px = width_px;
+        camera->height_px = height_px;
+      }
+    } else if (wanted.look_at_px) {
+      pose = camera_looking_at(*pair, std::get<BaselinePosition>(pose), *wanted.look_at_px);
+    }
+  }
+}
+
+}  // namespace vantage::apps

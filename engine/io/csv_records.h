@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vantage {
+
+/// Reads comma separated values record by record. Fields may be quoted ("" is a quote in one);
+/// blanks around them, empty lines and lines that begin with # are skipped, and so is a byte order
+/// mark. Lines end with LF, CRLF or CR. Thread rule: one thread at a time.
+class CsvRecords {
+ public:
+  /// `text` must outlive this object. `file` is what messages call it. Throws Error for text with a
+  /// zero byte.
+  CsvRecords(std::string_view text, std::string file);
+
+  /// The fields of the next record; false at the end. Throws Error naming file and line for a quote
+  /// out of place.
+  bool next(std::vector<std::string>& fields);
+
+  /// The line that the record of the last next() begins on, from 1.
+  [[nodiscard]] int record_line() const { return record_line_; }
+
+  /// Throws Error "<file> line <line>: <problem>".
+  [[noreturn]] void fail(int line, const std::string& problem) const;
+
+ private:
+  [[nodiscard]] bool at_end() const { return position_ == text_.size(); }
+  void skip_blanks();
+  void skip_line_end();
+  void skip_lines_without_record();
+  std::string read_field();
+  std::string read_unquoted();
+  std::string read_quoted();
+
+  std::string_view text_;
+  std::string file_;
+  std::size_t position_ = 0;
+  int line_ = 1;
+  int record_line_ = 1;
+};
+
+/// Whether `text` is `lower_case` but for the case of ASCII letters.
+bool equals_ignoring_case(std::string_view text, std::string_view lower_case);
+
+}  // namespace vantage

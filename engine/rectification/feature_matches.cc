@@ -1,0 +1,226 @@
+#include "engine/rectification/feature_matches.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+
+#include "engine/error.h"
+#include "engine/image/grey_levels.h"
+#include "engine/io/opencv_setup.h"
+
+namespace vantage {
+namespace {
+
+// Images are divided into so many cells, of which each may keep its share of the features.
+constexpr int kCellsAlongSide = 12;
+// The nearest descriptor is to be nearer than this part of the distance of the second nearest.
+constexpr float kRatio = 0.7F;
+constexpr int kRefinementWindow_px = 15;
+constexpr float kMostRefinement_px = 2;
+
+/// A photograph as features are looked for in it.
+struct SearchImage {
+  cv::Mat levels;     ///< 8-bit grey, stretched to its range
+  cv::Mat contrast;   ///< 8-bit: how far a level is from the mean of its surroundings
+  cv::Point2d scale;  ///< pixels of the photograph per pixel of `levels`
+};
+
+cv::Mat grey_image(const Photograph& photograph) {
+  cv::Mat grey(photograph.height(), photograph.width(), CV_32F);
+  for (int y = 0; y < grey.rows; ++y) {
+    grey_levels_row(photograph, y, grey.ptr<float>(y));
+  }
+  return grey;
+}
+
+/// Stretched so that all but a thousandth of the levels at each end span 0 to 255.
+cv::Mat stretched(const cv::Mat& grey) {
+  constexpr double kTail = 1e-3;
+  std::vector<float> sample;
+  const std::size_t step = std::max<std::size_t>(grey.total() / 20000, 1);
+  for (std::size_t i = 0; i < grey.total(); i += step) {
+    sample.push_back(grey.at<float>(static_cast<int>(i / static_cast<std::size_t>(grey.cols)),
+                                    static_cast<int>(i % static_cast<std::size_t>(grey.cols))));
+  }
+  std::sort(sample.begin(), sample.end());
+  const auto tail = static_cast<std::size_t>(kTail * static_cast<double>(sample.size()));
+  const double least = sample[tail];
+  const double range = std::max<double>(sample[sample.size() - 1 - tail] - least, 1e-3);
+  cv::Mat levels;
+  grey.convertTo(levels, CV_8U, 255 / range, -least * 255 / range);
+  return levels;
+}
+
+cv::Mat local_contrast(const cv::Mat& levels) {
+  constexpr int kSurroundings_px = 21;
+  constexpr double kFlat = 16;  // variance that counts as no structure, in grey levels squared
+  const cv::Size window(kSurroundings_px, kSurroundings_px);
+  cv::Mat mean;
+  cv::Mat mean_of_squares;
+  cv::boxFilter(levels, mean, CV_32F, window);
+  cv::sqrBoxFilter(levels, mean_of_squares, CV_32F, window);
+  cv::Mat deviation = mean_of_squares - mean.mul(mean) + kFlat;
+  cv::sqrt(deviation, deviation);
+  cv::Mat difference;
+  cv::subtract(levels, mean, difference, cv::noArray(), CV_32F);
+  cv::divide(difference, deviation, difference);
+  cv::Mat contrast;
+  difference.convertTo(contrast, CV_8U, 45, 128);
+  return contrast;
+}
+
+SearchImage search_image(const Photograph& photograph, int largest_side_px) {
+  SearchImage image;
+  cv::Mat grey = grey_image(photograph);
+  const double reduction = static_cast<double>(largest_side_px) / std::max(grey.cols, grey.rows);
+  if (reduction < 1) {
+    const cv::Size size(std::max(static_cast<int>(std::lround(grey.cols * reduction)), 1),
+                        std::max(static_cast<int>(std::lround(grey.rows * reduction)), 1));
+    cv::Mat reduced;
+    cv::resize(grey, reduced, size, 0, 0, cv::INTER_AREA);
+    grey = reduced;
+  }
+  image.scale = {static_cast<double>(photograph.width()) / grey.cols,
+                 static_cast<double>(photograph.height()) / grey.rows};
+  image.levels = stretched(grey);
+  image.contrast = local_contrast(image.levels);
+  return image;
+}
+
+Eigen::Vector2d in_photograph(const SearchImage& image, const cv::Point2f& point) {
+  return {(point.x + 0.5) * image.scale.x - 0.5, (point.y + 0.5) * image.scale.y - 0.5};
+}
+
+/// The strongest of every cell, in an order of their own.
+std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> points, const cv::Size& size, int most) {
+  const auto cell_of = [&](const cv::KeyPoint& point) {
+    const auto along = [](float position, int side_px) {
+      return std::clamp(static_cast<int>(position) * kCellsAlongSide / side_px, 0,
+                        kCellsAlongSide - 1);
+    };
+    return along(point.pt.y, size.height) * kCellsAlongSide + along(point.pt.x, size.width);
+  };
+  std::stable_sort(points.begin(), points.end(), [&](const auto& a, const auto& b) {
+    const std::array<float, 5> first = {-a.response, a.pt.y, a.pt.x, a.size, a.angle};
+    const std::array<float, 5> second = {-b.response, b.pt.y, b.pt.x, b.size, b.angle};
+    return first < second;
+  });
+  // What empty cells leave may be used by others, up to twice a share.
+  const int share = std::max(2 * most / (kCellsAlongSide * kCellsAlongSide), 1);
+  std::array<int, kCellsAlongSide * kCellsAlongSide> kept_of_cell{};
+  std::vector<cv::KeyPoint> kept;
+  for (const cv::KeyPoint& point : points) {
+    int& count = kept_of_cell[static_cast<std::size_t>(cell_of(point))];
+    if (count < share && static_cast<int>(kept.size()) < most) {
+      ++count;
+      kept.push_back(point);
+    }
+  }
+  return kept;
+}
+
+struct Features {
+  std::vector<cv::KeyPoint> points;
+  cv::Mat descriptors;
+};
+
+Features features_of(const SearchImage& image, const FeatureMatchOptions& options) {
+  constexpr double kSiftContrast = 0.02;
+  constexpr int kFastThreshold = 12;
+  const cv::Ptr<cv::Feature2D> detector =
+      options.kind == FeatureKind::kSift
+          ? cv::Ptr<cv::Feature2D>(cv::SIFT::create(0, 3, kSiftContrast))
+          : cv::Ptr<cv::Feature2D>(cv::ORB::create(3 * options.most_features, 1.4F, 3, 15, 0, 2,
+                                                   cv::ORB::FAST_SCORE, 31, kFastThreshold));
+  Features features;
+  detector->detect(image.levels, features.points);
+  features.points = spread(std::move(features.points), image.levels.size(), options.most_features);
+  if (!features.points.empty()) {
+    detector->compute(image.levels, features.points, features.descriptors);
+  }
+  return features;
+}
+
+/// Pairs of features that are each other's nearest by a clear margin.
+std::vector<cv::DMatch> mutual_matches(const Features& left, const Features& right,
+                                       FeatureKind kind) {
+  if (left.points.empty() || right.points.size() < 2) {
+    return {};
+  }
+  const cv::BFMatcher matcher(kind == FeatureKind::kSift ? cv::NORM_L2 : cv::NORM_HAMMING);
+  std::vector<std::vector<cv::DMatch>> nearest;
+  matcher.knnMatch(left.descriptors, right.descriptors, nearest, 2);
+  std::vector<cv::DMatch> back;
+  matcher.match(right.descriptors, left.descriptors, back);
+  std::vector<cv::DMatch> mutual;
+  for (const std::vector<cv::DMatch>& candidates : nearest) {
+    if (candidates.size() == 2 && candidates[0].distance < kRatio * candidates[1].distance &&
+        back[static_cast<std::size_t>(candidates[0].trainIdx)].trainIdx == candidates[0].queryIdx) {
+      mutual.push_back(candidates[0]);
+    }
+  }
+  return mutual;
+}
+
+}  // namespace
+
+void FeatureMatchOptions::validate() const {
+  if (most_features < 100 || most_features > 20000) {
+    throw UsageError(
+        fmt::format("most-features is {}, expected a number from 100 to 20000", most_features));
+  }
+  if (largest_side_px < 64) {
+    throw UsageError(fmt::format("largest-side is {}, expected at least 64", largest_side_px));
+  }
+}
+
+std::vector<PointMatch> match_features(const Photograph& left, const Photograph& right,
+                                       const FeatureMatchOptions& options) {
+  options.validate();
+  prepare_opencv();
+  const SearchImage left_image = search_image(left, options.largest_side_px);
+  const SearchImage right_image = search_image(right, options.largest_side_px);
+  const Features left_features = features_of(left_image, options);
+  const Features right_features = features_of(right_image, options);
+  const std::vector<cv::DMatch> mutual =
+      mutual_matches(left_features, right_features, options.kind);
+  if (mutual.empty()) {
+    return {};
+  }
+  std::vector<cv::Point2f> left_points;
+  std::vector<cv::Point2f> right_points;
+  for (const cv::DMatch& match : mutual) {
+    left_points.push_back(left_features.points[static_cast<std::size_t>(match.queryIdx)].pt);
+    right_points.push_back(right_features.points[static_cast<std::size_t>(match.trainIdx)].pt);
+  }
+  std::vector<cv::Point2f> refined = right_points;
+  std::vector<std::uint8_t> found;
+  std::vector<float> unused_errors;
+  cv::calcOpticalFlowPyrLK(
+      left_image.contrast, right_image.contrast, left_points, refined, found, unused_errors,
+      cv::Size(kRefinementWindow_px, kRefinementWindow_px), 0,
+      cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 1e-3),
+      cv::OPTFLOW_USE_INITIAL_FLOW);
+
+  std::vector<PointMatch> matches;
+  for (std::size_t i = 0; i < mutual.size(); ++i) {
+    const cv::Point2f step = refined[i] - right_points[i];
+    const bool is_refined =
+        found[i] != 0 && std::max(std::abs(step.x), std::abs(step.y)) <= kMostRefinement_px;
+    if (!is_refined && options.kind == FeatureKind::kOrb) {
+      continue;
+    }
+    matches.push_back(
+        {.left = in_photograph(left_image, left_points[i]),
+         .right = in_photograph(right_image, is_refined ? refined[i] : right_points[i])});
+  }
+  return matches;
+}
+
+}  // namespace vantage

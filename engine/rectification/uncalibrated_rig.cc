@@ -1,0 +1,276 @@
+#include "engine/rectification/uncalibrated_rig.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+
+#include "engine/error.h"
+#include "engine/io/opencv_setup.h"
+#include "engine/rectification/rig_model.h"
+#include "engine/rectification/vertical_error.h"
+
+namespace vantage {
+namespace {
+
+constexpr std::size_t kMostMatches = 3000;
+constexpr double kLeastShare = 0.3;
+constexpr double kDeviations = 4.5;
+constexpr double kLeastParallax_px = 0.5;
+/// Matches of less than this are never told from exact ones.
+constexpr double kExact_px = 1e-3;
+/// What lens models leave over is alike for matches beside each other, so that more of them do not
+/// tell more: they count as so many independent ones at most, and as a ninth of their number.
+constexpr double kMostIndependent = 50;
+constexpr double kAlike = 9;
+/// Of a longer side of 640 pixels: what lenses bend, and how far wrong positions may be.
+constexpr double kTolerancePerSide = 2.0 / 640;
+
+std::vector<PointMatch> thinned(const std::vector<PointMatch>& matches) {
+  const std::size_t step = (matches.size() + kMostMatches - 1) / kMostMatches;
+  std::vector<PointMatch> kept;
+  for (std::size_t i = 0; i < matches.size(); i += step) {
+    kept.push_back(matches[i]);
+  }
+  return kept;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct RobustFundamental {
+  Eigen::Matrix3d matrix;
+  Eigen::VectorXd weights;  ///< 1: near it, 0: not
+};
+
+RobustFundamental robust_fundamental(const std::vector<PointMatch>& matches, double tolerance_px) {
+  prepare_opencv();
+  std::vector<cv::Point2d> left;
+  std::vector<cv::Point2d> right;
+  for (const PointMatch& match : matches) {
+    left.emplace_back(match.left.x(), match.left.y());
+    right.emplace_back(match.right.x(), match.right.y());
+  }
+  cv::Mat matrix;
+  std::vector<std::uint8_t> is_near;
+  try {
+    matrix =
+        cv::findFundamentalMat(left, right, cv::USAC_MAGSAC, tolerance_px, 0.9999, 10000, is_near);
+  } catch (const cv::Exception&) {
+    matrix.release();  // it gives up so, too, when no sample makes sense
+  }
+  RobustFundamental result;
+  result.matrix.setZero();
+  result.weights.setZero(static_cast<Eigen::Index>(matches.size()));
+  if (matrix.rows != 3 || matrix.cols != 3 || is_near.size() != matches.size()) {
+    return result;
+  }
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      result.matrix(row, column) = matrix.at<double>(row, column);
+    }
+  }
+  for (std::size_t i = 0; i < is_near.size(); ++i) {
+    result.weights[static_cast<Eigen::Index>(i)] = is_near[i] != 0 ? 1 : 0;
+  }
+  return result;
+}
+
+/// The pose that the fundamental matrix stands for if the lenses are usual ones; of the two that
+/// there are, the one with less rotation.
+RigModel::Parameters pose_of(const Eigen::Matrix3d& fundamental, const RigModel& model) {
+  const StereoCalibration usual = model.calibration(RigModel::usual());
+  const Eigen::Matrix3d essential =
+      usual.right.matrix.transpose() * fundamental * usual.left.matrix;
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(essential, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d quarter_turn;
+  quarter_turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  Eigen::Matrix3d first = svd.matrixU() * quarter_turn * svd.matrixV().transpose();
+  Eigen::Matrix3d second = svd.matrixU() * quarter_turn.transpose() * svd.matrixV().transpose();
+  first *= first.determinant() < 0 ? -1 : 1;
+  second *= second.determinant() < 0 ? -1 : 1;
+  return RigModel::with_pose(first.trace() > second.trace() ? first : second, svd.matrixU().col(2));
+}
+
+/// Parameters with the matches that agree with them.
+struct Fit {
+  RigModel::Parameters parameters;
+  Eigen::VectorXd weights;
+  double deviation_px = 0;
+
+  [[nodiscard]] int inliers() const { return static_cast<int>((weights.array() > 0).count()); }
+};
+
+/// By how much deviations are to be raised for matches that err alike.
+double alike(int matches) { return std::sqrt(std::max(kAlike, matches / kMostIndependent)); }
+
+/// Fits, chooses anew which matches count and how exact they are, and again.
+Fit epipolar_fit(const RigModel& model, const std::vector<PointMatch>& matches, Fit fit,
+                 double tolerance_px) {
+  constexpr int kMostRounds = 40;
+  constexpr int kPatientRounds = 5;
+  for (int round = 0; round < kMostRounds && fit.inliers() >= kLeastMatches; ++round) {
+    fit.parameters =
+        model.fit(fit.parameters, matches, fit.weights, alike(fit.inliers()) * fit.deviation_px);
+    const Eigen::VectorXd distances = model.epipolar_distances(fit.parameters, matches);
+    std::vector<double> near;
+    for (Eigen::Index i = 0; i < distances.size(); ++i) {
+      if (fit.weights[i] > 0) {
+        near.push_back(std::abs(distances[i]));
+      }
+    }
+    const double deviation_px = std::max(1.4826 * median(std::move(near)), 1e-9);
+    // While the cameras are still on their way from the usual ones, exact matches may be far.
+    const double patience_px =
+        std::max(std::ldexp(tolerance_px, 3 * std::min(kPatientRounds - round, 0)), kExact_px);
+    // Whatever deviates by more than this does not agree, however many do.
+    const double most_px = round < kPatientRounds ? HUGE_VAL : 2 * tolerance_px;
+    const double limit_px = std::min(std::max(kDeviations * deviation_px, patience_px), most_px);
+    const Eigen::ArrayXd share = (distances.array() / limit_px).square();
+    fit.weights = (share < 1).select((1 - share).square(), 0);
+    const double change = std::abs(deviation_px - fit.deviation_px);
+    fit.deviation_px = deviation_px;
+    if (round >= kPatientRounds && change <= 1e-3 * deviation_px &&
+        (limit_px != patience_px || patience_px == kExact_px)) {
+      break;
+    }
+  }
+  return fit;
+}
+
+/// How bad a fit is: matches that it does not explain, a little for those it explains badly, and
+/// for cameras that are not usual.
+double cost_of(const Fit& fit, const RigModel& model, const std::vector<PointMatch>& matches,
+               double tolerance_px) {
+  const Eigen::ArrayXd share =
+      (model.epipolar_distances(fit.parameters, matches).array() / tolerance_px).square();
+  return (share / (1 + share)).sum() + 0.05 * RigModel::surprise(fit.parameters);
+}
+
+/// What 9 of 10 matches are from where a camera with a usual lens that only turned would show them,
+/// at most; in pixels. The fit begins at `start`.
+double distance_from_turning_px(const RigModel& model, const std::vector<PointMatch>& matches,
+                                const RigModel::Parameters& start, double tolerance_px) {
+  constexpr int kRounds = 6;
+  const auto count = static_cast<Eigen::Index>(matches.size());
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(count);
+  RigModel::Parameters turned = start;
+  std::vector<double> distances(matches.size());
+  for (int round = 0; round < kRounds; ++round) {
+    turned = model.fit_turning(turned, matches, weights, tolerance_px);
+    const Eigen::VectorXd apart = model.turning_distances(turned, matches);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      distances[static_cast<std::size_t>(i)] = apart.segment<2>(2 * i).norm();
+    }
+    // Of a camera that only turned, wrong matches may lie on an epipolar line by chance.
+    const double limit_px = std::max(6 * median(distances), kExact_px);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      weights[i] = distances[static_cast<std::size_t>(i)] < limit_px ? 1 : 0;
+    }
+  }
+  const auto index = static_cast<std::ptrdiff_t>(distances.size() * 9 / 10);
+  std::nth_element(distances.begin(), distances.begin() + index, distances.end());
+  return distances[static_cast<std::size_t>(index)];
+}
+
+void require_parallax(const RigModel& model, const std::vector<PointMatch>& matches, const Fit& fit,
+                      double tolerance_px) {
+  std::vector<PointMatch> inliers;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (fit.weights[static_cast<Eigen::Index>(i)] > 0) {
+      inliers.push_back(matches[i]);
+    }
+  }
+  const double least_px = std::max(kLeastParallax_px, 4 * fit.deviation_px);
+  for (const RigModel::Parameters& start : {RigModel::usual(), fit.parameters}) {
+    const double parallax_px = distance_from_turning_px(model, inliers, start, tolerance_px);
+    if (!(parallax_px >= least_px)) {
+      throw Error(
+          fmt::format("nothing moves against anything else by more than {:.2f} pixels, as if the "
+                      "camera had only turned, expected at least {:.2f}",
+                      parallax_px, least_px));
+    }
+  }
+}
+
+void require_sideways_move(const StereoCalibration& calibration, int width_px, int height_px) {
+  const Eigen::Vector3d right_centre = -calibration.rotation.transpose() * calibration.translation;
+  if (std::abs(right_centre.z()) <= 1e-9) {
+    return;
+  }
+  const Eigen::Vector2d epipole = (calibration.left.matrix * right_centre).hnormalized();
+  if (epipole.x() > -0.5 && epipole.x() < width_px - 0.5 && epipole.y() > -0.5 &&
+      epipole.y() < height_px - 0.5) {
+    throw Error(
+        fmt::format("the epipole lies inside the left image, at ({:.0f}, {:.0f}): the camera moved "
+                    "forward or backward, expected a move to the side",
+                    epipole.x(), epipole.y()));
+  }
+}
+
+void require_enough(int inliers, std::size_t matches) {
+  if (inliers < kLeastMatches || inliers < kLeastShare * static_cast<double>(matches)) {
+    throw Error(fmt::format(
+        "{} of {} points that the images have in common agree with one rig, expected at least {} "
+        "and {} %",
+        inliers, matches, kLeastMatches, 100 * kLeastShare));
+  }
+}
+
+}  // namespace
+
+UncalibratedRig estimate_rig(const std::vector<PointMatch>& matches, int width_px, int height_px) {
+  if (width_px < 2 || height_px < 2) {
+    throw Error(fmt::format("the images are {}x{}, expected at least 2x2", width_px, height_px));
+  }
+  if (static_cast<int>(matches.size()) < kLeastMatches) {
+    throw Error(fmt::format("the images have {} points in common, expected at least {}",
+                            matches.size(), kLeastMatches));
+  }
+  const std::vector<PointMatch> used = thinned(matches);
+  const RigModel model(width_px, height_px);
+  const double tolerance_px = kTolerancePerSide * std::max(width_px, height_px);
+  const RobustFundamental fundamental = robust_fundamental(used, tolerance_px);
+
+  const Eigen::VectorXd all = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(used.size()));
+  std::vector<Fit> starts = {{RigModel::usual(), all, tolerance_px}};
+  if (!fundamental.matrix.isZero(0)) {
+    starts.push_back({RigModel::usual(), fundamental.weights, tolerance_px});
+    // Near enough to the truth that the usual cameras need not be believed so much.
+    starts.push_back({pose_of(fundamental.matrix, model), fundamental.weights, tolerance_px / 8});
+  }
+  Fit best;
+  double least_cost = 0;
+  for (const Fit& start : starts) {
+    const Fit fit = epipolar_fit(model, used, start, tolerance_px);
+    const double cost = cost_of(fit, model, used, tolerance_px / 2);
+    if (best.weights.size() == 0 || cost < least_cost) {
+      best = fit;
+      least_cost = cost;
+    }
+  }
+  require_enough(best.inliers(), used.size());
+  UncalibratedRig rig{.calibration = model.calibration(best.parameters)};
+  require_parallax(model, used, best, tolerance_px);
+  require_sideways_move(rig.calibration, width_px, height_px);
+
+  const double limit_px = std::max(kDeviations * best.deviation_px, kExact_px);
+  double sum_of_squares = 0;
+  for (const double distance : model.epipolar_distances(best.parameters, matches)) {
+    rig.is_inlier.push_back(std::abs(distance) <= limit_px);
+    if (rig.is_inlier.back()) {
+      ++rig.inliers;
+      sum_of_squares += distance * distance;
+    }
+  }
+  rig.rms_px = std::sqrt(sum_of_squares / rig.inliers);
+  return rig;
+}
+
+}  // namespace vantage

@@ -1,0 +1,143 @@
+#include "engine/rectification/vertical_error.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/error.h"
+
+namespace vantage {
+namespace {
+
+constexpr double kTolerance_px = 1;
+constexpr double kDeviations = 4;
+constexpr int kTerms = 7;
+using Terms = Eigen::Matrix<double, Eigen::Dynamic, kTerms>;
+
+double percentile(std::vector<double> values, double share) {
+  const auto index = std::lround(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + index, values.end());
+  return values[static_cast<std::size_t>(index)];
+}
+
+double median(std::vector<double> values) { return percentile(std::move(values), 0.5); }
+
+/// What the error may consist of, per match: 1, x, y, d, x², xy, y², each from −1 to 1.
+Terms terms_of(const std::vector<PointMatch>& matches) {
+  const auto count = static_cast<Eigen::Index>(matches.size());
+  Eigen::ArrayX3d values(count, 3);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const PointMatch& match = matches[static_cast<std::size_t>(i)];
+    values.row(i) << match.left.x(), match.left.y(), match.left.x() - match.right.x();
+  }
+  for (Eigen::Index column = 0; column < 3; ++column) {
+    const double least = values.col(column).minCoeff();
+    const double half_range = std::max((values.col(column).maxCoeff() - least) / 2, 1e-9);
+    values.col(column) = (values.col(column) - least) / half_range - 1;
+  }
+  const auto x = values.col(0);
+  const auto y = values.col(1);
+  Terms terms(count, kTerms);
+  terms << Eigen::ArrayXd::Ones(count), x, y, values.col(2), x * x, x * y, y * y;
+  return terms;
+}
+
+/// The smooth part of `errors` at every match, by least squares whose weights fall with the
+/// distance from the fit so far; begins at the median, then takes in more terms.
+Eigen::VectorXd smooth_part(const Terms& terms, const Eigen::VectorXd& errors) {
+  constexpr int kRounds = 12;
+  constexpr std::array<int, 3> kTermsOfDegree = {1, 4, kTerms};
+  Eigen::VectorXd smooth = Eigen::VectorXd::Constant(
+      errors.size(), median(std::vector<double>(errors.begin(), errors.end())));
+  for (const int count : kTermsOfDegree) {
+    for (int round = 0; round < kRounds; ++round) {
+      const Eigen::ArrayXd residuals = errors - smooth;
+      std::vector<double> distances(static_cast<std::size_t>(residuals.size()));
+      std::transform(residuals.begin(), residuals.end(), distances.begin(),
+                     [](double residual) { return std::abs(residual); });
+      const double deviation = std::max(1.4826 * median(std::move(distances)), 1e-6);
+      // Tukey's weights: nothing beyond six deviations counts.
+      const Eigen::ArrayXd share = (residuals / (6 * deviation)).square();
+      const Eigen::ArrayXd weights = (share < 1).select((1 - share).square(), 0);
+      const auto used = terms.leftCols(count);
+      const Eigen::MatrixXd normal = used.transpose() * weights.matrix().asDiagonal() * used +
+                                     1e-9 * weights.sum() * Eigen::MatrixXd::Identity(count, count);
+      const Eigen::VectorXd right = used.transpose() * (weights * errors.array()).matrix();
+      smooth = used * normal.ldlt().solve(right);
+    }
+  }
+  return smooth;
+}
+
+}  // namespace
+
+std::optional<VerticalError> vertical_error(const std::vector<PointMatch>& matches) {
+  if (static_cast<int>(matches.size()) < kLeastMatches) {
+    return std::nullopt;
+  }
+  Eigen::VectorXd errors(static_cast<Eigen::Index>(matches.size()));
+  for (Eigen::Index i = 0; i < errors.size(); ++i) {
+    const PointMatch& match = matches[static_cast<std::size_t>(i)];
+    errors[i] = match.left.y() - match.right.y();
+  }
+  const Eigen::VectorXd smooth = smooth_part(terms_of(matches), errors);
+  std::vector<double> distances;
+  for (Eigen::Index i = 0; i < errors.size(); ++i) {
+    distances.push_back(std::abs(errors[i] - smooth[i]));
+  }
+  const double limit = std::max(kTolerance_px, kDeviations * 1.4826 * median(distances));
+
+  VerticalError result{.matches = static_cast<int>(matches.size())};
+  std::vector<double> absolute;
+  std::vector<double> disparities;
+  double sum = 0;
+  double sum_of_squares = 0;
+  double smooth_sum_of_squares = 0;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (distances[i] > limit) {
+      continue;
+    }
+    absolute.push_back(std::abs(errors[row]));
+    disparities.push_back(matches[i].left.x() - matches[i].right.x());
+    sum += errors[row];
+    sum_of_squares += errors[row] * errors[row];
+    smooth_sum_of_squares += smooth[row] * smooth[row];
+  }
+  result.inliers = static_cast<int>(absolute.size());
+  if (result.inliers < kLeastMatches) {
+    return std::nullopt;
+  }
+  const double count = result.inliers;
+  result.rms_px = std::sqrt(sum_of_squares / count);
+  result.mean_px = sum / count;
+  for (const double distance : absolute) {
+    result.mean_absolute_px += distance / count;
+  }
+  result.percentile_95_px = percentile(absolute, 0.95);
+  result.largest_px = *std::max_element(absolute.begin(), absolute.end());
+  result.systematic_px = std::sqrt(smooth_sum_of_squares / count);
+  result.least_disparity_px = percentile(disparities, 0.01);
+  result.largest_disparity_px = percentile(disparities, 0.99);
+  return result;
+}
+
+VerticalError measure_vertical_error(const Photograph& left, const Photograph& right) {
+  const std::vector<PointMatch> matches = match_features(left, right);
+  const auto error = vertical_error(matches);
+  if (!error) {
+    throw Error(fmt::format("the rectified images have {} points in common, expected at least {}",
+                            matches.size(), kLeastMatches));
+  }
+  return *error;
+}
+
+std::optional<VerticalError> check_rectification(const Photograph& left, const Photograph& right) {
+  return vertical_error(match_features(
+      left, right, {.kind = FeatureKind::kOrb, .most_features = 1000, .largest_side_px = 640}));
+}
+
+}  // namespace vantage

@@ -1,0 +1,70 @@
+#include "engine/scene_graph/position_list.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "engine/error.h"
+#include "engine/io/csv_records.h"
+#include "engine/io/file_bytes.h"
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<double> number_in(const std::string& field) {
+  double value = 0;
+  const char* end = field.data() + field.size();
+  const auto [stop, error] = std::from_chars(field.data(), end, value);
+  if (error != std::errc() || stop != end || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+}  // namespace
+
+std::vector<SceneImage> parse_position_list(std::string_view text, const fs::path& file) {
+  CsvRecords records(text, file.string());
+  std::vector<SceneImage> images;
+  std::vector<std::string> fields;
+  for (bool is_first = true; records.next(fields); is_first = false) {
+    if (fields.size() != 3) {
+      records.fail(records.record_line(),
+                   fmt::format("{} field{}, expected three: image,x,y", fields.size(),
+                               fields.size() == 1 ? "" : "s"));
+    }
+    if (is_first && equals_ignoring_case(fields[0], "image") &&
+        equals_ignoring_case(fields[1], "x") && equals_ignoring_case(fields[2], "y")) {
+      continue;
+    }
+    const auto coordinate = [&](std::size_t field) {
+      const std::optional<double> value = number_in(fields[field]);
+      if (!value) {
+        records.fail(records.record_line(), fmt::format("{} is '{}', expected a finite number",
+                                                        field == 1 ? "x" : "y", fields[field]));
+      }
+      return *value;
+    };
+    if (fields[0].empty()) {
+      records.fail(records.record_line(), "the name is empty, expected an image file");
+    }
+    images.push_back({.file = file.parent_path() / fields[0],
+                      .position = {.x = coordinate(1), .y = coordinate(2)}});
+  }
+  if (images.empty()) {
+    throw Error(fmt::format("{}: holds no images, expected lines image,x,y", file.string()));
+  }
+  return images;
+}
+
+std::vector<SceneImage> read_position_list(const fs::path& file) {
+  const std::vector<std::uint8_t> bytes = read_file_bytes(file);
+  return parse_position_list({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file);
+}
+
+}  // namespace vantage

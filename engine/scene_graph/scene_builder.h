@@ -1,0 +1,71 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/execution.h"
+#include "engine/matching/stereo_matcher.h"
+#include "engine/scene_graph/scene_layout.h"
+#include "engine/scene_graph/stored_scene.h"
+
+namespace vantage {
+
+/// An image that a scene is built from.
+struct SceneImage {
+  std::filesystem::path file;
+  ScenePosition position;
+};
+
+struct SceneBuildOptions {
+  /// How edges are matched. `disparities` is the range of the shortest edges; that of longer ones
+  /// is as much wider. With `disparities_auto` every edge has its own.
+  MatchOptions match;
+  std::string settings = "{}";  ///< a JSON object: what of `match` decides the maps
+
+  /// Throws UsageError as MatchOptions does, and for a search in two dimensions.
+  void validate() const;
+};
+
+/// Matches the edges of a scene and stores them, one after the other, in a folder:
+/// scene.json, and two maps and two masks of each edge in maps/. Every file is whole or not there
+/// at all, and scene.json tells of an edge when its maps are safe, so that building can be stopped
+/// and continued. Edges that the folder has already, of the same images, places and settings, are
+/// kept.
+///
+/// Columns are matched as rows of transposed images. Both maps of an edge are on the grids of its
+/// images and count pixels along the edge: d ≥ 0 for the usual scene, near is large.
+///
+/// Thread rule: one thread at a time; one process per folder.
+class SceneBuilder {
+ public:
+  /// Reads all images and what the folder holds, which is made if it is missing; removes from
+  /// scene.json what does not hold any more. Throws Error naming the file for images that cannot be
+  /// read or differ in size, depth or channels, for a damaged scene.json and as SceneLayout does;
+  /// UsageError for invalid options. `execution` must outlive the builder.
+  SceneBuilder(std::filesystem::path folder, std::vector<SceneImage> images,
+               SceneBuildOptions options, Execution& execution);
+
+  [[nodiscard]] const SceneLayout& layout() const { return layout_; }
+  /// Those of layout().edges() that have to be matched, by number.
+  [[nodiscard]] const std::vector<int>& edges_to_match() const { return edges_to_match_; }
+
+  /// Matches and stores an edge of the layout. Returns what was stored. Throws Error naming the
+  /// images.
+  StoredEdge build(int edge, MatchReport* report = nullptr);
+
+ private:
+  void keep_finished_edges();
+  [[nodiscard]] MatchOptions options_for(const SceneEdge& edge, const Photograph& first,
+                                         const Photograph& second) const;
+
+  std::filesystem::path folder_;
+  std::vector<SceneImage> images_;
+  SceneBuildOptions options_;
+  Execution& execution_;
+  StoredScene scene_;
+  SceneLayout layout_;
+  std::vector<int> edges_to_match_;
+};
+
+}  // namespace vantage

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "engine/sequence/work_plan.h"
+
+namespace vantage {
+
+/// Hands out the frames to work on, one after the other. Thread rule: one thread at a time.
+class FrameFeed {
+ public:
+  explicit FrameFeed(std::vector<FrameRun> runs) : runs_(std::move(runs)) {
+    for (const FrameRun& run : runs_) {
+      frames_total_ += run.frames.count();
+    }
+    begin_run();
+  }
+
+  /// Of the frames to deliver.
+  [[nodiscard]] int frames_total() const { return frames_total_; }
+
+  /// Names the next frame; false at the end.
+  bool next(int& frame, bool& is_lead_in) {
+    if (run_ == runs_.size()) {
+      return false;
+    }
+    frame = next_frame_++;
+    is_lead_in = frame < runs_[run_].frames.first;
+    if (next_frame_ == runs_[run_].frames.end) {
+      ++run_;
+      begin_run();
+    }
+    return true;
+  }
+
+ private:
+  void begin_run() {
+    if (run_ < runs_.size()) {
+      next_frame_ = runs_[run_].frames.first - runs_[run_].lead_in;
+    }
+  }
+
+  std::vector<FrameRun> runs_;
+  std::size_t run_ = 0;
+  int next_frame_ = 0;
+  int frames_total_ = 0;
+};
+
+}  // namespace vantage

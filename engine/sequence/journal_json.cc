@@ -1,0 +1,212 @@
+#include "engine/sequence/journal_json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <vector>
+
+#include "engine/build_info.h"
+#include "engine/error.h"
+
+namespace vantage {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kFormat = 1;
+
+/// Throws what nlohmann throws unless it is a whole number from 0 on.
+int count_of(const Json& json) {
+  constexpr Json::number_unsigned_t kMost = std::numeric_limits<int>::max() - 1;
+  return static_cast<int>(std::min(json.get_ref<const Json::number_unsigned_t&>(), kMost));
+}
+
+Json range_json(FrameRange frames) { return Json::array({frames.first, frames.end}); }
+FrameRange range_of(const Json& json) { return {json.at(0).get<int>(), json.at(1).get<int>()}; }
+
+Json flicker_json(const FlickerSums& sums) {
+  Json views = Json::array();
+  for (const ViewFlickerSums& view : sums.views) {
+    views.push_back({view.compared, view.grey_change, view.brightness_jump});
+  }
+  return {{"pixels", sums.pixels},
+          {"still", sums.still},
+          {"grey_change", sums.grey_change},
+          {"compared", sums.compared},
+          {"jumped", sums.jumped},
+          {"disparity_change", sums.disparity_change},
+          {"views", views}};
+}
+
+FlickerSums flicker_of(const Json& json) {
+  FlickerSums sums;
+  sums.frames = 1;
+  sums.pixels = json.at("pixels").get<std::int64_t>();
+  sums.still = json.at("still").get<std::int64_t>();
+  sums.grey_change = json.at("grey_change").get<std::int64_t>();
+  sums.compared = json.at("compared").get<std::int64_t>();
+  sums.jumped = json.at("jumped").get<std::int64_t>();
+  sums.disparity_change = json.at("disparity_change").get<std::int64_t>();
+  for (const Json& view : json.at("views")) {
+    sums.views.push_back({view.at(0).get<std::int64_t>(), view.at(1).get<std::int64_t>(),
+                          view.at(2).get<std::int64_t>()});
+  }
+  return sums;
+}
+
+struct ToJson {
+  Json operator()(const FrameRecord& record) const {
+    Json json = {{"frame", record.frame}};
+    if (record.skipped) {
+      json["skipped"] = record.problem;
+    }
+    if (record.absent) {
+      json["absent"] = true;
+    }
+    const auto add_list = [&](const char* key, const auto& list) {
+      if (!list.empty()) {
+        json[key] = list;
+      }
+    };
+    for (const FileRecord& file : record.files) {
+      json["files"][file.name] = file.bytes;
+    }
+    add_list("remarks", record.remarks);
+    if (record.flicker.frames > 0) {
+      json["flicker"] = flicker_json(record.flicker);
+    }
+    return json;
+  }
+  Json operator()(const SegmentRecord& record) const {
+    return {{"segment", range_json(record.frames)}};
+  }
+  Json operator()(const JoinRecord& record) const {
+    Json json = {{"joined", range_json(record.frames)}};
+    if (!record.skipped.empty()) {
+      json["skipped"] = record.skipped;
+    }
+    return json;
+  }
+};
+
+/// Throws what nlohmann throws when it is none of ours.
+JournalRecord record_in(const Json& json) {
+  if (json.contains("segment")) {
+    return SegmentRecord{range_of(json.at("segment"))};
+  }
+  if (json.contains("joined")) {
+    return JoinRecord{range_of(json.at("joined")), json.value("skipped", std::vector<int>())};
+  }
+  FrameRecord record;
+  record.frame = count_of(json.at("frame"));
+  record.skipped = json.contains("skipped");
+  record.problem = json.value("skipped", "");
+  record.absent = json.value("absent", false);
+  if (json.contains("files")) {
+    for (const auto& [name, bytes] : json.at("files").get_ref<const Json::object_t&>()) {
+      record.files.push_back({name, bytes.get_ref<const Json::number_unsigned_t&>()});
+    }
+  }
+  record.remarks = json.value("remarks", record.remarks);
+  if (json.contains("flicker")) {
+    record.flicker = flicker_of(json.at("flicker"));
+  }
+  return record;
+}
+
+/// The part of an input's line that tells what is in its files: machines may see them at different
+/// paths.
+std::string_view content_of(std::string_view input) {
+  const std::size_t name_end = input.rfind(": ");
+  return name_end == std::string_view::npos ? input : input.substr(name_end);
+}
+
+}  // namespace
+
+std::string line_of(const JournalRecord& record) {
+  return std::visit(ToJson(), record).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::optional<JournalRecord> record_of(const std::string& line) {
+  try {
+    return record_in(Json::parse(line));
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  }
+}
+
+std::string text_of(const RunIdentity& identity) {
+  const Json json = {{"format", kFormat},
+                     {"version", build_info().version},
+                     {"frame_count", identity.frame_count},
+                     {"inputs", identity.inputs},
+                     {"sound",
+                      {{"file", identity.sound_file.string()},
+                       {"first_frame", identity.sound_first_frame},
+                       {"rate", to_string(identity.sound_rate)}}},
+                     {"settings", Json::parse(identity.settings)}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+RunIdentity identity_of(const std::string& text, const std::filesystem::path& file) {
+  try {
+    const Json json = Json::parse(text);
+    if (json.at("format").get<int>() != kFormat) {
+      throw Error(fmt::format("{}: is of format {}, expected {} (written by Vantage {})",
+                              file.string(), json.at("format").dump(), kFormat,
+                              json.value("version", "?")));
+    }
+    RunIdentity identity;
+    // Throws unless it is an object.
+    identity.settings = Json(json.at("settings").get_ref<const Json::object_t&>()).dump();
+    identity.inputs = json.at("inputs").get<std::vector<std::string>>();
+    identity.frame_count = count_of(json.at("frame_count"));
+    identity.sound_file = json.at("sound").at("file").get<std::string>();
+    identity.sound_first_frame = json.at("sound").at("first_frame").get<int>();
+    identity.sound_rate =
+        parse_frame_rate(json.at("sound").at("rate").get<std::string>()).value_or(FrameRate());
+    return identity;
+  } catch (const nlohmann::json::exception&) {
+    throw Error(fmt::format("{}: is damaged, expected the description of a run", file.string()));
+  }
+}
+
+std::string difference(const RunIdentity& then, const RunIdentity& now) {
+  const Json old_settings = Json::parse(then.settings);
+  // Through text and back, so that numbers compare as they are stored.
+  const Json new_settings = Json::parse(now.settings);
+  std::vector<std::string> found;
+  for (const auto& [key, value] : new_settings.items()) {
+    const Json before = old_settings.value(key, Json());
+    if (before != value) {
+      found.push_back(fmt::format("{} was {}, now {}", key, before.dump(), value.dump()));
+    }
+  }
+  for (const auto& [key, value] : old_settings.items()) {
+    if (!new_settings.contains(key)) {
+      found.push_back(fmt::format("{} was {}, now not set", key, value.dump()));
+    }
+  }
+  for (std::size_t i = 0; i < std::max(then.inputs.size(), now.inputs.size()); ++i) {
+    const std::string before = i < then.inputs.size() ? then.inputs[i] : "none";
+    const std::string after = i < now.inputs.size() ? now.inputs[i] : "none";
+    if (content_of(before) != content_of(after)) {
+      found.push_back(fmt::format("the input was '{}', now '{}'", before, after));
+    }
+  }
+  if (found.empty() && then.frame_count != now.frame_count) {
+    found.push_back(
+        fmt::format("the input had {} frames, now {}", then.frame_count, now.frame_count));
+  }
+  if (found.empty()) {
+    return "";
+  }
+  return found.front() +
+         (found.size() > 1 ? fmt::format(" (and {} more)", found.size() - 1) : std::string());
+}
+
+}  // namespace vantage

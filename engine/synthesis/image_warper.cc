@@ -1,0 +1,128 @@
+#include "engine/synthesis/image_warper.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cstdint>
+
+#include "engine/error.h"
+#include "engine/synthesis/surface_map.h"
+#include "engine/synthesis/warped_pair_layout.h"
+#include "kernels/surface_fetch/surface_fetch.h"
+#include "kernels/view_projection/view_projection.h"
+
+namespace vantage {
+namespace {
+
+constexpr int kLargestSide = 65500;
+
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+kernels::ViewProjection projection_of(const ViewWarp& warp, double infinity_disparity_px) {
+  kernels::ViewProjection projection;
+  RowMajor::Map(projection.homography) = warp.homography;
+  Eigen::Vector3d::Map(projection.parallax) = warp.parallax;
+  projection.infinity_disparity_px = infinity_disparity_px;
+  projection.is_translation = warp.is_translation();
+  return projection;
+}
+
+// λ (u, v, 1) = H∞ (x, y, 1) + λ q m, where H∞ is the homography of the points at infinity.
+kernels::SourceProjection way_back(const ViewWarp& warp, double infinity_disparity_px) {
+  kernels::SourceProjection back;
+  back.infinity_disparity_px = infinity_disparity_px;
+  back.is_translation = warp.is_translation();
+  if (back.is_translation) {
+    Eigen::Vector3d::Map(back.parallax) = warp.parallax;
+    return back;
+  }
+  Eigen::Matrix3d far = warp.homography;
+  far.col(2) += infinity_disparity_px * warp.parallax;
+  const Eigen::FullPivLU<Eigen::Matrix3d> factors(far);
+  if (!far.allFinite() || !factors.isInvertible() || !warp.parallax.allFinite()) {
+    throw Error("new view has a homography that cannot be inverted, expected a camera's");
+  }
+  const Eigen::Matrix3d inverse = factors.inverse();
+  RowMajor::Map(back.homography) = inverse;
+  Eigen::Vector3d::Map(back.parallax) = inverse * warp.parallax;
+  return back;
+}
+
+const ViewFrame& checked(const ViewFrame& frame, const SynthesisOptions& options) {
+  if (options.warp == WarpColour::kForward) {
+    throw UsageError("warp is forward, expected one-pass for a view off the baseline");
+  }
+  if (frame.width_px < 1 || frame.height_px < 1 || frame.width_px > kLargestSide ||
+      frame.height_px > kLargestSide) {
+    throw Error(fmt::format("new view is {}×{}, expected 1..{} pixels in width and height",
+                            frame.width_px, frame.height_px, kLargestSide));
+  }
+  return frame;
+}
+
+}  // namespace
+
+template <typename T>
+std::size_t ImageWarper<T>::held_bytes(int view_width, int view_height) {
+  return sizeof(float) * row_floats(view_width, 1) * static_cast<std::size_t>(view_height);
+}
+
+template <typename T>
+ImageWarper<T>::ImageWarper(ImageView<const T> image, ImageView<const float> disparity_px,
+                            const ViewWarp& warp, const ViewFrame& frame,
+                            const SynthesisOptions& options, Execution& execution)
+    : image_(image),
+      disparity_px_(disparity_px),
+      gradient_limit_px_(static_cast<float>(options.disparity_gradient_limit_px)),
+      back_(way_back(warp, checked(frame, options).infinity_disparity_px)),
+      nearness_memory_(execution.scratch().lease(held_bytes(frame.width_px, frame.height_px))),
+      nearness_(reinterpret_cast<float*>(nearness_memory_.data()), frame.width_px, frame.height_px,
+                1, row_floats(frame.width_px, 1)) {
+  map_surfaces(disparity_px, projection_of(warp, frame.infinity_disparity_px), gradient_limit_px_,
+               nearness_, execution);
+}
+
+template <typename T>
+std::size_t ImageWarper<T>::scratch_floats() const {
+  return 5 * row_floats(width(), 1);
+}
+
+template <typename T>
+void ImageWarper<T>::warp(int y, std::span<float> scratch, float* colours, float* nearness) const {
+  const auto part = [&](std::size_t k) { return scratch.data() + k * row_floats(width(), 1); };
+  const kernels::SourcePositions positions{.column = reinterpret_cast<std::int32_t*>(part(0)),
+                                           .line = reinterpret_cast<std::int32_t*>(part(1)),
+                                           .fraction_x = part(2),
+                                           .fraction_y = part(3),
+                                           .disparity_px = part(4),
+                                           .nearness = nearness};
+  kernels::source_positions_row(back_,
+                                {.nearness = nearness_.row(y),
+                                 .count = width(),
+                                 .line = y,
+                                 .source_width = image_.width(),
+                                 .source_height = image_.height()},
+                                positions);
+  kernels::fetch_surface_row(
+      kernels::SurfaceFetchRow<T>{.pixels = image_.data(),
+                                  .stride = static_cast<std::ptrdiff_t>(image_.stride()),
+                                  .map_px = disparity_px_.data(),
+                                  .map_stride = static_cast<std::ptrdiff_t>(disparity_px_.stride()),
+                                  .width = image_.width(),
+                                  .height = image_.height(),
+                                  .channels = image_.channels(),
+                                  .column = positions.column,
+                                  .line = positions.line,
+                                  .fraction_x = positions.fraction_x,
+                                  .fraction_y = positions.fraction_y,
+                                  .disparity_px = positions.disparity_px,
+                                  .count = width(),
+                                  .gradient_limit_px = gradient_limit_px_},
+      colours);
+}
+
+template class ImageWarper<std::uint8_t>;
+template class ImageWarper<std::uint16_t>;
+template class ImageWarper<float>;
+
+}  // namespace vantage

@@ -1,0 +1,45 @@
+#include "engine/synthesis/surface_warper.h"
+
+#include <cstdint>
+
+#include "engine/synthesis/surface_map.h"
+#include "engine/synthesis/warped_pair_layout.h"
+
+namespace vantage {
+namespace {
+
+ViewFrame frame_of(const NewView& view) {
+  return {.width_px = view.width_px,
+          .height_px = view.height_px,
+          .infinity_disparity_px = view.infinity_disparity_px};
+}
+
+}  // namespace
+
+template <typename T>
+std::size_t SurfaceWarper<T>::working_bytes(const NewView& view, int source_width,
+                                            int source_height) {
+  return 2 * ImageWarper<T>::held_bytes(view.width_px, view.height_px) +
+         surface_map_bytes(source_width, source_height);
+}
+
+template <typename T>
+SurfaceWarper<T>::SurfaceWarper(const StereoSource<T>& source, const SynthesisOptions& options,
+                                const NewView& view, Execution& execution)
+    : alpha_(view.alpha()),
+      left_(source.left, source.left_disparity, view.from_left, frame_of(view), options, execution),
+      right_(source.right, source.right_disparity, view.from_right, frame_of(view), options,
+             execution) {}
+
+template <typename T>
+void SurfaceWarper<T>::warp(int y, std::span<float> scratch, float* memory) const {
+  const WarpedPairLayout at(width(), left_.channels());
+  left_.warp(y, scratch, memory + at.left_colours, memory + at.left_nearness);
+  right_.warp(y, scratch, memory + at.right_colours, memory + at.right_nearness);
+}
+
+template class SurfaceWarper<std::uint8_t>;
+template class SurfaceWarper<std::uint16_t>;
+template class SurfaceWarper<float>;
+
+}  // namespace vantage

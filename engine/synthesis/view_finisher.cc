@@ -1,0 +1,161 @@
+#include "engine/synthesis/view_finisher.h"
+
+#include <algorithm>
+
+#include "engine/synthesis/background_inpainting.h"
+#include "engine/synthesis/warped_pair_layout.h"
+#include "kernels/hole_fill/hole_fill.h"
+#include "kernels/soft_edges/soft_edges.h"
+
+namespace vantage {
+namespace {
+
+// Beside a hole, the last pixel of the background is mixed with what hid the rest.
+constexpr int kMixedPx = 1;
+
+// What an image counts where its surface ends, beside one in which it goes on.
+constexpr float kTrustAtEnds = 0.1F;
+
+}  // namespace
+
+template <typename T>
+ViewFinisher<T>::ViewFinisher(const SynthesisOptions& options, double alpha,
+                              std::optional<std::array<double, 2>> camera_offsets,
+                              ImageView<T> image, ImageView<std::uint8_t> sources,
+                              Execution& execution)
+    : options_(options),
+      alpha_(alpha),
+      softens_(softens(options, alpha)),
+      camera_offsets_(camera_offsets),
+      image_(image),
+      sources_(sources),
+      execution_(execution) {
+  if (options.holes == HoleFilling::kInpaint) {
+    kept_memory_ = execution.scratch().lease(row_bytes(image.width()) *
+                                             static_cast<std::size_t>(image.height()));
+  }
+}
+
+template <typename T>
+bool ViewFinisher<T>::softens(const SynthesisOptions& options, double alpha) {
+  return options.soft_edges && alpha > 0 && alpha < 1;
+}
+
+template <typename T>
+float ViewFinisher<T>::trust_at_ends(const SynthesisOptions& options, double alpha) {
+  return softens(options, alpha) ? kTrustAtEnds : 1.0F;
+}
+
+template <typename T>
+std::size_t ViewFinisher<T>::row_bytes(int width) {
+  return sizeof(float) * (row_floats(width, 1) + row_floats((3 * width + 3) / 4, 1));
+}
+
+template <typename T>
+std::size_t ViewFinisher<T>::working_bytes(const SynthesisOptions& options, int width, int height,
+                                           int channels) {
+  return options.holes == HoleFilling::kInpaint
+             ? row_bytes(width) * static_cast<std::size_t>(height) +
+                   inpainting_bytes(width, height, channels)
+             : 0;
+}
+
+template <typename T>
+typename ViewFinisher<T>::RowMemory ViewFinisher<T>::row_memory(std::byte* memory) const {
+  auto* disparity_px = reinterpret_cast<float*>(memory);
+  auto* filled = reinterpret_cast<std::uint8_t*>(disparity_px + row_floats(image_.width(), 1));
+  return {disparity_px, filled, filled + image_.width()};
+}
+
+template <typename T>
+typename ViewFinisher<T>::RowMemory ViewFinisher<T>::kept_row(int y) const {
+  return row_memory(kept_memory_.data() + row_bytes(image_.width()) * static_cast<std::size_t>(y));
+}
+
+template <typename T>
+void ViewFinisher<T>::fill_row(const BlendedScanline& row, const RowMemory& memory) {
+  const int width = image_.width();
+  kernels::fill_holes_row(kernels::HoleFillRow<T>{.pixels = image_.row(row.y),
+                                                  .disparity_px = row.disparity_px,
+                                                  .width = width,
+                                                  .channels = image_.channels(),
+                                                  .gradient_limit_px = row.warped.gradient_limit_px,
+                                                  .mixed_px = softens_ ? kMixedPx : 0,
+                                                  .filled_disparity_px = memory.disparity_px,
+                                                  .filled = memory.filled},
+                          options_.holes == HoleFilling::kMirror);
+  std::uint8_t* sources = sources_.row(row.y);
+  for (int x = 0; x < width; ++x) {
+    sources[x] = static_cast<std::uint8_t>(sources[x] & ~memory.filled[x]);
+  }
+}
+
+template <typename T>
+void ViewFinisher<T>::finish_row(const BlendedScanline& row) {
+  const int width = image_.width();
+  const bool inpaints = options_.holes == HoleFilling::kInpaint;
+  const bool fills = options_.holes != HoleFilling::kNone && row.holes > 0;
+  if (!inpaints && !fills && !softens_) {
+    return;
+  }
+  scheduler::ScratchPool::Lease lease;
+  if (!inpaints) {
+    lease = execution_.scratch().lease(row_bytes(width));
+  }
+  const RowMemory memory = inpaints ? kept_row(row.y) : row_memory(lease.data());
+  if (fills) {
+    fill_row(row, memory);
+  } else {
+    std::copy_n(row.disparity_px, width, memory.disparity_px);
+    std::fill_n(memory.filled, width, std::uint8_t{0});
+  }
+  if (inpaints && row.holes == width) {
+    std::fill_n(memory.filled, width, std::uint8_t{255});
+  }
+  if (!softens_) {
+    return;
+  }
+  const auto offsets = camera_offsets_.value_or(std::array<double, 2>{});
+  const int outlines =
+      kernels::outline_shares_row({.disparity_px = memory.disparity_px,
+                                   .left_disparity_px = row.warped.left_disparity_px,
+                                   .right_disparity_px = row.warped.right_disparity_px,
+                                   .width = width,
+                                   .gradient_limit_px = row.warped.gradient_limit_px,
+                                   .alpha = static_cast<float>(alpha_),
+                                   .is_along_row = camera_offsets_.has_value(),
+                                   .left_offset = offsets[0],
+                                   .right_offset = offsets[1]},
+                                  memory.shares);
+  if (!inpaints && outlines > 0) {
+    kernels::mix_outlines_row(memory.shares, width, image_.channels(), image_.row(row.y));
+  }
+}
+
+template <typename T>
+void ViewFinisher<T>::finish_view() {
+  if (options_.holes != HoleFilling::kInpaint) {
+    return;
+  }
+  const int width = image_.width();
+  const int height = image_.height();
+  const std::size_t bytes = row_bytes(width);
+  const RowMemory first = kept_row(0);
+  inpaint_background(
+      image_, ImageView<const std::uint8_t>(first.filled, width, height, 1, bytes),
+      ImageView<const float>(first.disparity_px, width, height, 1, bytes / sizeof(float)),
+      options_.disparity_gradient_limit_px);
+  if (softens_) {
+    execution_.for_each_band(height, [&](int first_row, int end_row) {
+      for (int y = first_row; y < end_row; ++y) {
+        kernels::mix_outlines_row(kept_row(y).shares, width, image_.channels(), image_.row(y));
+      }
+    });
+  }
+}
+
+template class ViewFinisher<std::uint8_t>;
+template class ViewFinisher<std::uint16_t>;
+template class ViewFinisher<float>;
+
+}  // namespace vantage

@@ -1,0 +1,254 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "engine/generation/layered_scene.h"
+#include "engine/io/photograph_io.h"
+#include "engine/rectification/stereo_calibration.h"
+#include "engine/rectification/vertical_error.h"
+#include "tests/apps/pair_fixture.h"
+#include "tests/apps/vantage_process.h"
+#include "tests/engine/unrectified_pair.h"
+#include "tests/temporary_folder.h"
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A pair of cameras that are turned by some degrees, as raw-left.png and raw-right.png.
+class RectifyTest : public testing::Test {
+ protected:
+  RectifyTest() : pair_(test::unrectified_pair(execution_)) {
+    write_photograph(left_, pair_.left);
+    write_photograph(right_, pair_.right);
+  }
+
+  [[nodiscard]] static ProcessResult rectify(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"rectify"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_vantage(arguments);
+  }
+  [[nodiscard]] static nlohmann::json json_of(const std::string& path) {
+    return nlohmann::json::parse(read_file(path));
+  }
+
+  Execution execution_{{.threads = 2}};
+  TemporaryFolder folder_;
+  test::UnrectifiedPair pair_;
+  std::string left_ = folder_ / "raw-left.png";
+  std::string right_ = folder_ / "raw-right.png";
+};
+
+TEST_F(RectifyTest, FromTheImagesAlone) {
+  const std::string out = folder_ / "out";
+  const std::string report = folder_ / "report.json";
+  const std::string rig = folder_ / "rig.yml";
+  const std::string mask = folder_ / "valid.png";
+  const ProcessResult result = rectify({left_, right_, "-o", out, "--report", report, "--matrices",
+                                        rig, "--valid-mask", mask, "--kept-outline", "1"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("rows are off by"));
+  EXPECT_THAT(result.err, HasSubstr("disparities "));
+
+  const auto results = json_of(report)["results"];
+  EXPECT_EQ(results["pairs"], 1);
+  EXPECT_GE(results["matches"].get<int>(), results["inliers"].get<int>());
+  EXPECT_GE(results["inliers"].get<int>(), 60);
+  EXPECT_LT(results["vertical_error"]["rms_px"].get<double>(), 0.5);
+  EXPECT_LT(results["vertical_error"]["systematic_px"].get<double>(), 0.2);
+  EXPECT_LT(results["valid"]["width"].get<int>(), 320);
+  EXPECT_EQ(results["homographies"]["left"].size(), 3U);
+
+  // What was written is as good as was said.
+  const Photograph left = read_photograph(fs::path(out) / "left.png");
+  const Photograph right = read_photograph(fs::path(out) / "right.png");
+  EXPECT_EQ(left.width(), 320);
+  EXPECT_LT(measure_vertical_error(left, right).systematic_px, 0.2);
+  const Photograph valid = read_photograph(mask);
+  const auto& pixels = std::get<Image<std::uint8_t>>(valid.pixels);
+  EXPECT_EQ(pixels.at(160, 120), 255);
+  EXPECT_EQ(pixels.at(0, 0), 0);
+  EXPECT_EQ(read_stereo_calibration(rig).format, "OpenCV");
+
+  // The matrices are a calibration: the same images come of it.
+  const std::string again = folder_ / "again";
+  const ProcessResult second =
+      rectify({left_, right_, "-o", again, "--calibration", rig, "--kept-outline", "1"});
+  ASSERT_EQ(second.exit_code, 0) << second.err;
+  EXPECT_EQ(read_file(fs::path(again) / "left.png"), read_file(fs::path(out) / "left.png"));
+  EXPECT_EQ(read_file(fs::path(again) / "right.png"), read_file(fs::path(out) / "right.png"));
+}
+
+TEST_F(RectifyTest, SeveralPairsGetOneRectificationWhateverTheThreads) {
+  for (const char* side : {"left", "right"}) {
+    fs::create_directory(folder_ / side);
+    for (const char* name : {"000.png", "001.png", "002.png"}) {
+      fs::copy_file(std::string(side) == "left" ? left_ : right_, fs::path(folder_ / side) / name);
+    }
+  }
+  std::string first;
+  for (const char* threads : {"1", "3"}) {
+    const std::string out = folder_ / (std::string("out-") + threads);
+    const std::string rig = folder_ / (std::string("rig-") + threads + ".json");
+    const ProcessResult result =
+        rectify({folder_ / "left", folder_ / "right", "-o", out, "--sample-pairs", "2", "--threads",
+                 threads, "--matrices", rig});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("3 pairs of 320x240 pixels"));
+    for (const char* name : {"left/000000.png", "left/000002.png", "right/000001.png"}) {
+      EXPECT_TRUE(fs::exists(fs::path(out) / name)) << name;
+    }
+    const std::string all = read_file(rig) + read_file(fs::path(out) / "left/000002.png") +
+                            read_file(fs::path(out) / "right/000000.png");
+    if (first.empty()) {
+      first = all;
+    }
+    EXPECT_TRUE(all == first) << threads << " threads";
+  }
+}
+
+TEST_F(RectifyTest, ErrorsAreOneLine) {
+  const auto expect_error = [&](const std::vector<std::string>& arguments, int exit_code,
+                                const std::string& text) {
+    const ProcessResult result = rectify(arguments);
+    EXPECT_EQ(result.exit_code, exit_code) << result.err;
+    EXPECT_TRUE(is_one_line(result, "rectify"));
+    EXPECT_THAT(result.err, HasSubstr(text));
+  };
+  const std::string out = folder_ / "out";
+  expect_error({left_, right_}, 2, "there is nothing to write");
+  expect_error({left_, right_, "-o", out, "--kept-outline", "2"}, 2, "kept-outline is 2");
+  expect_error({left_, right_, "-o", out, "--sample-pairs", "0"}, 2, "--sample-pairs is 0");
+  expect_error({left_, right_, "--matrices", folder_ / "a.txt"}, 2, "--matrices is");
+  expect_error({folder_ / "none.png", right_, "-o", out}, 1, "none.png");
+
+  Image<std::uint8_t> flat(320, 240);
+  flat.fill(90);
+  const std::string flat_file = folder_ / "flat.png";
+  write_photograph(flat_file, {std::move(flat)});
+  expect_error({flat_file, right_, "-o", out}, 1,
+               "the images have 0 points in common, expected at least 20");
+  EXPECT_FALSE(fs::exists(out)) << "nothing is left behind";
+
+  Image<std::uint8_t> small(100, 80);
+  small.fill(90);
+  const std::string small_file = folder_ / "small.png";
+  write_photograph(small_file, {std::move(small)});
+  expect_error({left_, small_file, "-o", out}, 1, "expected equal sizes");
+
+  // The same photograph from a camera that only turned.
+  Eigen::Matrix3d camera = pair_.calibration.left.matrix;
+  const std::string turned_file = folder_ / "turned.png";
+  write_photograph(
+      turned_file,
+      test::warped(pair_.left, camera * test::turned_by(0.01, 0.03, 0.02) * camera.inverse()));
+  expect_error({left_, turned_file, "-o", out}, 1, "as if the camera had only turned");
+
+  const std::string other_size = folder_ / "other.yml";
+  ASSERT_EQ(rectify({left_, right_, "--matrices", other_size}).exit_code, 0);
+  std::string text = read_file(other_size);
+  text.replace(text.find("image_width: 320"), 16, "image_width: 640");
+  write_file(other_size, text);
+  expect_error({left_, right_, "-o", out, "--calibration", other_size}, 1, "640x240");
+
+  fs::copy_file(left_, folder_ / "left.png");
+  expect_error({folder_ / "left.png", right_, "-o", fs::path(folder_ / "left.png").parent_path()},
+               2, "is an input and would be replaced");
+}
+
+TEST_F(RectifyTest, OtherCommandsWarnOfPairsThatAreNotRectified) {
+  const std::string map = folder_ / "map.pfm";
+  const std::string report = folder_ / "report.json";
+  const auto match = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {
+        "match", left_, right_, "-o", map, "--disparities=0:20", "--report", report};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_vantage(arguments);
+  };
+  const ProcessResult warned = match({});
+  ASSERT_EQ(warned.exit_code, 0) << warned.err;
+  EXPECT_THAT(warned.err, HasSubstr("match: warning: the pair is not rectified: rows are off by"));
+  const auto found = json_of(report)["results"]["rectification"];
+  EXPECT_FALSE(found["is_rectified"].get<bool>());
+  EXPECT_GT(found["systematic_px"].get<double>(), 5);
+  const std::string with_check = read_file(map);
+
+  const ProcessResult unchecked = match({"--no-rectification-check"});
+  EXPECT_THAT(unchecked.err, Not(HasSubstr("warning")));
+  EXPECT_FALSE(json_of(report).contains("results"));
+  EXPECT_EQ(read_file(map), with_check);
+  EXPECT_THAT(match({"--quiet"}).err, Not(HasSubstr("warning")));
+
+  const ProcessResult synth =
+      run_vantage({"synth", left_, right_, "--view", "0.5", "-o", folder_ / "view.png",
+                   "--disparities=0:20", "--report", report});
+  EXPECT_THAT(synth.err, HasSubstr("synth: warning: the pair is not rectified"));
+  EXPECT_TRUE(json_of(report)["results"].contains("rectification"));
+  EXPECT_TRUE(json_of(report)["results"].contains("views"));
+
+  const std::string rig = folder_ / "rig.yml";
+  ASSERT_EQ(rectify({left_, right_, "--matrices", rig}).exit_code, 0);
+  for (const bool calibrated : {false, true}) {
+    std::vector<std::string> arguments = {"run",
+                                          "--left",
+                                          left_,
+                                          "--right",
+                                          right_,
+                                          "-o",
+                                          folder_ / (calibrated ? "run-c" : "run"),
+                                          "--disparities=0:20"};
+    if (calibrated) {
+      arguments.insert(arguments.end(), {"--calibration", rig});
+    }
+    const ProcessResult run = run_vantage(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.err.find("warning: the pair is not rectified") == std::string::npos, calibrated)
+        << run.err;
+  }
+}
+
+TEST_F(RectifyTest, RectifiedPairsAreNotWarnedOf) {
+  const LayeredScene scene({.width_px = 320, .height_px = 240, .samples_per_side = 2}, execution_);
+  write_photograph(left_, scene.render({0, 0}, 0).image);
+  write_photograph(right_, scene.render({1, 0}, 0).image);
+  const std::string report = folder_ / "report.json";
+  const ProcessResult result = run_vantage({"match", left_, right_, "-o", folder_ / "map.pfm",
+                                            "--disparities=0:20", "--report", report});
+  EXPECT_THAT(result.err, Not(HasSubstr("warning")));
+  EXPECT_TRUE(json_of(report)["results"]["rectification"]["is_rectified"].get<bool>());
+}
+
+TEST(RectifyChessboard, FromFeaturesOfAllPairs) {
+  const fs::path folder = fs::path(VANTAGE_SHARED_DATA) / "chessboard";
+  if (!fs::exists(folder / "left01.jpg")) {
+    GTEST_SKIP() << "no chessboard photographs at " << folder;
+  }
+  const TemporaryFolder out;
+  for (const bool calibrated : {false, true}) {
+    const std::string report = out / "report.json";
+    std::vector<std::string> arguments = {"rectify",
+                                          (folder / "left0[1-4].jpg").string(),
+                                          (folder / "right0[1-4].jpg").string(),
+                                          "--matrices",
+                                          out / "rig.yml",
+                                          "--report",
+                                          report};
+    if (calibrated) {
+      arguments.insert(arguments.end(), {"--calibration", folder / "stereo_reference.yml"});
+    }
+    const ProcessResult result = run_vantage(arguments);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const auto error = nlohmann::json::parse(read_file(report))["results"]["vertical_error"];
+    EXPECT_LT(error["rms_px"].get<double>(), 0.5);
+    EXPECT_GT(error["inliers"].get<int>(), 300);
+  }
+}
+
+}  // namespace
+}  // namespace vantage

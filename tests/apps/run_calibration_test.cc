@@ -1,0 +1,106 @@
+// Runs that rectify their pairs first.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <string>
+
+#include "engine/image/stereo_packing.h"
+#include "engine/io/photograph_io.h"
+#include "engine/rectification/rectifier.h"
+#include "tests/apps/run_fixture.h"
+
+namespace vantage {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr int kFrame = 3;
+
+/// Cameras of the size of the frames, turned and distorting.
+constexpr const char* kRig = R"(%YAML:1.0
+M1: [60, 0, 31, 0, 60, 24, 0, 0, 1]
+D1: [-0.2, 0.05, 0.001, -0.002]
+M2: [61, 0, 32, 0, 61, 23, 0, 0, 1]
+D2: [0.1, -0.02, 0.001, 0.001]
+R: [1, 0, 0, 0, 0.99920011, -0.03998933, 0, 0.03998933, 0.99920011]
+T: [-1, 0.02, 0.01]
+)";
+
+class RunCalibration : public RunTest {
+ protected:
+  void SetUp() override { std::ofstream(rig_) << kRig; }
+
+  [[nodiscard]] std::vector<std::string> with_rig(const std::vector<std::string>& more) const {
+    return joined({"--calibration", rig_}, more);
+  }
+
+  /// A frame as the run saw it: the views at its cameras are the photographs themselves.
+  [[nodiscard]] std::array<Image<std::uint8_t>, 2> seen_by_run(
+      const std::string& out, const std::vector<std::string>& more) const {
+    const ProcessResult result =
+        run(out, joined(more, {"--save", "stereo", "--stereo-views", "0,1", "--frames",
+                               std::to_string(kFrame) + "-" + std::to_string(kFrame)}));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    Photograph left;
+    Photograph right;
+    unpack_stereo(read_photograph(out + "/stereo/" + frame_file(kFrame)), {}, left, right);
+    return {std::get<Image<std::uint8_t>>(std::move(left.pixels)),
+            std::get<Image<std::uint8_t>>(std::move(right.pixels))};
+  }
+
+  std::string rig_ = folder_ / "rig.yml";
+};
+
+bool same_pixels(const Image<std::uint8_t>& a, const Image<std::uint8_t>& b) {
+  const int values = a.width() * a.channels();
+  bool same = a.width() == b.width() && a.height() == b.height() && a.channels() == b.channels();
+  for (int y = 0; same && y < a.height(); ++y) {
+    same = std::equal(a.row(y), a.row(y) + values, b.row(y));
+  }
+  return same;
+}
+
+TEST_F(RunCalibration, MatchesRectifiedFramesAndKeepsAsMuchOfThemAsIsAskedFor) {
+  Execution execution(ExecutionOptions{});
+  const StereoCalibration calibration = read_stereo_calibration(rig_);
+  for (const std::string kept : {"0", "0.5", "1"}) {
+    const auto seen = seen_by_run(folder_ / ("kept-" + kept), with_rig({"--kept-outline", kept}));
+    const Rectifier rectifier(calibration, kWidth, kHeight, {.kept_outline = std::stod(kept)});
+    for (const Side side : {Side::kLeft, Side::kRight}) {
+      const std::string& folder = side == Side::kLeft ? left_ : right_;
+      Photograph expected;
+      rectifier.apply(read_photograph(folder + "/" + frame_file(kFrame)), side, expected,
+                      execution);
+      EXPECT_TRUE(same_pixels(seen[side == Side::kLeft ? 0 : 1],
+                              std::get<Image<std::uint8_t>>(expected.pixels)))
+          << "kept-outline " << kept;
+    }
+  }
+}
+
+TEST_F(RunCalibration, RefusesAnOutlineThatCannotBeKept) {
+  for (const auto& [more, says] :
+       {std::pair{std::vector<std::string>{"--kept-outline", "1"}, "expected --calibration"},
+        {with_rig({"--kept-outline", "1.5"}), "kept-outline is 1.5, expected 0 to 1"}}) {
+    const ProcessResult result = run(folder_ / "out", joined(more, {"--quiet"}));
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_TRUE(is_one_line(result, "run"));
+    EXPECT_THAT(result.err, HasSubstr(says));
+  }
+}
+
+// What a frame becomes depends on it, so a run must not go on with another one.
+TEST_F(RunCalibration, AnotherOutlineIsAnotherRun) {
+  const std::string out = folder_ / "out";
+  ASSERT_EQ(run(out, with_rig({"--frames", "0-1"})).exit_code, 0);
+  const ProcessResult other = run(out, with_rig({"--kept-outline", "1", "--resume", "--quiet"}));
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.err, HasSubstr("kept-outline"));
+}
+
+}  // namespace
+}  // namespace vantage

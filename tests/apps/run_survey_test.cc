@@ -1,0 +1,106 @@
+// Runs that are killed or stopped while they look for the shots of their input.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "tests/apps/preloaded.h"
+#include "tests/apps/run_fixture.h"
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr int kKilled = 128 + SIGKILL;
+
+const std::vector<std::string> kShotOutputs = {
+    "--save",          "preview,views", "--view",          "0.5",
+    "--intensity-fit", "shot",          "--preview-range", "shot"};
+
+class Survey : public RunTest {
+ protected:
+  std::string out_ = folder_ / "out";
+  std::string shots_ = out_ + "/.vantage/shots.json";
+};
+
+/// The process is killed before each of the calls that lie between its start and its first results:
+/// the journal's, and those that make the table of shots.
+TEST_F(Survey, MayBeKilledAtAnyCall) {
+  const FolderContent expected = undisturbed(kShotOutputs);
+  ASSERT_EQ(run(out_, kShotOutputs).exit_code, 0);
+  const std::string table = read_file(shots_);
+  int kills_before_the_table = 0;
+  int kills_after_it = 0;
+  for (int call = 1; kills_after_it < 2; call += kIsSanitized ? 3 : 1) {
+    fs::remove_all(out_);
+    const ProcessResult killed =
+        run_vantage(arguments(out_, kShotOutputs), fault_at("KILL", call, out_));
+    ASSERT_EQ(killed.exit_code, kKilled) << killed.err;
+    EXPECT_THAT(journalled_frames(out_), IsEmpty());
+    if (fs::exists(shots_)) {
+      ++kills_after_it;
+      EXPECT_EQ(read_file(shots_), table) << call;
+    } else {
+      ++kills_before_the_table;
+    }
+    const ProcessResult resumed = run(out_, joined(kShotOutputs, {"--resume"}));
+    ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+    EXPECT_TRUE(same_files(results_in(out_), expected)) << call;
+    EXPECT_EQ(read_file(shots_), table) << call;
+    EXPECT_THAT(leftovers_in(out_), IsEmpty()) << call;
+  }
+  EXPECT_GT(kills_before_the_table, kIsSanitized ? 2 : 8);
+}
+
+/// What one part has found is what all others go by, whatever they would have found themselves.
+TEST_F(Survey, IsMadeOnceForAllParts) {
+  ASSERT_EQ(run(out_, joined(kShotOutputs, {"--shard", "1/2"})).exit_code, 0);
+  const std::string table = read_file(shots_);
+  const auto time = fs::last_write_time(shots_);
+  const ProcessResult other = run(out_, joined(kShotOutputs, {"--shard", "2/2"}));
+  ASSERT_EQ(other.exit_code, 0) << other.err;
+  EXPECT_EQ(fs::last_write_time(shots_), time);
+  const ProcessResult merged = run_vantage({"merge", out_});
+  EXPECT_EQ(merged.exit_code, 0) << merged.err;
+  EXPECT_EQ(read_file(shots_), table);
+  EXPECT_TRUE(same_files(results_in(out_), undisturbed(kShotOutputs)));
+}
+
+/// Asked to stop during the survey, it stops there, and goes on with another one.
+TEST_F(Survey, MayBeInterrupted) {
+  constexpr int kFewFrames = 4;
+  for (int frame = kFewFrames; frame < kFrames; ++frame) {
+    fs::remove(left_ + "/" + frame_file(frame));
+    fs::remove(right_ + "/" + frame_file(frame));
+  }
+  // Samples then take long, compared with everything before them.
+  const std::vector<std::string> outputs = joined(
+      kShotOutputs,
+      {"--method", "membrane", "--iterations", kIsSanitized ? "300" : "2000", "--progress", "bar"});
+  const FolderContent expected = undisturbed(outputs);
+  const TemporaryFolder streams;
+  const VantageProcess process(arguments(out_, outputs), streams.path());
+  while (!process.has_ended() && process.err().find("looking for shots") == std::string::npos) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  process.send(SIGINT);
+  const ProcessResult stopped = process.wait();
+  EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("interrupted"));
+  EXPECT_THAT(stopped.err, HasSubstr("--resume"));
+  EXPECT_THAT(results_in(out_), IsEmpty());
+  EXPECT_FALSE(fs::exists(shots_));
+  EXPECT_THAT(leftovers_in(out_), IsEmpty());
+  const ProcessResult resumed = run(out_, joined(outputs, {"--resume"}));
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_TRUE(same_files(results_in(out_), expected));
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,446 @@
+#include "engine/synthesis/surface_warper.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/evaluation/view_evaluation.h"
+#include "engine/generation/layered_scene.h"
+#include "engine/simd.h"
+#include "engine/synthesis/surface_map.h"
+#include "engine/synthesis/view_synthesizer.h"
+#include "tests/kernels/projection_cases.h"
+
+namespace vantage {
+namespace {
+
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
+/// A pair of ideal cameras, principal point in the middle of their images.
+RectifiedPair ideal_pair(int width, int height, double focal_length_px) {
+  RectifiedPair pair;
+  pair.width_px = width;
+  pair.height_px = height;
+  pair.left.matrix << focal_length_px, 0, (width - 1) / 2.0, 0, focal_length_px, (height - 1) / 2.0,
+      0, 0, 1;
+  pair.left.rotation.setIdentity();
+  pair.left.homography.setIdentity();
+  pair.right = pair.left;
+  pair.baseline = 1;
+  return pair;
+}
+
+/// A camera at `centre` (baselines), turned about Z, Y and X, of the images' size.
+PosedCamera turned_camera(const RectifiedPair& pair, const Eigen::Vector3d& centre, double roll,
+                          double yaw, double pitch, double zoom) {
+  PosedCamera camera;
+  camera.matrix = pair.left.matrix;
+  camera.matrix.topLeftCorner<2, 2>() *= zoom;
+  camera.rotation = (Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()) *
+                     Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitY()) *
+                     Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitX()))
+                        .toRotationMatrix();
+  camera.translation = -camera.rotation * centre;
+  camera.width_px = pair.width_px;
+  camera.height_px = pair.height_px;
+  return camera;
+}
+
+struct Pair {
+  Photograph left;
+  Photograph right;
+  DisparityMap left_disparity;
+  DisparityMap right_disparity;
+
+  template <typename Position>
+  void synthesize(const SynthesisOptions& options, const Position& position, Execution& execution,
+                  SynthesizedView& view,
+                  const std::array<IntensityFit, 4>* given_fit = nullptr) const {
+    ViewSynthesizer(options, execution)
+        .synthesize(left, right, left_disparity.view(), right_disparity.view(), position, view,
+                    given_fit);
+  }
+};
+
+template <typename T>
+Pair random_pair(std::mt19937& random, int width, int height, int channels) {
+  const auto picture = [&] {
+    Image<T> image(width, height, channels);
+    for (int y = 0; y < height; ++y) {
+      for (int k = 0; k < width * channels; ++k) {
+        const auto grey = 8.0 * (y % 16) + static_cast<double>(random() % 100);
+        image.row(y)[k] = static_cast<T>(grey / static_cast<double>(kGreyLevelsPerUnit<T>));
+      }
+    }
+    return Photograph{std::move(image)};
+  };
+  const auto map = [&] {
+    DisparityMap result(width, height);
+    const std::vector<float> values = kernels::random_map(random, width, height);
+    for (int y = 0; y < height; ++y) {
+      std::copy_n(values.begin() + y * width, width, result.row(y));
+    }
+    return result;
+  };
+  return {picture(), picture(), map(), map()};
+}
+
+std::vector<std::uint8_t> bytes_of(const SynthesizedView& view) {
+  std::vector<std::uint8_t> bytes;
+  const auto append = [&]<typename T>(const Image<T>& image) {
+    for (int y = 0; y < image.height(); ++y) {
+      const auto* row = reinterpret_cast<const std::uint8_t*>(image.row(y));
+      bytes.insert(bytes.end(), row,
+                   row + sizeof(T) * static_cast<std::size_t>(image.width() * image.channels()));
+    }
+  };
+  std::visit(append, view.image.pixels);
+  append(view.holes);
+  const auto* fit = reinterpret_cast<const std::uint8_t*>(view.intensity.data());
+  bytes.insert(bytes.end(), fit, fit + sizeof(view.intensity));
+  return bytes;
+}
+
+std::vector<NewView> views_of(int width, int height) {
+  const RectifiedPair pair = ideal_pair(width, height, 1.2 * width);
+  return {baseline_view(0.5, 0.3, width, height), baseline_view(-0.2, -1.3, width, height),
+          camera_view(pair, turned_camera(pair, {0.4, 0.2, 0.1}, 0.1, 0.05, -0.03, 1)),
+          camera_view(pair, turned_camera(pair, {0.8, -0.4, -0.5}, 1.4, 0, 0.1, 1.8))};
+}
+
+// Tiles that cannot reach a band are skipped: the result is that of looking at every row.
+TEST(SurfaceMap, MissesNothing) {
+  std::mt19937 random(1);
+  Execution execution({.threads = 3, .executor = scheduler::ExecutorKind::kOpenMp});
+  for (kernels::ViewProjection view : kernels::projection_cases()) {
+    for (const auto& [width, height] : {std::pair{1, 1}, {150, 97}, {64, 16}, {65, 17}, {3, 200}}) {
+      DisparityMap map(width, height);
+      const std::vector<float> values = kernels::random_map(random, width, height);
+      for (int y = 0; y < height; ++y) {
+        std::copy_n(values.begin() + y * width, width, map.row(y));
+      }
+      for (int n = 0; n < 20; ++n) {
+        map.at(static_cast<int>(random() % static_cast<unsigned>(width)),
+               static_cast<int>(random() % static_cast<unsigned>(height))) =
+            static_cast<float>(random() % 100);
+      }
+      const int view_width = 170;
+      const int view_height = 210;
+      Image<float> expected(view_width, view_height);
+      expected.fill(-std::numeric_limits<float>::infinity());
+      const auto project = [&](int y) {
+        kernels::ProjectedValues row(width);
+        if (y < height) {
+          kernels::project_row(view, {map.row(y), width, 0, y}, row.row());
+        }
+        return row;
+      };
+      for (int y = 0; y < height; ++y) {
+        kernels::ProjectedValues upper = project(y);
+        kernels::ProjectedValues lower = project(y + 1);
+        kernels::splat_rows({.view = view,
+                             .upper = upper.row(),
+                             .lower = lower.row(),
+                             .count = width,
+                             .first_column = 0,
+                             .line = y,
+                             .right_edge = kernels::right_edge_direction(view, (width - 1) / 2.0,
+                                                                         (height - 1) / 2.0),
+                             .lower_edge = kernels::lower_edge_direction(view, (width - 1) / 2.0,
+                                                                         (height - 1) / 2.0),
+                             .gradient_limit_px = 1},
+                            {.nearness = expected.row(0),
+                             .stride = static_cast<std::ptrdiff_t>(expected.view().stride()),
+                             .width = view_width,
+                             .first_line = 0,
+                             .lines = view_height});
+      }
+      Image<float> nearness(view_width, view_height);
+      map_surfaces(map.view(), view, 1, nearness.view(), execution);
+      for (int y = 0; y < view_height; ++y) {
+        ASSERT_EQ(std::vector<float>(nearness.row(y), nearness.row(y) + view_width),
+                  std::vector<float>(expected.row(y), expected.row(y) + view_width))
+            << width << "×" << height << ", line " << y << ", homography " << view.homography[0];
+      }
+    }
+  }
+}
+
+TEST(SurfaceWarper, BaselineViewsAreThoseAlongScanlines) {
+  std::mt19937 random(2);
+  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
+  const Pair pair = random_pair<std::uint8_t>(random, 61, 23, 3);
+  for (const double view_x : {-0.6, 0.0, 0.37, 1.0, 1.8}) {
+    for (const WarpColour warp : {WarpColour::kOnePass, WarpColour::kForward}) {
+      SynthesizedView expected;
+      SynthesizedView view;
+      pair.synthesize({.warp = warp}, view_x, execution, expected);
+      pair.synthesize({.warp = warp}, baseline_view(view_x, 0, 61, 23), execution, view);
+      EXPECT_EQ(bytes_of(view), bytes_of(expected));
+    }
+  }
+}
+
+// What a view on the baseline is if it goes the general way: the same, to the last bit.
+TEST(SurfaceWarper, OnTheBaselineItEqualsTheScanlineWarp) {
+  std::mt19937 random(3);
+  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
+  // Without what looks at a view once it is warped and blended.
+  const SynthesisOptions warp_alone{.holes = HoleFilling::kNone, .soft_edges = false};
+  for (const int channels : {1, 3, 4}) {
+    const Pair pair = random_pair<std::uint8_t>(random, 131, 37, channels);
+    SynthesizedView expected;
+    SynthesizedView view;
+    pair.synthesize(warp_alone, 0.43, execution, expected);
+    // One line more than the images have: not a view that goes along scanlines.
+    pair.synthesize(warp_alone, baseline_view(0.43, 0, 131, 38), execution, view);
+    const auto& image = std::get<Image<std::uint8_t>>(view.image.pixels);
+    const auto& scanlines = std::get<Image<std::uint8_t>>(expected.image.pixels);
+    ASSERT_EQ(image.height(), 38);
+    EXPECT_EQ(std::memcmp(view.intensity.data(), expected.intensity.data(), sizeof(view.intensity)),
+              0);
+    for (int y = 0; y < 37; ++y) {
+      ASSERT_EQ(std::vector<int>(image.row(y), image.row(y) + 131 * channels),
+                std::vector<int>(scanlines.row(y), scanlines.row(y) + 131 * channels))
+          << "row " << y;
+      ASSERT_TRUE(std::equal(view.holes.row(y), view.holes.row(y) + 131, expected.holes.row(y)));
+    }
+  }
+}
+
+TEST(SurfaceWarper, IdenticalForAnyExecutionAndInstructionSet) {
+  std::mt19937 random(4);
+  const Pair pair = random_pair<std::uint8_t>(random, 151, 140, 3);
+  Execution serial({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
+  for (const NewView& new_view : views_of(151, 140)) {
+    SynthesizedView view;
+    pair.synthesize({}, new_view, serial, view);
+    EXPECT_LT(view.hole_fraction, 0.9);
+    const std::vector<std::uint8_t> expected = bytes_of(view);
+    for (const auto kind : {scheduler::ExecutorKind::kTbb, scheduler::ExecutorKind::kOpenMp}) {
+      for (const int threads : {1, 2, 7}) {
+        Execution execution({.threads = threads, .executor = kind});
+        pair.synthesize({}, new_view, execution, view);
+        ASSERT_EQ(bytes_of(view), expected) << threads << " threads";
+      }
+    }
+    for (const std::string& name : available_instruction_sets()) {
+      force_instruction_set(name);
+      pair.synthesize({}, new_view, serial, view);
+      ASSERT_EQ(bytes_of(view), expected) << name;
+    }
+    force_instruction_set("best");
+  }
+}
+
+// A textured plane, seen from anywhere: the homography of the plane says what a pixel shows.
+TEST(SurfaceWarper, APlaneMovesByItsHomography) {
+  const int width = 260;
+  const int height = 200;
+  const double slope_x = 0.021;
+  const double slope_y = -0.034;
+  const double offset = 14;
+  const auto texture = [](double x, double y) {
+    return 128 + 60 * std::sin(0.21 * x + 0.05 * y) + 50 * std::cos(0.17 * y - 0.08 * x);
+  };
+  const auto picture = [&](bool is_right, DisparityMap& map) {
+    Image<float> image(width, height, 1);
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        // d = slope_x · x + slope_y · y + offset of the left image's x, which is x + d in the
+        // right.
+        const double left_x = is_right ? (x + slope_y * y + offset) / (1 - slope_x) : x;
+        map.at(x, y) = static_cast<float>(slope_x * left_x + slope_y * y + offset);
+        image.at(x, y) = static_cast<float>(texture(left_x, y) / 255);
+      }
+    }
+    return Photograph{std::move(image)};
+  };
+  DisparityMap left_map(width, height);
+  DisparityMap right_map(width, height);
+  Photograph left = picture(false, left_map);
+  Photograph right = picture(true, right_map);
+  const Pair pair{std::move(left), std::move(right), std::move(left_map), std::move(right_map)};
+  const RectifiedPair cameras = ideal_pair(width, height, 300);
+  Execution execution({.threads = 2});
+  const Eigen::RowVector3d plane(slope_x, slope_y, offset);
+  for (const NewView& new_view :
+       {baseline_view(0.4, 0.7, width, height),
+        camera_view(cameras, turned_camera(cameras, {0.5, 0.4, 0}, 0.3, 0.02, 0.03, 1)),
+        camera_view(cameras, turned_camera(cameras, {-0.3, 0.2, 1.5}, -1.9, 0.05, -0.04, 1.3)),
+        camera_view(cameras, turned_camera(cameras, {0.7, -0.2, -1}, 0, -0.1, 0.1, 2.7))}) {
+    SynthesizedView view;
+    pair.synthesize({}, new_view, execution, view);
+    const auto& image = std::get<Image<float>>(view.image.pixels);
+    const Eigen::Matrix3d back =
+        (new_view.from_left.homography + new_view.from_left.parallax * plane).inverse();
+    double squares = 0;
+    int count = 0;
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        const Eigen::Vector3d seen = back * Eigen::Vector3d(u, v, 1);
+        const double x = seen.x() / seen.z();
+        const double y = seen.y() / seen.z();
+        if (seen.z() <= 0 || x < 3 || y < 3 || x > width - 4 || y > height - 4) {
+          continue;
+        }
+        ASSERT_EQ(view.holes.at(u, v), 0) << u << ", " << v;
+        const double error = 255.0 * static_cast<double>(image.at(u, v)) - texture(x, y);
+        squares += error * error;
+        ++count;
+      }
+    }
+    EXPECT_GT(count, 8000);
+    EXPECT_GT(10 * std::log10(255.0 * 255.0 * count / squares), 50) << "of " << count;
+  }
+}
+
+// The views of a scene that is known exactly: from its exact maps to the picture rendered there,
+// off the baseline and by a camera that is turned, nearer and of another focal length and size.
+TEST(SurfaceWarper, ExactMapsGiveTheRenderedView) {
+  const int width = 640;
+  const int height = 480;
+  Execution execution({.threads = 2});
+  const LayeredScene scene({.width_px = width, .height_px = height, .samples_per_side = 2},
+                           execution);
+  SceneRendering left = scene.render({0, 0}, 0);
+  SceneRendering right = scene.render({1, 0}, 0);
+  const Pair pair{std::move(left.image), std::move(right.image), std::move(left.disparity),
+                  std::move(right.disparity)};
+  const RectifiedPair cameras = ideal_pair(width, height, scene.focal_length_px());
+  PosedCamera turned = turned_camera(cameras, {0.4, 0.2, 0.5}, 0.1, 0.05, -0.04, 0.9);
+  turned.width_px = 600;
+  turned.matrix(0, 2) -= 30;
+  const auto expect_like = [&](const PosedCamera& camera, const NewView& new_view) {
+    const SceneRendering truth = scene.render(camera, 0);
+    const Mask not_left = scene.occlusion(camera, scene.camera({0, 0}), 0);
+    const Mask not_right = scene.occlusion(camera, scene.camera({1, 0}), 0);
+    Mask visible(new_view.width_px, new_view.height_px);
+    for (int y = 0; y < new_view.height_px; ++y) {
+      for (int x = 0; x < new_view.width_px; ++x) {
+        visible.at(x, y) = not_left.at(x, y) != 0 && not_right.at(x, y) != 0 ? 0 : 255;
+      }
+    }
+    SynthesizedView view;
+    pair.synthesize({}, new_view, execution, view);
+    const ViewScores scores =
+        evaluate_view(view.image, truth.image, execution,
+                      ImageView<const std::uint8_t>(std::as_const(visible).view()));
+    EXPECT_GE(scores.pixels, 240000);
+    EXPECT_GE(scores.psnr_db, 38);
+  };
+  expect_like(scene.camera({0.5, 0.3}), baseline_view(0.5, 0.3, width, height));
+  expect_like(turned, camera_view(cameras, turned));
+}
+
+TEST(SurfaceWarper, SumsGiveTheFitOfTheView) {
+  std::mt19937 random(5);
+  const Pair pair = random_pair<std::uint16_t>(random, 90, 70, 3);
+  Execution execution({.threads = 2});
+  const ViewSynthesizer synthesizer({}, execution);
+  for (const NewView& new_view : views_of(90, 70)) {
+    const auto sums = synthesizer.intensity_sums(pair.left, pair.right, pair.left_disparity.view(),
+                                                 pair.right_disparity.view(), new_view);
+    EXPECT_GT(sums.pixels, 100);
+    SynthesizedView view;
+    pair.synthesize({}, new_view, execution, view);
+    const std::array<IntensityFit, 4> fit = fit_channels(sums, 3, 1);
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(view.intensity[c].offset, fit[c].offset, 1e-6);
+      EXPECT_NEAR(view.intensity[c].gain, fit[c].gain, 1e-9);
+    }
+    // A given fit warps once; the picture is the same.
+    SynthesizedView given;
+    pair.synthesize({}, new_view, execution, given, &view.intensity);
+    EXPECT_EQ(bytes_of(given), bytes_of(view));
+  }
+}
+
+TEST(SurfaceWarper, HasTheViewsSizeAndReusesItsMemory) {
+  std::mt19937 random(6);
+  const Pair pair = random_pair<float>(random, 70, 50, 4);
+  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
+  const RectifiedPair cameras = ideal_pair(70, 50, 90);
+  PosedCamera camera = turned_camera(cameras, {0.5, 0.2, 0}, 0.1, 0, 0, 1);
+  camera.width_px = 33;
+  camera.height_px = 111;
+  const NewView new_view = camera_view(cameras, camera);
+  SynthesizedView view;
+  pair.synthesize({}, new_view, execution, view);
+  EXPECT_EQ(view.image.width(), 33);
+  EXPECT_EQ(view.image.height(), 111);
+  EXPECT_EQ(view.holes.width(), 33);
+  EXPECT_GT(view.hole_fraction, 0.1);  // the view is taller than what the images show
+  EXPECT_LT(view.hole_fraction, 0.9);
+  const std::size_t held = execution.scratch().bytes_held();
+  EXPECT_LT(held, ViewSynthesizer::working_bytes(new_view, 70, 50, 4) + 64 * 1024);
+  pair.synthesize({}, new_view, execution, view);
+  EXPECT_EQ(execution.scratch().bytes_held(), held);
+}
+
+TEST(SurfaceWarper, NothingIsKnown) {
+  std::mt19937 random(7);
+  Pair pair = random_pair<std::uint8_t>(random, 20, 10, 1);
+  pair.left_disparity.fill(kUnknown);
+  pair.right_disparity.fill(-std::numeric_limits<float>::infinity());
+  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
+  for (const NewView& new_view : views_of(20, 10)) {
+    SynthesizedView view;
+    pair.synthesize({}, new_view, execution, view);
+    EXPECT_EQ(view.hole_fraction, 1);
+  }
+}
+
+TEST(SurfaceWarper, WildDisparitiesDoNoHarm) {
+  std::mt19937 random(8);
+  Pair pair = random_pair<std::uint8_t>(random, 40, 30, 3);
+  for (DisparityMap* map : {&pair.left_disparity, &pair.right_disparity}) {
+    for (const float wild : {3e38F, -3e38F, 1e10F, -1e6F, 4000.0F}) {
+      map->at(static_cast<int>(random() % 40), static_cast<int>(random() % 30)) = wild;
+    }
+  }
+  Execution execution({.threads = 2});
+  for (const NewView& new_view : views_of(40, 30)) {
+    SynthesizedView view;
+    for (const double limit : {0.0, 1.0, 1e6}) {
+      pair.synthesize({.disparity_gradient_limit_px = limit}, new_view, execution, view);
+      EXPECT_LT(view.hole_fraction, 1);
+    }
+  }
+}
+
+TEST(SurfaceWarper, RefusesWhatItCannotMake) {
+  std::mt19937 random(9);
+  const Pair pair = random_pair<std::uint8_t>(random, 20, 10, 3);
+  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
+  SynthesizedView view;
+  EXPECT_THROW(pair.synthesize({.warp = WarpColour::kForward}, baseline_view(0.5, 0.1, 20, 10),
+                               execution, view),
+               UsageError);
+  for (const auto& [width, height] : {std::pair{0, 10}, {20, 0}, {65501, 10}, {20, 65501}}) {
+    EXPECT_THROW(pair.synthesize({}, baseline_view(0.5, 0.1, width, height), execution, view),
+                 Error);
+  }
+  NewView flat = baseline_view(0.5, 0.1, 20, 10);
+  flat.from_right.homography.setOnes();
+  EXPECT_THROW(pair.synthesize({}, flat, execution, view), Error);
+  flat.from_right.homography = Eigen::Matrix3d::Identity() * 2;
+  flat.from_right.homography(0, 1) = std::nan("");
+  EXPECT_THROW(pair.synthesize({}, flat, execution, view), Error);
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,191 @@
+// Video files that end too early.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "engine/io/video_io.h"
+#include "engine/io/video_join.h"
+#include "engine/io/video_structure.h"
+#include "tests/engine/video_test_support.h"
+
+namespace vantage {
+namespace {
+
+using test::bytes_of;
+using test::error_of;
+using test::number_of_frame;
+using test::put_bytes;
+using test::put_numbered_video;
+using test::put_open_groups_video;
+using test::put_raw_video;
+using test::RawVideo;
+using test::remux_video;
+using test::video_packets;
+using test::VideoPacket;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr FrameRate kRate{10, 1};
+
+std::vector<std::uint8_t> first_bytes(const std::vector<std::uint8_t>& bytes, std::int64_t count) {
+  return {bytes.begin(), bytes.begin() + count};
+}
+
+/// Reads `path`, of whose frames the first `frames` are there.
+void expect_frames_before_the_cut(const std::filesystem::path& path, int frames) {
+  SCOPED_TRACE(testing::Message() << "of " << std::filesystem::file_size(path) << " bytes");
+  VideoReader reader(path);
+  Photograph frame;
+  for (int i = 0; i < frames; ++i) {
+    ASSERT_TRUE(reader.read(frame)) << i;
+    EXPECT_EQ(number_of_frame(frame), i);
+  }
+  EXPECT_GT(reader.frame_count(), frames);
+  EXPECT_THAT(error_of([&] { reader.read(frame); }),
+              AllOf(HasSubstr(path.filename().string() + ": frame " + std::to_string(frames) + " "),
+                    HasSubstr("the file")));
+  EXPECT_FALSE(reader.read(frame)) << "a video ends with its damage";
+}
+
+/// Cuts the video before, just behind the beginning of, and in the middle of each of its packets.
+void cut_everywhere(const std::filesystem::path& path, const std::filesystem::path& cut) {
+  const std::vector<VideoPacket> packets = video_packets(path);
+  const auto whole = bytes_of(path);
+  for (std::size_t i = 1; i < packets.size(); ++i) {
+    int first_lost = packets[i].frame;
+    for (std::size_t k = i; k < packets.size(); ++k) {
+      first_lost = std::min(first_lost, packets[k].frame);
+    }
+    const std::int64_t begin = packets[i].offset;
+    const std::int64_t middle =
+        i + 1 < packets.size() ? (begin + packets[i + 1].offset) / 2 : begin;
+    for (const std::int64_t size : {begin, begin + 5, middle}) {
+      put_bytes(cut, first_bytes(whole, size));
+      expect_frames_before_the_cut(cut, first_lost);
+      if (testing::Test::HasFatalFailure()) {
+        return;
+      }
+    }
+  }
+}
+
+TEST(TruncatedVideo, TheFramesBeforeTheCutAreThere) {
+  const TemporaryFolder folder;
+  put_numbered_video(folder / "a.mp4", 14, kRate);
+  put_open_groups_video(folder / "groups.mp4", 14, kRate);
+  for (const char* video : {"a.mp4", "groups.mp4"}) {
+    remux_video(folder / video, folder / "whole.mkv", "matroska", kRate);
+    cut_everywhere(folder / "whole.mkv", folder / "cut.mkv");
+  }
+  cut_everywhere(folder / "a.mp4", folder / "cut.mp4");  // its index comes first
+}
+
+TEST(TruncatedVideo, OfRawVideoToo) {
+  const TemporaryFolder folder;
+  constexpr int kWidth = 8;
+  constexpr int kHeight = 6;
+  RawVideo video{"mono", 8, true, kWidth, kHeight, {}};
+  for (int i = 0; i < 5; ++i) {
+    video.frames.push_back({std::vector<int>(kWidth * kHeight, 20 + 9 * i)});
+  }
+  put_raw_video(folder / "whole.y4m", video);
+  EXPECT_EQ(VideoReader(folder / "whole.y4m").frame_count(), 5);
+  const auto whole = bytes_of(folder / "whole.y4m");
+  constexpr std::int64_t kFrameBytes = 6 + kWidth * kHeight;
+  const std::int64_t header = static_cast<std::int64_t>(whole.size()) - 5 * kFrameBytes;
+  for (int frames = 1; frames < 5; ++frames) {
+    const std::int64_t end = header + frames * kFrameBytes;
+    for (const std::int64_t more : {std::int64_t{1}, std::int64_t{6}, kFrameBytes - 1}) {
+      put_bytes(folder / "cut.y4m", first_bytes(whole, end + more));
+      expect_frames_before_the_cut(folder / "cut.y4m", frames);
+    }
+    // Nothing tells that there were more.
+    put_bytes(folder / "cut.y4m", first_bytes(whole, end));
+    EXPECT_EQ(test::frame_numbers(folder / "cut.y4m").size(), static_cast<std::size_t>(frames));
+  }
+}
+
+/// What lies behind the frames is no loss.
+TEST(TruncatedVideo, AllFramesAreThereWhereOnlyWhatFollowsThemIsCutOff) {
+  const TemporaryFolder folder;
+  put_numbered_video(folder / "a.mp4", 12, kRate);
+  remux_video(folder / "a.mp4", folder / "b.mkv", "matroska", kRate);
+  const auto whole = bytes_of(folder / "b.mkv");
+  EXPECT_EQ(find_video_extent(folder / "b.mkv"), VideoExtent::kWhole);
+  put_bytes(folder / "b.mkv", first_bytes(whole, static_cast<std::int64_t>(whole.size()) - 1));
+  EXPECT_EQ(find_video_extent(folder / "b.mkv"), VideoExtent::kWhole);
+  EXPECT_EQ(VideoReader(folder / "b.mkv").frame_count(), 12);
+  EXPECT_EQ(test::frame_numbers(folder / "b.mkv").size(), 12U);
+  put_bytes(folder / "b.mkv", first_bytes(whole, static_cast<std::int64_t>(whole.size()) / 2));
+  EXPECT_EQ(find_video_extent(folder / "b.mkv"), VideoExtent::kCutOff);
+  EXPECT_THAT(error_of([&] { check_video_is_whole(folder / "b.mkv"); }), HasSubstr("truncated"));
+}
+
+TEST(TruncatedVideo, AviTellsByItsChunks) {
+  const TemporaryFolder folder;
+  const std::string header = std::string("LIST") + '\x05' + std::string(3, '\0') + "hdrl..";
+  const std::string frames = std::string("LIST") + '\x0A' + std::string(3, '\0') + "movi......";
+  const std::string index = std::string("idx1") + '\x04' + std::string(3, '\0') + "....";
+  const std::string contents = "AVI " + header + frames + index;
+  const std::string whole =
+      std::string("RIFF") + static_cast<char>(contents.size()) + std::string(3, '\0') + contents;
+  for (std::size_t size = 12; size <= whole.size(); ++size) {
+    test::put_text(folder / "a.avi", whole.substr(0, size));
+    EXPECT_EQ(find_video_extent(folder / "a.avi"),
+              size + index.size() < whole.size() ? VideoExtent::kCutOff : VideoExtent::kWhole)
+        << size;
+  }
+}
+
+/// So that the frames before the cut can be joined with it, wherever the cut is.
+TEST(TruncatedVideo, ItsSoundEndsAtTheCut) {
+  const TemporaryFolder folder;
+  put_numbered_video(folder / "a.mp4", 20, kRate);
+  test::Sound sound{8000, std::vector<float>(16000)};
+  for (std::size_t i = 0; i < sound.samples.size(); ++i) {
+    sound.samples[i] = static_cast<float>(i % 40) / 80;
+  }
+  // Packets that are encoded again, and packets that are copied.
+  remux_video(folder / "a.mp4", folder / "encoded.mkv", "matroska", kRate, sound);
+  const std::vector<std::filesystem::path> segments = {folder / "a.mp4"};
+  join_videos(segments, kRate, {folder / "encoded.mkv", 0, 2}, folder / "copied.mp4");
+  for (const char* video : {"encoded.mkv", "copied.mp4"}) {
+    const auto whole = bytes_of(folder / video);
+    const auto size = static_cast<std::int64_t>(whole.size());
+    for (std::int64_t bytes = size * 3 / 4; bytes < size * 3 / 4 + 300; bytes += 23) {
+      put_bytes(folder / "cut", first_bytes(whole, bytes));
+      ASSERT_EQ(find_video_extent(folder / "cut"), VideoExtent::kCutOff);
+      ASSERT_EQ(error_of([&] {
+                  join_videos(segments, kRate, {folder / "cut", 0, 2}, folder / "joined.mp4");
+                }),
+                "")
+          << video << " " << bytes;
+      const auto samples = test::read_sound(folder / "joined.mp4").samples.size();
+      EXPECT_GT(samples, 4000U);
+      EXPECT_LT(samples, 16000U);
+    }
+  }
+}
+
+TEST(TruncatedVideo, AnMp4WithoutIndexIsRefusedAndSaysWhy) {
+  const TemporaryFolder folder;
+  put_numbered_video(folder / "a.mp4", 12, kRate);
+  put_open_groups_video(folder / "index-last.mp4", 12, kRate);
+  for (const char* video : {"a.mp4", "index-last.mp4"}) {
+    const auto whole = bytes_of(folder / video);
+    const auto size = static_cast<std::int64_t>(whole.size());
+    for (const std::int64_t bytes :
+         {std::int64_t{50}, video == std::string("a.mp4") ? std::int64_t{200} : size - 1}) {
+      put_bytes(folder / "b.mp4", first_bytes(whole, bytes));
+      EXPECT_THAT(error_of([&] { VideoReader(folder / "b.mp4"); }),
+                  AllOf(HasSubstr("b.mp4"), HasSubstr("index"), HasSubstr(std::to_string(bytes))));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vantage

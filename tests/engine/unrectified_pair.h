@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "engine/generation/layered_scene.h"
+#include "tests/engine/calibration_cases.h"
+
+namespace vantage::test {
+
+inline Eigen::Matrix3d turned_by(double x, double y, double z) {
+  return (Eigen::AngleAxisd(x, Eigen::Vector3d::UnitX()) *
+          Eigen::AngleAxisd(y, Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(z, Eigen::Vector3d::UnitZ()))
+      .toRotationMatrix();
+}
+
+/// What `homography` (pixel of the result ← pixel of the image) makes of an 8-bit image; the part
+/// of it that lies inside keeps the rest of the frame filled by its mirror image.
+inline Photograph warped(const Photograph& photograph, const Eigen::Matrix3d& homography) {
+  const auto& from = std::get<Image<std::uint8_t>>(photograph.pixels);
+  const int type = CV_MAKETYPE(CV_8U, from.channels());
+  const cv::Mat source(from.height(), from.width(), type, const_cast<std::uint8_t*>(from.row(0)),
+                       from.view().stride());
+  Image<std::uint8_t> result(from.width(), from.height(), from.channels());
+  cv::Mat target(from.height(), from.width(), type, result.row(0), result.view().stride());
+  cv::Mat matrix(3, 3, CV_64F);
+  for (int i = 0; i < 9; ++i) {
+    matrix.at<double>(i / 3, i % 3) = homography(i / 3, i % 3);
+  }
+  cv::warpPerspective(source, target, matrix, source.size(), cv::INTER_CUBIC, cv::BORDER_REFLECT);
+  return {std::move(result)};
+}
+
+/// A rendered scene as a pair of cameras sees it that have been turned by some degrees.
+struct UnrectifiedPair {
+  Photograph left;
+  Photograph right;
+  StereoCalibration calibration;  ///< the truth; the baseline is 1 long
+};
+
+inline UnrectifiedPair unrectified_pair(Execution& execution, int width = 320, int height = 240) {
+  LayeredScene scene({.width_px = width, .height_px = height, .samples_per_side = 2}, execution);
+  const double focal = scene.focal_length_px();
+  UnrectifiedPair pair;
+  Camera camera;
+  camera.matrix << focal, 0, (width - 1) / 2.0, 0, focal, (height - 1) / 2.0, 0, 0, 1;
+  pair.calibration.left = camera;
+  pair.calibration.right = camera;
+  const Eigen::Matrix3d left_turn = turned_by(0.02, 0.01, -0.03);
+  const Eigen::Matrix3d right_turn = turned_by(-0.02, -0.015, 0.02);
+  pair.calibration.rotation = right_turn * left_turn.transpose();
+  pair.calibration.translation = -right_turn * Eigen::Vector3d::UnitX();
+  const auto homography = [&](const Eigen::Matrix3d& turn) {
+    return Eigen::Matrix3d(camera.matrix * turn * camera.matrix.inverse());
+  };
+  pair.left = warped(scene.render({0, 0}, 0).image, homography(left_turn));
+  pair.right = warped(scene.render({1, 0}, 0).image, homography(right_turn));
+  return pair;
+}
+
+}  // namespace vantage::test
