@@ -105,7 +105,7 @@ SequenceOptions run_options(const Method& method, bool views_as_video) {
   if (views_as_video) {
     options.video = {SequenceOutput::kViews};
   }
-  options.views = {ViewTrack::fixed(kViewX)};
+  options.views = {ViewTrack::fixed({kViewX, 0})};
   options.chunk_frames = kChunkFrames;
   return options;
 }

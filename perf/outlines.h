@@ -1,0 +1,57 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/matching/stereo_matcher.h"
+#include "perf/view_scenes.h"
+
+namespace vantage::perf {
+
+/// Disparities as a view sees them: those of both maps, the nearer ones in front, and what neither
+/// has as far away as the farther end of its run.
+inline DisparityMap seen_from(const DisparityMaps& maps, double view_x) {
+  DisparityMap seen = moved(maps.left, view_x);
+  const DisparityMap right = moved(maps.right, view_x - 1);
+  const int width = seen.width();
+  for (int y = 0; y < seen.height(); ++y) {
+    for (int x = 0; x < width; ++x) {
+      seen.at(x, y) = std::fmax(seen.at(x, y), right.at(x, y));  // of a number and NaN: the number
+    }
+    for (int begin = 0; begin < width; ++begin) {
+      int end = begin;
+      while (end < width && std::isnan(seen.at(end, y))) {
+        ++end;
+      }
+      const float before = begin > 0 ? seen.at(begin - 1, y) : seen.at(std::min(end, width - 1), y);
+      const float behind = end < width ? seen.at(end, y) : before;
+      std::fill(seen.row(y) + begin, seen.row(y) + end, std::min(before, behind));
+      begin = end;
+    }
+  }
+  return seen;
+}
+
+/// 255 within 3 pixels of a step of more than one disparity between neighbours, else 0.
+inline Mask near_outlines(const DisparityMap& seen) {
+  constexpr int kBandPx = 3;
+  const int width = seen.width();
+  const int height = seen.height();
+  Mask near(width, height);
+  near.fill(0);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const float d = seen.at(x, y);
+      if (std::abs(seen.at(std::min(x + 1, width - 1), y) - d) > 1 ||
+          std::abs(seen.at(x, std::min(y + 1, height - 1)) - d) > 1) {
+        for (int row = std::max(y - kBandPx, 0); row <= std::min(y + kBandPx, height - 1); ++row) {
+          std::fill(near.row(row) + std::max(x - kBandPx, 0),
+                    near.row(row) + std::min(x + kBandPx, width - 1) + 1, 255);
+        }
+      }
+    }
+  }
+  return near;
+}
+
+}  // namespace vantage::perf

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/io/disparity_io.h"
+#include "engine/io/photograph_io.h"
+#include "engine/matching/match_options.h"
+#include "engine/matching/stereo_matcher.h"
+#include "engine/refinement/refinement.h"
+
+namespace vantage::perf {
+
+/// A photograph taken on the baseline of a pair.
+struct RealView {
+  std::string file;
+  double x;  ///< in baselines
+};
+
+/// A pair with truth and photographs between and beside its cameras; files below the folder of the
+/// scenes.
+struct ViewScene {
+  std::string name, left, right;
+  std::string left_truth, right_truth;  ///< the right one may be empty, see true_maps()
+  double scale;                         ///< of the truth's files, per baseline of the pair
+  /// Where the truth of `left_truth` was taken, in baselines; 0 unless it is a third photograph's.
+  double truth_x;
+  DisparityRange range;
+  std::vector<RealView> views;
+};
+
+inline const std::vector<ViewScene>& view_scenes() {
+  const std::vector<RealView> seven = {{"view2.png", 0.25},
+                                       {"view3.png", 0.5},
+                                       {"view4.png", 0.75},
+                                       {"view0.png", -0.25},
+                                       {"view6.png", 1.25}};
+  static const std::vector<ViewScene> scenes = {
+      // The truth is of the middle photograph and for a quarter of the baseline.
+      {"tsukuba",
+       "im1.ppm",
+       "im5.ppm",
+       "disp3.pgm",
+       "",
+       4,
+       0.5,
+       {0, 60},
+       {{"im2.ppm", 0.25}, {"im3.ppm", 0.5}, {"im4.ppm", 0.75}}},
+      {"venus",
+       "im2.ppm",
+       "im6.ppm",
+       "disp2.pgm",
+       "disp6.pgm",
+       8,
+       0,
+       {0, 31},
+       {{"im3.ppm", 0.25},
+        {"im4.ppm", 0.5},
+        {"im5.ppm", 0.75},
+        {"im0.ppm", -0.5},
+        {"im1.ppm", -0.25},
+        {"im7.ppm", 1.25},
+        {"im8.ppm", 1.5}}},
+      {"cones_half",
+       "im2.png",
+       "im6.png",
+       "disp2.png",
+       "disp6.png",
+       2,
+       0,
+       {0, 127},
+       {{"im3.png", 0.25}, {"im4.png", 0.5}, {"im5.png", 0.75}}},
+      {"aloe", "view1.png", "view5.png", "disp1.png", "disp5.png", 2, 0, {0, 111}, seven},
+      {"art", "view1.png", "view5.png", "disp1.png", "disp5.png", 2, 0, {0, 127}, seven},
+      {"baby1", "view1.png", "view5.png", "disp1.png", "disp5.png", 2, 0, {0, 79}, seven},
+      {"bowling1", "view1.png", "view5.png", "disp1.png", "disp5.png", 2, 0, {0, 127}, seven},
+      {"cloth1", "view1.png", "view5.png", "disp1.png", "disp5.png", 2, 0, {0, 95}, seven},
+  };
+  return scenes;
+}
+
+/// A map seen from `baselines` further right: every pixel where it falls, the nearest one winning.
+inline DisparityMap moved(const DisparityMap& map, double baselines) {
+  DisparityMap result(map.width(), map.height());
+  result.fill(std::numeric_limits<float>::quiet_NaN());
+  for (int y = 0; y < map.height(); ++y) {
+    for (int x = 0; x < map.width(); ++x) {
+      const float d = map.at(x, y);
+      if (!std::isfinite(d)) {
+        continue;
+      }
+      const int place = static_cast<int>(std::lround(x - baselines * d));
+      if (place >= 0 && place < map.width() && !(result.at(place, y) >= d)) {
+        result.at(place, y) = d;
+      }
+    }
+  }
+  return result;
+}
+
+/// The true maps of both images, with their unknown pixels filled at constant depth.
+inline DisparityMaps true_maps(const ViewScene& scene, const std::filesystem::path& folder,
+                               Execution& execution) {
+  DisparityMaps maps;
+  maps.left = read_disparity(folder / scene.left_truth, scene.scale);
+  if (scene.right_truth.empty()) {
+    maps.right = moved(maps.left, 1 - scene.truth_x);
+    maps.left = moved(maps.left, -scene.truth_x);
+  } else {
+    maps.right = read_disparity(folder / scene.right_truth, scene.scale);
+  }
+  Mask unknown;
+  mark_unknown(maps.left.view(), execution, unknown);
+  fill_unmatched(unknown, MapSide::kLeft, Fill::kConstant, execution, maps.left);
+  mark_unknown(maps.right.view(), execution, unknown);
+  fill_unmatched(unknown, MapSide::kRight, Fill::kConstant, execution, maps.right);
+  return maps;
+}
+
+}  // namespace vantage::perf
