@@ -32,7 +32,8 @@ void add_synthesis_settings(Settings& settings, SynthesisOptions& options) {
   settings.begin_group("View synthesis");
   settings.choice<WarpColour>(
       "warp", options.warp, {{"one-pass", WarpColour::kOnePass}, {"forward", WarpColour::kForward}},
-      "one-pass: one bicubic interpolation of the photograph; forward: moves whole pixels");
+      "one-pass: one bicubic interpolation of the photograph; forward: moves whole pixels, "
+      "for cameras between rectifying and derectifying as in the book");
   add_holes_setting(settings, options.holes);
   add_soft_edges_setting(settings, options.soft_edges);
   add_combining_settings(settings, options);

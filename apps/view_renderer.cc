@@ -1,12 +1,16 @@
 #include "apps/view_renderer.h"
 
 #include <chrono>
+#include <variant>
 
 namespace vantage::apps {
 
 ViewRenderer::ViewRenderer(const PairWithMaps& pair, const SynthesisOptions& options,
                            std::optional<TwoEyes> two_eyes, Execution& execution)
-    : pair_(pair), two_eyes_(two_eyes), synthesizer_(options, execution) {}
+    : pair_(pair),
+      two_eyes_(two_eyes),
+      synthesizer_(options, execution),
+      three_steps_(options, execution) {}
 
 void ViewRenderer::fix_intensities() {
   if (synthesizer_.options().match_intensities) {
@@ -31,6 +35,13 @@ void ViewRenderer::render(const ViewPose& pose, RenderedView& result) const {
 }
 
 void ViewRenderer::synthesize(const ViewPose& pose, SynthesizedView& view) const {
+  const auto* camera = std::get_if<PosedCamera>(&pose);
+  if (synthesizer_.options().warp == WarpColour::kForward && camera != nullptr && pair_.cameras) {
+    three_steps_.synthesize(pair_.left, pair_.right, pair_.maps.left.view(),
+                            pair_.maps.right.view(), *pair_.cameras, *camera, view,
+                            fit_ ? &*fit_ : nullptr);
+    return;
+  }
   const NewView geometry = new_view(pose, pair_.cameras ? &*pair_.cameras : nullptr,
                                     pair_.left.width(), pair_.left.height());
   synthesizer_.synthesize(pair_.left, pair_.right, pair_.maps.left.view(), pair_.maps.right.view(),

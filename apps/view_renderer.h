@@ -6,6 +6,7 @@
 #include "apps/pair_input.h"
 #include "engine/execution.h"
 #include "engine/image/stereo_display.h"
+#include "engine/synthesis/three_step_synthesizer.h"
 #include "engine/synthesis/view_synthesizer.h"
 #include "engine/view_geometry/view_pose.h"
 
@@ -49,6 +50,7 @@ class ViewRenderer {
   const PairWithMaps& pair_;
   std::optional<TwoEyes> two_eyes_;
   ViewSynthesizer synthesizer_;
+  ThreeStepSynthesizer three_steps_;
   std::optional<std::array<IntensityFit, 4>> fit_;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cstdint>
 
 #include "engine/error.h"
@@ -48,10 +49,7 @@ kernels::SourceProjection way_back(const ViewWarp& warp, double infinity_dispari
   return back;
 }
 
-const ViewFrame& checked(const ViewFrame& frame, const SynthesisOptions& options) {
-  if (options.warp == WarpColour::kForward) {
-    throw UsageError("warp is forward, expected one-pass for a view off the baseline");
-  }
+const ViewFrame& checked(const ViewFrame& frame) {
   if (frame.width_px < 1 || frame.height_px < 1 || frame.width_px > kLargestSide ||
       frame.height_px > kLargestSide) {
     throw Error(fmt::format("new view is {}×{}, expected 1..{} pixels in width and height",
@@ -74,7 +72,8 @@ ImageWarper<T>::ImageWarper(ImageView<const T> image, ImageView<const float> dis
     : image_(image),
       disparity_px_(disparity_px),
       gradient_limit_px_(static_cast<float>(options.disparity_gradient_limit_px)),
-      back_(way_back(warp, checked(frame, options).infinity_disparity_px)),
+      takes_whole_pixels_(options.warp == WarpColour::kForward),
+      back_(way_back(warp, checked(frame).infinity_disparity_px)),
       nearness_memory_(execution.scratch().lease(held_bytes(frame.width_px, frame.height_px))),
       nearness_(reinterpret_cast<float*>(nearness_memory_.data()), frame.width_px, frame.height_px,
                 1, row_floats(frame.width_px, 1)) {
@@ -85,6 +84,20 @@ ImageWarper<T>::ImageWarper(ImageView<const T> image, ImageView<const float> dis
 template <typename T>
 std::size_t ImageWarper<T>::scratch_floats() const {
   return 5 * row_floats(width(), 1);
+}
+
+// The nearest pixel's, which for samples that are no gaps is the one that was moved there.
+template <typename T>
+void ImageWarper<T>::move_to_whole_pixels(const kernels::SourcePositions& positions) const {
+  const auto move = [&](std::int32_t* whole, float* fraction, int size) {
+    for (int i = 0; i < width(); ++i) {
+      const int nearest = whole[i] + (fraction[i] >= 0.5F ? 1 : 0);
+      whole[i] = std::clamp(nearest, 0, size - 1);
+      fraction[i] = 0;
+    }
+  };
+  move(positions.column, positions.fraction_x, image_.width());
+  move(positions.line, positions.fraction_y, image_.height());
 }
 
 template <typename T>
@@ -103,6 +116,9 @@ void ImageWarper<T>::warp(int y, std::span<float> scratch, float* colours, float
                                  .source_width = image_.width(),
                                  .source_height = image_.height()},
                                 positions);
+  if (takes_whole_pixels_) {
+    move_to_whole_pixels(positions);
+  }
   kernels::fetch_surface_row(
       kernels::SurfaceFetchRow<T>{.pixels = image_.data(),
                                   .stride = static_cast<std::ptrdiff_t>(image_.stride()),

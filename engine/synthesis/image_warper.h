@@ -20,15 +20,15 @@ struct ViewFrame {
 
 /// Brings one photograph to any new view in one pass (3.2.7): its disparities are mapped forward
 /// into the view, and colours are fetched backward from it with one bicubic interpolation, however
-/// many homographies lie between.
+/// many homographies lie between; with WarpColour::kForward, from the nearest pixel.
 ///
 /// Thread rule: warp() may be called concurrently. Does not own any memory it is given, which must
 /// outlive it. T is uint8_t, uint16_t or float.
 template <typename T>
 class ImageWarper {
  public:
-  /// Maps the disparities, in parallel. `disparity_px` is of the image's size. Throws UsageError
-  /// for WarpColour::kForward, Error for a view without pixels, with a side above 65500, or a warp
+  /// Maps the disparities, in parallel. `disparity_px` is of the image's size. Throws Error
+  /// for a view without pixels, with a side above 65500, or a warp
   /// that cannot be inverted.
   ImageWarper(ImageView<const T> image, ImageView<const float> disparity_px, const ViewWarp& warp,
               const ViewFrame& frame, const SynthesisOptions& options, Execution& execution);
@@ -48,9 +48,12 @@ class ImageWarper {
   void warp(int y, std::span<float> scratch, float* colours, float* nearness) const;
 
  private:
+  void move_to_whole_pixels(const kernels::SourcePositions& positions) const;
+
   ImageView<const T> image_;
   ImageView<const float> disparity_px_;
   float gradient_limit_px_;
+  bool takes_whole_pixels_;
   kernels::SourceProjection back_;
   scheduler::ScratchPool::Lease nearness_memory_;
   ImageView<float> nearness_;  // −inf where nothing lands

@@ -67,10 +67,9 @@ class ViewSynthesizer {
                   const std::array<IntensityFit, 4>* given_fit = nullptr) const;
 
   /// The same for any view, of any size, whose result has the view's size. A view from
-  /// baseline_view(XS, 0) of the images' size is that at view_x = XS. Other views with
-  /// WarpColour::kForward are a UsageError: source pixels themselves are moved along scanlines
-  /// only. Throws Error for a view without pixels, larger than 65500 pixels in width or height, or
-  /// that cannot be inverted.
+  /// baseline_view(XS, 0) of the images' size is that at view_x = XS. With
+  /// WarpColour::kForward other views show the nearest source pixel everywhere. Throws Error for a
+  /// view without pixels, larger than 65500 pixels in width or height, or that cannot be inverted.
   void synthesize(const Photograph& left, const Photograph& right,
                   ImageView<const float> left_disparity, ImageView<const float> right_disparity,
                   const NewView& new_view, SynthesizedView& view,

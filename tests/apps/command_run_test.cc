@@ -244,7 +244,7 @@ TEST_F(RunCommand, WrongUsageIsOneLineAndExit2) {
       {{"--save", "views"}, "expected --view XS"},
       {{"--save", "disparity", "--view", "0.5"}, "save has no views"},
       {{"--view", "0.5", "--view", "0.5"}, "given twice"},
-      {{"--view", "0.5,1"}, "off the baseline"},
+      {{"--view", "0.5,1,2"}, "--view is '0.5,1,2', expected a position"},
       {{"--format", "gif"}, "format is 'gif'"},
       {{"--in-flight", "0"}, "in-flight is 0"},
       {{"--reference", "right", "--save", "right-disparity"}, "right-disparity"},

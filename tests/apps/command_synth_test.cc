@@ -237,6 +237,12 @@ TEST_F(SynthCommand, CamerasAndTurnedViewsNeedACalibration) {
                 .exit_code,
             0);
   EXPECT_EQ(read_photograph(outputs_ + "/t.png").width(), 71);
+  // The book's three steps instead of one.
+  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/f.png", "--view", "0.75", "--look-at", "4",
+                             "--calibration", folder_ / "calib.txt", "--warp", "forward"})
+                .exit_code,
+            0);
+  EXPECT_NE(read_file(outputs_ + "/f.png"), read_file(outputs_ + "/t.png"));
 }
 
 TEST_F(SynthCommand, WhatIsWrongInAFileOfPosesIsNamed) {

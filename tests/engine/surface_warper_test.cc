@@ -422,14 +422,41 @@ TEST(SurfaceWarper, WildDisparitiesDoNoHarm) {
   }
 }
 
+// Every colour of a forward warp is one that its image has.
+TEST(SurfaceWarper, ForwardMovesWholePixels) {
+  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
+  Image<std::uint8_t> numbered(16, 15, 1);
+  Image<std::uint8_t> right(16, 15, 1);
+  Image<float> disparity(16, 15);
+  disparity.fill(4);
+  for (int y = 0; y < 15; ++y) {
+    for (int x = 0; x < 16; ++x) {
+      numbered.at(x, y) = static_cast<std::uint8_t>(y * 16 + x);
+      right.at(x, y) = static_cast<std::uint8_t>(y * 16 + (x + 4) % 16);
+    }
+  }
+  SynthesizedView view;
+  ViewSynthesizer({.warp = WarpColour::kForward,
+                   .holes = HoleFilling::kNone,
+                   .match_intensities = false,
+                   .soft_edges = false},
+                  execution)
+      .synthesize({numbered.copy()}, {right.copy()}, disparity.view(), disparity.view(),
+                  baseline_view(0, 0.4, 16, 15), view);
+  // 4 · 0.4 = 1.6 rows up, so the pixel two rows below lands here.
+  const auto& image = std::get<Image<std::uint8_t>>(view.image.pixels);
+  for (int y = 0; y < 13; ++y) {
+    for (int x = 0; x < 16; ++x) {
+      EXPECT_EQ(image.at(x, y), (y + 2) * 16 + x);
+    }
+  }
+}
+
 TEST(SurfaceWarper, RefusesWhatItCannotMake) {
   std::mt19937 random(9);
   const Pair pair = random_pair<std::uint8_t>(random, 20, 10, 3);
   Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   SynthesizedView view;
-  EXPECT_THROW(pair.synthesize({.warp = WarpColour::kForward}, baseline_view(0.5, 0.1, 20, 10),
-                               execution, view),
-               UsageError);
   for (const auto& [width, height] : {std::pair{0, 10}, {20, 0}, {65501, 10}, {20, 65501}}) {
     EXPECT_THROW(pair.synthesize({}, baseline_view(0.5, 0.1, width, height), execution, view),
                  Error);

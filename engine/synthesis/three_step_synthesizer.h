@@ -1,0 +1,38 @@
+#pragma once
+
+#include "engine/execution.h"
+#include "engine/image/image.h"
+#include "engine/image/photograph.h"
+#include "engine/rectification/rectified_pair.h"
+#include "engine/synthesis/view_synthesizer.h"
+#include "engine/view_geometry/posed_camera.h"
+
+namespace vantage {
+
+/// The view of any camera in the three steps of the book's chapter 3: both images and their maps
+/// are rectified together with the new camera (3.8), moved to its place (3.5) and combined, and the
+/// result is derectified. Colours are resampled in each step, where a NewView from camera_view()
+/// does it once: this is the book's method, to compare with.
+///
+/// Thread rule: synthesize() may be called concurrently for different results. Identical for any
+/// ExecutionOptions.
+class ThreeStepSynthesizer {
+ public:
+  /// As ViewSynthesizer.
+  ThreeStepSynthesizer(const SynthesisOptions& options, Execution& execution);
+
+  /// left, right and maps as for ViewSynthesizer; `pair` is their geometry, `camera` the new one in
+  /// the frame of the left. The view has the camera's size. Throws Error as
+  /// trifocal_rectification() does, above all where the plane through the three cameras cuts what
+  /// one of them sees; otherwise as ViewSynthesizer.
+  void synthesize(const Photograph& left, const Photograph& right,
+                  ImageView<const float> left_disparity, ImageView<const float> right_disparity,
+                  const RectifiedPair& pair, const PosedCamera& camera, SynthesizedView& view,
+                  const std::array<IntensityFit, 4>* given_fit = nullptr) const;
+
+ private:
+  ViewSynthesizer synthesizer_;
+  Execution& execution_;
+};
+
+}  // namespace vantage
