@@ -72,13 +72,7 @@ SceneSweep to_sweep(const SettingValue& value) {
 void add_settings(Settings& settings, SceneViewJob& job) {
   settings.begin_group("Files");
   settings.positional("scene", job.scene, "Folder made by 'vantage scene build'").required = true;
-  Setting& output =
-      settings.text("output", job.output, "FILE",
-                    "Image to write; for several views a pattern (views/%03d.png) or an .mp4");
-  output.short_name = 'o';
-  output.required = true;
-  settings.text("hole-mask", job.hole_mask, "MASK.png",
-                "Write a mask of the pixels that no image shows; a pattern for several views");
+  add_view_output_settings(settings, job.output, job.hole_mask);
 
   settings.begin_group("Views");
   Setting& at = settings.add("at", "X,Y",

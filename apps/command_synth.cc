@@ -76,13 +76,7 @@ void add_view_settings(Settings& settings, SynthJob& job) {
 void add_file_settings(Settings& settings, SynthJob& job) {
   settings.begin_group("Files");
   add_pair_settings(settings, job.pair);
-  Setting& output =
-      settings.text("output", job.output, "FILE",
-                    "Image to write; for several views a pattern (views/%03d.png) or an .mp4");
-  output.short_name = 'o';
-  output.required = true;
-  settings.text("hole-mask", job.hole_mask, "MASK.png",
-                "Write a mask of the pixels that no image shows; a pattern for several views");
+  add_view_output_settings(settings, job.output, job.hole_mask);
   settings.text("source-mask", job.source_mask, "MASK.png",
                 "Write which images the pixels are made of: 0 none, 85 left, 170 right, 255 both");
 }

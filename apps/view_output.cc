@@ -12,6 +12,16 @@ bool is_video(const std::string& path) { return has_extension(path, {".mp4"}); }
 
 }  // namespace
 
+void add_view_output_settings(Settings& settings, std::string& output, std::string& hole_mask) {
+  Setting& file =
+      settings.text("output", output, "FILE",
+                    "Image to write; for several views a pattern (views/%03d.png) or an .mp4");
+  file.short_name = 'o';
+  file.required = true;
+  settings.text("hole-mask", hole_mask, "MASK.png",
+                "Write a mask of the pixels that no image shows; a pattern for several views");
+}
+
 ViewOutput::ViewOutput(const std::string& path, int views) : path_(path), views_(views) {
   if (is_pattern(path)) {
     expand_pattern(path, 0);  // throws for a malformed one

@@ -4,10 +4,14 @@
 #include <string>
 
 #include "apps/outputs.h"
+#include "apps/settings.h"
 #include "engine/image/photograph.h"
 #include "engine/io/video_io.h"
 
 namespace vantage::apps {
+
+/// --output and --hole-mask of a command that renders views, in the group that has begun.
+void add_view_output_settings(Settings& settings, std::string& output, std::string& hole_mask);
 
 /// Where rendered views go: one image file, numbered image files (a printf pattern) or a video.
 class ViewOutput {

@@ -14,6 +14,7 @@
 #include "engine/build_info.h"
 #include "engine/error.h"
 #include "engine/io/base64.h"
+#include "engine/io/markup_text.h"
 #include "engine/io/photograph_io.h"
 #include "engine/io/preview.h"
 #include "engine/synthesis/view_synthesizer.h"
@@ -92,29 +93,6 @@ std::string as_base64(const std::string& file_name, Image<std::uint8_t> pixels) 
   std::vector<std::uint8_t> bytes;
   encode_photograph(file_name, Photograph{std::move(pixels)}, bytes);
   return encode_base64(bytes);
-}
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char letter : text) {
-    switch (letter) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += letter;
-    }
-  }
-  return result;
 }
 
 // The template with every {{name}} replaced. What is put in is not looked at again.
@@ -259,8 +237,8 @@ std::string make_view_page(const PairWithMaps& pair, const std::string& names,
   const std::string image_name = lossless ? "image.png" : "image.jpg";
   return filled_in(
       embedded_file("page.html"),
-      {{"title", escaped(names + " – Vantage")},
-       {"names", escaped(names)},
+      {{"title", escaped_markup(names + " – Vantage")},
+       {"names", escaped_markup(names)},
        {"version", build_info().version},
        {"style", std::string(embedded_file("page.css"))},
        {"image_type", lossless ? "image/png" : "image/jpeg"},

@@ -1,59 +1,26 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
-#include <iterator>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <span>
 #include <string>
 #include <string_view>
 
 #include "engine/error.h"
+#include "engine/io/base64.h"
+#include "engine/io/markup_text.h"
 #include "engine/io/opencv_setup.h"
 #include "engine/plot/drawing.h"
 
 namespace vantage {
 namespace {
 
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char letter : text) {
-    switch (letter) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        // Control characters and bytes that may not be UTF-8 would make the document ill-formed.
-        result += letter >= ' ' && letter <= '~' ? letter : '?';
-    }
-  }
-  return result;
-}
-
-std::string base64(std::span<const unsigned char> bytes) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    unsigned bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      bits = bits << 8 | (k < count ? bytes[i + k] : 0U);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += k <= count ? kDigits[bits >> (18 - 6 * k) & 63U] : '=';
-    }
-  }
+// Control characters and bytes that may not be UTF-8 would make the document ill-formed.
+std::string printable(std::string text) {
+  std::ranges::replace_if(
+      text, [](char letter) { return letter < ' ' || letter > '~'; }, '?');
   return text;
 }
 
@@ -67,7 +34,7 @@ std::string png_of(const Image<std::uint8_t>& rgb) {
   if (!cv::imencode(".png", bgr, bytes)) {
     throw Error("a picture of a drawing cannot be encoded as PNG");
   }
-  return base64(bytes);
+  return encode_base64(bytes);
 }
 
 std::string hex(Colour colour) {
@@ -100,7 +67,8 @@ class SvgWriter {
         "<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"{:.4g}\" text-anchor=\"{}\" "
         "fill=\"{}\">{}</text>\n",
         text.baseline.x, text.baseline.y, text.size,
-        kAnchors[static_cast<std::size_t>(text.anchor)], hex(text.colour), escaped(text.text));
+        kAnchors[static_cast<std::size_t>(text.anchor)], hex(text.colour),
+        escaped_markup(printable(text.text)));
   }
   void operator()(const PictureShape& picture) {
     append(
