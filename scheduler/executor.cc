@@ -4,6 +4,7 @@
 #include "scheduler/serial_executor.h"
 #include "scheduler/tbb_executor.h"
 #include "scheduler/thread_sanitizer.h"
+#include "scheduler/traced_executor.h"
 
 namespace vantage::scheduler {
 namespace {
@@ -24,9 +25,9 @@ std::unique_ptr<Executor> make_plain_executor(ExecutorKind kind, int threads) {
 
 std::unique_ptr<Executor> make_executor(ExecutorKind kind, int threads) {
 #ifdef VANTAGE_THREAD_SANITIZER
-  return with_declared_order(make_plain_executor(kind, threads));
+  return with_tracing(with_declared_order(make_plain_executor(kind, threads)));
 #else
-  return make_plain_executor(kind, threads);
+  return with_tracing(make_plain_executor(kind, threads));
 #endif
 }
 

@@ -14,6 +14,19 @@ void read_cache(hwloc_topology_t topology, hwloc_obj_type_t type, std::size_t& b
   }
 }
 
+/// The model that the first package, or else the machine, tells of.
+void read_processor(hwloc_topology_t topology, std::string& processor) {
+  for (const hwloc_obj_t object :
+       {hwloc_get_obj_by_type(topology, HWLOC_OBJ_PACKAGE, 0), hwloc_get_root_obj(topology)}) {
+    const char* model =
+        object == nullptr ? nullptr : hwloc_obj_get_info_by_name(object, "CPUModel");
+    if (model != nullptr && *model != '\0') {
+      processor = model;
+      return;
+    }
+  }
+}
+
 }  // namespace
 
 Machine detect_machine() {
@@ -23,6 +36,7 @@ Machine detect_machine() {
     return machine;
   }
   if (hwloc_topology_load(topology) == 0) {
+    read_processor(topology, machine.processor);
     machine.hardware_threads = std::max(1, hwloc_get_nbobjs_by_type(topology, HWLOC_OBJ_PU));
     machine.cores = std::max(1, hwloc_get_nbobjs_by_type(topology, HWLOC_OBJ_CORE));
     machine.numa_nodes = std::max(1, hwloc_get_nbobjs_by_type(topology, HWLOC_OBJ_NUMANODE));

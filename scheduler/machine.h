@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 
 namespace vantage::scheduler {
 
 /// What the planner knows of the machine. Sizes in bytes of one instance of the cache.
 struct Machine {
+  std::string processor = "unknown processor";  ///< as its maker calls the model
   int hardware_threads = 1;  ///< that this process may use (affinity mask and cgroup masks count)
   int cores = 1;
   int numa_nodes = 1;

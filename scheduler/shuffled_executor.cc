@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "scheduler/serial_executor.h"
+#include "scheduler/traced_executor.h"
 
 namespace vantage::scheduler {
 namespace {
@@ -30,7 +31,7 @@ class ShuffledExecutor final : public SerialExecutor {
 }  // namespace
 
 std::unique_ptr<Executor> make_shuffled_executor(std::uint64_t seed) {
-  return std::make_unique<ShuffledExecutor>(seed);
+  return with_tracing(std::make_unique<ShuffledExecutor>(seed));
 }
 
 }  // namespace vantage::scheduler

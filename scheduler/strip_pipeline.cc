@@ -1,8 +1,11 @@
 #include "scheduler/strip_pipeline.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 
 #include "scheduler/sweep_layout.h"
+#include "scheduler/trace.h"
 
 namespace vantage::scheduler {
 namespace {
@@ -23,7 +26,7 @@ struct StoredRows {
 class Sweep {
  public:
   Sweep(const PassStages& pass, const SweepLayout& layout, std::byte* scratch, Range rows,
-        const StoredRows& input, const StoredRows& output)
+        const StoredRows& input, const StoredRows& output, Span* traced)
       : pass_(pass),
         layout_(layout.parts),
         first_(pass.source == nullptr ? 0 : 1),
@@ -32,6 +35,7 @@ class Sweep {
         rows_(rows),
         input_(input),
         output_(output),
+        traced_(traced),
         progress_(layout.parts.size()) {
     for (std::size_t k = 0; k <= last_; ++k) {
       progress_[k].next_row = layout_[k].first_row;
@@ -42,6 +46,7 @@ class Sweep {
   /// The wavefront: a stage whose next row needs input that is not there yet lets the stage before
   /// it make that first. A loop, as a chain may be longer than a stack is deep.
   void run() {
+    last_clock_ns_ = traced_ != nullptr ? trace_clock_ns() : 0;
     std::size_t k = last_;
     while (progress_[last_].next_row < rows_.end) {
       if (k > first_ && progress_[k - 1].next_row < progress_[k].window.end) {
@@ -56,12 +61,19 @@ class Sweep {
       make_row(k);
       k = std::min(k + 1, last_);
     }
+    if (traced_ != nullptr) {
+      for (std::size_t i = 0; i <= last_; ++i) {
+        traced_->add_stage({layout_[i].stage->name(), progress_[i].duration_ns,
+                            progress_[i].next_row - layout_[i].first_row});
+      }
+    }
   }
 
  private:
   struct Progress {
     int next_row = 0;
-    Range window;  ///< rows of the input that it needs
+    Range window;                  ///< rows of the input that it needs
+    std::int64_t duration_ns = 0;  ///< only while traced
   };
 
   void make_row(std::size_t k) {
@@ -87,6 +99,10 @@ class Sweep {
     part.stage->make_row(task);
     ++progress.next_row;
     progress.window = window(k, progress.next_row);
+    if (traced_ != nullptr) {
+      const std::int64_t now_ns = trace_clock_ns();
+      progress.duration_ns += now_ns - std::exchange(last_clock_ns_, now_ns);
+    }
   }
 
   [[nodiscard]] Range window(std::size_t k, int y) const {
@@ -122,13 +138,15 @@ class Sweep {
   Range rows_;
   const StoredRows& input_;
   const StoredRows& output_;
+  Span* traced_;  ///< null unless a trace is recorded
+  std::int64_t last_clock_ns_ = 0;
   std::vector<Progress> progress_;
 };
 
 /// Makes `rows` of the pass's output.
 void run_pass(const PassStages& pass, const PassPlan& plan, Range rows, const StoredRows& input,
-              const StoredRows& output, std::size_t scratch_bytes, Executor& executor,
-              ScratchPool& scratch) {
+              const StoredRows& output, std::size_t scratch_bytes, int pass_number,
+              Executor& executor, ScratchPool& scratch) {
   const int all_columns = pass.stages.back()->extent().columns;
   const int bands = (rows.size() + plan.band_rows - 1) / plan.band_rows;
   executor.parallel_for(plan.strips * bands, [&](int task) {
@@ -140,7 +158,11 @@ void run_pass(const PassStages& pass, const PassPlan& plan, Range rows, const St
     SweepLayout layout;
     lay_out_sweep(pass, columns, band, layout);
     const ScratchPool::Lease lease = scratch.lease(std::max(layout.scratch_bytes, scratch_bytes));
-    Sweep(pass, layout, lease.data(), band, input, output).run();
+    Span* traced = Span::innermost();
+    if (traced != nullptr) {
+      traced->set_strip(pass_number, strip, band_begin);
+    }
+    Sweep(pass, layout, lease.data(), band, input, output, traced).run();
   });
 }
 
@@ -175,7 +197,7 @@ void run_strips(Chain chain, const ChainPlan& plan, Executor& executor, ScratchP
       }
       const Range rows = rows_of_step(plan, pass, step, last.extent().rows);
       run_pass(run.stages, pass, rows, p == 0 ? StoredRows() : runs[p - 1].output, run.output,
-               scratch_bytes, executor, scratch);
+               scratch_bytes, static_cast<int>(p), executor, scratch);
       if (p > 0 && step + 1 == plan.steps) {
         runs[p - 1].output_memory = {};  // so that whole images are no more than two at a time
       }

@@ -5,27 +5,44 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "engine/error.h"
 #include "scheduler/strip_pipeline.h"
+#include "scheduler/trace.h"
 
 namespace vantage {
 namespace {
 
-/// Appends the time since the last call (or construction) to a report.
+/// Times one stage after the other for a report, and shows them in traces.
 class StageClock {
  public:
   explicit StageClock(MatchReport& report) : report_(report) {}
-  void record(std::string_view name) {
-    const Clock::time_point now = Clock::now();
-    report_.stages.push_back({name, std::chrono::duration<double>(now - last_).count()});
-    last_ = now;
+  StageClock(const StageClock&) = delete;
+  StageClock& operator=(const StageClock&) = delete;
+  ~StageClock() { end(); }
+  /// Ends the stage before. `name` is of static storage.
+  void begin(std::string_view name) {
+    end();
+    name_ = name;
+    start_ = Clock::now();
+    span_.emplace(name);
   }
 
  private:
   using Clock = std::chrono::steady_clock;
+  void end() {
+    if (span_) {
+      span_.reset();
+      report_.stages.push_back(
+          {name_, std::chrono::duration<double>(Clock::now() - start_).count()});
+    }
+  }
+
   MatchReport& report_;
-  Clock::time_point last_ = Clock::now();
+  std::string_view name_;
+  Clock::time_point start_;
+  std::optional<scheduler::Span> span_;
 };
 
 void require_equal_sizes(const Photograph& first, std::string_view first_name,
@@ -139,12 +156,23 @@ std::pair<ChainInput, ChainInput> StereoMatcher::prepare_inputs(const Photograph
 }
 
 scheduler::ChainPlan StereoMatcher::plan(const Photograph& left, const Photograph& right) const {
+  return plans(left, right, {&execution_.options(), 1}).front();
+}
+
+std::vector<scheduler::ChainPlan> StereoMatcher::plans(
+    const Photograph& left, const Photograph& right,
+    std::span<const ExecutionOptions> executions) const {
   require_equal_sizes(left, "left image", right, "right image");
   const auto prepared = prepared_.borrow();
   const ChainInput input = prepare_inputs(left, right, true, false, false, *prepared).first;
   const auto geometry = candidate_geometry(options_, Reference::kLeft, left.width(), left.height());
   DisparityMap map(left.width(), left.height());
-  return plan_of(MatchChain(parameters_, geometry, input, {.disparity_px = map.view()}));
+  const MatchChain chain(parameters_, geometry, input, {.disparity_px = map.view()});
+  std::vector<scheduler::ChainPlan> plans;
+  for (const ExecutionOptions& execution : executions) {
+    plans.push_back(plan_of(chain, execution, thread_count(execution, execution_.machine())));
+  }
+  return plans;
 }
 
 void StereoMatcher::match(const Photograph& left, const Photograph& right,
@@ -160,6 +188,7 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   MatchReport& times = report != nullptr ? *report : own_report;
   times = {};
   StageClock clock(times);
+  clock.begin("prepare");
   const bool needs_left = request.left || !options_.raw;
   const bool needs_right = request.right || !options_.raw;
   const auto prepared = prepared_.borrow();
@@ -170,7 +199,6 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     right_input.prior_px = request.prior.right_px;
     left_input.prior_weight = right_input.prior_weight = request.prior.weight;
   }
-  clock.record("prepare");
 
   const bool confidence = wants_confidence(request);
   const auto compute = [&](bool needed, Reference reference, const ChainInput& input,
@@ -183,10 +211,10 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     map_confidence.resize(confidence ? width : 0, confidence ? height : 0);
     map_y.resize(two_dimensional ? width : 0, two_dimensional ? height : 0);
     if (needed) {
+      clock.begin(name);
       compute_map(reference, input, *prepared,
                   {map, confidence ? &map_confidence : nullptr, two_dimensional ? &map_y : nullptr},
                   times);
-      clock.record(name);
     }
   };
   compute(needs_left, Reference::kLeft, left_input, maps.left, maps.left_confidence,
@@ -217,7 +245,7 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
       .confidence = &maps.right_confidence,
       .unmatched = &maps.right_unmatched};
   refine_maps(options_.resolved_refinement(), left_map, &right_map, execution_, *work,
-              [&](std::string_view step) { clock.record(step); });
+              [&](std::string_view step) { clock.begin(step); });
 }
 
 void StereoMatcher::match_several(const Photograph& reference, std::span<const OtherView> others,
@@ -232,6 +260,7 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
   MatchReport& times = report != nullptr ? *report : own_report;
   times = {};
   StageClock clock(times);
+  clock.begin("prepare");
   const bool is_left = others.front().baseline > 0;
   const Reference side = is_left ? Reference::kLeft : Reference::kRight;
   const int width = reference.width();
@@ -247,7 +276,6 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
     image.prepare(*others[k].photograph, parameters_, geometry, {false, true, true}, execution_);
     input.partners.push_back({&image, ratio});
   }
-  clock.record("prepare");
 
   const bool confidence = wants_confidence(request);
   const bool two_dimensional = options_.disparities_y.has_value();
@@ -259,10 +287,10 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
   map.resize(width, height);
   map_confidence.resize(confidence ? width : 0, confidence ? height : 0);
   map_y.resize(two_dimensional ? width : 0, two_dimensional ? height : 0);
+  clock.begin("match");
   compute_map(side, input, *prepared,
               {map, confidence ? &map_confidence : nullptr, two_dimensional ? &map_y : nullptr},
               times);
-  clock.record("match");
 
   if (options_.raw) {
     if (request.unmatched) {
@@ -278,7 +306,7 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
                               .confidence = &map_confidence,
                               .unmatched = &unmatched};
   refine_maps(options_.resolved_refinement(), to_refine, nullptr, execution_, *work,
-              [&](std::string_view step) { clock.record(step); });
+              [&](std::string_view step) { clock.begin(step); });
 }
 
 void StereoMatcher::compute_map(Reference reference, const ChainInput& input, Prepared& prepared,
@@ -342,10 +370,10 @@ void StereoMatcher::search_rows(const kernels::CandidateGeometry& geometry, cons
   }
 }
 
-scheduler::ChainPlan StereoMatcher::plan_of(const MatchChain& chain) const {
-  const ExecutionOptions& execution = execution_.options();
+scheduler::ChainPlan StereoMatcher::plan_of(const MatchChain& chain,
+                                            const ExecutionOptions& execution, int threads) const {
   scheduler::PlanRequest request;
-  request.threads = execution_.executor().thread_count();
+  request.threads = threads;
   request.strip_columns = execution.strip_width_px;
   request.band_rows = execution.band_height_px;
   request.memory_bytes = execution.chain_memory_bytes;
@@ -358,7 +386,7 @@ scheduler::ChainPlan StereoMatcher::plan_of(const MatchChain& chain) const {
 void StereoMatcher::run_chain(const kernels::CandidateGeometry& geometry, const ChainInput& input,
                               const MapOutputs& outputs, MatchReport& report) const {
   const MatchChain chain(parameters_, geometry, input, outputs);
-  report.plan = plan_of(chain);
+  report.plan = plan_of(chain, execution_.options(), execution_.executor().thread_count());
   scheduler::run_strips(chain.stages(), report.plan, execution_.executor(), execution_.scratch());
   report.cells += static_cast<double>(geometry.width) * outputs.disparity_px.height() *
                   options_.disparities.count();

@@ -91,6 +91,10 @@ class StereoMatcher {
   /// How the map of the left image is going to be worked off: what a report of match() says.
   /// Errors as match(), without a vertical search.
   [[nodiscard]] scheduler::ChainPlan plan(const Photograph& left, const Photograph& right) const;
+  /// The same for each of `executions` in place of the matcher's own; the machine stays the same.
+  [[nodiscard]] std::vector<scheduler::ChainPlan> plans(
+      const Photograph& left, const Photograph& right,
+      std::span<const ExecutionOptions> executions) const;
 
   /// The map of `reference` from all of `others` at once (6.6): the partner of column x in the
   /// k-th of them is x − d · baseline_k / |baseline_1|, so that candidates are the disparities
@@ -126,7 +130,8 @@ class StereoMatcher {
                                                                  bool needs_left, bool needs_right,
                                                                  bool uses_prior,
                                                                  Prepared& prepared) const;
-  [[nodiscard]] scheduler::ChainPlan plan_of(const MatchChain& chain) const;
+  [[nodiscard]] scheduler::ChainPlan plan_of(const MatchChain& chain,
+                                             const ExecutionOptions& execution, int threads) const;
   void compute_map(Reference reference, const ChainInput& input, Prepared& prepared,
                    const Result& result, MatchReport& report) const;
   void search_rows(const kernels::CandidateGeometry& geometry, const ChainInput& input,

@@ -25,51 +25,56 @@ ImageView<const float> second_component(const MapToRefine& map) {
 
 void refine_maps(const RefinementOptions& options, const MapToRefine& map, const MapToRefine* other,
                  Execution& execution, RefinementWork& work,
-                 const std::function<void(std::string_view)>& step_done) {
+                 const std::function<void(std::string_view)>& begin_step) {
   const std::array<const MapToRefine*, 2> both = {&map, other};
   const int count = other != nullptr ? 2 : 1;
   const std::span<const MapToRefine* const> maps(both.data(), static_cast<std::size_t>(count));
 
   if (options.edge_snapping_px > 0) {
+    begin_step("edge snapping");
     for (const MapToRefine* one : maps) {
       find_edges(*one->image, execution, work.edge_snapping);
       snap_discontinuities(work.edge_snapping.edges, options.edge_snapping_px, execution,
                            *one->disparity_px);
     }
-    step_done("edge snapping");
   }
   if (options.cross_check && other != nullptr) {
+    begin_step("cross-check");
     const bool is_left = map.side == MapSide::kLeft;
     check_against(is_left ? map : *other, is_left ? *other : map, options.cross_check_px,
                   execution);
-    step_done("cross-check");
   } else {
     for (const MapToRefine* one : maps) {
       mark_unknown(one->disparity_px->view(), execution, *one->unmatched);
     }
   }
   if (uses_confidence(options)) {
+    begin_step("confidence");
     for (const MapToRefine* one : maps) {
       mark_unsure(one->confidence->view(), options.confidence_threshold, execution,
                   *one->unmatched);
     }
-    step_done("confidence");
   }
   if (options.speckle_size_px > 1) {
+    begin_step("speckles");
     execution.executor().parallel_for(count, [&](int index) {
       const MapToRefine& one = *maps[static_cast<std::size_t>(index)];
       mark_speckles(one.disparity_px->view(), second_component(one), options.speckle_size_px,
                     work.speckles[static_cast<std::size_t>(index)], *one.unmatched);
     });
-    step_done("speckles");
   }
+  begin_step("fill");
   for (const MapToRefine* one : maps) {
-    fill_unmatched(*one->unmatched, one->side, options.fill, execution, *one->disparity_px);
-    if (one->disparity_y_px != nullptr) {
-      fill_unmatched(*one->unmatched, one->side, options.fill, execution, *one->disparity_y_px);
+    for (DisparityMap* map_px : {one->disparity_px, one->disparity_y_px}) {
+      if (map_px == nullptr) {
+        continue;
+      }
+      fill_unmatched(*one->unmatched, one->side, options.fill, execution, *map_px);
+      if (options.fill == Fill::kMedian) {
+        take_filled_medians(*one->unmatched, *one->image, execution, work.filled_medians, *map_px);
+      }
     }
   }
-  step_done("fill");
 }
 
 }  // namespace vantage

@@ -9,6 +9,7 @@
 #include "engine/image/photograph.h"
 #include "engine/matching/match_options.h"
 #include "engine/refinement/edge_snapping.h"
+#include "engine/refinement/filled_medians.h"
 #include "engine/refinement/refinement.h"
 #include "engine/refinement/speckles.h"
 
@@ -17,7 +18,7 @@ namespace vantage {
 /// One map on its way through refinement; all images have one size.
 struct MapToRefine {
   MapSide side = MapSide::kLeft;
-  const Photograph* image = nullptr;         ///< the map's own; for edge snapping only
+  const Photograph* image = nullptr;         ///< the map's own; for edge snapping and medians
   DisparityMap* disparity_px = nullptr;      ///< winners, NaN = unknown
   DisparityMap* disparity_y_px = nullptr;    ///< of a two-dimensional search, else null
   const Image<float>* confidence = nullptr;  ///< where uses_confidence(); else not read
@@ -28,14 +29,16 @@ struct MapToRefine {
 struct RefinementWork {
   EdgeSnappingWork edge_snapping;
   std::array<SpeckleWork, 2> speckles;
+  FilledMediansWork filled_medians;
 };
 
 /// Makes dense maps of winners (EQUATIONS §5): edge snapping → cross-check → confidence → speckles
 /// → fill, each as `options` says. `other`: the map of the other image, refined as well; null:
-/// there is none, and no cross-check, the unknown pixels are unmatched instead. `step_done` is told
-/// the name of each step that was taken (static storage). Identical for any `execution`.
+/// there is none, and no cross-check, the unknown pixels are unmatched instead. `begin_step` is
+/// told the name of each step that is taken ahead of it (static storage). Identical for any
+/// `execution`.
 void refine_maps(const RefinementOptions& options, const MapToRefine& map, const MapToRefine* other,
                  Execution& execution, RefinementWork& work,
-                 const std::function<void(std::string_view)>& step_done);
+                 const std::function<void(std::string_view)>& begin_step);
 
 }  // namespace vantage
