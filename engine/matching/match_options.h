@@ -21,6 +21,7 @@ enum class Reference { kLeft, kRight };
 enum class Fill {
   kConstant,  ///< the depth of the background beside them (EQUATIONS §5.4)
   kLinear,    ///< between both sides where their disparities nearly agree, else constant
+  kMedian,    ///< constant, then the median of what is around and looks alike (filled_medians)
   kNone,      ///< unknown
 };
 

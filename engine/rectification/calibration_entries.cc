@@ -20,6 +20,11 @@ std::string_view without_blanks(std::string_view text) {
              : text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
+std::string without_quotes(std::string text) {
+  std::erase_if(text, [](char c) { return c == '"' || c == '\''; });
+  return text;
+}
+
 /// The next line without its end; takes it off `text`.
 std::string_view take_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
@@ -130,7 +135,8 @@ CalibrationEntry numbers_of(std::string_view text) {
       for (const char c : word.substr(0, 20)) {
         shown.push_back(c >= ' ' && c <= '~' ? c : '?');
       }
-      return {.problem = fmt::format("holds '{}', expected finite numbers", shown)};
+      return {.problem = fmt::format("holds '{}', expected finite numbers", shown),
+              .word = without_quotes(shown)};
     }
     entry.values.push_back(value);
   }

@@ -14,6 +14,7 @@ struct CalibrationEntry {
   int columns = 0;
   std::vector<double> values = {};  ///< row by row, all finite
   std::string problem = {};         ///< why there are no values, empty if there are
+  std::string word = {};  ///< the first thing that is no number, at most 20 characters of it
 };
 
 /// By name; the first one counts where a name comes twice.

@@ -16,6 +16,10 @@ constexpr std::size_t kMostBytes = 16U << 20;
 
 using Matrix34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
 
+std::string shape_text(int rows, int columns) {
+  return rows * columns == 1 ? "a number" : fmt::format("a {}x{} matrix", rows, columns);
+}
+
 /// The entries of a file, asked for by name.
 class CalibrationFile {
  public:
@@ -43,12 +47,12 @@ class CalibrationFile {
     const std::string_view name = *names.begin();
     if (entry == nullptr) {
       throw Error(
-          fmt::format("there is no {} in it, expected a {}x{} matrix", name, rows, columns));
+          fmt::format("there is no {} in it, expected {}", name, shape_text(rows, columns)));
     }
     if (entry->values.size() !=
         static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns)) {
-      throw Error(fmt::format("{} has {} values, expected {}x{}", name, entry->values.size(), rows,
-                              columns));
+      throw Error(fmt::format("{} has {} values, expected {}", name, entry->values.size(),
+                              shape_text(rows, columns)));
     }
     if (rows > 1 && columns > 1 && entry->rows != 0 && entry->rows != rows) {
       throw Error(fmt::format("{} is a {}x{} matrix, expected {}x{}", name, entry->rows,
@@ -62,6 +66,22 @@ class CalibrationFile {
         values(names, 3, 3).data());
   }
   [[nodiscard]] double number(std::string_view name) const { return values({name}, 1, 1)[0]; }
+
+  /// Throws Error when the file says that its lenses are fisheyes.
+  void refuse_fisheyes() const {
+    for (const auto& [name, entry] : entries_) {
+      const bool is_switch = name == "fisheye_model" && entry.values != std::vector<double>{0};
+      const bool is_model = name.find("model") != std::string::npos &&
+                            (entry.word == "fisheye" || entry.word == "equidistant" ||
+                             entry.word == "kannala_brandt" || entry.word == "KANNALA_BRANDT");
+      if (is_switch || is_model) {
+        throw Error(fmt::format(
+            "{} says that the lenses are fisheyes, expected OpenCV's standard model (k1 k2 p1 p2 "
+            "...)",
+            name));
+      }
+    }
+  }
 
  private:
   CalibrationEntries entries_;
@@ -82,6 +102,7 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix) {
 }
 
 StereoCalibration from_opencv(const CalibrationFile& file) {
+  file.refuse_fisheyes();
   StereoCalibration calibration{.format = "OpenCV"};
   calibration.left.matrix = file.matrix({"M1", "K1", "cameraMatrix1", "camera_matrix_1"});
   calibration.right.matrix = file.matrix({"M2", "K2", "cameraMatrix2", "camera_matrix_2"});
@@ -217,6 +238,7 @@ StereoCalibration read_stereo_calibration(const std::filesystem::path& path) {
     StereoCalibration calibration =
         parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     calibration.validate();
+    calibration.file = path.string();
     return calibration;
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path.string(), error.what()));

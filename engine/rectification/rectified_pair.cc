@@ -90,17 +90,9 @@ RectifiedPair unchanged_pair(const StereoCalibration& calibration, int width_px,
           .valid = {.x = 0, .y = 0, .width = width_px, .height = height_px}};
 }
 
-}  // namespace
-
-void RectificationOptions::validate() const {
-  if (!(kept_outline >= 0 && kept_outline <= 1)) {
-    throw UsageError(fmt::format("kept-outline is {}, expected 0 to 1", kept_outline));
-  }
-}
-
-RectifiedPair rectified_pair(const StereoCalibration& calibration, int width_px, int height_px,
-                             const RectificationOptions& options) {
-  options.validate();
+/// Throws without naming the calibration's file.
+RectifiedPair pair_of(const StereoCalibration& calibration, int width_px, int height_px,
+                      const RectificationOptions& options) {
   calibration.validate();
   calibration.check_image_size(width_px, height_px);
   if (calibration.is_rectified) {
@@ -144,6 +136,24 @@ RectifiedPair rectified_pair(const StereoCalibration& calibration, int width_px,
           .baseline = calibration.baseline(),
           .doffs_px = 0,
           .valid = pixels_within(*inner, shown, width_px, height_px)};
+}
+}  // namespace
+
+void RectificationOptions::validate() const {
+  if (!(kept_outline >= 0 && kept_outline <= 1)) {
+    throw UsageError(fmt::format("kept-outline is {}, expected 0 to 1", kept_outline));
+  }
+}
+
+RectifiedPair rectified_pair(const StereoCalibration& calibration, int width_px, int height_px,
+                             const RectificationOptions& options) {
+  options.validate();
+  try {
+    return pair_of(calibration, width_px, height_px, options);
+  } catch (const Error& error) {
+    throw calibration.file.empty() ? error
+                                   : Error(fmt::format("{}: {}", calibration.file, error.what()));
+  }
 }
 
 }  // namespace vantage

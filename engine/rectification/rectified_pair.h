@@ -56,9 +56,10 @@ struct RectifiedPair {
 /// one focal length, the same in x and y, and one principal point: infinity has disparity 0. A
 /// rectified calibration is passed on as it is.
 ///
-/// Throws Error, naming quantity and limit, for an image size that contradicts the calibration, a
-/// baseline more than 45° off the cameras' x axes (cameras one above or behind the other, or
-/// swapped), viewing directions 90° apart, or views that have next to nothing in common.
+/// Throws Error, naming the calibration's file, quantity and limit, for an image size that
+/// contradicts the calibration, a baseline more than 45° off the cameras' x axes (cameras one above
+/// or behind the other, or swapped), viewing directions 90° apart, or views that have next to
+/// nothing in common.
 RectifiedPair rectified_pair(const StereoCalibration& calibration, int width_px, int height_px,
                              const RectificationOptions& options = {});
 

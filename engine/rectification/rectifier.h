@@ -13,6 +13,13 @@
 
 namespace vantage {
 
+/// Where each pixel of a rectified image lies in the photograph; NaN where the camera does not see
+/// it. Nothing is owned.
+struct PhotographPositions {
+  ImageView<const float> x_px;
+  ImageView<const float> y_px;
+};
+
 /// Turns photographs of a calibrated pair of cameras into rectified ones of the same size: rows
 /// correspond, and lens distortion is gone. By default nothing black comes in (see
 /// RectificationOptions): matchers and new views take every pixel for a picture, and black borders
@@ -36,6 +43,11 @@ class Rectifier {
       Side side, const Eigen::Vector2d& rectified_px) const;
   [[nodiscard]] std::optional<Eigen::Vector2d> rectified_position(
       Side side, const Eigen::Vector2d& source_px) const;
+  /// source_position() of all pixels, valid as long as the rectifier; empty unless
+  /// needs_rectification().
+  [[nodiscard]] PhotographPositions source_positions(Side side) const {
+    return {view(side).x_px.view(), view(side).y_px.view()};
+  }
 
   /// The rectified image of `source`, by bicubic interpolation (Keys, a = −½) with exact positions;
   /// alpha like a colour; 0 in all channels where the camera saw nothing. `result` gets the depth

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <tuple>
 
 #include "engine/error.h"
 #include "engine/io/photograph_io.h"
@@ -15,6 +16,9 @@ namespace {
 constexpr double kOrthonormalTolerance = 1e-3;
 /// Rows of rectified images may be off by so much.
 constexpr double kRowTolerancePx = 0.01;
+/// So much of the baseline may point up or forward in rectified pairs; KITTI's have half of it.
+constexpr double kMostOffAxis = 0.01;
+constexpr double kLeastFocalPerSide = 0.05;
 
 void require_equal_in_rectified(const char* field, double left, double right) {
   if (!(std::abs(left - right) <= kRowTolerancePx)) {
@@ -45,7 +49,8 @@ void StereoCalibration::validate() const {
     throw Error("R is mirrored: its determinant is -1, expected 1");
   }
   if (!(baseline() >= 1e-9 && baseline() <= 1e9)) {
-    throw Error(fmt::format("T has the length {}, expected a baseline of 1e-9 to 1e9", baseline()));
+    throw Error(
+        fmt::format("the baseline (length of T) is {:.6g}, expected 1e-9 to 1e9", baseline()));
   }
   if (image_size) {
     const auto& [width, height] = *image_size;
@@ -60,6 +65,14 @@ void StereoCalibration::validate() const {
     require_equal_in_rectified("cy", left.matrix(1, 2), right.matrix(1, 2));
     if (translation.x() >= 0) {
       throw Error("the right camera stands left of the left one, expected the cameras swapped");
+    }
+    const double off_axis = std::hypot(translation.y(), translation.z()) / baseline();
+    if (!(off_axis <= kMostOffAxis)) {
+      throw Error(
+          fmt::format("the cameras are said to be rectified, but {:.3g} % of the baseline ({:.4g}, "
+                      "{:.4g}, {:.4g}) is not along x, expected at most {:g} %",
+                      100 * off_axis, -translation.x(), -translation.y(), -translation.z(),
+                      100 * kMostOffAxis));
     }
   }
 }
@@ -77,6 +90,14 @@ void StereoCalibration::check_image_size(int width_px, int height_px) const {
           "the {} camera's principal point ({:.6g}, {:.6g}) is outside of the {}x{} images: "
           "expected a calibration of images of this size",
           name, cx, cy, width_px, height_px));
+    }
+    for (const auto& [field, focal_px, side_px] : {std::tuple{"fx", camera->matrix(0, 0), width_px},
+                                                   {"fy", camera->matrix(1, 1), height_px}}) {
+      if (!(focal_px >= kLeastFocalPerSide * side_px)) {
+        throw Error(fmt::format(
+            "the {} camera's {} is {:.6g} pixels, expected at least {:.6g} for {}x{} images", name,
+            field, focal_px, kLeastFocalPerSide * side_px, width_px, height_px));
+      }
     }
   }
 }

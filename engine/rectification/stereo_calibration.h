@@ -30,6 +30,7 @@ struct StereoCalibration {
   /// The images are rectified: row y of the left one shows what row y of the right one shows.
   bool is_rectified = false;
   std::string format = "calibration";  ///< for messages: "KITTI, cameras 0 and 1"
+  std::string file = {};               ///< for messages: that it was read from, if any
 
   /// Distance of the cameras, in the calibration's unit.
   [[nodiscard]] double baseline() const { return translation.norm(); }
@@ -40,7 +41,8 @@ struct StereoCalibration {
   /// Throws Error of one line that names the quantity, its value and its limit.
   void validate() const;
   /// Throws Error when images of this size cannot have been taken by these cameras: another size
-  /// than the calibration's, or without the principal points inside.
+  /// than the calibration's, without the principal points inside, or with focal lengths below a
+  /// twentieth of a side (84 degrees off the optical axis).
   void check_image_size(int width_px, int height_px) const;
 };
 
@@ -53,6 +55,8 @@ struct StereoCalibration {
 ///    the cameras to 0.1 px. Rectified.
 ///  - KITTI calib.txt: P0 and P1 (grey) if they are there, else P2 and P3 (colour), or the same
 ///    under the names P_rect_00 …, or two or four lines of 12 numbers without names. Rectified.
+/// Fisheye models are refused where the file names them (fisheye_model of OpenCV's samples,
+/// distortion_model, camera_model or model); their four coefficients alone look like a lens's.
 /// The result is valid. Throws Error of one line naming the file for whatever it cannot read.
 /// Thread rule: may be called concurrently.
 StereoCalibration read_stereo_calibration(const std::filesystem::path& path);

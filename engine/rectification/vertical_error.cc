@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kTolerance_px = 1;
 constexpr double kDeviations = 4;
+/// Points at infinity have disparities around 0.
+constexpr double kNegative_px = -0.5;
 constexpr int kTerms = 7;
 using Terms = Eigen::Matrix<double, Eigen::Dynamic, kTerms>;
 
@@ -122,6 +124,10 @@ std::optional<VerticalError> vertical_error(const std::vector<PointMatch>& match
   result.systematic_px = std::sqrt(smooth_sum_of_squares / count);
   result.least_disparity_px = percentile(disparities, 0.01);
   result.largest_disparity_px = percentile(disparities, 0.99);
+  const auto is_negative = [](double disparity) { return disparity < kNegative_px; };
+  result.negative_share =
+      static_cast<double>(std::count_if(disparities.begin(), disparities.end(), is_negative)) /
+      count;
   return result;
 }
 

@@ -23,6 +23,13 @@ struct VerticalError {
   /// What all but one per cent at each end of x_left − x_right lie between.
   double least_disparity_px = 0;
   double largest_disparity_px = 0;
+  /// Of the inliers, the part whose disparity x_left − x_right is below −0.5 pixels. Of images that
+  /// show infinity at 0, as rectified ones do that are not shifted, next to none.
+  double negative_share = 0;
+
+  /// True when nine of ten disparities are negative, as when the images are exchanged. Images that
+  /// are shifted against each other, as films are to show things behind the screen, look the same.
+  [[nodiscard]] bool looks_exchanged() const { return negative_share >= 0.9; }
 };
 
 /// Matches that a statement is made of.

@@ -36,8 +36,9 @@ enum class MapSide { kLeft, kRight };
 
 /// Fills unmatched pixels (EQUATIONS §5.4): at constant depth, with Fill::kLinear along a line
 /// where the disparities at both ends of a run differ by at most 1 px, with Fill::kNone as unknown
-/// (NaN). Unless none, a row without any matched pixel copies the nearest row that has one, the
-/// upper of two as near; a map without any keeps its values. Identical for any `execution`.
+/// (NaN). Fill::kMedian is constant depth here, which take_filled_medians() goes on from. Unless
+/// none, a row without any matched pixel copies the nearest row that has one, the upper of two as
+/// near; a map without any keeps its values. Identical for any `execution`.
 void fill_unmatched(const Mask& unmatched, MapSide side, Fill fill, Execution& execution,
                     DisparityMap& map_px);
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <system_error>
@@ -13,9 +15,12 @@
 
 #include "engine/error.h"
 #include "engine/image/transposed.h"
+#include "engine/io/atomic_file.h"
 #include "engine/io/disparity_io.h"
+#include "engine/io/file_bytes.h"
 #include "engine/io/photograph_io.h"
 #include "engine/matching/disparity_range.h"
+#include "engine/scene_graph/sheared_images.h"
 
 namespace vantage {
 namespace {
@@ -23,6 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kSameLength = 1e-9;  // relative
+constexpr std::size_t kHashDigits = 16;
 
 std::vector<ScenePosition> positions_of(const std::vector<SceneImage>& images) {
   std::vector<ScenePosition> positions;
@@ -64,6 +70,47 @@ std::string path_from(const fs::path& folder, const fs::path& file) {
       .generic_string();
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw Error(fmt::format("{}: the folder cannot be made, {}", folder.string(), error.message()));
+  }
+}
+
+/// What a process that was killed had not finished (AtomicFile). No other one works on the folder.
+void remove_leftovers(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with('.') && name.find(".tmp-") != std::string::npos) {
+      found.push_back(entry->path());
+    }
+  }
+  for (const fs::path& file : found) {
+    fs::remove(file, error);
+  }
+}
+
+/// From pixels along x to pixels along the edge.
+void scale(ImageView<float> disparity, double factor) {
+  for (int y = 0; y < disparity.height(); ++y) {
+    std::transform(disparity.row(y), disparity.row(y) + disparity.width(), disparity.row(y),
+                   [&](float d) { return static_cast<float>(d * factor); });
+  }
+}
+
+double matched_share_of(ImageView<const std::uint8_t> unmatched) {
+  std::int64_t matched = 0;
+  for (int y = 0; y < unmatched.height(); ++y) {
+    matched += std::count(unmatched.row(y), unmatched.row(y) + unmatched.width(), 0);
+  }
+  return static_cast<double>(matched) /
+         (static_cast<double>(unmatched.width()) * unmatched.height());
+}
+
 bool is_there(const fs::path& folder, const StoredFile& file) {
   std::error_code error;
   const auto bytes = fs::file_size(folder / file.name, error);
@@ -89,11 +136,12 @@ SceneBuilder::SceneBuilder(fs::path folder, std::vector<SceneImage> images,
   options_.validate();
   scene_.settings = nlohmann::ordered_json::parse(options_.settings).dump();
   scene_.unit_length = layout_.unit_length();
-  std::error_code error;
-  fs::create_directories(folder_ / "maps", error);
-  if (error) {
-    throw Error(fmt::format("{}: the folder cannot be made, {}", (folder_ / "maps").string(),
-                            error.message()));
+  make_folder(folder_ / "maps");
+  if (options_.copy_images) {
+    make_folder(folder_ / "images");
+  }
+  for (const fs::path& place : {folder_, folder_ / "maps", folder_ / "images"}) {
+    remove_leftovers(place);
   }
   Photograph first;
   for (const SceneImage& image : images_) {
@@ -103,11 +151,31 @@ SceneBuilder::SceneBuilder(fs::path folder, std::vector<SceneImage> images,
     } else {
       require_same_shape(image, photograph, images_.front(), first);
     }
-    scene_.images.push_back({.file = path_from(folder_, image.file),
-                             .content = content_of_file(image.file),
-                             .position = image.position});
+    scene_.images.push_back(stored_image(image));
   }
+  scene_.width_px = first.width();
+  scene_.height_px = first.height();
   keep_finished_edges();
+}
+
+StoredImage SceneBuilder::stored_image(const SceneImage& image) const {
+  const std::string content = content_of_file(image.file);
+  StoredImage stored{
+      .file = path_from(folder_, image.file), .content = content, .position = image.position};
+  const bool is_inside = fs::path(stored.file).begin()->string() != "..";
+  if (!options_.copy_images || is_inside) {
+    return stored;
+  }
+  // The end of the content's description is its hash.
+  stored.file =
+      fmt::format("images/{}-{}{}", image.file.stem().string(),
+                  content.substr(content.size() - kHashDigits), image.file.extension().string());
+  std::error_code ignored;
+  if (!fs::exists(folder_ / stored.file, ignored) ||
+      content_of_file(folder_ / stored.file) != content) {
+    write_binary_file(folder_ / stored.file, read_file_bytes(image.file));
+  }
+  return stored;
 }
 
 void SceneBuilder::keep_finished_edges() {
@@ -124,6 +192,7 @@ void SceneBuilder::keep_finished_edges() {
     if (stored != nullptr && is_same_image(edge.first) && is_same_image(edge.second) &&
         std::abs(stored->edge.length / before->unit_length / (edge.length / scene_.unit_length) -
                  1) <= kSameLength &&
+        std::abs(stored->edge.slope - edge.slope) <= kSameLength &&
         is_there(folder_, stored->maps[0]) && is_there(folder_, stored->maps[1]) &&
         is_there(folder_, stored->unmatched[0]) && is_there(folder_, stored->unmatched[1])) {
       scene_.edges.push_back(*stored);
@@ -165,7 +234,7 @@ MatchOptions SceneBuilder::options_for(const SceneEdge& edge, const Photograph& 
     options.disparities = estimate_disparity_range(first, second, execution_);
     options.disparities_auto = false;
   } else {
-    const double scale = edge.length / scene_.unit_length;
+    const double scale = edge.length_along() / scene_.unit_length;
     const DisparityRange range = options.disparities;
     // A length like 0.1 · 3 must not widen a range by one.
     const auto outward = [&](double value) { return std::ceil(value * scale - 1e-6); };
@@ -176,7 +245,24 @@ MatchOptions SceneBuilder::options_for(const SceneEdge& edge, const Photograph& 
   return options;
 }
 
-StoredEdge SceneBuilder::build(int edge, MatchReport* report) {
+void SceneBuilder::match(const SceneEdge& edge, const std::array<Photograph, 2>& images,
+                         DisparityMaps& maps, StoredEdge& result, MatchReport* report) const {
+  try {
+    const StereoMatcher matcher(options_for(edge, images[0], images[1]), execution_);
+    result.disparities = matcher.options().disparities;
+    matcher.match(images[0], images[1], {}, maps, report);
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Error& error) {
+    const auto name_of = [&](int vertex) {
+      return images_[static_cast<std::size_t>(vertex)].file.string();
+    };
+    throw Error(
+        fmt::format("{} and {}: {}", name_of(edge.first), name_of(edge.second), error.what()));
+  }
+}
+
+SceneBuilder::BuiltEdge SceneBuilder::build(int edge, MatchReport* report) {
   const SceneEdge& wanted = layout_.edges().at(static_cast<std::size_t>(edge));
   const std::array<int, 2> ends = {wanted.first, wanted.second};
   std::array<Photograph, 2> images;
@@ -186,35 +272,50 @@ StoredEdge SceneBuilder::build(int edge, MatchReport* report) {
       images[side] = transposed(images[side]);
     }
   }
-  DisparityMaps maps;
-  StoredEdge result;
-  result.edge = wanted;
-  try {
-    const StereoMatcher matcher(options_for(wanted, images[0], images[1]), execution_);
-    result.disparities = matcher.options().disparities;
-    matcher.match(images[0], images[1], {}, maps, report);
-  } catch (const UsageError&) {
-    throw;
-  } catch (const Error& error) {
-    throw Error(
-        fmt::format("{} and {}: {}", images_[static_cast<std::size_t>(ends[0])].file.string(),
-                    images_[static_cast<std::size_t>(ends[1])].file.string(), error.what()));
+  const bool is_oblique = wanted.slope != 0;
+  const int height = images[0].height();
+  const Shear shear(wanted.slope, images[0].width());
+  for (std::size_t side = 0; side < 2 && is_oblique; ++side) {
+    images[side] = sheared(images[side], shear, execution_);
   }
+  BuiltEdge built;
+  StoredEdge& result = built.stored;
+  result.edge = wanted;
+  if (options_.check_rectification) {
+    const auto start = std::chrono::steady_clock::now();
+    built.rectification = check_rectification(images[0], images[1]);
+    if (built.rectification) {
+      result.rectification_error_px = built.rectification->systematic_px;
+    }
+    built.check_seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+  DisparityMaps maps;
+  match(wanted, images, maps, result, report);
   const std::array<DisparityMap*, 2> disparities = {&maps.left, &maps.right};
   const std::array<Mask*, 2> masks = {&maps.left_unmatched, &maps.right_unmatched};
   for (std::size_t side = 0; side < 2; ++side) {
-    if (wanted.is_vertical) {
-      *disparities[side] = transposed(disparities[side]->view());
-      *masks[side] = transposed(masks[side]->view());
+    DisparityMap& disparity = *disparities[side];
+    Mask& unmatched = *masks[side];
+    if (is_oblique) {
+      disparity = unsheared_disparity(disparity.view(), shear, height, execution_);
+      unmatched = unsheared_mask(unmatched.view(), shear, height);
+      mark_partners_beyond_border(disparity.view(), shear, side == 0 ? -1 : 1, unmatched.view());
+      scale(disparity.view(), wanted.length / wanted.length_along());
     }
+    if (wanted.is_vertical) {
+      disparity = transposed(disparity.view());
+      unmatched = transposed(unmatched.view());
+    }
+    result.matched_share[side] = matched_share_of(unmatched.view());
     const std::string name = fmt::format("maps/{:03}-{:03}-{}", wanted.first, wanted.second,
                                          side == 0 ? "first" : "second");
     const auto stored = [&](const std::string& file) {
       return StoredFile{.name = file, .bytes = fs::file_size(folder_ / file)};
     };
-    write_disparity(folder_ / (name + ".pfm"), disparities[side]->view());
+    write_disparity(folder_ / (name + ".pfm"), disparity.view());
     result.maps[side] = stored(name + ".pfm");
-    write_mask(folder_ / (name + "-unmatched.png"), masks[side]->view());
+    write_mask(folder_ / (name + "-unmatched.png"), unmatched.view());
     result.unmatched[side] = stored(name + "-unmatched.png");
   }
   scene_.edges.push_back(result);
@@ -224,7 +325,7 @@ StoredEdge SceneBuilder::build(int edge, MatchReport* report) {
            std::tuple(b.edge.first, b.edge.is_vertical, b.edge.second);
   });
   write_scene(folder_, scene_);
-  return result;
+  return built;
 }
 
 }  // namespace vantage

@@ -7,7 +7,10 @@
 #include <cstddef>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
+#include <set>
+#include <tuple>
 #include <utility>
 
 #include "engine/error.h"
@@ -15,11 +18,12 @@
 namespace vantage {
 namespace {
 
-constexpr double kAlignment = 1e-3;  // of neighbours in a row, relative to their distance
-constexpr double kOnBorder = 1e-6;   // of the unit length
-constexpr double kFlattest = 1e-3;   // height of a triangle, relative to its longest side
-constexpr float kGridSide = 1000;    // of the positions as the triangulation gets them
-constexpr int kFarAway = 50 * 1000;  // where its own auxiliary vertices lie
+constexpr double kAlignment = 1e-3;    // of neighbours in a row, relative to their distance
+constexpr double kOnBorder = 1e-6;     // of the unit length
+constexpr double kFlattest = 1e-3;     // height of a triangle, relative to its longest side
+constexpr double kLongestOblique = 2;  // relative to the distance of the nearest neighbour
+constexpr float kGridSide = 1000;      // of the positions as the triangulation gets them
+constexpr int kFarAway = 50 * 1000;    // where its own auxiliary vertices lie
 
 double distance(ScenePosition a, ScenePosition b) { return std::hypot(b.x - a.x, b.y - a.y); }
 
@@ -65,8 +69,12 @@ SceneLayout::SceneLayout(std::vector<ScenePosition> positions, std::span<const s
       }
     }
   }
-  join_neighbours(names);
+  join_neighbours();
   triangulate();
+  join_obliquely();
+  unit_length_ = std::min_element(edges_.begin(), edges_.end(), [](const auto& a, const auto& b) {
+                   return a.length < b.length;
+                 })->length;
   for (const SceneEdge& edge : edges_) {
     pairs_.push_back({edge.first, edge.second});
   }
@@ -77,9 +85,8 @@ SceneLayout::SceneLayout(std::vector<ScenePosition> positions, std::span<const s
   }
 }
 
-void SceneLayout::join_neighbours(std::span<const std::string> names) {
+void SceneLayout::join_neighbours() {
   const auto count = static_cast<int>(positions_.size());
-  std::vector<bool> is_joined(positions_.size());
   const auto join = [&](int first, bool is_vertical) {
     // The nearest one straight to the right, or below.
     SceneEdge nearest{.first = first,
@@ -99,24 +106,95 @@ void SceneLayout::join_neighbours(std::span<const std::string> names) {
     }
     if (nearest.second >= 0) {
       edges_.push_back(nearest);
-      is_joined[static_cast<std::size_t>(first)] = true;
-      is_joined[static_cast<std::size_t>(nearest.second)] = true;
     }
   };
   for (int vertex = 0; vertex < count; ++vertex) {
     join(vertex, false);
     join(vertex, true);
   }
-  const auto lonely = std::find(is_joined.begin(), is_joined.end(), false);
-  if (lonely != is_joined.end()) {
-    throw Error(fmt::format(
-        "{} has no neighbour at the same x or the same y, expected images in "
-        "rows, columns or a grid",
-        describe(names, positions_, static_cast<std::size_t>(lonely - is_joined.begin()))));
+}
+
+void SceneLayout::join_obliquely() {
+  const auto count = static_cast<int>(positions_.size());
+  const auto between = [&](int a, int b) {
+    return distance(positions_[static_cast<std::size_t>(a)],
+                    positions_[static_cast<std::size_t>(b)]);
+  };
+  std::set<std::array<int, 2>> sides;  // vertices in ascending order
+  const auto add_side = [&](int a, int b) { sides.insert({std::min(a, b), std::max(a, b)}); };
+  std::vector<double> nearest(positions_.size(), std::numeric_limits<double>::infinity());
+  for (int vertex = 0; vertex < count; ++vertex) {
+    int neighbour = vertex;
+    double& shortest = nearest[static_cast<std::size_t>(vertex)];
+    for (int other = 0; other < count; ++other) {
+      if (other != vertex && between(vertex, other) < shortest) {
+        shortest = between(vertex, other);
+        neighbour = other;
+      }
+    }
+    add_side(vertex, neighbour);  // flat triangles have been left out, so it need not be on one
   }
-  unit_length_ = std::min_element(edges_.begin(), edges_.end(), [](const auto& a, const auto& b) {
-                   return a.length < b.length;
-                 })->length;
+  const auto is_near = [&](int vertex, double length) {
+    return length <= kLongestOblique * nearest[static_cast<std::size_t>(vertex)];
+  };
+  std::vector<bool> is_lonely(positions_.size(), true);
+  for (const SceneEdge& edge : edges_) {
+    for (const int end : {edge.first, edge.second}) {
+      if (is_near(end, edge.length)) {
+        is_lonely[static_cast<std::size_t>(end)] = false;
+      }
+    }
+  }
+  for (const auto& [a, b, c] : triangles_) {
+    add_side(a, b);
+    add_side(b, c);
+    add_side(a, c);
+  }
+  if (triangles_.empty()) {
+    std::vector<int> along_line(positions_.size());
+    std::iota(along_line.begin(), along_line.end(), 0);
+    std::sort(along_line.begin(), along_line.end(), [&](int a, int b) {
+      const ScenePosition& first = positions_[static_cast<std::size_t>(a)];
+      const ScenePosition& second = positions_[static_cast<std::size_t>(b)];
+      return std::pair(first.x, first.y) < std::pair(second.x, second.y);
+    });
+    for (std::size_t i = 1; i < along_line.size(); ++i) {
+      add_side(along_line[i - 1], along_line[i]);
+    }
+  }
+  for (const auto& [a, b] : sides) {
+    const double length = between(a, b);
+    const auto wants = [&](int end) {
+      return is_lonely[static_cast<std::size_t>(end)] &&
+             (triangles_.empty() || is_near(end, length));
+    };
+    const bool is_edge = std::any_of(edges_.begin(), edges_.end(), [&](const SceneEdge& edge) {
+      return std::min(edge.first, edge.second) == a && std::max(edge.first, edge.second) == b;
+    });
+    if (!is_edge && (wants(a) || wants(b))) {
+      edges_.push_back(oblique_edge(a, b));
+    }
+  }
+  std::sort(edges_.begin(), edges_.end(), [](const SceneEdge& a, const SceneEdge& b) {
+    return std::tuple(a.first, a.is_vertical, a.second) <
+           std::tuple(b.first, b.is_vertical, b.second);
+  });
+}
+
+SceneEdge SceneLayout::oblique_edge(int first, int second) const {
+  const ScenePosition a = positions_[static_cast<std::size_t>(first)];
+  const ScenePosition b = positions_[static_cast<std::size_t>(second)];
+  SceneEdge edge{.first = first,
+                 .second = second,
+                 .is_vertical = std::abs(b.y - a.y) > std::abs(b.x - a.x),
+                 .length = distance(a, b)};
+  const double along = edge.is_vertical ? b.y - a.y : b.x - a.x;
+  const double across = edge.is_vertical ? b.x - a.x : b.y - a.y;
+  edge.slope = across / along;
+  if (along < 0) {
+    std::swap(edge.first, edge.second);
+  }
+  return edge;
 }
 
 void SceneLayout::triangulate() {

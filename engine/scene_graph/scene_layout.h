@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,12 +16,17 @@ struct ScenePosition {
   friend bool operator==(const ScenePosition&, const ScenePosition&) = default;
 };
 
-/// Two neighbours in a row or a column, whose images are matched.
+/// Two neighbours, whose images are matched: in a row or a column, or obliquely.
 struct SceneEdge {
-  int first = 0;   ///< vertex on the left, or above
-  int second = 0;  ///< vertex on the right, or below
-  bool is_vertical = false;
+  int first = 0;             ///< vertex on the left, or above
+  int second = 0;            ///< vertex on the right, or below
+  bool is_vertical = false;  ///< rather along y than along x
   double length = 0;
+  /// Of an oblique edge, Δy/Δx, or Δx/Δy if is_vertical: within ±1. 0 along rows and columns.
+  double slope = 0;
+
+  /// Part of `length` that is along x, or y if is_vertical.
+  [[nodiscard]] double length_along() const { return length / std::sqrt(1 + slope * slope); }
 
   friend bool operator==(const SceneEdge&, const SceneEdge&) = default;
 };
@@ -36,18 +42,20 @@ struct ScenePlace {
 };
 
 /// A graph of cameras that stand in one plane and look the same way (3.4): vertices are cameras,
-/// edges join neighbours of a row or column, triangles (Delaunay) fill what cameras enclose.
+/// edges join neighbours, triangles (Delaunay) fill what cameras enclose.
 ///
 /// Thread rule: immutable.
 class SceneLayout {
  public:
   static constexpr int kMostVertices = 4096;
 
-  /// `names`: of the images, for messages. Every vertex needs a neighbour with the same y or the
-  /// same x, up to a thousandth of their distance: along such edges rows, or columns, correspond.
-  /// The neighbours of a vertex are the nearest in each direction. Throws Error naming the vertex
-  /// that has no neighbour, two at one place, or a position that is not finite, and for fewer than
-  /// 2 or more than 4096 vertices.
+  /// `names`: of the images, for messages. The neighbours of a vertex are the nearest ones with the
+  /// same y or the same x, up to a thousandth of their distance, in each direction: along such
+  /// edges rows, or columns, correspond. A vertex that has none within twice the distance of the
+  /// vertex nearest to it is joined obliquely: to all within that distance with which it shares the
+  /// side of a triangle, and to the nearest; without triangles to those before and behind it on the
+  /// line that all stand on. Throws Error naming two vertices at one place, or a position that is
+  /// not finite, and for fewer than 2 or more than 4096 vertices.
   SceneLayout(std::vector<ScenePosition> positions, std::span<const std::string> names);
 
   [[nodiscard]] const std::vector<ScenePosition>& positions() const { return positions_; }
@@ -63,7 +71,9 @@ class SceneLayout {
   [[nodiscard]] ScenePlace locate(ScenePosition position) const;
 
  private:
-  void join_neighbours(std::span<const std::string> names);
+  void join_neighbours();
+  void join_obliquely();
+  [[nodiscard]] SceneEdge oblique_edge(int first, int second) const;
   void triangulate();
   [[nodiscard]] ScenePlace nearest_pair(ScenePosition position) const;
 

@@ -13,9 +13,11 @@
 namespace vantage {
 namespace {
 
-constexpr double kFarthestView = 16;    // edges
-constexpr double kSameLength = 1e-9;    // of an edge
-constexpr std::size_t kMostLoaded = 8;  // vertices that are kept; a view needs up to three
+constexpr double kSameLength = 1e-9;  // of an edge
+// What is kept beside that of views under way: vertices, of which a view of two eyes needs up to
+// six, and sources.
+constexpr std::size_t kMostLoaded = 8;
+constexpr std::size_t kMostSources = 2;
 
 SynthesisOptions with_moving_brightness(SynthesisOptions options) {
   if (options.warp == WarpColour::kForward) {
@@ -23,6 +25,19 @@ SynthesisOptions with_moving_brightness(SynthesisOptions options) {
   }
   options.gamma.reset();
   return options;
+}
+
+std::vector<int> vertices_of(const ScenePlace& place) {
+  return {place.vertices.begin(), place.vertices.begin() + place.count};
+}
+
+PhotographTriple triple_of(const SceneSources& sources) {
+  PhotographTriple triple;
+  for (std::size_t k = 0; k < 3; ++k) {
+    triple.images[k] = &sources.loaded[k]->image;
+    triple.disparity_px[k] = sources.disparity_px[k].view();
+  }
+  return triple;
 }
 
 }  // namespace
@@ -34,14 +49,48 @@ SceneViewer::SceneViewer(const SceneLayout& layout, LoadVertex load_vertex,
       execution_(execution),
       synthesizer_(with_moving_brightness(options), execution) {}
 
+ScenePosition SceneViewer::at(int vertex) const {
+  return layout_.positions()[static_cast<std::size_t>(vertex)];
+}
+
+double SceneViewer::length_of(const ScenePlace& place) const {
+  if (!place.is_triangle()) {
+    for (const SceneEdge& edge : layout_.edges()) {
+      if (edge.first == place.vertices[0] && edge.second == place.vertices[1]) {
+        return edge.length;
+      }
+    }
+  }
+  return layout_.unit_length();
+}
+
+void SceneViewer::require_near(ScenePosition position) const {
+  if (!std::isfinite(position.x) || !std::isfinite(position.y)) {
+    throw UsageError("position of the view is not finite, expected two numbers");
+  }
+  const ScenePlace place = layout_.locate(position);
+  if (place.is_triangle()) {
+    return;
+  }
+  const double length = length_of(place);
+  const double away = std::min(warp_to(position, place.vertices[0], length).parallax.norm(),
+                               warp_to(position, place.vertices[1], length).parallax.norm());
+  if (!(away <= kFarthestView)) {
+    throw UsageError(fmt::format(
+        "view at {},{} is {:.4g} lengths of the nearest edge away from its images, expected at "
+        "most {}",
+        position.x, position.y, away, kFarthestView));
+  }
+}
+
 // A reference holds until kMostLoaded others have been asked for.
-const SceneVertex& SceneViewer::vertex(int number) {
+const std::shared_ptr<const SceneVertex>& SceneViewer::vertex(int number) {
   const auto found = std::find_if(loaded_.begin(), loaded_.end(),
                                   [&](const Loaded& loaded) { return loaded.number == number; });
   if (found != loaded_.end()) {
     loaded_.splice(loaded_.begin(), loaded_, found);
   } else {
-    loaded_.push_front({number, load_vertex_(number)});
+    loaded_.push_front({number, std::make_shared<const SceneVertex>(load_vertex_(number))});
     if (loaded_.size() > kMostLoaded) {
       loaded_.pop_back();
     }
@@ -49,57 +98,104 @@ const SceneVertex& SceneViewer::vertex(int number) {
   return loaded_.front().vertex;
 }
 
-ScenePosition SceneViewer::at(int vertex) const {
-  return layout_.positions()[static_cast<std::size_t>(vertex)];
+void SceneViewer::load(ScenePosition position) {
+  require_near(position);
+  for (const int number : vertices_of(layout_.locate(position))) {
+    vertex(number);
+  }
 }
 
-void SceneViewer::prepare_sources(const ScenePlace& place) {
-  const std::vector<int> vertices(place.vertices.begin(), place.vertices.begin() + place.count);
-  if (vertices == sources_.vertices) {
-    return;
-  }
-  sources_.vertices.clear();  // until the new ones are complete
-  sources_.length = layout_.unit_length();
-  if (!place.is_triangle()) {
-    for (const SceneEdge& edge : layout_.edges()) {
-      if (edge.first == vertices[0] && edge.second == vertices[1]) {
-        sources_.length = edge.length;
-      }
+PreparedSceneView SceneViewer::prepare(ScenePosition position) {
+  load(position);
+  PreparedSceneView prepared{
+      .position = position, .place = layout_.locate(position), .sources = {}};
+  const std::vector<int> vertices = vertices_of(prepared.place);
+  const auto found = std::find_if(sources_.begin(), sources_.end(), [&](const auto& sources) {
+    return sources->vertices == vertices;
+  });
+  if (found != sources_.end()) {
+    sources_.splice(sources_.begin(), sources_, found);
+  } else {
+    sources_.push_front(make_sources(prepared.place));
+    if (sources_.size() > kMostSources) {
+      sources_.pop_back();
     }
   }
-  for (std::size_t k = 0; k < vertices.size(); ++k) {
-    const SceneVertex& loaded = vertex(vertices[k]);
+  prepared.sources = sources_.front();
+  return prepared;
+}
+
+std::shared_ptr<const SceneSources> SceneViewer::make_sources(const ScenePlace& place) {
+  auto sources = std::make_shared<SceneSources>();
+  sources->vertices = vertices_of(place);
+  sources->length = length_of(place);
+  for (std::size_t k = 0; k < sources->vertices.size(); ++k) {
+    sources->loaded[k] = vertex(sources->vertices[k]);
+    const SceneVertex& loaded = *sources->loaded[k];
     std::vector<MapOfEdge> maps;
     for (const SceneEdgeMap& map : loaded.maps) {
-      const bool is_own =
-          std::find(vertices.begin(), vertices.end(), map.neighbour) != vertices.end();
+      const bool is_own = std::find(sources->vertices.begin(), sources->vertices.end(),
+                                    map.neighbour) != sources->vertices.end();
       maps.push_back({.disparity_px = map.disparity_px.view(),
                       .is_unmatched = map.unmatched.view(),
                       .edge_length = map.length,
                       .is_own = is_own});
     }
-    DisparityMap& fused = sources_.disparity_px[k];
+    DisparityMap& fused = sources->disparity_px[k];
     fused.resize(loaded.image.width(), loaded.image.height());
-    fuse_maps(maps, sources_.length, synthesizer_.options().disparity_gradient_limit_px,
+    fuse_maps(maps, sources->length, synthesizer_.options().disparity_gradient_limit_px,
               fused.view(), execution_);
   }
-  sources_.vertices = vertices;
+  fit_intensities(*sources);
+  return sources;
 }
 
-ViewWarp SceneViewer::warp_to(ScenePosition position, int vertex) const {
+void SceneViewer::fit_intensities(SceneSources& sources) {
+  ScenePosition middle;
+  const auto count = static_cast<double>(sources.vertices.size());
+  for (const int number : sources.vertices) {
+    middle.x += at(number).x / count;
+    middle.y += at(number).y / count;
+  }
+  if (sources.vertices.size() == 3) {
+    auto fit = triple_fits_.find(sources.vertices);
+    if (fit == triple_fits_.end()) {
+      fit = triple_fits_
+                .emplace(sources.vertices,
+                         synthesizer_.fit_triple(triple_of(sources), triple_view(sources, middle)))
+                .first;
+    }
+    sources.triple_fit = fit->second;
+    return;
+  }
+  auto fit = pair_fits_.find(sources.vertices);
+  if (fit == pair_fits_.end()) {
+    fit = pair_fits_.emplace(sources.vertices, std::array<IntensityFit, 4>()).first;
+    if (synthesizer_.options().match_intensities) {
+      const Photograph& first = sources.loaded[0]->image;
+      fit->second =
+          fit_channels(synthesizer_.intensity_sums(
+                           first, sources.loaded[1]->image, sources.disparity_px[0].view(),
+                           sources.disparity_px[1].view(), pair_view(sources, middle)),
+                       first.channels(), 1);
+    }
+  }
+  sources.pair_fit = fit->second;
+}
+
+ViewWarp SceneViewer::warp_to(ScenePosition position, int vertex, double length) const {
   const ScenePosition camera = at(vertex);
   ViewWarp warp;
-  warp.parallax = {(camera.x - position.x) / sources_.length,
-                   (camera.y - position.y) / sources_.length, 0};
+  warp.parallax = {(camera.x - position.x) / length, (camera.y - position.y) / length, 0};
   return warp;
 }
 
-NewView SceneViewer::pair_view(ScenePosition position, const Photograph& image) const {
+NewView SceneViewer::pair_view(const SceneSources& sources, ScenePosition position) const {
   NewView view;
-  view.width_px = image.width();
-  view.height_px = image.height();
-  view.from_left = warp_to(position, sources_.vertices[0]);
-  view.from_right = warp_to(position, sources_.vertices[1]);
+  view.width_px = sources.loaded[0]->image.width();
+  view.height_px = sources.loaded[0]->image.height();
+  view.from_left = warp_to(position, sources.vertices[0], sources.length);
+  view.from_right = warp_to(position, sources.vertices[1], sources.length);
   view.distance_from_left = view.from_left.parallax.norm();
   view.distance_from_right = view.from_right.parallax.norm();
   // Two images of a row are a rectified pair as they are, without rounding errors: what works along
@@ -112,77 +208,33 @@ NewView SceneViewer::pair_view(ScenePosition position, const Photograph& image) 
   return view;
 }
 
-void SceneViewer::synthesize_pair(ScenePosition position, SynthesizedView& view) {
-  const std::vector<int>& ends = sources_.vertices;
-  const Photograph& first = vertex(ends[0]).image;
-  const Photograph& second = vertex(ends[1]).image;
-  const ImageView<const float> first_px = sources_.disparity_px[0].view();
-  const ImageView<const float> second_px = sources_.disparity_px[1].view();
-  auto fit = pair_fits_.find(ends);
-  if (fit == pair_fits_.end()) {
-    fit = pair_fits_.emplace(ends, std::array<IntensityFit, 4>()).first;
-    if (synthesizer_.options().match_intensities) {
-      const ScenePosition middle{(at(ends[0]).x + at(ends[1]).x) / 2,
-                                 (at(ends[0]).y + at(ends[1]).y) / 2};
-      fit->second = fit_channels(
-          synthesizer_.intensity_sums(first, second, first_px, second_px, pair_view(middle, first)),
-          first.channels(), 1);
-    }
+TripleView SceneViewer::triple_view(const SceneSources& sources, ScenePosition position) const {
+  TripleView view;
+  view.width_px = sources.loaded[0]->image.width();
+  view.height_px = sources.loaded[0]->image.height();
+  for (std::size_t k = 0; k < 3; ++k) {
+    view.from[k] = warp_to(position, sources.vertices[k], sources.length);
   }
-  synthesizer_.synthesize(first, second, first_px, second_px, pair_view(position, first), view,
-                          &fit->second);
+  return view;
 }
 
-void SceneViewer::synthesize_triangle(const ScenePlace& place, ScenePosition position,
-                                      SynthesizedView& view) {
-  PhotographTriple triple;
-  ScenePosition middle;
-  for (std::size_t k = 0; k < 3; ++k) {
-    triple.images[k] = &vertex(place.vertices[k]).image;
-    triple.disparity_px[k] = sources_.disparity_px[k].view();
-    middle.x += at(place.vertices[k]).x / 3;
-    middle.y += at(place.vertices[k]).y / 3;
+void SceneViewer::render(const PreparedSceneView& prepared, SynthesizedView& view) const {
+  const SceneSources& sources = *prepared.sources;
+  if (prepared.place.is_triangle()) {
+    TripleView geometry = triple_view(sources, prepared.position);
+    geometry.weights = prepared.place.weights;
+    synthesizer_.synthesize(triple_of(sources), geometry, view, sources.triple_fit);
+    return;
   }
-  const auto view_at = [&](ScenePosition seen_from) {
-    TripleView geometry;
-    geometry.width_px = triple.images[0]->width();
-    geometry.height_px = triple.images[0]->height();
-    for (std::size_t k = 0; k < 3; ++k) {
-      geometry.from[k] = warp_to(seen_from, place.vertices[k]);
-    }
-    return geometry;
-  };
-  auto fit = triangle_fits_.find(sources_.vertices);
-  if (fit == triangle_fits_.end()) {
-    fit =
-        triangle_fits_.emplace(sources_.vertices, synthesizer_.fit_triple(triple, view_at(middle)))
-            .first;
-  }
-  TripleView geometry = view_at(position);
-  geometry.weights = place.weights;
-  synthesizer_.synthesize(triple, geometry, view, fit->second);
+  synthesizer_.synthesize(sources.loaded[0]->image, sources.loaded[1]->image,
+                          sources.disparity_px[0].view(), sources.disparity_px[1].view(),
+                          pair_view(sources, prepared.position), view, &sources.pair_fit);
 }
 
 ScenePlace SceneViewer::synthesize(ScenePosition position, SynthesizedView& view) {
-  if (!std::isfinite(position.x) || !std::isfinite(position.y)) {
-    throw UsageError("position of the view is not finite, expected two numbers");
-  }
-  const ScenePlace place = layout_.locate(position);
-  prepare_sources(place);
-  if (place.is_triangle()) {
-    synthesize_triangle(place, position, view);
-    return place;
-  }
-  const double away = std::min(warp_to(position, place.vertices[0]).parallax.norm(),
-                               warp_to(position, place.vertices[1]).parallax.norm());
-  if (!(away <= kFarthestView)) {
-    throw UsageError(fmt::format(
-        "view at {},{} is {:.4g} lengths of the nearest edge away from its images, expected at "
-        "most {}",
-        position.x, position.y, away, kFarthestView));
-  }
-  synthesize_pair(position, view);
-  return place;
+  const PreparedSceneView prepared = prepare(position);
+  render(prepared, view);
+  return prepared.place;
 }
 
 }  // namespace vantage

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;
 
 fs::path file_of(const fs::path& folder) { return folder / "scene.json"; }
 
@@ -40,7 +40,11 @@ Json json_of(const StoredEdge& stored) {
           {"second", edge.second},
           {"direction", edge.is_vertical ? "y" : "x"},
           {"length", edge.length},
+          {"slope", edge.slope},
           {"disparities", {stored.disparities.min, stored.disparities.max}},
+          {"matched_share", stored.matched_share},
+          {"rectification_error_px",
+           stored.rectification_error_px ? Json(*stored.rectification_error_px) : Json()},
           {"maps", {json_of(stored.maps[0]), json_of(stored.maps[1])}},
           {"unmatched", {json_of(stored.unmatched[0]), json_of(stored.unmatched[1])}}};
 }
@@ -50,14 +54,19 @@ StoredEdge edge_of(const Json& json, int vertices) {
   stored.edge = {.first = json.at("first").get<int>(),
                  .second = json.at("second").get<int>(),
                  .is_vertical = json.at("direction").get<std::string>() == "y",
-                 .length = json.at("length").get<double>()};
+                 .length = json.at("length").get<double>(),
+                 .slope = json.at("slope").get<double>()};
   const auto is_vertex = [&](int number) { return number >= 0 && number < vertices; };
   if (!is_vertex(stored.edge.first) || !is_vertex(stored.edge.second) ||
-      !(stored.edge.length > 0)) {
+      !(stored.edge.length > 0) || !(std::abs(stored.edge.slope) <= 1)) {
     throw Error("an edge is out of range");
   }
   stored.disparities = {.min = json.at("disparities").at(0).get<int>(),
                         .max = json.at("disparities").at(1).get<int>()};
+  stored.matched_share = json.at("matched_share").get<std::array<double, 2>>();
+  if (!json.at("rectification_error_px").is_null()) {
+    stored.rectification_error_px = json.at("rectification_error_px").get<double>();
+  }
   for (std::size_t k = 0; k < 2; ++k) {
     stored.maps[k] = file_of(json.at("maps").at(k));
     stored.unmatched[k] = file_of(json.at("unmatched").at(k));
@@ -73,6 +82,8 @@ StoredScene scene_of(const std::string& text) {
   StoredScene scene;
   scene.settings = json.at("settings").dump();
   scene.unit_length = json.at("unit_length").get<double>();
+  scene.width_px = json.at("size").at(0).get<int>();
+  scene.height_px = json.at("size").at(1).get<int>();
   for (const Json& image : json.at("images")) {
     scene.images.push_back(
         {.file = image.at("file").get<std::string>(),
@@ -190,6 +201,7 @@ void write_scene(const fs::path& folder, const StoredScene& scene) {
                      {"version", build_info().version},
                      {"settings", Json::parse(scene.settings)},
                      {"unit_length", scene.unit_length},
+                     {"size", {scene.width_px, scene.height_px}},
                      {"images", images},
                      {"edges", edges}};
   write_text_file(file_of(folder), json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
@@ -210,6 +222,13 @@ void require_complete(const StoredScene& scene, const SceneLayout& layout, const
 SceneVertex load_vertex(const fs::path& folder, const StoredScene& scene, int vertex) {
   const StoredImage& stored = scene.images.at(static_cast<std::size_t>(vertex));
   const fs::path image_file = folder / stored.file;
+  std::error_code ignored;
+  if (!fs::exists(image_file, ignored)) {
+    throw Error(fmt::format(
+        "{} is not there, expected image {} of the scene; 'vantage scene build' finds images that "
+        "have been moved, with --copy-images they are kept in the scene's folder",
+        image_file.lexically_normal().string(), vertex));
+  }
   if (content_of_file(image_file) != stored.content) {
     throw Error(fmt::format(
         "{} has changed since its edges were matched, expected the image that was there; "

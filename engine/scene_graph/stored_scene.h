@@ -29,7 +29,14 @@ struct StoredFile {
 /// An edge that has been matched.
 struct StoredEdge {
   SceneEdge edge;
-  DisparityRange disparities;  ///< that were searched, in pixels of this edge
+  /// That were searched, in pixels along rows or columns (of an oblique edge: whichever it is
+  /// nearer to).
+  DisparityRange disparities;
+  /// Share of the first and the second image's pixels that were matched; the others are guesses.
+  std::array<double, 2> matched_share{};
+  /// How far rows (columns) are from corresponding: VerticalError::systematic_px. None where it was
+  /// not looked for, or too few points were found.
+  std::optional<double> rectification_error_px;
   /// Maps of the first and second image (.pfm) and their masks of unmatched pixels (.png).
   std::array<StoredFile, 2> maps;
   std::array<StoredFile, 2> unmatched;
@@ -38,7 +45,9 @@ struct StoredEdge {
 /// What FOLDER/scene.json holds: images, where they stand, and the edges matched so far.
 struct StoredScene {
   std::string settings = "{}";  ///< a JSON object: what maps depend on
-  double unit_length = 1;       ///< SceneLayout::unit_length()
+  int width_px = 0;             ///< of all images
+  int height_px = 0;
+  double unit_length = 1;  ///< SceneLayout::unit_length()
   std::vector<StoredImage> images;
   std::vector<StoredEdge> edges;
 

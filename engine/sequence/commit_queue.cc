@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/io/file_descriptor.h"
+#include "scheduler/trace.h"
 
 namespace vantage {
 namespace {
@@ -70,6 +71,7 @@ CommitQueue::~CommitQueue() {
 }
 
 void CommitQueue::push(Delivery delivery) {
+  const scheduler::Span wait("disk", scheduler::SpanKind::kWait);
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return waiting_.size() < kMaxWaiting || error_; });
   if (error_) {
@@ -80,6 +82,7 @@ void CommitQueue::push(Delivery delivery) {
 }
 
 void CommitQueue::finish() {
+  const scheduler::Span wait("disk", scheduler::SpanKind::kWait);
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return (waiting_.empty() && !busy_) || error_; });
   if (error_) {
@@ -88,6 +91,7 @@ void CommitQueue::finish() {
 }
 
 void CommitQueue::work() {
+  scheduler::name_traced_thread("deliveries");
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [&] { return !waiting_.empty() || closed_; });
@@ -102,6 +106,7 @@ void CommitQueue::work() {
     changed_.notify_all();
     std::exception_ptr error;
     try {
+      const scheduler::Span span("deliver");
       deliver(batch);
     } catch (...) {
       error = std::current_exception();

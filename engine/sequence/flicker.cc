@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <utility>
+#include <variant>
 
 #include "engine/error.h"
 #include "engine/sequence/still_pixels.h"
@@ -46,7 +47,7 @@ struct Levels {
 struct Frame {
   Levels left;
   DisparityMap map;  ///< empty: none
-  std::vector<BaselinePosition> positions;
+  std::vector<ViewPose> poses;
   std::vector<Levels> views;
 
   void take(const Photograph& left_image, ImageView<const float> left_map,
@@ -56,10 +57,10 @@ struct Frame {
     for (int y = 0; y < left_map.height(); ++y) {
       std::copy_n(left_map.row(y), left_map.width(), map.row(y));
     }
-    positions.resize(frame_views.size());
+    poses.resize(frame_views.size());
     views.resize(frame_views.size());
     for (std::size_t v = 0; v < views.size(); ++v) {
-      positions[v] = frame_views[v].position;
+      poses[v] = frame_views[v].pose;
       views[v].take(*frame_views[v].image, execution);
     }
   }
@@ -83,7 +84,9 @@ void require_sizes(const Photograph& left, ImageView<const float> left_map,
     require("left disparity map", left_map.width(), left_map.height());
   }
   for (const ViewOfFrame& view : views) {
-    require("new view", view.image->width(), view.image->height());
+    if (std::holds_alternative<BaselinePosition>(view.pose)) {
+      require("new view", view.image->width(), view.image->height());
+    }
   }
 }
 
@@ -159,12 +162,13 @@ struct FlickerMeter::State {
     }
     for (std::size_t v = 0; v < sums.views.size(); ++v) {
       // Off the baseline the rows do not correspond.
-      if (!has_same_camera(v) || now.positions[v].y != 0) {
+      const auto* position = std::get_if<BaselinePosition>(&now.poses[v]);
+      if (!has_same_camera(v) || position == nullptr || position->y != 0) {
         continue;
       }
       // (3.5): what a view shows at x was at x + XS · d in the left image.
-      const double first = now.positions[v].x * map.least_px;
-      const double second = now.positions[v].x * map.most_px;
+      const double first = position->x * map.least_px;
+      const double second = position->x * map.most_px;
       kernels::still_view_row(is_still, width,
                               static_cast<int>(std::floor(std::min(first, second))),
                               static_cast<int>(std::ceil(std::max(first, second))), still_view);
@@ -176,16 +180,21 @@ struct FlickerMeter::State {
   }
 
   [[nodiscard]] bool has_same_camera(std::size_t view) const {
-    return now.positions[view] == before.positions[view];
+    return now.poses[view] == before.poses[view];
   }
   /// Of the means over all pixels, in units.
   [[nodiscard]] std::int64_t brightness_jump(std::size_t view) const {
     if (!has_same_camera(view)) {
       return 0;
     }
-    const std::int64_t of_view = now.views[view].sum - before.views[view].sum;
-    const std::int64_t of_left = now.left.sum - before.left.sum;
     const std::int64_t pixels = static_cast<std::int64_t>(now.width()) * now.height();
+    const Image<std::uint8_t>& levels = now.views[view].levels;
+    // As if the view had the size of the left image.
+    const double scale = static_cast<double>(pixels) /
+                         static_cast<double>(std::int64_t{levels.width()} * levels.height());
+    const std::int64_t of_view =
+        std::llround(scale * static_cast<double>(now.views[view].sum - before.views[view].sum));
+    const std::int64_t of_left = now.left.sum - before.left.sum;
     return (std::abs(of_view - of_left) * kUnits + pixels / 2) / pixels;
   }
 

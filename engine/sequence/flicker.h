@@ -57,7 +57,7 @@ struct FlickerSums {
 
 /// One new view of a frame.
 struct ViewOfFrame {
-  BaselinePosition position;
+  ViewPose pose;
   const Photograph* image = nullptr;
 };
 
@@ -76,9 +76,9 @@ class FlickerMeter {
 
   /// What this frame adds: nothing (but as many views) for the first one, and where the size of the
   /// images or the number of views changes. left_map: on the left grid, NaN = unknown; empty: there
-  /// is none, and no pixel of a view is compared either, since what it shows cannot be told. All
-  /// of equal size, else throws Error. Grey levels are luma, rounded. Identical for any
-  /// `execution`.
+  /// is none, and no pixel of a view is compared either, since what it shows cannot be told; nor
+  /// is one of a view off the baseline. Throws Error unless maps and views at positions have the
+  /// size of the image. Grey levels are luma, rounded. Identical for any `execution`.
   FlickerSums add(const Photograph& left, ImageView<const float> left_map,
                   std::span<const ViewOfFrame> views, Execution& execution);
 

@@ -27,11 +27,13 @@ struct FrameSlot {
   const Photograph* right = nullptr;
   std::array<std::uint64_t, 2> content = {};  ///< content_hash() of the pair
   DisparityMaps maps;
+  /// The maps as `pair` sees them, where its colours go into the views (PhotographGrid).
+  std::array<Image<float>, 2> photograph_maps;
   MatchReport match;
   /// The new views of SequenceOptions::views, then those of the stereo picture that are no
   /// photographs.
   std::vector<SynthesizedView> views;
-  std::vector<BaselinePosition> view_positions;
+  std::vector<ViewPose> view_poses;  ///< of `views`, as new_view() takes them
   Photograph preview;
   Photograph stereo;
   std::vector<std::uint8_t> encoded;  ///< the file being written

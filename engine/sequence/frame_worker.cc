@@ -17,16 +17,17 @@
 #include "engine/io/photograph_io.h"
 #include "engine/io/preview.h"
 #include "engine/sequence/preview_range.h"
+#include "scheduler/trace.h"
 
 namespace vantage {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Appends the time until its end to the times of a slot.
+/// Appends the time until its end to the times of a slot, and shows it in traces.
 class TimedStep {
  public:
-  TimedStep(FrameSlot& slot, std::string_view name) : slot_(slot), name_(name) {}
+  TimedStep(FrameSlot& slot, std::string_view name) : slot_(slot), name_(name), span_(name) {}
   TimedStep(const TimedStep&) = delete;
   TimedStep& operator=(const TimedStep&) = delete;
   ~TimedStep() {
@@ -37,6 +38,7 @@ class TimedStep {
   FrameSlot& slot_;
   std::string_view name_;
   Clock::time_point start_ = Clock::now();
+  scheduler::Span span_;
 };
 
 void require_size(const Photograph& photograph, std::string_view side, ImageExtent expected) {
@@ -60,17 +62,36 @@ void copy_image(const Image<T>& image, Photograph& copy) {
 
 }  // namespace
 
+ImageExtent extent_of(const ViewPath& view, ImageExtent images) {
+  const auto* camera = std::get_if<PosedCamera>(&view.keys.front().pose);
+  return camera != nullptr && camera->width_px > 0
+             ? ImageExtent{camera->width_px, camera->height_px}
+             : images;
+}
+
+bool views_show_photographs(const SequenceOptions& options) {
+  return options.synthesis.warp == WarpColour::kOnePass &&
+         (!options.views.empty() || options.saves(SequenceOutput::kStereo));
+}
+
 FrameWorker::FrameWorker(const FrameTools& tools)
     : options_(tools.options),
       layout_(tools.layout),
       pairs_(tools.pairs),
       frame_size_(tools.frame_size),
       rectifier_(tools.rectifier),
+      cameras_(tools.cameras),
       shots_(tools.shots),
       execution_(tools.execution),
       matcher_(tools.options.match, tools.execution),
       synthesizer_(tools.options.synthesis, tools.execution),
-      temporal_(tools.options.temporal) {}
+      three_steps_(tools.options.synthesis, tools.execution),
+      temporal_(tools.options.temporal) {
+  if (rectifier_ != nullptr && rectifier_->needs_rectification() &&
+      views_show_photographs(options_)) {
+    photograph_grid_.emplace(*rectifier_, execution_);
+  }
+}
 
 void FrameWorker::prepare(FrameSlot& slot) const {
   if (slot.is_absent) {
@@ -143,31 +164,49 @@ const Photograph* FrameWorker::photograph_at(const FrameSlot& slot, double view_
 }
 
 void FrameWorker::synthesize(FrameSlot& slot) const {
-  slot.view_positions.clear();
-  for (const ViewTrack& track : options_.views) {
-    slot.view_positions.push_back(track.at(slot.frame));
+  slot.view_poses.clear();
+  for (const ViewPath& path : options_.views) {
+    slot.view_poses.push_back(placed(path.at(slot.frame), options_.look_at_px, cameras_,
+                                     slot.left->width(), slot.left->height()));
   }
   if (options_.saves(SequenceOutput::kStereo)) {
     for (const double view_x : options_.stereo_views_x) {
       if (photograph_at(slot, view_x) == nullptr) {
-        slot.view_positions.push_back({view_x, 0});
+        slot.view_poses.emplace_back(BaselinePosition{view_x, 0});
       }
     }
   }
-  if (slot.view_positions.empty()) {
+  if (slot.view_poses.empty()) {
     return;
   }
   const TimedStep step(slot, "views");
-  slot.views.resize(slot.view_positions.size());
+  slot.views.resize(slot.view_poses.size());
+  if (photograph_grid_) {
+    photograph_grid_->bring(slot.maps, slot.photograph_maps);
+  }
+  for (std::size_t view = 0; view < slot.views.size(); ++view) {
+    render(slot, slot.view_poses[view], slot.views[view]);
+  }
+}
+
+void FrameWorker::render(const FrameSlot& slot, const ViewPose& pose, SynthesizedView& view) const {
   const std::array<IntensityFit, 4>* fit =
       options_.intensity_fit == FitScope::kShot ? &shots_->shot_of(slot.frame).intensity : nullptr;
-  for (std::size_t view = 0; view < slot.views.size(); ++view) {
-    const BaselinePosition position = slot.view_positions[view];
-    synthesizer_.synthesize(
-        *slot.left, *slot.right, slot.maps.left.view(), slot.maps.right.view(),
-        baseline_view(position.x, position.y, slot.left->width(), slot.left->height()),
-        slot.views[view], fit);
+  const auto* camera = std::get_if<PosedCamera>(&pose);
+  if (options_.synthesis.warp == WarpColour::kForward && camera != nullptr && cameras_ != nullptr) {
+    three_steps_.synthesize(*slot.left, *slot.right, slot.maps.left.view(), slot.maps.right.view(),
+                            *cameras_, *camera, view, fit);
+    return;
   }
+  const NewView geometry = new_view(pose, cameras_, slot.left->width(), slot.left->height());
+  if (photograph_grid_) {
+    synthesizer_.synthesize(
+        photograph_grid_->pair_of(slot.pair.left, slot.pair.right, slot.photograph_maps),
+        slot.maps.left.view(), slot.maps.right.view(), geometry, view, fit);
+    return;
+  }
+  synthesizer_.synthesize(*slot.left, *slot.right, slot.maps.left.view(), slot.maps.right.view(),
+                          geometry, view, fit);
 }
 
 void FrameWorker::paint_preview(FrameSlot& slot) const {
@@ -203,6 +242,9 @@ const DisparityMap& FrameWorker::primary_map(const FrameSlot& slot) const {
 const Mask& FrameWorker::mask_of(const FrameSlot& slot, const OutputStream& stream) const {
   if (stream.output == SequenceOutput::kHoles) {
     return slot.views[static_cast<std::size_t>(stream.view)].holes;
+  }
+  if (stream.output == SequenceOutput::kSources) {
+    return slot.views[static_cast<std::size_t>(stream.view)].sources;
   }
   const bool left =
       options_.match.reference == Reference::kLeft && stream.output == SequenceOutput::kUnmatched;

@@ -15,6 +15,8 @@
 #include "engine/sequence/sequence_options.h"
 #include "engine/sequence/shots.h"
 #include "engine/sequence/temporal_state.h"
+#include "engine/synthesis/photograph_grid.h"
+#include "engine/synthesis/three_step_synthesizer.h"
 #include "engine/synthesis/view_synthesizer.h"
 
 namespace vantage {
@@ -25,6 +27,13 @@ struct ImageExtent {
   int height_px = 0;
 };
 
+/// Size of a new view of images of size `images`: that of its cameras if they have one.
+ImageExtent extent_of(const ViewPath& view, ImageExtent images);
+
+/// Whether the views of frames that are rectified take their colours from the photographs as they
+/// were read. The book's warp moves pixels of rectified images.
+bool views_show_photographs(const SequenceOptions& options);
+
 /// What frames are worked on with. All must outlive the worker.
 struct FrameTools {
   const SequenceOptions& options;
@@ -32,6 +41,7 @@ struct FrameTools {
   const PairSource& pairs;                ///< for decoding
   std::optional<ImageExtent> frame_size;  ///< that all frames must have; empty: any
   const Rectifier* rectifier;             ///< null: the pairs are rectified
+  const RectifiedPair* cameras;           ///< of the pairs; null unless a view needs them
   const ShotTable* shots;                 ///< null unless the options need shots
   Execution& execution;
 };
@@ -66,6 +76,7 @@ class FrameWorker {
   void synthesize(FrameSlot& slot) const;
   void paint_preview(FrameSlot& slot) const;
   void pack_stereo_picture(FrameSlot& slot) const;
+  void render(const FrameSlot& slot, const ViewPose& pose, SynthesizedView& view) const;
   [[nodiscard]] const Photograph* photograph_at(const FrameSlot& slot, double view_x) const;
   void encode_stream(FrameSlot& slot, const OutputStream& stream,
                      const std::filesystem::path& path) const;
@@ -79,10 +90,13 @@ class FrameWorker {
   const PairSource& pairs_;
   std::optional<ImageExtent> frame_size_;
   const Rectifier* rectifier_;
+  const RectifiedPair* cameras_;
   const ShotTable* shots_;
   Execution& execution_;
   StereoMatcher matcher_;
   ViewSynthesizer synthesizer_;
+  ThreeStepSynthesizer three_steps_;
+  std::optional<PhotographGrid> photograph_grid_;  ///< where views_show_photographs()
   TemporalState temporal_;
   int temporal_chunk_ = -1;  ///< that temporal_ is of
   mutable BusyClock compute_clock_;

@@ -125,6 +125,14 @@ std::string_view content_of(std::string_view input) {
   return name_end == std::string_view::npos ? input : input.substr(name_end);
 }
 
+/// Lists of poses would fill pages.
+std::string change_of(const std::string& key, const std::string& before, const std::string& now) {
+  constexpr std::size_t kMostShown = 100;
+  return before.size() > kMostShown || now.size() > kMostShown
+             ? fmt::format("{} was another one", key)
+             : fmt::format("{} was {}, now {}", key, before, now);
+}
+
 }  // namespace
 
 std::string line_of(const JournalRecord& record) {
@@ -183,12 +191,12 @@ std::string difference(const RunIdentity& then, const RunIdentity& now) {
   for (const auto& [key, value] : new_settings.items()) {
     const Json before = old_settings.value(key, Json());
     if (before != value) {
-      found.push_back(fmt::format("{} was {}, now {}", key, before.dump(), value.dump()));
+      found.push_back(change_of(key, before.dump(), value.dump()));
     }
   }
   for (const auto& [key, value] : old_settings.items()) {
     if (!new_settings.contains(key)) {
-      found.push_back(fmt::format("{} was {}, now not set", key, value.dump()));
+      found.push_back(change_of(key, value.dump(), "not set"));
     }
   }
   for (std::size_t i = 0; i < std::max(then.inputs.size(), now.inputs.size()); ++i) {

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <variant>
 
 #include "engine/error.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/synthesis/photograph_grid.h"
+#include "engine/synthesis/three_step_synthesizer.h"
 #include "engine/synthesis/view_synthesizer.h"
 
 namespace vantage {
@@ -18,31 +21,41 @@ constexpr std::size_t kProcessBytes = std::size_t{77} << 20;
 /// Of a thread: stack, arena of the allocator.
 constexpr std::size_t kThreadBytes = std::size_t{3} << 20;
 
-std::size_t photograph_bytes(const PairShape& shape) {
-  return static_cast<std::size_t>(shape.source.width_px) *
-         static_cast<std::size_t>(shape.source.height_px) *
-         static_cast<std::size_t>(shape.channels) * static_cast<std::size_t>(shape.bytes_per_value);
+std::size_t pixels_of(ImageExtent extent) {
+  return static_cast<std::size_t>(extent.width_px) * static_cast<std::size_t>(extent.height_px);
+}
+
+std::size_t photograph_bytes(ImageExtent extent, const PairShape& shape) {
+  return pixels_of(extent) * static_cast<std::size_t>(shape.channels) *
+         static_cast<std::size_t>(shape.bytes_per_value);
 }
 
 /// What one frame holds from reading to the last of its files. Sums what FrameSlot has, and what
 /// encoding adds while it runs.
 std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) {
-  const auto pixels = static_cast<std::size_t>(shape.source.width_px) *
-                      static_cast<std::size_t>(shape.source.height_px);
-  const std::size_t photograph = photograph_bytes(shape);
+  const std::size_t pixels = pixels_of(shape.source);
+  const std::size_t photograph = photograph_bytes(shape.source, shape);
   // Fetched and decoded; a packed frame holds both images once more.
   std::size_t bytes = 4 * photograph;
   if (shape.is_rectified_here) {
     bytes += 2 * photograph;
+    if (views_show_photographs(options)) {
+      bytes += 2 * pixels * sizeof(float);
+    }
   }
   // Two maps, their confidence, two masks, and as much again for refining them.
   bytes += pixels * (2 * sizeof(float) + 2 * sizeof(float) + 2 + 2 * sizeof(float));
-  std::size_t views = options.views.size();
+  const auto add_view = [&](ImageExtent extent) {  // with masks of holes and sources
+    bytes += photograph_bytes(extent, shape) + 2 * pixels_of(extent);
+  };
+  for (const ViewPath& view : options.views) {
+    add_view(extent_of(view, shape.source));
+  }
   if (options.saves(SequenceOutput::kStereo)) {
-    views += 2;
+    add_view(shape.source);
+    add_view(shape.source);
     bytes += 2 * photograph;
   }
-  bytes += views * (photograph + 2 * pixels);  // with masks of holes and sources
   if (options.saves(SequenceOutput::kPreview)) {
     bytes += 3 * pixels;
   }
@@ -51,10 +64,20 @@ std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) 
   return bytes;
 }
 
+/// Where rectified pixels lie in the photographs, and back.
+std::size_t rectification_bytes(const SequenceOptions& options, const PairShape& shape) {
+  if (!shape.is_rectified_here) {
+    return 0;
+  }
+  return 2 * 2 * sizeof(float) * pixels_of(shape.source) +
+         (views_show_photographs(options)
+              ? PhotographGrid::held_bytes(shape.source.width_px, shape.source.height_px)
+              : 0);
+}
+
 /// What matching one frame takes beside its strips: images of what costs compare.
 std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) {
-  const auto pixels = static_cast<std::size_t>(shape.source.width_px) *
-                      static_cast<std::size_t>(shape.source.height_px);
+  const std::size_t pixels = pixels_of(shape.source);
   const std::size_t channels = options.match.resolved().colour == ColourUse::kChannels
                                    ? static_cast<std::size_t>(shape.channels)
                                    : 1;
@@ -63,56 +86,107 @@ std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) 
   return pixels * channels * kPlanes * sizeof(float);
 }
 
-/// What rendering the views of one frame, one after the other, takes.
-std::size_t view_bytes(const SequenceOptions& options, const PairShape& shape) {
-  if (options.views.empty() && !options.saves(SequenceOutput::kStereo)) {
-    return 0;
-  }
+bool is_on_baseline(const SequenceOptions& options, const ViewPath& view) {
+  return !options.look_at_px && std::ranges::all_of(view.keys, [](const ViewPath::Key& key) {
+    const auto* position = std::get_if<BaselinePosition>(&key.pose);
+    return position != nullptr && position->y == 0;
+  });
+}
+
+/// What rendering a view on the baseline takes.
+std::size_t baseline_view_bytes(const SequenceOptions& options, const PairShape& shape) {
   const int width = shape.source.width_px;
   const int height = shape.source.height_px;
-  const std::size_t filling =
-      ViewSynthesizer::filling_bytes(options.synthesis, width, height, shape.channels);
-  for (const ViewTrack& track : options.views) {
-    for (const ViewTrack::Key& key : track.keys) {
-      if (key.position.y != 0) {
-        return filling + ViewSynthesizer::working_bytes(
-                             baseline_view(key.position.x, key.position.y, width, height), width,
-                             height, shape.channels);
-      }
+  return ViewSynthesizer::filling_bytes(options.synthesis, width, height, shape.channels) +
+         (options.intensity_fit == FitScope::kFrame
+              ? ViewSynthesizer::working_bytes(width, height, shape.channels)
+              : 0);
+}
+
+/// The same of a view at `pose`, anywhere.
+std::size_t surface_view_bytes(const SequenceOptions& options, const PairShape& shape,
+                               const ViewPose& pose) {
+  const RectifiedPair* cameras = shape.cameras ? &*shape.cameras : nullptr;
+  const int width = shape.source.width_px;
+  const int height = shape.source.height_px;
+  const ViewPose place = placed(pose, options.look_at_px, cameras, width, height);
+  const auto* camera = std::get_if<PosedCamera>(&place);
+  if (options.synthesis.warp == WarpColour::kForward && camera != nullptr && cameras != nullptr) {
+    return ThreeStepSynthesizer::working_bytes(options.synthesis, *cameras, *camera, shape.channels,
+                                               shape.bytes_per_value);
+  }
+  const NewView view = new_view(place, cameras, width, height);
+  return ViewSynthesizer::filling_bytes(options.synthesis, view.width_px, view.height_px,
+                                        shape.channels) +
+         ViewSynthesizer::working_bytes(view, width, height, shape.channels);
+}
+
+int frames_that_differ(const ViewPath& view, const PairShape& shape) {
+  return view.moves() ? std::min(view.frames(), shape.pair_count) : 1;
+}
+
+/// What rendering the views of one frame, one after the other, takes.
+std::size_t view_bytes(const SequenceOptions& options, const PairShape& shape) {
+  const auto bytes_at = [&](int frame, const ViewPath& view) {
+    try {
+      return surface_view_bytes(options, shape, view.at(frame));
+    } catch (const UsageError&) {
+      throw;
+    } catch (const Error& error) {
+      throw Error(view.moves() ? fmt::format("frame {}: {}", frame, error.what()) : error.what());
+    }
+  };
+  std::size_t most =
+      options.saves(SequenceOutput::kStereo) ? baseline_view_bytes(options, shape) : 0;
+  for (const ViewPath& view : options.views) {
+    if (is_on_baseline(options, view)) {
+      most = std::max(most, baseline_view_bytes(options, shape));
+      continue;
+    }
+    for (int frame = 0; frame < frames_that_differ(view, shape); ++frame) {
+      most = std::max(most, bytes_at(frame, view));
     }
   }
-  return filling + (options.intensity_fit == FitScope::kFrame
-                        ? ViewSynthesizer::working_bytes(width, height, shape.channels)
-                        : 0);
+  return most;
 }
 
 /// What is kept of the frame before, and to compare with it.
 std::size_t past_bytes(const SequenceOptions& options, const PairShape& shape) {
-  const auto pixels = static_cast<std::size_t>(shape.source.width_px) *
-                      static_cast<std::size_t>(shape.source.height_px);
+  const std::size_t pixels = pixels_of(shape.source);
   // Per image: its levels before and now, differences and mask; two maps.
   const std::size_t side = 5 + 2 * sizeof(float);
   std::size_t bytes = options.temporal.weight > 0 ? 2 * side * pixels : 0;
   if (options.measure_flicker) {
-    bytes += (side + 3 * options.views.size()) * pixels;
+    bytes += side * pixels;
+    for (const ViewPath& view : options.views) {
+      bytes += 3 * pixels_of(extent_of(view, shape.source));
+    }
   }
   return bytes;
 }
 
 /// What the encoders of the videos hold back and reconstruct.
 std::size_t video_bytes(const SequenceOptions& options, const PairShape& shape) {
-  const auto pixels = static_cast<std::size_t>(shape.source.width_px) *
-                      static_cast<std::size_t>(shape.source.height_px);
-  std::size_t videos = 0;
+  std::size_t bytes = 0;
+  const auto add_video = [&](ImageExtent extent) {
+    constexpr std::size_t kFramesHeld = 64;
+    bytes += pixels_of(extent) * 3 / 2 * kFramesHeld + (std::size_t{8} << 20);
+  };
   for (const SequenceOutput output : options.video) {
-    const bool per_view = output == SequenceOutput::kViews || output == SequenceOutput::kHoles;
-    videos += per_view ? options.views.size() : 1;
+    if (!is_per_view(output)) {
+      add_video(shape.source);
+      continue;
+    }
+    for (const ViewPath& view : options.views) {
+      add_video(extent_of(view, shape.source));
+    }
   }
-  constexpr std::size_t kFramesHeld = 64;
-  return videos * (pixels * 3 / 2 * kFramesHeld + (std::size_t{8} << 20));
+  return bytes;
 }
 
 }  // namespace
+
+int default_frames_in_flight(int threads) { return std::min(threads + 2, kDefaultMostInFlight); }
 
 MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& request,
                        const PairShape& shape, const Photograph& left, const Photograph& right,
@@ -120,19 +194,22 @@ MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& requ
   ExecutionOptions limited = execution;
   MemoryPlan plan;
   plan.frame_bytes = frame_bytes(options, shape);
-  std::size_t fixed = kProcessBytes + video_bytes(options, shape) + past_bytes(options, shape) +
-                      static_cast<std::size_t>(shape.frames_kept) * photograph_bytes(shape);
+  std::size_t fixed =
+      kProcessBytes + video_bytes(options, shape) + past_bytes(options, shape) +
+      rectification_bytes(options, shape) +
+      static_cast<std::size_t>(shape.frames_kept) * photograph_bytes(shape.source, shape);
   int threads = 1;
   {
     Execution probe(execution);
     threads = probe.executor().thread_count();
   }
   fixed += static_cast<std::size_t>(threads) * kThreadBytes;
-  const int wanted = request.in_flight.value_or(std::min(threads + 2, kDefaultMostInFlight));
+  const std::size_t of_matched = match_bytes(options, shape) + view_bytes(options, shape);
+  const int wanted = request.in_flight.value_or(default_frames_in_flight(threads));
   for (plan.in_flight = std::min(wanted, kMostInFlight); plan.in_flight >= 1; --plan.in_flight) {
     const auto matched = static_cast<std::size_t>(std::min(plan.in_flight, threads));
-    const std::size_t frames = static_cast<std::size_t>(plan.in_flight) * plan.frame_bytes +
-                               matched * (match_bytes(options, shape) + view_bytes(options, shape));
+    const std::size_t frames =
+        static_cast<std::size_t>(plan.in_flight) * plan.frame_bytes + matched * of_matched;
     plan.chain_bytes = scheduler::kDefaultMemoryBytes;
     if (request.memory_bytes) {
       const std::size_t limit = *request.memory_bytes;

@@ -26,8 +26,10 @@ struct PairShape {
   ImageExtent source;  ///< before rectification, which keeps the size
   int channels = 1;
   int bytes_per_value = 1;
-  bool is_rectified_here = false;  ///< a calibration is applied
-  int frames_kept = 0;             ///< PairSource::frames_kept()
+  bool is_rectified_here = false;             ///< a calibration is applied
+  int frames_kept = 0;                        ///< PairSource::frames_kept()
+  int pair_count = 1;                         ///< of the input
+  std::optional<RectifiedPair> cameras = {};  ///< where the pairs are calibrated
 };
 
 struct MemoryRequest {
@@ -35,9 +37,13 @@ struct MemoryRequest {
   std::optional<std::size_t> memory_bytes;  ///< not to be exceeded; default: no limit
 };
 
+/// Frames in flight where neither the user nor memory says anything.
+int default_frames_in_flight(int threads);
+
 /// Chooses how many frames are under way and what each may take, within the request: fewer frames
 /// first, then less for the iterations. `left` and `right` are the first pair, ready to be matched.
-/// Throws Error when one frame does not fit, naming what it takes.
+/// Throws Error when one frame does not fit, naming what it takes; naming the frame, for views that
+/// cannot be rendered.
 MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& request,
                        const PairShape& shape, const Photograph& left, const Photograph& right,
                        const ExecutionOptions& execution);

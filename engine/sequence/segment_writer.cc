@@ -118,7 +118,11 @@ void SegmentWriter::add_skipped() {
 
 /// Of the size that good frames have: segments are joined.
 Photograph SegmentWriter::black_picture(const OutputStream& output) const {
-  Photograph black{Image<std::uint8_t>(frame_size_.width_px, frame_size_.height_px)};
+  const ImageExtent size =
+      is_per_view(output.output)
+          ? extent_of(options_.views[static_cast<std::size_t>(output.view)], frame_size_)
+          : frame_size_;
+  Photograph black{Image<std::uint8_t>(size.width_px, size.height_px)};
   std::get<Image<std::uint8_t>>(black.pixels).fill(0);
   if (output.output != SequenceOutput::kStereo) {
     return at_least_two_a_side(std::move(black));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <system_error>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "engine/error.h"
@@ -15,15 +16,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a fixed view its position, of a moving one its number among those.
-std::string view_name(const std::vector<ViewTrack>& views, int view) {
-  const auto track = views.begin() + view;
-  if (!track->moves()) {
-    return to_string(track->at(0));
+bool is_fixed_camera(const ViewPath& view) {
+  return !view.moves() && std::holds_alternative<PosedCamera>(view.keys.front().pose);
+}
+
+/// Of a fixed view its position or its number among cameras, of a moving one that among those.
+std::string view_name(const std::vector<ViewPath>& views, int view) {
+  const auto path = views.begin() + view;
+  if (path->moves()) {
+    return fmt::format("path-{}", std::count_if(views.begin(), path + 1, [](const ViewPath& other) {
+                         return other.moves();
+                       }));
   }
-  const auto number =
-      std::count_if(views.begin(), track + 1, [](const ViewTrack& other) { return other.moves(); });
-  return fmt::format("path-{}", number);
+  if (is_fixed_camera(*path)) {
+    return fmt::format("camera-{}", std::count_if(views.begin(), path + 1, is_fixed_camera));
+  }
+  return to_string(std::get<BaselinePosition>(path->at(0)));
 }
 
 }  // namespace
@@ -35,8 +43,7 @@ SequenceLayout::SequenceLayout(fs::path folder, const SequenceOptions& options)
                                          &std::pair<std::string_view, SequenceOutput>::second);
     const std::string name(known->first);
     const bool as_video = options.saves_as_video(output);
-    const bool per_view = output == SequenceOutput::kViews || output == SequenceOutput::kHoles;
-    if (!per_view || options.views.size() == 1) {
+    if (!is_per_view(output) || options.views.size() == 1) {
       streams_.push_back({output, 0, as_video, name});
       continue;
     }

@@ -15,10 +15,11 @@ inline constexpr const char* kShotsFile = "shots.json";
 /// One picture per frame that a run writes: as files of their own, or as a video.
 struct OutputStream {
   SequenceOutput output = SequenceOutput::kDisparity;
-  int view = 0;  ///< number of the new view, for kViews and kHoles
+  int view = 0;  ///< number of the new view, where is_per_view()
   bool as_video = false;
-  /// "disparity", or "views/0.25" and "views/path-1" where there are several views. The folder of
-  /// its files, and without .mp4 the file of its video, below the run's folder.
+  /// "disparity", or "views/0.25", "views/camera-1" and "views/path-1" where there are several
+  /// views. The folder of its files, and without .mp4 the file of its video, below the run's
+  /// folder.
   std::string name;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "engine/error.h"
 #include "engine/io/disparity_io.h"
@@ -30,20 +31,50 @@ std::string_view name_of(SequenceOutput output) {
       ->first;
 }
 
+/// When the one key of a view that stands still is reached makes no difference.
+bool is_same(const ViewPath& view, const ViewPath& other) {
+  return view == other || (!view.moves() && !other.moves() && view.at(0) == other.at(0));
+}
+
+std::string text_of(const ViewPath& view) {
+  if (const auto* camera = std::get_if<PosedCamera>(&view.keys.front().pose)) {
+    return fmt::format("by a {} with fx = {} px", view.moves() ? "moving camera" : "camera",
+                       camera->matrix(0, 0));
+  }
+  return view.moves() ? to_string(view) : to_string(std::get<BaselinePosition>(view.at(0)));
+}
+
+void require_near(const ViewPose& pose) {
+  const auto* position = std::get_if<BaselinePosition>(&pose);
+  if (position == nullptr) {
+    return;  // how near a camera is, only the pair's baseline tells
+  }
+  for (const double coordinate : {position->x, position->y}) {
+    if (!(std::abs(coordinate) <= kFarthestView)) {
+      throw UsageError(fmt::format("view is {}, expected numbers within ±{}", to_string(*position),
+                                   kFarthestView));
+    }
+  }
+}
+
 void check_views(const SequenceOptions& options) {
-  const bool wanted =
-      options.saves(SequenceOutput::kViews) || options.saves(SequenceOutput::kHoles);
+  const bool wanted = std::ranges::any_of(options.save, is_per_view);
   if (wanted && options.views.empty()) {
-    throw UsageError("save has views but no view is given, expected --view XS or --view-path KEYS");
+    throw UsageError(
+        "save has views but no view is given, expected --view XS, --view-path KEYS, --pose FILE or "
+        "--path FILE");
   }
   if (!wanted && !options.views.empty()) {
     throw UsageError("view is given but save has no views, expected both");
   }
   for (auto view = options.views.begin(); view != options.views.end(); ++view) {
     view->validate();
-    if (std::find(options.views.begin(), view, *view) != view) {
-      throw UsageError(fmt::format("view {} is given twice",
-                                   view->moves() ? to_string(*view) : to_string(view->at(0))));
+    for (const ViewPath::Key& key : view->keys) {
+      require_near(key.pose);
+    }
+    if (std::find_if(options.views.begin(), view,
+                     [&](const ViewPath& other) { return is_same(other, *view); }) != view) {
+      throw UsageError(fmt::format("view {} is given twice", text_of(*view)));
     }
   }
   for (const double view_x : options.stereo_views_x) {
@@ -68,7 +99,7 @@ void check_formats(const SequenceOptions& options) {
     if (holds_floats(output)) {
       throw UsageError(fmt::format(
           "video has {}, whose values a video cannot hold; expected unmatched, right-unmatched, "
-          "preview, views, holes or stereo",
+          "preview, views, holes, sources or stereo",
           name_of(output)));
     }
     if (!options.saves(output)) {
@@ -98,6 +129,7 @@ const std::vector<std::pair<std::string_view, SequenceOutput>>& sequence_output_
       {"preview", SequenceOutput::kPreview},
       {"views", SequenceOutput::kViews},
       {"holes", SequenceOutput::kHoles},
+      {"sources", SequenceOutput::kSources},
       {"stereo", SequenceOutput::kStereo}};
   return names;
 }

@@ -11,8 +11,8 @@
 #include "engine/io/frame_rate.h"
 #include "engine/matching/match_options.h"
 #include "engine/sequence/temporal_options.h"
-#include "engine/sequence/view_track.h"
 #include "engine/synthesis/synthesis_options.h"
+#include "engine/view_geometry/view_path.h"
 
 namespace vantage {
 
@@ -26,11 +26,18 @@ enum class SequenceOutput {
   kPreview,  ///< the reference's map in colours
   kViews,    ///< new views
   kHoles,    ///< masks of their pixels that no image shows
+  kSources,  ///< masks of the images that their pixels are made of, see SynthesizedView
   kStereo    ///< two views in one picture
 };
 
 /// Names of the outputs on the command line, which are also those of their folders.
 const std::vector<std::pair<std::string_view, SequenceOutput>>& sequence_output_names();
+
+/// Whether there is one of each new view.
+constexpr bool is_per_view(SequenceOutput output) {
+  return output == SequenceOutput::kViews || output == SequenceOutput::kHoles ||
+         output == SequenceOutput::kSources;
+}
 
 /// What a quantity that is fitted to the images is fitted to.
 enum class FitScope {
@@ -46,8 +53,11 @@ struct SequenceOptions {
   /// Of `save`, those written as one H.264 video each instead of an image per frame; maps of floats
   /// cannot be.
   std::vector<SequenceOutput> video;
-  /// New views; some exactly when kViews or kHoles is saved.
-  std::vector<ViewTrack> views;
+  /// New views; some exactly when kViews, kHoles or kSources is saved. Cameras are in the frame of
+  /// the rectified left one, a size of 0×0 stands for that of the images; positions are within ±16.
+  std::vector<ViewPath> views;
+  /// Turns the views that are given as positions, see camera_looking_at(); empty: they look ahead.
+  std::optional<double> look_at_px;
   /// The positions XS of the two views of kStereo; 0 and 1 are the photographs themselves.
   std::array<double, 2> stereo_views_x = {0, 1};
   StereoDisplay stereo_packing;

@@ -53,7 +53,8 @@ class Run {
         run_(run),
         layout_(layout),
         execution_(execution),
-        worker_({options, layout, run.pairs, run.frame_size, run.rectifier, run.shots, execution}),
+        worker_({options, layout, run.pairs, run.frame_size, run.rectifier, run.cameras, run.shots,
+                 execution}),
         feed_(std::move(work)),
         segments_(options, layout, worker_, run.frame_size.value_or(ImageExtent()), execution),
         flicker_(options.temporal.threshold),
@@ -149,7 +150,7 @@ class Run {
     next_flicker_frame_ = slot.frame + 1;
     std::vector<ViewOfFrame> views;
     for (std::size_t view = 0; view < options_.views.size(); ++view) {
-      views.push_back({slot.view_positions[view], &slot.views[view].image});
+      views.push_back({slot.view_poses[view], &slot.views[view].image});
     }
     record.flicker = flicker_.add(*slot.left, slot.maps.left.view(), views, execution_);
   }

@@ -59,11 +59,12 @@ struct SequenceReport {
 struct SequenceRun {
   PairSource& pairs;
   FrameSelection selection;
-  std::optional<ImageExtent> frame_size;  ///< that all frames must have; must be set for videos
-  const Rectifier* rectifier = nullptr;   ///< null: the pairs are rectified
-  const ShotTable* shots = nullptr;       ///< must be set where the options need shots
-  int in_flight = 1;                      ///< frames under way at the same time, 1..64
-  bool keep_going = false;                ///< frames that fail are skipped and recorded
+  std::optional<ImageExtent> frame_size;   ///< that all frames must have; must be set for videos
+  const Rectifier* rectifier = nullptr;    ///< null: the pairs are rectified
+  const RectifiedPair* cameras = nullptr;  ///< of the pairs; must be set for views by cameras
+  const ShotTable* shots = nullptr;        ///< must be set where the options need shots
+  int in_flight = 1;                       ///< frames under way at the same time, 1..64
+  bool keep_going = false;                 ///< frames that fail are skipped and recorded
   std::function<void(const SequenceProgress&)> on_progress;  ///< never concurrently
   const std::atomic<bool>* stop = nullptr;
 };

@@ -4,12 +4,15 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "engine/error.h"
 #include "engine/synthesis/surface_map.h"
 #include "engine/synthesis/warped_pair_layout.h"
-#include "kernels/surface_fetch/surface_fetch.h"
+#include "kernels/surface_coverage/surface_coverage.h"
 #include "kernels/view_projection/view_projection.h"
 
 namespace vantage {
@@ -68,17 +71,19 @@ std::size_t ImageWarper<T>::held_bytes(int view_width, int view_height) {
 template <typename T>
 ImageWarper<T>::ImageWarper(ImageView<const T> image, ImageView<const float> disparity_px,
                             const ViewWarp& warp, const ViewFrame& frame,
-                            const SynthesisOptions& options, Execution& execution)
-    : image_(image),
-      disparity_px_(disparity_px),
-      gradient_limit_px_(static_cast<float>(options.disparity_gradient_limit_px)),
+                            const SynthesisOptions& options, Execution& execution,
+                            const PhotographGeometry& photograph)
+    : colours_{.pixels = image,
+               .disparity_px = disparity_px,
+               .photograph = photograph,
+               .gradient_limit_px = static_cast<float>(options.disparity_gradient_limit_px)},
       takes_whole_pixels_(options.warp == WarpColour::kForward),
       back_(way_back(warp, checked(frame).infinity_disparity_px)),
       nearness_memory_(execution.scratch().lease(held_bytes(frame.width_px, frame.height_px))),
       nearness_(reinterpret_cast<float*>(nearness_memory_.data()), frame.width_px, frame.height_px,
                 1, row_floats(frame.width_px, 1)) {
-  map_surfaces(disparity_px, projection_of(warp, frame.infinity_disparity_px), gradient_limit_px_,
-               nearness_, execution);
+  map_surfaces(disparity_px, projection_of(warp, frame.infinity_disparity_px),
+               colours_.gradient_limit_px, nearness_, execution);
 }
 
 template <typename T>
@@ -96,8 +101,8 @@ void ImageWarper<T>::move_to_whole_pixels(const kernels::SourcePositions& positi
       fraction[i] = 0;
     }
   };
-  move(positions.column, positions.fraction_x, image_.width());
-  move(positions.line, positions.fraction_y, image_.height());
+  move(positions.column, positions.fraction_x, colours_.disparity_px.width());
+  move(positions.line, positions.fraction_y, colours_.disparity_px.height());
 }
 
 template <typename T>
@@ -113,28 +118,29 @@ void ImageWarper<T>::warp(int y, std::span<float> scratch, float* colours, float
                                 {.nearness = nearness_.row(y),
                                  .count = width(),
                                  .line = y,
-                                 .source_width = image_.width(),
-                                 .source_height = image_.height()},
+                                 .source_width = colours_.disparity_px.width(),
+                                 .source_height = colours_.disparity_px.height()},
                                 positions);
   if (takes_whole_pixels_) {
     move_to_whole_pixels(positions);
   }
-  kernels::fetch_surface_row(
-      kernels::SurfaceFetchRow<T>{.pixels = image_.data(),
-                                  .stride = static_cast<std::ptrdiff_t>(image_.stride()),
-                                  .map_px = disparity_px_.data(),
-                                  .map_stride = static_cast<std::ptrdiff_t>(disparity_px_.stride()),
-                                  .width = image_.width(),
-                                  .height = image_.height(),
-                                  .channels = image_.channels(),
-                                  .column = positions.column,
-                                  .line = positions.line,
-                                  .fraction_x = positions.fraction_x,
-                                  .fraction_y = positions.fraction_y,
-                                  .disparity_px = positions.disparity_px,
-                                  .count = width(),
-                                  .gradient_limit_px = gradient_limit_px_},
-      colours);
+  colours_.fetch(positions, width(), colours);
+}
+
+template <typename T>
+double ImageWarper<T>::coverage(const SurfaceEdge& edge) const {
+  const float own = nearness_.row(edge.surface_y)[edge.surface_x];
+  if (!(std::abs(own - edge.nearness) <= colours_.gradient_limit_px)) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const ImageView<const float>& map_px = colours_.disparity_px;
+  return kernels::surface_coverage({.way_back = back_,
+                                    .disparity_px = map_px.data(),
+                                    .stride = static_cast<std::ptrdiff_t>(map_px.stride()),
+                                    .width = map_px.width(),
+                                    .height = map_px.height(),
+                                    .gradient_limit_px = colours_.gradient_limit_px},
+                                   edge.x, edge.y, own, edge.background_nearness);
 }
 
 template class ImageWarper<std::uint8_t>;

@@ -5,7 +5,10 @@
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
+#include "engine/synthesis/soft_outlines.h"
+#include "engine/synthesis/surface_colours.h"
 #include "engine/synthesis/synthesis_options.h"
+#include "engine/synthesis/unrectified_pair.h"
 #include "engine/view_geometry/new_view.h"
 #include "kernels/source_position/source_position.h"
 
@@ -27,18 +30,19 @@ struct ViewFrame {
 template <typename T>
 class ImageWarper {
  public:
-  /// Maps the disparities, in parallel. `disparity_px` is of the image's size. Throws Error
-  /// for a view without pixels, with a side above 65500, or a warp
-  /// that cannot be inverted.
+  /// Maps the disparities, in parallel. `disparity_px` is of the image's size. Where the image is
+  /// the photograph that the map's image was made from, `photograph` says so. Throws Error for a
+  /// view without pixels, with a side above 65500, or a warp that cannot be inverted.
   ImageWarper(ImageView<const T> image, ImageView<const float> disparity_px, const ViewWarp& warp,
-              const ViewFrame& frame, const SynthesisOptions& options, Execution& execution);
+              const ViewFrame& frame, const SynthesisOptions& options, Execution& execution,
+              const PhotographGeometry& photograph = {});
 
   /// Memory that it holds for a view.
   static std::size_t held_bytes(int view_width, int view_height);
 
   [[nodiscard]] int width() const { return nearness_.width(); }
   [[nodiscard]] int height() const { return nearness_.height(); }
-  [[nodiscard]] int channels() const { return image_.channels(); }
+  [[nodiscard]] int channels() const { return colours_.pixels.channels(); }
 
   /// What a call of warp() works in; it holds nothing afterwards.
   [[nodiscard]] std::size_t scratch_floats() const;
@@ -47,12 +51,14 @@ class ImageWarper {
   /// at holes.
   void warp(int y, std::span<float> scratch, float* colours, float* nearness) const;
 
+  /// What this image knows of a surface's outline (kernels::surface_coverage()); NaN where it does
+  /// not show the surface.
+  [[nodiscard]] double coverage(const SurfaceEdge& edge) const;
+
  private:
   void move_to_whole_pixels(const kernels::SourcePositions& positions) const;
 
-  ImageView<const T> image_;
-  ImageView<const float> disparity_px_;
-  float gradient_limit_px_;
+  SurfaceColours<T> colours_;
   bool takes_whole_pixels_;
   kernels::SourceProjection back_;
   scheduler::ScratchPool::Lease nearness_memory_;

@@ -10,8 +10,15 @@
 #include "kernels/colour_fetch/colour_fetch.h"
 #include "kernels/forward_warp/forward_warp.h"
 #include "kernels/pixel_row/pixel_row.h"
+#include "kernels/source_position/source_position.h"
 
 namespace vantage {
+namespace {
+
+/// What SourcePositions has.
+constexpr std::size_t kPositionRows = 6;
+
+}  // namespace
 
 template <typename T>
 struct RowPairWarper<T>::SourceRows {
@@ -37,6 +44,9 @@ double RowPairWarper<T>::alpha() const {
 
 template <typename T>
 std::size_t RowPairWarper<T>::scratch_floats() const {
+  if (!source_.left_photograph.empty()) {
+    return kPositionRows * row_floats(width(), 1);
+  }
   const int padded = width() + 2 * kernels::kRowMarginPx;
   return row_floats(padded, lanes_) + row_floats(padded, 1) + row_floats(width(), 1);
 }
@@ -72,8 +82,51 @@ void RowPairWarper<T>::warp_one(const T* pixels, const float* disparity_px, doub
   }
 }
 
+// The warp moves whole rows of the rectified image, so positions there are exact columns of row y.
+template <typename T>
+void RowPairWarper<T>::warp_from_photograph(const SurfaceColours<T>& from, int y,
+                                            double camera_offset, std::span<float> scratch,
+                                            float* colours, float* warped_disparity_px) const {
+  const auto part = [&](std::size_t k) { return scratch.data() + k * row_floats(width(), 1); };
+  const kernels::SourcePositions positions{.column = reinterpret_cast<std::int32_t*>(part(0)),
+                                           .line = reinterpret_cast<std::int32_t*>(part(1)),
+                                           .fraction_x = part(2),
+                                           .fraction_y = part(3),
+                                           .disparity_px = part(4),
+                                           .nearness = part(5)};
+  kernels::forward_warp_row({.disparity_px = from.disparity_px.row(y),
+                             .width = width(),
+                             .camera_offset = camera_offset,
+                             .gradient_limit_px = from.gradient_limit_px},
+                            warped_disparity_px, nullptr);
+  kernels::SourceProjection back;
+  back.parallax[0] = -camera_offset;
+  kernels::source_positions_row(back,
+                                {.nearness = warped_disparity_px,
+                                 .count = width(),
+                                 .line = y,
+                                 .source_width = width(),
+                                 .source_height = height()},
+                                positions);
+  from.fetch(positions, width(), colours);
+}
+
 template <typename T>
 void RowPairWarper<T>::warp(int y, std::span<float> scratch, float* memory) const {
+  if (source_.left_photograph.empty()) {
+    warp_rectified(y, scratch, memory);
+    return;
+  }
+  const WarpedPairLayout at(width(), source_.left.channels());
+  const auto limit = static_cast<float>(options_.disparity_gradient_limit_px);
+  warp_from_photograph({source_.left, source_.left_disparity, source_.left_photograph, limit}, y,
+                       view_x_, scratch, memory + at.left_colours, memory + at.left_nearness);
+  warp_from_photograph({source_.right, source_.right_disparity, source_.right_photograph, limit}, y,
+                       view_x_ - 1, scratch, memory + at.right_colours, memory + at.right_nearness);
+}
+
+template <typename T>
+void RowPairWarper<T>::warp_rectified(int y, std::span<float> scratch, float* memory) const {
   constexpr int kMargin = kernels::kRowMarginPx;
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
   float* next = scratch.data();

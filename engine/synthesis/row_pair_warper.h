@@ -5,20 +5,26 @@
 #include <span>
 
 #include "engine/image/image.h"
+#include "engine/synthesis/surface_colours.h"
 #include "engine/synthesis/synthesis_options.h"
+#include "engine/synthesis/unrectified_pair.h"
 
 namespace vantage {
 
-/// A rectified pair of photographs of one depth and its disparity maps; all of equal size.
+/// A rectified pair of photographs of one depth and its disparity maps; all of equal size. Or the
+/// photographs that the pair was made from, whose geometry is then not empty.
 template <typename T>
 struct StereoSource {
   ImageView<const T> left;
   ImageView<const T> right;
   ImageView<const float> left_disparity;
   ImageView<const float> right_disparity;
+  PhotographGeometry left_photograph = {};
+  PhotographGeometry right_photograph = {};
 };
 
-/// Brings both images of a pair to a new view on the baseline, a scanline at a time.
+/// Brings both images of a pair to a new view on the baseline, a scanline at a time: disparities
+/// along the rows of the rectified images, colours from them or from the photographs behind them.
 ///
 /// Thread rule: immutable. Does not own any memory it is given, which must outlive it. T is
 /// uint8_t, uint16_t or float.
@@ -45,6 +51,10 @@ class RowPairWarper {
   struct SourceRows;
   void warp_one(const T* pixels, const float* disparity_px, double camera_offset,
                 const SourceRows& rows, float* colours, float* warped_disparity_px) const;
+  void warp_rectified(int y, std::span<float> scratch, float* memory) const;
+  void warp_from_photograph(const SurfaceColours<T>& from, int y, double camera_offset,
+                            std::span<float> scratch, float* colours,
+                            float* warped_disparity_px) const;
 
   const StereoSource<T>& source_;
   const SynthesisOptions& options_;

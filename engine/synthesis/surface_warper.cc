@@ -4,6 +4,7 @@
 
 #include "engine/synthesis/surface_map.h"
 #include "engine/synthesis/warped_pair_layout.h"
+#include "kernels/surface_coverage/surface_coverage.h"
 
 namespace vantage {
 namespace {
@@ -27,15 +28,21 @@ template <typename T>
 SurfaceWarper<T>::SurfaceWarper(const StereoSource<T>& source, const SynthesisOptions& options,
                                 const NewView& view, Execution& execution)
     : alpha_(view.alpha()),
-      left_(source.left, source.left_disparity, view.from_left, frame_of(view), options, execution),
+      left_(source.left, source.left_disparity, view.from_left, frame_of(view), options, execution,
+            source.left_photograph),
       right_(source.right, source.right_disparity, view.from_right, frame_of(view), options,
-             execution) {}
+             execution, source.right_photograph) {}
 
 template <typename T>
 void SurfaceWarper<T>::warp(int y, std::span<float> scratch, float* memory) const {
   const WarpedPairLayout at(width(), left_.channels());
   left_.warp(y, scratch, memory + at.left_colours, memory + at.left_nearness);
   right_.warp(y, scratch, memory + at.right_colours, memory + at.right_nearness);
+}
+
+template <typename T>
+double SurfaceWarper<T>::coverage(const SurfaceEdge& edge) const {
+  return kernels::joint_coverage(alpha_, left_.coverage(edge), right_.coverage(edge));
 }
 
 template class SurfaceWarper<std::uint8_t>;

@@ -35,6 +35,9 @@ class SurfaceWarper {
   /// Row y of the new view from both images, in `memory`, laid out as WarpedPairLayout has it.
   void warp(int y, std::span<float> scratch, float* memory) const;
 
+  /// What both images together know of a surface's outline; see EdgeCoverage.
+  [[nodiscard]] double coverage(const SurfaceEdge& edge) const;
+
  private:
   double alpha_;
   ImageWarper<T> left_;

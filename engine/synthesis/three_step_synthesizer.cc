@@ -136,6 +136,11 @@ double share_set(const Mask& mask) {
   return static_cast<double>(set) / (static_cast<double>(mask.width()) * mask.height());
 }
 
+TrifocalRectification rectification_of(const RectifiedPair& pair, const PosedCamera& camera) {
+  return trifocal_rectification(camera_of(pair, Side::kLeft), camera_of(pair, Side::kRight),
+                                camera);
+}
+
 }  // namespace
 
 ThreeStepSynthesizer::ThreeStepSynthesizer(const SynthesisOptions& options, Execution& execution)
@@ -147,8 +152,7 @@ void ThreeStepSynthesizer::synthesize(const Photograph& left, const Photograph& 
                                       const RectifiedPair& pair, const PosedCamera& camera,
                                       SynthesizedView& view,
                                       const std::array<IntensityFit, 4>* given_fit) const {
-  const TrifocalRectification rig =
-      trifocal_rectification(camera_of(pair, Side::kLeft), camera_of(pair, Side::kRight), camera);
+  const TrifocalRectification rig = rectification_of(pair, camera);
   const auto rectified = [&](const Photograph& image, std::size_t number) {
     return moved_by(image, rig.homographies[number].inverse(), rig.width_px, rig.height_px,
                     execution_);
@@ -166,6 +170,23 @@ void ThreeStepSynthesizer::synthesize(const Photograph& left, const Photograph& 
   view.sources = moved_mask(in_plane.sources, 0, derectifying, camera, execution_);
   view.intensity = in_plane.intensity;
   view.hole_fraction = share_set(view.holes);
+}
+
+std::size_t ThreeStepSynthesizer::working_bytes(const SynthesisOptions& options,
+                                                const RectifiedPair& pair,
+                                                const PosedCamera& camera, int channels,
+                                                int bytes_per_value) {
+  const TrifocalRectification rig = rectification_of(pair, camera);
+  const auto pixels =
+      static_cast<std::size_t>(rig.width_px) * static_cast<std::size_t>(rig.height_px);
+  const std::size_t photograph =
+      pixels * static_cast<std::size_t>(channels) * static_cast<std::size_t>(bytes_per_value);
+  // Both images and the view between them; both maps; two masks.
+  return 3 * photograph + pixels * (2 * sizeof(float) + 2) +
+         ViewSynthesizer::filling_bytes(options, rig.width_px, rig.height_px, channels) +
+         ViewSynthesizer::working_bytes(
+             baseline_view(rig.view_x, rig.view_y, rig.width_px, rig.height_px), rig.width_px,
+             rig.height_px, channels);
 }
 
 }  // namespace vantage

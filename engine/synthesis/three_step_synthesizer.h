@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
@@ -29,6 +31,13 @@ class ThreeStepSynthesizer {
                   ImageView<const float> left_disparity, ImageView<const float> right_disparity,
                   const RectifiedPair& pair, const PosedCamera& camera, SynthesizedView& view,
                   const std::array<IntensityFit, 4>* given_fit = nullptr) const;
+
+  /// At most the memory that synthesize() works in, for photographs of so many channels and bytes
+  /// per value. Throws Error as trifocal_rectification().
+  [[nodiscard]] static std::size_t working_bytes(const SynthesisOptions& options,
+                                                 const RectifiedPair& pair,
+                                                 const PosedCamera& camera, int channels,
+                                                 int bytes_per_value);
 
  private:
   ViewSynthesizer synthesizer_;

@@ -6,6 +6,7 @@
 #include "engine/image/photograph.h"
 #include "engine/synthesis/view_finisher.h"
 #include "engine/synthesis/warped_pair_layout.h"
+#include "kernels/surface_coverage/surface_coverage.h"
 #include "kernels/view_blend/view_blend.h"
 
 namespace vantage {
@@ -112,6 +113,13 @@ void TripleWarper<T>::warp(int y, std::span<float> scratch, float* memory) const
   blended.holes = reinterpret_cast<std::uint8_t*>(pair + at.holes);
   kernels::blend_row(at.pair.row_in(pair, gradient_limit_px_), weights, at.pair.lanes, blended);
   images_[2].warp(y, warping, memory + out.right_colours, memory + out.right_nearness);
+}
+
+template <typename T>
+double TripleWarper<T>::coverage(const SurfaceEdge& edge) const {
+  const double of_first_two = kernels::joint_coverage(alpha_of_first_, images_[0].coverage(edge),
+                                                      images_[1].coverage(edge));
+  return kernels::joint_coverage(alpha_, of_first_two, images_[2].coverage(edge));
 }
 
 template class TripleWarper<std::uint8_t>;

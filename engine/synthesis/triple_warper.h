@@ -63,6 +63,9 @@ class TripleWarper {
   /// WarpedPairLayout has it.
   void warp(int y, std::span<float> scratch, float* memory) const;
 
+  /// What the images together know of a surface's outline; see EdgeCoverage.
+  [[nodiscard]] double coverage(const SurfaceEdge& edge) const;
+
  private:
   /// scale · I + offset per channel.
   struct Transform {

@@ -1,6 +1,7 @@
 #include "engine/synthesis/view_finisher.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/synthesis/background_inpainting.h"
 #include "engine/synthesis/warped_pair_layout.h"
@@ -19,18 +20,19 @@ constexpr float kTrustAtEnds = 0.1F;
 }  // namespace
 
 template <typename T>
-ViewFinisher<T>::ViewFinisher(const SynthesisOptions& options, double alpha,
-                              std::optional<std::array<double, 2>> camera_offsets,
+ViewFinisher<T>::ViewFinisher(const SynthesisOptions& options, double alpha, OutlinePlaces outlines,
                               ImageView<T> image, ImageView<std::uint8_t> sources,
                               Execution& execution)
     : options_(options),
       alpha_(alpha),
       softens_(softens(options, alpha)),
-      camera_offsets_(camera_offsets),
+      outlines_(std::move(outlines)),
+      keeps_rows_(options.holes == HoleFilling::kInpaint ||
+                  (softens_ && std::holds_alternative<EdgeCoverage>(outlines_))),
       image_(image),
       sources_(sources),
       execution_(execution) {
-  if (options.holes == HoleFilling::kInpaint) {
+  if (keeps_rows_) {
     kept_memory_ = execution.scratch().lease(row_bytes(image.width()) *
                                              static_cast<std::size_t>(image.height()));
   }
@@ -61,6 +63,12 @@ std::size_t ViewFinisher<T>::working_bytes(const SynthesisOptions& options, int 
 }
 
 template <typename T>
+std::size_t ViewFinisher<T>::surface_outline_bytes(int width, int height, int channels) {
+  return row_bytes(width) * static_cast<std::size_t>(height) +
+         outline_bytes(width, height, channels, sizeof(T));
+}
+
+template <typename T>
 typename ViewFinisher<T>::RowMemory ViewFinisher<T>::row_memory(std::byte* memory) const {
   auto* disparity_px = reinterpret_cast<float*>(memory);
   auto* filled = reinterpret_cast<std::uint8_t*>(disparity_px + row_floats(image_.width(), 1));
@@ -70,6 +78,12 @@ typename ViewFinisher<T>::RowMemory ViewFinisher<T>::row_memory(std::byte* memor
 template <typename T>
 typename ViewFinisher<T>::RowMemory ViewFinisher<T>::kept_row(int y) const {
   return row_memory(kept_memory_.data() + row_bytes(image_.width()) * static_cast<std::size_t>(y));
+}
+
+template <typename T>
+ImageView<const float> ViewFinisher<T>::kept_disparity() const {
+  return {kept_row(0).disparity_px, image_.width(), image_.height(), 1,
+          row_bytes(image_.width()) / sizeof(float)};
 }
 
 template <typename T>
@@ -99,10 +113,10 @@ void ViewFinisher<T>::finish_row(const BlendedScanline& row) {
     return;
   }
   scheduler::ScratchPool::Lease lease;
-  if (!inpaints) {
+  if (!keeps_rows_) {
     lease = execution_.scratch().lease(row_bytes(width));
   }
-  const RowMemory memory = inpaints ? kept_row(row.y) : row_memory(lease.data());
+  const RowMemory memory = keeps_rows_ ? kept_row(row.y) : row_memory(lease.data());
   if (fills) {
     fill_row(row, memory);
   } else {
@@ -112,10 +126,10 @@ void ViewFinisher<T>::finish_row(const BlendedScanline& row) {
   if (inpaints && row.holes == width) {
     std::fill_n(memory.filled, width, std::uint8_t{255});
   }
-  if (!softens_) {
+  const auto* offsets = std::get_if<std::array<double, 2>>(&outlines_);
+  if (!softens_ || offsets == nullptr) {
     return;
   }
-  const auto offsets = camera_offsets_.value_or(std::array<double, 2>{});
   const int outlines =
       kernels::outline_shares_row({.disparity_px = memory.disparity_px,
                                    .left_disparity_px = row.warped.left_disparity_px,
@@ -123,9 +137,8 @@ void ViewFinisher<T>::finish_row(const BlendedScanline& row) {
                                    .width = width,
                                    .gradient_limit_px = row.warped.gradient_limit_px,
                                    .alpha = static_cast<float>(alpha_),
-                                   .is_along_row = camera_offsets_.has_value(),
-                                   .left_offset = offsets[0],
-                                   .right_offset = offsets[1]},
+                                   .left_offset = (*offsets)[0],
+                                   .right_offset = (*offsets)[1]},
                                   memory.shares);
   if (!inpaints && outlines > 0) {
     kernels::mix_outlines_row(memory.shares, width, image_.channels(), image_.row(row.y));
@@ -134,18 +147,22 @@ void ViewFinisher<T>::finish_row(const BlendedScanline& row) {
 
 template <typename T>
 void ViewFinisher<T>::finish_view() {
-  if (options_.holes != HoleFilling::kInpaint) {
-    return;
-  }
   const int width = image_.width();
   const int height = image_.height();
-  const std::size_t bytes = row_bytes(width);
-  const RowMemory first = kept_row(0);
-  inpaint_background(
-      image_, ImageView<const std::uint8_t>(first.filled, width, height, 1, bytes),
-      ImageView<const float>(first.disparity_px, width, height, 1, bytes / sizeof(float)),
-      options_.disparity_gradient_limit_px);
-  if (softens_) {
+  const bool inpaints = options_.holes == HoleFilling::kInpaint;
+  if (inpaints) {
+    inpaint_background(
+        image_,
+        ImageView<const std::uint8_t>(kept_row(0).filled, width, height, 1, row_bytes(width)),
+        kept_disparity(), options_.disparity_gradient_limit_px);
+  }
+  if (!softens_) {
+    return;
+  }
+  if (const auto* coverage = std::get_if<EdgeCoverage>(&outlines_)) {
+    soften_outlines(*coverage, kept_disparity(),
+                    static_cast<float>(options_.disparity_gradient_limit_px), image_, execution_);
+  } else if (inpaints) {
     execution_.for_each_band(height, [&](int first_row, int end_row) {
       for (int y = first_row; y < end_row; ++y) {
         kernels::mix_outlines_row(kept_row(y).shares, width, image_.channels(), image_.row(y));

@@ -3,10 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <variant>
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
+#include "engine/synthesis/soft_outlines.h"
 #include "engine/synthesis/synthesis_options.h"
 #include "kernels/intensity_sums/intensity_sums.h"
 
@@ -20,6 +21,10 @@ struct BlendedScanline {
   int holes = 0;                        ///< how many
 };
 
+/// Where the outlines of a view lie. Mapped along rows: s of both cameras, see OutlineRow; else
+/// what surfaces cover of its pixels.
+using OutlinePlaces = std::variant<std::array<double, 2>, EdgeCoverage>;
+
 /// Turns blended scanlines into a finished view: fills holes and softens outlines. In the order
 /// that the way of filling needs: most of it row by row, inpainting once all rows are there.
 ///
@@ -29,11 +34,9 @@ struct BlendedScanline {
 template <typename T>
 class ViewFinisher {
  public:
-  /// `camera_offsets`: s of both cameras where they were mapped along rows, see OutlineRow.
   /// `sources`: which images the pixels of the view are made of; filled ones are marked 0.
-  ViewFinisher(const SynthesisOptions& options, double alpha,
-               std::optional<std::array<double, 2>> camera_offsets, ImageView<T> image,
-               ImageView<std::uint8_t> sources, Execution& execution);
+  ViewFinisher(const SynthesisOptions& options, double alpha, OutlinePlaces outlines,
+               ImageView<T> image, ImageView<std::uint8_t> sources, Execution& execution);
 
   /// Whether `options` soften the outlines of a view with that α: not where a camera stands, which
   /// shows its own picture.
@@ -45,6 +48,8 @@ class ViewFinisher {
   /// Memory of a view of that shape, beside rows per thread.
   static std::size_t working_bytes(const SynthesisOptions& options, int width, int height,
                                    int channels);
+  /// At most what it takes beside that where the outlines are those of surfaces.
+  static std::size_t surface_outline_bytes(int width, int height, int channels);
 
   void finish_row(const BlendedScanline& row);
   void finish_view();
@@ -59,16 +64,18 @@ class ViewFinisher {
   [[nodiscard]] static std::size_t row_bytes(int width);
   [[nodiscard]] RowMemory row_memory(std::byte* memory) const;
   [[nodiscard]] RowMemory kept_row(int y) const;
+  [[nodiscard]] ImageView<const float> kept_disparity() const;
   void fill_row(const BlendedScanline& row, const RowMemory& memory);
 
   const SynthesisOptions& options_;
   double alpha_;
   bool softens_;
-  std::optional<std::array<double, 2>> camera_offsets_;
+  OutlinePlaces outlines_;
+  bool keeps_rows_;
   ImageView<T> image_;
   ImageView<std::uint8_t> sources_;
   Execution& execution_;
-  scheduler::ScratchPool::Lease kept_memory_;  // of all rows, for inpainting
+  scheduler::ScratchPool::Lease kept_memory_;  // of all rows, for what looks across rows
 };
 
 }  // namespace vantage

@@ -188,11 +188,7 @@ class Synthesis {
     kernels::BlendWeights weights =
         blend_weights(view.intensity, alpha, options_.gamma, double{kGreyLevelsPerUnit<T>});
     weights.trust_at_ends = ViewFinisher<T>::trust_at_ends(options_, alpha);
-    std::optional<std::array<double, 2>> camera_offsets;
-    if constexpr (requires { warper_.camera_offsets(); }) {
-      camera_offsets = warper_.camera_offsets();
-    }
-    ViewFinisher<T> finisher(options_, alpha, camera_offsets, image.view(), view.sources.view(),
+    ViewFinisher<T> finisher(options_, alpha, outline_places(), image.view(), view.sources.view(),
                              execution_);
     for_each_warped_row_again([&](int y, const kernels::WarpedPairRow& pair) {
       const auto memory =
@@ -208,6 +204,14 @@ class Synthesis {
       finisher.finish_row({y, pair, disparity_px, row_holes});
     });
     finisher.finish_view();
+  }
+
+  [[nodiscard]] OutlinePlaces outline_places() const {
+    if constexpr (requires { warper_.camera_offsets(); }) {
+      return warper_.camera_offsets();
+    } else {
+      return [this](const SurfaceEdge& edge) { return warper_.coverage(edge); };
+    }
   }
 
   [[nodiscard]] bool empty_row(int y) const {
@@ -253,7 +257,33 @@ struct PairOfMaps {
   const Photograph& right;
   ImageView<const float> left_disparity;
   ImageView<const float> right_disparity;
+  PhotographGeometry left_geometry = {};
+  PhotographGeometry right_geometry = {};
 };
+
+/// Photographs as they were read, and maps of their rectified images. Throws Error where they do
+/// not go together.
+PairOfMaps pair_of(const UnrectifiedPair& photographs, ImageView<const float> left_disparity,
+                   ImageView<const float> right_disparity, const SynthesisOptions& options) {
+  if (options.warp != WarpColour::kOnePass) {
+    throw Error("colours come from photographs that are not rectified, expected warp one-pass");
+  }
+  const auto require_size = [&](const PhotographGeometry& geometry,
+                                ImageView<const float> disparity_px) {
+    for (const ImageView<const float>& image :
+         {geometry.positions.x_px, geometry.positions.y_px, geometry.disparity_px}) {
+      if (image.width() != disparity_px.width() || image.height() != disparity_px.height()) {
+        throw Error(fmt::format("geometry of a photograph is {}×{}, expected {}×{} as its map",
+                                image.width(), image.height(), disparity_px.width(),
+                                disparity_px.height()));
+      }
+    }
+  };
+  require_size(photographs.left_geometry, left_disparity);
+  require_size(photographs.right_geometry, right_disparity);
+  return {photographs.left, photographs.right,         left_disparity,
+          right_disparity,  photographs.left_geometry, photographs.right_geometry};
+}
 
 /// XS of a view that RowPairWarper can make: on the baseline, with the images' orientation, focal
 /// length and size.
@@ -279,7 +309,9 @@ void with_source(const PairOfMaps& pair, const Body& body) {
         body(StereoSource<T>{.left = left_image.view(),
                              .right = std::get<Image<T>>(pair.right.pixels).view(),
                              .left_disparity = pair.left_disparity,
-                             .right_disparity = pair.right_disparity});
+                             .right_disparity = pair.right_disparity,
+                             .left_photograph = pair.left_geometry,
+                             .right_photograph = pair.right_geometry});
       },
       pair.left.pixels);
 }
@@ -389,6 +421,7 @@ std::size_t ViewSynthesizer::working_bytes(int width, int height, int channels) 
 std::size_t ViewSynthesizer::working_bytes(const NewView& view, int width, int height,
                                            int channels) {
   return working_bytes(view.width_px, view.height_px, channels) +
+         ViewFinisher<float>::surface_outline_bytes(view.width_px, view.height_px, channels) +
          SurfaceWarper<float>::working_bytes(view, width, height);
 }
 
@@ -413,6 +446,15 @@ void ViewSynthesizer::synthesize(const Photograph& left, const Photograph& right
                                  const std::array<IntensityFit, 4>* given_fit) const {
   synthesize_at({left, right, left_disparity, right_disparity}, options_, new_view, execution_,
                 view, given_fit);
+}
+
+void ViewSynthesizer::synthesize(const UnrectifiedPair& photographs,
+                                 ImageView<const float> left_disparity,
+                                 ImageView<const float> right_disparity, const NewView& new_view,
+                                 SynthesizedView& view,
+                                 const std::array<IntensityFit, 4>* given_fit) const {
+  synthesize_at(pair_of(photographs, left_disparity, right_disparity, options_), options_, new_view,
+                execution_, view, given_fit);
 }
 
 void ViewSynthesizer::synthesize(const PhotographTriple& triple, const TripleView& new_view,
@@ -467,6 +509,14 @@ kernels::IntensitySums ViewSynthesizer::intensity_sums(const Photograph& left,
                                                        const NewView& new_view) const {
   return intensity_sums_at({left, right, left_disparity, right_disparity}, options_, new_view,
                            execution_);
+}
+
+kernels::IntensitySums ViewSynthesizer::intensity_sums(const UnrectifiedPair& photographs,
+                                                       ImageView<const float> left_disparity,
+                                                       ImageView<const float> right_disparity,
+                                                       const NewView& new_view) const {
+  return intensity_sums_at(pair_of(photographs, left_disparity, right_disparity, options_),
+                           options_, new_view, execution_);
 }
 
 }  // namespace vantage

@@ -9,6 +9,7 @@
 #include "engine/synthesis/intensity_fit.h"
 #include "engine/synthesis/synthesis_options.h"
 #include "engine/synthesis/triple_warper.h"
+#include "engine/synthesis/unrectified_pair.h"
 #include "engine/view_geometry/new_view.h"
 
 namespace vantage {
@@ -75,6 +76,15 @@ class ViewSynthesizer {
                   const NewView& new_view, SynthesizedView& view,
                   const std::array<IntensityFit, 4>* given_fit = nullptr) const;
 
+  /// The same with colours from the photographs that the rectified pair was made from: one
+  /// interpolation instead of two. Maps are those of the rectified images. Where a photograph shows
+  /// nothing the rectified image is black, and so is its share of the view. Throws Error unless the
+  /// options have WarpColour::kOnePass: the book moves pixels of rectified images.
+  void synthesize(const UnrectifiedPair& photographs, ImageView<const float> left_disparity,
+                  ImageView<const float> right_disparity, const NewView& new_view,
+                  SynthesizedView& view,
+                  const std::array<IntensityFit, 4>* given_fit = nullptr) const;
+
   /// A view among three cameras (TripleWarper), with γ = α whatever the options say: the brightness
   /// moves with the weights, to the photograph's own where one of them is 1. Errors as above.
   void synthesize(const PhotographTriple& triple, const TripleView& new_view, SynthesizedView& view,
@@ -94,6 +104,10 @@ class ViewSynthesizer {
                                                       double view_x) const;
   [[nodiscard]] kernels::IntensitySums intensity_sums(const Photograph& left,
                                                       const Photograph& right,
+                                                      ImageView<const float> left_disparity,
+                                                      ImageView<const float> right_disparity,
+                                                      const NewView& new_view) const;
+  [[nodiscard]] kernels::IntensitySums intensity_sums(const UnrectifiedPair& photographs,
                                                       ImageView<const float> left_disparity,
                                                       ImageView<const float> right_disparity,
                                                       const NewView& new_view) const;

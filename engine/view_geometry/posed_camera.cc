@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "engine/error.h"
@@ -12,6 +13,8 @@ namespace {
 
 constexpr int kLargestSide = 16384;
 constexpr double kRotationTolerance = 1e-6;
+constexpr double kLeastFocal_px = 0.001;
+constexpr double kLargestFocal_px = 1e7;
 
 }  // namespace
 
@@ -23,9 +26,11 @@ void PosedCamera::validate(const std::string& name) const {
   if (!matrix.allFinite() || !rotation.allFinite() || !translation.allFinite()) {
     throw Error(fmt::format("{}: K, R or t holds a value that is not finite", name));
   }
-  if (!(matrix(0, 0) > 0) || !(matrix(1, 1) > 0)) {
-    throw Error(fmt::format("{}: focal lengths are {} and {} px, expected both above 0", name,
-                            matrix(0, 0), matrix(1, 1)));
+  const double least = std::min(matrix(0, 0), matrix(1, 1));
+  const double largest = std::max(matrix(0, 0), matrix(1, 1));
+  if (!(least >= kLeastFocal_px && largest <= kLargestFocal_px)) {
+    throw Error(fmt::format("{}: focal lengths are {} and {} px, expected {} to {:g}", name,
+                            matrix(0, 0), matrix(1, 1), kLeastFocal_px, kLargestFocal_px));
   }
   if (matrix(1, 0) != 0 || matrix(2, 0) != 0 || matrix(2, 1) != 0 || matrix(2, 2) != 1) {
     throw Error(

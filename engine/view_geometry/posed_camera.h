@@ -21,6 +21,8 @@ struct PosedCamera {
   /// Throws Error naming `name` ("camera of the new view"), the quantity, its value and its limit:
   /// image size, focal lengths, singular or mirrored matrices, rotations that are none.
   void validate(const std::string& name) const;
+
+  friend bool operator==(const PosedCamera&, const PosedCamera&) = default;
 };
 
 }  // namespace vantage

@@ -5,28 +5,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 
 #include "engine/error.h"
 
 namespace vantage {
 namespace {
-
-void require_alike(const ViewPose& first, const ViewPose& second) {
-  if (first.index() != second.index()) {
-    throw UsageError(
-        "view path has positions on the baseline and cameras, expected poses of one kind");
-  }
-  if (const auto* camera = std::get_if<PosedCamera>(&first)) {
-    const auto& other = std::get<PosedCamera>(second);
-    if (camera->width_px != other.width_px || camera->height_px != other.height_px) {
-      throw UsageError(fmt::format("view path has cameras of {}×{} and {}×{}, expected one size",
-                                   camera->width_px, camera->height_px, other.width_px,
-                                   other.height_px));
-    }
-  }
-}
 
 PosedCamera camera_between(const PosedCamera& from, const PosedCamera& to, double share) {
   PosedCamera camera = from;
@@ -45,6 +29,25 @@ std::string to_string(BaselinePosition position) {
                          : fmt::format("{},{}", position.x, position.y);
 }
 
+void require_alike(const ViewPose& first, const ViewPose& second) {
+  if (first.index() != second.index()) {
+    throw UsageError(
+        "view path has positions on the baseline and cameras, expected poses of one kind");
+  }
+  if (const auto* camera = std::get_if<PosedCamera>(&first)) {
+    const auto& other = std::get<PosedCamera>(second);
+    if ((camera->width_px == 0) != (other.width_px == 0)) {
+      throw UsageError(
+          "view path has cameras with and without a size, expected it for all or for none");
+    }
+    if (camera->width_px != other.width_px || camera->height_px != other.height_px) {
+      throw UsageError(fmt::format("view path has cameras of {}×{} and {}×{}, expected one size",
+                                   camera->width_px, camera->height_px, other.width_px,
+                                   other.height_px));
+    }
+  }
+}
+
 ViewPose pose_between(const ViewPose& from, const ViewPose& to, double share) {
   require_alike(from, to);
   if (const auto* camera = std::get_if<PosedCamera>(&from)) {
@@ -54,33 +57,6 @@ ViewPose pose_between(const ViewPose& from, const ViewPose& to, double share) {
   const auto& second = std::get<BaselinePosition>(to);
   return BaselinePosition{first.x + share * (second.x - first.x),
                           first.y + share * (second.y - first.y)};
-}
-
-ViewPose ViewPath::at(int frame) const {
-  const auto next = std::ranges::upper_bound(keys, frame, {}, &Key::frame);
-  if (next == keys.begin()) {
-    return keys.front().pose;
-  }
-  const Key& before = *std::prev(next);
-  if (next == keys.end() || before.frame == frame) {
-    return before.pose;
-  }
-  return pose_between(before.pose, next->pose,
-                      static_cast<double>(frame - before.frame) / (next->frame - before.frame));
-}
-
-void ViewPath::validate() const {
-  if (keys.empty()) {
-    throw UsageError("view path is empty, expected at least one pose");
-  }
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (keys[i].frame < 0 || (i > 0 && keys[i].frame <= keys[i - 1].frame)) {
-      throw UsageError(fmt::format(
-          "view path has frame {} as key {}, expected frames from 0 that grow from key to key",
-          keys[i].frame, i + 1));
-    }
-    require_alike(keys.front().pose, keys[i].pose);
-  }
 }
 
 ViewPose moved_right(const ViewPose& pose, double baselines, double baseline) {
@@ -122,6 +98,26 @@ PosedCamera camera_looking_at(const RectifiedPair& pair, BaselinePosition positi
   camera.rotation.row(2) = z;
   camera.translation = -camera.rotation * centre;
   return camera;
+}
+
+ViewPose placed(const ViewPose& pose, std::optional<double> look_at_px, const RectifiedPair* pair,
+                int width_px, int height_px) {
+  if (const auto* posed = std::get_if<PosedCamera>(&pose)) {
+    PosedCamera camera = *posed;
+    if (camera.width_px == 0) {
+      camera.width_px = width_px;
+      camera.height_px = height_px;
+    }
+    return camera;
+  }
+  if (!look_at_px) {
+    return pose;
+  }
+  if (pair == nullptr) {
+    throw UsageError(
+        "a view that is turned towards a point needs calibrated cameras, expected a calibration");
+  }
+  return camera_looking_at(*pair, std::get<BaselinePosition>(pose), *look_at_px);
 }
 
 NewView new_view(const ViewPose& pose, const RectifiedPair* pair, int width_px, int height_px) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -25,27 +26,11 @@ std::string to_string(BaselinePosition position);
 using ViewPose = std::variant<BaselinePosition, PosedCamera>;
 
 /// The pose at `share` 0..1 of the way: positions, centres and matrices on straight lines,
-/// rotations by the shortest turn at constant speed (slerp). Sizes are those of `from`.
-/// Throws UsageError unless both are of one kind and, if cameras, of one size.
+/// rotations by the shortest turn at constant speed (slerp). Errors as require_alike().
 ViewPose pose_between(const ViewPose& from, const ViewPose& to, double share);
 
-/// A path over time: poses at key frames, what lies between as pose_between(), still before the
-/// first and after the last.
-struct ViewPath {
-  struct Key {
-    int frame = 0;
-    ViewPose pose;
-  };
-  std::vector<Key> keys;
-
-  /// Depends on the frame alone.
-  [[nodiscard]] ViewPose at(int frame) const;
-  /// One more than the last key's frame.
-  [[nodiscard]] int frames() const { return keys.back().frame + 1; }
-  /// Throws UsageError: no key, frames that are negative or do not grow, poses of two kinds or
-  /// sizes.
-  void validate() const;
-};
+/// Throws UsageError unless both are of one kind and, if cameras, of one size.
+void require_alike(const ViewPose& first, const ViewPose& second);
 
 /// `pose` moved to its own right by so many baselines; `baseline` is that of the pair whose
 /// reference frame a camera is in, in its unit.
@@ -61,6 +46,12 @@ std::vector<BaselinePosition> orbit(double radius_baselines, int views);
 /// UsageError unless the disparity is above that of infinity.
 PosedCamera camera_looking_at(const RectifiedPair& pair, BaselinePosition position,
                               double disparity_px);
+
+/// `pose` with all that new_view() needs: positions are turned towards `look_at_px` where that is
+/// set (camera_looking_at()), and a camera of 0×0 pixels gets the size of the images. `pair` may be
+/// null where no pose needs it. Throws UsageError where it does, and as camera_looking_at().
+ViewPose placed(const ViewPose& pose, std::optional<double> look_at_px, const RectifiedPair* pair,
+                int width_px, int height_px);
 
 /// The geometry of `pose`. `pair` may be null for baseline positions. Errors as baseline_view() and
 /// camera_view(); UsageError for a camera without a calibrated pair.

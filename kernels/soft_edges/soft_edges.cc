@@ -53,16 +53,13 @@ void share_pixels(const OutlineRow& row, int x, std::uint8_t* shares) {
   const bool left_is_nearer = left_d > right_d;
   const int nearer = left_is_nearer ? x : x + 1;
   const int farther = left_is_nearer ? x + 1 : x;
-  double covered = 0;  // of the farther position; negative: free of the nearer one
-  double strength = 1;
-  if (row.is_along_row) {
-    covered = mapped_beside(row, nearer) * (left_is_nearer ? 1 : -1);
-    const ImageShares from = image_shares(row, farther);
-    const double shift_px =
-        (from.left * std::abs(row.left_offset) + from.right * std::abs(row.right_offset)) *
-        std::abs(double{left_d} - right_d);
-    strength = std::min(1.0, shift_px / kSyntheticShiftPx);
-  }
+  // Of the farther position; negative: free of the nearer one.
+  const double covered = mapped_beside(row, nearer) * (left_is_nearer ? 1 : -1);
+  const ImageShares from = image_shares(row, farther);
+  const double shift_px =
+      (from.left * std::abs(row.left_offset) + from.right * std::abs(row.right_offset)) *
+      std::abs(double{left_d} - right_d);
+  const double strength = std::min(1.0, shift_px / kSyntheticShiftPx);
   const auto share = [strength](double part) {
     const double slope = part > 0 ? kMostShare - kUsualShare : kUsualShare;  // per half a pixel
     return static_cast<std::uint8_t>(strength * (kUsualShare + 2 * slope * part) * kWholeShare +

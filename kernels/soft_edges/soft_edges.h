@@ -4,7 +4,7 @@
 
 namespace vantage::kernels {
 
-/// One finished scanline of a new view, as far as its outlines are concerned.
+/// One finished scanline of a new view on the baseline, as far as its outlines are concerned.
 struct OutlineRow {
   /// Of the surface at each position, holes filled; NaN = hole that stays open.
   const float* disparity_px = nullptr;
@@ -13,9 +13,8 @@ struct OutlineRow {
   int width = 0;
   float gradient_limit_px = 1;  ///< neighbours that differ by more have an outline between them
   float alpha = 0.5F;           ///< share of the left image where both show one surface
-  /// Whether both images were mapped along this row (YS = 0), and then from where: s = XS −
-  /// position of the camera, in baselines.
-  bool is_along_row = false;
+  /// From where the images were mapped along this row: s = XS − position of the camera, in
+  /// baselines.
   double left_offset = 0;
   double right_offset = 0;
 };
@@ -28,7 +27,7 @@ inline constexpr int kWholeShare = 256;
 ///
 /// A warp moves the nearer surface by whole pixels and never mixes colours of two surfaces, so its
 /// outlines come out harder than any lens draws them, and jagged. At an outline each of the two
-/// positions therefore takes a fifth of the other. Along a row the outline's exact place is known:
+/// positions therefore takes a fifth of the other. The outline's exact place is known:
 /// half a pixel beyond the last pixel of the nearer surface, which is mapped to a fraction
 /// φ = −½..½ outside its position. The share of the nearer surface in the farther position rises
 /// with φ from 0 over the fifth to ½, that of the farther one in the nearer position falls

@@ -16,9 +16,34 @@ struct SourceProjection {
   bool is_translation = true;
 };
 
+/// Where a point of nearness q at the position (u, v) of the new view lies in the image. The vector
+/// form takes the same steps.
+struct ExactSource {
+  double x = 0;
+  double y = 0;
+  double disparity_px = 0;
+  bool is_visible = false;  ///< false: in front of the image's plane; nothing else means anything
+};
+
+inline ExactSource exact_source(const SourceProjection& source, double u, double v, double q) {
+  if (source.is_translation) {
+    const double d = q + source.infinity_disparity_px;
+    return {u - source.parallax[0] * d, v - source.parallax[1] * d, d, true};
+  }
+  const double* g = source.homography;
+  const double inverse_ratio = (g[6] * u + (g[7] * v + g[8])) - source.parallax[2] * q;
+  if (!(inverse_ratio > kLeastDepthRatio)) {
+    return {};
+  }
+  const double depth_ratio = 1 / inverse_ratio;
+  return {((g[0] * u + (g[1] * v + g[2])) - source.parallax[0] * q) * depth_ratio,
+          ((g[3] * u + (g[4] * v + g[5])) - source.parallax[1] * q) * depth_ratio,
+          q * depth_ratio + source.infinity_disparity_px, true};
+}
+
 /// One line of a new view and the image it is made from.
 struct SourcePositionRow {
-  const float* nearness = nullptr;  ///< q from column 0; −inf = hole
+  const float* nearness = nullptr;  ///< q from column 0; −inf or NaN = hole
   int count = 0;                    ///< ≥ 0
   int line = 0;
   int source_width = 0;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <initializer_list>
 
 namespace vantage::kernels {
 namespace {
@@ -11,24 +9,17 @@ namespace {
 // Positions so little outside a triangle, by share of its area, are on its border.
 constexpr double kOnBorder = 1e-9;
 
-struct Corner {
-  double u;
-  double v;
-  double nearness;
-  int column;
-  int line;
-  float disparity_px;
-};
+using Corner = QuadCorner;
 
-Corner corner_of(const SplatRows& rows, const ProjectedRow& row, int i, int line) {
+QuadCorner corner_of(const SplatRows& rows, const ProjectedRow& row, int i, int line) {
   const ExactTarget target =
       exact_target(rows.view, rows.first_column + i, line, row.disparity_px[i]);
   return {.u = target.u,
           .v = target.v,
           .nearness = row.nearness[i],
+          .disparity_px = row.disparity_px[i],
           .column = row.column[i],
-          .line = row.line[i],
-          .disparity_px = row.disparity_px[i]};
+          .line = row.line[i]};
 }
 
 void add_sample(const SplatBand& band, int column, int line, double nearness) {
@@ -46,7 +37,7 @@ void fill_edge(const Corner& from, const Corner& to, EdgeDirection direction,
   const double spacing = (along_lines ? to.v : to.u) - first;
   const double other = along_lines ? from.u : from.v;
   const double rise_of_other = (along_lines ? to.u : to.v) - other;
-  const double rise = to.nearness - from.nearness;
+  const double rise = double{to.nearness} - double{from.nearness};
   const int least = along_lines ? band.first_line : 0;
   const int most = along_lines ? band.first_line + band.lines - 1 : band.width - 1;
   const int last = std::min(std::max(begin, end) - 1, most);
@@ -84,15 +75,9 @@ struct Border {
   }
 };
 
-void fill_triangle(const Corner& a, const Corner& b, const Corner& c,
-                   std::initializer_list<const Corner*> left_out, const SplatBand& band) {
-  const int least_column = std::min({a.column, b.column, c.column});
-  const int most_column = std::max({a.column, b.column, c.column});
-  const int least_line = std::min({a.line, b.line, c.line});
-  const int most_line = std::max({a.line, b.line, c.line});
-  if (most_column - least_column <= 1 && most_line - least_line <= 1) {
-    return;
-  }
+// Adds what the triangle is at (u, v), if that is inside.
+void add_inside(const Corner& a, const Corner& b, const Corner& c, int u, int v,
+                const SplatBand& band) {
   // Opposite to each corner.
   const Border of_a(b, c);
   const Border of_b(c, a);
@@ -101,28 +86,49 @@ void fill_triangle(const Corner& a, const Corner& b, const Corner& c,
   if (!(area > 0)) {
     return;
   }
+  const double weight_a = of_a.at(u, v);
+  const double weight_b = of_b.at(u, v);
+  const double weight_c = of_c.at(u, v);
   const double on_border = -kOnBorder * area;
-  const int last_line = std::min(most_line, band.first_line + band.lines - 1);
-  const int first_column = std::max(least_column, 0);
-  const int last_column = std::min(most_column, band.width - 1);
-  for (int v = std::max(least_line, band.first_line); v <= last_line; ++v) {
-    double weight_a = of_a.at(first_column, v);
-    double weight_b = of_b.at(first_column, v);
-    double weight_c = of_c.at(first_column, v);
+  if (weight_a >= on_border && weight_b >= on_border && weight_c >= on_border) {
+    add_sample(band, u, v,
+               (weight_a * a.nearness + weight_b * b.nearness + weight_c * c.nearness) /
+                   (weight_a + weight_b + weight_c));
+  }
+}
+
+// fourth: null, or one more corner whose target is left out.
+void fill_triangle(const Corner& a, const Corner& b, const Corner& c, const Corner* fourth,
+                   const SplatBand& band) {
+  const int least_column = std::min({a.column, b.column, c.column});
+  const int most_column = std::max({a.column, b.column, c.column});
+  const int least_line = std::min({a.line, b.line, c.line});
+  const int most_line = std::max({a.line, b.line, c.line});
+  if (most_column - least_column <= 1 && most_line - least_line <= 1) {
+    return;
+  }
+  const int first_line = std::max(
+      std::min({first_whole(a.v, a.line), first_whole(b.v, b.line), first_whole(c.v, c.line)}),
+      band.first_line);
+  const int last_line = std::min(
+      std::max({last_whole(a.v, a.line), last_whole(b.v, b.line), last_whole(c.v, c.line)}),
+      band.first_line + band.lines - 1);
+  const int first_column =
+      std::max(std::min({first_whole(a.u, a.column), first_whole(b.u, b.column),
+                         first_whole(c.u, c.column)}),
+               0);
+  const int last_column = std::min(
+      std::max({last_whole(a.u, a.column), last_whole(b.u, b.column), last_whole(c.u, c.column)}),
+      band.width - 1);
+  for (int v = first_line; v <= last_line; ++v) {
     for (int u = first_column; u <= last_column; ++u) {
-      if (weight_a >= on_border && weight_b >= on_border && weight_c >= on_border) {
-        const auto lands_here = [&](const Corner* corner) {
-          return corner->column == u && corner->line == v;
-        };
-        if (std::none_of(left_out.begin(), left_out.end(), lands_here)) {
-          add_sample(band, u, v,
-                     (weight_a * a.nearness + weight_b * b.nearness + weight_c * c.nearness) /
-                         (weight_a + weight_b + weight_c));
-        }
+      const auto lands_here = [&](const Corner& corner) {
+        return corner.column == u && corner.line == v;
+      };
+      if (!(lands_here(a) || lands_here(b) || lands_here(c) ||
+            (fourth != nullptr && lands_here(*fourth)))) {
+        add_inside(a, b, c, u, v, band);
       }
-      weight_a += of_a.rise_u;
-      weight_b += of_b.rise_u;
-      weight_c += of_c.rise_u;
     }
   }
 }
@@ -157,11 +163,15 @@ EdgeDirection lower_edge_direction(const ViewProjection& view, double x, double 
   return direction_of(view, x, y, 1);
 }
 
-void fill_quad_gaps(const SplatRows& rows, int i, const SplatBand& band) {
-  const Corner a = corner_of(rows, rows.upper, i, rows.line);
-  const Corner b = corner_of(rows, rows.upper, i + 1, rows.line);
-  const Corner c = corner_of(rows, rows.lower, i, rows.line + 1);
-  const Corner d = corner_of(rows, rows.lower, i + 1, rows.line + 1);
+Quad quad_at(const SplatRows& rows, int i) {
+  return {.a = corner_of(rows, rows.upper, i, rows.line),
+          .b = corner_of(rows, rows.upper, i + 1, rows.line),
+          .c = corner_of(rows, rows.lower, i, rows.line + 1),
+          .d = corner_of(rows, rows.lower, i + 1, rows.line + 1)};
+}
+
+void fill_quad_gaps(const SplatRows& rows, const Quad& quad, const SplatBand& band) {
+  const auto& [a, b, c, d] = quad;
   // False for points that were dropped: their disparity is NaN.
   const auto joined = [&](const Corner& p, const Corner& q) {
     return std::abs(p.disparity_px - q.disparity_px) <= rows.gradient_limit_px;
@@ -183,21 +193,21 @@ void fill_quad_gaps(const SplatRows& rows, int i, const SplatBand& band) {
   const bool bd = joined(b, d);
   const bool cd = joined(c, d);
   if (ab && ac && bd && cd) {
-    fill_triangle(a, b, c, {&a, &b, &c, &d}, band);
-    fill_triangle(b, d, c, {&a, &b, &c, &d}, band);
+    fill_triangle(a, b, c, &d, band);
+    fill_triangle(b, d, c, &a, band);
     return;
   }
   if (ab && ac) {
-    fill_triangle(a, b, c, {&a, &b, &c}, band);
+    fill_triangle(a, b, c, nullptr, band);
   }
   if (ab && bd) {
-    fill_triangle(a, b, d, {&a, &b, &d}, band);
+    fill_triangle(a, b, d, nullptr, band);
   }
   if (ac && cd) {
-    fill_triangle(a, d, c, {&a, &c, &d}, band);
+    fill_triangle(a, d, c, nullptr, band);
   }
   if (bd && cd) {
-    fill_triangle(b, d, c, {&b, &c, &d}, band);
+    fill_triangle(b, d, c, nullptr, band);
   }
 }
 

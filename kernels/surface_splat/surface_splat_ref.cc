@@ -13,7 +13,7 @@ void splat_rows_ref(const SplatRows& rows, const SplatBand& band) {
       float& nearest = band.nearness[line * band.stride + column];
       nearest = std::max(nearest, rows.upper.nearness[i]);
     }
-    fill_quad_gaps(rows, i, band);
+    fill_quad_gaps(rows, quad_at(rows, i), band);
   }
 }
 

@@ -67,15 +67,26 @@ HWY_INLINE Corners load_corners(const std::int32_t* upper, const std::int32_t* l
           hn::LoadU(di, lower + 1)};
 }
 
-HWY_INLINE VecInt extent(const Corners& at) {
-  return hn::Sub(hn::Max(hn::Max(at.a, at.b), hn::Max(at.c, at.d)),
-                 hn::Min(hn::Min(at.a, at.b), hn::Min(at.c, at.d)));
+HWY_INLINE VecInt least(const Corners& at) {
+  return hn::Min(hn::Min(at.a, at.b), hn::Min(at.c, at.d));
+}
+
+HWY_INLINE VecInt most(const Corners& at) {
+  return hn::Max(hn::Max(at.a, at.b), hn::Max(at.c, at.d));
+}
+
+HWY_INLINE VecInt extent(const Corners& at) { return hn::Sub(most(at), least(at)); }
+
+// True where a part of what the corners span lies in [first, end).
+HWY_INLINE auto reaches(const Corners& at, int first, int end) {
+  const TagInt di;
+  return hn::And(hn::Gt(most(at), hn::Set(di, first - 1)), hn::Lt(least(at), hn::Set(di, end)));
 }
 
 // Bit i: something may lie between the pixels of the quad of upper columns begin + i and
-// begin + i + 1, because two corners of an edge or triangle on one surface land more than one
-// column or line apart.
-HWY_INLINE std::uint64_t find_gaps(const SplatRows& rows, int begin) {
+// begin + i + 1 and inside the band, because two corners of an edge or triangle on one surface land
+// more than one column or line apart.
+HWY_INLINE std::uint64_t find_gaps(const SplatRows& rows, const SplatBand& band, int begin) {
   const Tag d;
   const TagInt di;
   const auto one = hn::Set(di, 1);
@@ -111,20 +122,190 @@ HWY_INLINE std::uint64_t find_gaps(const SplatRows& rows, int begin) {
                                   hn::And(hn::Or(hn::And(ab, bd), hn::And(ac, cd)),
                                           apart(column.a, column.d, line.a, line.d)));
     std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, hn::Or(edges, diagonals), bits);
+    const auto inside = hn::And(reaches(column, 0, band.width),
+                                reaches(line, band.first_line, band.first_line + band.lines));
+    hn::StoreMaskBits(d, hn::And(hn::Or(edges, diagonals), hn::RebindMask(d, inside)), bits);
     gaps |= (std::uint64_t{bits[0]} | std::uint64_t{bits[1]} << 8) << i;
   }
   const int count = rows.count - begin;
   return count < kBlock ? gaps & ((std::uint64_t{1} << count) - 1) : gaps;
 }
 
+// Exact targets of a row's pixels from one column on, and the whole numbers next to them.
+struct BlockTargets {
+  double u[kBlock + 1];
+  double v[kBlock + 1];
+  std::int32_t first_column[kBlock + 1];
+  std::int32_t last_column[kBlock + 1];
+  std::int32_t first_line[kBlock + 1];
+  std::int32_t last_line[kBlock + 1];
+};
+
+// first_whole() and last_whole() of targets.
+template <class D64, class V>
+HWY_INLINE void store_whole(D64 d, V target, const std::int32_t* rounded, std::int32_t* first,
+                            std::int32_t* last) {
+  const hn::Rebind<std::int32_t, D64> di32;
+  const auto outside = hn::Set(d, kOutsidePx);
+  const auto one = hn::Set(d, 1.0);
+  const auto whole = hn::PromoteTo(d, hn::LoadU(di32, rounded));
+  const auto is_above = hn::Gt(hn::Sub(target, outside), whole);
+  const auto is_below = hn::Lt(hn::Add(target, outside), whole);
+  hn::StoreU(hn::DemoteTo(di32, hn::Add(whole, hn::IfThenElseZero(is_above, one))), di32, first);
+  hn::StoreU(hn::DemoteTo(di32, hn::Sub(whole, hn::IfThenElseZero(is_below, one))), di32, last);
+}
+
+// Pixels [first, end) of the row from column `begin` on; exact_target() in the same steps.
+template <bool kTranslation, class D64>
+HWY_INLINE void find_targets(D64 d, const SplatRows& rows, const ProjectedRow& row, int line,
+                             int begin, int first, int end, BlockTargets& targets) {
+  const hn::Rebind<float, D64> d32;
+  const auto parallax0 = hn::Set(d, rows.view.parallax[0]);
+  const auto parallax1 = hn::Set(d, rows.view.parallax[1]);
+  const auto parallax2 = hn::Set(d, rows.view.parallax[2]);
+  const double* h = rows.view.homography;
+  const double y = line;
+  const auto step0 = hn::Set(d, h[0]);
+  const auto step1 = hn::Set(d, h[3]);
+  const auto step2 = hn::Set(d, h[6]);
+  const auto start0 = hn::Set(d, h[1] * y + h[2]);
+  const auto start1 = hn::Set(d, h[4] * y + h[5]);
+  const auto start2 = hn::Set(d, h[7] * y + h[8]);
+  for (int i = first; i < end; i += static_cast<int>(hn::Lanes(d))) {
+    const auto disparity = hn::PromoteTo(d, hn::LoadU(d32, row.disparity_px + begin + i));
+    const auto x = hn::Add(hn::Iota(d, 0), hn::Set(d, rows.first_column + begin + i));
+    auto u = x;
+    auto v = u;
+    if constexpr (kTranslation) {
+      u = hn::Add(x, hn::Mul(parallax0, disparity));
+      v = hn::Add(hn::Set(d, y), hn::Mul(parallax1, disparity));
+    } else {
+      const auto depth_ratio =
+          hn::Add(hn::Add(hn::Mul(step2, x), start2), hn::Mul(parallax2, disparity));
+      const auto scale = hn::Div(hn::Set(d, 1.0), depth_ratio);
+      u = hn::Mul(hn::Add(hn::Add(hn::Mul(step0, x), start0), hn::Mul(parallax0, disparity)),
+                  scale);
+      v = hn::Mul(hn::Add(hn::Add(hn::Mul(step1, x), start1), hn::Mul(parallax1, disparity)),
+                  scale);
+    }
+    hn::StoreU(u, d, targets.u + i);
+    hn::StoreU(v, d, targets.v + i);
+    store_whole(d, u, row.column + begin + i, targets.first_column + i, targets.last_column + i);
+    store_whole(d, v, row.line + begin + i, targets.first_line + i, targets.last_line + i);
+  }
+}
+
+template <bool kTranslation>
+HWY_INLINE void find_targets(const SplatRows& rows, int begin, BlockTargets& upper,
+                             BlockTargets& lower) {
+  const hn::ScalableTag<double> d;
+  const hn::CappedTag<double, 1> d_one;
+  find_targets<kTranslation>(d, rows, rows.upper, rows.line, begin, 0, kBlock, upper);
+  find_targets<kTranslation>(d_one, rows, rows.upper, rows.line, begin, kBlock, kBlock + 1, upper);
+  find_targets<kTranslation>(d, rows, rows.lower, rows.line + 1, begin, 0, kBlock, lower);
+  find_targets<kTranslation>(d_one, rows, rows.lower, rows.line + 1, begin, kBlock, kBlock + 1,
+                             lower);
+}
+
+// Bit i: nothing is missing in the quad of columns begin + i and begin + i + 1: it is one surface,
+// its edges have no gaps, and pixels have landed on the at most four places inside.
+HWY_INLINE std::uint64_t find_complete(const SplatRows& rows, const BlockTargets& upper,
+                                       const BlockTargets& lower, int begin) {
+  const Tag d;
+  const TagInt di;
+  const auto one = hn::Set(di, 1);
+  const auto limit = hn::Set(d, rows.gradient_limit_px);
+  std::uint64_t complete = 0;
+  for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d))) {
+    const int at = begin + i;
+    const Corners column = load_corners(rows.upper.column + at, rows.lower.column + at);
+    const Corners line = load_corners(rows.upper.line + at, rows.lower.line + at);
+    const auto first_u = least(load_corners(upper.first_column + i, lower.first_column + i));
+    const auto last_u = most(load_corners(upper.last_column + i, lower.last_column + i));
+    const auto first_v = least(load_corners(upper.first_line + i, lower.first_line + i));
+    const auto last_v = most(load_corners(upper.last_line + i, lower.last_line + i));
+    const auto is_landed_on = [&](VecInt u, VecInt v) HWY_ATTR {
+      const auto is_at = [&](VecInt corner_u, VecInt corner_v)
+                             HWY_ATTR { return hn::And(hn::Eq(u, corner_u), hn::Eq(v, corner_v)); };
+      return hn::Or(hn::Or(is_at(column.a, line.a), is_at(column.b, line.b)),
+                    hn::Or(is_at(column.c, line.c), is_at(column.d, line.d)));
+    };
+    const auto landed_on =
+        hn::And(hn::And(is_landed_on(first_u, first_v), is_landed_on(last_u, first_v)),
+                hn::And(is_landed_on(first_u, last_v), is_landed_on(last_u, last_v)));
+    // How far apart the ends of an edge are along its axis, in the direction of surfaces seen from
+    // the front; beyond 1 there is a gap.
+    const auto distance = [&](EdgeDirection edge, VecInt column_to, VecInt line_to) HWY_ATTR {
+      const auto along = edge.along_lines ? hn::Sub(line_to, line.a) : hn::Sub(column_to, column.a);
+      return edge.sign > 0 ? along : hn::Neg(along);
+    };
+    const auto extent = hn::Max(hn::Max(hn::Sub(last_u, first_u), hn::Sub(last_v, first_v)),
+                                hn::Max(distance(rows.right_edge, column.b, line.b),
+                                        distance(rows.lower_edge, column.c, line.c)));
+    const auto upper_a = hn::LoadU(d, rows.upper.disparity_px + at);
+    const auto upper_b = hn::LoadU(d, rows.upper.disparity_px + at + 1);
+    const auto lower_c = hn::LoadU(d, rows.lower.disparity_px + at);
+    const auto lower_d = hn::LoadU(d, rows.lower.disparity_px + at + 1);
+    const auto joined = [&](Vec p, Vec q)
+                            HWY_ATTR { return hn::Le(hn::Abs(hn::Sub(p, q)), limit); };
+    const auto one_surface = hn::And(hn::And(joined(upper_a, upper_b), joined(upper_a, lower_c)),
+                                     hn::And(joined(upper_b, lower_d), joined(lower_c, lower_d)));
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(
+        d, hn::And(one_surface, hn::RebindMask(d, hn::AndNot(hn::Gt(extent, one), landed_on))),
+        bits);
+    complete |= (std::uint64_t{bits[0]} | std::uint64_t{bits[1]} << 8) << i;
+  }
+  return complete;
+}
+
+HWY_INLINE QuadCorner corner_at(const BlockTargets& targets, const ProjectedRow& row, int begin,
+                                int i) {
+  return {.u = targets.u[i],
+          .v = targets.v[i],
+          .nearness = row.nearness[begin + i],
+          .disparity_px = row.disparity_px[begin + i],
+          .column = row.column[begin + i],
+          .line = row.line[begin + i]};
+}
+
+// So many quads that may have gaps in a block that looking at all of them together is faster.
+constexpr std::size_t kManyGaps = 12;
+
+HWY_NOINLINE void fill_gaps(const SplatRows& rows, const SplatBand& band, int begin,
+                            std::uint64_t gaps) {
+  if (hwy::PopCount(gaps) < kManyGaps) {
+    for (; gaps != 0; gaps &= gaps - 1) {
+      const int i = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(gaps));
+      fill_quad_gaps(rows, quad_at(rows, begin + i), band);
+    }
+    return;
+  }
+  BlockTargets upper;
+  BlockTargets lower;
+  if (rows.view.is_translation) {
+    find_targets<true>(rows, begin, upper, lower);
+  } else {
+    find_targets<false>(rows, begin, upper, lower);
+  }
+  for (gaps &= ~find_complete(rows, upper, lower, begin); gaps != 0; gaps &= gaps - 1) {
+    const int i = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(gaps));
+    fill_quad_gaps(rows,
+                   {.a = corner_at(upper, rows.upper, begin, i),
+                    .b = corner_at(upper, rows.upper, begin, i + 1),
+                    .c = corner_at(lower, rows.lower, begin, i),
+                    .d = corner_at(lower, rows.lower, begin, i + 1)},
+                   band);
+  }
+}
+
 void splat_any(const SplatRows& given, const SplatBand& band) {
   const SplatRows rows = given;  // which stores to the band cannot change
   for (int begin = 0; begin < rows.count; begin += kBlock) {
     splat_pixels(rows, band, begin);
-    for (std::uint64_t gaps = find_gaps(rows, begin); gaps != 0; gaps &= gaps - 1) {
-      fill_quad_gaps(rows, begin + static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(gaps)),
-                     band);
+    const std::uint64_t gaps = find_gaps(rows, band, begin);
+    if (gaps != 0) {
+      fill_gaps(rows, band, begin, gaps);
     }
   }
 }

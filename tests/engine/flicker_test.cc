@@ -62,7 +62,7 @@ FlickerSums add(FlickerMeter& meter, const MadeUpFrame& frame, const std::vector
                 Execution& execution) {
   std::vector<ViewOfFrame> views;
   for (std::size_t v = 0; v < frame.views.size(); ++v) {
-    views.push_back({{views_x[v], 0}, &frame.views[v]});
+    views.push_back({BaselinePosition{views_x[v], 0}, &frame.views[v]});
   }
   return meter.add(frame.left, frame.map.view(), views, execution);
 }
@@ -216,9 +216,29 @@ TEST(FlickerMeter, WhatCannotBeCompared) {
   EXPECT_EQ(sums.compared, 0);
   EXPECT_EQ(sums.mean_disparity_change_px(), 0);
   EXPECT_THROW(meter.add(small, frame.map.view(), {}, execution), Error);
-  const ViewOfFrame view{{0.5, 0}, &frame.left};
+  const ViewOfFrame view{BaselinePosition{0.5, 0}, &frame.left};
   EXPECT_THROW(meter.add(small, {}, {&view, 1}, execution), Error);
   EXPECT_THROW(FlickerMeter(-1), UsageError);
+}
+
+TEST(FlickerMeter, CamerasMayHaveASizeOfTheirOwn) {
+  Execution execution({});
+  FlickerMeter meter(3);
+  const MadeUpFrame frame = make_frame(0, {});
+  Photograph view{Image<std::uint8_t>(10, 6)};
+  auto& levels = std::get<Image<std::uint8_t>>(view.pixels);
+  const auto sums_at = [&](std::uint8_t level, const ViewPose& pose) {
+    levels.fill(level);
+    const ViewOfFrame of_frame{pose, &view};
+    return meter.add(frame.left, frame.map.view(), {&of_frame, 1}, execution);
+  };
+  PosedCamera camera;
+  sums_at(100, camera);
+  const FlickerSums brighter = sums_at(103, camera);
+  EXPECT_EQ(brighter.views[0].compared, 0);
+  EXPECT_EQ(brighter.views[0].mean_brightness_jump(1), 3);
+  camera.translation.x() = 1;
+  EXPECT_EQ(sums_at(200, camera).views[0].brightness_jump, 0);
 }
 
 TEST(FlickerSums, AddUpInAnyOrder) {

@@ -1,8 +1,12 @@
 #include "engine/scene_graph/scene_builder.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -56,9 +60,9 @@ class SceneBuilderTest : public ::testing::Test {
     }
     return images;
   }
-  SceneBuilder builder(const std::vector<SceneImage>& images,
-                       const std::string& settings = "{}") const {
-    SceneBuildOptions options{.match = {}, .settings = settings};
+  SceneBuilder builder(const std::vector<SceneImage>& images, const std::string& settings = "{}",
+                       bool copy_images = false) const {
+    SceneBuildOptions options{.match = {}, .settings = settings, .copy_images = copy_images};
     options.match.preset = MatchPreset::kBalanced;
     options.match.disparities = {0, 8};
     return {place_, images, options, threads()};
@@ -117,6 +121,30 @@ TEST_F(SceneBuilderTest, AGridIsMatchedAlongRowsAndColumns) {
   EXPECT_GE(scores.psnr_db, 29);
 }
 
+// In the middle of a triangle, from computed maps, against each of the two edges alone.
+TEST_F(SceneBuilderTest, ATriangleIsBetterThanItsEdges) {
+  const ScenePosition middle{0.17, 0.17};
+  const Photograph truth = scene_.render(SceneView{middle.x, middle.y}, 0).image;
+  const std::vector<SceneImage> corners = {photograph("a", {0, 0}), photograph("b", {0.5, 0}),
+                                           photograph("c", {0, 0.5})};
+  const auto psnr_from = [&](const std::vector<SceneImage>& images, std::size_t vertices) {
+    fs::remove_all(place_);
+    build(images);
+    const StoredScene stored = read_scene(place_);
+    const SceneLayout layout(stored.positions(), stored.names());
+    SceneViewer viewer(
+        layout, [&](int vertex) { return load_vertex(place_, stored, vertex); }, {}, threads());
+    SynthesizedView view;
+    EXPECT_EQ(viewer.synthesize(middle, view).count, static_cast<int>(vertices));
+    return evaluate_view(view.image, truth, threads()).psnr_db;
+  };
+  const double of_triangle = psnr_from(corners, 3);
+  EXPECT_GE(of_triangle, 30);
+  for (const std::size_t other : {1U, 2U}) {
+    EXPECT_GE(of_triangle, psnr_from({corners[0], corners[other]}, 2) + 1) << other;
+  }
+}
+
 // A column of cameras is a row turned over.
 TEST_F(SceneBuilderTest, AColumnIsARowOfTransposedImages) {
   std::vector<SceneImage> images = row({0, 0.5});
@@ -145,6 +173,12 @@ TEST_F(SceneBuilderTest, FinishedEdgesAreKept) {
   build(images);
   const auto complete = contents();
   EXPECT_EQ(complete.size(), 13U);
+  EXPECT_THAT(builder(images).edges_to_match(), IsEmpty());
+  EXPECT_EQ(contents(), complete);
+
+  // What a killed process was writing goes.
+  put_text(place_ / ".scene.tmp-17-0.json", "{");
+  put_text(place_ / "maps/.000-001-first.tmp-17-0.pfm", "Pf");
   EXPECT_THAT(builder(images).edges_to_match(), IsEmpty());
   EXPECT_EQ(contents(), complete);
 
@@ -201,6 +235,135 @@ TEST_F(SceneBuilderTest, FolderAndImagesCanBeMovedTogether) {
   }
   const StoredScene stored = read_scene(elsewhere / "scene");
   EXPECT_EQ(load_vertex(elsewhere / "scene", stored, 1).maps.size(), 1U);
+}
+
+TEST_F(SceneBuilderTest, CopiedImagesMakeTheFolderDependOnNothingElse) {
+  const std::vector<SceneImage> images = row({0, 0.5, 1});
+  builder(images, "{}", true);  // interrupted before the first edge
+  EXPECT_THAT(builder(images, "{}", true).edges_to_match(), ElementsAre(0, 1));
+  SceneBuilder whole = builder(images, "{}", true);
+  whole.build(0);
+  whole.build(1);
+  const auto complete = contents();
+  EXPECT_EQ(complete.size(), 1U + 8U + 3U);
+  EXPECT_THAT(builder(images, "{}", true).edges_to_match(), IsEmpty());
+  EXPECT_EQ(contents(), complete);
+
+  for (const SceneImage& image : images) {
+    fs::remove(image.file);
+  }
+  fs::rename(place_, folder_.path() / "elsewhere");
+  place_ = folder_.path() / "elsewhere";
+  const StoredScene stored = read_scene(place_);
+  EXPECT_TRUE(
+      test::same(load_vertex(place_, stored, 2).image, scene_.render(SceneView{1, 0}, 0).image));
+
+  // Built from the copies: they are not copied again.
+  std::vector<SceneImage> copies;
+  for (const StoredImage& image : stored.images) {
+    copies.push_back({.file = place_ / image.file, .position = image.position});
+  }
+  EXPECT_THAT(builder(copies, "{}", true).edges_to_match(), IsEmpty());
+  EXPECT_EQ(contents(), complete);
+  // A damaged copy is noticed, and replaced where there is a whole one.
+  put_text(place_ / stored.images[1].file, "cut off");
+  EXPECT_THAT(error_of([&] { load_vertex(place_, stored, 1); }), HasSubstr("has changed"));
+  EXPECT_THAT(builder(row({0, 0.5, 1}), "{}", true).edges_to_match(), IsEmpty());
+  EXPECT_EQ(contents(), complete);
+  fs::remove(place_ / stored.images[1].file);
+  EXPECT_THAT(error_of([&] { load_vertex(place_, stored, 1); }), HasSubstr("is not there"));
+}
+
+// An oblique edge against the exact maps.
+TEST_F(SceneBuilderTest, ObliqueNeighboursAreMatched) {
+  const std::vector<std::array<ScenePosition, 2>> cases = {{{{0, 0}, {0.8, 0.6}}},
+                                                           {{{0.3, 0.1}, {-0.1, 0.6}}}};
+  for (const auto& places : cases) {
+    fs::remove_all(place_);
+    SceneBuilder one =
+        builder({photograph("oblique0", places[0]), photograph("oblique1", places[1])});
+    ASSERT_EQ(one.layout().edges().size(), 1U);
+    const SceneEdge edge = one.layout().edges()[0];
+    EXPECT_NE(edge.slope, 0);
+    const StoredEdge stored = one.build(0).stored;
+    const std::array<int, 2> ends = {edge.first, edge.second};
+    for (std::size_t side = 0; side < 2; ++side) {
+      const ScenePosition at = places[static_cast<std::size_t>(ends[side])];
+      const DisparityMap map = read_disparity(place_ / stored.maps[side].name);
+      const Photograph mask = read_photograph(place_ / stored.unmatched[side].name);
+      const auto& unmatched = std::get<Mask>(mask.pixels);
+      const DisparityMap truth = scene_.render(SceneView{at.x, at.y}, 0).disparity;
+      int matched = 0;
+      int wrong = 0;
+      for (int y = 0; y < map.height(); ++y) {
+        for (int x = 0; x < map.width(); ++x) {
+          if (unmatched.at(x, y) == 0) {
+            ++matched;
+            const double expected = truth.at(x, y) * edge.length;
+            wrong += std::abs(map.at(x, y) - expected) > 1 ? 1 : 0;
+          }
+        }
+      }
+      const double pixels = map.width() * map.height();
+      EXPECT_GE(matched / pixels, 0.8);
+      EXPECT_NEAR(matched / pixels, stored.matched_share[side], 1e-9);
+      // Two images of a row at this distance have 0.096.
+      EXPECT_LE(wrong / pixels, 0.095) << "side " << side;
+    }
+    const StoredScene scene = read_scene(place_);
+    const SceneLayout layout(scene.positions(), scene.names());
+    SceneViewer viewer(
+        layout, [&](int vertex) { return load_vertex(place_, scene, vertex); }, {}, threads());
+    SynthesizedView view;
+    const ScenePosition middle{(places[0].x + places[1].x) / 2, (places[0].y + places[1].y) / 2};
+    EXPECT_FALSE(viewer.synthesize(middle, view).is_outside);
+    EXPECT_GE(
+        evaluate_view(view.image, scene_.render(SceneView{middle.x, middle.y}, 0).image, threads())
+            .psnr_db,
+        27);
+    EXPECT_THAT(builder({photograph("oblique0", places[0]), photograph("oblique1", places[1])})
+                    .edges_to_match(),
+                IsEmpty());
+    // The same length in another direction is another edge.
+    std::vector<SceneImage> mirrored = {photograph("oblique0", places[0]),
+                                        photograph("oblique1", places[1])};
+    mirrored[1].position.y = 2 * places[0].y - places[1].y;
+    EXPECT_THAT(builder(mirrored).edges_to_match(), ElementsAre(0));
+  }
+}
+
+TEST_F(SceneBuilderTest, TellsWhetherRowsAndColumnsCorrespond) {
+  LayeredSceneOptions options = small_scene();
+  options.width_px = 320;
+  options.height_px = 240;
+  const LayeredScene scene(options, threads());
+  // Cameras that stand lower, or further left, than they are said to.
+  const auto error_between = [&](ScenePosition second, ScenePosition true_second) {
+    std::vector<SceneImage> images;
+    for (const ScenePosition at : {ScenePosition{}, true_second}) {
+      images.push_back({.file = folder_.path() / fmt::format("check{}.png", images.size()),
+                        .position = images.empty() ? ScenePosition{} : second});
+      write_photograph(images.back().file, scene.render(SceneView{at.x, at.y}, 0).image);
+    }
+    SceneBuildOptions build;
+    build.match.preset = MatchPreset::kBalanced;
+    build.match.disparities = {0, 20};
+    fs::remove_all(place_);
+    SceneBuilder checking(place_, images, build, threads());
+    const auto error = checking.build(0).rectification;
+    EXPECT_EQ(read_scene(place_).edges.at(0).rectification_error_px.has_value(), error.has_value());
+    return error.value_or(VerticalError{.systematic_px = -1});
+  };
+  for (const ScenePosition straight : {ScenePosition{0.5, 0}, {0, 0.5}, {0.5, 0.35}}) {
+    const VerticalError right = error_between(straight, straight);
+    EXPECT_GE(right.systematic_px, 0);
+    EXPECT_LE(right.systematic_px, 0.1) << straight.x << "," << straight.y;
+    EXPECT_FALSE(right.looks_exchanged());
+    const ScenePosition off{straight.x + 0.05, straight.y + 0.08};
+    EXPECT_GE(error_between(straight, off).systematic_px, 0.3) << straight.x << "," << straight.y;
+    const VerticalError exchanged = error_between(straight, {-straight.x, -straight.y});
+    EXPECT_TRUE(exchanged.looks_exchanged()) << straight.x << "," << straight.y;
+  }
 }
 
 TEST_F(SceneBuilderTest, SaysWhatIsWrong) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <string>
@@ -128,12 +129,79 @@ TEST(SceneLayout, PlacesNeedNotBeExact) {
   EXPECT_THAT(layout.triangles(), IsEmpty());
 }
 
+TEST(SceneLayout, VerticesWithoutARowAreJoinedObliquely) {
+  // A square with one in its middle: five on a die.
+  const SceneLayout die = layout_of({{0, 0}, {2, 0}, {1, 1.5}, {0, 3}, {2, 3}});
+  const double length = std::hypot(1, 1.5);
+  EXPECT_THAT(die.edges(),
+              ElementsAre(SceneEdge{0, 1, false, 2}, SceneEdge{0, 2, true, length, 2 / 3.0},
+                          SceneEdge{0, 3, true, 3}, SceneEdge{1, 2, true, length, -2 / 3.0},
+                          SceneEdge{1, 4, true, 3}, SceneEdge{2, 3, true, length, -2 / 3.0},
+                          SceneEdge{2, 4, true, length, 2 / 3.0}, SceneEdge{3, 4, false, 2}));
+  EXPECT_EQ(die.unit_length(), length);
+  EXPECT_EQ(die.triangles().size(), 4U);
+  EXPECT_NEAR(die.edges()[1].length_along(), 1.5, 1e-12);
+
+  // Beside a row; what is far from its nearest neighbour is joined to others as far away.
+  const SceneLayout beside = layout_of({{0, 0}, {1, 0}, {2.5, 0.2}});
+  EXPECT_THAT(beside.edges(), ElementsAre(SceneEdge{0, 1, false, 1},
+                                          SceneEdge{0, 2, false, std::hypot(2.5, 0.2), 0.08},
+                                          SceneEdge{1, 2, false, std::hypot(1.5, 0.2), 0.2 / 1.5}));
+  // From the left or above to the right or below, in whatever order they are named.
+  EXPECT_THAT(layout_of({{3, 1}, {1, 0}}).edges(),
+              ElementsAre(SceneEdge{1, 0, false, std::sqrt(5), 0.5}));
+  EXPECT_THAT(layout_of({{3, -4}, {2, 0}}).edges(),
+              ElementsAre(SceneEdge{0, 1, true, std::sqrt(17), -0.25}));
+}
+
+TEST(SceneLayout, AnObliqueLineIsJoinedFromEndToEnd) {
+  const SceneLayout line = layout_of({{4, 2}, {0, 0}, {7, 3.5}, {2, 1}, {9, 4.5}});
+  EXPECT_THAT(line.triangles(), IsEmpty());
+  ASSERT_EQ(line.edges().size(), 4U);
+  const ScenePlace place = line.locate({5, 2.5});
+  EXPECT_THAT(place.vertices, ElementsAre(0, 2, 0));
+  EXPECT_NEAR(place.weights[1], 1 / 3.0, 1e-12);
+  EXPECT_FALSE(place.is_outside);
+}
+
+// Cameras anywhere: every vertex has a neighbour, and edges are not much longer than they must be.
+TEST(SceneLayout, ScatteredCamerasAreAllJoined) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> anywhere(0, 10);
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<ScenePosition> positions;
+    for (int i = 0; i < 4 + 3 * trial; ++i) {
+      positions.push_back({anywhere(random), anywhere(random)});
+    }
+    positions.push_back({5000, 3});  // a long way off
+    const SceneLayout layout = layout_of(positions);
+    std::vector<double> nearest(positions.size(), 1e9);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      for (std::size_t j = 0; j < positions.size(); ++j) {
+        const double away =
+            std::hypot(positions[i].x - positions[j].x, positions[i].y - positions[j].y);
+        nearest[i] = i == j ? nearest[i] : std::min(nearest[i], away);
+      }
+    }
+    std::vector<double> shortest(positions.size(), 1e9);
+    for (const SceneEdge& edge : layout.edges()) {
+      const auto first = static_cast<std::size_t>(edge.first);
+      const auto second = static_cast<std::size_t>(edge.second);
+      if (edge.slope != 0) {
+        EXPECT_LE(edge.length, 2 * std::max(nearest[first], nearest[second]) * (1 + 1e-12));
+      }
+      EXPECT_LE(std::abs(edge.slope), 1);
+      shortest[first] = std::min(shortest[first], edge.length);
+      shortest[second] = std::min(shortest[second], edge.length);
+    }
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      EXPECT_LE(shortest[i], 2 * nearest[i]) << trial << " " << i;
+    }
+  }
+}
+
 TEST(SceneLayout, RefusesWhatItCannotJoin) {
   EXPECT_THAT(error_of([] { layout_of({{0, 0}}); }), HasSubstr("1 images, expected 2 to 4096"));
-  EXPECT_THAT(error_of([] {
-                layout_of({{0, 0}, {1, 0}, {2.5, 0.2}});
-              }),
-              AllOf(HasSubstr("c.png at 2.5,0.2"), HasSubstr("no neighbour")));
   EXPECT_THAT(error_of([] {
                 layout_of({{0, 0}, {1, 0}, {0, 0}});
               }),

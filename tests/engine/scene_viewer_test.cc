@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <random>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -181,6 +183,31 @@ TEST(SceneViewer, ATriangleHasFewerHolesThanItsEdges) {
   const MadeUpScene row({{0, 0}, {1, 0}});
   row.viewer().synthesize({0.4, 0}, view);
   EXPECT_LT(of_triangle, view.hole_fraction);
+}
+
+TEST(SceneViewer, PreparedViewsAreRenderedConcurrently) {
+  const MadeUpScene scene(grid(3, 2, 0.5, 0.6));
+  const std::vector<ScenePosition> positions = {{0.3, 0.2}, {0.9, 0.5},  {0.1, 0},
+                                                {1.2, 0.7}, {0.3, 0.25}, {0.2, 0.5}};
+  SceneViewer viewer = scene.viewer();
+  std::vector<PreparedSceneView> prepared;
+  for (const ScenePosition position : positions) {
+    prepared.push_back(viewer.prepare(position));
+  }
+  std::vector<SynthesizedView> views(positions.size());
+  std::vector<std::thread> workers;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    workers.emplace_back([&, i] { viewer.render(prepared[i], views[i]); });
+  }
+  for (std::thread& worker : workers) {
+    worker.join();
+  }
+  SynthesizedView alone;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    scene.viewer().synthesize(positions[i], alone);
+    EXPECT_TRUE(same(views[i].image, alone.image)) << i;
+    EXPECT_EQ(views[i].hole_fraction, alone.hole_fraction) << i;
+  }
 }
 
 // One camera darker than the others: what it shows comes with the brightness that the place has.

@@ -45,6 +45,11 @@ class SequenceRunnerTest : public testing::Test {
     options_.match.disparities = {0, 9};
     options_.match.parameters.window_px = 5;
     options_.chunk_frames = 4;
+    cameras_.width_px = 37;
+    cameras_.height_px = 23;
+    cameras_.baseline = 2;
+    cameras_.left.matrix << 40, 0, 18, 0, 40, 11, 0, 0, 1;
+    cameras_.right.matrix = cameras_.left.matrix;
   }
 
   /// Runs what is missing in `folder`; joins videos when nothing is any more.
@@ -63,6 +68,7 @@ class SequenceRunnerTest : public testing::Test {
                                        .frames = way.frames,
                                        .shard = way.shard},
                          .frame_size = ImageExtent{37, 23},
+                         .cameras = &cameras_,
                          .in_flight = way.in_flight,
                          .keep_going = way.keep_going,
                          .on_progress =
@@ -118,10 +124,21 @@ class SequenceRunnerTest : public testing::Test {
     }
     return list;
   }
+  /// Whether the file is an image of just these values.
+  static bool holds(const fs::path& file, const Image<std::uint8_t>& expected) {
+    const Photograph read = read_photograph(file.string());
+    const auto& image = std::get<Image<std::uint8_t>>(read.pixels);
+    bool same = image.width() == expected.width() && image.height() == expected.height();
+    for (int y = 0; same && y < image.height(); ++y) {
+      same = std::equal(image.row(y), image.row(y) + image.width(), expected.row(y));
+    }
+    return same;
+  }
   [[nodiscard]] fs::path folder(const std::string& name) const { return temporary_ / name; }
 
   TemporaryFolder temporary_;
   SequenceOptions options_;
+  RectifiedPair cameras_;
   SequenceProgress progress_;
 };
 
@@ -163,8 +180,8 @@ TEST_F(SequenceRunnerTest, WritesWhatTheMatcherComputes) {
 TEST_F(SequenceRunnerTest, OutputsGoToFoldersOfTheirOwn) {
   options_.save = {SequenceOutput::kViews, SequenceOutput::kHoles, SequenceOutput::kStereo,
                    SequenceOutput::kRightUnmatched};
-  options_.views = {ViewTrack::fixed({0.25, 0}), ViewTrack::fixed({-1, 0}),
-                    parse_view_track("0=0,9=1")};
+  options_.views = {ViewPath::fixed(BaselinePosition{0.25, 0}),
+                    ViewPath::fixed(BaselinePosition{-1, 0}), parse_view_path("0=0,9=1")};
   options_.stereo_packing = StereoPacking{.above_below = true};
   MadeUpPairs pairs(1);
   run(pairs, folder("a"));
@@ -182,13 +199,101 @@ TEST_F(SequenceRunnerTest, OutputsGoToFoldersOfTheirOwn) {
 
 TEST_F(SequenceRunnerTest, AMovingViewIsTheFixedOneOfEachFrame) {
   options_.save = {SequenceOutput::kViews};
-  options_.views = {parse_view_track("1=0.5,3=1.5")};
+  options_.views = {parse_view_path("1=0.5,3=1.5")};
   MadeUpPairs pairs(4);
   run(pairs, folder("path"), {.frames = FrameRange{2, 4}});
-  options_.views = {ViewTrack::fixed({1, 0})};
+  options_.views = {ViewPath::fixed(BaselinePosition{1, 0})};
   run(pairs, folder("fixed"));
   EXPECT_THAT(names(folder("path")), ElementsAre("views/000002.png", "views/000003.png"));
   EXPECT_EQ(files(folder("path"))["views/000002.png"], files(folder("fixed"))["views/000002.png"]);
+}
+
+TEST_F(SequenceRunnerTest, CamerasSeeWhatTheSynthesizerRenders) {
+  options_.save = {SequenceOutput::kViews, SequenceOutput::kHoles, SequenceOutput::kSources};
+  PosedCamera large = camera_looking_at(cameras_, {0.5, -0.25}, 3);
+  large.width_px = 45;
+  large.height_px = 19;
+  PosedCamera sizeless = camera_looking_at(cameras_, {0, 0}, 4);
+  sizeless.width_px = 0;
+  sizeless.height_px = 0;
+  PosedCamera moved = sizeless;
+  moved.translation.y() -= 0.5;
+  options_.views = {ViewPath::fixed(large), ViewPath{{{0, sizeless}, {2, moved}}}};
+  for (const WarpColour warp : {WarpColour::kOnePass, WarpColour::kForward}) {
+    options_.synthesis.warp = warp;
+    const fs::path out = folder(warp == WarpColour::kForward ? "forward" : "one-pass");
+    MadeUpPairs pairs(3);
+    run(pairs, out);
+    Execution serial({.executor = scheduler::ExecutorKind::kSerial});
+    MadeUpPairs again(3);
+    FramePair pair;
+    DisparityMaps maps;
+    for (int frame = 0; frame < 3; ++frame) {
+      ASSERT_TRUE(again.fetch(pair));
+      again.decode(pair);
+      StereoMatcher(options_.match, serial).match(pair.left, pair.right, {}, maps);
+      const auto compare = [&](const std::string& name, const PosedCamera& camera) {
+        SynthesizedView view;
+        if (warp == WarpColour::kForward) {
+          ThreeStepSynthesizer(options_.synthesis, serial)
+              .synthesize(pair.left, pair.right, maps.left.view(), maps.right.view(), cameras_,
+                          camera, view);
+        } else {
+          ViewSynthesizer(options_.synthesis, serial)
+              .synthesize(pair.left, pair.right, maps.left.view(), maps.right.view(),
+                          camera_view(cameras_, camera), view);
+        }
+        const std::string file = name + "/00000" + std::to_string(frame) + ".png";
+        const auto& image = std::get<Image<std::uint8_t>>(view.image.pixels);
+        EXPECT_TRUE(holds(out / "views" / file, image));
+        EXPECT_TRUE(holds(out / "holes" / file, view.holes));
+        EXPECT_TRUE(holds(out / "sources" / file, view.sources));
+      };
+      compare("camera-1", large);
+      auto between = std::get<PosedCamera>(options_.views[1].at(frame));
+      between.width_px = 37;
+      between.height_px = 23;
+      compare("path-1", between);
+    }
+  }
+}
+
+TEST_F(SequenceRunnerTest, PositionsMayBeTurnedTowardsAPoint) {
+  options_.save = {SequenceOutput::kViews};
+  options_.look_at_px = 4;
+  options_.views = {parse_view_path("0=0.5,3=2")};
+  MadeUpPairs pairs(2);
+  run(pairs, folder("turned"));
+  options_.look_at_px.reset();
+  options_.views = {ViewPath::fixed(camera_looking_at(cameras_, {1, 0}, 4))};
+  run(pairs, folder("camera"));
+  EXPECT_EQ(files(folder("turned"))["views/000001.png"],
+            files(folder("camera"))["views/000001.png"]);
+  options_.views = {ViewPath::fixed(BaselinePosition{1, 0})};
+  run(pairs, folder("ahead"));
+  EXPECT_NE(files(folder("turned"))["views/000001.png"],
+            files(folder("ahead"))["views/000001.png"]);
+}
+
+TEST_F(SequenceRunnerTest, VideosOfCamerasHaveTheirSizeThroughout) {
+  options_.save = {SequenceOutput::kViews};
+  options_.video = options_.save;
+  options_.chunk_frames = 2;
+  PosedCamera camera = camera_looking_at(cameras_, {0.5, 0}, 3);
+  camera.width_px = 50;
+  camera.height_px = 30;
+  options_.views = {ViewPath::fixed(camera)};
+  MadeUpPairs pairs(4);
+  pairs.bad_to_decode = {0, 1};  // a whole segment
+  run(pairs, folder("a"), {.keep_going = true});
+  VideoReader reader((folder("a") / "views.mp4").string());
+  Photograph frame;
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_TRUE(reader.read(frame));
+    EXPECT_EQ(frame.width(), 50);
+    EXPECT_EQ(frame.height(), 30);
+  }
+  EXPECT_FALSE(reader.read(frame));
 }
 
 TEST_F(SequenceRunnerTest, TheFirstBadFrameEndsTheRun) {
@@ -303,7 +408,7 @@ TEST_F(SequenceRunnerTest, BadFramesAreSkippedWhereAskedAndMadeOnceRepaired) {
 TEST_F(SequenceRunnerTest, SkippedFramesOfAVideoShowANeighbour) {
   options_.save = {SequenceOutput::kViews};
   options_.video = options_.save;
-  options_.views = {ViewTrack::fixed({0, 0})};
+  options_.views = {ViewPath::fixed(BaselinePosition{0, 0})};
   options_.crf = 0;
   const auto frames_of = [&](const std::set<int>& bad) {
     MadeUpPairs pairs(8);
@@ -346,7 +451,7 @@ TEST_F(SequenceRunnerTest, SkippedFramesOfAVideoShowANeighbour) {
 TEST_F(SequenceRunnerTest, PartsAndInterruptionsLeaveNoTrace) {
   options_.save = {SequenceOutput::kDisparity, SequenceOutput::kRightDisparity,
                    SequenceOutput::kPreview, SequenceOutput::kViews};
-  options_.views = {ViewTrack::fixed({0.5, 0})};
+  options_.views = {ViewPath::fixed(BaselinePosition{0.5, 0})};
   options_.video = {SequenceOutput::kPreview};
   options_.temporal.weight = 1;
   options_.measure_flicker = true;
@@ -437,39 +542,6 @@ TEST_F(SequenceRunnerTest, StopFinishesWhatIsUnderWay) {
   EXPECT_EQ(names(folder("a")).size(), static_cast<std::size_t>(report.frames));
   const DeliveredFrames delivered(SequenceLayout(folder("a"), options_));
   EXPECT_EQ(delivered.records().size(), static_cast<std::size_t>(report.frames));
-}
-
-TEST_F(SequenceRunnerTest, OptionsAreChecked) {
-  Execution execution({});
-  const auto refusal = [&](const std::function<void(SequenceOptions&)>& change) {
-    SequenceOptions options = options_;
-    change(options);
-    try {
-      SequenceRunner(options, execution);
-    } catch (const UsageError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
-  using Options = SequenceOptions;
-  EXPECT_EQ(refusal([](Options&) {}), "");
-  EXPECT_THAT(refusal([](Options& o) { o.save = {}; }), HasSubstr("save is empty"));
-  EXPECT_THAT(refusal([](Options& o) {
-                o.views = {ViewTrack::fixed({0, 0})};
-              }),
-              HasSubstr("save has no views"));
-  EXPECT_THAT(refusal([](Options& o) { o.save = {SequenceOutput::kHoles}; }),
-              HasSubstr("no view is given"));
-  EXPECT_THAT(refusal([](Options& o) { o.map_format = "bmp"; }), HasSubstr("format is 'bmp'"));
-  EXPECT_THAT(refusal([](Options& o) { o.match.parameters.window_px = 4; }), HasSubstr("window"));
-  EXPECT_THAT(refusal([](Options& o) { o.video = {SequenceOutput::kDisparity}; }),
-              HasSubstr("a video cannot hold"));
-  EXPECT_THAT(refusal([](Options& o) { o.video = {SequenceOutput::kPreview}; }),
-              HasSubstr("--save …,preview"));
-  EXPECT_THAT(refusal([](Options& o) { o.crf = 52; }), HasSubstr("crf is 52"));
-  EXPECT_THAT(refusal([](Options& o) { o.chunk_frames = 0; }), HasSubstr("chunk-frames is 0"));
-  EXPECT_THAT(refusal([](Options& o) { o.stereo_views_x = {0, 17}; }), HasSubstr("stereo-views"));
-  EXPECT_THAT(refusal([](Options& o) { o.temporal.weight = -1; }), HasSubstr("-1"));
 }
 
 TEST(BusyClock, CountsOverlappingActivitiesOnce) {

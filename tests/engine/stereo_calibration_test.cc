@@ -259,18 +259,18 @@ TEST_F(CalibrationFiles, ErrorsNameWhatIsWrong) {
   EXPECT_EQ(error(replaced(kYaml, "0., 1., 0., -0.28", "0., -1., 0., -0.28")),
             "R is mirrored: its determinant is -1, expected 1");
   EXPECT_EQ(error(replaced(kYaml, "-8.3e-02, 9.6e-04, -7.5e-06", "0, 0, 0")),
-            "T has the length 0, expected a baseline of 1e-9 to 1e9");
+            "the baseline (length of T) is 0, expected 1e-9 to 1e9");
   EXPECT_EQ(error(replaced(kYaml, "image_width: 640", "image_width: 640.5")),
             "the image size holds 640.5, expected whole pixels");
   EXPECT_EQ(error(replaced(kYaml, "image_height: 480\n", "")),
-            "there is no image_height in it, expected a 1x1 matrix");
+            "there is no image_height in it, expected a number");
   EXPECT_EQ(error(replaced(kXml, "</T>", "</t>")), "T is not complete");
   EXPECT_EQ(error(replaced(kXml, "<cameraMatrix2", "<cameraMatrix3")).substr(0, 17),
             "there is no M2 in");
   EXPECT_EQ(error(replaced(kMiddlebury, "doffs=32.778", "doffs=30")),
             "doffs is 30, but cx of cam1 is 32.778 more than of cam0");
   EXPECT_EQ(error(replaced(kMiddlebury, "baseline=193.001\n", "")),
-            "there is no baseline in it, expected a 1x1 matrix");
+            "there is no baseline in it, expected a number");
   EXPECT_EQ(error(replaced(kMiddlebury, "cam1", "cam2")),
             "there is no cam1 in it, expected a 3x3 matrix");
   EXPECT_EQ(error(replaced(kMiddlebury, "326.96; 0 999.421", "326.96; 0 998")),
@@ -278,8 +278,16 @@ TEST_F(CalibrationFiles, ErrorsNameWhatIsWrong) {
             "expected the same to 0.01");
   EXPECT_EQ(error(replaced(kMiddlebury, "baseline=193.001", "baseline=-193.001")),
             "the right camera stands left of the left one, expected the cameras swapped");
+  EXPECT_EQ(error(replaced(kYaml, "image_width:", "fisheye_model: 1\nimage_width:")),
+            "fisheye_model says that the lenses are fisheyes, expected OpenCV's standard model (k1 "
+            "k2 p1 p2 ...)");
+  EXPECT_EQ(error(replaced(kYaml, "image_width:", "camera_model: \"fisheye\"\nimage_width:"))
+                .substr(0, 47),
+            "camera_model says that the lenses are fisheyes,");
+  EXPECT_EQ(read(replaced(kYaml, "image_width:", "fisheye_model: 0\nimage_width:")).format,
+            "OpenCV");
   EXPECT_EQ(error(replaced(kKitti, "P1: 7.0e+02 0", "P1: 7.0e+02")),
-            "P1 has 11 values, expected 3x4");
+            "P1 has 11 values, expected a 3x4 matrix");
   EXPECT_EQ(error(replaced(kKitti, "P1:", "P9:")), "there is no P1 in it, expected a 3x4 matrix");
   EXPECT_EQ(error(replaced(kKitti, "P0: 7.0e+02", "P0: 0")).substr(0, 23),
             "the left camera's fx is");
@@ -298,6 +306,11 @@ TEST_F(CalibrationFiles, SizesOfImages) {
   EXPECT_EQ(error_of([&] { kitti.check_image_size(600, 370); }),
             "the left camera's principal point (600, 180) is outside of the 600x370 images: "
             "expected a calibration of images of this size");
+  StereoCalibration normalised = calibration;
+  normalised.image_size.reset();
+  normalised.left.matrix << 0.83, 0, 0.5, 0, 1.1, 0.5, 0, 0, 1;
+  EXPECT_EQ(error_of([&] { normalised.check_image_size(640, 480); }),
+            "the left camera's fx is 0.83 pixels, expected at least 32 for 640x480 images");
 }
 
 // Cut anywhere, with bytes changed, repeated and removed: an Error of one line or a valid result.

@@ -100,6 +100,44 @@ TEST(VerticalError, LeavesWrongMatchesOutAndTellsNoiseFromError) {
   EXPECT_LT(found->largest_px, 2);
 }
 
+// Even where the error is 0 on average, as of a camera that is turned about its axis.
+TEST(VerticalError, IsFoundWhereItChangesOverTheImage) {
+  const LayeredScene scene({.width_px = 320, .height_px = 240, .samples_per_side = 2}, execution());
+  const Photograph left = scene.render({0, 0}, 0).image;
+  const Photograph right = scene.render({1, 0}, 0).image;
+  constexpr double kTurn = 0.006;
+  const Eigen::Matrix3d turn = test::turned_by(0, 0, kTurn);
+  const Eigen::Matrix3d to_middle{{1, 0, -159.5}, {0, 1, -119.5}, {0, 0, 1}};
+  const auto found =
+      check_rectification(left, test::warped(right, to_middle.inverse() * turn * to_middle));
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->mean_px, 0, 0.1);
+  // Of points that are evenly spread over the width.
+  EXPECT_NEAR(found->systematic_px, kTurn * 320 / std::sqrt(12), 0.1);
+}
+
+TEST(VerticalError, TellsExchangedImages) {
+  const LayeredScene scene({.width_px = 320, .height_px = 240, .samples_per_side = 2}, execution());
+  const Photograph left = scene.render({0, 0}, 0).image;
+  const Photograph right = scene.render({1, 0}, 0).image;
+  const auto in_order = check_rectification(left, right);
+  const auto exchanged = check_rectification(right, left);
+  ASSERT_TRUE(in_order && exchanged);
+  EXPECT_LT(in_order->negative_share, 0.02);
+  EXPECT_FALSE(in_order->looks_exchanged());
+  EXPECT_GT(exchanged->negative_share, 0.98);
+  EXPECT_TRUE(exchanged->looks_exchanged());
+
+  // Disparities around 0 say nothing.
+  std::mt19937 random(4);
+  auto matches = matches_with(
+      200, [](double, double, double) { return 0.0; }, random);
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    matches[i].right.x() = matches[i].left.x() + (i % 10 == 0 ? 3 : 0.4);
+  }
+  EXPECT_DOUBLE_EQ(vertical_error(matches).value().negative_share, 0.1);
+}
+
 TEST(VerticalError, SaysNothingOfTooFewMatches) {
   std::mt19937 random(3);
   const auto zero = [](double, double, double) { return 0.0; };

@@ -121,7 +121,6 @@ TEST(ViewFinisher, IsBlendThenFillThenMix) {
                                                  .right_disparity_px = pair.right_disparity_px,
                                                  .width = kWidth,
                                                  .alpha = weights.alpha,
-                                                 .is_along_row = true,
                                                  .left_offset = view_x,
                                                  .right_offset = view_x - 1},
                                                 shares.data());

@@ -7,12 +7,10 @@
 
 #include "engine/error.h"
 #include "tests/engine/calibration_cases.h"
-#include "tests/engine/io_test_support.h"
 
 namespace vantage {
 namespace {
 
-using test::error_of;
 using test::random_rotation;
 using test::uniform;
 
@@ -42,34 +40,6 @@ TEST(ViewPose, CamerasMoveStraightAndTurnEvenly) {
                   (1 - share) * whole, 1e-7);
     }
   }
-}
-
-TEST(ViewPose, PathsStandStillOutsideTheirKeys) {
-  const ViewPath path{{{2, BaselinePosition{0, 1}}, {6, BaselinePosition{1, 3}}}};
-  path.validate();
-  EXPECT_EQ(path.frames(), 7);
-  EXPECT_EQ(std::get<BaselinePosition>(path.at(0)), (BaselinePosition{0, 1}));
-  EXPECT_EQ(std::get<BaselinePosition>(path.at(2)), (BaselinePosition{0, 1}));
-  EXPECT_EQ(std::get<BaselinePosition>(path.at(3)), (BaselinePosition{0.25, 1.5}));
-  EXPECT_EQ(std::get<BaselinePosition>(path.at(6)), (BaselinePosition{1, 3}));
-  EXPECT_EQ(std::get<BaselinePosition>(path.at(60)), (BaselinePosition{1, 3}));
-}
-
-TEST(ViewPose, PathsOfTwoKindsAreRefused) {
-  std::mt19937 random(2);
-  EXPECT_EQ(error_of([] { ViewPath{}.validate(); }),
-            "view path is empty, expected at least one pose");
-  const ViewPath repeated{{{3, BaselinePosition{}}, {3, BaselinePosition{}}}};
-  EXPECT_EQ(error_of([&] { repeated.validate(); }),
-            "view path has frame 3 as key 2, expected frames from 0 that grow from key to key");
-  const ViewPath mixed{{{0, BaselinePosition{}}, {1, some_camera(random)}}};
-  EXPECT_EQ(error_of([&] { mixed.validate(); }),
-            "view path has positions on the baseline and cameras, expected poses of one kind");
-  PosedCamera larger = some_camera(random);
-  larger.width_px = 100;
-  const ViewPath sizes{{{0, some_camera(random)}, {1, larger}}};
-  EXPECT_EQ(error_of([&] { sizes.validate(); }),
-            "view path has cameras of 64×48 and 100×48, expected one size");
 }
 
 TEST(ViewPose, EyesLieOnTheCamerasOwnXAxis) {
@@ -118,6 +88,25 @@ TEST(ViewPose, ATurnedCameraKeepsItsPointInTheMiddle) {
   }
   EXPECT_TRUE(camera_looking_at(pair, {0.5, 0}, 30).rotation.isIdentity(1e-15));
   EXPECT_THROW(camera_looking_at(pair, {0, 0}, -12), UsageError);
+}
+
+TEST(ViewPose, WhatIsLeftOpenIsFilledIn) {
+  std::mt19937 random(6);
+  RectifiedPair pair;
+  pair.width_px = 64;
+  pair.height_px = 48;
+  pair.baseline = 2;
+  pair.left.matrix << 70, 0, 31, 0, 70, 22, 0, 0, 1;
+  const PosedCamera camera = some_camera(random);
+  EXPECT_EQ(placed(camera, 5, nullptr, 9, 7), ViewPose(camera));
+  PosedCamera sizeless = camera;
+  sizeless.width_px = 0;
+  sizeless.height_px = 0;
+  EXPECT_EQ(placed(sizeless, {}, nullptr, 64, 48), ViewPose(camera));
+  const BaselinePosition position{0.25, -1};
+  EXPECT_EQ(placed(position, {}, &pair, 9, 7), ViewPose(position));
+  EXPECT_EQ(placed(position, 5, &pair, 9, 7), ViewPose(camera_looking_at(pair, position, 5)));
+  EXPECT_THROW(placed(position, 5, nullptr, 9, 7), UsageError);
 }
 
 TEST(ViewPose, CamerasNeedACalibratedPair) {

@@ -44,9 +44,6 @@ double plain_share(const OutlineRow& row, int own, int other) {
   if (!(std::abs(step) > row.gradient_limit_px)) {
     return 0;  // or one of them is an open hole
   }
-  if (!row.is_along_row) {
-    return 0.2;
-  }
   // The means over the images that show the surface at x; over both if neither does.
   const auto mean = [&](int x, auto&& of_image) {
     const auto shows = [&](float d) { return std::abs(d - row.disparity_px[x]) <= 1; };
@@ -76,7 +73,6 @@ TEST(OutlineShares, EqualThePlainDefinitionOnEveryInstructionSet) {
     for (int repeat = 0; repeat < 4; ++repeat) {
       Surfaces surfaces(random, width);
       const double view_x = static_cast<double>(random() % 300) / 100 - 1.0;
-      surfaces.row.is_along_row = repeat != 0;
       surfaces.row.left_offset = view_x;
       surfaces.row.right_offset = view_x - 1;
       surfaces.row.alpha = 0.3F;
@@ -116,7 +112,6 @@ TEST(OutlineShares, MoveWithTheView) {
                         .width = 10,
                         .gradient_limit_px = 1,
                         .alpha = 1,
-                        .is_along_row = true,
                         .left_offset = view_x,
                         .right_offset = view_x - 1},
                        shares.data());

@@ -109,7 +109,8 @@ TEST(SourcePosition, EqualOnEveryInstructionSetAndToReference) {
       for (float& q : nearness) {
         q = static_cast<float>(random() % 2000) / 50 - 10;
       }
-      for (const float special : {-std::numeric_limits<float>::infinity(), 3e38F, -3e38F}) {
+      for (const float special : {-std::numeric_limits<float>::infinity(), 3e38F, -3e38F,
+                                  std::numeric_limits<float>::quiet_NaN()}) {
         nearness[random() % nearness.size()] = special;
       }
       const SourcePositionRow row{nearness.data(), width, 11, 37, 29};

@@ -321,6 +321,38 @@ TEST(SurfaceSplat, LeavesNoCracks) {
   }
 }
 
+// Where a view is turned, targets of all neighbours are more than a column or line apart, but few
+// positions between them are missing.
+TEST(SurfaceSplat, FindsTheFewGapsOfTurnedSurfaces) {
+  const int width = 137;
+  const int height = 19;
+  std::mt19937 random(5);
+  Map slanted{{}, width, height};
+  Map rough{{}, width, height};
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      slanted.d.push_back(5 + 0.02F * static_cast<float>(x) - 0.03F * static_cast<float>(y));
+      // Steps up to the limit of one surface, and beyond it.
+      rough.d.push_back(slanted.d.back() + 0.45F * static_cast<float>(random() % 4));
+    }
+  }
+  for (const double roll : {0.2, 0.5, 0.785398163397448, 1.1, 2.0, -0.5, -2.5}) {
+    for (const double zoom : {0.8, 1.0, 1.1}) {
+      for (const double right : {0.2, 1.3}) {
+        const ViewProjection view = camera(150, zoom, roll, 0.02, -0.03, {right, 0.1, 0}, 68, 9, 0);
+        for (const Map* map : {&slanted, &rough}) {
+          const std::vector<float> expected =
+              warp(*map, view, 1.0F, width, 50, 50, width, splat_rows_ref);
+          for_each_target([&] {
+            ASSERT_EQ(warp(*map, view, 1.0F, width, 50, 50, width), expected)
+                << "roll " << roll << ", zoom " << zoom << ", right " << right;
+          });
+        }
+      }
+    }
+  }
+}
+
 TEST(SurfaceSplat, WalksEdgesAlongTheirAxis) {
   const auto right = [](double roll) {
     return right_edge_direction(camera(50, 1, roll, 0, 0, {0, 0, 0}, 10, 10, 0), 10, 10);

@@ -1,18 +1,17 @@
-#include "engine/sequence/view_track.h"
+#include "engine/view_geometry/view_path.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
+#include <iterator>
+#include <variant>
 
 #include "engine/error.h"
 
 namespace vantage {
 namespace {
-
-constexpr double kFarthestView = 16;  // baselines
 
 template <typename T>
 bool read_number(std::string_view text, T& number) {
@@ -22,41 +21,35 @@ bool read_number(std::string_view text, T& number) {
 
 }  // namespace
 
-BaselinePosition ViewTrack::at(int frame) const {
+ViewPose ViewPath::at(int frame) const {
   const auto next = std::ranges::upper_bound(keys, frame, {}, &Key::frame);
   if (next == keys.begin()) {
-    return keys.front().position;
+    return keys.front().pose;
   }
   const Key& before = *std::prev(next);
   if (next == keys.end() || before.frame == frame) {
-    return before.position;
+    return before.pose;
   }
-  const double share = static_cast<double>(frame - before.frame) / (next->frame - before.frame);
-  return {before.position.x + share * (next->position.x - before.position.x),
-          before.position.y + share * (next->position.y - before.position.y)};
+  return pose_between(before.pose, next->pose,
+                      static_cast<double>(frame - before.frame) / (next->frame - before.frame));
 }
 
-void ViewTrack::validate() const {
+void ViewPath::validate() const {
   if (keys.empty()) {
-    throw UsageError("view path is empty, expected keys like 0=0,48=1");
+    throw UsageError("view path is empty, expected at least one pose");
   }
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    for (const double coordinate : {keys[i].position.x, keys[i].position.y}) {
-      if (!(std::abs(coordinate) <= kFarthestView)) {
-        throw UsageError(fmt::format("view is {}, expected numbers within ±{}",
-                                     to_string(keys[i].position), kFarthestView));
-      }
-    }
     if (keys[i].frame < 0 || (i > 0 && keys[i].frame <= keys[i - 1].frame)) {
       throw UsageError(fmt::format(
           "view path has frame {} as key {}, expected frames from 0 that grow from key to key",
           keys[i].frame, i + 1));
     }
+    require_alike(keys.front().pose, keys[i].pose);
   }
 }
 
-ViewTrack parse_view_track(std::string_view text) {
-  ViewTrack track;
+ViewPath parse_view_path(std::string_view text) {
+  ViewPath path;
   bool may_have_y = false;  // XS of the last key has just been read
   for (std::string_view rest = text;;) {
     const std::size_t end = rest.find(',');
@@ -64,13 +57,14 @@ ViewTrack parse_view_track(std::string_view text) {
     const std::size_t equals = part.find('=');
     bool is_read = false;
     if (equals != std::string_view::npos) {
-      ViewTrack::Key key;
-      is_read = read_number(part.substr(0, equals), key.frame) &&
-                read_number(part.substr(equals + 1), key.position.x);
-      track.keys.push_back(key);
+      int frame = 0;
+      BaselinePosition position;
+      is_read = read_number(part.substr(0, equals), frame) &&
+                read_number(part.substr(equals + 1), position.x);
+      path.keys.push_back({frame, position});
       may_have_y = true;
     } else if (may_have_y) {
-      is_read = read_number(part, track.keys.back().position.y);
+      is_read = read_number(part, std::get<BaselinePosition>(path.keys.back().pose).y);
       may_have_y = false;
     }
     if (!is_read) {
@@ -79,16 +73,17 @@ ViewTrack parse_view_track(std::string_view text) {
                       text, part));
     }
     if (end == std::string_view::npos) {
-      return track;
+      return path;
     }
     rest.remove_prefix(end + 1);
   }
 }
 
-std::string to_string(const ViewTrack& track) {
+std::string to_string(const ViewPath& path) {
   std::vector<std::string> keys;
-  for (const ViewTrack::Key& key : track.keys) {
-    keys.push_back(fmt::format("{}={}", key.frame, to_string(key.position)));
+  for (const ViewPath::Key& key : path.keys) {
+    keys.push_back(
+        fmt::format("{}={}", key.frame, to_string(std::get<BaselinePosition>(key.pose))));
   }
   return fmt::format("{}", fmt::join(keys, ","));
 }

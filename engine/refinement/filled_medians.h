@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/execution.h"
+#include "engine/image/image.h"
+#include "engine/image/photograph.h"
+
+namespace vantage {
+
+/// Working memory of take_filled_medians(), reused from call to call.
+struct FilledMediansWork {
+  DisparityMap before;
+  Image<std::uint8_t> pixels;  ///< of photographs that are not of 8 bits
+};
+
+/// Gives filled pixels (≠ 0 in `unmatched`) the weighted median of the disparities around them,
+/// those of pixels that look alike counting more (kernels/filled_median). Filling at constant depth
+/// decides for each row alone; this lets rows vote and follows the image's outlines. `photograph`
+/// is the map's own; all have one size. Identical for any `execution`.
+void take_filled_medians(const Mask& unmatched, const Photograph& photograph, Execution& execution,
+                         FilledMediansWork& work, DisparityMap& map_px);
+
+}  // namespace vantage

@@ -1,0 +1,125 @@
+#include "kernels/filled_median/filled_median.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+namespace vantage::kernels {
+namespace {
+
+constexpr int kReachPx = kFilledMedianSamples / 2 * kFilledMedianStepPx;
+constexpr int kUnitWeight = 4096;
+
+struct Sample {
+  float disparity_px;
+  int weight;
+};
+using Samples = std::array<Sample, std::size_t{kFilledMedianSamples * kFilledMedianSamples}>;
+
+constexpr int kColours = 3;
+/// By the sum of the absolute differences of three channels.
+using Weights = std::array<int, std::size_t{kColours * 255 + 1}>;
+
+Weights make_weights() {
+  Weights weights{};
+  for (std::size_t sum = 0; sum < weights.size(); ++sum) {
+    weights[sum] = static_cast<int>(
+        std::lround(kUnitWeight * std::exp(-static_cast<double>(sum) / kFilledMedianLevels)));
+  }
+  return weights;
+}
+
+template <bool kIsGrey>
+int difference(const std::uint8_t* a, const std::uint8_t* b) {
+  if constexpr (kIsGrey) {
+    return kColours * std::abs(*a - *b);
+  } else {
+    return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
+  }
+}
+
+/// `count` ≥ 1 samples with `total` > 0 weight, which are put into another order: a quickselect
+/// that counts weights. Samples that are equal, of which there are many, are set apart together.
+float weighted_median(Sample* samples, int count, int total) {
+  int below = 0;  // weight of what is known to be less than the median
+  for (;;) {
+    const float pivot = samples[count / 2].disparity_px;
+    int less = 0;         // samples in front that are less than the pivot
+    int greater = count;  // from here on they are greater
+    int weight_of_less = 0;
+    int weight_of_equal = 0;
+    for (int i = 0; i < greater;) {
+      const Sample sample = samples[i];
+      if (sample.disparity_px < pivot) {
+        weight_of_less += sample.weight;
+        std::swap(samples[i++], samples[less++]);
+      } else if (sample.disparity_px > pivot) {
+        std::swap(samples[i], samples[--greater]);
+      } else {
+        weight_of_equal += sample.weight;
+        ++i;
+      }
+    }
+    if (2 * (below + weight_of_less) >= total && less > 0) {
+      count = less;
+    } else if (2 * (below + weight_of_less + weight_of_equal) >= total) {
+      return pivot;
+    } else {
+      below += weight_of_less + weight_of_equal;
+      samples += greater;
+      count -= greater;
+    }
+  }
+}
+
+/// How far samples reach towards a border `room_px` away: whole steps.
+int reach(int room_px) {
+  return std::min(kReachPx, room_px / kFilledMedianStepPx * kFilledMedianStepPx);
+}
+
+template <bool kIsGrey>
+void take_medians(const FilledRow& row, float* filled_px) {
+  static const Weights weights = make_weights();
+  const int above = reach(row.rows_above);
+  const int below = reach(row.rows_below);
+  Samples samples;
+  for (int x = 0; x < row.width; ++x) {
+    if (row.unmatched[x] == 0) {
+      continue;
+    }
+    const int first = x - reach(x);
+    const int last = x + reach(row.width - 1 - x);
+    const std::uint8_t* own = row.pixels + x * row.channels;
+    int count = 0;
+    int total = 0;
+    for (int dy = -above; dy <= below; dy += kFilledMedianStepPx) {
+      const float* disparity_px = row.disparity_px + dy * row.disparity_pitch;
+      const std::uint8_t* pixels = row.pixels + dy * row.pixel_pitch;
+      for (int column = first; column <= last; column += kFilledMedianStepPx) {
+        const int unlike = difference<kIsGrey>(pixels + column * row.channels, own);
+        const int weight = weights[static_cast<std::size_t>(unlike)];
+        samples[static_cast<std::size_t>(count)] = {disparity_px[column], weight};
+        const bool counts = weight > 0 && !std::isnan(disparity_px[column]);
+        count += counts ? 1 : 0;
+        total += counts ? weight : 0;
+      }
+    }
+    if (count > 0) {
+      filled_px[x] = weighted_median(samples.data(), count, total);
+    }
+  }
+}
+
+}  // namespace
+
+void take_filled_medians_row(const FilledRow& row, float* filled_px) {
+  if (row.channels == 1) {
+    take_medians<true>(row, filled_px);
+  } else {
+    take_medians<false>(row, filled_px);
+  }
+}
+
+}  // namespace vantage::kernels
