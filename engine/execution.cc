@@ -30,6 +30,12 @@ void ExecutionOptions::validate() const {
   }
 }
 
+int thread_count(const ExecutionOptions& options, const scheduler::Machine& machine) {
+  return options.executor == scheduler::ExecutorKind::kSerial
+             ? 1
+             : options.threads.value_or(machine.hardware_threads);
+}
+
 Execution::Execution(const ExecutionOptions& options)
     : options_(options), machine_(scheduler::detect_machine()) {
   options_.validate();

@@ -30,6 +30,9 @@ struct ExecutionOptions {
   void validate() const;
 };
 
+/// How many threads an Execution with `options` has on `machine`.
+int thread_count(const ExecutionOptions& options, const scheduler::Machine& machine);
+
 /// The threads, the scratch memory and the knowledge of the machine that matchers and synthesisers
 /// share. Thread rule: may be used by several frames at once. Outlives everything that uses it.
 class Execution {

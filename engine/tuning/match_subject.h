@@ -1,0 +1,88 @@
+#pragma once
+
+#include <chrono>
+#include <list>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "engine/execution.h"
+#include "engine/matching/stereo_matcher.h"
+#include "engine/tuning/tuning_pair.h"
+#include "engine/tuning/tuning_subject.h"
+
+namespace vantage {
+
+/// What is timed, and what of it may be changed.
+struct MatchSubjectOptions {
+  MatchOptions match;          ///< disparities known
+  ExecutionOptions execution;  ///< what is set here stays
+  /// False where images are lower than those that plans are for: the height of bands then cannot
+  /// be told from them.
+  bool searches_bands = true;
+};
+
+/// One disparity map of a pair, without refinement: what plans make a difference to. Candidates
+/// come from the sizes of equal strips, bands and passes; those that the cost model
+/// thinks hopeless are left out, and so are those that come to the same plan as the incumbent.
+///
+/// Thread rule: one thread at a time.
+class MatchSubject : public TuningSubject {
+ public:
+  /// `pair` must outlive the subject. Throws UsageError for invalid options, Error where no pixel
+  /// has a candidate.
+  MatchSubject(const MatchSubjectOptions& options, const TuningPair& pair);
+  ~MatchSubject() override;
+
+  std::vector<TunedSettings> candidates(const TuningCoordinate& coordinate,
+                                        const TunedSettings& incumbent, bool finely) override;
+  double expected_seconds(const TunedSettings& settings) override;
+  double measure(const TunedSettings& settings) override;
+
+ protected:
+  /// What runs one way to do the work; kept from measurement to measurement.
+  struct Runner {
+    Runner(const MatchOptions& match, const TunedSettings& tuned, const ExecutionOptions& options)
+        : settings(tuned), execution(options), matcher(match, execution) {}
+    TunedSettings settings;
+    Execution execution;
+    StereoMatcher matcher;
+    DisparityMaps maps;
+    bool is_warm = false;  ///< has worked before
+  };
+
+  /// Works once, and tells how many frames that were.
+  virtual int work(Runner& runner);
+  /// Values of a coordinate that this class knows nothing of.
+  virtual std::vector<int> more_values(const TuningCoordinate& coordinate,
+                                       const TunedSettings& incumbent, bool finely) const;
+
+  [[nodiscard]] const TuningPair& pair() const { return pair_; }
+  [[nodiscard]] int threads_of(const TunedSettings& settings) const;
+
+ private:
+  /// What is known of one way to do the work.
+  struct Known {
+    TunedSettings settings;
+    scheduler::ChainPlan plan;
+    double model_time = 0;                              ///< as the cost model expects, any unit
+    std::optional<double> work_seconds = std::nullopt;  ///< of the last measurement, all frames
+  };
+
+  /// Plans what has not been planned yet. References stay valid.
+  void plan_all(const std::vector<TunedSettings>& settings);
+  Known& known(const TunedSettings& settings);
+  Runner& runner_of(const TunedSettings& settings);
+  [[nodiscard]] std::vector<int> values(const TuningCoordinate& coordinate,
+                                        const TunedSettings& incumbent, bool finely);
+  [[nodiscard]] bool is_fixed(const TuningCoordinate& coordinate) const;
+
+  MatchSubjectOptions options_;
+  const TuningPair& pair_;
+  std::list<Known> known_;
+  std::list<std::unique_ptr<Runner>> runners_;  ///< the last used first
+  scheduler::Machine machine_;
+};
+
+}  // namespace vantage

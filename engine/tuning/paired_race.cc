@@ -1,0 +1,187 @@
+#include "engine/tuning/paired_race.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace vantage {
+namespace {
+
+// A gain of less is not worth a difference from the default.
+constexpr double kLeastGain = 0.01;
+constexpr double kStandardErrors = 2;
+// A winner may lose none of the first kRoundsToWin rounds, and one of each kRoundsPerLoss more: by
+// chance alone that happens once in twenty times.
+constexpr int kRoundsToWin = 3;
+constexpr int kRoundsPerLoss = 4;
+constexpr int kLeastRounds = 5;
+constexpr int kMostRounds = 15;
+// Whether time ran out or not, fewer rounds decide nothing.
+constexpr int kFewestRounds = 3;
+// The first measurement of a plan only tells whether it is hopeless.
+constexpr double kHopeless = 1.4;
+// In a round's ranking, so far behind the best and beyond twice the noise is clearly behind.
+constexpr double kClearlyBehind = 0.03;
+// Noise as long as there are too few rounds to tell.
+constexpr double kNoiseAtFirst = 0.08;
+
+struct Runner {
+  TunedSettings settings;
+  double first_seconds = 0;
+  PairedComparison comparison;
+};
+
+/// Measures every candidate once; empty where there was no time for any.
+std::vector<Runner> scout(const TunedSettings& incumbent,
+                          const std::vector<TunedSettings>& candidates, BudgetedTrials& trials) {
+  std::vector<Runner> runners;
+  const std::optional<double> incumbent_seconds = trials.measure(incumbent);
+  if (!incumbent_seconds) {
+    return runners;
+  }
+  double least = *incumbent_seconds;
+  for (const TunedSettings& candidate : candidates) {
+    // Candidates that cost too much time may stand before others that do not.
+    if (const std::optional<double> seconds = trials.measure(candidate)) {
+      least = std::min(least, *seconds);
+      runners.push_back({candidate, *seconds, {}});
+    }
+  }
+  for (const Runner& runner : runners) {
+    if (runner.first_seconds > kHopeless * least) {
+      trials.trial(runner.settings).ratio_to_default =
+          trials.trial(incumbent).ratio_to_default.value_or(1) * runner.first_seconds /
+          *incumbent_seconds;
+    }
+  }
+  std::erase_if(runners,
+                [&](const Runner& runner) { return runner.first_seconds > kHopeless * least; });
+  return runners;
+}
+
+/// One round; false when time ran out in it. What was measured in it counts all the same, for those
+/// that have been measured.
+bool run_round(const TunedSettings& incumbent, std::vector<Runner>& runners, bool incumbent_first,
+               BudgetedTrials& trials) {
+  std::vector<std::optional<double>> seconds(runners.size());
+  std::optional<double> incumbent_seconds;
+  const auto measure_incumbent = [&] {
+    incumbent_seconds = trials.measure(incumbent);
+    return incumbent_seconds.has_value();
+  };
+  if (incumbent_first && !measure_incumbent()) {
+    return false;
+  }
+  bool complete = true;
+  for (std::size_t i = 0; i < runners.size() && complete; ++i) {
+    const std::size_t index = incumbent_first ? i : runners.size() - 1 - i;
+    seconds[index] = trials.measure(runners[index].settings);
+    complete = seconds[index].has_value();
+  }
+  if (!complete || (!incumbent_first && !measure_incumbent())) {
+    return false;
+  }
+  for (std::size_t i = 0; i < runners.size(); ++i) {
+    runners[i].comparison.ratios.push_back(*seconds[i] / *incumbent_seconds);
+  }
+  return true;
+}
+
+void note_ratios(const TunedSettings& incumbent, const std::vector<Runner>& runners,
+                 BudgetedTrials& trials) {
+  const double of_incumbent = trials.trial(incumbent).ratio_to_default.value_or(1);
+  for (const Runner& runner : runners) {
+    trials.trial(runner.settings).ratio_to_default =
+        of_incumbent * runner.comparison.median_ratio();
+  }
+}
+
+/// Leaves the better half of the runners, from the second round on, less those clearly behind; the
+/// best first.
+void drop_slow(std::vector<Runner>& runners, int round) {
+  std::ranges::stable_sort(runners, {},
+                           [](const Runner& runner) { return runner.comparison.median_ratio(); });
+  const std::vector<double>& of_best = runners.front().comparison.ratios;
+  const double noise = round < kFewestRounds ? kNoiseAtFirst : spread(of_best) / std::sqrt(round);
+  const double limit = runners.front().comparison.median_ratio() *
+                       (1 + std::max(kClearlyBehind, kStandardErrors * noise));
+  if (round > 1) {
+    runners.resize((runners.size() + 1) / 2);
+  }
+  std::erase_if(runners,
+                [&](const Runner& runner) { return runner.comparison.median_ratio() > limit; });
+}
+
+/// Whether more rounds would hardly make a winner of the challenger.
+bool is_lost(const PairedComparison& comparison) {
+  return comparison.rounds() >= kFewestRounds && 2 * comparison.wins() <= comparison.rounds();
+}
+
+}  // namespace
+
+int PairedComparison::wins() const {
+  return static_cast<int>(std::ranges::count_if(ratios, [](double ratio) { return ratio < 1; }));
+}
+
+bool PairedComparison::is_won(int least_rounds) const {
+  if (rounds() < std::max(1, least_rounds)) {
+    return false;
+  }
+  const double error = spread(ratios) / std::sqrt(rounds());
+  const int losses = rounds() - wins();
+  return losses <= (rounds() - kRoundsToWin) / kRoundsPerLoss &&
+         1 - median_ratio() >= std::max(kLeastGain, kStandardErrors * error);
+}
+
+RaceResult race(const TunedSettings& incumbent, const std::vector<TunedSettings>& candidates,
+                BudgetedTrials& trials) {
+  RaceResult result;
+  std::vector<Runner> runners = scout(incumbent, candidates, trials);
+  bool in_time = !runners.empty() || trials.is_affordable(incumbent);
+  for (int round = 1; in_time && !runners.empty() && round <= kMostRounds; ++round) {
+    in_time = run_round(incumbent, runners, round % 2 == 1, trials);
+    if (!in_time) {
+      break;
+    }
+    note_ratios(incumbent, runners, trials);
+    drop_slow(runners, round);
+    if (is_lost(runners.front().comparison)) {
+      return result;
+    }
+    if (runners.size() == 1 && runners.front().comparison.is_won(kLeastRounds)) {
+      break;
+    }
+  }
+  result.complete = in_time;
+  if (!runners.empty()) {
+    Runner& best = runners.front();
+    if (best.comparison.is_won(in_time ? kLeastRounds : kFewestRounds)) {
+      result.winner = best.settings;
+      result.comparison = std::move(best.comparison);
+    }
+  }
+  return result;
+}
+
+PairedComparison compare(const TunedSettings& incumbent, const TunedSettings& challenger,
+                         int rounds, BudgetedTrials& trials) {
+  std::vector<Runner> runners(1);
+  runners.front().settings = challenger;
+  PairedComparison& comparison = runners.front().comparison;
+  // The first measurements also allocate: they do not count.
+  if (!trials.measure(incumbent) || !trials.measure(challenger)) {
+    return comparison;
+  }
+  // Whoever stopped as soon as it looks good would be taken in by chance more often.
+  for (int round = 1; round <= rounds && !is_lost(comparison); ++round) {
+    if (!run_round(incumbent, runners, round % 2 == 1, trials)) {
+      break;
+    }
+  }
+  if (!comparison.ratios.empty()) {
+    note_ratios(incumbent, runners, trials);
+  }
+  return comparison;
+}
+
+}  // namespace vantage

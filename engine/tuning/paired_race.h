@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/tuning/budgeted_trials.h"
+
+namespace vantage {
+
+/// What comparing one plan with another, measured in turn, says.
+struct PairedComparison {
+  std::vector<double> ratios;  ///< challenger ÷ incumbent, one per round
+
+  [[nodiscard]] int rounds() const { return static_cast<int>(ratios.size()); }
+  [[nodiscard]] int wins() const;  ///< rounds in which the challenger was faster
+  [[nodiscard]] double median_ratio() const { return median(ratios); }
+  /// Whether the challenger is faster beyond noise: by at least 1 % and twice the standard error,
+  /// in all but a few of at least `least_rounds` rounds.
+  [[nodiscard]] bool is_won(int least_rounds) const;
+};
+
+struct RaceResult {
+  std::optional<TunedSettings> winner;  ///< empty: the incumbent stays
+  PairedComparison comparison;          ///< of the winner
+  bool complete = true;                 ///< false: time ran out before it was decided
+};
+
+/// Times `candidates` and `incumbent` in turn, round by round, so that a machine that slows down or
+/// speeds up meanwhile does so for all of them. After each round those clearly behind are dropped,
+/// and of the others the slower half. The last one must beat the incumbent beyond noise.
+RaceResult race(const TunedSettings& incumbent, const std::vector<TunedSettings>& candidates,
+                BudgetedTrials& trials);
+
+/// Compares two plans in `rounds` rounds; ends early when the challenger cannot win any more.
+PairedComparison compare(const TunedSettings& incumbent, const TunedSettings& challenger,
+                         int rounds, BudgetedTrials& trials);
+
+}  // namespace vantage

@@ -1,0 +1,131 @@
+#include "engine/tuning/tuning_key.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string_view>
+
+#include "engine/build_info.h"
+#include "engine/matching/match_chain.h"
+#include "engine/simd.h"
+
+namespace vantage {
+namespace {
+
+std::string_view name_of(MatchCost cost) {
+  switch (cost) {
+    case MatchCost::kSquared:
+      return "squared";
+    case MatchCost::kAbsolute:
+      return "absolute";
+    case MatchCost::kTruncated:
+      return "truncated";
+    case MatchCost::kBirchfieldTomasi:
+      return "birchfield-tomasi";
+    case MatchCost::kGradient:
+      return "gradient";
+    case MatchCost::kContaminated:
+      return "contaminated";
+    case MatchCost::kCensus:
+      return "census";
+  }
+  return "";
+}
+
+std::string_view name_of(Aggregation aggregation) {
+  switch (aggregation) {
+    case Aggregation::kNone:
+      return "none";
+    case Aggregation::kBox:
+      return "box";
+    case Aggregation::kGaussian:
+      return "gaussian";
+    case Aggregation::kBoxCascade:
+      return "box-cascade";
+    case Aggregation::kDiffusion:
+      return "diffusion";
+    case Aggregation::kMembrane:
+      return "membrane";
+    case Aggregation::kLocalStopping:
+      return "local-stopping";
+    case Aggregation::kBayes:
+      return "bayes";
+  }
+  return "";
+}
+
+std::string_view name_of(scheduler::ExecutorKind kind) {
+  switch (kind) {
+    case scheduler::ExecutorKind::kTbb:
+      return "tbb";
+    case scheduler::ExecutorKind::kOpenMp:
+      return "openmp";
+    case scheduler::ExecutorKind::kSerial:
+      return "serial";
+  }
+  return "";
+}
+
+/// The power of 2^(1/`steps`) nearest to `value`, rounded; 0 stays.
+long class_of(double value, int steps) {
+  return value <= 0 ? 0 : std::lround(std::exp2(std::round(steps * std::log2(value)) / steps));
+}
+
+/// How far the aggregation reaches, in its own unit.
+std::string reach_of(const MethodParameters& parameters) {
+  switch (parameters.aggregation) {
+    case Aggregation::kNone:
+      return "";
+    case Aggregation::kBox:
+      return fmt::format(" about {} px", class_of(parameters.window_px, 1));
+    case Aggregation::kGaussian:
+    case Aggregation::kBoxCascade:
+      return fmt::format(" about {} px", class_of(4 * parameters.aggregation_sigma_px, 1));
+    case Aggregation::kDiffusion:
+    case Aggregation::kMembrane:
+    case Aggregation::kLocalStopping:
+    case Aggregation::kBayes:
+      return fmt::format(" about {} iterations", class_of(parameters.iterations, 1));
+  }
+  return "";
+}
+
+std::string method_text(const MatchOptions& match, const TunedImages& images) {
+  const MethodParameters parameters = match.resolved();
+  std::string text = fmt::format("{} {}{}", name_of(parameters.cost),
+                                 name_of(parameters.aggregation), reach_of(parameters));
+  if (uses_column_ssd(parameters) && !match.disparities_y) {
+    text += images.is_8_bit_grey ? ", 8-bit grey" : ", any images";
+  } else if (parameters.colour == ColourUse::kChannels) {
+    text += ", channels";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string TuningKey::text() const {
+  return fmt::format("{}; {}; {}; {}; Vantage {}", machine, threads, method, size, version);
+}
+
+TuningKey make_tuning_key(const scheduler::Machine& machine, const MatchOptions& match,
+                          const ExecutionOptions& execution, const TunedImages& images) {
+  constexpr std::size_t kKib = 1024;
+  constexpr int kRootsOfTwo = 2;
+  TuningKey key;
+  key.machine =
+      fmt::format("{}, L1 {} KiB, L2 {} KiB, L3 {} KiB, {} threads on {} cores", machine.processor,
+                  machine.l1_data_bytes / kKib, machine.l2_bytes / kKib, machine.l3_bytes / kKib,
+                  machine.hardware_threads, machine.cores);
+  key.threads = fmt::format("{} threads, {}, {}",
+                            execution.threads ? std::to_string(*execution.threads) : "all",
+                            name_of(execution.executor), instruction_set_in_use());
+  key.method = method_text(match, images);
+  key.size = fmt::format(
+      "about {}x{} pixels, {} disparities", class_of(images.width_px, kRootsOfTwo),
+      class_of(images.height_px, kRootsOfTwo), class_of(match.disparities.count(), kRootsOfTwo));
+  key.version = build_info().version;
+  return key;
+}
+
+}  // namespace vantage

@@ -1,0 +1,109 @@
+#include "engine/tuning/tuning_key.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "engine/build_info.h"
+
+namespace vantage {
+namespace {
+
+class TuningKeyTest : public testing::Test {
+ protected:
+  TuningKeyTest() {
+    machine_.processor = "Some CPU";
+    machine_.hardware_threads = 8;
+    machine_.cores = 4;
+    machine_.l3_bytes = std::size_t{32} << 20;
+    match_.disparities = {0, 255};
+  }
+
+  [[nodiscard]] TuningKey key(const TunedImages& images = {1282, 1110, false}) const {
+    return make_tuning_key(machine_, match_, execution_, images);
+  }
+
+  scheduler::Machine machine_;
+  MatchOptions match_;
+  ExecutionOptions execution_;
+};
+
+TEST_F(TuningKeyTest, CanBeRead) {
+  const TuningKey one = key();
+  EXPECT_EQ(one.machine, "Some CPU, L1 32 KiB, L2 512 KiB, L3 32768 KiB, 8 threads on 4 cores");
+  EXPECT_EQ(one.threads.substr(0, 17), "all threads, tbb,");
+  EXPECT_EQ(one.method, "squared box about 8 px, any images");
+  EXPECT_EQ(one.size, "about 1448x1024 pixels, 256 disparities");
+  EXPECT_EQ(one.version, build_info().version);
+  EXPECT_EQ(one.text().find('\n'), std::string::npos);
+}
+
+TEST_F(TuningKeyTest, NearlyEqualWorkSharesAKey) {
+  const TuningKey one = key();
+  EXPECT_EQ(key({1280, 1100, false}), one);
+  match_.disparities = {-10, 250};
+  EXPECT_EQ(key(), one);
+  match_.parameters.window_px = 11;
+  EXPECT_EQ(key(), one);
+  // What does not change the work of a cell.
+  match_.parameters.subpixel = Subpixel::kNone;
+  match_.raw = true;
+  match_.reference = Reference::kRight;
+  EXPECT_EQ(key(), one);
+}
+
+TEST_F(TuningKeyTest, DifferentWorkHasDifferentKeys) {
+  std::set<std::string> texts;
+  std::size_t count = 0;
+  const auto add = [&](const TuningKey& one) {
+    texts.insert(one.text());
+    ++count;
+    EXPECT_EQ(texts.size(), count) << one.text();
+  };
+  add(key());
+  add(key({640, 1110, false}));
+  add(key({1282, 480, false}));
+  add(key({1282, 1110, true}));
+  match_.disparities = {0, 63};
+  add(key());
+  match_.parameters.window_px = 31;
+  add(key());
+  match_.method = MatchMethod::kBayes;
+  add(key());
+  match_.parameters.iterations = 50;
+  add(key());
+  match_.parameters.colour = ColourUse::kChannels;
+  add(key());
+  match_.method = MatchMethod::kMembrane;
+  add(key());
+  execution_.threads = 8;
+  add(key());
+  execution_.threads = 4;
+  add(key());
+  execution_.executor = scheduler::ExecutorKind::kOpenMp;
+  add(key());
+  machine_.l2_bytes *= 2;
+  add(key());
+  machine_.processor = "Another CPU";
+  add(key());
+  machine_.hardware_threads = 16;
+  add(key());
+}
+
+TEST_F(TuningKeyTest, HasTextForEveryMethodAndSize) {
+  for (const MatchMethod method :
+       {MatchMethod::kSsd, MatchMethod::kGradient, MatchMethod::kDiffusion, MatchMethod::kMembrane,
+        MatchMethod::kLocalStopping, MatchMethod::kBayes}) {
+    match_.method = method;
+    EXPECT_FALSE(key().method.empty());
+  }
+  match_.parameters.iterations = 0;
+  match_.disparities = {0, 0};
+  EXPECT_NE(key().method.find("about 0 iterations"), std::string::npos);
+  EXPECT_EQ(key({1, 1, false}).size, "about 1x1 pixels, 1 disparities");
+}
+
+}  // namespace
+}  // namespace vantage
