@@ -75,7 +75,7 @@ void check(const EvalJob& job) {
   files.add_input(job.first);
   files.add_input(job.second);
   files.add_input(job.mask);
-  files.add_output(job.common.report, "--report", OutputKind::kText);
+  check_common_files(job.common, files);
 }
 
 /// 255 where all colours of an 8-bit image are 255. Masks often come with a palette, hence in
@@ -178,6 +178,7 @@ int command_eval(const Arguments& arguments) {
   }
   check(job);
   RunReport report(settings.command(), settings.values());
+  report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
   Execution execution(job.common.execution);
   report.set_execution(execution);

@@ -95,8 +95,9 @@ int command_experiment(const Arguments& arguments) {
   job.options.validate();
   job.common.execution.validate();
   FileChecks files;
-  files.add_output(job.common.report, "--report", OutputKind::kText);
+  check_common_files(job.common, files);
   RunReport report(settings.command(), settings.values());
+  report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
   Execution execution(job.common.execution);
   report.set_execution(execution);

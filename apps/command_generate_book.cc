@@ -81,8 +81,9 @@ int command_generate_book(const Arguments& arguments) {
   job.pair.validate();
   job.common.execution.validate();
   FileChecks checks;
-  checks.add_output(job.common.report, "--report", OutputKind::kText);
+  check_common_files(job.common, checks);
   RunReport report(settings.command(), settings.values());
+  report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
   Execution execution(job.common.execution);
   report.set_execution(execution);

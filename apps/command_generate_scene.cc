@@ -80,7 +80,7 @@ void check(const SceneJob& job) {
     }
   }
   FileChecks checks;
-  checks.add_output(job.common.report, "--report", OutputKind::kText);
+  check_common_files(job.common, checks);
 }
 
 std::vector<PosedCamera> cameras_of(const SceneJob& job) {
@@ -165,6 +165,7 @@ int command_generate_scene(const Arguments& arguments) {
   check(job);
   job.cameras = cameras_of(job);
   RunReport report(settings.command(), settings.values());
+  report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
   Execution execution(job.common.execution);
   report.set_execution(execution);

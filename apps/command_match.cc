@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <optional>
+
+#include "apps/applied_tuning.h"
 #include "apps/automatic_disparities.h"
 #include "apps/commands.h"
 #include "apps/option_groups.h"
@@ -21,6 +24,7 @@ namespace {
 struct MatchJob {
   MatchOptions match;
   CommonOptions common;
+  TuningSource tuning;
   std::string left;
   std::string right;
   std::vector<std::string> more;  ///< images beyond the pair
@@ -159,7 +163,7 @@ void check(const MatchJob& job) {
   files.add_output(job.unmatched, "--unmatched", OutputKind::kMask);
   files.add_output(job.unmatched_right, "--unmatched-right", OutputKind::kMask);
   files.add_output(job.preview, "--preview", OutputKind::kPhotograph);
-  files.add_output(job.common.report, "--report", OutputKind::kText);
+  check_common_files(job.common, files);
 }
 
 void write_map(const MatchJob& job, const std::string& path, const DisparityMaps& maps,
@@ -236,12 +240,14 @@ int command_match(const Arguments& arguments) {
   add_file_settings(settings, job);
   add_reference_setting(settings, job.match);
   add_match_settings(settings, job.match);
+  add_tuning_settings(settings, job.tuning);
   add_common_settings(settings, job.common);
   if (!settings.read(arguments)) {
     return kExitDone;
   }
   check(job);
   RunReport report(settings.command(), reported_settings(settings, job.match));
+  report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
   Execution execution(job.common.execution);
   report.set_execution(execution);
@@ -258,7 +264,21 @@ int command_match(const Arguments& arguments) {
     warn_unless_rectified(settings, job.common, left, right, report);
   }
   choose_disparities(settings, job.common, left, right, job.match, execution, report);
-  const StereoMatcher matcher(job.match, execution);
+  const AppliedTuning tuning = job.has_several()
+                                   ? no_tuning("tuning is for pairs, there are more images")
+                                   : apply_tuning(job.tuning,
+                                                  {.match = job.match,
+                                                   .execution = job.common.execution,
+                                                   .left = left,
+                                                   .right = right},
+                                                  settings.command(), job.common.quiet);
+  report.set_tuning(tuning.report, tuning.summary);
+  std::optional<Execution> tuned_execution;
+  if (tuning.settings != TunedSettings{}) {
+    tuned_execution.emplace(with_tuned(job.common.execution, tuning.settings));
+    report.set_execution(*tuned_execution);
+  }
+  const StereoMatcher matcher(job.match, tuned_execution ? *tuned_execution : execution);
   DisparityMaps maps;
   const MatchReport match = report.timed_compute([&] {
     MatchReport result;

@@ -119,7 +119,7 @@ void check(const RectifyJob& job) {
   }
   files.add_output(job.matrices, "--matrices", OutputKind::kText);
   files.add_output(job.valid_mask, "--valid-mask", OutputKind::kMask);
-  files.add_output(job.common.report, "--report", OutputKind::kText);
+  check_common_files(job.common, files);
 }
 
 /// Runs `work`; its errors say which input they are about.
@@ -235,6 +235,7 @@ int command_rectify(const Arguments& arguments) {
   }
   check(job);
   RunReport report(settings.command(), settings.values());
+  report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
   Execution execution(job.common.execution);
   report.set_execution(execution);
@@ -261,11 +262,14 @@ int command_rectify(const Arguments& arguments) {
   } else {
     rectification.calibration = read_stereo_calibration(job.calibration);
   }
-  Rectifier rectifier = about(job.calibration.empty() ? inputs : job.calibration, [&] {
+  const auto rectifier_of_all = [&] {
     return report.timed_compute("maps", [&] {
       return Rectifier(rectification.calibration, size.width_px, size.height_px, job.rectification);
     });
-  });
+  };
+  // Calibrations that were read name their file themselves.
+  Rectifier rectifier =
+      job.calibration.empty() ? about(inputs, rectifier_of_all) : rectifier_of_all();
   const std::vector<PointMatch> found =
       gather_matches(*pairs, sample, size, execution, report, [&](FramePair& one) {
         rectify_pair(rectifier, one, execution);

@@ -89,7 +89,7 @@ void check(const ResponseJob& job) {
   files.add_input(job.right);
   files.add_output(job.output, "--output", OutputKind::kTable);
   files.add_output(job.plot, "--plot", OutputKind::kPlot);
-  files.add_output(job.common.report, "--report", OutputKind::kText);
+  check_common_files(job.common, files);
 }
 
 std::string csv(const CumulativeResponse& response) {
@@ -216,6 +216,7 @@ int command_response(const Arguments& arguments) {
   }
   check(job);
   RunReport report(settings.command(), settings.values());
+  report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
   Execution execution(job.common.execution);
   report.set_execution(execution);

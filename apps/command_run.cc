@@ -84,6 +84,7 @@ int command_run(const Arguments& arguments) {
   }
   complete(job);
   RunReport report(settings.command(), reported_settings(settings, job.sequence.match));
+  report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
   RunSession session = open_run(job, settings, report);
   const std::string plan = describe_plan(job, settings, session);
@@ -92,14 +93,15 @@ int command_run(const Arguments& arguments) {
     return kExitDone;
   }
   FileChecks files;
-  files.add_output(job.common.report, "--report", OutputKind::kText);
+  check_common_files(job.common, files);
   if (!job.common.quiet) {
     fmt::print(stderr, "{}", plan);
   }
-  ExecutionOptions execution_options = job.common.execution;
+  ExecutionOptions execution_options = session.execution;
   execution_options.chain_memory_bytes = session.memory.chain_bytes;
   Execution execution(execution_options);
   report.set_execution(execution);
+  report.set_tuning(session.tuning.report, session.tuning.summary);
 
   const SequenceLayout layout(job.output, job.sequence);
   RunJournal journal(layout.journal_folder(), session.identity, opening_of(job),

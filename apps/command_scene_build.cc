@@ -1,14 +1,17 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "apps/commands.h"
 #include "apps/interrupt.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
+#include "apps/rectification_check.h"
 #include "apps/run_report.h"
 #include "apps/scene_images.h"
+#include "apps/scene_rectification.h"
 #include "apps/settings.h"
 #include "engine/error.h"
 #include "engine/scene_graph/scene_builder.h"
@@ -22,6 +25,8 @@ struct SceneBuildJob {
   MatchOptions match;
   CommonOptions common;
   std::string output;
+  bool copy_images = false;
+  bool check_rectification = true;
 };
 
 void add_file_settings(Settings& settings, SceneBuildJob& job) {
@@ -31,6 +36,11 @@ void add_file_settings(Settings& settings, SceneBuildJob& job) {
                                   "Folder of the scene; what it holds already is kept");
   output.short_name = 'o';
   output.required = true;
+  Setting& copy = settings.add("copy-images", "",
+                               "Copy the images into the folder, which can then be moved alone");
+  copy.flag = true;
+  copy.set = [&job](const SettingValue& value) { job.copy_images = to_truth(value); };
+  copy.get = [&job] { return job.copy_images; };
 }
 
 /// What decides an edge's maps, as JSON.
@@ -46,18 +56,20 @@ void check(const SceneBuildJob& job) {
   if (!job.images.positions.empty()) {
     files.add_input(job.images.positions);
   }
-  files.add_output(job.common.report, "--report", OutputKind::kText);
+  check_common_files(job.common, files);
   const std::filesystem::path folder = job.output;
   if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder)) {
     throw UsageError(fmt::format("--output is '{}', a file; expected a folder", job.output));
   }
 }
 
-SettingValue describe(const StoredEdge& edge) {
+SettingValue describe(const StoredEdge& edge, SettingValue rectification) {
   return {{"first", edge.edge.first},
           {"second", edge.edge.second},
           {"length", edge.edge.length},
-          {"disparities", fmt::format("{}:{}", edge.disparities.min, edge.disparities.max)}};
+          {"disparities", fmt::format("{}:{}", edge.disparities.min, edge.disparities.max)},
+          {"matched_share", edge.matched_share},
+          {"rectification", std::move(rectification)}};
 }
 
 }  // namespace
@@ -69,13 +81,19 @@ int command_scene_build(const Arguments& arguments) {
                     "--disparities are those of the nearest neighbours.");
   add_file_settings(settings, job);
   add_match_settings(settings, job.match);
+  settings.begin_group("Check");
+  add_rectification_check_setting(settings, job.check_rectification);
   add_common_settings(settings, job.common);
   if (!settings.read(arguments)) {
     return kExitDone;
   }
   check(job);
   RunReport report(settings.command(), reported_settings(settings, job.match));
-  const SceneBuildOptions options{.match = job.match, .settings = match_settings_of(job.match)};
+  report.start_trace(job.common.trace);
+  const SceneBuildOptions options{.match = job.match,
+                                  .settings = match_settings_of(job.match),
+                                  .copy_images = job.copy_images,
+                                  .check_rectification = job.check_rectification};
   options.validate();
   force_instruction_set(job.common.isa);
   Execution execution(job.common.execution);
@@ -88,6 +106,7 @@ int command_scene_build(const Arguments& arguments) {
   const int edges = static_cast<int>(builder.layout().edges().size());
   const int to_match = static_cast<int>(builder.edges_to_match().size());
   SettingValue matched = SettingValue::array();
+  SceneRectification rectification(builder, job.match);
   {
     Progress progress("scene build", "edges",
                       job.common.quiet ? ProgressStyle::kNone : ProgressStyle::kAuto);
@@ -97,12 +116,19 @@ int command_scene_build(const Arguments& arguments) {
         break;
       }
       MatchReport match;
-      const StoredEdge stored = report.timed_compute([&] { return builder.build(edge, &match); });
+      const auto built = report.timed_compute([&] { return builder.build(edge, &match); });
       report.add_match(match);
+      if (job.check_rectification) {
+        report.add_stage("check", built.check_seconds);
+        report.add_compute_seconds(-built.check_seconds);
+      }
       cells += match.cells;
-      matched.push_back(describe(stored));
+      matched.push_back(describe(built.stored, rectification.add(built)));
       progress.update(static_cast<int>(matched.size()), to_match, cells);
     }
+  }
+  if (!job.common.quiet) {
+    rectification.print_warnings();
   }
   const int done = static_cast<int>(matched.size());
   if (done < to_match) {

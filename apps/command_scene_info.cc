@@ -1,10 +1,28 @@
 #include <fmt/format.h>
 
+#include <string>
+
 #include "apps/commands.h"
 #include "apps/settings.h"
 #include "engine/scene_graph/stored_scene.h"
 
 namespace vantage::apps {
+namespace {
+
+std::string direction_of(const SceneEdge& edge) {
+  const std::string axis = edge.is_vertical ? "along y" : "along x";
+  return edge.slope == 0 ? axis : fmt::format("{}, slope {:.3g}", axis, edge.slope);
+}
+
+std::string text_of(const StoredEdge& edge) {
+  return fmt::format("disparities {}:{}, matched {:.1f} and {:.1f} %{}", edge.disparities.min,
+                     edge.disparities.max, 100 * edge.matched_share[0], 100 * edge.matched_share[1],
+                     edge.rectification_error_px
+                         ? fmt::format(", rectified to {:.2f} px", *edge.rectification_error_px)
+                         : "");
+}
+
+}  // namespace
 
 int command_scene_info(const Arguments& arguments) {
   std::string folder;
@@ -16,22 +34,19 @@ int command_scene_info(const Arguments& arguments) {
   }
   const StoredScene scene = read_scene(folder);
   const SceneLayout layout(scene.positions(), scene.names());
-  fmt::print("images\n");
+  fmt::print("images {}, {}x{} pixels\n", scene.images.size(), scene.width_px, scene.height_px);
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
     const StoredImage& image = scene.images[i];
     fmt::print("  {:<4} {:>10.6g},{:<10.6g} {}\n", i, image.position.x, image.position.y,
                image.file);
   }
-  fmt::print("edges\n");
+  fmt::print("edges {}, {} of them matched\n", layout.edges().size(), scene.edges.size());
   for (const SceneEdge& edge : layout.edges()) {
     const StoredEdge* stored = scene.find(edge);
-    fmt::print("  {}-{} along {}, length {:.6g}, {}\n", edge.first, edge.second,
-               edge.is_vertical ? "y" : "x", edge.length,
-               stored == nullptr ? "not matched yet"
-                                 : fmt::format("disparities {}:{}", stored->disparities.min,
-                                               stored->disparities.max));
+    fmt::print("  {}-{} {}, length {:.6g}, {}\n", edge.first, edge.second, direction_of(edge),
+               edge.length, stored == nullptr ? "not matched yet" : text_of(*stored));
   }
-  fmt::print("triangles\n");
+  fmt::print("triangles {}\n", layout.triangles().size());
   for (const auto& [a, b, c] : layout.triangles()) {
     fmt::print("  {}-{}-{}\n", a, b, c);
   }

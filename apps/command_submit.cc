@@ -69,7 +69,8 @@ void check(const SubmitJob& job) {
 void make_paths_absolute(SubmitJob& job) {
   PairSourceOptions& input = job.run.input;
   for (std::string* path : {&input.left, &input.right, &input.stereo, &input.pairs, &input.sequence,
-                            &job.run.calibration, &job.run.output, &job.slurm.program}) {
+                            &job.run.calibration, &job.run.views.poses.file,
+                            &job.run.views.path.file, &job.run.output, &job.slurm.program}) {
     if (!path->empty()) {
       *path = fs::absolute(*path).lexically_normal().string();
     }

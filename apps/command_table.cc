@@ -25,6 +25,7 @@ constexpr std::array kCommands = {
             command_generate_scene},
     Command{"response", "Evidence of a pair for a range of displacements", command_response},
     Command{"experiment", "Figures of the book, computed anew", command_experiment},
+    Command{"tune", "Finds the plan that is fastest on this machine", command_tune},
     Command{"info", "Version, instruction sets, threads and caches", command_info}};
 
 }  // namespace

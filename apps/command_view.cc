@@ -88,9 +88,10 @@ int command_view(const Arguments& arguments) {
   FileChecks files;
   check_pair(job.pair, settings, files);
   files.add_output(job.output, "--output", OutputKind::kPage);
-  files.add_output(job.common.report, "--report", OutputKind::kText);
+  check_common_files(job.common, files);
 
   RunReport report(settings.command(), reported_settings(settings, job.pair));
+  report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
   Execution execution(job.common.execution);
   report.set_execution(execution);

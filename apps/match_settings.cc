@@ -221,9 +221,12 @@ void add_refinement_settings(Settings& settings, MatchOptions& options) {
                    "Matched regions of fewer pixels count as unmatched; auto: 0, which keeps them");
   settings.choice<Fill>(
       "fill", options.refinement.fill,
-      {{"constant", Fill::kConstant}, {"linear", Fill::kLinear}, {"none", Fill::kNone}},
+      {{"constant", Fill::kConstant},
+       {"linear", Fill::kLinear},
+       {"median", Fill::kMedian},
+       {"none", Fill::kNone}},
       "What unmatched pixels become: the depth of the background beside them, a line where both "
-      "sides are one surface, unknown; auto: constant");
+      "sides are one surface, the median of what looks alike around them, unknown; auto: constant");
 }
 
 void add_parameter_settings(Settings& settings, MatchOptions& options) {

@@ -25,7 +25,14 @@ void add_common_settings(Settings& settings, CommonOptions& options) {
                 "Instruction set of the kernels; best, or a name of 'vantage info'");
   settings.begin_group("Messages", false);
   settings.text("report", options.report, "FILE", "Write a JSON report of the run to FILE");
+  settings.text("trace", options.trace, "FILE",
+                "Record what every thread does, as Chrome trace events: FILE opens in Perfetto");
   settings.flag("quiet", options.quiet, "Print errors only");
+}
+
+void check_common_files(const CommonOptions& options, FileChecks& files) {
+  files.add_output(options.report, "--report", OutputKind::kText);
+  files.add_output(options.trace, "--trace", OutputKind::kText);
 }
 
 void add_synthesis_settings(Settings& settings, SynthesisOptions& options) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/match_settings.h"
+#include "apps/outputs.h"
 #include "apps/settings.h"
 #include "engine/execution.h"
 #include "engine/synthesis/synthesis_options.h"
@@ -16,11 +17,14 @@ struct CommonOptions {
   ExecutionOptions execution;
   std::string isa = "best";
   std::string report;  ///< file, empty = none
+  std::string trace;   ///< file, empty = none
   bool quiet = false;
 };
 
 // Each binds the fields of one option struct to its settings: the only list of them.
 void add_common_settings(Settings& settings, CommonOptions& options);
+/// The files of --report and --trace.
+void check_common_files(const CommonOptions& options, FileChecks& files);
 void add_synthesis_settings(Settings& settings, SynthesisOptions& options);
 // Parts of the latter, in the group that has begun.
 void add_holes_setting(Settings& settings, HoleFilling& holes);

@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "apps/automatic_disparities.h"
+#include "apps/given_maps.h"
 #include "apps/match_settings.h"
 #include "apps/rectification_check.h"
 #include "engine/error.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/photograph_io.h"
-#include "engine/rectification/rectifier.h"
 #include "engine/rectification/stereo_calibration.h"
 
 namespace vantage::apps {
@@ -31,16 +31,17 @@ void refuse_idle_match_options(const Settings& settings) {
 
 RectifiedPair rectify(const StereoCalibration& calibration, const RectificationOptions& options,
                       Execution& execution, RunReport& report, PairWithMaps& pair) {
-  const Rectifier rectifier(calibration, pair.left.width(), pair.left.height(), options);
+  Rectifier rectifier(calibration, pair.left.width(), pair.left.height(), options);
+  RectifiedPair cameras = rectifier.pair();
   if (rectifier.needs_rectification()) {
+    const UnrectifiedImages& read = pair.unrectified.emplace(
+        UnrectifiedImages{std::move(rectifier), std::move(pair.left), std::move(pair.right)});
     report.timed_compute("rectify", [&] {
-      const Photograph left = std::move(pair.left);
-      const Photograph right = std::move(pair.right);
-      rectifier.apply(left, Side::kLeft, pair.left, execution);
-      rectifier.apply(right, Side::kRight, pair.right, execution);
+      read.rectifier.apply(read.left, Side::kLeft, pair.left, execution);
+      read.rectifier.apply(read.right, Side::kRight, pair.right, execution);
     });
   }
-  return rectifier.pair();
+  return cameras;
 }
 
 }  // namespace
@@ -109,6 +110,7 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
       const double scale = pair.disparity_scale.value_or(0);
       result.maps.left = read_disparity(pair.left_disparity, scale);
       result.maps.right = read_disparity(pair.right_disparity, scale);
+      require_agreeing_maps(result.maps);
     }
   });
   if (!pair.calibration.empty()) {

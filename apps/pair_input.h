@@ -11,6 +11,7 @@
 #include "engine/image/photograph.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/rectification/rectified_pair.h"
+#include "engine/rectification/rectifier.h"
 
 namespace vantage::apps {
 
@@ -30,9 +31,17 @@ struct PairInput {
   [[nodiscard]] bool has_maps() const { return !left_disparity.empty(); }
 };
 
+/// The images as they were read, and how they became rectified ones.
+struct UnrectifiedImages {
+  Rectifier rectifier;
+  Photograph left;
+  Photograph right;
+};
+
 /// What PairInput names, in memory, rectified.
 struct PairWithMaps {
-  std::optional<RectifiedPair> cameras;  ///< with a calibration
+  std::optional<UnrectifiedImages> unrectified;  ///< where they had to be rectified
+  std::optional<RectifiedPair> cameras;          ///< with a calibration
   Photograph left;
   Photograph right;
   DisparityMaps maps;

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "apps/outputs.h"
-#include "apps/setting_value.h"
 #include "apps/toml_file.h"
 #include "engine/error.h"
 
@@ -79,6 +78,10 @@ PosedCamera camera_of(const SettingValue& entry, const std::string& where) {
     const std::vector<double> size = numbers_of(entry["size"], 2, where + ": size");
     camera.width_px = whole_number_of(size[0], where + ": size");
     camera.height_px = whole_number_of(size[1], where + ": size");
+    if (camera.width_px < 1 || camera.height_px < 1) {
+      throw UsageError(fmt::format("{}: size is {}x{}, expected at least 1 pixel each way", where,
+                                   camera.width_px, camera.height_px));
+    }
   }
   return camera;
 }
@@ -116,6 +119,34 @@ PoseEntry entry_of(const SettingValue& entry, const std::string& where) {
   return result;
 }
 
+SettingValue rows_of(const Eigen::Matrix3d& matrix) {
+  SettingValue rows = SettingValue::array();
+  for (int row = 0; row < 3; ++row) {
+    rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2)});
+  }
+  return rows;
+}
+
+SettingValue value_of(const PoseEntry& pose) {
+  SettingValue entry = SettingValue::object();
+  if (pose.frame) {
+    entry["frame"] = *pose.frame;
+  }
+  if (const auto* camera = std::get_if<PosedCamera>(&pose.pose)) {
+    const Eigen::Vector3d& t = camera->translation;
+    entry["K"] = rows_of(camera->matrix);
+    entry["R"] = rows_of(camera->rotation);
+    entry["t"] = {t.x(), t.y(), t.z()};
+    if (camera->width_px > 0) {
+      entry["size"] = {camera->width_px, camera->height_px};
+    }
+  } else {
+    const auto& position = std::get<BaselinePosition>(pose.pose);
+    entry["at"] = {position.x, position.y};
+  }
+  return entry;
+}
+
 }  // namespace
 
 std::vector<PoseEntry> read_poses(const std::string& path) {
@@ -126,11 +157,27 @@ std::vector<PoseEntry> read_poses(const std::string& path) {
     throw UsageError(fmt::format(
         "{}: expected a list 'view' of poses, [[view]] in TOML, and nothing else", path));
   }
+  return poses_in(document["view"], path);
+}
+
+std::vector<PoseEntry> poses_in(const SettingValue& list, const std::string& name) {
   std::vector<PoseEntry> poses;
-  for (const SettingValue& entry : document["view"]) {
-    poses.push_back(entry_of(entry, fmt::format("{}: view {}", path, poses.size() + 1)));
+  for (const SettingValue& entry : list) {
+    poses.push_back(entry_of(entry, fmt::format("{}: view {}", name, poses.size() + 1)));
   }
   return poses;
+}
+
+SettingValue to_value(const std::vector<PoseEntry>& poses) {
+  SettingValue list = SettingValue::array();
+  for (const PoseEntry& pose : poses) {
+    list.push_back(value_of(pose));
+  }
+  return list;
+}
+
+std::vector<PoseEntry> entries_of(const PoseList& list) {
+  return list.file.empty() ? list.entries : read_poses(list.file);
 }
 
 }  // namespace vantage::apps

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/setting_value.h"
 #include "engine/view_geometry/view_pose.h"
 
 namespace vantage::apps {
@@ -14,6 +15,16 @@ struct PoseEntry {
   ViewPose pose;             ///< cameras without a size of their own have 0×0
 };
 
+/// Poses that a user names by a file, or that have been read already.
+struct PoseList {
+  std::string file;
+  std::vector<PoseEntry> entries;
+
+  [[nodiscard]] bool empty() const { return file.empty() && entries.empty(); }
+  /// For messages.
+  [[nodiscard]] std::string name() const { return file.empty() ? "list of poses" : file; }
+};
+
 /// Reads poses of new views from TOML (`[[view]]` tables) or, if the name ends in .json, JSON
 /// (`{"view": [{…}]}`). An entry is either a position on the baseline, `at = [XS, YS]`, or a
 /// camera: `K` and `R` as rows of three (or nine numbers row by row) and `t`, with x_camera = R ·
@@ -21,5 +32,13 @@ struct PoseEntry {
 /// `size = [WIDTH, HEIGHT]`, and `frame` in a path. At least one entry.
 /// Throws Error when the file cannot be read, UsageError naming file, entry and key otherwise.
 std::vector<PoseEntry> read_poses(const std::string& path);
+
+/// The same from a list of such entries, which messages call `name`.
+std::vector<PoseEntry> poses_in(const SettingValue& list, const std::string& name);
+/// Such a list; poses_in() brings back the same bits.
+SettingValue to_value(const std::vector<PoseEntry>& poses);
+
+/// Those in the file, where one is named.
+std::vector<PoseEntry> entries_of(const PoseList& list);
 
 }  // namespace vantage::apps

@@ -5,14 +5,23 @@
 #include <chrono>
 #include <cstdio>
 
+#include "apps/match_settings.h"
 #include "apps/vertical_error_report.h"
 #include "engine/rectification/vertical_error.h"
 
 namespace vantage::apps {
 namespace {
 
-/// Real rectified pairs are within a quarter of a pixel; from here on sub-pixel matching suffers.
-constexpr double kLimit_px = 0.3;
+/// Whether whoever chose the range of disparities knows that most are negative.
+bool expects_negative_disparities(const Settings& settings) {
+  const SettingValue values = settings.values();
+  const auto chosen = values.find("disparities");
+  if (chosen == values.end() || *chosen == "auto") {
+    return false;
+  }
+  const DisparityRange range = to_disparity_range(*chosen, "MIN:MAX");
+  return -range.min > range.max;
+}
 
 }  // namespace
 
@@ -20,7 +29,7 @@ void add_rectification_check_setting(Settings& settings, bool& wanted) {
   Setting& setting =
       settings.add("no-rectification-check", "",
                    "Do not look whether rows correspond, nor warn when they are off by more than "
-                   "0.3 pixels");
+                   "0.25 pixels or when left and right look exchanged");
   setting.flag = true;
   setting.changes_results = false;
   setting.set = [&wanted](const SettingValue& value) { wanted = !to_truth(value); };
@@ -40,15 +49,21 @@ void warn_unless_rectified(const Settings& settings, const CommonOptions& common
     return;
   }
   SettingValue values = vertical_error_values(*error);
-  const bool is_rectified = error->systematic_px <= kLimit_px;
-  values["limit_px"] = kLimit_px;
+  const bool is_rectified = error->systematic_px <= kRectificationLimit_px;
+  values["limit_px"] = kRectificationLimit_px;
   values["is_rectified"] = is_rectified;
+  const bool looks_exchanged = error->looks_exchanged() && !expects_negative_disparities(settings);
+  values["looks_exchanged"] = looks_exchanged;
   report.add_result("rectification", std::move(values));
   if (!is_rectified && !common.quiet) {
     fmt::print(stderr,
                "{}: warning: the pair is not rectified: rows are off by {:.2f} px (limit {}), {}; "
                "see 'vantage rectify'\n",
-               settings.command(), error->systematic_px, kLimit_px, vertical_error_text(*error));
+               settings.command(), error->systematic_px, kRectificationLimit_px,
+               vertical_error_text(*error));
+  }
+  if (looks_exchanged && !common.quiet) {
+    fmt::print(stderr, "{}: warning: {}\n", settings.command(), exchanged_text(*error));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "apps/rectification_check.h"
 #include "apps/vertical_error_report.h"
 
 namespace vantage::apps {
@@ -29,6 +30,7 @@ SettingValue results_of(const Rectification& rectification, const RectifiedPair&
       {"epipolar_rms_px", nullptr},
       {"vertical_error", nullptr},
       {"disparities", nullptr},
+      {"looks_exchanged", nullptr},
       {"valid",
        {{"x", pair.valid.x},
         {"y", pair.valid.y},
@@ -45,22 +47,34 @@ SettingValue results_of(const Rectification& rectification, const RectifiedPair&
   if (rectification.remaining) {
     results["vertical_error"] = vertical_error_values(*rectification.remaining);
     results["disparities"] = disparities_text(*rectification.remaining);
+    results["looks_exchanged"] = rectification.remaining->looks_exchanged();
   }
   return results;
 }
 
 void print_results(const Rectification& rectification, const RectifiedPair& pair, int pair_count,
                    const std::string& calibration) {
-  fmt::print(stderr, "rectify: {} pair{} of {}x{} pixels, {}\n", pair_count,
-             pair_count == 1 ? "" : "s", pair.width_px, pair.height_px,
-             rectification.estimate
-                 ? fmt::format("cameras estimated from {} of {} points",
-                               rectification.estimate->inliers, rectification.matches)
-                 : "cameras from " + calibration);
+  fmt::print(
+      stderr, "rectify: {} pair{} of {}x{} pixels, {}\n", pair_count, pair_count == 1 ? "" : "s",
+      pair.width_px, pair.height_px,
+      rectification.estimate
+          ? fmt::format("cameras estimated from {} of {} points", rectification.estimate->inliers,
+                        rectification.matches)
+          : fmt::format("cameras from {} ({})", calibration, rectification.calibration.format));
   if (rectification.remaining) {
     fmt::print(stderr, "rectify: rows are off by {}; disparities {}\n",
                vertical_error_text(*rectification.remaining),
                disparities_text(*rectification.remaining));
+    if (!rectification.estimate &&
+        rectification.remaining->systematic_px > kRectificationLimit_px) {
+      fmt::print(stderr,
+                 "rectify: warning: rows are still off by {:.2f} px (limit {}): the calibration "
+                 "does not fit the images\n",
+                 rectification.remaining->systematic_px, kRectificationLimit_px);
+    }
+    if (rectification.remaining->looks_exchanged()) {
+      fmt::print(stderr, "rectify: warning: {}\n", exchanged_text(*rectification.remaining));
+    }
   } else {
     fmt::print(stderr, "rectify: too few points in common to measure what rows are off by\n");
   }

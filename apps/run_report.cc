@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <fstream>
 
+#include "apps/trace_file.h"
 #include "engine/build_info.h"
 #include "engine/io/atomic_file.h"
 #include "engine/simd.h"
+#include "scheduler/trace_summary.h"
 
 namespace vantage::apps {
 namespace {
@@ -35,6 +37,13 @@ std::string time_text(double seconds) {
 
 RunReport::RunReport(std::string command, SettingValue settings)
     : command_(std::move(command)), settings_(std::move(settings)) {}
+
+void RunReport::start_trace(const std::string& path) {
+  if (!path.empty()) {
+    trace_path_ = path;
+    trace_ = std::make_unique<scheduler::Trace>();
+  }
+}
 
 double RunReport::seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -104,6 +113,12 @@ SettingValue RunReport::json() const {
       {"cells", cells_},
       {"cells_per_second", cells_per_second()},
       {"peak_memory_bytes", peak_memory_bytes()}};
+  if (!tuning_.is_null()) {
+    document["tuning"] = tuning_;
+  }
+  if (!trace_totals_.is_null()) {
+    document["trace"] = trace_totals_;
+  }
   if (!results_.is_null()) {
     document["results"] = results_;
   }
@@ -113,7 +128,15 @@ SettingValue RunReport::json() const {
   return document;
 }
 
-void RunReport::write(const std::string& path) const {
+void RunReport::write(const std::string& path) {
+  if (trace_) {
+    scheduler::TraceData trace = trace_->finish();
+    trace_.reset();
+    scheduler::add_waits(trace);
+    write_trace(trace_path_, trace, command_);
+    trace_totals_ = trace_report(scheduler::summarise(trace));
+    trace_totals_["file"] = trace_path_;
+  }
   if (!path.empty()) {
     // File names need not be UTF-8, JSON must be.
     write_text_file(path,
@@ -124,6 +147,9 @@ void RunReport::write(const std::string& path) const {
 void RunReport::print_summary() const {
   std::string line =
       fmt::format("{}: {} thread{}, {};", command_, threads_, threads_ == 1 ? "" : "s", isa_);
+  if (!tuning_summary_.empty()) {
+    line += fmt::format(" {};", tuning_summary_);
+  }
   for (const auto& [name, seconds] : stages_) {
     line += fmt::format(" {} {},", name, time_text(seconds));
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -11,6 +12,7 @@
 #include "engine/execution.h"
 #include "engine/matching/stereo_matcher.h"
 #include "scheduler/strip_plan.h"
+#include "scheduler/trace.h"
 
 namespace vantage::apps {
 
@@ -22,9 +24,14 @@ class RunReport {
   /// Replaces the settings, where some follow from what has been read since.
   void set_settings(SettingValue settings) { settings_ = std::move(settings); }
 
-  /// Runs `work` as a stage of compute time and returns what it returns.
+  /// Records a trace from here to write(); an empty path: none.
+  void start_trace(const std::string& path);
+
+  /// Runs `work` as a stage of compute time and returns what it returns. Names of stages are of
+  /// static storage.
   template <typename Work>
   auto timed_compute(std::string_view name, const Work& work) {
+    const scheduler::Span span(name);
     return timed(work, [&](double seconds) {
       add_stage(name, seconds);
       add_compute_seconds(seconds);
@@ -38,6 +45,7 @@ class RunReport {
   /// Runs `work` as a stage that is not compute time because it reads or writes files.
   template <typename Work>
   auto timed_file_access(std::string_view name, const Work& work) {
+    const scheduler::Span span(name);
     return timed(work, [&](double seconds) { add_stage(name, seconds); });
   }
 
@@ -50,6 +58,12 @@ class RunReport {
   void set_plan(const scheduler::ChainPlan& plan);
   /// Threads and instruction set.
   void set_execution(Execution& execution);
+  /// What is used of a tuning file, or why nothing, under the key `tuning`; `summary` goes into the
+  /// line on stderr.
+  void set_tuning(SettingValue tuning, std::string summary) {
+    tuning_ = std::move(tuning);
+    tuning_summary_ = std::move(summary);
+  }
   /// Command-specific findings under the key `results`.
   void set_results(SettingValue results) { results_ = std::move(results); }
   /// One more of them, which set_results() does not replace.
@@ -62,8 +76,8 @@ class RunReport {
 
   /// The JSON document of --report.
   [[nodiscard]] SettingValue json() const;
-  /// Writes json() to `path`, whole or not at all; nothing for an empty path.
-  void write(const std::string& path) const;
+  /// Writes the trace, then json() to `path`, each whole or not at all; nothing for an empty path.
+  void write(const std::string& path);
   /// One line on stderr: threads, stages, total, cells per second.
   void print_summary() const;
 
@@ -89,6 +103,11 @@ class RunReport {
   SettingValue settings_;
   Clock::time_point start_ = Clock::now();
   SettingValue plan_;
+  std::string trace_path_;
+  std::unique_ptr<scheduler::Trace> trace_;  // null: none is recorded
+  SettingValue trace_totals_;
+  SettingValue tuning_;
+  std::string tuning_summary_;
   SettingValue results_;
   SettingValue more_results_ = SettingValue::object();
   std::string isa_;

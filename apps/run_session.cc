@@ -54,6 +54,12 @@ RunIdentity identity_of(const RunJob& job, const Settings& settings, const RunSe
   RunIdentity identity;
   SettingValue values = settings.result_values();
   values["fps"] = to_string(job.sequence.frame_rate);
+  for (const auto& [name, poses] :
+       {std::pair("pose", &job.views.poses), {"path", &job.views.path}}) {
+    if (!poses->empty()) {
+      values[name] = to_value(poses->entries);
+    }
+  }
   identity.settings = values.dump(-1, ' ', false, SettingValue::error_handler_t::replace);
   identity.inputs = session.pairs->identities();
   if (!job.calibration.empty()) {
@@ -106,16 +112,31 @@ std::string strips_text(const scheduler::ChainPlan& plan) {
   return text;
 }
 
+AppliedTuning find_tuning(const RunJob& job, const FramePair& first, const Settings& settings) {
+  if (job.memory_bytes) {
+    return no_tuning("--memory is given: the cost model plans for it");
+  }
+  return apply_tuning(job.tuning,
+                      {.use = TunedUse::kRun,
+                       .match = job.sequence.match,
+                       .execution = job.common.execution,
+                       .in_flight_given = job.in_flight.has_value(),
+                       .left = first.left,
+                       .right = first.right},
+                      settings.command(), job.common.quiet);
+}
+
 }  // namespace
 
 SequenceRun RunSession::run(const RunJob& job, const ShotTable* shots) const {
   // Pairs of a list need not have to do with one another.
   const bool any_size = !job.input.pairs.empty() && job.sequence.video.empty() &&
-                        job.sequence.temporal.weight == 0 && !rectifier;
+                        job.sequence.temporal.weight == 0 && !shape.cameras;
   return {.pairs = *pairs,
           .selection = selection,
           .frame_size = any_size ? std::nullopt : std::optional(shape.source),
           .rectifier = rectifier ? &*rectifier : nullptr,
+          .cameras = shape.cameras ? &*shape.cameras : nullptr,
           .shots = shots,
           .in_flight = memory.in_flight,
           .keep_going = job.keep_going,
@@ -141,6 +162,7 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   report.timed_file_access("open", [&] { read_first_pair(*session.pairs, first); });
   session.shape = shape_of(first.left);
   session.shape.frames_kept = session.pairs->frames_kept();
+  session.shape.pair_count = session.pairs->pair_count();
   session.selection = {.frame_count = session.pairs->pair_count(),
                        .chunk_frames = job.sequence.chunk_frames,
                        .frames = job.frames,
@@ -151,12 +173,10 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
                             session.selection.frame_count - 1));
   }
   Execution execution(job.common.execution);
-  const int threads = execution.executor().thread_count();
-  session.executor = fmt::format("{} thread{} ({})", threads, threads == 1 ? "" : "s",
-                                 execution.executor().name());
   if (!job.calibration.empty()) {
     const StereoCalibration calibration = read_stereo_calibration(job.calibration);
     Rectifier rectifier(calibration, first.left.width(), first.left.height(), job.rectification);
+    session.shape.cameras = rectifier.pair();
     if (rectifier.needs_rectification()) {
       session.rectifier.emplace(std::move(rectifier));
       session.shape.is_rectified_here = true;
@@ -173,8 +193,15 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   job.sequence.frame_rate =
       job.frame_rate.value_or(session.pairs->frame_rate().value_or(FrameRate()));
   session.identity = identity_of(job, settings, session);
-  session.memory = plan_memory(job.sequence, {job.in_flight, job.memory_bytes}, session.shape,
-                               first.left, first.right, job.common.execution);
+  session.tuning = find_tuning(job, first, settings);
+  session.execution = with_tuned(job.common.execution, session.tuning.settings);
+  const int threads = thread_count(session.execution, execution.machine());
+  session.executor = fmt::format("{} thread{} ({})", threads, threads == 1 ? "" : "s",
+                                 execution.executor().name());
+  const std::optional<int> in_flight =
+      job.in_flight ? job.in_flight : session.tuning.settings.frames_in_flight;
+  session.memory = plan_memory(job.sequence, {in_flight, job.memory_bytes}, session.shape,
+                               first.left, first.right, session.execution);
   return session;
 }
 
@@ -198,6 +225,10 @@ std::string describe_plan(const RunJob& job, const Settings& settings, const Run
                    session.memory.in_flight, session.memory.in_flight == 1 ? "" : "s",
                    size_text(session.memory.total_bytes),
                    job.memory_bytes ? " of " + size_text(*job.memory_bytes) : std::string()));
+  if (!session.tuning.summary.empty()) {
+    line(fmt::format("{} ({})", session.tuning.summary,
+                     session.tuning.report["file"].get<std::string>()));
+  }
   line(fmt::format("writes {} to {}", outputs_text(job), job.output));
   return text;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/applied_tuning.h"
 #include "apps/run_report.h"
 #include "apps/run_settings.h"
 #include "engine/rectification/rectifier.h"
@@ -20,6 +21,8 @@ struct RunSession {
   PairShape shape;                     ///< of the first pair that could be read
   FrameSelection selection;
   RunIdentity identity;
+  AppliedTuning tuning;
+  ExecutionOptions execution;  ///< of the run: as the user gave it, then as tuned
   MemoryPlan memory;
   std::string executor;  ///< "2 threads (tbb)"
 

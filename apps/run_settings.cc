@@ -12,7 +12,6 @@
 #include "apps/match_settings.h"
 #include "apps/outputs.h"
 #include "apps/rectification_check.h"
-#include "apps/wanted_views.h"
 #include "engine/error.h"
 #include "engine/sequence/sequence_layout.h"
 
@@ -148,28 +147,6 @@ void add_input_settings(Settings& settings, RunJob& job) {
                   "black around it, which is matched like a picture");
 }
 
-void add_view_path_setting(Settings& settings, std::vector<ViewTrack>& tracks) {
-  Setting& setting =
-      settings.add("view-path", "KEYS",
-                   "New view that moves: FRAME=XS,FRAME=XS…, or FRAME=XS,YS,…, linear in between; "
-                   "repeatable");
-  setting.list = true;
-  setting.set = [&tracks](const SettingValue& value) {
-    std::vector<ViewTrack> read;
-    for (const SettingValue& member : to_list(value)) {
-      read.push_back(parse_view_track(to_text(member)));
-    }
-    tracks = std::move(read);
-  };
-  setting.get = [&tracks] {
-    SettingValue texts = SettingValue::array();
-    for (const ViewTrack& track : tracks) {
-      texts.push_back(to_string(track));
-    }
-    return texts;
-  };
-}
-
 void add_stereo_views_setting(Settings& settings, std::array<double, 2>& views_x) {
   Setting& setting = settings.add("stereo-views", "XL,XR",
                                   "Where the eyes of the packed stereo output stand; 0,1: the "
@@ -210,14 +187,14 @@ void add_output_settings(Settings& settings, RunJob& job) {
     }
   };
   save.get = [&job] { return job.save ? output_names(*job.save) : SettingValue(kAutomatic); };
-  Setting& video = settings.add("video", "LIST",
-                                "Of these, what is written as one video instead of images: "
-                                "unmatched, right-unmatched, preview, views, holes, stereo");
+  Setting& video =
+      settings.add("video", "LIST",
+                   "Of these, what is written as one video instead of images: "
+                   "unmatched, right-unmatched, preview, views, holes, sources, stereo");
   video.list = true;
   video.set = [&job](const SettingValue& value) { job.sequence.video = to_outputs(value); };
   video.get = [&job] { return output_names(job.sequence.video); };
-  add_view_setting(settings, job.fixed_views);
-  add_view_path_setting(settings, job.moving_views);
+  add_sequence_view_settings(settings, job.views, job.sequence.look_at_px);
   add_stereo_views_setting(settings, job.sequence.stereo_views_x);
   settings.choice<StereoDisplay>("stereo-packing", job.sequence.stereo_packing,
                                  stereo_display_names(),
@@ -358,16 +335,13 @@ void add_run_settings(Settings& settings, RunJob& job) {
   add_reference_setting(settings, job.sequence.match);
   add_match_settings(settings, job.sequence.match);
   add_synthesis_settings(settings, job.sequence.synthesis);
+  add_tuning_settings(settings, job.tuning);
   add_common_settings(settings, job.common);
 }
 
 void complete_sequence(RunJob& job) {
   SequenceOptions& sequence = job.sequence;
-  sequence.views.clear();
-  for (const BaselinePosition position : job.fixed_views) {
-    sequence.views.push_back(ViewTrack::fixed(position));
-  }
-  sequence.views.insert(sequence.views.end(), job.moving_views.begin(), job.moving_views.end());
+  sequence.views = paths_of(job.views);
   if (job.save) {
     sequence.save = *job.save;
   } else {
@@ -380,7 +354,9 @@ void complete_sequence(RunJob& job) {
 }
 
 void complete(RunJob& job) {
+  read_pose_files(job.views);
   complete_sequence(job);
+  check_views(job.views, job.sequence.views, job.sequence.look_at_px, !job.calibration.empty());
   job.input.validate();
   job.rectification.validate();
   if (job.rectification.kept_outline > 0 && job.calibration.empty()) {

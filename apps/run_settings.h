@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "apps/applied_tuning.h"
 #include "apps/option_groups.h"
 #include "apps/progress.h"
+#include "apps/sequence_views.h"
 #include "apps/settings.h"
 #include "engine/rectification/rectified_pair.h"
 #include "engine/sequence/pair_source.h"
@@ -24,8 +26,7 @@ struct RunJob {
   SequenceOptions sequence;
   /// Empty: the disparity map, and the views when there are any.
   std::optional<std::vector<SequenceOutput>> save;
-  std::vector<BaselinePosition> fixed_views;
-  std::vector<ViewTrack> moving_views;
+  SequenceViews views;
   std::optional<FrameRate> frame_rate;  ///< empty: the input's, else 25
   std::optional<FrameRange> frames;
   std::optional<Shard> shard;
@@ -39,6 +40,7 @@ struct RunJob {
   bool check_rectification = true;
   ProgressStyle progress = ProgressStyle::kAuto;
   CommonOptions common;
+  TuningSource tuning;
 
   /// `progress`, or none where only errors are wanted.
   [[nodiscard]] ProgressStyle shown_progress() const {
@@ -49,11 +51,13 @@ struct RunJob {
 /// Binds all of it: the options of 'vantage run'.
 void add_run_settings(Settings& settings, RunJob& job);
 
-/// Fills in what of `job.sequence` follows from other fields. Throws UsageError where it is wrong.
+/// Fills in what of `job.sequence` follows from other fields, of which poses must be there. Throws
+/// UsageError where it is wrong.
 void complete_sequence(RunJob& job);
 
-/// The same of all fields. Throws UsageError where fields are wrong or do not go
-/// together; files are not looked at but to keep results out of the folders they are made from.
+/// The same of all fields, with the files of poses read. Throws UsageError where fields are wrong
+/// or do not go together; other files are not looked at but to keep results out of the folders they
+/// are made from.
 void complete(RunJob& job);
 
 }  // namespace vantage::apps

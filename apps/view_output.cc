@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/frame_rate_setting.h"
 #include "engine/error.h"
 #include "engine/io/photograph_io.h"
 
@@ -12,14 +13,28 @@ bool is_video(const std::string& path) { return has_extension(path, {".mp4"}); }
 
 }  // namespace
 
-void add_view_output_settings(Settings& settings, std::string& output, std::string& hole_mask) {
+void add_view_file_settings(Settings& settings, ViewOutputOptions& options) {
   Setting& file =
-      settings.text("output", output, "FILE",
+      settings.text("output", options.output, "FILE",
                     "Image to write; for several views a pattern (views/%03d.png) or an .mp4");
   file.short_name = 'o';
   file.required = true;
-  settings.text("hole-mask", hole_mask, "MASK.png",
+  settings.text("hole-mask", options.hole_mask, "MASK.png",
                 "Write a mask of the pixels that no image shows; a pattern for several views");
+  settings.text("source-mask", options.source_mask, "MASK.png",
+                "Write which images the pixels are made of: 0 none, 85 the left one (of three the "
+                "first two), 170 the right or last one, 255 both");
+}
+
+void add_view_display_settings(Settings& settings, ViewOutputOptions& options,
+                               const std::string& unit) {
+  settings.choice<StereoDisplay>("stereo-packing", options.stereo_packing, stereo_display_names(),
+                                 "Two eyes for every view, in one picture: side by side, one above "
+                                 "the other, interleaved or as an anaglyph",
+                                 "none");
+  settings.number("eye-separation", options.eye_separation, "S",
+                  fmt::format("Distance of the two eyes in {}, the view in their middle", unit));
+  add_frame_rate_setting(settings, "fps", options.frame_rate, "Views per second of a video");
 }
 
 ViewOutput::ViewOutput(const std::string& path, int views) : path_(path), views_(views) {
@@ -66,6 +81,66 @@ void ViewOutput::write(int index, const Photograph& image, FrameRate rate) {
 void ViewOutput::finish() {
   if (video_ != nullptr) {
     video_->finish();
+  }
+}
+
+ViewOutputs::ViewOutputs(const ViewOutputOptions& options, const Settings& settings, int views)
+    : frame_rate_(options.frame_rate), pictures_(options.output, views) {
+  constexpr double kLargestSeparation = 16;
+  if (!(options.eye_separation > 0 && options.eye_separation <= kLargestSeparation)) {
+    throw UsageError(fmt::format("--eye-separation is {}, expected more than 0, at most {}",
+                                 options.eye_separation, kLargestSeparation));
+  }
+  if (!options.stereo_packing && settings.given_on_command_line("eye-separation")) {
+    throw UsageError("--eye-separation has no effect without --stereo-packing");
+  }
+  const auto add_mask = [&](const char* option, const std::string& path,
+                            Mask SynthesizedView::*mask) {
+    if (path.empty()) {
+      return;
+    }
+    if (options.stereo_packing) {
+      throw UsageError(
+          fmt::format("{} is the mask of one view, expected no --stereo-packing", option));
+    }
+    masks_.push_back({option, mask, ViewOutput(path, views)});
+  };
+  add_mask("--hole-mask", options.hole_mask, &SynthesizedView::holes);
+  add_mask("--source-mask", options.source_mask, &SynthesizedView::sources);
+}
+
+void ViewOutputs::check(FileChecks& checks) const {
+  pictures_.check(checks, "--output");
+  for (const MaskOutput& mask : masks_) {
+    mask.output.check(checks, mask.option);
+  }
+}
+
+void ViewOutputs::write_at_once(int index, const Photograph& picture, const SynthesizedView& view) {
+  write(index, picture, view, /*in_order=*/false);
+}
+
+void ViewOutputs::write_in_order(int index, const Photograph& picture,
+                                 const SynthesizedView& view) {
+  write(index, picture, view, /*in_order=*/true);
+}
+
+void ViewOutputs::write(int index, const Photograph& picture, const SynthesizedView& view,
+                        bool in_order) {
+  if (pictures_.needs_order() == in_order) {
+    pictures_.write(index, picture, frame_rate_);
+  }
+  for (MaskOutput& mask : masks_) {
+    if (mask.output.needs_order() == in_order) {
+      mask.output.write(index, {(view.*mask.mask).copy()}, frame_rate_);
+    }
+  }
+}
+
+void ViewOutputs::finish() {
+  pictures_.finish();
+  for (MaskOutput& mask : masks_) {
+    mask.output.finish();
   }
 }
 

@@ -1,19 +1,37 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/outputs.h"
 #include "apps/settings.h"
 #include "engine/image/photograph.h"
+#include "engine/image/stereo_display.h"
 #include "engine/io/video_io.h"
+#include "engine/synthesis/view_synthesizer.h"
 
 namespace vantage::apps {
 
-/// --output and --hole-mask of a command that renders views, in the group that has begun.
-void add_view_output_settings(Settings& settings, std::string& output, std::string& hole_mask);
+/// What commands that render views write, and how.
+struct ViewOutputOptions {
+  std::string output;
+  std::string hole_mask;  ///< empty: none, as below
+  std::string source_mask;
+  std::optional<StereoDisplay> stereo_packing;
+  double eye_separation = 1;
+  FrameRate frame_rate;
+};
 
-/// Where rendered views go: one image file, numbered image files (a printf pattern) or a video.
+/// --output, --hole-mask and --source-mask, in the group that has begun.
+void add_view_file_settings(Settings& settings, ViewOutputOptions& options);
+/// --stereo-packing, --eye-separation and --fps. `unit`: what separations are counted in, such as
+/// "baselines".
+void add_view_display_settings(Settings& settings, ViewOutputOptions& options,
+                               const std::string& unit);
+
+/// Where rendered pictures go: one image file, numbered image files (a printf pattern) or a video.
 class ViewOutput {
  public:
   /// `views` is how many there will be. Throws UsageError when several should go to a plain name.
@@ -36,6 +54,35 @@ class ViewOutput {
   std::string path_;
   int views_;
   std::unique_ptr<VideoWriter> video_;
+};
+
+/// All outputs of a command that renders views: their pictures and the masks beside them.
+class ViewOutputs {
+ public:
+  /// Throws UsageError for invalid options, and for such as have no effect.
+  ViewOutputs(const ViewOutputOptions& options, const Settings& settings, int views);
+
+  /// Adds every file to be written to `checks`.
+  void check(FileChecks& checks) const;
+  /// What of view `index` need not wait for its turn: concurrently for different views.
+  void write_at_once(int index, const Photograph& picture, const SynthesizedView& view);
+  /// The rest, in the order of the views.
+  void write_in_order(int index, const Photograph& picture, const SynthesizedView& view);
+  /// Call it after the last view; without it no video is left.
+  void finish();
+
+ private:
+  struct MaskOutput {
+    const char* option;
+    Mask SynthesizedView::*mask;
+    ViewOutput output;
+  };
+
+  void write(int index, const Photograph& picture, const SynthesizedView& view, bool in_order);
+
+  FrameRate frame_rate_;
+  ViewOutput pictures_;
+  std::vector<MaskOutput> masks_;
 };
 
 }  // namespace vantage::apps

@@ -1,6 +1,5 @@
 #include "apps/view_renderer.h"
 
-#include <chrono>
 #include <variant>
 
 namespace vantage::apps {
@@ -10,18 +9,32 @@ ViewRenderer::ViewRenderer(const PairWithMaps& pair, const SynthesisOptions& opt
     : pair_(pair),
       two_eyes_(two_eyes),
       synthesizer_(options, execution),
-      three_steps_(options, execution) {}
+      three_steps_(options, execution) {
+  if (pair.unrectified && options.warp == WarpColour::kOnePass) {
+    photograph_grid_.emplace(pair.unrectified->rectifier, execution);
+    photograph_grid_->bring(pair.maps, photograph_maps_);
+  }
+}
+
+UnrectifiedPair ViewRenderer::unrectified() const {
+  return photograph_grid_->pair_of(pair_.unrectified->left, pair_.unrectified->right,
+                                   photograph_maps_);
+}
 
 void ViewRenderer::fix_intensities() {
   if (synthesizer_.options().match_intensities) {
-    const kernels::IntensitySums sums = synthesizer_.intensity_sums(
-        pair_.left, pair_.right, pair_.maps.left.view(), pair_.maps.right.view(), 0.5);
+    const ImageView<const float> left_map = pair_.maps.left.view();
+    const ImageView<const float> right_map = pair_.maps.right.view();
+    const NewView middle = baseline_view(0.5, 0, pair_.left.width(), pair_.left.height());
+    const kernels::IntensitySums sums =
+        photograph_grid_
+            ? synthesizer_.intensity_sums(unrectified(), left_map, right_map, middle)
+            : synthesizer_.intensity_sums(pair_.left, pair_.right, left_map, right_map, middle);
     fit_ = fit_channels(sums, pair_.left.channels(), 1);
   }
 }
 
 void ViewRenderer::render(const ViewPose& pose, RenderedView& result) const {
-  const auto start = std::chrono::steady_clock::now();
   if (two_eyes_) {
     const double baseline = pair_.cameras ? pair_.cameras->baseline : 0;
     const double half = two_eyes_->separation_baselines / 2;
@@ -31,7 +44,6 @@ void ViewRenderer::render(const ViewPose& pose, RenderedView& result) const {
   } else {
     synthesize(pose, result.eyes[0]);
   }
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void ViewRenderer::synthesize(const ViewPose& pose, SynthesizedView& view) const {
@@ -44,6 +56,11 @@ void ViewRenderer::synthesize(const ViewPose& pose, SynthesizedView& view) const
   }
   const NewView geometry = new_view(pose, pair_.cameras ? &*pair_.cameras : nullptr,
                                     pair_.left.width(), pair_.left.height());
+  if (photograph_grid_) {
+    synthesizer_.synthesize(unrectified(), pair_.maps.left.view(), pair_.maps.right.view(),
+                            geometry, view, fit_ ? &*fit_ : nullptr);
+    return;
+  }
   synthesizer_.synthesize(pair_.left, pair_.right, pair_.maps.left.view(), pair_.maps.right.view(),
                           geometry, view, fit_ ? &*fit_ : nullptr);
 }

@@ -6,6 +6,7 @@
 #include "apps/pair_input.h"
 #include "engine/execution.h"
 #include "engine/image/stereo_display.h"
+#include "engine/synthesis/photograph_grid.h"
 #include "engine/synthesis/three_step_synthesizer.h"
 #include "engine/synthesis/view_synthesizer.h"
 #include "engine/view_geometry/view_pose.h"
@@ -22,14 +23,14 @@ struct TwoEyes {
 struct RenderedView {
   std::array<SynthesizedView, 2> eyes;  ///< without TwoEyes the first one is the view
   Photograph both;
-  double seconds = 0;
 
   [[nodiscard]] const Photograph& picture(bool has_two_eyes) const {
     return has_two_eyes ? both : eyes[0].image;
   }
 };
 
-/// Renders the views of one pair. Thread rule: render() may be called concurrently for different
+/// Renders the views of one pair; their colours come from the images as they were read, unless
+/// those are moved the book's way. Thread rule: render() may be called concurrently for different
 /// results; `pair` and `execution` outlive the renderer.
 class ViewRenderer {
  public:
@@ -46,11 +47,14 @@ class ViewRenderer {
 
  private:
   void synthesize(const ViewPose& pose, SynthesizedView& view) const;
+  [[nodiscard]] UnrectifiedPair unrectified() const;
 
   const PairWithMaps& pair_;
   std::optional<TwoEyes> two_eyes_;
   ViewSynthesizer synthesizer_;
   ThreeStepSynthesizer three_steps_;
+  std::optional<PhotographGrid> photograph_grid_;  ///< where colours come from unrectified images
+  std::array<Image<float>, 2> photograph_maps_;
   std::optional<std::array<IntensityFit, 4>> fit_;
 };
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <variant>
 
-#include "apps/pose_file.h"
 #include "engine/error.h"
 
 namespace vantage::apps {
@@ -49,40 +49,15 @@ Orbit to_orbit(const SettingValue& value) {
                                   kFarthestView, kMostViews));
 }
 
-std::vector<ViewPose> poses_of_path(const std::string& file) {
-  ViewPath path;
-  for (PoseEntry& entry : read_poses(file)) {
-    if (!entry.frame) {
-      throw UsageError(
-          fmt::format("{}: view {} has no frame, expected one for every pose of a path", file,
-                      path.keys.size() + 1));
-    }
-    path.keys.push_back({*entry.frame, std::move(entry.pose)});
-  }
-  try {
-    path.validate();
-  } catch (const UsageError& error) {
-    throw UsageError(fmt::format("{}: {}", file, error.what()));
-  }
+std::vector<ViewPose> poses_of_path(const PoseList& list) {
+  const ViewPath path = path_along({list.file, entries_of(list)});
   if (path.frames() > kMostViews) {
-    throw UsageError(fmt::format("{}: path has {} frames, expected at most {}", file, path.frames(),
-                                 kMostViews));
+    throw UsageError(fmt::format("{}: path has {} frames, expected at most {}", list.name(),
+                                 path.frames(), kMostViews));
   }
   std::vector<ViewPose> poses;
   for (int frame = 0; frame < path.frames(); ++frame) {
     poses.push_back(path.at(frame));
-  }
-  return poses;
-}
-
-std::vector<ViewPose> poses_of_file(const std::string& file) {
-  std::vector<ViewPose> poses;
-  for (PoseEntry& entry : read_poses(file)) {
-    if (entry.frame) {
-      throw UsageError(fmt::format("{}: view {} has a frame, which only --path uses; expected none",
-                                   file, poses.size() + 1));
-    }
-    poses.push_back(std::move(entry.pose));
   }
   return poses;
 }
@@ -94,6 +69,21 @@ std::vector<ViewPose> poses_of_sweep(const Sweep& sweep) {
         pose_between(sweep.first, sweep.last, static_cast<double>(i) / (sweep.views - 1)));
   }
   return poses;
+}
+
+void add_pose_list(Settings& settings, std::string name, PoseList& list, std::string help) {
+  Setting& setting = settings.add(std::move(name), "FILE", std::move(help));
+  // What is in the file does, not its name.
+  setting.changes_results = false;
+  setting.set = [&list](const SettingValue& value) {
+    list = value.is_array() ? PoseList{"", poses_in(value, PoseList().name())}
+                            : PoseList{to_text(value), {}};
+  };
+  setting.get = [&list]() -> SettingValue {
+    return list.empty()        ? SettingValue()
+           : list.file.empty() ? to_value(list.entries)
+                               : SettingValue(list.file);
+  };
 }
 
 }  // namespace
@@ -142,6 +132,20 @@ void add_view_setting(Settings& settings, std::vector<BaselinePosition>& views) 
   };
 }
 
+void add_pose_settings(Settings& settings, const std::string& turned,
+                       std::optional<double>& look_at_px, PoseList& poses, PoseList& path) {
+  settings.number("look-at", look_at_px, "PX",
+                  fmt::format("Turn the cameras of {} towards the point at this disparity in the "
+                              "middle; needs --calibration",
+                              turned),
+                  "ahead");
+  add_pose_list(settings, "pose", poses,
+                "A view for every pose in a TOML or JSON file: positions, or cameras by K, R and "
+                "t, which need --calibration");
+  add_pose_list(settings, "path", path,
+                "A moving view along the poses of such a file, each with its frame");
+}
+
 void add_wanted_views(Settings& settings, WantedViews& wanted) {
   add_view_setting(settings, wanted.at);
   Setting& sweep =
@@ -161,59 +165,81 @@ void add_wanted_views(Settings& settings, WantedViews& wanted) {
                                                    wanted.orbit->views))
                         : SettingValue();
   };
-  settings.number("look-at", wanted.look_at_px, "PX",
-                  "Turn the cameras of --view, --sweep or --orbit towards the point at this "
-                  "disparity in the middle; needs --calibration",
-                  "ahead");
-  settings.text("pose", wanted.pose_file, "FILE",
-                "A view for every pose in a TOML or JSON file: positions, or cameras by K, R and "
-                "t, which need --calibration");
-  settings.text("path", wanted.path_file, "FILE",
-                "A movie along the poses of such a file, each with its frame");
+  add_pose_settings(settings, "--view, --sweep or --orbit", wanted.look_at_px, wanted.poses,
+                    wanted.path);
 }
 
 std::vector<ViewPose> poses_of(const WantedViews& wanted) {
   const int ways = (wanted.at.empty() ? 0 : 1) + (wanted.sweep ? 1 : 0) + (wanted.orbit ? 1 : 0) +
-                   (wanted.pose_file.empty() ? 0 : 1) + (wanted.path_file.empty() ? 0 : 1);
+                   (wanted.poses.empty() ? 0 : 1) + (wanted.path.empty() ? 0 : 1);
   if (ways != 1) {
     throw UsageError(
         fmt::format("{}, expected one of --view, --sweep, --orbit, --pose and --path",
                     ways == 0 ? "no view is given" : "views are given in several ways"));
   }
-  if (wanted.look_at_px && (!wanted.pose_file.empty() || !wanted.path_file.empty())) {
+  if (wanted.look_at_px && (!wanted.poses.empty() || !wanted.path.empty())) {
     throw UsageError("--look-at turns the cameras of --view, --sweep and --orbit only");
   }
   if (wanted.sweep) {
     return poses_of_sweep(*wanted.sweep);
   }
-  if (!wanted.pose_file.empty()) {
-    return poses_of_file(wanted.pose_file);
+  if (!wanted.poses.empty()) {
+    return fixed_poses({wanted.poses.file, entries_of(wanted.poses)});
   }
-  if (!wanted.path_file.empty()) {
-    return poses_of_path(wanted.path_file);
+  if (!wanted.path.empty()) {
+    return poses_of_path(wanted.path);
   }
   const std::vector<BaselinePosition> positions =
       wanted.orbit ? orbit(wanted.orbit->radius_baselines, wanted.orbit->views) : wanted.at;
   return {positions.begin(), positions.end()};
 }
 
-void complete_poses(const WantedViews& wanted, const RectifiedPair* pair, int width_px,
-                    int height_px, std::vector<ViewPose>& poses) {
-  if (wanted.look_at_px && pair == nullptr) {
+std::vector<ViewPose> fixed_poses(const PoseList& list) {
+  std::vector<ViewPose> poses;
+  for (const PoseEntry& entry : list.entries) {
+    if (entry.frame) {
+      throw UsageError(fmt::format("{}: view {} has a frame, which only --path uses; expected none",
+                                   list.name(), poses.size() + 1));
+    }
+    poses.push_back(entry.pose);
+  }
+  return poses;
+}
+
+ViewPath path_along(const PoseList& list) {
+  ViewPath path;
+  for (const PoseEntry& entry : list.entries) {
+    if (!entry.frame) {
+      throw UsageError(
+          fmt::format("{}: view {} has no frame, expected one for every pose of a path",
+                      list.name(), path.keys.size() + 1));
+    }
+    path.keys.push_back({*entry.frame, entry.pose});
+  }
+  try {
+    path.validate();
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", list.name(), error.what()));
+  }
+  return path;
+}
+
+void require_calibration(const ViewPose& pose, std::optional<double> look_at_px) {
+  if (look_at_px) {
     throw UsageError("--look-at needs the focal length, expected --calibration");
   }
+  if (std::holds_alternative<PosedCamera>(pose)) {
+    throw UsageError("poses with K, R and t need calibrated cameras, expected --calibration");
+  }
+}
+
+void complete_poses(const WantedViews& wanted, const RectifiedPair* pair, int width_px,
+                    int height_px, std::vector<ViewPose>& poses) {
   for (ViewPose& pose : poses) {
-    if (auto* camera = std::get_if<PosedCamera>(&pose)) {
-      if (pair == nullptr) {
-        throw UsageError("poses with K, R and t need calibrated cameras, expected --calibration");
-      }
-      if (camera->width_px == 0) {
-        camera->width_px = width_px;
-        camera->height_px = height_px;
-      }
-    } else if (wanted.look_at_px) {
-      pose = camera_looking_at(*pair, std::get<BaselinePosition>(pose), *wanted.look_at_px);
+    if (pair == nullptr) {
+      require_calibration(pose, wanted.look_at_px);
     }
+    pose = placed(pose, wanted.look_at_px, pair, width_px, height_px);
   }
 }
 

@@ -4,8 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "apps/pose_file.h"
 #include "apps/settings.h"
 #include "engine/rectification/rectified_pair.h"
+#include "engine/view_geometry/view_path.h"
 #include "engine/view_geometry/view_pose.h"
 
 namespace vantage::apps {
@@ -28,8 +30,8 @@ struct WantedViews {
   std::vector<BaselinePosition> at;
   std::optional<Sweep> sweep;
   std::optional<Orbit> orbit;
-  std::string pose_file;  ///< a view for every pose
-  std::string path_file;  ///< a view for every frame between the poses
+  PoseList poses;  ///< a view for every pose
+  PoseList path;   ///< a view for every frame between the poses
   std::optional<double> look_at_px;
 };
 
@@ -38,12 +40,23 @@ BaselinePosition to_position(const SettingValue& value);
 
 /// --view, repeatable.
 void add_view_setting(Settings& settings, std::vector<BaselinePosition>& views);
+/// --look-at, --pose and --path. `turned` names the options whose views --look-at turns.
+void add_pose_settings(Settings& settings, const std::string& turned,
+                       std::optional<double>& look_at_px, PoseList& poses, PoseList& path);
 /// --view, --sweep, --orbit, --pose, --path and --look-at, in the group that has begun.
 void add_wanted_views(Settings& settings, WantedViews& wanted);
 
 /// The poses in order, 1 to 10000, with the files of poses read. Throws UsageError unless exactly
 /// one way of naming views is used and goes with the others, Error where a file cannot be read.
 std::vector<ViewPose> poses_of(const WantedViews& wanted);
+
+/// Poses of views that stand still. Throws UsageError where one has a frame.
+std::vector<ViewPose> fixed_poses(const PoseList& list);
+/// The path along poses, which need frames. Throws UsageError naming the list.
+ViewPath path_along(const PoseList& list);
+
+/// Throws UsageError where `pose` needs a calibration: cameras, and positions that are turned.
+void require_calibration(const ViewPose& pose, std::optional<double> look_at_px);
 
 /// Turns baseline positions towards `look_at_px` and gives cameras without a size that of the
 /// images. `pair`: null without calibration. Throws UsageError where a calibration is needed.

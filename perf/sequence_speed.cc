@@ -3,10 +3,8 @@
 // Prints tables; --json FILE writes the figures.
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
@@ -22,6 +20,7 @@
 #include "engine/synthesis/view_synthesizer.h"
 #include "perf/opencv_loop.h"
 #include "perf/sequence_inputs.h"
+#include "perf/stopwatch.h"
 
 namespace vantage::perf {
 namespace {
@@ -36,36 +35,6 @@ constexpr int kWarmUpFrames = 24;
 /// Videos are delivered by chunks.
 constexpr int kChunkFrames = 50;
 constexpr int kVideoFrames = 2 * kChunkFrames + kWarmUpFrames;
-
-/// Of one frame, in seconds: by the wall clock, and of all the process's threads together. The
-/// second hardly depends on what else the machine does.
-struct FrameTime {
-  double wall = 0;
-  double processor = 0;
-};
-
-class Stopwatch {
- public:
-  [[nodiscard]] FrameTime per_frame(int frames) const {
-    const std::chrono::duration<double> wall = Clock::now() - wall_start_;
-    return {wall.count() / frames, (processor_seconds() - processor_start_) / frames};
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  static double processor_seconds() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& time) {
-      return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
-    };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-  }
-
-  Clock::time_point wall_start_ = Clock::now();
-  double processor_start_ = processor_seconds();
-};
 
 /// One way to work on a sequence; returns the time of a frame.
 struct Contender {
@@ -105,7 +74,7 @@ SequenceOptions run_options(const Method& method, bool views_as_video) {
   if (views_as_video) {
     options.video = {SequenceOutput::kViews};
   }
-  options.views = {ViewTrack::fixed({kViewX, 0})};
+  options.views = {ViewPath::fixed(BaselinePosition{kViewX, 0})};
   options.chunk_frames = kChunkFrames;
   return options;
 }
@@ -244,29 +213,10 @@ void run_interleaved(std::vector<Contender>& contenders, int rounds) {
   }
 }
 
-double least(std::vector<double> values) { return *std::min_element(values.begin(), values.end()); }
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
-std::vector<double> of(const std::vector<FrameTime>& rounds, double FrameTime::*time) {
-  std::vector<double> values;
-  for (const FrameTime& round : rounds) {
-    values.push_back(round.*time);
-  }
-  return values;
-}
-
 /// The rate of `contender` over what all cores together would reach if each took the time of
 /// `reference` per frame; round by round.
 double median_efficiency(const Contender& reference, const Contender& contender, int cores) {
-  std::vector<double> values;
-  for (std::size_t round = 0; round < contender.rounds.size(); ++round) {
-    values.push_back(reference.rounds[round].wall / (cores * contender.rounds[round].wall));
-  }
-  return median(values);
+  return median(ratios(reference.rounds, contender.rounds)) / cores;
 }
 
 /// The first contender is what a frame costs one thread without reading and writing.

@@ -1,9 +1,10 @@
 // How like real photographs synthesised views are: for every scene with photographs between and
 // beside the cameras of its pair, from the true maps (one-pass and forward warp, and the plain warp
 // that people write by hand; without soft edges and with other ways to fill holes), from the maps
-// of the presets and of OpenCV's StereoSGBM. Over the whole picture, and near the outlines that the
-// true maps have in the view. Prints Markdown tables. The folder of the scenes is the only argument
-// (default: beside the repository); scenes that are not there are named.
+// of the presets (of `balanced` also moved forward and filled otherwise) and of OpenCV's
+// StereoSGBM. Over the whole picture, and near the outlines that the true maps have in the view.
+// Prints Markdown tables. The folder of the scenes is the only argument (default: beside the
+// repository); scenes that are not there are named.
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,10 +53,11 @@ MakeView ours(const SynthesisOptions& options) {
   };
 }
 
-MakeMaps preset(MatchPreset kind) {
-  return [kind](const LoadedPair& pair, Execution& execution) {
+MakeMaps preset(MatchPreset kind, std::optional<Fill> fill = {}) {
+  return [kind, fill](const LoadedPair& pair, Execution& execution) {
     MatchOptions options;
     options.preset = kind;
+    options.refinement.fill = fill;
     options.disparities = pair.scene->range;
     DisparityMaps maps;
     StereoMatcher(options, execution).match(pair.left, pair.right, {}, maps);
@@ -90,8 +93,10 @@ const std::vector<Contender>& contenders() {
        }},
       {"fast", "fast", ours({})},
       {"balanced", "balanced", ours({})},
+      {"balanced, forward", "balanced", ours({.warp = WarpColour::kForward})},
       {"balanced, hard edges", "balanced", ours({.soft_edges = false})},
       {"balanced, inpaint", "balanced", ours({.holes = HoleFilling::kInpaint})},
+      {"balanced, median", "balanced, median", ours({})},
       {"quality", "quality", ours({})},
       {"StereoSGBM", "sgbm", ours({})},
   };
@@ -160,6 +165,7 @@ void measure(const ViewScene& scene, const std::filesystem::path& folder, Execut
   maps["truth"] = true_maps(scene, folder, execution);
   maps["fast"] = preset(MatchPreset::kFast)(pair, execution);
   maps["balanced"] = preset(MatchPreset::kBalanced)(pair, execution);
+  maps["balanced, median"] = preset(MatchPreset::kBalanced, Fill::kMedian)(pair, execution);
   maps["quality"] = preset(MatchPreset::kQuality)(pair, execution);
   maps["sgbm"] = opencv_maps(pair, execution);
   for (const RealView& view : scene.views) {

@@ -113,6 +113,49 @@ TEST_F(RectifyTest, SeveralPairsGetOneRectificationWhateverTheThreads) {
   }
 }
 
+TEST_F(RectifyTest, ExchangedImagesAreWarnedOf) {
+  const std::string report = folder_ / "report.json";
+  const auto warned = [&](const std::vector<std::string>& arguments) {
+    std::vector<std::string> all = arguments;
+    all.insert(all.end(), {"--report", report});
+    const ProcessResult result = run_vantage(all);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.err.find("warning: left and right look exchanged") != std::string::npos;
+  };
+  const std::string rig = folder_ / "rig.yml";
+  EXPECT_FALSE(warned({"rectify", left_, right_, "-o", folder_ / "pair", "--matrices", rig}));
+  EXPECT_FALSE(json_of(report)["results"]["looks_exchanged"].get<bool>());
+  EXPECT_TRUE(warned({"rectify", right_, left_, "--matrices", folder_ / "other.yml"}));
+  EXPECT_TRUE(json_of(report)["results"]["looks_exchanged"].get<bool>());
+  EXPECT_TRUE(warned({"rectify", right_, left_, "-o", folder_ / "wrong", "--calibration", rig}));
+
+  const std::string left = folder_ / "pair/left.png";
+  const std::string right = folder_ / "pair/right.png";
+  const std::string map = folder_ / "map.pfm";
+  EXPECT_FALSE(warned({"match", left, right, "-o", map, "--disparities=0:30"}));
+  EXPECT_TRUE(warned({"match", right, left, "-o", map, "--disparities=0:30"}));
+  const auto found = json_of(report)["results"]["rectification"];
+  EXPECT_TRUE(found["looks_exchanged"].get<bool>());
+  EXPECT_GT(found["negative_disparity_share"].get<double>(), 0.9);
+  EXPECT_FALSE(warned({"match", right, left, "-o", map, "--disparities=-30:0"}))
+      << "whoever asks for negative disparities knows";
+  EXPECT_TRUE(warned(
+      {"synth", right, left, "-o", folder_ / "view.png", "--view", "0.5", "--disparities=0:30"}));
+  EXPECT_TRUE(warned(
+      {"run", "--left", right, "--right", left, "-o", folder_ / "run", "--disparities=0:30"}));
+}
+
+TEST_F(RectifyTest, CalibrationsThatDoNotFitAreWarnedOf) {
+  const std::string rig = folder_ / "rig.txt";
+  write_file(rig, "P0: 350 0 160 0 0 350 120 0 0 0 1 0\nP1: 350 0 160 -35 0 350 120 0 0 0 1 0\n");
+  const ProcessResult result =
+      rectify({left_, right_, "-o", folder_ / "out", "--calibration", rig});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, HasSubstr("rig.txt (KITTI, cameras 0 and 1)"));
+  EXPECT_THAT(result.err, HasSubstr("rectify: warning: rows are still off by"));
+  EXPECT_THAT(result.err, HasSubstr("the calibration does not fit the images"));
+}
+
 TEST_F(RectifyTest, ErrorsAreOneLine) {
   const auto expect_error = [&](const std::vector<std::string>& arguments, int exit_code,
                                 const std::string& text) {

@@ -1,10 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "engine/evaluation/view_evaluation.h"
@@ -106,8 +110,10 @@ TEST_F(SceneCommand, BuildsAGridAndRendersViewsOfIt) {
 
   const ProcessResult info = run_vantage({"scene", "info", place_});
   EXPECT_EQ(info.exit_code, 0);
-  EXPECT_THAT(info.out, AllOf(HasSubstr("../images/4.png"), HasSubstr("1-4 along y, length 0.5"),
-                              HasSubstr("disparities 0:8"), HasSubstr("triangles")));
+  EXPECT_THAT(info.out, AllOf(HasSubstr("images 6, 106x74 pixels"), HasSubstr("../images/4.png"),
+                              HasSubstr("edges 7, 7 of them matched"),
+                              HasSubstr("1-4 along y, length 0.5, disparities 0:8, matched 9"),
+                              HasSubstr("triangles 4")));
 }
 
 TEST_F(SceneCommand, AListOfPositionsMayLeaveImagesOut) {
@@ -144,6 +150,162 @@ TEST_F(SceneCommand, MakesMoviesAndSaysWhatLiesOutside) {
   EXPECT_THAT(view({"--at=-0.1,-0.1", "-o", folder_ / "v.png", "--quiet"}).err, IsEmpty());
 }
 
+TEST_F(SceneCommand, RendersPathsAndTwoEyes) {
+  ASSERT_EQ(build_grid({"--quiet"}).exit_code, 0);
+  write_file(folder_ / "path.toml",
+             "[[view]]\nframe = 0\nat = [0.0, 0.0]\n[[view]]\nframe = 4\nat = [0.8, 0.4]\n"
+             "[[view]]\nframe = 6\nat = [0.8, 0.0]\n");
+  const ProcessResult path = view({"--path", folder_ / "path.toml", "-o", folder_ / "p%d.png",
+                                   "--source-mask", folder_ / "s%d.png"});
+  ASSERT_EQ(path.exit_code, 0) << path.err;
+  EXPECT_THAT(path.err, HasSubstr("7 views"));
+  ASSERT_EQ(view({"--at", "0.6,0.3", "-o", folder_ / "one.png"}).exit_code, 0);
+  EXPECT_EQ(read_file(folder_ / "one.png"), read_file(folder_ / "p3.png"));
+  EXPECT_FALSE(fs::exists(folder_ / "p7.png"));
+  EXPECT_TRUE(fs::exists(folder_ / "s6.png"));
+
+  // The eyes of one view are in two triangles; distances count lengths of the shortest edge.
+  const ProcessResult eyes =
+      view({"--at", "0.5,0.2", "--stereo-packing", "sbsl", "--eye-separation", "0.4", "-o",
+            folder_ / "eyes.png", "--report", folder_ / "eyes.json"});
+  ASSERT_EQ(eyes.exit_code, 0) << eyes.err;
+  EXPECT_THAT(eyes.err, HasSubstr("212x74 pixels, 1 view "));
+  ASSERT_EQ(view({"--at", "0.4,0.2", "-o", folder_ / "left.png"}).exit_code, 0);
+  const Photograph both = read_photograph(folder_ / "eyes.png");
+  const Photograph left = read_photograph(folder_ / "left.png");
+  for (int y = 0; y < 74; ++y) {
+    for (int i = 0; i < 106 * 3; ++i) {
+      ASSERT_EQ(std::get<Mask>(both.pixels).row(y)[i], std::get<Mask>(left.pixels).row(y)[i]);
+    }
+  }
+  const nlohmann::json described =
+      json_in(folder_ / "eyes.json").at("results").at("views").at(0).at("eyes");
+  EXPECT_EQ(described.at(0).at("x"), 0.4);
+  EXPECT_EQ(described.at(1).at("x"), 0.6);
+}
+
+TEST_F(SceneCommand, ViewsDoNotDependOnThreads) {
+  ASSERT_EQ(build_grid({"--quiet"}).exit_code, 0);
+  std::string expected;
+  for (const char* threads : {"1", "2", "5"}) {
+    ASSERT_EQ(view({"--sweep=-0.1,0.2:1.1,0.4:9", "--threads", threads, "-o", folder_ / "m.mp4",
+                    "--hole-mask", folder_ / "h%d.png"})
+                  .exit_code,
+              0);
+    const std::string made = read_file(folder_ / "m.mp4") + read_file(folder_ / "h8.png");
+    EXPECT_EQ(made, expected.empty() ? made : expected) << threads;
+    expected = made;
+  }
+}
+
+TEST_F(SceneCommand, AFolderWithCopiesCanBeMovedAlone) {
+  ASSERT_EQ(build_grid({"--copy-images"}).exit_code, 0);
+  ASSERT_EQ(view({"--at", "0.3,0.2", "-o", folder_ / "before.png"}).exit_code, 0);
+  fs::remove_all(images_);
+  fs::rename(place_, folder_ / "moved");
+  place_ = folder_ / "moved";
+  ASSERT_EQ(view({"--at", "0.3,0.2", "-o", folder_ / "after.png"}).exit_code, 0);
+  EXPECT_EQ(read_file(folder_ / "after.png"), read_file(folder_ / "before.png"));
+}
+
+TEST_F(SceneCommand, AKilledBuildGoesOnWhereItStopped) {
+  const auto contents = [&] {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(place_)) {
+      if (entry.is_regular_file()) {
+        files[entry.path().lexically_relative(place_).string()] = read_file(entry.path().string());
+      }
+    }
+    return files;
+  };
+  ASSERT_EQ(build_grid().exit_code, 0);
+  const auto complete = contents();
+  for (const int signal : {SIGKILL, SIGINT}) {
+    fs::remove_all(place_);
+    const VantageProcess process(
+        {"scene", "build", "-o", place_, "--disparities=0:8", "--preset", "balanced", "--images",
+         images_, "--grid", "3x2", "--spacing", "0.5,0.5"},
+        folder_.path());
+    while (!fs::exists(place_ + "/maps/000-001-first.pfm") && !process.has_ended()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    process.send(signal);
+    const ProcessResult ended = process.wait();
+    if (signal == SIGINT && ended.exit_code != 0) {  // 0: it was too late
+      EXPECT_EQ(ended.exit_code, 130);
+      EXPECT_THAT(ended.err, HasSubstr("the same command goes on there"));
+    }
+    EXPECT_EQ(build_grid().exit_code, 0);
+    EXPECT_EQ(contents(), complete) << signal;
+  }
+}
+
+TEST_F(SceneCommand, SaysWhichImagesHaveGone) {
+  ASSERT_EQ(build_grid().exit_code, 0);
+  fs::rename(images_, folder_ / "elsewhere");
+  const ProcessResult lost = view({"--at", "0.3,0.2", "-o", folder_ / "v.png"});
+  EXPECT_EQ(lost.exit_code, 1);
+  EXPECT_TRUE(is_one_line(lost, "scene view"));
+  EXPECT_THAT(lost.err, AllOf(HasSubstr("images/0.png is not there"), HasSubstr("--copy-images")));
+  EXPECT_FALSE(fs::exists(folder_ / "v.png"));
+  images_ = folder_ / "elsewhere";
+  EXPECT_THAT(build_grid().err, HasSubstr("0 of them matched now"));
+  EXPECT_EQ(view({"--at", "0.3,0.2", "-o", folder_ / "v.png"}).exit_code, 0);
+}
+
+TEST_F(SceneCommand, AnImageThatCannotBeReadStopsTheBuildBeforeItBegins) {
+  write_file(images_ + "/3.png", read_file(images_ + "/3.png").substr(0, 900));
+  const ProcessResult built = build_grid();
+  EXPECT_EQ(built.exit_code, 1);
+  EXPECT_TRUE(is_one_line(built, "scene build"));
+  EXPECT_THAT(built.err, HasSubstr("3.png"));
+  EXPECT_FALSE(fs::exists(place_ + "/scene.json"));
+}
+
+// Rows and columns of a scene whose positions are wrong.
+TEST_F(SceneCommand, WarnsOfEdgesThatDoNotCorrespond) {
+  LayeredSceneOptions options;
+  options.width_px = 320;
+  options.height_px = 240;
+  options.samples_per_side = 1;
+  const LayeredScene scene(options, execution_);
+  const std::vector<SceneView> places = {{0, 0}, {0.5, 0}, {0, 0.5}, {0.5, 0.6}};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    write_photograph(folder_ / std::to_string(i) + ".png", scene.render(places[i], 0).image);
+  }
+  write_file(folder_ / "list.csv", "0.png,0,0\n1.png,1,0\n2.png,0,1\n3.png,1,1\n");
+  const auto build_with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"--positions", folder_ / "list.csv"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    fs::remove_all(place_);
+    return build(arguments);
+  };
+  const ProcessResult built = build_with({"--report", folder_ / "report.json"});
+  EXPECT_EQ(built.exit_code, 0);
+  EXPECT_THAT(built.err,
+              AllOf(HasSubstr("warning: edge 2-3 (2.png, 3.png): rows are off by"),
+                    testing::Not(HasSubstr("edge 0-1")), testing::Not(HasSubstr("exchanged"))));
+  const nlohmann::json edges = json_in(folder_ / "report.json").at("results").at("edges_matched");
+  EXPECT_EQ(edges.at(0).at("rectification").at("is_rectified"), true);
+  EXPECT_EQ(edges.at(3).at("rectification").at("is_rectified"), false);
+  EXPECT_THAT(build_with({"--no-rectification-check"}).err, testing::Not(HasSubstr("warning")));
+  EXPECT_THAT(build_with({"--quiet"}).err, IsEmpty());
+
+  write_file(folder_ / "list.csv", "1.png,0,0\n0.png,1,0\n");
+  EXPECT_THAT(build_with({}).err,
+              HasSubstr("warning: edge 0-1 (1.png, 0.png): the images look exchanged: "));
+}
+
+TEST_F(SceneCommand, CamerasNeedNoRowsOrColumns) {
+  write_photograph(images_ + "/middle.png", truth_at(0.3, 0.35));
+  write_file(images_ + "/list.csv", "0.png,0,0\n2.png,1,0\n3.png,0,0.5\nmiddle.png,0.3,0.35\n");
+  const ProcessResult built = build({"--positions", images_ + "/list.csv"});
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  ASSERT_EQ(view({"--at", "0.25,0.2", "-o", folder_ / "v.png"}).exit_code, 0);
+  EXPECT_GE(psnr(folder_ / "v.png", 0.25, 0.2), 28);
+  EXPECT_THAT(run_vantage({"scene", "info", place_}).out, HasSubstr("slope"));
+}
+
 TEST_F(SceneCommand, RefusesWrongUsage) {
   const auto refused = [&](const ProcessResult& result, int exit_code, const std::string& command,
                            const std::string& text) {
@@ -162,21 +324,40 @@ TEST_F(SceneCommand, RefusesWrongUsage) {
   refused(build({"--images", folder_ / "nothing"}), 1, "scene build", "nothing");
   refused(build({"--images", images_, "--disparities-y=-1:1"}), 2, "scene build",
           "--disparities-y");
-  write_file(folder_ / "list.csv", "images/0.png,0,0\nimages/1.png,1,1\n");
+  write_file(folder_ / "list.csv", "images/0.png,0,0\n");
   refused(build({"--positions", folder_ / "list.csv"}), 1, "scene build",
-          "0.png at 0,0 has no neighbour");
+          "scene has 1 images, expected 2 to 4096");
+  write_file(folder_ / "list.csv", "images/0.png,0,0\nimages/1.png,0,0\n");
+  refused(build({"--positions", folder_ / "list.csv"}), 1, "scene build", "1.png at 0,0 is where");
   refused(view({"--at", "0,0", "-o", folder_ / "v.png"}), 1, "scene view", "there is no scene");
   refused(run_vantage({"scene", "info", place_}), 1, "scene info", "there is no scene");
   EXPECT_EQ(run_vantage({"scene"}).exit_code, 2);
 
   ASSERT_EQ(build({"--images", images_ + "/[01].png"}).exit_code, 0);
-  refused(view({"-o", folder_ / "v.png"}), 2, "scene view", "expected --at X,Y or --sweep");
+  refused(view({"-o", folder_ / "v.png"}), 2, "scene view",
+          "expected one of --at, --sweep and --path");
   refused(view({"--at", "0", "-o", folder_ / "v.png"}), 2, "scene view", "a position X,Y");
   refused(view({"--at", "40,0", "-o", folder_ / "v.png"}), 2, "scene view", "at most 16");
   refused(view({"--sweep", "0,0:1,0:1", "-o", folder_ / "v.mp4"}), 2, "scene view", "VIEWS with 2");
   refused(view({"--at", "0,0", "--at", "1,0", "-o", folder_ / "v.png"}), 2, "scene view",
           "expected a pattern");
   refused(view({"--at", "0,0", "-o", images_ + "/0.png"}), 2, "scene view", "an input as well");
+  refused(
+      view({"--sweep", "0,0:90,0:4", "-o", folder_ / "v%d.png"}), 2, "scene view",
+      "view at 30,0 is 29 lengths of the nearest edge away from its images, expected at most 16");
+  EXPECT_FALSE(fs::exists(folder_ / "v0.png"));
+  refused(view({"--at", "0,0", "--sweep", "0,0:1,0:4", "-o", folder_ / "v.mp4"}), 2, "scene view",
+          "expected one of --at, --sweep and --path");
+  refused(view({"--at", "0,0", "--eye-separation", "2", "-o", folder_ / "v.png"}), 2, "scene view",
+          "no effect without --stereo-packing");
+  refused(view({"--at", "0,0", "--stereo-packing", "sbsl", "--hole-mask", folder_ / "h.png", "-o",
+                folder_ / "v.png"}),
+          2, "scene view", "--hole-mask is the mask of one view");
+  write_file(folder_ / "cameras.toml",
+             "[[view]]\nframe = 0\nK = [9,0,5, 0,9,5, 0,0,1]\nR = [1,0,0, 0,1,0, 0,0,1]\n"
+             "t = [0,0,0]\n");
+  refused(view({"--path", folder_ / "cameras.toml", "-o", folder_ / "v.mp4"}), 2, "scene view",
+          "expected positions at = [X, Y] among the images");
 }
 
 }  // namespace

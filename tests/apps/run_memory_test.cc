@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <sstream>
 
 #include "tests/apps/preloaded.h"
@@ -11,6 +12,16 @@ namespace vantage {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Cameras of large frames, turned and distorting.
+constexpr const char* kRig = R"(%YAML:1.0
+M1: [380, 0, 199, 0, 380, 150, 0, 0, 1]
+D1: [-0.2, 0.05, 0.001, -0.002]
+M2: [381, 0, 201, 0, 381, 149, 0, 0, 1]
+D2: [0.1, -0.02, 0.001, 0.001]
+R: [1, 0, 0, 0, 0.99920011, -0.03998933, 0, 0.03998933, 0.99920011]
+T: [-1, 0.02, 0.01]
+)";
 
 class RunMemory : public RunTest {
  protected:
@@ -32,8 +43,16 @@ class RunMemory : public RunTest {
     fs::create_directory(large_right_);
     write_photograph(large_left_ + "/000000.png", pair.left);
     write_photograph(large_right_ + "/000000.png", pair.right);
+    std::ofstream(rig_) << kRig;
     add_links(large_left_, 1);
     add_links(large_right_, 1);
+    write_file(calibration_,
+               "cam0=[400 0 200; 0 400 150; 0 0 1]\ncam1=[400 0 200; 0 400 150; 0 0 1]\n"
+               "doffs=0\nbaseline=1\nwidth=400\nheight=300\n");
+    write_file(
+        pose_,
+        "[[view]]\nK = [1600, 0, 800, 0, 1600, 600, 0, 0, 1]\n"
+        "R = [0.96, 0, -0.28, 0, 1, 0, 0.28, 0, 0.96]\nt = [0, 0, 0]\nsize = [1600, 1200]\n");
   }
 
   /// Further names of the files that there are, up to frame kMany.
@@ -90,6 +109,9 @@ class RunMemory : public RunTest {
   std::string out_ = folder_ / "out";
   std::string large_left_ = folder_ / "large-left";
   std::string large_right_ = folder_ / "large-right";
+  std::string calibration_ = folder_ / "calib.txt";
+  std::string pose_ = folder_ / "pose.toml";
+  std::string rig_ = folder_ / "rig.yml";
 };
 
 TEST_F(RunMemory, StaysFlat) {
@@ -107,7 +129,8 @@ TEST_F(RunMemory, IsNotMoreThanAllowed) {
       {"--frames", "0-9", "--method", "membrane", "--iterations", "10", "--save",
        "disparity,right-disparity,confidence,preview,views,stereo", "--view", "0.5"},
       {"--frames", "0-59", "--save", "preview,views", "--view", "0.5", "--video", "preview,views"},
-      {"--frames", "0-29", "--method", "diffusion", "--temporal-prior", "1", "--measure-flicker"}};
+      {"--frames", "0-29", "--method", "diffusion", "--temporal-prior", "1", "--measure-flicker"},
+      {"--frames", "0-29", "--calibration", rig_, "--save", "views", "--view", "0.5,0.1"}};
   for (const std::vector<std::string>& job : jobs) {
     const ProcessResult refused =
         run_vantage(large_arguments(joined(job, {"--memory", "10M", "--quiet"})));
@@ -144,6 +167,14 @@ TEST_F(RunMemory, FramesAllocateFewLargeBlocks) {
   EXPECT_LT(allocations_per_frame(large_arguments({}), kLarge), 12);
   EXPECT_LT(allocations_per_frame(
                 large_arguments({"--save", "disparity,preview,views", "--view", "0.5"}), kLarge),
+            30);
+  EXPECT_LT(allocations_per_frame(large_arguments({"--view", "0.5,0.25", "--look-at", "8",
+                                                   "--calibration", calibration_}),
+                                  kLarge),
+            30);
+  EXPECT_LT(allocations_per_frame(large_arguments({"--calibration", rig_, "--save",
+                                                   "disparity,preview,views", "--view", "0.5"}),
+                                  kLarge),
             30);
 }
 

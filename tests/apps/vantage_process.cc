@@ -53,7 +53,14 @@ VantageProcess::VantageProcess(const std::vector<std::string>& arguments,
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err_.c_str(), kFlags, 0600);
   std::vector<std::string> texts = {VANTAGE_BINARY};
   texts.insert(texts.end(), arguments.begin(), arguments.end());
-  std::vector<std::string> variables = with_changes(environ, environment);
+  std::vector<std::string> changes = environment;
+  if (std::ranges::none_of(changes, [](const std::string& variable) {
+        return name_of(variable) == "XDG_CONFIG_HOME";
+      })) {
+    // What whoever runs the tests has tuned is not to be found.
+    changes.push_back("XDG_CONFIG_HOME=" + (std::filesystem::absolute(folder) / "config").string());
+  }
+  std::vector<std::string> variables = with_changes(environ, changes);
   const int error = posix_spawn(&pid_, VANTAGE_BINARY, &actions, nullptr, pointers(texts).data(),
                                 pointers(variables).data());
   posix_spawn_file_actions_destroy(&actions);

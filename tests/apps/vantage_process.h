@@ -16,7 +16,8 @@ struct ProcessResult {
 /// Starts the `vantage` binary without a shell; its output goes to files in `folder`.
 class VantageProcess {
  public:
-  /// `environment`: variables ("NAME=value") beside, or instead of, those of this process.
+  /// `environment`: variables ("NAME=value") beside, or instead of, those of this process. Without
+  /// an XDG_CONFIG_HOME among them, that is a folder that is not there.
   VantageProcess(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                  const std::vector<std::string>& environment = {});
   VantageProcess(const VantageProcess&) = delete;

@@ -170,9 +170,10 @@ class SlurmTest(unittest.TestCase):
             return True
 
         def kill_node_of_second():
-            if run.finished_frames(2) == 0:
+            node = run.node(2) if run.finished_frames(2) > 0 else ""
+            if not node:
                 return False
-            killed_nodes.append(run.node(2))
+            killed_nodes.append(node)
             self.cluster.kill_node(killed_nodes[0])
             return True
 

@@ -1,0 +1,220 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "apps/commands.h"
+#include "apps/interrupt.h"
+#include "apps/option_groups.h"
+#include "apps/outputs.h"
+#include "apps/progress.h"
+#include "apps/run_report.h"
+#include "apps/settings.h"
+#include "apps/tuning_report.h"
+#include "engine/error.h"
+#include "engine/simd.h"
+#include "engine/tuning/tuning_file.h"
+#include "engine/tuning/tuning_session.h"
+#include "scheduler/machine.h"
+
+namespace vantage::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class Uses { kMatch, kRun, kBoth };
+
+struct TuneJob {
+  MatchOptions match;
+  CommonOptions common;
+  std::optional<TunedImages> images;
+  bool grey = false;
+  double budget_seconds = 60;
+  Uses uses = Uses::kBoth;
+  std::string output;
+  bool dry_run = false;
+  bool list = false;
+  bool forget = false;
+};
+
+void add_tune_settings(Settings& settings, TuneJob& job) {
+  settings.begin_group("Tuning");
+  Setting& size = settings.add("size", "WxH", "Width and height of the images, such as 1280x720");
+  size.set = [&job](const SettingValue& value) {
+    const auto sides = split(to_text(value), 'x');
+    try {
+      if (sides.size() == 2) {
+        job.images = TunedImages{to_integer(sides[0]), to_integer(sides[1])};
+        return;
+      }
+    } catch (const UsageError&) {  // the message below says more
+    }
+    reject_value(value, "WxH in whole pixels, such as 1280x720");
+  };
+  size.get = [&job]() -> SettingValue {
+    return job.images
+               ? SettingValue(fmt::format("{}x{}", job.images->width_px, job.images->height_px))
+               : SettingValue();
+  };
+  settings.choice<bool>("images", job.grey, {{"colour", false}, {"grey", true}},
+                        "What the images are: grey of 8 bits, which ssd matches in whole numbers, "
+                        "or anything else");
+  settings.choice<Uses>("for", job.uses,
+                        {{"both", Uses::kBoth}, {"match", Uses::kMatch}, {"run", Uses::kRun}},
+                        "What is to become fast: single pairs, or sequences");
+  settings.number("budget", job.budget_seconds, "SECONDS", "How long the search may take");
+  settings
+      .text("output", job.output, "FILE",
+            "Tuning file to keep what is found in; without it tuning.json in the folder "
+            "vantage of $XDG_CONFIG_HOME or ~/.config, where match and run look for it")
+      .short_name = 'o';
+  settings.flag("dry-run", job.dry_run, "Tell what would be tuned and where it would be kept");
+  settings.flag("list", job.list, "Show what the tuning file holds");
+  settings.flag("forget", job.forget, "Remove from it what has been found on this machine");
+}
+
+fs::path tuning_path(const TuneJob& job) {
+  if (!job.output.empty()) {
+    return job.output;
+  }
+  if (const auto path = default_tuning_path()) {
+    return *path;
+  }
+  throw Error(
+      "neither XDG_CONFIG_HOME nor HOME is an absolute path, expected one of them or --output");
+}
+
+void check(const TuneJob& job) {
+  if (job.list && job.forget) {
+    throw UsageError("--list and --forget cannot go together");
+  }
+  if (job.list || job.forget) {
+    return;
+  }
+  if (!job.images) {
+    throw UsageError("--size is missing, expected --size WxH");
+  }
+  if (job.match.disparities_auto) {
+    throw UsageError("--disparities is auto, but there is no pair to look at, expected MIN:MAX");
+  }
+}
+
+int list_entries(const fs::path& path) {
+  const TuningFileContent content = read_tuning_file(path);
+  for (const std::string& warning : content.warnings) {
+    fmt::print(stderr, "tune: warning: {}\n", warning);
+  }
+  fmt::print("{}: {} entr{}\n", path.string(), content.entries.size(),
+             content.entries.size() == 1 ? "y" : "ies");
+  for (const TuningEntry& entry : content.entries) {
+    fmt::print("\n{}", describe(entry));
+  }
+  return kExitDone;
+}
+
+int forget_entries(const TuneJob& job, const fs::path& path) {
+  const TuningKey here = make_tuning_key(scheduler::detect_machine(), job.match, {}, {1, 1});
+  const int removed = remove_entries(
+      path, [&](const TuningEntry& entry) { return entry.key.machine == here.machine; });
+  fmt::print("{}: {} entr{} of this machine removed\n", path.string(), removed,
+             removed == 1 ? "y" : "ies");
+  return kExitDone;
+}
+
+std::string now_as_text() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+TuningRequest request_of(const TuneJob& job) {
+  TuningRequest request;
+  request.match = job.match;
+  request.execution = job.common.execution;
+  request.images = *job.images;
+  request.images.is_8_bit_grey = job.grey;
+  request.budget_seconds = job.budget_seconds;
+  request.for_match = job.uses != Uses::kRun;
+  request.for_run = job.uses != Uses::kMatch;
+  return request;
+}
+
+TuningReport tune(const TuneJob& job, const TuningRequest& request) {
+  Progress progress("tune", "measurements",
+                    job.common.quiet ? ProgressStyle::kNone : ProgressStyle::kAuto);
+  int of_uses_before = 0;
+  int last = 0;
+  return tune_machine(
+      request,
+      [&](TunedUse /*use*/, const TunerProgress& now) {
+        if (now.measurements < last) {
+          of_uses_before += last;
+        }
+        last = now.measurements;
+        progress.update(of_uses_before + last, std::nullopt, 0);
+      },
+      &interrupt_flag());
+}
+
+}  // namespace
+
+int command_tune(const Arguments& arguments) {
+  TuneJob job;
+  Settings settings("tune",
+                    "Finds the threads, strips, bands, passes and frames in flight with which this "
+                    "machine is fastest, for match and run to use.");
+  add_tune_settings(settings, job);
+  add_match_settings(settings, job.match);
+  add_common_settings(settings, job.common);
+  if (!settings.read(arguments)) {
+    return kExitDone;
+  }
+  check(job);
+  force_instruction_set(job.common.isa);
+  const fs::path path = tuning_path(job);
+  if (job.list) {
+    return list_entries(path);
+  }
+  if (job.forget) {
+    return forget_entries(job, path);
+  }
+  job.match.validate();
+  job.common.execution.validate();
+  FileChecks files;
+  check_common_files(job.common, files);
+  const TuningRequest request = request_of(job);
+  RunReport report(settings.command(), reported_settings(settings, job.match));
+  report.start_trace(job.common.trace);
+  {
+    Execution execution(job.common.execution);
+    report.set_execution(execution);
+  }
+  const TuningKey key = make_tuning_key(scheduler::detect_machine(), request.match,
+                                        request.execution, request.images);
+  if (job.dry_run) {
+    fmt::print("{}budget   {} s\nfile     {}\n", describe(key), job.budget_seconds, path.string());
+    return kExitDone;
+  }
+  const TuningReport tuned = report.timed_compute("tune", [&] { return tune(job, request); });
+  fmt::print("{}", describe(tuned, request));
+  report.set_results(as_json(tuned, path));
+  report.write(job.common.report);
+  if (tuned.interrupted) {
+    fmt::print(stderr, "tune: interrupted, nothing is kept\n");
+    return kExitInterrupted;
+  }
+  const TuningEntry entry = entry_of(tuned, now_as_text());
+  if (!entry.match && !entry.run) {
+    throw Error(fmt::format("budget is {} s, expected enough to measure the default plan",
+                            job.budget_seconds));
+  }
+  std::fflush(stdout);
+  store_entry(path, entry);
+  fmt::print("kept in {}\n", path.string());
+  return kExitDone;
+}
+
+}  // namespace vantage::apps

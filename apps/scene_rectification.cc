@@ -1,0 +1,75 @@
+#include "apps/scene_rectification.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+#include "apps/rectification_check.h"
+#include "apps/vertical_error_report.h"
+
+namespace vantage::apps {
+namespace {
+
+constexpr std::size_t kMostWarnings = 5;
+
+const char* line_of(const SceneEdge& edge) {
+  if (edge.slope != 0) {
+    return "lines along the edge";
+  }
+  return edge.is_vertical ? "columns" : "rows";
+}
+
+}  // namespace
+
+SceneRectification::SceneRectification(const SceneBuilder& builder, const MatchOptions& options)
+    : builder_(builder),
+      expects_negative_disparities_(!options.disparities_auto &&
+                                    -options.disparities.min > options.disparities.max) {}
+
+SettingValue SceneRectification::add(const SceneBuilder::BuiltEdge& edge) {
+  if (!edge.rectification) {
+    return {};
+  }
+  const VerticalError& error = *edge.rectification;
+  const SceneEdge& ends = edge.stored.edge;
+  const std::string name = fmt::format("edge {}-{} ({}, {})", ends.first, ends.second,
+                                       builder_.image_file(ends.first).filename().string(),
+                                       builder_.image_file(ends.second).filename().string());
+  const bool is_rectified = error.systematic_px <= kRectificationLimit_px;
+  const bool looks_exchanged = !expects_negative_disparities_ && error.looks_exchanged();
+  if (!is_rectified) {
+    warnings_.push_back(
+        {error.systematic_px,
+         fmt::format("{}: {} are off by {:.2f} px (limit {}), {}", name, line_of(ends),
+                     error.systematic_px, kRectificationLimit_px, vertical_error_text(error))});
+  }
+  if (looks_exchanged) {
+    warnings_.push_back(
+        {std::numeric_limits<double>::infinity(),
+         fmt::format("{}: the images look exchanged: {:.0f} % of {} points have negative "
+                     "disparities; positions grow to the right and down",
+                     name, 100 * error.negative_share, error.inliers)});
+  }
+  SettingValue values = vertical_error_values(error);
+  values["is_rectified"] = is_rectified;
+  values["looks_exchanged"] = looks_exchanged;
+  return values;
+}
+
+void SceneRectification::print_warnings() const {
+  std::vector<Warning> worst = warnings_;
+  std::stable_sort(worst.begin(), worst.end(),
+                   [](const Warning& a, const Warning& b) { return a.severity > b.severity; });
+  const std::size_t printed = std::min(worst.size(), kMostWarnings);
+  for (std::size_t i = 0; i < printed; ++i) {
+    fmt::print(stderr, "scene build: warning: {}\n", worst[i].text);
+  }
+  if (worst.size() > printed) {
+    fmt::print(stderr, "scene build: warning: and {} more like these; --report tells of all\n",
+               worst.size() - printed);
+  }
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,220 @@
+// Speed of a movie: a sweep from the left camera to the right one, rendered and encoded as `synth`
+// does it, against rendering alone and encoding alone of the same frames. Prints a table; --json
+// FILE writes the figures.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/io/video_io.h"
+#include "engine/simd.h"
+#include "engine/synthesis/view_synthesizer.h"
+#include "perf/stopwatch.h"
+#include "perf/view_inputs.h"
+#include "scheduler/frame_pipeline.h"
+
+namespace vantage::perf {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Settings {
+  int width = 1920;
+  int height = 1080;
+  int frames = 300;
+  int rounds = 3;
+  int threads = scheduler::detect_machine().hardware_threads;
+  std::string only;  ///< part of the name of the place wanted; empty: all
+  std::optional<std::string> json;
+  fs::path output = fs::temp_directory_path();
+};
+
+/// A sweep of a view along the baseline, on its own threads.
+class Sweep {
+ public:
+  Sweep(const SyntheticPair& pair, const ViewPlace& place, int frames, int threads)
+      : pair_(pair),
+        place_(place),
+        frames_(frames),
+        execution_({.threads = threads}),
+        synthesizer_(SynthesisOptions{}, execution_),
+        views_(static_cast<std::size_t>(threads) + 2) {
+    fit_ = fit_channels(synthesizer_.intensity_sums(pair.left, pair.right, pair.maps.left.view(),
+                                                    pair.maps.right.view(), 0.5),
+                        pair.left.channels(), 1);
+  }
+
+  /// Several views at a time, to nothing or to a video.
+  FrameTime run(VideoWriter* video) {
+    int next = 0;
+    std::vector<int> index(views_.size());
+    scheduler::FrameSteps steps;
+    steps.read = [&](int slot) {
+      index[static_cast<std::size_t>(slot)] = next;
+      return next++ < frames_;
+    };
+    steps.prepare = [](int /*slot*/) {};
+    steps.compute = [&](int slot) {
+      render(index[static_cast<std::size_t>(slot)], views_[static_cast<std::size_t>(slot)]);
+    };
+    steps.encode = [](int /*slot*/) {};
+    steps.write = [&](int slot) {
+      if (video != nullptr) {
+        video->write(views_[static_cast<std::size_t>(slot)].image);
+      }
+    };
+    const Stopwatch watch;
+    scheduler::run_frames(execution_.executor(), static_cast<int>(views_.size()), steps);
+    if (video != nullptr) {
+      video->finish();
+    }
+    return watch.per_frame(frames_);
+  }
+
+  /// The encoder's share: only what it does is timed.
+  FrameTime encode_only(VideoWriter& video) {
+    FrameTime total;
+    const auto timed = [&](const std::function<void()>& work) {
+      const Stopwatch watch;
+      work();
+      const FrameTime time = watch.per_frame(frames_);
+      total.wall += time.wall;
+      total.processor += time.processor;
+    };
+    for (int frame = 0; frame < frames_; ++frame) {
+      render(frame, views_.front());
+      timed([&] { video.write(views_.front().image); });
+    }
+    timed([&] { video.finish(); });
+    return total;
+  }
+
+ private:
+  void render(int frame, SynthesizedView& view) const {
+    ViewPlace place = place_;
+    place.position.x = frames_ > 1 ? static_cast<double>(frame) / (frames_ - 1) : 0.5;
+    synthesizer_.synthesize(pair_.left, pair_.right, pair_.maps.left.view(),
+                            pair_.maps.right.view(), place.view(pair_), view, &fit_);
+  }
+
+  const SyntheticPair& pair_;
+  const ViewPlace& place_;
+  int frames_;
+  Execution execution_;
+  ViewSynthesizer synthesizer_;
+  std::array<IntensityFit, 4> fit_;
+  std::vector<SynthesizedView> views_;
+};
+
+struct Contender {
+  std::string name;
+  std::function<FrameTime()> run;
+  std::vector<FrameTime> rounds = {};
+};
+
+nlohmann::json time_place(const SyntheticPair& pair, const ViewPlace& place,
+                          const Settings& settings) {
+  Sweep one(pair, place, settings.frames, 1);
+  Sweep all(pair, place, settings.frames, settings.threads);
+  const fs::path file = settings.output / fmt::format("sweep_speed-{}.mp4", ::getpid());
+  const auto with_video = [&](const std::function<FrameTime(VideoWriter&)>& run) {
+    VideoWriter video(file, settings.width, settings.height, {});
+    return run(video);
+  };
+  std::vector<Contender> contenders = {
+      {"rendering, 1 thread", [&] { return one.run(nullptr); }},
+      {fmt::format("rendering, {} threads", settings.threads), [&] { return all.run(nullptr); }},
+      {"encoding, 1 thread",
+       [&] { return with_video([&](VideoWriter& video) { return one.encode_only(video); }); }},
+      {fmt::format("both, {} threads", settings.threads),
+       [&] { return with_video([&](VideoWriter& video) { return all.run(&video); }); }}};
+  for (int round = 0; round < settings.rounds; ++round) {
+    for (Contender& contender : contenders) {
+      contender.rounds.push_back(contender.run());
+    }
+  }
+  const auto size = static_cast<double>(fs::file_size(file));
+  fs::remove(file);
+  const std::string title = fmt::format("{}x{}, {} views: {}, {:.1f} MB", settings.width,
+                                        settings.height, settings.frames, place.name, 1e-6 * size);
+  fmt::print("\n{}\n{:<26} {:>9} {:>9} {:>9} {:>9} {:>12}\n", title, "a view:", "least ms",
+             "median ms", "CPU ms", "views/s", "to encoding");
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Contender& contender : contenders) {
+    const std::vector<double> wall = of(contender.rounds, &FrameTime::wall);
+    const double processor = median(of(contender.rounds, &FrameTime::processor));
+    const double ratio = median(ratios(contender.rounds, contenders[2].rounds));
+    fmt::print("{:<26} {:>9.2f} {:>9.2f} {:>9.2f} {:>9.1f} {:>12.3f}\n", contender.name,
+               1e3 * least(wall), 1e3 * median(wall), 1e3 * processor, 1 / median(wall), ratio);
+    rows.push_back({{"name", contender.name},
+                    {"least_seconds", least(wall)},
+                    {"median_seconds", median(wall)},
+                    {"processor_seconds", processor},
+                    {"ratio_to_encoding", ratio}});
+  }
+  return {{"title", title}, {"rows", rows}};
+}
+
+int usage() {
+  fmt::print(stderr,
+             "sweep_speed [--size WIDTHxHEIGHT] [--frames N] [--rounds N] [--threads N] [--only "
+             "NAME] [--json FILE] [--output FOLDER]\n");
+  return 2;
+}
+
+int run_benchmark(int argc, char** argv) {
+  Settings settings;
+  for (int i = 1; i < argc; i += 2) {
+    const std::string option = argv[i];
+    if (i + 1 == argc) {
+      return usage();
+    }
+    const char* value = argv[i + 1];
+    if (option == "--size") {
+      if (std::sscanf(value, "%dx%d", &settings.width, &settings.height) != 2) {
+        return usage();
+      }
+    } else if (option == "--frames") {
+      settings.frames = std::max(1, std::atoi(value));
+    } else if (option == "--rounds") {
+      settings.rounds = std::max(1, std::atoi(value));
+    } else if (option == "--threads") {
+      settings.threads = std::max(1, std::atoi(value));
+    } else if (option == "--only") {
+      settings.only = value;
+    } else if (option == "--json") {
+      settings.json = value;
+    } else if (option == "--output") {
+      settings.output = value;
+    } else {
+      return usage();
+    }
+  }
+  fmt::print("instruction set {}, {} threads\n", instruction_set_in_use(), settings.threads);
+  Execution execution({.threads = settings.threads});
+  const SyntheticPair pair = make_synthetic_pair(settings.width, settings.height, false, execution);
+  nlohmann::json tables = nlohmann::json::array();
+  for (const ViewPlace& place : view_places()) {
+    if (place.position.x == 0.5 && place.name.find(settings.only) != std::string::npos) {
+      tables.push_back(time_place(pair, place, settings));
+    }
+  }
+  if (settings.json) {
+    std::ofstream(*settings.json) << tables.dump(2) << '\n';
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace vantage::perf
+
+int main(int argc, char** argv) { return vantage::perf::run_benchmark(argc, argv); }

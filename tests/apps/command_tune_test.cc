@@ -1,0 +1,255 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/tuning/tuning_file.h"
+#include "engine/tuning/tuning_key.h"
+#include "scheduler/machine.h"
+#include "tests/apps/pair_fixture.h"
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A pair and a configuration folder of its own.
+class TuneTest : public PairTest {
+ protected:
+  using Arguments = std::vector<std::string>;
+
+  [[nodiscard]] ProcessResult run(const Arguments& arguments) const {
+    return run_vantage(arguments, {"XDG_CONFIG_HOME=" + config_});
+  }
+  [[nodiscard]] ProcessResult tune(const Arguments& more = {}) const {
+    Arguments arguments = {"tune", "--size", "71x53", "--disparities=0:9", "--budget", "0.4"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+  [[nodiscard]] ProcessResult match_tuned(const Arguments& more = {}) const {
+    Arguments arguments = {
+        "match",    left_,  right_, "-o", folder_ / "map.pfm", "--disparities=0:9",
+        "--report", report_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+  [[nodiscard]] nlohmann::json report() const { return nlohmann::json::parse(read_file(report_)); }
+
+  /// The key that `match` looks for with the pair of this test.
+  [[nodiscard]] TuningKey key(const ExecutionOptions& execution = {},
+                              MatchMethod method = MatchMethod::kSsd) const {
+    MatchOptions match;
+    match.method = method;
+    match.disparities = {0, 9};
+    return make_tuning_key(scheduler::detect_machine(), match, execution,
+                           {pair_.left.width(), pair_.left.height(), pair_.left.channels() == 1});
+  }
+  void store(const TuningKey& key, const TunedSettings& settings) const {
+    TuningEntry entry;
+    entry.key = key;
+    entry.match = TunedPlan{.settings = settings};
+    entry.run = TunedPlan{.settings = settings};
+    store_entry(file_, entry);
+  }
+
+  std::string config_ = folder_ / "config";
+  fs::path file_ = fs::path(config_) / "vantage" / "tuning.json";
+  std::string report_ = folder_ / "report.json";
+  /// Not what any cost model would choose.
+  TunedSettings odd_ = {.threads = 3, .strip_width_px = 7, .band_height_px = 5};
+};
+
+TEST_F(TuneTest, FindsStoresAndTells) {
+  const ProcessResult result = tune({"--report", report_, "--images", "grey"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("squared box about 8 px, 8-bit grey"));
+  EXPECT_THAT(result.out, HasSubstr("median ms"));
+  EXPECT_THAT(result.out, HasSubstr("kept in " + file_.string()));
+  const TuningFileContent content = read_tuning_file(file_);
+  ASSERT_EQ(content.entries.size(), 1U);
+  ASSERT_TRUE(content.entries[0].match);
+  EXPECT_TRUE(content.entries[0].run);
+  const nlohmann::json json = report();
+  EXPECT_EQ(json["command"], "tune");
+  EXPECT_EQ(json["results"]["key"], content.entries[0].key.text());
+  EXPECT_EQ(json["results"]["match"]["tried"][0]["settings"], nlohmann::json::object());
+  EXPECT_GT(json["results"]["match"]["frame_seconds"], 0);
+
+  const ProcessResult list = run({"tune", "--list"});
+  EXPECT_EQ(list.exit_code, 0);
+  EXPECT_THAT(list.out, HasSubstr("1 entry"));
+  EXPECT_THAT(list.out, HasSubstr(content.entries[0].key.machine));
+  // The entry is what match then looks for.
+  ASSERT_EQ(match_tuned().exit_code, 0);
+  EXPECT_EQ(report()["tuning"]["key"], content.entries[0].key.text());
+  const ProcessResult forget = run({"tune", "--forget"});
+  EXPECT_THAT(forget.out, HasSubstr("1 entry of this machine removed"));
+  EXPECT_TRUE(read_tuning_file(file_).entries.empty());
+}
+
+TEST_F(TuneTest, TunesOneUse) {
+  ASSERT_EQ(tune({"--for", "match"}).exit_code, 0);
+  EXPECT_FALSE(read_tuning_file(file_).entries.at(0).run);
+}
+
+TEST_F(TuneTest, DryRunTellsAndStoresNothing) {
+  const ProcessResult result = tune({"--dry-run"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr(file_.string()));
+  EXPECT_FALSE(fs::exists(config_));
+}
+
+TEST_F(TuneTest, ForgetsThisMachineOnly) {
+  TuningKey other = key();
+  other.machine = "another machine";
+  store(other, odd_);
+  store(key(), odd_);
+  store(key({}, MatchMethod::kBayes), odd_);
+  EXPECT_THAT(run({"tune", "--forget"}).out, HasSubstr("2 entries"));
+  const TuningFileContent content = read_tuning_file(file_);
+  ASSERT_EQ(content.entries.size(), 1U);
+  EXPECT_EQ(content.entries[0].key, other);
+}
+
+TEST_F(TuneTest, AnUnwritableFileFailsAfterTheResultsAreShown) {
+  write_file(config_, "a file");
+  const ProcessResult result = tune();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out, HasSubstr("median ms"));
+  EXPECT_THAT(result.err, HasSubstr("cannot be made a folder"));
+}
+
+TEST_F(TuneTest, RefusesWrongUsage) {
+  for (const auto& [arguments, message] : std::vector<std::pair<Arguments, std::string>>{
+           {{"tune"}, "--size is missing"},
+           {{"tune", "--size", "71"}, "--size is '71', expected WxH"},
+           {{"tune", "--size", "71x-3"}, "size is 71x-3"},
+           {{"tune", "--size", "71x53", "--disparities=auto"}, "--disparities is auto"},
+           {{"tune", "--size", "71x53", "--budget", "-1"}, "budget is -1"},
+           {{"tune", "--size", "71x53", "--window", "4"}, "window is 4"},
+           {{"tune", "--list", "--forget"}, "cannot go together"}}) {
+    const ProcessResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 2) << message;
+    EXPECT_TRUE(is_one_line(result, "tune"));
+    EXPECT_THAT(result.err, HasSubstr(message));
+  }
+}
+
+TEST_F(TuneTest, MatchUsesItsEntryAndTheMapIsTheSame) {
+  for (const auto& [name, method] :
+       {std::pair("ssd", MatchMethod::kSsd), std::pair("bayes", MatchMethod::kBayes)}) {
+    ASSERT_EQ(match_tuned({"--no-tuning", "--method", name}).exit_code, 0);
+    const std::string expected = read_file(folder_ / "map.pfm");
+    EXPECT_EQ(report()["tuning"]["key"], nullptr);
+    EXPECT_EQ(report()["tuning"]["reason"], "--no-tuning");
+
+    TunedSettings settings = odd_;
+    settings.iterations_per_pass = 3;
+    store(key({}, method), settings);
+    const ProcessResult result = match_tuned({"--method", name});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("tuned: threads 3, strip-width 7"));
+    EXPECT_EQ(read_file(folder_ / "map.pfm"), expected);
+    const nlohmann::json json = report();
+    EXPECT_EQ(json["tuning"]["key"], key({}, method).text());
+    EXPECT_EQ(json["tuning"]["file"], file_.string());
+    EXPECT_EQ(json["threads"], 3);
+    EXPECT_EQ(json["plan"]["passes"][0]["strip_width_px"], 7);
+    EXPECT_EQ(json["plan"]["passes"][0]["band_height_px"], 5);
+  }
+}
+
+TEST_F(TuneTest, GivenOptionsGoFirst) {
+  store(key(), odd_);
+  ASSERT_EQ(match_tuned({"--strip-width", "11"}).exit_code, 0);
+  EXPECT_EQ(report()["plan"]["passes"][0]["strip_width_px"], 11);
+  EXPECT_EQ(report()["plan"]["passes"][0]["band_height_px"], 5);
+  EXPECT_FALSE(report()["tuning"]["settings"].contains("strip-width"));
+  // Another number of threads is other work.
+  ASSERT_EQ(match_tuned({"--threads", "1"}).exit_code, 0);
+  EXPECT_EQ(report()["threads"], 1);
+  EXPECT_EQ(report()["tuning"]["key"], nullptr);
+  store(key({.threads = 1}), {.strip_width_px = 13});
+  ASSERT_EQ(match_tuned({"--threads", "1"}).exit_code, 0);
+  EXPECT_EQ(report()["plan"]["passes"][0]["strip_width_px"], 13);
+}
+
+TEST_F(TuneTest, WithoutAnEntryTheReportSaysWhatWasWanted) {
+  ASSERT_EQ(match_tuned().exit_code, 0);
+  EXPECT_EQ(report()["tuning"]["wanted"], key().text());
+  EXPECT_EQ(report()["tuning"]["reason"], "there is no entry for this work");
+}
+
+TEST_F(TuneTest, ADamagedFileIsAWarning) {
+  fs::create_directories(file_.parent_path());
+  write_file(file_, "{ damaged");
+  ProcessResult result = match_tuned();
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, HasSubstr("match: warning: tuning is not used: " + file_.string()));
+  EXPECT_THAT(report()["tuning"]["reason"].get<std::string>(), HasSubstr("damaged"));
+  result = match_tuned({"--quiet"});
+  EXPECT_EQ(result.err, "");
+  EXPECT_EQ(tune().exit_code, 1);
+  EXPECT_EQ(read_file(file_), "{ damaged");
+}
+
+TEST_F(TuneTest, AnotherFileCanBeNamed) {
+  const std::string other = folder_ / "cluster.json";
+  ASSERT_EQ(tune({"--output", other, "--for", "match", "--images", "grey"}).exit_code, 0);
+  EXPECT_FALSE(fs::exists(config_));
+  ASSERT_EQ(match_tuned({"--tuning", other}).exit_code, 0);
+  EXPECT_EQ(report()["tuning"]["file"], other);
+  const ProcessResult result = match_tuned({"--tuning", folder_ / "none.json"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, HasSubstr("there is no such file"));
+}
+
+TEST_F(TuneTest, RunUsesItsEntryAndTheFilesAreTheSame) {
+  for (const std::string side : {"left", "right"}) {
+    fs::create_directory(folder_ / (side + "s"));
+    for (const std::string frame : {"0.png", "1.png", "2.png"}) {
+      fs::copy_file(folder_ / (side + ".png"), fs::path(folder_ / (side + "s")) / frame);
+    }
+  }
+  const auto run_sequence = [&](const std::string& out, const Arguments& more) {
+    Arguments arguments = {
+        "run", "--left",      folder_ / "lefts",   "--right",  folder_ / "rights",
+        "-o",  folder_ / out, "--disparities=0:9", "--report", report_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  ProcessResult result = run_sequence("plain", {"--no-tuning"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(report()["tuning"]["reason"], "--no-tuning");
+
+  TunedSettings settings = odd_;
+  settings.frames_in_flight = 2;
+  store(key(), settings);
+  result = run_sequence("tuned", {});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("3 threads (tbb), 2 frames in flight"));
+  EXPECT_THAT(result.err, HasSubstr("run: tuned: threads 3, in-flight 2, strip-width 7"));
+  EXPECT_EQ(report()["tuning"]["key"], key().text());
+  EXPECT_EQ(report()["threads"], 3);
+  for (const std::string frame : {"000000.pfm", "000001.pfm", "000002.pfm"}) {
+    EXPECT_EQ(read_file(fs::path(folder_ / "tuned") / "disparity" / frame),
+              read_file(fs::path(folder_ / "plain") / "disparity" / frame));
+  }
+  // Options go first, and a limit of memory is planned for without a tuned plan.
+  result = run_sequence("given", {"--in-flight", "4"});
+  EXPECT_THAT(result.err, HasSubstr("4 frames in flight"));
+  result = run_sequence("limited", {"--memory", "2G"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(report()["tuning"]["reason"].get<std::string>(), HasSubstr("--memory"));
+  // A run can be continued with other tuning.
+  result = run_sequence("plain", {"--resume"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
+}  // namespace
+}  // namespace vantage

@@ -1,0 +1,216 @@
+// New views of sequences from any camera, and along paths.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/apps/run_fixture.h"
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+/// With the camera half a baseline to the right of the left one, turned, of another size.
+constexpr const char* kPoses = R"([[view]]
+K = [70, 0, 20, 0, 72, 15, 0, 0, 1]
+R = [[0.96, 0, -0.28], [0, 1, 0], [0.28, 0, 0.96]]
+t = [-0.48, 0, -0.14]
+size = [40, 30]
+
+[[view]]
+at = [0.25, -0.5]
+)";
+
+/// To the right, down and forward, without turning.
+std::string path_to(double x, int last_frame) {
+  return "[[view]]\nframe = 0\nK = [60, 0, 32, 0, 60, 24, 0, 0, 1]\n"
+         "R = [1, 0, 0, 0, 1, 0, 0, 0, 1]\nt = [0, 0, 0]\n"
+         "[[view]]\nframe = " +
+         std::to_string(last_frame) +
+         "\nK = [60, 0, 32, 0, 60, 24, 0, 0, 1]\nR = [1, 0, 0, 0, 1, 0, 0, 0, 1]\nt = [" +
+         std::to_string(-x) + ", -0.5, -1]\n";
+}
+
+class RunPoses : public RunTest {
+ protected:
+  RunPoses() {
+    write_file(calibration_,
+               "cam0=[60 0 32; 0 60 24; 0 0 1]\ncam1=[60 0 32; 0 60 24; 0 0 1]\ndoffs=0\n"
+               "baseline=1\nwidth=64\nheight=48\n");
+    write_file(poses_, kPoses);
+    write_file(path_, path_to(1, 8));
+  }
+
+  [[nodiscard]] std::vector<std::string> calibrated(const std::vector<std::string>& more) const {
+    return joined({"--calibration", calibration_}, more);
+  }
+  [[nodiscard]] std::vector<std::string> all_views(const std::vector<std::string>& more) const {
+    return joined(calibrated({"--save", "views,holes,sources", "--view", "0.5", "--pose", poses_,
+                              "--path", path_}),
+                  more);
+  }
+
+  std::string calibration_ = folder_ / "calib.txt";
+  std::string poses_ = folder_ / "poses.toml";
+  std::string path_ = folder_ / "path.toml";
+  std::string out_ = folder_ / "out";
+};
+
+TEST_F(RunPoses, AreTheViewsOfSynth) {
+  const ProcessResult result = run(out_, all_views({"--frames", "2-2"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string file = "/" + frame_file(2);
+  EXPECT_THAT(files_below(out_ + "/views"),
+              ElementsAre("0.25,-0.5" + file, "0.5" + file, "camera-1" + file, "path-1" + file));
+  EXPECT_EQ(read_photograph(out_ + "/views/camera-1" + file).width(), 40);
+
+  // A quarter of the way.
+  write_file(folder_ / "quarter.toml",
+             "[[view]]\nK = [60, 0, 32, 0, 60, 24, 0, 0, 1]\nR = [1, 0, 0, 0, 1, 0, 0, 0, 1]\n"
+             "t = [-0.25, -0.125, -0.25]\n");
+  const std::string poses = kPoses;
+  write_file(folder_ / "camera.toml", poses.substr(0, poses.rfind("[[view]]")));
+  const std::vector<std::pair<std::string, std::vector<std::string>>> views = {
+      {"camera-1", {"--pose", folder_ / "camera.toml"}},
+      {"path-1", {"--pose", folder_ / "quarter.toml"}},
+      {"0.25,-0.5", {"--view", "0.25,-0.5"}}};
+  for (const auto& [name, options] : views) {
+    const ProcessResult view =
+        run_vantage(joined({"synth", left_ + file, right_ + file, "--disparities=0:9",
+                            "--calibration", calibration_, "-o", folder_ / "v.png", "--hole-mask",
+                            folder_ / "h.png", "--source-mask", folder_ / "s.png"},
+                           options));
+    ASSERT_EQ(view.exit_code, 0) << view.err;
+    for (const auto& [kind, made] :
+         {std::pair("views", "v.png"), {"holes", "h.png"}, {"sources", "s.png"}}) {
+      EXPECT_EQ(read_file(out_ + "/" + kind + "/" + name + file), read_file(folder_ / made))
+          << kind << " " << name;
+    }
+  }
+}
+
+TEST_F(RunPoses, TurnedPathsArePathsOfTurnedCameras) {
+  const auto views_of = [&](const std::vector<std::string>& more) {
+    const std::string out = out_ + more[1];
+    const ProcessResult result = run(out, calibrated(joined(more, {"--frames", "0-2"})));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return results_in(out + "/views");
+  };
+  const FolderContent moving = views_of({"--view-path", "0=0,2=1", "--look-at", "4"});
+  const FolderContent fixed = views_of({"--view", "0.5", "--look-at", "4"});
+  const FolderContent ahead = views_of({"--view", "1"});
+  EXPECT_EQ(moving.at(frame_file(1)), fixed.at(frame_file(1)));
+  EXPECT_NE(moving.at(frame_file(2)), ahead.at(frame_file(2)));
+}
+
+TEST_F(RunPoses, GiveTheSameBytesHoweverTheyAreMade) {
+  const std::vector<std::string> outputs = all_views(
+      {"--video", "views", "--chunk-frames", "3", "--measure-flicker", "--frames", "0-9"});
+  ASSERT_EQ(run(out_, joined(outputs, {"--executor", "serial", "--in-flight", "1"})).exit_code, 0);
+  const FolderContent expected = results_in(out_);
+  ASSERT_TRUE(expected.contains("views/camera-1.mp4"));
+  const std::vector<std::vector<std::string>> ways = {
+      {"--executor", "tbb", "--threads", "3", "--in-flight", "5"},
+      {"--executor", "openmp", "--threads", "2", "--in-flight", "2"}};
+  for (const auto& way : ways) {
+    const std::string out = folder_ / way[1];
+    ASSERT_EQ(run(out, joined(outputs, way)).exit_code, 0);
+    EXPECT_TRUE(same_files(results_in(out), expected)) << way[1];
+  }
+}
+
+TEST_F(RunPoses, PartsAreMergedWithoutTheFiles) {
+  const std::vector<std::string> outputs = all_views({"--video", "views", "--chunk-frames", "5"});
+  ASSERT_EQ(run(out_, outputs).exit_code, 0);
+  const FolderContent expected = results_in(out_);
+  const std::string parts = folder_ / "parts";
+  for (const std::string shard : {"1/3", "2/3", "3/3"}) {
+    const ProcessResult result =
+        run(parts, joined(outputs, {"--shard", shard, "--threads", shard.substr(0, 1)}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+  }
+  fs::remove(poses_);
+  fs::remove(path_);
+  const ProcessResult merged = run_vantage({"merge", parts});
+  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  EXPECT_TRUE(same_files(results_in(parts), expected));
+}
+
+TEST_F(RunPoses, OthersAreAnotherRun) {
+  const std::vector<std::string> some = {"--frames", "0-1"};
+  ASSERT_EQ(run(out_, all_views(some)).exit_code, 0);
+  // What counts is what the file holds.
+  fs::rename(path_, folder_ / "same.toml");
+  auto renamed = all_views({"--resume", "--frames", "0-2"});
+  std::ranges::replace(renamed, path_, std::string(folder_ / "same.toml"));
+  const ProcessResult resumed = run(out_, renamed);
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  write_file(path_, path_to(0.5, 8));
+  const ProcessResult other = run(out_, all_views({"--resume", "--quiet"}));
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_TRUE(is_one_line(other, "run"));
+  EXPECT_THAT(other.err, HasSubstr("path was another one"));
+  const std::string turned = folder_ / "turned";
+  ASSERT_EQ(run(turned, calibrated({"--view", "0", "--look-at", "4", "--frames", "0-0"})).exit_code,
+            0);
+  const ProcessResult elsewhere =
+      run(turned, calibrated({"--view", "0", "--look-at", "5", "--resume", "--quiet"}));
+  EXPECT_EQ(elsewhere.exit_code, 1);
+  EXPECT_THAT(elsewhere.err, HasSubstr("look-at was 4.0, now 5.0"));
+}
+
+TEST_F(RunPoses, WrongUsageIsOneLine) {
+  const std::string bad = folder_ / "bad.toml";
+  write_file(bad, "[[view]]\nat = [0.5, 0]\n[[view]]\nat = [17, 0]\n");
+  const std::string away = folder_ / "away.toml";
+  write_file(away, path_to(1, 4) +
+                       "[[view]]\nframe = 9\nK = [60, 0, 32, 0, 60, 24, 0, 0, 1]\n"
+                       "R = [-1, 0, 0, 0, 1, 0, 0, 0, -1]\nt = [0, 0, 0]\n");
+  struct Misuse {
+    int exit_code;
+    std::vector<std::string> options;
+    std::string says;
+  };
+  const std::vector<Misuse> misuses = {
+      {2, {"--path", path_}, "poses with K, R and t need calibrated cameras, expected --calib"},
+      {2, {"--view", "0.5", "--look-at", "4"}, "--look-at needs the focal length, expected --cal"},
+      {2, calibrated({"--look-at", "4"}), "--look-at has no effect without --view or --view-path"},
+      {2, calibrated({"--look-at", "4", "--pose", poses_}), "turns the cameras of --view and"},
+      {2, calibrated({"--look-at", "-1", "--view", "0"}), "disparity to look at is -1, expected"},
+      {2, {"--pose", bad}, "view is 17, expected numbers within ±16"},
+      {2, {"--pose", path_}, "path.toml: view 1 has a frame, which only --path uses"},
+      {2, {"--path", poses_}, "poses.toml: view 1 has no frame, expected one for every pose"},
+      {2, calibrated({"--view", "0.25,-0.5", "--pose", poses_}), "view 0.25,-0.5 is given twice"},
+      {2, calibrated({"--path", path_, "--save", "disparity"}), "save has no views"},
+      {1, {"--path", folder_ / "absent.toml"}, "absent.toml: cannot be read"},
+      {1, calibrated({"--path", away}), "frame 8: camera of the new view looks away"}};
+  for (const Misuse& misuse : misuses) {
+    const ProcessResult result = run(out_, joined(misuse.options, {"--quiet"}));
+    EXPECT_EQ(result.exit_code, misuse.exit_code) << misuse.says;
+    EXPECT_TRUE(is_one_line(result, "run"));
+    EXPECT_THAT(result.err, HasSubstr(misuse.says));
+    EXPECT_FALSE(fs::exists(out_));
+  }
+}
+
+TEST_F(RunPoses, SettingsInEffectNameTheFile) {
+  const ProcessResult result = run(out_, all_views({"--print-config"}));
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, HasSubstr("pose = '" + poses_ + "'"));
+  write_file(folder_ / "job.toml", result.out);
+  const ProcessResult planned = run_vantage({"run", folder_ / "job.toml", "--dry-run"});
+  EXPECT_EQ(planned.exit_code, 0) << planned.err;
+  EXPECT_THAT(planned.out, HasSubstr("views/camera-1"));
+  EXPECT_THAT(planned.out, Not(HasSubstr("path-2")));
+}
+
+}  // namespace
+}  // namespace vantage

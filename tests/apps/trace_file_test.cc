@@ -1,0 +1,154 @@
+// --trace: Chrome trace events that nest and account for all threads.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/apps/run_fixture.h"
+
+namespace vantage {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+struct Slice {
+  double begin_us = 0;
+  double end_us = 0;
+  std::string category;
+};
+
+/// Every event has what the format asks for; slices by thread, outer ones first.
+std::map<int, std::vector<Slice>> checked_slices(const json& trace) {
+  std::map<int, std::vector<Slice>> slices;
+  std::set<int> named;
+  for (const json& event : trace.at("traceEvents")) {
+    EXPECT_TRUE(event.at("pid").is_number_integer());
+    EXPECT_TRUE(event.at("name").is_string());
+    if (event.at("ph") == "M") {
+      EXPECT_TRUE(event.at("args").at("name").is_string());
+      if (event.at("name") == "thread_name") {
+        named.insert(event.at("tid").get<int>());
+      }
+      continue;
+    }
+    EXPECT_EQ(event.at("ph"), "X");
+    EXPECT_TRUE(event.at("args").is_object());
+    const double begin_us = event.at("ts");
+    const double duration_us = event.at("dur");
+    EXPECT_GE(begin_us, 0);
+    EXPECT_GE(duration_us, 0);
+    const std::string category = event.at("cat");
+    EXPECT_TRUE(category == "work" || category == "join" || category == "wait") << category;
+    slices[event.at("tid").get<int>()].push_back({begin_us, begin_us + duration_us, category});
+  }
+  for (auto& [thread, of_thread] : slices) {
+    EXPECT_TRUE(named.count(thread) == 1) << thread;
+    std::ranges::stable_sort(of_thread, [](const Slice& a, const Slice& b) {
+      return a.begin_us != b.begin_us ? a.begin_us < b.begin_us : a.end_us > b.end_us;
+    });
+  }
+  return slices;
+}
+
+/// Ends of slices are sums of rounded numbers.
+constexpr double kRounding_us = 0.01;
+
+/// Time of `slices` in work and waits, each moment once: in the innermost of them.
+double accounted_us(const std::vector<Slice>& slices) {
+  std::vector<Slice> open;
+  double sum_us = 0;
+  for (const Slice& slice : slices) {
+    while (!open.empty() && open.back().end_us <= slice.begin_us + kRounding_us) {
+      open.pop_back();
+    }
+    if (!open.empty()) {
+      EXPECT_LE(slice.end_us, open.back().end_us + kRounding_us);
+    }
+    const double length_us = slice.end_us - slice.begin_us;
+    if (slice.category != "join") {
+      sum_us += length_us;
+    }
+    // What it covers of the slice around it is counted here alone.
+    if (!open.empty() && open.back().category != "join") {
+      sum_us -= length_us;
+    }
+    open.push_back(slice);
+  }
+  return sum_us;
+}
+
+class TraceFile : public RunTest {
+ protected:
+  std::string trace_ = folder_ / "trace.json";
+  std::string report_ = folder_ / "report.json";
+};
+
+TEST_F(TraceFile, OfARunNestsAndAccountsForAllThreads) {
+  for (const std::string executor : {"tbb", "openmp", "serial"}) {
+    const std::string out = folder_ / ("out-" + executor);
+    const ProcessResult result =
+        run(out, {"--save", "disparity,views", "--view", "0.5", "--threads", "2", "--executor",
+                  executor, "--trace", trace_, "--report", report_});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const json trace = read_report(trace_);
+    const double wall_us = trace.at("otherData").at("wall_us");
+    EXPECT_EQ(trace.at("otherData").at("dropped_spans"), 0);
+    const auto slices = checked_slices(trace);
+
+    const json totals = read_report(report_).at("trace");
+    EXPECT_EQ(totals.at("file"), trace_);
+    int pool_threads = 0;
+    double pool_us = 0;
+    for (std::size_t t = 0; t < totals.at("threads").size(); ++t) {
+      const json& thread = totals.at("threads")[t];
+      const double accounted = accounted_us(slices.at(static_cast<int>(t) + 1));
+      EXPECT_NEAR(
+          accounted,
+          1e6 * (thread.at("work_seconds").get<double>() + thread.at("wait_seconds").get<double>()),
+          0.005 * wall_us);
+      if (thread.at("is_in_pool").get<bool>()) {
+        ++pool_threads;
+        pool_us += accounted;
+      }
+    }
+    // A thread that came too late for any task is not there.
+    EXPECT_LE(pool_threads, executor == "serial" ? 1 : 2);
+    EXPECT_NEAR(pool_us, pool_threads * wall_us, 0.02 * pool_threads * wall_us) << executor;
+    EXPECT_EQ(totals.at("frames").size(), kFrames + 1U);  // and the end
+    EXPECT_GT(totals.at("stages").at("column SSD").get<double>(), 0);
+    EXPECT_GT(totals.at("work").at("match left").at("count").get<int>(), kFrames);
+  }
+}
+
+TEST_F(TraceFile, ChangesNoResult) {
+  const std::string plain = folder_ / "plain";
+  const std::string traced = folder_ / "traced";
+  ASSERT_EQ(run(plain, {"--save", "disparity,views", "--view", "0.5"}).exit_code, 0);
+  ASSERT_EQ(
+      run(traced, {"--save", "disparity,views", "--view", "0.5", "--trace", trace_}).exit_code, 0);
+  EXPECT_TRUE(same_files(results_in(traced), results_in(plain)));
+}
+
+TEST_F(TraceFile, MayNotBeAnotherOutputNorInAMissingFolder) {
+  const std::string left = left_ + "/" + frame_file(0);
+  const std::string right = right_ + "/" + frame_file(0);
+  const std::string map = folder_ / "map.pfm";
+  const ProcessResult twice = run_vantage({"match", left, right, "--disparities", "0:9", "-o", map,
+                                           "--report", report_, "--trace", report_});
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_THAT(twice.err, HasSubstr("--trace"));
+  const ProcessResult missing = run_vantage({"match", left, right, "--disparities", "0:9", "-o",
+                                             map, "--trace", folder_ / "nowhere/trace.json"});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.err, HasSubstr("nowhere"));
+  EXPECT_FALSE(std::filesystem::exists(map));
+}
+
+}  // namespace
+}  // namespace vantage
