@@ -203,7 +203,9 @@ int command_tune(const Arguments& arguments) {
   report.set_results(as_json(tuned, path));
   report.write(job.common.report);
   if (tuned.interrupted) {
-    fmt::print(stderr, "tune: interrupted, nothing is kept\n");
+    if (!job.common.quiet) {
+      fmt::print(stderr, "tune: interrupted, nothing is kept\n");
+    }
     return kExitInterrupted;
   }
   const TuningEntry entry = entry_of(tuned, now_as_text());

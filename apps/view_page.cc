@@ -146,7 +146,7 @@ std::string shader_elements() {
   std::string result;
   for (const std::string_view name :
        {"disparity.glsl", "warp.vert", "warp.frag", "screen.vert", "combine.frag", "fill.frag",
-        "soften.frag", "rows.frag", "show.frag"}) {
+        "soften.frag", "outlines.frag", "rows.frag", "show.frag"}) {
     result += fmt::format("<script type=\"text/plain\" id=\"{}\">\n{}</script>\n", name,
                           embedded_file(name));
   }

@@ -10,9 +10,9 @@ namespace vantage::scheduler {
 
 /// Writes down as spans what a trace leaves open: on threads of the pool, the time before, between
 /// and behind the outermost spans ("idle"), and within joins that between their inner spans
-/// ("wait for tasks"). Afterwards every moment of such a thread from 0 to wall_ns lies in a span of kind
-/// kWork or kWait that no other span of these kinds within it covers. Threads outside of the pool
-/// stay as they are.
+/// ("wait for tasks"). Afterwards every moment of such a thread from 0 to wall_ns lies in a span of
+/// kind kWork or kWait that no other span of these kinds within it covers. Threads outside of the
+/// pool stay as they are.
 void add_waits(TraceData& trace);
 
 /// Times in seconds, summed over threads.

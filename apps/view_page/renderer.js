@@ -24,6 +24,7 @@ class Renderer {
       combine: this.makeProgram(screen, shaderText("combine.frag")),
       fill: this.makeProgram(screen, shaderText("fill.frag")),
       soften: this.makeProgram(screen, shaderText("soften.frag")),
+      outlines: this.makeProgram(screen, shaderText("outlines.frag")),
       rows: this.makeProgram(screen, shaderText("rows.frag")),
       show: this.makeProgram(screen, shaderText("show.frag")),
     };
@@ -170,6 +171,8 @@ class Renderer {
     // At a camera's own place its photograph is not touched.
     const softens = this.scene.softEdges && blending.uAlpha > 0 && blending.uAlpha < 1;
     const warped = {
+      uLeftMap: this.textures.leftMap,
+      uRightMap: this.textures.rightMap,
       uLeftWarped: this.warped[0].disparity,
       uRightWarped: this.warped[1].disparity,
       uLeftShift: shifts[0],
@@ -180,8 +183,6 @@ class Renderer {
     const passes = [["combine", {
       uLeftImage: this.textures.left,
       uRightImage: this.textures.right,
-      uLeftMap: this.textures.leftMap,
-      uRightMap: this.textures.rightMap,
       uTrustAtEnds: softens ? Renderer.TRUST_AT_ENDS : 1,
       ...warped,
     }]];
@@ -189,7 +190,7 @@ class Renderer {
       passes.push(["fill", {uMirror: this.scene.holes === "mirror", uFillsMixedPixels: softens}]);
     }
     if (softens) {
-      passes.push(["soften", warped]);
+      passes.push([y === 0 ? "soften" : "outlines", warped]);
     }
     if (this.scene.holes !== "none") {
       passes.push(["rows", {}]);

@@ -1,5 +1,5 @@
-// Fourth pass: outlines like a photograph's. A warp moves surfaces by whole pixels and never mixes
-// them; here the two positions at an outline take a share of each other. On the baseline the
+// Fourth pass on the baseline: outlines like a photograph's. A warp moves surfaces by whole pixels
+// and never mixes them; here the two positions at an outline take a share of each other. The
 // outline's exact place is known, and the shares follow it, so that it moves without jumps.
 
 uniform sampler2D uColour;
@@ -51,22 +51,19 @@ float shareOfNeighbour(ivec2 position, int direction) {
   if (own == UNKNOWN || other == UNKNOWN || isOneSurface(own, other)) {
     return 0.0;
   }
-  float covered = 0.0;  // of the farther position; negative: free of the nearer one
-  float strength = 1.0;
   bool isNearer = own > other;
-  if (uLeftShift.y == 0.0) {
-    vec2 here = warped(position);
-    vec2 there = warped(beside);
-    vec2 fromNearer = isNearer ? here : there;
-    vec2 fromFarther = isNearer ? there : here;
-    vec2 nearer = imageShares(max(own, other), fromNearer.x, fromNearer.y);
-    vec2 farther = imageShares(min(own, other), fromFarther.x, fromFarther.y);
-    vec2 mapped = vec2(mappedBeside(uLeftShift.x, fromNearer.x),
-                       mappedBeside(uRightShift.x, fromNearer.y));
-    covered = dot(nearer, mapped) * float(isNearer ? direction : -direction);
-    float shiftPx = dot(farther, abs(vec2(uLeftShift.x, uRightShift.x))) * abs(own - other);
-    strength = min(1.0, shiftPx / SYNTHETIC_SHIFT_PX);
-  }
+  vec2 here = warped(position);
+  vec2 there = warped(beside);
+  vec2 fromNearer = isNearer ? here : there;
+  vec2 fromFarther = isNearer ? there : here;
+  vec2 nearer = imageShares(max(own, other), fromNearer.x, fromNearer.y);
+  vec2 farther = imageShares(min(own, other), fromFarther.x, fromFarther.y);
+  vec2 mapped = vec2(mappedBeside(uLeftShift.x, fromNearer.x),
+                     mappedBeside(uRightShift.x, fromNearer.y));
+  // Of the farther position; negative: free of the nearer one.
+  float covered = dot(nearer, mapped) * float(isNearer ? direction : -direction);
+  float shiftPx = dot(farther, abs(vec2(uLeftShift.x, uRightShift.x))) * abs(own - other);
+  float strength = min(1.0, shiftPx / SYNTHETIC_SHIFT_PX);
   float part = isNearer ? -covered : covered;
   float slope = part > 0.0 ? MOST_SHARE - USUAL_SHARE : USUAL_SHARE;  // per half a pixel
   return floor(strength * (USUAL_SHARE + 2.0 * slope * part) * 256.0 + 0.5);
