@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <optional>
@@ -126,6 +127,18 @@ int forget_entries(const TuneJob& job, const fs::path& path) {
   return kExitDone;
 }
 
+/// What is found while other programs take processors away may not hold without them.
+void warn_of_other_programs(const scheduler::Machine& machine) {
+  constexpr double kBusyShare = 0.25;
+  double load = 0;  // threads that ran or wanted to, mean of the last minute
+  if (::getloadavg(&load, 1) == 1 && load > kBusyShare * machine.hardware_threads) {
+    fmt::print(stderr,
+               "tune: warning: other programs are at work (load {:.1f} on {} threads), expected an "
+               "idle machine\n",
+               load, machine.hardware_threads);
+  }
+}
+
 std::string now_as_text() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
 }
@@ -181,22 +194,25 @@ int command_tune(const Arguments& arguments) {
   if (job.forget) {
     return forget_entries(job, path);
   }
-  job.match.validate();
-  job.common.execution.validate();
   FileChecks files;
   check_common_files(job.common, files);
   const TuningRequest request = request_of(job);
+  request.validate();
   RunReport report(settings.command(), reported_settings(settings, job.match));
   report.start_trace(job.common.trace);
   {
     Execution execution(job.common.execution);
     report.set_execution(execution);
   }
-  const TuningKey key = make_tuning_key(scheduler::detect_machine(), request.match,
-                                        request.execution, request.images);
+  const scheduler::Machine machine = scheduler::detect_machine();
   if (job.dry_run) {
+    const TuningKey key =
+        make_tuning_key(machine, request.match, request.execution, request.images);
     fmt::print("{}budget   {} s\nfile     {}\n", describe(key), job.budget_seconds, path.string());
     return kExitDone;
+  }
+  if (!job.common.quiet) {
+    warn_of_other_programs(machine);
   }
   const TuningReport tuned = report.timed_compute("tune", [&] { return tune(job, request); });
   fmt::print("{}", describe(tuned, request));

@@ -59,11 +59,16 @@ std::string measured_text(const TunedUseReport& use, const TunedImages& images) 
 std::string result_text(const TunedUseReport& use, const TunedImages& images) {
   const TuningOutcome& outcome = use.outcome;
   std::string text = faster_text(outcome.settings, outcome.ratio_to_default);
-  if (outcome.rounds > 0) {
+  if (outcome.settings != TunedSettings{}) {
     text += fmt::format(" ({:.2f} ms, default {:.2f} ms; {} pairs of measurements of {}x{})",
                         outcome.frame_seconds * kMilliseconds,
                         outcome.default_frame_seconds * kMilliseconds, outcome.rounds,
                         images.width_px, use.final_rows);
+  }
+  if (outcome.settings == TunedSettings{} && outcome.rounds > 0) {
+    text += fmt::format(", the best of the search included ({} pair{} of measurements of {}x{})",
+                        outcome.rounds, outcome.rounds == 1 ? "" : "s", images.width_px,
+                        use.final_rows);
   }
   if (!outcome.complete) {
     text += outcome.interrupted ? "; interrupted" : "; the budget ended the search";

@@ -12,7 +12,6 @@
 namespace vantage {
 namespace {
 
-constexpr double kMostBudgetSeconds = 1e6;
 // The final comparison: pairs of measurements.
 constexpr int kFinalRounds = 9;
 constexpr int kFewestFinalRounds = 3;  // where time is short

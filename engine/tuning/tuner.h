@@ -10,6 +10,8 @@
 
 namespace vantage {
 
+inline constexpr double kMostBudgetSeconds = 1e6;
+
 struct TunerOptions {
   /// From the call of tune() on; measurements that are not expected to end in time do not begin.
   double budget_seconds = 60;

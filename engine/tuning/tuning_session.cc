@@ -122,20 +122,6 @@ class Session {
   TuningPair pair_;
 };
 
-void validate(const TuningRequest& request) {
-  request.match.validate();
-  request.execution.validate();
-  for (const int side : {request.images.width_px, request.images.height_px}) {
-    if (side < 1 || side > kMostSide) {
-      throw UsageError(fmt::format("size is {}x{}, expected sides from 1 to {}",
-                                   request.images.width_px, request.images.height_px, kMostSide));
-    }
-  }
-  if (!(request.budget_seconds > 0)) {
-    throw UsageError(fmt::format("budget is {}, expected seconds above 0", request.budget_seconds));
-  }
-}
-
 TunedPlan plan_of(const TunedUseReport& use, const std::string& date) {
   const TuningOutcome& outcome = use.outcome;
   return {.settings = outcome.settings,
@@ -143,16 +129,31 @@ TunedPlan plan_of(const TunedUseReport& use, const std::string& date) {
           .default_frame_seconds = outcome.default_frame_seconds,
           .ratio_to_default = outcome.ratio_to_default,
           .measurements = outcome.measurements,
-          .measured_rows = use.final_rows,
+          .measured_rows = outcome.settings == TunedSettings{} ? use.search_rows : use.final_rows,
           .date = date};
 }
 
 }  // namespace
 
+void TuningRequest::validate() const {
+  match.validate();
+  execution.validate();
+  for (const int side : {images.width_px, images.height_px}) {
+    if (side < 1 || side > kMostSide) {
+      throw UsageError(fmt::format("size is {}x{}, expected sides from 1 to {}", images.width_px,
+                                   images.height_px, kMostSide));
+    }
+  }
+  if (!(budget_seconds > 0 && budget_seconds <= kMostBudgetSeconds)) {
+    throw UsageError(fmt::format("budget is {}, expected seconds above 0 and at most {}",
+                                 budget_seconds, kMostBudgetSeconds));
+  }
+}
+
 TuningReport tune_machine(const TuningRequest& request,
                           const std::function<void(TunedUse, const TunerProgress&)>& on_progress,
                           const std::atomic<bool>* stop) {
-  validate(request);
+  request.validate();
   const TuningClock clock = now_seconds;
   const double begin = clock();
   TuningReport report;

@@ -14,10 +14,13 @@ namespace vantage {
 struct TuningRequest {
   MatchOptions match;          ///< disparities known
   ExecutionOptions execution;  ///< what is set is not searched
-  TunedImages images;
-  double budget_seconds = 60;  ///< for all that tune_machine() does
+  TunedImages images;          ///< sides 1..16384
+  double budget_seconds = 60;  ///< for all that tune_machine() does, above 0, at most 10^6
   bool for_match = true;
   bool for_run = true;
+
+  /// Throws UsageError naming the field, its value and its limits.
+  void validate() const;
 };
 
 /// What was measured for one use, and what came of it.

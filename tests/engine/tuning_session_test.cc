@@ -50,6 +50,8 @@ TEST(TuneMachine, RefusesWhatCannotBe) {
     EXPECT_THROW(tune_machine(request, {}, nullptr), UsageError);
   }
   request.images = {100, 100};
+  request.budget_seconds = 1e9;
+  EXPECT_THROW(request.validate(), UsageError);
   request.budget_seconds = 0;
   EXPECT_THROW(tune_machine(request, {}, nullptr), UsageError);
   request.budget_seconds = 1;
