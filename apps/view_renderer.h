@@ -7,8 +7,7 @@
 #include "engine/execution.h"
 #include "engine/image/stereo_display.h"
 #include "engine/synthesis/photograph_grid.h"
-#include "engine/synthesis/three_step_synthesizer.h"
-#include "engine/synthesis/view_synthesizer.h"
+#include "engine/synthesis/pose_renderer.h"
 #include "engine/view_geometry/view_pose.h"
 
 namespace vantage::apps {
@@ -47,12 +46,11 @@ class ViewRenderer {
 
  private:
   void synthesize(const ViewPose& pose, SynthesizedView& view) const;
-  [[nodiscard]] UnrectifiedPair unrectified() const;
 
-  const PairWithMaps& pair_;
+  ViewSource source_;
+  double baseline_;  ///< 0 without calibration
   std::optional<TwoEyes> two_eyes_;
-  ViewSynthesizer synthesizer_;
-  ThreeStepSynthesizer three_steps_;
+  PoseRenderer renderer_;
   std::optional<PhotographGrid> photograph_grid_;  ///< where colours come from unrectified images
   std::array<Image<float>, 2> photograph_maps_;
   std::optional<std::array<IntensityFit, 4>> fit_;

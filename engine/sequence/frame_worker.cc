@@ -84,8 +84,7 @@ FrameWorker::FrameWorker(const FrameTools& tools)
       shots_(tools.shots),
       execution_(tools.execution),
       matcher_(tools.options.match, tools.execution),
-      synthesizer_(tools.options.synthesis, tools.execution),
-      three_steps_(tools.options.synthesis, tools.execution),
+      renderer_(tools.options.synthesis, tools.cameras, tools.execution),
       temporal_(tools.options.temporal) {
   if (rectifier_ != nullptr && rectifier_->needs_rectification() &&
       views_show_photographs(options_)) {
@@ -181,32 +180,17 @@ void FrameWorker::synthesize(FrameSlot& slot) const {
   }
   const TimedStep step(slot, "views");
   slot.views.resize(slot.view_poses.size());
+  ViewSource source{*slot.left, *slot.right, slot.maps.left.view(), slot.maps.right.view(), {}};
   if (photograph_grid_) {
     photograph_grid_->bring(slot.maps, slot.photograph_maps);
+    source.photographs.emplace(
+        photograph_grid_->pair_of(slot.pair.left, slot.pair.right, slot.photograph_maps));
   }
-  for (std::size_t view = 0; view < slot.views.size(); ++view) {
-    render(slot, slot.view_poses[view], slot.views[view]);
-  }
-}
-
-void FrameWorker::render(const FrameSlot& slot, const ViewPose& pose, SynthesizedView& view) const {
   const std::array<IntensityFit, 4>* fit =
       options_.intensity_fit == FitScope::kShot ? &shots_->shot_of(slot.frame).intensity : nullptr;
-  const auto* camera = std::get_if<PosedCamera>(&pose);
-  if (options_.synthesis.warp == WarpColour::kForward && camera != nullptr && cameras_ != nullptr) {
-    three_steps_.synthesize(*slot.left, *slot.right, slot.maps.left.view(), slot.maps.right.view(),
-                            *cameras_, *camera, view, fit);
-    return;
+  for (std::size_t view = 0; view < slot.views.size(); ++view) {
+    renderer_.render(source, slot.view_poses[view], slot.views[view], fit);
   }
-  const NewView geometry = new_view(pose, cameras_, slot.left->width(), slot.left->height());
-  if (photograph_grid_) {
-    synthesizer_.synthesize(
-        photograph_grid_->pair_of(slot.pair.left, slot.pair.right, slot.photograph_maps),
-        slot.maps.left.view(), slot.maps.right.view(), geometry, view, fit);
-    return;
-  }
-  synthesizer_.synthesize(*slot.left, *slot.right, slot.maps.left.view(), slot.maps.right.view(),
-                          geometry, view, fit);
 }
 
 void FrameWorker::paint_preview(FrameSlot& slot) const {

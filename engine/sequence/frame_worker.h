@@ -16,8 +16,7 @@
 #include "engine/sequence/shots.h"
 #include "engine/sequence/temporal_state.h"
 #include "engine/synthesis/photograph_grid.h"
-#include "engine/synthesis/three_step_synthesizer.h"
-#include "engine/synthesis/view_synthesizer.h"
+#include "engine/synthesis/pose_renderer.h"
 
 namespace vantage {
 
@@ -76,7 +75,6 @@ class FrameWorker {
   void synthesize(FrameSlot& slot) const;
   void paint_preview(FrameSlot& slot) const;
   void pack_stereo_picture(FrameSlot& slot) const;
-  void render(const FrameSlot& slot, const ViewPose& pose, SynthesizedView& view) const;
   [[nodiscard]] const Photograph* photograph_at(const FrameSlot& slot, double view_x) const;
   void encode_stream(FrameSlot& slot, const OutputStream& stream,
                      const std::filesystem::path& path) const;
@@ -94,8 +92,7 @@ class FrameWorker {
   const ShotTable* shots_;
   Execution& execution_;
   StereoMatcher matcher_;
-  ViewSynthesizer synthesizer_;
-  ThreeStepSynthesizer three_steps_;
+  PoseRenderer renderer_;
   std::optional<PhotographGrid> photograph_grid_;  ///< where views_show_photographs()
   TemporalState temporal_;
   int temporal_chunk_ = -1;  ///< that temporal_ is of

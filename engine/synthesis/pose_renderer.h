@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "engine/execution.h"
+#include "engine/image/image.h"
+#include "engine/image/photograph.h"
+#include "engine/rectification/rectified_pair.h"
+#include "engine/synthesis/intensity_fit.h"
+#include "engine/synthesis/three_step_synthesizer.h"
+#include "engine/synthesis/unrectified_pair.h"
+#include "engine/synthesis/view_synthesizer.h"
+#include "engine/view_geometry/view_pose.h"
+#include "kernels/intensity_sums/intensity_sums.h"
+
+namespace vantage {
+
+/// What the views of one frame are made from. Nothing is owned.
+struct ViewSource {
+  const Photograph& left;  ///< rectified, as `right`
+  const Photograph& right;
+  ImageView<const float> left_disparity_px;
+  ImageView<const float> right_disparity_px;
+  /// The photographs that `left` and `right` were rectified from, for colours in one
+  /// interpolation; none where there are none, or colours move by whole pixels.
+  std::optional<UnrectifiedPair> photographs;
+};
+
+/// Renders a pair from wherever a pose says, in the way that suits the pose and the options: with
+/// WarpColour::kForward cameras take the book's three steps, everything else is one pass, from the
+/// photographs where the source has them.
+///
+/// Thread rule: everything may be called concurrently for different results. Identical for any
+/// ExecutionOptions.
+class PoseRenderer {
+ public:
+  /// `cameras` are those of the rectified pair; null: poses are positions on and beside the
+  /// baseline. They and `execution` outlive the renderer. Throws UsageError for invalid options.
+  PoseRenderer(const SynthesisOptions& options, const RectifiedPair* cameras, Execution& execution);
+
+  /// Errors as new_view() and the synthesizers.
+  void render(const ViewSource& source, const ViewPose& pose, SynthesizedView& view,
+              const std::array<IntensityFit, 4>* given_fit) const;
+
+  /// The sums of the intensity regression half-way between the cameras.
+  [[nodiscard]] kernels::IntensitySums intensity_sums(const ViewSource& source) const;
+
+  [[nodiscard]] const SynthesisOptions& options() const { return synthesizer_.options(); }
+
+ private:
+  const RectifiedPair* cameras_;
+  ViewSynthesizer synthesizer_;
+  ThreeStepSynthesizer three_steps_;
+};
+
+}  // namespace vantage
