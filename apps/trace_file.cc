@@ -114,8 +114,13 @@ SettingValue trace_report(const scheduler::TraceSummary& summary) {
                        {"wait_seconds", thread.wait_s}});
   }
   SettingValue stages = SettingValue::object();
-  for (const auto& [name, seconds] : summary.stages_s) {
-    stages[name] = seconds;
+  for (const auto& [name, stage] : summary.stages) {
+    stages[name] = {{"seconds", stage.seconds},
+                    {"columns", stage.columns},
+                    {"own_columns", stage.own_columns},
+                    {"cells", stage.work.cells},
+                    {"operations", stage.work.operations},
+                    {"bytes", stage.work.bytes}};
   }
   SettingValue frames = SettingValue::array();
   for (const auto& [frame, seconds] : summary.frame_work_s) {

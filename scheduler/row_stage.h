@@ -55,6 +55,18 @@ struct RowTask {
   std::byte* state = nullptr;  ///< state_bytes(), 64-byte aligned, kept through the sweep
 };
 
+/// What a stage does to make one column of one row, whatever the plan: counted from its kernel, for
+/// comparison with what a machine can do.
+struct ColumnWork {
+  /// Candidate disparities made or looked at. Lanes that only fill up vectors do not count.
+  double cells = 0;
+  /// Arithmetic on those cells' numbers: additions, multiplications, divisions, roots, comparisons,
+  /// minima and maxima; one that multiplies and adds is two. Not loads, stores, shuffles, masks.
+  double operations = 0;
+  /// Loaded from and stored to rows of cells and of images, whichever cache they lie in.
+  double bytes = 0;
+};
+
 /// One step of a chain that turns rows into rows: costs from images, sums from costs, winners from
 /// sums. A stage knows its own geometry and nothing of its neighbours, of strips or of threads.
 ///
@@ -114,6 +126,9 @@ class RowStage {
   /// the top of the image. Stages with inexact running sums begin at anchored rows.
   /// Not for a last stage: the rows before its band, which it would write, belong to other tasks.
   [[nodiscard]] virtual int sweep_start(int y) const { return y; }
+
+  /// Only profiles ask. All 0: not known.
+  [[nodiscard]] virtual ColumnWork column_work() const { return {}; }
 
   virtual void make_row(const RowTask& task) const = 0;
 

@@ -25,13 +25,14 @@ struct StoredRows {
 /// The sweep of one pass down one strip and band.
 class Sweep {
  public:
-  Sweep(const PassStages& pass, const SweepLayout& layout, std::byte* scratch, Range rows,
-        const StoredRows& input, const StoredRows& output, Span* traced)
+  Sweep(const PassStages& pass, const SweepLayout& layout, std::byte* scratch, Range columns,
+        Range rows, const StoredRows& input, const StoredRows& output, Span* traced)
       : pass_(pass),
         layout_(layout.parts),
         first_(pass.source == nullptr ? 0 : 1),
         last_(layout.parts.size() - 1),
         scratch_(scratch),
+        columns_(columns),
         rows_(rows),
         input_(input),
         output_(output),
@@ -63,8 +64,7 @@ class Sweep {
     }
     if (traced_ != nullptr) {
       for (std::size_t i = 0; i <= last_; ++i) {
-        traced_->add_stage({layout_[i].stage->name(), progress_[i].duration_ns,
-                            progress_[i].next_row - layout_[i].first_row});
+        traced_->add_stage(share_of(i));
       }
     }
   }
@@ -105,6 +105,24 @@ class Sweep {
     }
   }
 
+  [[nodiscard]] StageShare share_of(std::size_t k) const {
+    const StageSweep& part = layout_[k];
+    StageShare share;
+    share.name = part.stage->name();
+    share.duration_ns = progress_[k].duration_ns;
+    share.rows = progress_[k].next_row - part.first_row;
+    share.columns = static_cast<double>(share.rows) * part.columns.size();
+    if (k >= first_) {  // else it is the source, made once more
+      const auto area = [](Extent extent) {
+        return static_cast<double>(extent.columns) * extent.rows;
+      };
+      share.own_columns = static_cast<double>(columns_.size()) * rows_.size() *
+                          area(part.stage->extent()) / area(layout_[last_].stage->extent());
+    }
+    share.column_work = part.stage->column_work();
+    return share;
+  }
+
   [[nodiscard]] Range window(std::size_t k, int y) const {
     if (k < first_ || y >= layout_[k].stage->extent().rows) {
       return {};
@@ -135,6 +153,7 @@ class Sweep {
   std::size_t first_;  ///< part that is the first stage of the pass
   std::size_t last_;
   std::byte* scratch_;
+  Range columns_;
   Range rows_;
   const StoredRows& input_;
   const StoredRows& output_;
@@ -162,7 +181,7 @@ void run_pass(const PassStages& pass, const PassPlan& plan, Range rows, const St
     if (traced != nullptr) {
       traced->set_strip(pass_number, strip, band_begin);
     }
-    Sweep(pass, layout, lease.data(), band, input, output, traced).run();
+    Sweep(pass, layout, lease.data(), columns, band, input, output, traced).run();
   });
 }
 

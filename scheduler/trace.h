@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scheduler/row_stage.h"
+
 namespace vantage::scheduler {
 
 /// What a thread does during a span.
@@ -29,11 +31,16 @@ struct SpanPlace {
   int first_row = -1;  ///< of the band
 };
 
-/// Time that one stage of a chain took within a span.
+/// What one stage of a chain did within a span.
 struct StageShare {
   std::string_view name;
   std::int64_t duration_ns = 0;
   int rows = 0;
+  double columns = 0;  ///< made, summed over the rows
+  /// Those that the strip and band of the span consist of. The rest is halo, rows that warm up
+  /// running sums, and what is made again in a later pass.
+  double own_columns = 0;
+  ColumnWork column_work;  ///< of each column
 };
 
 /// One thing that a thread did, from begin_ns to end_ns after the start of the trace. Spans of a

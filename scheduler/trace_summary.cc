@@ -54,6 +54,15 @@ void walk(const std::vector<SpanRecord>& spans, std::int64_t wall_ns, const Leav
 
 double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
+void add(const StageShare& share, TraceSummary::Stage& stage) {
+  stage.seconds += seconds(share.duration_ns);
+  stage.columns += share.columns;
+  stage.own_columns += share.own_columns;
+  stage.work.cells += share.columns * share.column_work.cells;
+  stage.work.operations += share.columns * share.column_work.operations;
+  stage.work.bytes += share.columns * share.column_work.bytes;
+}
+
 }  // namespace
 
 void add_waits(TraceData& trace) {
@@ -116,7 +125,7 @@ TraceSummary summarise(const TraceData& trace) {
           }
           for (std::size_t k = 0; k < span.stage_count; ++k) {
             const StageShare& share = thread.stages[span.first_stage + k];
-            summary.stages_s[std::string(share.name)] += seconds(share.duration_ns);
+            add(share, summary.stages[std::string(share.name)]);
           }
         },
         [](const SpanRecord*, std::int64_t, std::int64_t) {});

@@ -28,12 +28,20 @@ struct TraceSummary {
     int count = 0;
   };
 
+  /// What the stages of one name did, summed over passes, strips, threads and frames.
+  struct Stage {
+    double seconds = 0;
+    double columns = 0;      ///< made; see StageShare
+    double own_columns = 0;  ///< of them, without halo and repetition
+    ColumnWork work;         ///< of all columns made
+  };
+
   double wall_s = 0;
   std::vector<Thread> threads;
-  std::map<std::string, Named> work;       ///< by name of span
-  std::map<std::string, Named> waits;      ///< by name of span
-  std::map<std::string, double> stages_s;  ///< by stage of chains
-  std::map<int, double> frame_work_s;      ///< by frame; −1: about none
+  std::map<std::string, Named> work;    ///< by name of span
+  std::map<std::string, Named> waits;   ///< by name of span
+  std::map<std::string, Stage> stages;  ///< by stage of chains
+  std::map<int, double> frame_work_s;   ///< by frame; −1: about none
 
   /// Share of the pool's time that is work, 0..1.
   [[nodiscard]] double work_share() const;

@@ -171,6 +171,8 @@ TEST_P(TraceOfExecutor, HasStripsBandsAndPassesWithTheirStages) {
 
   std::multiset<std::vector<int>> places;
   int stages = 0;
+  double columns = 0;
+  double own_columns = 0;
   for (const ThreadTrace& thread : data.threads) {
     for (const SpanRecord& span : thread.spans) {
       if (span.place.strip >= 0) {
@@ -180,6 +182,8 @@ TEST_P(TraceOfExecutor, HasStripsBandsAndPassesWithTheirStages) {
           const StageShare& share = thread.stages[span.first_stage + k];
           EXPECT_GT(share.rows, 0);
           stages_ns += share.duration_ns;
+          columns += share.columns;
+          own_columns += share.own_columns;
         }
         stages += static_cast<int>(span.stage_count);
         EXPECT_LE(stages_ns, span.end_ns - span.begin_ns);
@@ -196,6 +200,10 @@ TEST_P(TraceOfExecutor, HasStripsBandsAndPassesWithTheirStages) {
   }
   EXPECT_EQ(places, expected);
   EXPECT_EQ(stages, 9 * 4);
+  // Halo columns and rows come on top of what the chain delivers.
+  const Extent extent = chain.extent();
+  EXPECT_EQ(own_columns, 4.0 * extent.columns * extent.rows);
+  EXPECT_GT(columns, own_columns);
 }
 
 INSTANTIATE_TEST_SUITE_P(Executors, TraceOfExecutor, testing::ValuesIn(executor_cases()),
