@@ -17,6 +17,8 @@ struct ExecutionOptions {
   std::optional<int> threads =
       std::nullopt;  ///< 1..1024; default: the hardware threads this process may use
   scheduler::ExecutorKind executor = scheduler::ExecutorKind::kTbb;
+  /// Default: on nodes where the threads need more than one, else anywhere.
+  std::optional<scheduler::ThreadBinding> binding = std::nullopt;
   std::optional<int> strip_width_px = std::nullopt;  ///< ≥ 1; default from the cost model
   std::optional<int> band_height_px = std::nullopt;  ///< ≥ 1; default from the cost model
   /// Iterations between two stores of the whole state, ≥ 1; default from the cost model.

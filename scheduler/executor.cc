@@ -23,7 +23,7 @@ std::unique_ptr<Executor> make_plain_executor(ExecutorKind kind, int threads) {
 
 }  // namespace
 
-std::unique_ptr<Executor> make_executor(ExecutorKind kind, int threads) {
+std::unique_ptr<Executor> make_executor(ExecutorKind kind, int threads, ThreadBinding /*binding*/) {
 #ifdef VANTAGE_THREAD_SANITIZER
   return with_tracing(with_declared_order(make_plain_executor(kind, threads)));
 #else

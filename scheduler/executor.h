@@ -53,8 +53,16 @@ class Executor {
 
 enum class ExecutorKind { kTbb, kOpenMp, kSerial };
 
+/// Where threads may run.
+enum class ThreadBinding : std::uint8_t {
+  kNone,   ///< wherever the system puts them
+  kNodes,  ///< each on the cores of one NUMA node
+  kCores   ///< each on a core of its own
+};
+
 /// Thread counts are ≥ 1. The executor owns its threads.
-std::unique_ptr<Executor> make_executor(ExecutorKind kind, int threads);
+std::unique_ptr<Executor> make_executor(ExecutorKind kind, int threads,
+                                        ThreadBinding binding = ThreadBinding::kNone);
 
 /// For tests: one thread, tasks in an order drawn from `seed`.
 std::unique_ptr<Executor> make_shuffled_executor(std::uint64_t seed);

@@ -15,7 +15,15 @@ void ScratchPool::Free::operator()(std::byte* memory) const noexcept {
   ::operator delete (memory, std::align_val_t{kAlignment});
 }
 
-ScratchPool::Lease ScratchPool::lease(std::size_t bytes) {
+ScratchPool::Lease ScratchPool::hand_out(Block block, ScratchUse use) {
+  Leased& leased = leased_[static_cast<std::size_t>(use)];
+  leased.bytes += block.bytes;
+  leased.most_bytes = std::max(leased.most_bytes, leased.bytes);
+  block.use = use;
+  return {this, std::move(block)};
+}
+
+ScratchPool::Lease ScratchPool::lease(std::size_t bytes, ScratchUse use) {
   bytes = std::max<std::size_t>(bytes, kAlignment);
   std::lock_guard lock(mutex_);
   // The smallest block that fits without wasting most of itself: the large ones are for whole-image
@@ -30,7 +38,7 @@ ScratchPool::Lease ScratchPool::lease(std::size_t bytes) {
   if (best != free_.end()) {
     Block block = std::move(*best);
     free_.erase(best);
-    return {this, std::move(block)};
+    return hand_out(std::move(block), use);
   }
   if (!free_.empty()) {
     // The plan has changed: the block that has been idle longest goes, instead of hoarding both.
@@ -44,17 +52,23 @@ ScratchPool::Lease ScratchPool::lease(std::size_t bytes) {
   block.bytes = bytes;
   ++blocks_;
   bytes_held_ += bytes;
-  return {this, std::move(block)};
+  return hand_out(std::move(block), use);
 }
 
 void ScratchPool::give_back(Block block) noexcept {
   std::lock_guard lock(mutex_);
+  leased_[static_cast<std::size_t>(block.use)].bytes -= block.bytes;
   free_.push_back(std::move(block));
 }
 
 std::size_t ScratchPool::bytes_held() const {
   std::lock_guard lock(mutex_);
   return bytes_held_;
+}
+
+std::size_t ScratchPool::most_leased_bytes(ScratchUse use) const {
+  std::lock_guard lock(mutex_);
+  return leased_[static_cast<std::size_t>(use)].most_bytes;
 }
 
 }  // namespace vantage::scheduler

@@ -1,12 +1,21 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <utility>
 #include <vector>
 
 namespace vantage::scheduler {
+
+/// What leased memory is for; only profiles ask.
+enum class ScratchUse : std::uint8_t {
+  kRings,   ///< rows and states of a strip's sweep
+  kStored,  ///< states of whole rows between passes
+  kOther
+};
 
 /// Aligned memory that tasks lease and give back, so that a steady stream of equal tasks allocates
 /// nothing. Thread rule: all members may be called concurrently. A lease must not outlive the pool.
@@ -17,6 +26,7 @@ class ScratchPool {
   struct Block {
     std::unique_ptr<std::byte, Free> memory;
     std::size_t bytes = 0;
+    ScratchUse use = ScratchUse::kOther;
   };
 
  public:
@@ -48,18 +58,27 @@ class ScratchPool {
   };
 
   /// At least `bytes` of memory. Throws std::bad_alloc.
-  [[nodiscard]] Lease lease(std::size_t bytes);
+  [[nodiscard]] Lease lease(std::size_t bytes, ScratchUse use = ScratchUse::kOther);
 
   /// All memory this pool holds, leased or not.
   [[nodiscard]] std::size_t bytes_held() const;
+  /// The most that was leased for `use` at a time.
+  [[nodiscard]] std::size_t most_leased_bytes(ScratchUse use) const;
 
  private:
+  struct Leased {
+    std::size_t bytes = 0;
+    std::size_t most_bytes = 0;
+  };
+
+  [[nodiscard]] Lease hand_out(Block block, ScratchUse use);
   void give_back(Block block) noexcept;
 
   mutable std::mutex mutex_;
   std::vector<Block> free_;
   std::size_t blocks_ = 0;
   std::size_t bytes_held_ = 0;
+  std::array<Leased, 3> leased_;  // by use
 };
 
 }  // namespace vantage::scheduler

@@ -176,7 +176,8 @@ void run_pass(const PassStages& pass, const PassPlan& plan, Range rows, const St
     const Range band{band_begin, std::min(band_begin + plan.band_rows, rows.end)};
     SweepLayout layout;
     lay_out_sweep(pass, columns, band, layout);
-    const ScratchPool::Lease lease = scratch.lease(std::max(layout.scratch_bytes, scratch_bytes));
+    const ScratchPool::Lease lease =
+        scratch.lease(std::max(layout.scratch_bytes, scratch_bytes), ScratchUse::kRings);
     Span* traced = Span::innermost();
     if (traced != nullptr) {
       traced->set_strip(pass_number, strip, band_begin);
@@ -210,8 +211,8 @@ void run_strips(Chain chain, const ChainPlan& plan, Executor& executor, ScratchP
         run.output.row_bytes = last.bytes_per_column() * static_cast<std::size_t>(extent.columns);
         run.output.capacity_rows = pass.stored_rows;
         run.output.columns = extent.all_columns();
-        run.output_memory =
-            scratch.lease(run.output.row_bytes * static_cast<std::size_t>(pass.stored_rows));
+        run.output_memory = scratch.lease(
+            run.output.row_bytes * static_cast<std::size_t>(pass.stored_rows), ScratchUse::kStored);
         run.output.base = run.output_memory.data();
       }
       const Range rows = rows_of_step(plan, pass, step, last.extent().rows);

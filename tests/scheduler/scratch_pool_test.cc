@@ -120,5 +120,18 @@ TEST(ScratchPool, ServesManyThreads) {
   EXPECT_LE(pool.bytes_held(), 4U * 700U) << "one block per thread at most";
 }
 
+TEST(ScratchPool, KnowsTheMostThatWasLeasedForAUse) {
+  ScratchPool pool;
+  {
+    const ScratchPool::Lease rings = pool.lease(1000, ScratchUse::kRings);
+    const ScratchPool::Lease more_rings = pool.lease(2000, ScratchUse::kRings);
+    const ScratchPool::Lease stored = pool.lease(64, ScratchUse::kStored);
+  }
+  const ScratchPool::Lease again = pool.lease(1000, ScratchUse::kRings);
+  EXPECT_EQ(pool.most_leased_bytes(ScratchUse::kRings), 3000U);
+  EXPECT_EQ(pool.most_leased_bytes(ScratchUse::kStored), 64U);
+  EXPECT_EQ(pool.most_leased_bytes(ScratchUse::kOther), 0U);
+}
+
 }  // namespace
 }  // namespace vantage::scheduler
