@@ -26,6 +26,8 @@ class PartnerRows {
   [[nodiscard]] bool is_interpolated() const { return !shifts_.empty(); }
   /// Floats of working memory that grey_levels() needs for so many columns.
   [[nodiscard]] std::size_t work_floats(int columns) const;
+  /// Of images that are compared: 1 or 3.
+  [[nodiscard]] int channels() const;
 
   /// Whether the partners of row y lie inside the other image.
   [[nodiscard]] bool has_row(int y) const;
@@ -57,7 +59,6 @@ class PartnerRows {
   [[nodiscard]] int position(int x) const;
   [[nodiscard]] int step() const { return mirrored() ? -1 : 1; }
   [[nodiscard]] bool mirrored() const { return geometry_.direction < 0; }
-  [[nodiscard]] int channels() const;
   template <typename T>
   [[nodiscard]] const T* partner_pixels(const FeaturePlane<T>& plane, int y) const {
     return (mirrored() ? plane.mirrored : plane.plain).row(partner_row(y));

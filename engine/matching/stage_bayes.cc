@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/image/image.h"
+#include "engine/matching/column_work.h"
 #include "engine/matching/star_stage.h"
 #include "kernels/bayes_step/bayes_step.h"
 
@@ -66,6 +67,10 @@ class BayesStage final : public StarStage {
     return sizeof(float) * static_cast<std::size_t>(kernels::bayes_work_floats(lanes(), radius()));
   }
 
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    return vantage::column_work(kernel_work(), count());
+  }
+
   void make_row(const scheduler::RowTask& task) const override {
     kernels::BayesRow row;
     row.star = star(task, lanes(), neutral_.row(0));
@@ -91,6 +96,17 @@ class BayesStage final : public StarStage {
 
  private:
   [[nodiscard]] int radius() const { return static_cast<int>(taps_.size()) - 1; }
+  [[nodiscard]] kernels::KernelWork kernel_work() const {
+    switch (form_) {
+      case Form::kStart:
+        return kernels::bayes_start_work(state_, radius());
+      case Form::kHalf:
+        return kernels::bayes_half_work(state_, radius());
+      case Form::kGeneral:
+        break;
+    }
+    return kernels::bayes_general_work(state_, radius(), kernels::bayes_scales_sums(mu_, floor_));
+  }
 
   Form form_;
   BayesState state_;

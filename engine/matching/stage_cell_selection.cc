@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "engine/error.h"
+#include "engine/matching/column_work.h"
 #include "kernels/cell_winner/cell_winner.h"
 #include "kernels/parabola/parabola.h"
 
@@ -34,6 +35,21 @@ class CellSelectionStage final : public scheduler::RowStage {
 
   [[nodiscard]] std::string_view name() const override { return "cell selection"; }
   [[nodiscard]] std::size_t bytes_per_column() const override { return 0; }
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    const bool has_confidence = !outputs_.confidence.empty();
+    const bool margin = has_confidence && settings_.confidence == ConfidenceMeasure::kMargin;
+    kernels::KernelWork work = kernels::cell_winner_work(true, margin) +
+                               (settings_.subpixel == Subpixel::kParabola
+                                    ? kernels::parabola_work(settings_.cells_are_probabilities)
+                                    : kernels::kIntegerDisparityWork);
+    if (!outputs_.energy.empty() && settings_.cells_are_probabilities) {
+      work = work + kernels::kProbabilityEnergyWork;
+    }
+    if (has_confidence && settings_.confidence == ConfidenceMeasure::kEntropy) {
+      work = work + kernels::kCellEntropyWork;
+    }
+    return vantage::column_work(work, geometry_.count);
+  }
 
   void make_row(const scheduler::RowTask& task) const override {
     const std::ptrdiff_t lanes = geometry_.lanes();

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "engine/matching/cells_without_partner.h"
+#include "engine/matching/column_work.h"
 #include "kernels/column_ssd/column_ssd.h"
 
 namespace vantage {
@@ -71,6 +72,7 @@ class ColumnSsdStage : public scheduler::RowStage {
     return y == kNoRow ? nullptr : partner_.row(y) + partner_offset(x);
   }
   [[nodiscard]] int lanes() const { return lanes_; }
+  [[nodiscard]] int count() const { return geometry_.count; }
 
  private:
   const IntensityPlane<Pixel>& reference_;
@@ -89,6 +91,9 @@ class ColumnSsdStage8Bit final : public ColumnSsdStage<std::uint8_t> {
 
   [[nodiscard]] std::size_t state_bytes(Range columns, Extent /*input*/) const override {
     return sizeof(std::int32_t) * (pair_room(columns.size()) + pair_room(columns.size() + lanes()));
+  }
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    return vantage::column_work(kernels::kColumnSsdPairsWork, count());
   }
 
  private:
@@ -123,6 +128,10 @@ class ColumnSsdStage8Bit final : public ColumnSsdStage<std::uint8_t> {
 class ColumnSsdStageFloat final : public ColumnSsdStage<float> {
  public:
   using ColumnSsdStage::ColumnSsdStage;
+
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    return vantage::column_work(kernels::kColumnSsdFloatWork, count());
+  }
 
  private:
   void add_rows(const scheduler::RowTask& task, int enters, int leaves,

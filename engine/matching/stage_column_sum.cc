@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "engine/matching/cells_without_partner.h"
+#include "engine/matching/column_work.h"
 #include "kernels/column_sum/column_sum.h"
 
 namespace vantage {
@@ -37,6 +38,9 @@ class ColumnSumStage final : public scheduler::RowStage {
   [[nodiscard]] int window_rows() const override { return 2 * radius_ + 2; }
   [[nodiscard]] int first_row_work() const override {
     return std::min(2 * radius_ + 1, extent().rows);
+  }
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    return vantage::column_work(kernels::kColumnSumWork, geometry_.count);
   }
 
   void make_row(const scheduler::RowTask& task) const override {

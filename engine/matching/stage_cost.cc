@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/matching/column_work.h"
 #include "engine/matching/partner_rows.h"
 #include "kernels/census/census.h"
 #include "kernels/evidence/evidence.h"
@@ -39,6 +40,20 @@ class CostStage final : public scheduler::RowStage {
   /// The cells of one block for the partners after the first, and what interpolation needs.
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
     return in_one_go() ? 0 : sizeof(float) * (kBlockColumns * lanes() + most_work_floats());
+  }
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    kernels::KernelWork work;
+    for (const PartnerRows& partner : partners_) {
+      work = work + (meaning_ == CellMeaning::kEnergy ? energy_work(partner.channels())
+                                                      : likelihood_work(partner.channels()));
+      for (int c = 0; partner.is_interpolated() && c < partner.channels(); ++c) {
+        work = work + kernels::kInterpolateCandidatesWork;
+      }
+      if (&partner != &partners_.front()) {
+        work = work + kernels::kCombineCellsWork;
+      }
+    }
+    return vantage::column_work(work, count_);
   }
 
   void make_row(const scheduler::RowTask& task) const override {
@@ -93,6 +108,39 @@ class CostStage final : public scheduler::RowStage {
         return measurement_.energy_without_partner();
       default:
         return std::nullopt;
+    }
+  }
+
+  /// What energies() and likelihoods() do.
+  [[nodiscard]] kernels::KernelWork energy_work(int channels) const {
+    switch (parameters_.cost) {
+      case MatchCost::kSquared:
+        return kernels::squared_work(channels);
+      case MatchCost::kAbsolute:
+      case MatchCost::kTruncated:
+        return kernels::absolute_work(channels);
+      case MatchCost::kContaminated:
+        return kernels::contaminated_energy_work(channels);
+      case MatchCost::kBirchfieldTomasi:
+        return kernels::sampling_insensitive_work(channels);
+      case MatchCost::kGradient:
+        return kernels::negated_evidence_work(parameters_.norm == GradientNorm::kOctagon, channels);
+      case MatchCost::kCensus:
+        break;
+    }
+    return kernels::hamming_work(channels);
+  }
+  [[nodiscard]] kernels::KernelWork likelihood_work(int channels) const {
+    switch (parameters_.cost) {
+      case MatchCost::kSquared:
+        return kernels::contaminated_likelihood_work(channels);
+      case MatchCost::kContaminated:
+        return channels == 1 ? kernels::contaminated_likelihood_work(channels)
+                             : energy_work(channels) + kernels::kLikelihoodOfEnergiesWork;
+      case MatchCost::kGradient:
+        return energy_work(channels) + kernels::kLikelihoodOfEvidenceWork;
+      default:
+        return energy_work(channels) + kernels::kLikelihoodOfCostsWork;
     }
   }
 

@@ -1,5 +1,6 @@
 #include "engine/matching/stage_diffusion.h"
 
+#include "engine/matching/column_work.h"
 #include "engine/matching/star_stage.h"
 #include "kernels/diffusion_step/diffusion_step.h"
 #include "kernels/local_stopping_step/local_stopping_step.h"
@@ -21,6 +22,10 @@ class DiffusionStage final : public StarStage {
     return pull_ != 0 ? "membrane iteration" : "diffusion iteration";
   }
   [[nodiscard]] bool reads_source() const override { return pull_ != 0; }
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    return vantage::column_work(pull_ != 0 ? kernels::kMembraneWork : kernels::kDiffusionWork,
+                                count());
+  }
 
   void make_row(const scheduler::RowTask& task) const override {
     kernels::DiffusionRow row;
@@ -52,6 +57,11 @@ class LocalStoppingStage final : public StarStage {
   [[nodiscard]] std::string_view name() const override { return "local stopping iteration"; }
   [[nodiscard]] std::size_t bytes_per_column() const override {
     return sizeof(float) * static_cast<std::size_t>(output_pitch_);
+  }
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    return vantage::column_work(
+        kernels::local_stopping_work(measure_, input_pitch_ > lanes(), output_pitch_ > lanes()),
+        count());
   }
 
   void make_row(const scheduler::RowTask& task) const override {

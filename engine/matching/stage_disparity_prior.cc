@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "engine/matching/column_work.h"
 #include "kernels/disparity_prior/disparity_prior.h"
 
 namespace vantage {
@@ -25,6 +26,17 @@ class DisparityPriorStage final : public scheduler::RowStage {
   [[nodiscard]] std::size_t state_bytes(scheduler::Range columns,
                                         scheduler::Extent input) const override {
     return costs_->state_bytes(columns, input);
+  }
+  /// As if every pixel had a prior.
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    const scheduler::ColumnWork prior =
+        vantage::column_work(meaning_ == CellMeaning::kEnergy ? kernels::kEnergiesWithPriorWork
+                                                              : kernels::kLikelihoodsWithPriorWork,
+                             geometry_.count);
+    scheduler::ColumnWork work = costs_->column_work();
+    work.operations += prior.operations;
+    work.bytes += prior.bytes;
+    return work;
   }
 
   void make_row(const scheduler::RowTask& task) const override {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "engine/matching/column_work.h"
 #include "engine/matching/smoothing_kernels.h"
 #include "kernels/cell_smoothing/cell_smoothing.h"
 
@@ -18,7 +19,7 @@ using scheduler::Range;
 class SmoothingStage : public scheduler::RowStage {
  public:
   SmoothingStage(const kernels::CandidateGeometry& geometry, int height)
-      : RowStage({geometry.width, height}), lanes_(geometry.lanes()) {}
+      : RowStage({geometry.width, height}), lanes_(geometry.lanes()), count_(geometry.count) {}
 
   [[nodiscard]] std::size_t bytes_per_column() const override {
     return sizeof(float) * static_cast<std::size_t>(lanes_);
@@ -26,6 +27,7 @@ class SmoothingStage : public scheduler::RowStage {
 
  protected:
   [[nodiscard]] int lanes() const { return lanes_; }
+  [[nodiscard]] int count() const { return count_; }
 
   /// Column x of input row y, x in the columns asked for; null outside the image.
   [[nodiscard]] const float* input_cells(const scheduler::RowTask& task, int x, int y) const {
@@ -38,6 +40,7 @@ class SmoothingStage : public scheduler::RowStage {
 
  private:
   int lanes_;
+  int count_;
 };
 
 /// A symmetric kernel along one direction.
@@ -50,6 +53,9 @@ class ConvolutionStage : public SmoothingStage {
   /// The addresses of the runs to be summed.
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
     return sizeof(const float*) * (2 * weights_.size() - 1);
+  }
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    return vantage::column_work(kernels::symmetric_sum_work(radius()), count());
   }
 
  protected:
@@ -125,6 +131,9 @@ class BoxCascadeStage final : public SmoothingStage {
   [[nodiscard]] int window_rows() const override { return 2 * kRadius + 1; }
   [[nodiscard]] std::size_t state_bytes(Range columns, Extent input) const override {
     return bytes_per_column() * static_cast<std::size_t>(input_columns(columns, input).size());
+  }
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    return vantage::column_work(kernels::kBoxCascadeWork, count());
   }
 
   void make_row(const scheduler::RowTask& task) const override {

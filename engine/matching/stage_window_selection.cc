@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/error.h"
+#include "engine/matching/column_work.h"
 #include "kernels/cell_winner/cell_winner.h"
 #include "kernels/mean_energy/mean_energy.h"
 #include "kernels/parabola/parabola.h"
@@ -45,6 +46,26 @@ class WindowSelectionStage final : public scheduler::RowStage {
     return sizeof(std::int32_t) * (kBlockColumns * (lanes_ + kernels::kLaneMultiple + 2) + lanes_) +
            (compares_energies() ? sizeof(float) * kBlockColumns * lanes_ : 0);
   }
+  /// Of rows and columns that have whole windows.
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    const bool indexed = settings_.index_bits > 0;
+    kernels::KernelWork work =
+        kernels::row_sum_work(keeps_sums()) +
+        (has_parabola() ? kernels::parabola_work(false) : kernels::kIntegerDisparityWork);
+    if (!indexed) {
+      work = work + kernels::kLocateMinimaWork;
+    }
+    if (wants_energies()) {
+      work = work + kernels::kWinnerEnergyWork;
+    }
+    if (compares_energies()) {
+      work = work + kernels::kMeanEnergyWork +
+             (settings_.confidence == ConfidenceMeasure::kMargin
+                  ? kernels::cell_winner_work(false, true)
+                  : kernels::kCellEntropyWork);
+    }
+    return vantage::column_work(work, geometry_.count);
+  }
 
   void make_row(const scheduler::RowTask& task) const override {
     const bool whole_windows = settings_.border == Border::kValid;
@@ -75,7 +96,15 @@ class WindowSelectionStage final : public scheduler::RowStage {
   /// Columns whose sums are kept at a time: few enough for the level-1 cache beside the input row.
   static constexpr int kBlockColumns = 32;
 
+  [[nodiscard]] bool has_parabola() const { return settings_.subpixel == Subpixel::kParabola; }
   [[nodiscard]] bool wants_confidence() const { return !outputs_.confidence.empty(); }
+  [[nodiscard]] bool wants_energies() const {
+    return wants_confidence() || !outputs_.energy.empty();
+  }
+  /// Whether columns with whole windows need more of their sums than the least.
+  [[nodiscard]] bool keeps_sums() const {
+    return settings_.index_bits == 0 || has_parabola() || wants_energies();
+  }
   /// Whether the confidence looks at the energies of all candidates.
   [[nodiscard]] bool compares_energies() const {
     return wants_confidence() && settings_.confidence != ConfidenceMeasure::kEvidence;
@@ -91,9 +120,7 @@ class WindowSelectionStage final : public scheduler::RowStage {
 
   void select_block(const scheduler::RowTask& task, kernels::WinnerRow row, Range columns,
                     bool plain) const {
-    const bool parabola = settings_.subpixel == Subpixel::kParabola;
     const bool indexed = settings_.index_bits > 0;
-    const bool energies = wants_confidence() || !outputs_.energy.empty();
     auto* cells = reinterpret_cast<std::int32_t*>(task.state);
     std::int32_t* work = cells + kBlockColumns * lanes_;
     std::int32_t* minima = work + kBlockColumns * kernels::kLaneMultiple;
@@ -110,7 +137,7 @@ class WindowSelectionStage final : public scheduler::RowStage {
     sum.number_lanes = indexed;
     sum.window_sums = winners + kBlockColumns;
     sum.continues = columns.begin > task.columns.begin;
-    sum.output = plain && indexed && !parabola && !energies ? nullptr : cells;
+    sum.output = plain && !keeps_sums() ? nullptr : cells;
     if (plain) {
       sum.minima = minima;
       sum.minima_work = work;
@@ -132,12 +159,12 @@ class WindowSelectionStage final : public scheduler::RowStage {
       kernels::locate_minima_row(cells, minima, geometry_.lanes(), columns.size(), winners);
     }
     float* disparity_px = outputs_.disparity_px.row(task.y) + columns.begin;
-    if (parabola) {
+    if (has_parabola()) {
       kernels::parabola_disparity_row(row, winners, disparity_px);
     } else {
       kernels::integer_disparity_row(row, winners, disparity_px);
     }
-    if (energies) {
+    if (wants_energies()) {
       write_energies(row, task.y, winners,
                      reinterpret_cast<float*>(winners + kBlockColumns + lanes_));
     }

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "kernels/candidates.h"
+#include "kernels/cells/exp_log.h"
 #include "kernels/star_row.h"
 
 namespace vantage::kernels {
@@ -60,6 +62,12 @@ void bayes_start_row(const BayesRow& row);
 /// are pS; neutral columns hold 1. Relative error of p below 1e-6, as long as the product of five
 /// floors is a normal float.
 void bayes_half_row(const BayesRow& row);
+
+/// Whether powers of two of sums over the star could all underflow in a column, so that its largest
+/// sum has to be found and subtracted first: for any μ.
+inline bool bayes_scales_sums(float mu, float floor) {
+  return 5.0F * mu * std::log2(floor) <= 0.8F * kLeastExponent;
+}
 
 /// Any μ: p ∝ p0 · 2^(sum of μ · log₂ pS over the star). Cells are μ · log₂ pS; neutral columns
 /// hold 0.

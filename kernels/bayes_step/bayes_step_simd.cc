@@ -5,7 +5,6 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -291,11 +290,10 @@ HWY_INLINE void general_columns(const BayesRow& row) {
 }
 
 void bayes_general_row_simd(const BayesRow& row) {
-  const float least_sum = 5.0F * row.mu * std::log2(row.prior.floor);
-  if (least_sum > 0.8F * kLeastExponent) {
-    general_columns<false>(row);
-  } else {
+  if (bayes_scales_sums(row.mu, row.prior.floor)) {
     general_columns<true>(row);
+  } else {
+    general_columns<false>(row);
   }
 }
 

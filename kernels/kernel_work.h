@@ -1,0 +1,201 @@
+#pragma once
+
+#include "kernels/bayes_step/bayes_step.h"
+#include "kernels/candidates.h"
+#include "kernels/cell_smoothing/cell_smoothing.h"
+#include "kernels/local_stopping_step/local_stopping_step.h"
+
+namespace vantage::kernels {
+
+// What the kernels of matching do, counted from their vector forms, so that profiles can say how
+// near they are to what a machine can do. Whoever changes a kernel changes its figure here.
+//
+// Operations are additions, multiplications, divisions, roots, comparisons, minima and maxima, of
+// floats, doubles and integers alike, a multiply-add being two; of census codes also exclusive or
+// and the counting of bits. Not counted: conversions, shifts, signs, masks and choices by them.
+// Columns near the borders of the image, where candidates lack partners, count like all others.
+
+/// Work on one column of cells.
+struct KernelWork {
+  double operations = 0;             ///< per candidate
+  double operations_per_column = 0;  ///< beside those
+  /// Numbers of 4 bytes loaded from or stored to rows of cells or pixels, per lane. Not working
+  /// memory of a few columns, which stays in level 1.
+  double values = 0;
+  double values_per_column = 0;  ///< beside those
+
+  friend constexpr KernelWork operator+(const KernelWork& a, const KernelWork& b) {
+    return {a.operations + b.operations, a.operations_per_column + b.operations_per_column,
+            a.values + b.values, a.values_per_column + b.values_per_column};
+  }
+};
+
+// --- parts of kernels -------------------------------------------------------------------------
+
+/// cells/exp_log-inl.h, cell_winner/logarithm-inl.h: operations of one value.
+inline constexpr double kExp2Operations = 17;
+inline constexpr double kLogOperations = 24;
+inline constexpr double kDoubleLogOperations = 30;
+/// A sum or an extreme over the sixteen partial ones of a column.
+inline constexpr double kLaneTreeOperations = kLaneMultiple - 1;
+/// The measurement model (6.26 ff.) at a squared residual.
+inline constexpr double kMeasurementOperations = kExp2Operations + 3;
+
+// --- costs ------------------------------------------------------------------------------------
+
+/// A kernel over FeaturePairs: `operations` per channel, and the mean over three channels.
+constexpr KernelWork compare_work(double operations, int planes, int channels) {
+  const double pixels = static_cast<double>(planes) * channels;
+  const double mean = channels == 1 ? 0 : channels;
+  return {channels * operations + mean, 0, pixels + 1, pixels};
+}
+/// What becomes of a cell in place.
+constexpr KernelWork cell_work(double operations) { return {operations, 0, 2, 0}; }
+
+constexpr KernelWork squared_work(int channels) { return compare_work(2, 1, channels); }
+constexpr KernelWork absolute_work(int channels) { return compare_work(2, 1, channels); }
+/// Two distances of four operations each, and the least of them.
+constexpr KernelWork sampling_insensitive_work(int channels) {
+  return compare_work(9, 3, channels);
+}
+constexpr KernelWork contaminated_energy_work(int channels) {
+  return compare_work(2 + kMeasurementOperations + kLogOperations + 1, 1, channels);
+}
+constexpr KernelWork contaminated_likelihood_work(int channels) {
+  return squared_work(channels) + KernelWork{kMeasurementOperations};
+}
+/// Two differences, their norm, and the difference to the two halves of norms.
+constexpr KernelWork negated_evidence_work(bool octagon, int channels) {
+  return compare_work(octagon ? 9 : 8, 3, channels);
+}
+/// Twice exclusive or and counting the bits of bytes, and three additions of those counts.
+constexpr KernelWork hamming_work(int channels) { return compare_work(7, 2, channels); }
+
+inline constexpr KernelWork kLikelihoodOfCostsWork = cell_work(1 + kMeasurementOperations);
+inline constexpr KernelWork kLikelihoodOfEnergiesWork = cell_work(1 + kExp2Operations);
+/// The least of the column first.
+inline constexpr KernelWork kLikelihoodOfEvidenceWork =
+    cell_work(4 + kExp2Operations) + KernelWork{1, kLaneTreeOperations, 1, 0};
+/// add_cells(), multiply_cells(): another partner's cells are loaded beside those in place.
+inline constexpr KernelWork kCombineCellsWork = cell_work(1) + KernelWork{0, 0, 1, 0};
+/// Of one channel: two pixels and a shift (two numbers) per lane.
+inline constexpr KernelWork kInterpolateCandidatesWork = {3, 0, 5, 0};
+
+/// Mean and least of the column, then the parabola of four operations.
+inline constexpr KernelWork kEnergiesWithPriorWork =
+    cell_work(5 + 2) + KernelWork{2, 2 * kLaneTreeOperations + 9, 1, 1};
+inline constexpr KernelWork kLikelihoodsWithPriorWork =
+    cell_work(5 + 1 + kExp2Operations + 1) + KernelWork{0, 4, 0, 1};
+
+// --- box sums ---------------------------------------------------------------------------------
+
+/// 16-bit pairs of (entering, leaving): differences, their product with (1, −1), the multiply-add
+/// of pairs, and the running sum. Interleaving the pairs loads two bytes and stores four per pixel
+/// of either image.
+inline constexpr KernelWork kColumnSsdPairsWork = {8, 0, 3, 1 + 3};
+/// Either row: a difference, its square, rounded; then the running sum.
+inline constexpr KernelWork kColumnSsdFloatWork = {2 * 3 + 2, 0, 4, 2};
+/// Either row: offset, scale, rounding; then the running sum.
+inline constexpr KernelWork kColumnSumWork = {2 * 3 + 2, 0, 4, 0};
+
+/// One column enters the window, one leaves it; minima on the way.
+constexpr KernelWork row_sum_work(bool stores_sums) {
+  return {3, kLaneTreeOperations, stores_sums ? 3.0 : 2.0, 0};
+}
+inline constexpr KernelWork kLocateMinimaWork = {1, kLaneTreeOperations, 1, 0};
+inline constexpr KernelWork kMeanEnergyWork = {2, 1, 2, 0};
+/// Of the winner alone; the result is stored.
+inline constexpr KernelWork kWinnerEnergyWork = {0, 4, 0, 1};
+
+// --- smoothing --------------------------------------------------------------------------------
+
+/// The middle run, and pairs of runs.
+constexpr KernelWork symmetric_sum_work(int radius) {
+  return {1 + 3.0 * radius, 0, 2.0 * radius + 2, 0};
+}
+/// Down the rows, then three boxes of three (two additions each), one of five (three) and the gain.
+inline constexpr KernelWork kBoxCascadeWork = {1 + 3.0 * BoxCascade::kRadius + 3 * 2 + 3 + 1, 0,
+                                               2 * BoxCascade::kRadius + 2, 0};
+
+// --- iterations -------------------------------------------------------------------------------
+
+/// The five cells of a star, and the result.
+inline constexpr double kStarValues = 6;
+
+inline constexpr KernelWork kDiffusionWork = {6, 0, kStarValues, 0};
+/// The pull towards the source.
+inline constexpr KernelWork kMembraneWork = kDiffusionWork + KernelWork{2, 0, 1, 0};
+
+/// Certainty of a column that is looked at again; `loads`: how often.
+constexpr KernelWork certainty_work(CertaintyMeasure measure, int loads) {
+  if (measure == CertaintyMeasure::kMargin) {
+    // Least, second least and sum; then their trees, and that of ties.
+    return {4, 4 * kLaneTreeOperations + 2 * kLaneMultiple + 4, 1.0 * loads, 0};
+  }
+  // The least; exponent, weight and two sums.
+  return {1 + 3 + kExp2Operations + 3, 3 * kLaneTreeOperations + 3 + kLogOperations, 1.0 * loads,
+          0};
+}
+/// carries: what columns of input and output have behind their lanes. Columns that keep their cells
+/// (up to two values per lane more) depend on the images and are not counted.
+constexpr KernelWork local_stopping_work(CertaintyMeasure measure, bool input_carries,
+                                         bool output_carries) {
+  const bool margin = measure == CertaintyMeasure::kMargin;
+  KernelWork work = kDiffusionWork + KernelWork{0, 1, 0, 0};
+  // The margin of the result is found while it is made.
+  work = work + certainty_work(measure, margin ? 0 : 2);
+  work = work + (input_carries ? KernelWork{0, 0, 0, 1} : certainty_work(measure, margin ? 1 : 2));
+  return output_carries ? work + KernelWork{0, 0, 0, kCertaintyFloats} : work;
+}
+
+/// Normalising a column and leaving it as `state`.
+constexpr KernelWork bayes_state_work(BayesState state, int prior_radius) {
+  const double sum = 1;
+  const double normalise = kLaneTreeOperations + 1;
+  if (state == BayesState::kProbability) {
+    return {sum + 1, normalise, 0, 0};
+  }
+  const double smooth = 1 + 3.0 * prior_radius + 2;
+  return {sum + smooth + (state == BayesState::kLogSmoothed ? kLogOperations + 1 : 0), normalise, 0,
+          0};
+}
+constexpr KernelWork bayes_start_work(BayesState state, int prior_radius) {
+  return bayes_state_work(state, prior_radius) + KernelWork{0, 0, 2, 0};
+}
+/// Four products of the star, the estimate of a root and its Newton step, two products. Where the
+/// prior is one tap and columns stay in registers, the tap is part of the normalising factor: one
+/// operation less than here.
+constexpr KernelWork bayes_half_work(BayesState state, int prior_radius) {
+  return bayes_state_work(state, prior_radius) + KernelWork{4 + 1 + 3 + 2, 0, kStarValues + 1, 0};
+}
+/// Sum of the star, power, product. scaled: the largest sum of the column first.
+constexpr KernelWork bayes_general_work(BayesState state, int prior_radius, bool scaled) {
+  const KernelWork work = bayes_state_work(state, prior_radius) +
+                          KernelWork{4 + kExp2Operations + 1, 0, kStarValues + 1, 0};
+  return scaled ? work + KernelWork{4 + 1 + 1, kLaneTreeOperations, kStarValues - 1, 0} : work;
+}
+
+// --- selection --------------------------------------------------------------------------------
+
+/// The least cell of a column; `places`: and where it is, which looks at the cells again.
+constexpr KernelWork cell_winner_work(bool places, bool margin) {
+  KernelWork work = {1, kLaneTreeOperations, 1, 1};
+  if (places) {
+    work = work + KernelWork{1, kLaneTreeOperations, 1, 1};
+  }
+  if (margin) {
+    // Second least and sum, their trees (three operations more for the two least of both sides).
+    work = work + KernelWork{3, 4 * kLaneTreeOperations + 5, 0, 1};
+  }
+  return work;
+}
+inline constexpr KernelWork kCellEntropyWork = {3 + kExp2Operations + 3,
+                                                2 * kLaneTreeOperations + 6 + kLogOperations, 1, 2};
+inline constexpr KernelWork kIntegerDisparityWork = {0, 1, 0, 2};
+/// From three cells of each column.
+constexpr KernelWork parabola_work(bool of_probabilities) {
+  return {0, 14 + (of_probabilities ? 3 * (kDoubleLogOperations + 1) : 0), 0, 5};
+}
+inline constexpr KernelWork kProbabilityEnergyWork = {0, kDoubleLogOperations + 1, 0, 2};
+
+}  // namespace vantage::kernels

@@ -1,0 +1,161 @@
+// What stages tell profiles about their work.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "engine/matching/match_chain.h"
+#include "tests/engine/method_cases.h"
+#include "tests/engine/oracle_comparison.h"
+
+namespace vantage {
+namespace {
+
+using scheduler::ColumnWork;
+using testing::method_cases;
+using testing::MethodCase;
+using testing::PixelKind;
+using testing::textured_pair;
+
+constexpr int kWidth = 57;
+constexpr int kHeight = 39;
+constexpr DisparityRange kRange{-3, 33};  // 37 candidates in 48 lanes
+constexpr int kCandidates = 37;
+
+/// What a chain is made of.
+struct ChainCase {
+  PixelKind pixels = PixelKind::kGrey8;
+  bool has_prior = false;
+  std::vector<double> baseline_ratios = {1};
+  bool wants_all_outputs = true;
+};
+
+/// The work of each stage, first to last, and the bytes of its output columns.
+struct StageWork {
+  std::string name;
+  ColumnWork work;
+  std::size_t output_bytes = 0;
+};
+
+std::vector<StageWork> works_of(const MatchOptions& method, const ChainCase& made) {
+  MatchOptions options = method;
+  options.disparities = kRange;
+  const MethodParameters parameters = options.resolved();
+  Execution execution({.threads = 1});
+  const auto photographs = textured_pair(kWidth, kHeight, kRange, made.pixels, 3);
+  const auto geometry = candidate_geometry(options, Reference::kLeft, kWidth, kHeight);
+  PreparedPair pair;
+  CostImage reference;
+  CostImage partner;
+  Image<float> prior(kWidth, kHeight);
+  ChainInput input;
+  const bool is_plain = !made.has_prior && made.baseline_ratios.size() == 1;
+  if (is_plain && uses_column_ssd(parameters)) {
+    prepare_pair(photographs.left, photographs.right, geometry,
+                 parameters.window_px * parameters.window_px, {true, false}, execution, pair);
+    input.pair = &pair;
+  } else {
+    reference.prepare(photographs.left, parameters, geometry, {true, false, false}, execution);
+    partner.prepare(photographs.right, parameters, geometry, {false, true, true}, execution);
+    input.reference = &reference;
+    for (const double ratio : made.baseline_ratios) {
+      input.partners.push_back({&partner, ratio});
+    }
+    if (made.has_prior) {
+      input.prior_px = prior.view();
+      input.prior_weight = 1;
+    }
+  }
+  std::array<Image<float>, 3> maps;
+  for (Image<float>& map : maps) {
+    map = Image<float>(kWidth, kHeight);
+  }
+  MapOutputs outputs{maps[0].view()};
+  if (made.wants_all_outputs) {
+    outputs.confidence = maps[1].view();
+    outputs.energy = maps[2].view();
+  }
+  const MatchChain chain(parameters, geometry, input, outputs);
+  std::vector<StageWork> works;
+  for (const scheduler::RowStage* stage : chain.stages()) {
+    works.push_back({std::string(stage->name()), stage->column_work(), stage->bytes_per_column()});
+  }
+  return works;
+}
+
+MatchOptions method_named(const std::string& name) {
+  for (const MethodCase& method : method_cases(kRange)) {
+    if (method.name == name) {
+      return method.options;
+    }
+  }
+  ADD_FAILURE() << "no method " << name;
+  return {};
+}
+
+class ColumnWorkOfMethods : public ::testing::TestWithParam<MethodCase> {};
+
+TEST_P(ColumnWorkOfMethods, EveryStageKnowsItsOwn) {
+  for (const ChainCase& made :
+       {ChainCase{}, ChainCase{.pixels = PixelKind::kColour8}, ChainCase{.has_prior = true},
+        ChainCase{.baseline_ratios = {1, -1}}, ChainCase{.wants_all_outputs = false}}) {
+    std::size_t input_bytes = 0;
+    for (const StageWork& stage : works_of(GetParam().options, made)) {
+      EXPECT_EQ(stage.work.cells, kCandidates) << stage.name;
+      EXPECT_GE(stage.work.operations, kCandidates) << stage.name;
+      EXPECT_LE(stage.work.operations, 300 * kCandidates) << stage.name;
+      // Cells are loaded once and stored once at least; certainties behind them in part only.
+      const double cell_bytes = 64;
+      EXPECT_GE(stage.work.bytes,
+                static_cast<double>(input_bytes + stage.output_bytes) - cell_bytes)
+          << stage.name;
+      input_bytes = stage.output_bytes;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, ColumnWorkOfMethods, ::testing::ValuesIn(method_cases({})),
+                         [](const auto& instance) { return instance.param.name; });
+
+TEST(ColumnWork, OfIterationsIsThatOfTheirEquations) {
+  // (6.7): three additions of neighbours, two products, one addition; (6.9): one of either more.
+  for (const auto& [name, operations, cells] :
+       {std::tuple{"diffusion", 6, 6}, {"membrane", 8, 7}}) {
+    const std::vector<StageWork> works = works_of(method_named(name), {});
+    const ColumnWork& iteration = works.at(1).work;
+    EXPECT_EQ(iteration.operations, operations * kCandidates) << name;
+    EXPECT_EQ(iteration.bytes, 4.0 * cells * 48) << name;
+  }
+}
+
+TEST(ColumnWork, GrowsWithWhatIsAskedFor) {
+  const MatchOptions census = method_named("census_box");
+  const auto cost_operations = [&](const ChainCase& made) {
+    return works_of(census, made).front().work.operations;
+  };
+  EXPECT_GT(cost_operations({.baseline_ratios = {1, -1}}), 2 * cost_operations({}));
+  EXPECT_GT(cost_operations({.has_prior = true}), cost_operations({}));
+  MatchOptions ssd = method_named("ssd");
+  const auto selection_operations = [&](const MatchOptions& options, const ChainCase& made) {
+    return works_of(options, made).back().work.operations;
+  };
+  const double least = selection_operations(ssd, {.wants_all_outputs = false});
+  EXPECT_GT(selection_operations(ssd, {}), least);
+  ssd.parameters.subpixel = Subpixel::kParabola;
+  EXPECT_GT(selection_operations(ssd, {.wants_all_outputs = false}), least);
+  // Running sums: the window does not matter.
+  ssd.parameters.subpixel = Subpixel::kNone;
+  ssd.parameters.window_px = 3;
+  EXPECT_EQ(selection_operations(ssd, {.wants_all_outputs = false}), least);
+  MatchOptions bayes = method_named("bayes");
+  const auto iteration_operations = [&](double sigma_prior) {
+    bayes.parameters.sigma_prior = sigma_prior;
+    return works_of(bayes, {}).at(2).work.operations;
+  };
+  EXPECT_GT(iteration_operations(0.4), iteration_operations(0.1));
+}
+
+}  // namespace
+}  // namespace vantage
