@@ -10,12 +10,13 @@
 
 namespace vantage::perf {
 
-/// Prints a table of timings, each also divided by its work (cells, or cells and iterations) and by
-/// the first one, and returns it.
+/// Prints a table of timings, each also divided by its work (cells, cells and iterations, or what
+/// `unit` says) and by the first one, and returns it.
 inline nlohmann::json print_table(const std::string& title, const std::vector<Timing>& timings,
-                                  const std::vector<double>& work) {
+                                  const std::vector<double>& work,
+                                  const std::string& unit = "cell") {
   fmt::print("\n{}\n{:<42} {:>9} {:>9} {:>9} {:>9} {:>7}\n", title, "", "min ms", "median ms",
-             "max ms", "ns/cell", "ratio");
+             "max ms", "ns/" + unit, "ratio");
   nlohmann::json rows = nlohmann::json::array();
   for (std::size_t i = 0; i < timings.size(); ++i) {
     const Timing& timing = timings[i];
@@ -27,7 +28,7 @@ inline nlohmann::json print_table(const std::string& title, const std::vector<Ti
                     {"min_seconds", timing.least()},
                     {"median_seconds", timing.median()},
                     {"max_seconds", timing.most()},
-                    {"ns_per_cell", timing.median() / work[i] * 1e9},
+                    {"ns_per_" + unit, timing.median() / work[i] * 1e9},
                     {"ratio_to_first", ratio}});
   }
   return {{"title", title}, {"rows", rows}};

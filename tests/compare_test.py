@@ -30,6 +30,7 @@ class Arithmetic(unittest.TestCase):
         self.assertEqual(compare.compared([1, 2], [3, 4])["verdict"], "A is faster")
         self.assertEqual(compare.compared([1, 3], [2, 4])["verdict"], "")
         self.assertEqual(compare.compared([1, 2], [2, 3])["verdict"], "")  # they touch
+        self.assertEqual(compare.compared([2, 3], [1, 2])["verdict"], "")
         self.assertEqual(compare.compared([1, 9], [2, 3])["verdict"], "")  # one within the other
         self.assertEqual(compare.compared([1], [2])["verdict"], "")  # one run has no range
 

@@ -1,0 +1,149 @@
+// Matching costs of single cells, and the planes they look up.
+
+#include <algorithm>
+#include <utility>
+
+#include "kernels/census/census.h"
+#include "kernels/evidence/evidence.h"
+#include "kernels/gradient/gradient.h"
+#include "kernels/pixel_cost/pixel_cost.h"
+#include "perf/kernels_benchmark/kernel_benchmark.h"
+
+namespace vantage::perf {
+namespace {
+
+constexpr int kColumns = 64;
+constexpr int kLanes = 64;
+constexpr double kCells = kColumns * kLanes;
+constexpr std::size_t kCellCount = kColumns * kLanes;
+constexpr int kPixels = 512;
+
+// Of one exponential or logarithm of kernels/cells/exp_log-inl.h.
+constexpr double kExponential = 17;
+constexpr double kLogarithm = 24;
+constexpr double kMeasurement = 1 + kExponential + 2;  // of the squared residual
+
+/// Rows of feature planes and the cells they are compared into.
+template <typename T, int kPlanes>
+struct Pairs {
+  AlignedValues<T> reference{kPlanes * kPixels, 256, T{1}, 1};
+  AlignedValues<T> partner{kPlanes * kPixels, 256, T{1}, 2};
+  AlignedValues<float> cells{kCellCount};
+  kernels::FeaturePairs<T, kPlanes> row;
+
+  Pairs() {
+    for (std::size_t plane = 0; plane < kPlanes; ++plane) {
+      row.channel[0].reference[plane] = reference.data() + plane * kPixels;
+      row.channel[0].partner[plane] = partner.data() + plane * kPixels;
+    }
+    row.columns = kColumns;
+    row.lanes = kLanes;
+    row.count = kLanes;
+  }
+};
+using Grey = Pairs<float, 1>;
+using Sampled = Pairs<float, 3>;
+using Gradients = Pairs<float, 3>;
+using Codes = Pairs<std::uint32_t, 2>;
+
+struct Cells {
+  AlignedValues<float> cells{kCellCount, 1000, 1e-3F, 1};
+  AlignedValues<float> ones{kCellCount};  // so that products stay what they are, call after call
+  kernels::CellRow row{kColumns, kLanes, kLanes};
+
+  Cells() { std::fill_n(ones.data(), kCellCount, 1.0F); }
+};
+
+/// Rows of an image with margins, and what is made of them.
+struct ImageRows {
+  static constexpr int kWidth = 256;
+  static constexpr std::size_t kStride = 512;
+  static constexpr int kMargin = 16;
+  AlignedValues<float> pixels{7 * kStride, 256, 1.0F};
+  AlignedValues<float> work{kStride};
+  AlignedValues<float> first{kStride, 256, 1.0F};
+  AlignedValues<float> second{kStride, 256, 1.0F};
+  AlignedValues<float> third{kStride};
+  AlignedValues<std::uint32_t> first_code{kStride};
+  AlignedValues<std::uint32_t> second_code{kStride};
+
+  const float* row(std::size_t y) { return pixels.data() + y * kStride + kMargin; }
+
+  void filter() {
+    kernels::SeparableFilter filter;
+    for (std::size_t y = 0; y < 5; ++y) {
+      filter.rows[y] = row(y);
+    }
+    filter.down = {0.05F, 0.2F, 0.5F, 0.2F, 0.05F};
+    filter.along = {-0.1F, -0.3F, 0.0F, 0.3F, 0.1F};
+    filter.width = kWidth;
+    kernels::separable_filter_row(filter, work.data(), third.data());
+  }
+  void evidence_planes() {
+    // α = 1 leaves the gradients as they are, call after call.
+    kernels::evidence_planes_row({first.data(), second.data(), third.data(), kWidth}, 1.0F, false);
+  }
+  void census() {
+    kernels::CensusRows rows;
+    for (std::size_t y = 0; y < rows.size(); ++y) {
+      rows[y] = row(y);
+    }
+    kernels::census_code_row(rows, kWidth, first_code.data(), second_code.data());
+  }
+  void bounds() { kernels::sampling_bounds_row(row(0), kWidth, first.data(), second.data()); }
+};
+
+void likelihood_of_evidence(Cells& data) {
+  const kernels::EvidenceRow row{{2000, 0, kLanes, -1}, 500, kColumns};
+  kernels::likelihood_of_evidence(row, 10.0F, 0.01F, data.cells.data());
+}
+
+}  // namespace
+
+KernelBenchmarks cost_kernels() {
+  const auto model = kernels::ContaminatedGaussian::of(5, 0.01);
+  const auto cells = [](std::string name, KernelWork work, auto call) {
+    return on_own_data<Cells>(std::move(name), "cell", kCells, work, call);
+  };
+  const auto grey = [](std::string name, double operations, auto call) {
+    return on_own_data<Grey>(std::move(name), "cell", kCells, {operations, 8}, call);
+  };
+  const auto pixels = [](std::string name, KernelWork work, auto call) {
+    return on_own_data<ImageRows>(std::move(name), "pixel", ImageRows::kWidth, work, call);
+  };
+  return {
+      grey("squared_row", 2, [](Grey& d) { kernels::squared_row(d.row, d.cells.data()); }),
+      grey("absolute_row", 2, [](Grey& d) { kernels::absolute_row(d.row, 20, d.cells.data()); }),
+      grey("contaminated_energy_row", 2 + kMeasurement + kLogarithm + 1,
+           [model](Grey& d) { kernels::contaminated_energy_row(d.row, model, d.cells.data()); }),
+      grey(
+          "contaminated_likelihood_row", 2 + kMeasurement,
+          [model](Grey& d) { kernels::contaminated_likelihood_row(d.row, model, d.cells.data()); }),
+      on_own_data<Sampled>(
+          "sampling_insensitive_row", "cell", kCells, {9, 16},
+          [](Sampled& d) { kernels::sampling_insensitive_row(d.row, d.cells.data()); }),
+      on_own_data<Gradients>(
+          "negated_evidence_row/L2", "cell", kCells, {8, 16},
+          [](Gradients& d) { kernels::negated_evidence_row(d.row, false, d.cells.data()); }),
+      on_own_data<Gradients>(
+          "negated_evidence_row/octagon", "cell", kCells, {9, 16},
+          [](Gradients& d) { kernels::negated_evidence_row(d.row, true, d.cells.data()); }),
+      on_own_data<Codes>("hamming_row", "cell", kCells, {5, 12},
+                         [](Codes& d) { kernels::hamming_row(d.row, d.cells.data()); }),
+      cells("likelihood_of_costs", {1 + kMeasurement, 8},
+            [model](Cells& d) { kernels::likelihood_of_costs(d.row, model, d.cells.data()); }),
+      cells("likelihood_of_energies", {1 + kExponential, 8},
+            [](Cells& d) { kernels::likelihood_of_energies(d.row, d.cells.data()); }),
+      cells("likelihood_of_evidence", {1 + 2 + kExponential + 2, 12}, likelihood_of_evidence),
+      cells("multiply_cells", {1, 12},
+            [](Cells& d) {
+              kernels::multiply_cells(d.ones.data(), kColumns * kLanes, d.cells.data());
+            }),
+      pixels("separable_filter_row", {18, 48}, [](ImageRows& d) { d.filter(); }),
+      pixels("evidence_planes_row/L2", {7, 20}, [](ImageRows& d) { d.evidence_planes(); }),
+      pixels("census_code_row", {62 * 3, 62 * 4 + 4 + 8}, [](ImageRows& d) { d.census(); }),
+      pixels("sampling_bounds_row", {8, 20}, [](ImageRows& d) { d.bounds(); }),
+  };
+}
+
+}  // namespace vantage::perf

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vantage::perf {
+
+/// What a kernel does for one cell (candidate disparity of a pixel) or pixel. Counted from its
+/// code: operations are additions, multiplications, divisions, roots, comparisons, minima and
+/// maxima, on integers or floats; one that multiplies and adds is two. Bytes are loaded from and
+/// stored to rows. 0: not counted.
+struct KernelWork {
+  double operations = 0;
+  double bytes = 0;
+};
+
+/// One kernel on data of its own, small enough for the level-1 cache.
+struct KernelBenchmark {
+  std::string name;
+  std::string_view unit;      ///< "cell" or "pixel"
+  double units_per_call = 1;  ///< how many of them a call makes
+  KernelWork work;            ///< of each
+  /// Makes the data, on the instruction set in use, and returns the call.
+  std::function<std::function<void()>()> prepare;
+  bool has_vectors = true;  ///< false: plain code, the same on all instruction sets
+};
+using KernelBenchmarks = std::vector<KernelBenchmark>;
+
+KernelBenchmarks cost_kernels();
+KernelBenchmarks sum_kernels();
+KernelBenchmarks selection_kernels();
+KernelBenchmarks iteration_kernels();
+KernelBenchmarks view_kernels();
+KernelBenchmarks refinement_kernels();
+
+/// `size` values that begin at a cache line, and a few more that may be read behind them.
+template <typename T>
+class AlignedValues {
+ public:
+  explicit AlignedValues(std::size_t size) : memory_(size + kSpare) {}
+  /// Whole numbers in [0, limit) times `unit`, the same in every run.
+  AlignedValues(std::size_t size, unsigned limit, T unit, unsigned seed = 1) : AlignedValues(size) {
+    std::mt19937 random(seed);
+    for (T& value : memory_) {
+      value = static_cast<T>(static_cast<T>(random() % limit) * unit);
+    }
+  }
+  [[nodiscard]] T* data() {
+    const auto address = reinterpret_cast<std::uintptr_t>(memory_.data());
+    return memory_.data() + (kLine - address % kLine) % kLine / sizeof(T);
+  }
+
+ private:
+  static constexpr std::size_t kLine = 64;
+  static constexpr std::size_t kSpare = 2 * kLine;
+  std::vector<T> memory_;
+};
+
+/// A benchmark of `call` on one `Data`, made anew for each instruction set.
+template <class Data, class Call>
+KernelBenchmark on_own_data(std::string name, std::string_view unit, double units_per_call,
+                            KernelWork work, Call call) {
+  return {std::move(name), unit, units_per_call, work,
+          [call] { return [call, data = std::make_shared<Data>()] { call(*data); }; }};
+}
+
+}  // namespace vantage::perf

@@ -1,0 +1,116 @@
+// From cells to winners: minima, sub-pixel positions, confidence.
+
+#include <algorithm>
+#include <utility>
+
+#include "kernels/candidates.h"
+#include "kernels/cell_winner/cell_winner.h"
+#include "kernels/mean_energy/mean_energy.h"
+#include "kernels/parabola/parabola.h"
+#include "kernels/winner/winner.h"
+#include "perf/kernels_benchmark/kernel_benchmark.h"
+
+namespace vantage::perf {
+namespace {
+
+constexpr int kColumns = 64;
+constexpr int kLanes = 64;
+constexpr double kCells = kColumns * kLanes;
+constexpr std::size_t kCellCount = kColumns * kLanes;
+constexpr int kIndexBits = 6;
+// A column at which every candidate has a partner, and one near the border.
+constexpr int kInside = 500;
+constexpr int kAtBorder = 0;
+
+struct Rows {
+  AlignedValues<std::int32_t> sums{kCellCount, 10000, 1 << kIndexBits};
+  AlignedValues<std::int32_t> least{kColumns};
+  AlignedValues<std::int32_t> winners{kColumns};
+  AlignedValues<float> cells{kCellCount, 65536, 1.0F / 65536, 2};
+  AlignedValues<float> energies{kCellCount};
+  AlignedValues<float> best{kColumns};
+  AlignedValues<float> confidence{kColumns};
+  AlignedValues<float> disparity_px{kColumns};
+
+  Rows() {
+    for (int x = 0; x < kColumns; ++x) {
+      const std::int32_t* column = sums.data() + x * kLanes;
+      least.data()[x] = *std::min_element(column, column + kLanes);
+    }
+    locate();
+    select_cells(kInside, false, false);
+  }
+  [[nodiscard]] kernels::WinnerRow winner_row(int index_bits, int first_column) {
+    kernels::WinnerRow row;
+    row.cells = sums.data();
+    row.geometry = {1000, 0, kLanes, -1};
+    row.first_column = first_column;
+    row.columns = kColumns;
+    row.window_radius = 4;
+    row.index_bits = index_bits;
+    return row;
+  }
+  [[nodiscard]] kernels::CellRow cell_row(int first_column, bool probabilities) {
+    return {cells.data(), {1000, 0, kLanes, -1}, first_column, kColumns, 0, probabilities};
+  }
+  void locate() {
+    kernels::locate_minima_row(sums.data(), least.data(), kLanes, kColumns, winners.data());
+  }
+  void select(int index_bits) {
+    kernels::select_winners_row(winner_row(index_bits, kAtBorder), winners.data());
+  }
+  void select_cells(int first_column, bool probabilities, bool margin) {
+    kernels::select_cell_winners_row(
+        cell_row(first_column, probabilities),
+        {winners.data(), best.data(), margin ? confidence.data() : nullptr});
+  }
+  void entropy() {
+    kernels::cell_entropy_row(cell_row(kInside, false), best.data(), 9.0F, confidence.data());
+  }
+  void parabola_of_cells(bool probabilities) {
+    kernels::parabola_disparity_row(cell_row(kInside, probabilities), winners.data(),
+                                    disparity_px.data());
+  }
+  void parabola_of_sums() {
+    kernels::parabola_disparity_row(winner_row(0, kInside), winners.data(), disparity_px.data());
+  }
+  void mean_energies() {
+    kernels::mean_energy_row(winner_row(kIndexBits, kInside), {9, 0.5, 3}, energies.data());
+  }
+};
+
+KernelBenchmark of_cells(std::string name, KernelWork work, void (*call)(Rows&)) {
+  return on_own_data<Rows>(std::move(name), "cell", kCells, work, call);
+}
+
+/// Three cells, a number and a disparity each; doubles, whose operations are not counted.
+KernelBenchmark of_pixels(std::string name, void (*call)(Rows&)) {
+  return on_own_data<Rows>(std::move(name), "pixel", kColumns, {0, 20}, call);
+}
+
+}  // namespace
+
+KernelBenchmarks selection_kernels() {
+  return {
+      of_cells("locate_minima_row", {1, 4}, [](Rows& d) { d.locate(); }),
+      of_cells("select_winners_row/indexed, border", {0, 4}, [](Rows& d) { d.select(kIndexBits); }),
+      of_cells("select_winners_row/plain, border", {0, 8}, [](Rows& d) { d.select(0); }),
+      of_cells("mean_energy_row", {2, 8}, [](Rows& d) { d.mean_energies(); }),
+      // The least, and where it is.
+      of_cells("select_cell_winners_row/energies", {2, 8},
+               [](Rows& d) { d.select_cells(kInside, false, false); }),
+      of_cells("select_cell_winners_row/probabilities", {2, 8},
+               [](Rows& d) { d.select_cells(kInside, true, false); }),
+      of_cells("select_cell_winners_row/energies, border", {2, 8},
+               [](Rows& d) { d.select_cells(kAtBorder, false, false); }),
+      of_cells("select_cell_winners_row/margin", {5, 8},
+               [](Rows& d) { d.select_cells(kInside, false, true); }),
+      // A difference, a product, a minimum, an exponential, a product and two sums.
+      of_cells("cell_entropy_row", {3 + 17 + 3, 4}, [](Rows& d) { d.entropy(); }),
+      of_pixels("parabola_disparity_row/sums", [](Rows& d) { d.parabola_of_sums(); }),
+      of_pixels("parabola_disparity_row/energies", [](Rows& d) { d.parabola_of_cells(false); }),
+      of_pixels("parabola_disparity_row/probabilities", [](Rows& d) { d.parabola_of_cells(true); }),
+  };
+}
+
+}  // namespace vantage::perf
