@@ -14,10 +14,11 @@ struct Contender {
   std::function<void()> run;
 };
 
-/// Seconds of all rounds of one contender, sorted.
+/// Seconds of all rounds of one contender.
 struct Timing {
   std::string name;
-  std::vector<double> seconds;
+  std::vector<double> seconds;   ///< sorted
+  std::vector<double> by_round;  ///< as they came
 
   [[nodiscard]] double least() const { return seconds.front(); }
   [[nodiscard]] double median() const { return seconds[seconds.size() / 2]; }
@@ -29,7 +30,7 @@ struct Timing {
 inline std::vector<Timing> time_interleaved(const std::vector<Contender>& contenders, int rounds) {
   std::vector<Timing> timings;
   for (const Contender& contender : contenders) {
-    timings.push_back({contender.name, {}});
+    timings.push_back({contender.name, {}, {}});
     contender.run();
   }
   for (int round = 0; round < rounds; ++round) {
@@ -41,6 +42,7 @@ inline std::vector<Timing> time_interleaved(const std::vector<Contender>& conten
     }
   }
   for (Timing& timing : timings) {
+    timing.by_round = timing.seconds;
     std::sort(timing.seconds.begin(), timing.seconds.end());
   }
   return timings;

@@ -14,6 +14,7 @@
 #include "engine/simd.h"
 #include "perf/bench_pair.h"
 #include "perf/interleaved.h"
+#include "perf/map_runner.h"
 #include "perf/peers.h"
 #include "perf/tables.h"
 #include "scheduler/whole_image_pipeline.h"
@@ -64,24 +65,6 @@ std::vector<Method> all_methods() {
   return methods;
 }
 
-/// A method's left map, on its own threads.
-class Runner {
- public:
-  Runner(const Method& method, const ExecutionOptions& execution)
-      : execution_(execution), matcher_(method.options, execution_) {}
-  void run(const Pair& pair) {
-    matcher_.match(pair.left_grey, pair.right_grey,
-                   {.left = true, .right = false, .unmatched = false}, maps_, &report_);
-  }
-  [[nodiscard]] const MatchReport& report() const { return report_; }
-
- private:
-  Execution execution_;
-  StereoMatcher matcher_;
-  DisparityMaps maps_;
-  MatchReport report_;
-};
-
 /// The chain by the whole-image executor: every row of every stage stored, one thread.
 void run_whole_image_chain(const Method& method, const Pair& pair, Execution& execution) {
   const MethodParameters parameters = method.options.resolved();
@@ -109,16 +92,17 @@ nlohmann::json against_peers(const Pair& pair, int rounds) {
     cv::setNumThreads(1);
   };
   const std::vector<Method> methods = all_methods();
-  std::vector<std::unique_ptr<Runner>> runners;
+  std::vector<std::unique_ptr<MapRunner>> runners;
   std::vector<Contender> contenders{
       {fmt::format("StereoSGBM 3-way, {} threads", threads), [&] { run_sgbm(threads); }},
       {"StereoSGBM 3-way, 1 thread", [&] { run_sgbm(1); }}};
   std::vector<double> work{kCells, kCells};
   const auto add = [&](const Method& method, const ExecutionOptions& execution,
                        const std::string& how) {
-    runners.push_back(std::make_unique<Runner>(method, execution));
-    contenders.push_back(
-        {method.name + how, [&pair, runner = runners.back().get()] { runner->run(pair); }});
+    runners.push_back(std::make_unique<MapRunner>(method.options, execution));
+    contenders.push_back({method.name + how, [&pair, runner = runners.back().get()] {
+                            runner->run(pair.left_grey, pair.right_grey);
+                          }});
     work.push_back(method.work);
   };
   Execution serial({.threads = 1});
@@ -143,15 +127,16 @@ nlohmann::json over_iterations(const Pair& pair, int rounds) {
   nlohmann::json tables = nlohmann::json::array();
   for (const MatchMethod kind : {MatchMethod::kBayes, MatchMethod::kMembrane}) {
     std::vector<Method> methods;
-    std::vector<std::unique_ptr<Runner>> runners;
+    std::vector<std::unique_ptr<MapRunner>> runners;
     std::vector<Contender> contenders;
     std::vector<double> work;
     for (const int iterations : {10, 50, 200}) {
       methods.push_back(make_method(fmt::format("{} iterations", iterations), kind, iterations));
-      runners.push_back(
-          std::make_unique<Runner>(methods.back(), ExecutionOptions{.threads = threads}));
-      contenders.push_back(
-          {methods.back().name, [&pair, runner = runners.back().get()] { runner->run(pair); }});
+      runners.push_back(std::make_unique<MapRunner>(methods.back().options,
+                                                    ExecutionOptions{.threads = threads}));
+      contenders.push_back({methods.back().name, [&pair, runner = runners.back().get()] {
+                              runner->run(pair.left_grey, pair.right_grey);
+                            }});
       work.push_back(methods.back().work);
     }
     tables.push_back(

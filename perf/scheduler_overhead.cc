@@ -150,7 +150,7 @@ nlohmann::json empty_frames(const Settings& settings) {
     }
   }
   return print_table("frames with empty steps", time_interleaved(contenders, settings.rounds),
-                     std::vector<double>(contenders.size(), kFrames), "frame");
+                     kFrames, "frame");
 }
 
 nlohmann::json plans(const Settings& settings) {
@@ -172,7 +172,7 @@ nlohmann::json plans(const Settings& settings) {
                           }});
   }
   return print_table("choosing a plan, 1282x1110", time_interleaved(contenders, settings.rounds),
-                     std::vector<double>(contenders.size(), kPlans), "plan");
+                     kPlans, "plan");
 }
 
 /// Spans with and without a trace; returns the table. `idle_span_ns`: what one costs without.
@@ -199,7 +199,7 @@ nlohmann::json spans(const Settings& settings, double& idle_span_ns) {
                                           }}},
                                         settings.rounds);
   idle_span_ns = (timings[1].median() - timings[0].median()) / kSpans * 1e9;
-  return print_table("spans", timings, std::vector<double>(timings.size(), kSpans), "span");
+  return print_table("spans", timings, kSpans, "span");
 }
 
 /// A map without and with a recorded trace, and how many spans that has.

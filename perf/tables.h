@@ -36,8 +36,8 @@ inline nlohmann::json print_table(const std::string& title, const std::vector<Ti
 
 /// The same where all do the same work.
 inline nlohmann::json print_table(const std::string& title, const std::vector<Timing>& timings,
-                                  double work) {
-  return print_table(title, timings, std::vector<double>(timings.size(), work));
+                                  double work, const std::string& unit = "cell") {
+  return print_table(title, timings, std::vector<double>(timings.size(), work), unit);
 }
 
 }  // namespace vantage::perf
