@@ -4,7 +4,11 @@
 
 #include <atomic>
 #include <exception>
+#include <optional>
 #include <vector>
+
+#include "scheduler/bound_thread.h"
+#include "scheduler/task_ranges.h"
 
 namespace vantage::scheduler {
 namespace {
@@ -40,7 +44,16 @@ class FirstError {
 
 class OpenMpExecutor final : public Executor {
  public:
-  explicit OpenMpExecutor(int threads) : threads_(threads) {}
+  explicit OpenMpExecutor(const ThreadPlaces& places)
+      : threads_(places.thread_count()),
+        threads_of_nodes_(places.threads_of_nodes()),
+        system_(places.system) {
+    for (int node = 0; node < static_cast<int>(places.nodes.size()); ++node) {
+      for (const std::vector<int>& allowed : places.nodes[static_cast<std::size_t>(node)].allowed) {
+        members_.push_back({node, allowed});
+      }
+    }
+  }
 
   [[nodiscard]] std::string_view name() const override { return "openmp"; }
   [[nodiscard]] int thread_count() const override { return threads_; }
@@ -54,10 +67,14 @@ class OpenMpExecutor final : public Executor {
         error.run(body, task);
       }
     } else {
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_) default(none) \
-    shared(error, body, task_count)
-      for (int task = 0; task < task_count; ++task) {
-        error.run(body, task);
+      TaskRanges tasks(task_count, threads_of_nodes_);
+#pragma omp parallel num_threads(threads_) default(none) shared(error, body, tasks)
+      {
+        const Member& member = this_member();
+        const BoundThread bound(system_, member.allowed);
+        while (const std::optional<int> task = tasks.take(member.node)) {
+          error.run(body, *task);
+        }
       }
     }
     error.rethrow();
@@ -75,8 +92,9 @@ class OpenMpExecutor final : public Executor {
     [[maybe_unused]] char writer = 0;
 #pragma omp parallel num_threads(threads_) default(none) \
     shared(steps, slot_token, order_token, writer, in_flight)
-#pragma omp single
     {
+      const BoundThread bound(system_, this_member().allowed);
+#pragma omp single
       for (int slot = 0;; slot = (slot + 1) % in_flight) {
 #pragma omp taskwait depend(inout : slot_token[slot])
         if (!steps.read(slot)) {
@@ -106,13 +124,27 @@ class OpenMpExecutor final : public Executor {
   }
 
  private:
+  /// What the place of a team's thread is.
+  struct Member {
+    int node;
+    std::vector<int> allowed;
+  };
+
+  /// In a region. The system may have given the team fewer threads, never more.
+  [[nodiscard]] const Member& this_member() const {
+    return members_[static_cast<std::size_t>(omp_get_thread_num())];
+  }
+
   int threads_;
+  std::vector<int> threads_of_nodes_;
+  std::shared_ptr<hwloc_topology> system_;
+  std::vector<Member> members_;
 };
 
 }  // namespace
 
-std::unique_ptr<Executor> make_openmp_executor(int threads) {
-  return std::make_unique<OpenMpExecutor>(threads);
+std::unique_ptr<Executor> make_openmp_executor(const ThreadPlaces& places) {
+  return std::make_unique<OpenMpExecutor>(places);
 }
 
 }  // namespace vantage::scheduler

@@ -3,10 +3,12 @@
 #include <memory>
 
 #include "scheduler/executor.h"
+#include "scheduler/thread_places.h"
 
 namespace vantage::scheduler {
 
-/// One team of `threads` OpenMP threads for strips and frames alike.
-std::unique_ptr<Executor> make_openmp_executor(int threads);
+/// One team of OpenMP threads for strips and frames alike, bound as `places` says while they work.
+/// Loops are divided into a range of tasks per node; frames run on any.
+std::unique_ptr<Executor> make_openmp_executor(const ThreadPlaces& places);
 
 }  // namespace vantage::scheduler

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "scheduler/executor.h"
+#include "scheduler/topology.h"
+
+namespace vantage::scheduler {
+
+/// Threads of an executor that run on one NUMA node.
+struct NodeThreads {
+  int number = 0;  ///< of the node, as the system counts
+  /// For each thread the hardware threads that it may run on, as the system numbers them; empty:
+  /// all.
+  std::vector<std::vector<int>> allowed;
+
+  [[nodiscard]] int count() const { return static_cast<int>(allowed.size()); }
+};
+
+/// Where each thread of an executor runs.
+struct ThreadPlaces {
+  ThreadBinding binding = ThreadBinding::kNone;
+  std::vector<NodeThreads> nodes;  ///< at least one, each with at least one thread
+  /// hwloc's topology to bind with; null where threads are not bound, because `binding` says so or
+  /// because the topology is not this system's.
+  std::shared_ptr<hwloc_topology> system;
+
+  [[nodiscard]] int thread_count() const;
+  /// Threads of each node.
+  [[nodiscard]] std::vector<int> threads_of_nodes() const;
+};
+
+/// kNodes where `threads` need the cores of more than one node, else kNone.
+ThreadBinding default_binding(const Topology& topology, int threads);
+
+/// `threads` ≥ 1 that run anywhere, as if there were one node.
+ThreadPlaces unbound_threads(int threads);
+
+/// Places `threads` ≥ 1. They use the first nodes whose cores suffice to give each thread one, or
+/// all nodes, in proportion to the cores or, where there are more threads than cores, to the
+/// hardware threads. With kNone: unbound_threads().
+ThreadPlaces place_threads(const Topology& topology, int threads, ThreadBinding binding);
+
+/// Like make_executor() of executor.h, for given places. Throws std::invalid_argument for a serial
+/// executor that is to be bound.
+std::unique_ptr<Executor> make_executor(ExecutorKind kind, const ThreadPlaces& places);
+
+/// `total` divided in proportion to `weights` (≥ 0, not all 0), each part rounded to a neighbour.
+std::vector<int> divide_in_proportion(int total, const std::vector<int>& weights);
+
+}  // namespace vantage::scheduler

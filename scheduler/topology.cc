@@ -1,0 +1,133 @@
+#include "scheduler/topology.h"
+
+#include <hwloc.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace vantage::scheduler {
+namespace {
+
+using Handle = std::shared_ptr<hwloc_topology>;
+
+Handle new_handle() {
+  hwloc_topology_t topology = nullptr;
+  if (hwloc_topology_init(&topology) != 0) {
+    return nullptr;
+  }
+  return {topology, hwloc_topology_destroy};
+}
+
+/// Leaves what the threads of this process may run on. cgroups hwloc knows itself.
+void restrict_to_affinity_mask(hwloc_topology_t topology) {
+  hwloc_bitmap_t mask = hwloc_bitmap_alloc();
+  if (hwloc_get_cpubind(topology, mask, HWLOC_CPUBIND_PROCESS) == 0) {
+    hwloc_topology_restrict(topology, mask, 0);  // fails, changing nothing, where nothing is left
+  }
+  hwloc_bitmap_free(mask);
+}
+
+void read_cache(hwloc_topology_t topology, hwloc_obj_type_t type, std::size_t& bytes) {
+  const hwloc_obj_t cache = hwloc_get_obj_by_type(topology, type, 0);
+  if (cache != nullptr && cache->attr->cache.size > 0) {
+    bytes = cache->attr->cache.size;
+  }
+}
+
+/// The model that the first package, or else the machine, tells of.
+void read_processor(hwloc_topology_t topology, std::string& processor) {
+  for (const hwloc_obj_t object :
+       {hwloc_get_obj_by_type(topology, HWLOC_OBJ_PACKAGE, 0), hwloc_get_root_obj(topology)}) {
+    const char* model =
+        object == nullptr ? nullptr : hwloc_obj_get_info_by_name(object, "CPUModel");
+    if (model != nullptr && *model != '\0') {
+      processor = model;
+      return;
+    }
+  }
+}
+
+/// Nodes in hwloc's order. A hardware thread next to several kinds of memory counts for the first.
+std::vector<NumaNode> read_nodes(hwloc_topology_t topology) {
+  std::vector<NumaNode> nodes;
+  hwloc_obj_t last_core = nullptr;
+  for (hwloc_obj_t thread = nullptr;
+       (thread = hwloc_get_next_obj_by_type(topology, HWLOC_OBJ_PU, thread)) != nullptr;) {
+    const int number = std::max(0, hwloc_bitmap_first(thread->nodeset));
+    auto node = std::ranges::find(nodes, number, &NumaNode::number);
+    if (node == nodes.end()) {
+      const hwloc_obj_t memory =
+          hwloc_get_numanode_obj_by_os_index(topology, static_cast<unsigned>(number));
+      nodes.push_back(
+          {.number = number,
+           .cores = {},
+           .memory_bytes = memory == nullptr ? 0 : memory->attr->numanode.local_memory});
+      node = nodes.end() - 1;
+    }
+    const hwloc_obj_t core = hwloc_get_ancestor_obj_by_type(topology, HWLOC_OBJ_CORE, thread);
+    if (core == nullptr || core != last_core || node->cores.empty()) {
+      node->cores.emplace_back();
+    }
+    last_core = core;
+    node->cores.back().push_back(static_cast<int>(thread->os_index));
+  }
+  return nodes;
+}
+
+Topology read(const Handle& handle) {
+  hwloc_topology_t topology = handle.get();
+  Topology known;
+  known.nodes = read_nodes(topology);
+  Machine& machine = known.machine;
+  read_processor(topology, machine.processor);
+  machine.hardware_threads = 0;
+  machine.cores = 0;
+  for (const NumaNode& node : known.nodes) {
+    machine.hardware_threads += node.hardware_threads();
+    machine.cores += static_cast<int>(node.cores.size());
+  }
+  machine.numa_nodes = static_cast<int>(known.nodes.size());
+  machine.memory_bytes = hwloc_get_root_obj(topology)->total_memory;
+  read_cache(topology, HWLOC_OBJ_L1CACHE, machine.l1_data_bytes);
+  read_cache(topology, HWLOC_OBJ_L2CACHE, machine.l2_bytes);
+  read_cache(topology, HWLOC_OBJ_L3CACHE, machine.l3_bytes);
+  if (hwloc_topology_is_thissystem(topology) != 0) {
+    known.system = handle;
+  }
+  return known;
+}
+
+}  // namespace
+
+int NumaNode::hardware_threads() const {
+  std::size_t count = 0;
+  for (const Core& core : cores) {
+    count += core.size();
+  }
+  return static_cast<int>(count);
+}
+
+Topology detect_topology() {
+  const Handle handle = new_handle();
+  if (handle == nullptr || hwloc_topology_load(handle.get()) != 0) {
+    Topology unknown;
+    unknown.nodes = {{.number = 0, .cores = {{0}}, .memory_bytes = 0}};
+    return unknown;
+  }
+  if (hwloc_topology_is_thissystem(handle.get()) != 0) {
+    restrict_to_affinity_mask(handle.get());
+  }
+  return read(handle);
+}
+
+Topology synthetic_topology(const std::string& description) {
+  const Handle handle = new_handle();
+  if (handle == nullptr || hwloc_topology_set_synthetic(handle.get(), description.c_str()) != 0 ||
+      hwloc_topology_load(handle.get()) != 0) {
+    throw std::invalid_argument("'" + description +
+                                "' is no topology, expected hwloc's synthetic notation");
+  }
+  return read(handle);
+}
+
+}  // namespace vantage::scheduler
