@@ -29,7 +29,8 @@ struct StageProfile {
   double bytes = 0;  ///< loaded and stored by the kernel, whichever cache they lie in
 };
 
-/// A named part of the work, or of the waiting, that is no stage of a chain.
+/// A named part of the work, or of the waiting. Stages of chains are within the parts that sweep
+/// them ("match left").
 struct PartProfile {
   std::string name;
   ProfileSample seconds;  ///< over all threads, without the parts within it
@@ -43,7 +44,16 @@ struct ThreadProfile {
   double wait_s = 0;
 };
 
-/// One thread doing one thing, for drawing. Outermost work and waits only.
+/// What the waiting threads of the pool waited for, in seconds over all of them; see
+/// waiting_causes().
+struct WaitingProfile {
+  ProfileSample reading_s;    ///< frames or images being read or decoded
+  ProfileSample computing_s;  ///< tasks of other threads
+  ProfileSample writing_s;    ///< results being encoded or written
+  ProfileSample nothing_s;    ///< no thread worked at all
+};
+
+/// One thread doing one thing, for drawing: the innermost of what was recorded.
 struct TimelineSpan {
   std::string name;
   bool is_wait = false;
@@ -74,6 +84,7 @@ struct ThreadCountProfile {
   std::vector<StageProfile> stages;    ///< most time first
   std::vector<PartProfile> parts;      ///< most time first
   std::vector<PartProfile> waits;      ///< most time first
+  WaitingProfile waiting_for;          ///< the same time as in waits, by cause
   std::vector<ThreadProfile> workers;  ///< of the run with the median wall time
 };
 
