@@ -11,6 +11,7 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -85,12 +86,21 @@ bool read_some(int descriptor, std::string& text) {
 }
 
 /// Reads both to their ends, whichever has something: a program that fills one waits for its
-/// reader.
-void read_all(const Pipe& out, const Pipe& err, ProgramResult& result) {
+/// reader. Once `stop` is raised, `process` is told to end.
+void read_all(const Pipe& out, const Pipe& err, pid_t process, const std::atomic<bool>* stop,
+              ProgramResult& result) {
+  constexpr int kStopInterval_ms = 100;
   std::array<pollfd, 2> ends = {{{out.read_end(), POLLIN, 0}, {err.read_end(), POLLIN, 0}}};
   const std::array<std::string*, 2> texts = {&result.out, &result.err};
+  bool told = false;
   while (ends[0].fd >= 0 || ends[1].fd >= 0) {
-    if (::poll(ends.data(), ends.size(), -1) < 0) {
+    const bool waits_for_stop = stop != nullptr && !told;
+    const int ready = ::poll(ends.data(), ends.size(), waits_for_stop ? kStopInterval_ms : -1);
+    if (waits_for_stop && stop->load()) {
+      ::kill(process, SIGTERM);
+      told = true;
+    }
+    if (ready < 0) {
       continue;  // interrupted by a signal
     }
     for (std::size_t end = 0; end < ends.size(); ++end) {
@@ -120,14 +130,14 @@ bool program_exists(const std::string& name) {
   });
 }
 
-ProgramResult run_program(const std::vector<std::string>& command) {
+ProgramResult run_program(const std::vector<std::string>& command, const std::atomic<bool>* stop) {
   Pipe out;
   Pipe err;
   const pid_t process = spawn(command, out, err);
   out.close_write_end();
   err.close_write_end();
   ProgramResult result;
-  read_all(out, err, result);
+  read_all(out, err, process, stop, result);
   result.exit_code = wait_for(process);
   return result;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,9 @@ struct ProgramResult {
 bool program_exists(const std::string& name);
 
 /// Runs `command`, whose first member is looked for in PATH, with no input, and waits for its end.
-/// Throws Error when it cannot be started.
-ProgramResult run_program(const std::vector<std::string>& command);
+/// Once `stop` is raised it gets a SIGTERM. Throws Error when it cannot be started.
+ProgramResult run_program(const std::vector<std::string>& command,
+                          const std::atomic<bool>* stop = nullptr);
 
 /// Where this very program is, as an absolute path. Throws Error when the system does not tell.
 std::string path_of_this_program();

@@ -134,7 +134,7 @@ void RunReport::write(const std::string& path) {
     trace_.reset();
     scheduler::add_waits(trace);
     write_trace(trace_path_, trace, command_);
-    trace_totals_ = trace_report(scheduler::summarise(trace));
+    trace_totals_ = trace_report(scheduler::summarise(trace), waiting_causes(trace));
     trace_totals_["file"] = trace_path_;
   }
   if (!path.empty()) {

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <fstream>
 #include <string_view>
 
@@ -61,6 +64,40 @@ SettingValue seconds_of(const std::map<std::string, scheduler::TraceSummary::Nam
   return values;
 }
 
+std::int64_t nanoseconds(const SettingValue& microseconds) {
+  return std::llround(microseconds.get<double>() * 1e3);
+}
+
+scheduler::SpanKind kind_of(const std::string& category) {
+  return category == "work"   ? scheduler::SpanKind::kWork
+         : category == "join" ? scheduler::SpanKind::kJoin
+                              : scheduler::SpanKind::kWait;
+}
+
+void add_event(const SettingValue& event, StoredTrace& stored) {
+  const std::string& name = event.at("name").get_ref<const std::string&>();
+  const SettingValue& arguments = event.at("args");
+  if (name == "process_name" && event.at("ph") == "M") {
+    return;
+  }
+  const auto thread_number = event.at("tid").get<std::size_t>();
+  if (event.at("ph") == "M") {  // ahead of the spans of its thread
+    stored.trace.threads.push_back(
+        {arguments.at("name").get<std::string>(), arguments.at("in_pool").get<bool>(), {}, {}});
+    return;
+  }
+  if (thread_number < 1 || thread_number > stored.trace.threads.size()) {
+    return;  // of no thread that it names
+  }
+  scheduler::SpanRecord span;
+  span.name = *stored.names.insert(name).first;
+  span.kind = kind_of(event.at("cat"));
+  span.begin_ns = nanoseconds(event.at("ts"));
+  span.end_ns = span.begin_ns + nanoseconds(event.at("dur"));
+  span.place.frame = arguments.value("frame", -1);
+  stored.trace.threads[thread_number - 1].spans.push_back(span);
+}
+
 }  // namespace
 
 void write_trace(const std::string& path, const scheduler::TraceData& trace,
@@ -83,7 +120,7 @@ void write_trace(const std::string& path, const scheduler::TraceData& trace,
                                {"name", "thread_name"},
                                {"pid", kProcess},
                                {"tid", t + 1},
-                               {"args", {{"name", thread.name}}}};
+                               {"args", {{"name", thread.name}, {"in_pool", thread.is_in_pool}}}};
     out << ",\n" << name.dump();
     for (const scheduler::SpanRecord& span : thread.spans) {
       const SettingValue event = {{"ph", "X"},
@@ -105,7 +142,29 @@ void write_trace(const std::string& path, const scheduler::TraceData& trace,
   file.commit();
 }
 
-SettingValue trace_report(const scheduler::TraceSummary& summary) {
+StoredTrace read_trace(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  StoredTrace stored;
+  std::string line;
+  try {
+    std::getline(file, line);
+    const SettingValue head = SettingValue::parse(line + "]}");
+    stored.trace.wall_ns = nanoseconds(head.at("otherData").at("wall_us"));
+    stored.trace.dropped_spans = head.at("otherData").at("dropped_spans");
+    while (std::getline(file, line) && line != "]}") {  // an event a line
+      line.erase(line.find_last_not_of(',') + 1);
+      add_event(SettingValue::parse(line), stored);
+    }
+  } catch (const SettingValue::exception&) {
+    throw Error(fmt::format("{}: cannot be read, expected a trace of vantage", path));
+  }
+  if (line != "]}") {
+    throw Error(fmt::format("{}: its end is missing, expected a trace of vantage", path));
+  }
+  return stored;
+}
+
+SettingValue trace_report(const scheduler::TraceSummary& summary, const WaitingCauses& causes) {
   SettingValue threads = SettingValue::array();
   for (const scheduler::TraceSummary::Thread& thread : summary.threads) {
     threads.push_back({{"name", thread.name},
@@ -133,6 +192,11 @@ SettingValue trace_report(const scheduler::TraceSummary& summary) {
           {"threads", threads},
           {"work", seconds_of(summary.work)},
           {"waits", seconds_of(summary.waits)},
+          {"waiting_for",
+           {{"reading", causes.reading_s},
+            {"computing", causes.computing_s},
+            {"writing", causes.writing_s},
+            {"nothing", causes.nothing_s}}},
           {"stages", stages},
           {"frames", frames}};
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <set>
 #include <string>
 
 #include "apps/setting_value.h"
+#include "engine/profiling/waiting_causes.h"
 #include "scheduler/trace.h"
 #include "scheduler/trace_summary.h"
 
@@ -15,7 +17,16 @@ namespace vantage::apps {
 void write_trace(const std::string& path, const scheduler::TraceData& trace,
                  const std::string& command);
 
-/// For the report: seconds of work and waiting by thread, name, stage and frame.
-SettingValue trace_report(const scheduler::TraceSummary& summary);
+/// A trace read from a file; the names of its spans are those it holds.
+struct StoredTrace {
+  std::set<std::string> names;
+  scheduler::TraceData trace;  ///< with its waits, without stages and places but for frames
+};
+
+/// Reads what write_trace() wrote. Throws Error when it cannot be read.
+StoredTrace read_trace(const std::string& path);
+
+/// For the report: seconds of work and waiting by thread, name, stage, frame and cause.
+SettingValue trace_report(const scheduler::TraceSummary& summary, const WaitingCauses& causes);
 
 }  // namespace vantage::apps

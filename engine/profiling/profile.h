@@ -79,6 +79,7 @@ struct ThreadCountProfile {
   ProfileSample cells_per_s;
   ProfileSample frames_per_s;  ///< 0 for one pair
   ProfileSample work_share;    ///< of the pool's time, 0..1
+  ProfileSample peak_memory_bytes;
   /// Greatest ÷ mean work of a thread of the pool, ≥ 1.
   ProfileSample imbalance;
   std::vector<StageProfile> stages;    ///< most time first
@@ -117,7 +118,7 @@ struct Profile {
   std::string processor;
   std::string isa;
   int hardware_threads = 1;
-  std::uint64_t peak_memory_bytes = 0;
+  std::uint64_t peak_memory_bytes = 0;  ///< the most of the runs on the most threads
   /// For each number of threads that was measured, in that order.
   std::vector<MachineCeilings> ceilings;
   std::vector<ThreadCountProfile> thread_counts;  ///< fewest first

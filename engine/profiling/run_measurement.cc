@@ -127,6 +127,8 @@ ThreadCountProfile summarise_runs(int threads, Runs runs) {
   profile.cells_per_s = sample(&RunMeasurement::cells_per_s);
   profile.frames_per_s = sample(&RunMeasurement::frames_per_s);
   profile.work_share = sample(&RunMeasurement::work_share);
+  profile.peak_memory_bytes = sample_over(
+      runs, [](const RunMeasurement& run) { return static_cast<double>(run.peak_memory_bytes); });
   profile.imbalance =
       sample_over(runs, [](const RunMeasurement& run) { return imbalance_of(run.workers); });
   profile.stages = stages_of(runs);

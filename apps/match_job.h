@@ -1,0 +1,52 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/applied_tuning.h"
+#include "apps/option_groups.h"
+#include "apps/settings.h"
+#include "engine/matching/match_options.h"
+
+namespace vantage::apps {
+
+/// Everything a user can set about a match.
+struct MatchJob {
+  MatchOptions match;
+  CommonOptions common;
+  TuningSource tuning;
+  std::string left;
+  std::string right;
+  std::vector<std::string> more;  ///< images beyond the pair
+  std::vector<double> baselines;  ///< of `right` and `more`; empty: a pair
+  std::string output;
+  std::string output_right;
+  std::string confidence;
+  std::string unmatched;
+  std::string unmatched_right;
+  std::string preview;
+  bool check_rectification = true;
+
+  [[nodiscard]] bool has_several() const { return !baselines.empty() || !more.empty(); }
+  [[nodiscard]] std::vector<std::string> inputs() const {
+    std::vector<std::string> all = {left, right};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  /// Whether the map of the first image is one of a left image.
+  [[nodiscard]] bool is_left() const {
+    return has_several() ? baselines.front() > 0 : match.reference == Reference::kLeft;
+  }
+  [[nodiscard]] bool wants_right() const {
+    return !is_left() || !output_right.empty() || !unmatched_right.empty();
+  }
+};
+
+/// Binds all of it: the options of 'vantage match'.
+void add_match_job_settings(Settings& settings, MatchJob& job);
+
+/// Throws UsageError where fields are wrong or do not go together, Error where results cannot be
+/// written.
+void check(const MatchJob& job);
+
+}  // namespace vantage::apps

@@ -1,0 +1,124 @@
+#include "apps/profiled_command.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "apps/child_process.h"
+#include "engine/error.h"
+
+namespace vantage::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string as_typed(const Arguments& words) {
+  std::string text = "vantage";
+  for (const std::string& word : words) {
+    text += " " + shell_word(word);
+  }
+  return text;
+}
+
+void refuse_if(bool given, const char* option, const char* instead) {
+  if (given) {
+    throw UsageError(fmt::format("--{} cannot be profiled: {}", option, instead));
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<ProfiledCommand> ProfiledCommand::read(const Arguments& words) {
+  const std::string& name = words.front();
+  if (name != "match" && name != "run") {
+    throw UsageError(
+        fmt::format("'{}' cannot be profiled, expected match or run with its arguments", name));
+  }
+  std::unique_ptr<ProfiledCommand> command(new ProfiledCommand(words, name == "match"));
+  if (!command->settings_.read(Arguments(words.begin() + 1, words.end()))) {
+    return nullptr;
+  }
+  command->check();
+  command->redirect();
+  return command;
+}
+
+ProfiledCommand::ProfiledCommand(const Arguments& words, bool is_match)
+    : job_(is_match ? std::variant<MatchJob, RunJob>(MatchJob()) : RunJob()),
+      settings_(words.front(), "The command that is profiled."),
+      text_(as_typed(words)) {
+  if (is_match) {
+    add_match_job_settings(settings_, std::get<MatchJob>(job_));
+  } else {
+    add_run_settings(settings_, std::get<RunJob>(job_));
+  }
+}
+
+const CommonOptions& ProfiledCommand::common() const {
+  return std::visit([](const auto& job) -> const CommonOptions& { return job.common; }, job_);
+}
+
+CommonOptions& ProfiledCommand::common() {
+  return std::visit([](auto& job) -> CommonOptions& { return job.common; }, job_);
+}
+
+void ProfiledCommand::check() {
+  refuse_if(!common().report.empty(), "report",
+            "each run writes its own, --json keeps the profile");
+  refuse_if(!common().trace.empty(), "trace", "each run writes its own, --html shows one of them");
+  if (auto* match = std::get_if<MatchJob>(&job_)) {
+    apps::check(*match);
+    return;
+  }
+  auto& run = std::get<RunJob>(job_);
+  refuse_if(run.dry_run, "dry-run", "it does no work");
+  complete(run);
+  const std::array<std::pair<bool*, const char*>, 3> openings = {
+      {{&run.resume, "resume"}, {&run.overwrite, "overwrite"}, {&run.force, "force"}}};
+  for (const auto& [given, option] : openings) {
+    if (std::exchange(*given, false)) {
+      remarks_.push_back(fmt::format("--{} is left out: every run begins anew", option));
+    }
+  }
+}
+
+void ProfiledCommand::redirect() {
+  if (auto* run = std::get_if<RunJob>(&job_)) {
+    redirect(run->output);
+    return;
+  }
+  auto& match = std::get<MatchJob>(job_);
+  for (std::string* path : {&match.output, &match.output_right, &match.confidence, &match.unmatched,
+                            &match.unmatched_right, &match.preview}) {
+    if (!path->empty()) {
+      redirect(*path);
+    }
+  }
+}
+
+void ProfiledCommand::redirect(std::string& path) {
+  const fs::path wanted = fs::absolute(path).lexically_normal();
+  const fs::path place = wanted.has_filename() ? wanted : wanted.parent_path();
+  if (place_.empty()) {
+    place_ = place;
+  }
+  const auto& [folder, throw_away] = *folders_.try_emplace(place.parent_path(), place).first;
+  path = (throw_away.path() / place.filename()).string();
+}
+
+std::string ProfiledCommand::job_file(int threads, const std::string& report,
+                                      const std::string& trace) {
+  common().execution.threads = threads;
+  common().report = report;
+  common().trace = trace;
+  return settings_.toml();
+}
+
+void ProfiledCommand::clear_results() const {
+  for (const auto& [folder, throw_away] : folders_) {
+    throw_away.clear();
+  }
+}
+
+}  // namespace vantage::apps
