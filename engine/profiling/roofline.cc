@@ -1,0 +1,49 @@
+#include "engine/profiling/roofline.h"
+
+#include <algorithm>
+
+namespace vantage {
+
+ThreadRoofs thread_roofs(const MachineCeilings& ceilings) {
+  const double threads = std::max(1, ceilings.threads);
+  return {.gflops = ceilings.all_gflops / threads,
+          .l2_gb_per_s = ceilings.all_l2_gb_per_s / threads,
+          .memory_gb_per_s = ceilings.all_memory_gb_per_s / threads};
+}
+
+std::optional<ThreadRoofs> roofs_of_most_threads(const Profile& profile) {
+  if (profile.thread_counts.empty()) {
+    return std::nullopt;
+  }
+  const int threads = profile.thread_counts.back().threads;
+  const auto found = std::ranges::find(profile.ceilings, threads, &MachineCeilings::threads);
+  if (found == profile.ceilings.end()) {
+    return std::nullopt;
+  }
+  const ThreadRoofs roofs = thread_roofs(*found);
+  if (!(roofs.gflops > 0 && roofs.l2_gb_per_s > 0 && roofs.memory_gb_per_s > 0)) {
+    return std::nullopt;
+  }
+  return roofs;
+}
+
+std::optional<RooflinePlace> place_on_roofline(const StageProfile& stage,
+                                               const ThreadRoofs& roofs) {
+  const double seconds = stage.seconds.median;
+  if (!(seconds > 0 && stage.operations > 0 && stage.bytes > 0)) {
+    return std::nullopt;
+  }
+  RooflinePlace place;
+  place.operations_per_byte = stage.operations / stage.bytes;
+  place.gflops = stage.operations / seconds * 1e-9;
+  place.gb_per_s = stage.bytes / seconds * 1e-9;
+  const double l2_gflops = place.operations_per_byte * roofs.l2_gb_per_s;
+  const bool is_in_l1 = place.gb_per_s > roofs.l2_gb_per_s;
+  place.roof = is_in_l1 || roofs.gflops <= l2_gflops ? Roof::kArithmetic : Roof::kL2;
+  place.roof_gflops = place.roof == Roof::kArithmetic ? roofs.gflops : l2_gflops;
+  place.roof_share = place.roof_gflops > 0 ? place.gflops / place.roof_gflops : 0;
+  place.memory_share = roofs.memory_gb_per_s > 0 ? place.gb_per_s / roofs.memory_gb_per_s : 0;
+  return place;
+}
+
+}  // namespace vantage
