@@ -26,6 +26,8 @@ constexpr std::array kCommands = {
     Command{"response", "Evidence of a pair for a range of displacements", command_response},
     Command{"experiment", "Figures of the book, computed anew", command_experiment},
     Command{"tune", "Finds the plan that is fastest on this machine", command_tune},
+    Command{"profile", "Where the time of match or run goes, and what holds it back",
+            command_profile},
     Command{"info", "Version, instruction sets, threads and caches", command_info}};
 
 }  // namespace

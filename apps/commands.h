@@ -43,6 +43,7 @@ int command_experiment(const Arguments& arguments);
 int command_merge(const Arguments& arguments);
 int command_submit(const Arguments& arguments);
 int command_tune(const Arguments& arguments);
+int command_profile(const Arguments& arguments);
 int command_info(const Arguments& arguments);
 
 }  // namespace vantage::apps

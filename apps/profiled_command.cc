@@ -59,7 +59,7 @@ const CommonOptions& ProfiledCommand::common() const {
   return std::visit([](const auto& job) -> const CommonOptions& { return job.common; }, job_);
 }
 
-CommonOptions& ProfiledCommand::common() {
+CommonOptions& ProfiledCommand::changeable_common() {
   return std::visit([](auto& job) -> CommonOptions& { return job.common; }, job_);
 }
 
@@ -109,9 +109,10 @@ void ProfiledCommand::redirect(std::string& path) {
 
 std::string ProfiledCommand::job_file(int threads, const std::string& report,
                                       const std::string& trace) {
-  common().execution.threads = threads;
-  common().report = report;
-  common().trace = trace;
+  CommonOptions& options = changeable_common();
+  options.execution.threads = threads;
+  options.report = report;
+  options.trace = trace;
   return settings_.toml();
 }
 

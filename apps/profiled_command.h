@@ -41,7 +41,7 @@ class ProfiledCommand {
 
  private:
   ProfiledCommand(const Arguments& words, bool is_match);
-  [[nodiscard]] CommonOptions& common();
+  [[nodiscard]] CommonOptions& changeable_common();
   void check();
   void redirect();
   void redirect(std::string& path);

@@ -1,0 +1,284 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <optional>
+#include <string>
+
+#include "apps/child_process.h"
+#include "apps/commands.h"
+#include "apps/interrupt.h"
+#include "apps/outputs.h"
+#include "apps/profile_json.h"
+#include "apps/profile_report.h"
+#include "apps/profile_rounds.h"
+#include "apps/profiled_command.h"
+#include "apps/settings.h"
+#include "engine/error.h"
+#include "engine/io/atomic_file.h"
+#include "engine/profile_page/profile_page.h"
+#include "engine/profiling/profile_comparison.h"
+#include "engine/profiling/profile_figures.h"
+#include "engine/simd.h"
+#include "scheduler/machine.h"
+
+namespace vantage::apps {
+namespace {
+
+constexpr double kCeilingSeconds = 1.5;  // for each number of threads
+
+struct ProfileJob {
+  RoundOptions rounds;
+  std::vector<int> threads;  ///< empty: 1, 2, 4 … up to all
+  std::string html;
+  std::string json;
+  bool compare = false;
+  std::vector<std::string> profiles;  ///< to compare
+  bool quiet = false;
+};
+
+void add_profile_settings(Settings& settings, ProfileJob& job) {
+  settings.begin_group("Profile");
+  settings.integer("runs", job.rounds.rounds, "N",
+                   "Runs that count, on each number of threads; another one goes before");
+  Setting& threads = settings.add("threads", "N,N,...",
+                                  "Numbers of threads to run on; auto: 1, 2, 4 and so on up to "
+                                  "those of the command");
+  threads.list = true;
+  threads.set = [&job](const SettingValue& value) {
+    job.threads.clear();
+    for (const SettingValue& member : to_list(value)) {
+      for (const std::string& number :
+           split(member.is_string() ? to_text(member) : member.dump(), ',')) {
+        if (number != "auto") {
+          job.threads.push_back(to_integer(number));
+        }
+      }
+    }
+  };
+  threads.get = [&job] {
+    return job.threads.empty() ? SettingValue("auto") : SettingValue(job.threads);
+  };
+  settings.number("budget", job.rounds.budget_s, "SECONDS",
+                  "No round begins that would end later; one is always made", "none");
+  settings.text("html", job.html, "FILE", "Write the profile as a page that stands on its own");
+  settings.text("json", job.json, "FILE", "Write the profile as JSON, which --compare reads");
+  settings.flag("compare", job.compare,
+                "Compare two profiles that --json has kept, instead of making one");
+  Setting& profiles = settings.add("profiles", "PROFILE", "With --compare: A.json B.json");
+  profiles.positional = true;
+  profiles.list = true;
+  profiles.set = [&job](const SettingValue& value) {
+    job.profiles = value.get<std::vector<std::string>>();
+  };
+  profiles.get = [&job] { return job.profiles; };
+  settings.flag("quiet", job.quiet, "Print the profile and errors only");
+}
+
+/// Where the profiled command begins among the arguments: the first that is neither an option nor
+/// its value. All of them with --compare.
+std::size_t command_begin(const Arguments& arguments) {
+  const Arguments flags = {"--compare", "--quiet", "--help", "-h", "--print-config"};
+  if (std::ranges::find(arguments, "--compare") != arguments.end()) {
+    return arguments.size();
+  }
+  std::size_t i = 0;
+  while (i < arguments.size() && arguments[i].starts_with("-")) {
+    const bool has_value = arguments[i].find('=') == std::string::npos &&
+                           std::ranges::find(flags, arguments[i]) == flags.end();
+    i += has_value ? 2 : 1;
+  }
+  return std::min(i, arguments.size());
+}
+
+void check(const ProfileJob& job) {
+  constexpr int kMostRuns = 1000;
+  if (job.rounds.rounds < 1 || job.rounds.rounds > kMostRuns) {
+    throw UsageError(
+        fmt::format("--runs is {}, expected a number from 1 to {}", job.rounds.rounds, kMostRuns));
+  }
+  if (job.rounds.budget_s && !(*job.rounds.budget_s > 0)) {
+    throw UsageError(
+        fmt::format("--budget is {}, expected a number above 0", *job.rounds.budget_s));
+  }
+  for (const int threads : job.threads) {
+    ExecutionOptions{.threads = threads}.validate();
+  }
+  FileChecks files;
+  for (const std::string& profile : job.profiles) {
+    files.add_input(profile);
+  }
+  files.add_output(job.html, "--html", OutputKind::kPage);
+  files.add_output(job.json, "--json", OutputKind::kText);
+}
+
+int compare(const ProfileJob& job) {
+  if (job.profiles.size() != 2) {
+    throw UsageError(fmt::format("--compare is given {} file{}, expected two: A.json B.json",
+                                 job.profiles.size(), job.profiles.size() == 1 ? "" : "s"));
+  }
+  if (!job.html.empty() || !job.json.empty()) {
+    throw UsageError(fmt::format("--{} cannot go with --compare, which only prints",
+                                 job.html.empty() ? "json" : "html"));
+  }
+  const Profile first = read_profile(job.profiles[0]);
+  const Profile second = read_profile(job.profiles[1]);
+  fmt::print("{}", describe(compare_profiles(first, second), job.profiles[0], job.profiles[1]));
+  return kExitDone;
+}
+
+/// Fewest first.
+std::vector<int> thread_counts(const ProfileJob& job, const ProfiledCommand& command) {
+  std::vector<int> counts = job.threads;
+  const ExecutionOptions& execution = command.common().execution;
+  const int most = thread_count(execution, scheduler::detect_machine());
+  if (execution.executor == scheduler::ExecutorKind::kSerial) {
+    counts = {1};
+  } else if (counts.empty()) {
+    for (int threads = 1; threads < most; threads *= 2) {
+      counts.push_back(threads);
+    }
+    counts.push_back(most);
+  }
+  std::ranges::sort(counts);
+  counts.erase(std::ranges::unique(counts).begin(), counts.end());
+  return counts;
+}
+
+std::string now_as_text() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+std::vector<MachineCeilings> measure_all_ceilings(const std::vector<int>& counts,
+                                                  ExecutionOptions options,
+                                                  const std::atomic<bool>& stop) {
+  std::vector<MachineCeilings> all;
+  for (const int threads : counts) {
+    if (!stop.load()) {
+      options.threads = threads;
+      Execution execution(options);
+      all.push_back(measure_ceilings(execution, kCeilingSeconds));
+    }
+  }
+  return all;
+}
+
+/// From the runs of one program.
+Profile make_profile(const ProfiledCommand& command, const std::vector<Contestant>& contestants) {
+  const scheduler::Machine machine = scheduler::detect_machine();
+  const Contestant& most = contestants.back();
+  Profile profile;
+  profile.version = most.version;
+  profile.command = command.text();
+  profile.date = now_as_text();
+  profile.processor = machine.processor;
+  profile.isa = most.isa;
+  profile.hardware_threads = machine.hardware_threads;
+  std::vector<WallTimes> walls;
+  for (const Contestant& one : contestants) {
+    profile.thread_counts.push_back(summarise_runs(one.threads, one.runs));
+    WallTimes& times = walls.emplace_back(WallTimes{one.threads, {}});
+    for (const RunMeasurement& run : one.runs) {
+      times.wall_s.push_back(run.wall_s);
+    }
+  }
+  profile.speed_ups = speed_ups(walls);
+  profile.serial_fraction = amdahl_fit(profile.speed_ups);
+  const RunMeasurement& median = most.runs[median_run(most.runs)];
+  profile.peak_memory_bytes =
+      static_cast<std::uint64_t>(profile.thread_counts.back().peak_memory_bytes.most);
+  profile.memory = median.memory;
+  std::ranges::stable_sort(profile.memory, std::ranges::greater{}, &MemoryOwner::bytes);
+  profile.hardware = {summarise_counts(most.runs), most.counters_absence};
+  profile.timeline = most.timeline;
+  profile.timeline_s = most.timeline_s;
+  return profile;
+}
+
+void write_files(const ProfileJob& job, const Profile& profile) {
+  if (!job.json.empty()) {
+    // File names need not be UTF-8, JSON must be.
+    write_text_file(
+        job.json,
+        as_json(profile).dump(1, ' ', false, SettingValue::error_handler_t::replace) + "\n");
+  }
+  if (!job.html.empty()) {
+    write_text_file(job.html, profile_page(profile));
+  }
+}
+
+int profile(const ProfileJob& job, ProfiledCommand& command) {
+  const std::vector<int> counts = thread_counts(job, command);
+  force_instruction_set(command.common().isa);
+  const std::atomic<bool>& interrupted = interrupt_flag();
+  if (!job.quiet) {
+    for (const std::string& remark : command.remarks()) {
+      fmt::print(stderr, "profile: {}\n", remark);
+    }
+    fmt::print(stderr, "profile: measuring what the machine can do\n");
+  }
+  std::vector<MachineCeilings> ceilings =
+      measure_all_ceilings(counts, command.common().execution, interrupted);
+  std::vector<Contestant> contestants;
+  for (const int threads : counts) {
+    Contestant& one = contestants.emplace_back();
+    one.program = path_of_this_program();
+    one.threads = threads;
+  }
+  contestants.back().keeps_timeline = true;
+  if (interrupted.load() || !run_rounds(command, job.rounds, contestants, interrupted)) {
+    if (!job.quiet) {
+      fmt::print(stderr, "profile: interrupted, nothing is kept\n");
+    }
+    return kExitInterrupted;
+  }
+  Profile profile = make_profile(command, contestants);
+  profile.ceilings = std::move(ceilings);
+  const int rounds = profile.thread_counts.front().runs;
+  if (rounds < job.rounds.rounds && !job.quiet) {
+    fmt::print(stderr, "profile: the budget ended it after {} of {} rounds\n", rounds,
+               job.rounds.rounds);
+  }
+  write_files(job, profile);
+  fmt::print("{}", describe(profile));
+  return kExitDone;
+}
+
+}  // namespace
+
+int command_profile(const Arguments& arguments) {
+  ProfileJob job;
+  Settings settings("profile",
+                    "Runs a command several times on several numbers of threads and tells where "
+                    "the time goes: vantage profile [OPTIONS] match|run ...; its results are "
+                    "thrown away.");
+  add_profile_settings(settings, job);
+  const std::size_t begin = command_begin(arguments);
+  const auto end_of_own = arguments.begin() + static_cast<long>(begin);
+  if (!settings.read(Arguments(arguments.begin(), end_of_own))) {
+    return kExitDone;
+  }
+  check(job);
+  if (job.compare) {
+    return compare(job);
+  }
+  const Arguments words(end_of_own, arguments.end());
+  if (words.empty()) {
+    throw UsageError("a command is missing, expected match or run with its arguments");
+  }
+  const std::unique_ptr<ProfiledCommand> command = ProfiledCommand::read(words);
+  if (command == nullptr) {
+    return kExitDone;
+  }
+  job.rounds.progress = job.quiet ? ProgressStyle::kNone : ProgressStyle::kAuto;
+  try {
+    return profile(job, *command);
+  } catch (const RunFailure& failure) {
+    fmt::print(stderr, "{}\n", failure.what());
+    return failure.exit_code();
+  }
+}
+
+}  // namespace vantage::apps
