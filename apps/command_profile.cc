@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
+#include <iterator>
 #include <optional>
 #include <string>
 
@@ -32,6 +33,7 @@ constexpr double kCeilingSeconds = 1.5;  // for each number of threads
 struct ProfileJob {
   RoundOptions rounds;
   std::vector<int> threads;  ///< empty: 1, 2, 4 … up to all
+  std::string against;       ///< another program; empty: none
   std::string html;
   std::string json;
   bool compare = false;
@@ -63,6 +65,8 @@ void add_profile_settings(Settings& settings, ProfileJob& job) {
   };
   settings.number("budget", job.rounds.budget_s, "SECONDS",
                   "No round begins that would end later; one is always made", "none");
+  settings.text("against", job.against, "PROGRAM",
+                "Another build of vantage, run in turn with this one and compared with it");
   settings.text("html", job.html, "FILE", "Write the profile as a page that stands on its own");
   settings.text("json", job.json, "FILE", "Write the profile as JSON, which --compare reads");
   settings.flag("compare", job.compare,
@@ -103,6 +107,9 @@ void check(const ProfileJob& job) {
     throw UsageError(
         fmt::format("--budget is {}, expected a number above 0", *job.rounds.budget_s));
   }
+  if (!job.against.empty() && resolved(job.against) == resolved(path_of_this_program())) {
+    throw UsageError("--against is this program itself, expected another one");
+  }
   for (const int threads : job.threads) {
     ExecutionOptions{.threads = threads}.validate();
   }
@@ -119,9 +126,12 @@ int compare(const ProfileJob& job) {
     throw UsageError(fmt::format("--compare is given {} file{}, expected two: A.json B.json",
                                  job.profiles.size(), job.profiles.size() == 1 ? "" : "s"));
   }
-  if (!job.html.empty() || !job.json.empty()) {
-    throw UsageError(fmt::format("--{} cannot go with --compare, which only prints",
-                                 job.html.empty() ? "json" : "html"));
+  if (!job.html.empty() || !job.json.empty() || !job.against.empty()) {
+    throw UsageError(
+        fmt::format("--{} cannot go with --compare, which only prints what two files hold",
+                    !job.html.empty()   ? "html"
+                    : !job.json.empty() ? "json"
+                                        : "against"));
   }
   const Profile first = read_profile(job.profiles[0]);
   const Profile second = read_profile(job.profiles[1]);
@@ -209,33 +219,59 @@ void write_files(const ProfileJob& job, const Profile& profile) {
   }
 }
 
+/// Of all programs and numbers of threads, in the order of a round.
+std::vector<Contestant> contestants_of(const ProfileJob& job, const std::vector<int>& counts) {
+  std::vector<Contestant> all;
+  const auto add = [&](const std::string& program, int threads) {
+    Contestant& one = all.emplace_back();
+    one.program = program;
+    one.threads = threads;
+    one.keeps_timeline = threads == counts.back();
+  };
+  for (const int threads : counts) {
+    if (!job.against.empty()) {
+      add(job.against, threads);
+    }
+    add(path_of_this_program(), threads);
+  }
+  return all;
+}
+
+Profile profile_of(const std::string& program, const ProfiledCommand& command,
+                   const std::vector<Contestant>& contestants,
+                   const std::vector<MachineCeilings>& ceilings) {
+  std::vector<Contestant> of_program;
+  std::ranges::copy_if(contestants, std::back_inserter(of_program),
+                       [&](const Contestant& one) { return one.program == program; });
+  Profile profile = make_profile(command, of_program);
+  profile.ceilings = ceilings;
+  return profile;
+}
+
+void print_before(const ProfiledCommand& command) {
+  for (const std::string& remark : command.remarks()) {
+    fmt::print(stderr, "profile: {}\n", remark);
+  }
+  fmt::print(stderr, "profile: measuring what the machine can do\n");
+}
+
 int profile(const ProfileJob& job, ProfiledCommand& command) {
   const std::vector<int> counts = thread_counts(job, command);
   force_instruction_set(command.common().isa);
   const std::atomic<bool>& interrupted = interrupt_flag();
   if (!job.quiet) {
-    for (const std::string& remark : command.remarks()) {
-      fmt::print(stderr, "profile: {}\n", remark);
-    }
-    fmt::print(stderr, "profile: measuring what the machine can do\n");
+    print_before(command);
   }
-  std::vector<MachineCeilings> ceilings =
+  const std::vector<MachineCeilings> ceilings =
       measure_all_ceilings(counts, command.common().execution, interrupted);
-  std::vector<Contestant> contestants;
-  for (const int threads : counts) {
-    Contestant& one = contestants.emplace_back();
-    one.program = path_of_this_program();
-    one.threads = threads;
-  }
-  contestants.back().keeps_timeline = true;
+  std::vector<Contestant> contestants = contestants_of(job, counts);
   if (interrupted.load() || !run_rounds(command, job.rounds, contestants, interrupted)) {
     if (!job.quiet) {
       fmt::print(stderr, "profile: interrupted, nothing is kept\n");
     }
     return kExitInterrupted;
   }
-  Profile profile = make_profile(command, contestants);
-  profile.ceilings = std::move(ceilings);
+  const Profile profile = profile_of(path_of_this_program(), command, contestants, ceilings);
   const int rounds = profile.thread_counts.front().runs;
   if (rounds < job.rounds.rounds && !job.quiet) {
     fmt::print(stderr, "profile: the budget ended it after {} of {} rounds\n", rounds,
@@ -243,6 +279,11 @@ int profile(const ProfileJob& job, ProfiledCommand& command) {
   }
   write_files(job, profile);
   fmt::print("{}", describe(profile));
+  if (!job.against.empty()) {
+    const Profile other = profile_of(job.against, command, contestants, ceilings);
+    fmt::print("\n{}",
+               describe(compare_profiles(other, profile), job.against, path_of_this_program()));
+  }
   return kExitDone;
 }
 

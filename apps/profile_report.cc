@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "apps/setting_value.h"
 #include "apps/text_table.h"
 #include "engine/profile_page/quantity_text.h"
 #include "engine/profiling/roofline.h"
@@ -81,10 +82,9 @@ void add_parts(const std::vector<PartProfile>& parts, const char* kind,
 }
 
 std::string parts(const ThreadCountProfile& count) {
-  TextTable table(fmt::format("Work and waiting on {}, over all threads; others than the pool's "
-                              "work beside it",
-                              threads_text(count.threads)),
-                  {"", "", "time", "share", "times"});
+  TextTable table(
+      fmt::format("Work and waiting on {}, over all threads", threads_text(count.threads)),
+      {"", "", "time", "share", "times"});
   add_parts(count.parts, "work", count, table);
   add_parts(count.waits, "wait", count, table);
   std::string text = "\n" + table.text();
@@ -121,6 +121,21 @@ std::string memory(const Profile& profile) {
               : table.text());
 }
 
+/// `sentence` in lines that fit.
+std::string wrapped(const std::string& sentence) {
+  constexpr std::size_t kColumns = 98;
+  std::string text;
+  std::string line;
+  for (const std::string& word : split(sentence, ' ')) {
+    if (!line.empty() && line.size() + 1 + word.size() > kColumns) {
+      text += "  " + line + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return text + "  " + line + "\n";
+}
+
 std::string counters(const HardwareCounts& hardware, int threads) {
   TextTable table(fmt::format("Counters of a run on {}", threads_text(threads)), {"", "count"});
   for (const auto& [name, sample] : hardware.counts) {
@@ -128,7 +143,7 @@ std::string counters(const HardwareCounts& hardware, int threads) {
   }
   std::string text = table.empty() ? "" : "\n" + table.text();
   if (!hardware.absence.empty()) {
-    text += (table.empty() ? "\n" : "") + fmt::format("  {}\n", hardware.absence);
+    text += (table.empty() ? "\n" : "") + wrapped(hardware.absence);
   }
   return text;
 }

@@ -8,6 +8,7 @@
 #include "apps/match_settings.h"
 #include "apps/vertical_error_report.h"
 #include "engine/rectification/vertical_error.h"
+#include "scheduler/trace.h"
 
 namespace vantage::apps {
 namespace {
@@ -42,7 +43,10 @@ void warn_unless_rectified(const Settings& settings, const CommonOptions& common
     return;  // whoever uses the pair will say so
   }
   const auto start = std::chrono::steady_clock::now();
-  const auto error = check_rectification(left, right);
+  const auto error = [&] {
+    const scheduler::Span span("check");
+    return check_rectification(left, right);
+  }();
   report.add_stage("check",
                    std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   if (!error) {

@@ -85,6 +85,17 @@ double accounted_us(const std::vector<Slice>& slices) {
 
 class TraceFile : public RunTest {
  protected:
+  static constexpr int kTracedFrames = 50;
+
+  TraceFile() {
+    for (int frame = kFrames; frame < kTracedFrames; ++frame) {
+      for (const std::string& side : {left_, right_}) {
+        std::filesystem::create_hard_link(side + "/" + frame_file(frame % kFrames),
+                                          side + "/" + frame_file(frame));
+      }
+    }
+  }
+
   std::string trace_ = folder_ / "trace.json";
   std::string report_ = folder_ / "report.json";
 };
@@ -120,9 +131,17 @@ TEST_F(TraceFile, OfARunNestsAndAccountsForAllThreads) {
     // A thread that came too late for any task is not there.
     EXPECT_LE(pool_threads, executor == "serial" ? 1 : 2);
     EXPECT_NEAR(pool_us, pool_threads * wall_us, 0.02 * pool_threads * wall_us) << executor;
-    EXPECT_EQ(totals.at("frames").size(), kFrames + 1U);  // and the end
+    EXPECT_EQ(totals.at("frames").size(), kTracedFrames + 1U);  // and the end
     EXPECT_GT(totals.at("stages").at("column SSD").at("seconds").get<double>(), 0);
-    EXPECT_GT(totals.at("work").at("match left").at("count").get<int>(), kFrames);
+    EXPECT_GT(totals.at("work").at("match left").at("count").get<int>(), kTracedFrames);
+    double waiting_s = 0;
+    for (const json& wait : totals.at("waits")) {
+      waiting_s += wait.at("seconds").get<double>();
+    }
+    for (const json& cause_s : totals.at("waiting_for")) {
+      waiting_s -= cause_s.get<double>();
+    }
+    EXPECT_NEAR(waiting_s, 0, 1e-6);
   }
 }
 

@@ -1,0 +1,301 @@
+// vantage profile: what it keeps of a pair's and a sequence's runs, and that it leaves nothing
+// else.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <thread>
+
+#include "tests/apps/run_fixture.h"
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using Arguments = std::vector<std::string>;
+
+std::vector<std::string> keys_of(const json& object) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : object.items()) {
+    keys.push_back(key);
+  }
+  std::ranges::sort(keys);
+  return keys;
+}
+
+class ProfileTest : public PairTest {
+ protected:
+  /// `profile --runs 1 --json … MORE`, and the command behind it.
+  [[nodiscard]] ProcessResult profile(const Arguments& more, const Arguments& command) const {
+    const Arguments own = {"profile", "--runs", "1", "--json", json_};
+    return run_vantage(joined(joined(own, more), command));
+  }
+  [[nodiscard]] Arguments match_command(const Arguments& more = {}) const {
+    return joined({"match", left_, right_, "-o", out_ / "map.pfm", "--disparities=0:9"}, more);
+  }
+
+  TemporaryFolder out_;  // of the profiled command
+  std::string json_ = folder_ / "profile.json";
+};
+
+TEST_F(ProfileTest, KeepsWhereTheTimeOfAPairGoes) {
+  const std::string page = folder_ / "profile.html";
+  const ProcessResult result =
+      profile({"--threads", "2,1", "--html", page}, match_command({"--unmatched", out_ / "m.png"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  for (const char* text : {"Threads", "speed-up", "column SSD", "match left", "What the machine",
+                           "level 2", "Memory", "idle"}) {
+    EXPECT_THAT(result.out, HasSubstr(text));
+  }
+  const json kept = read_report(json_);
+  EXPECT_EQ(kept.at("profile_schema"), 1);
+  EXPECT_THAT(kept.at("command"), HasSubstr("vantage match " + left_));
+  EXPECT_THAT(kept.at("date"), testing::MatchesRegex(".*-..-..T..:..:..Z"));
+  EXPECT_GT(kept.at("peak_memory_bytes"), 1'000'000);
+  ASSERT_EQ(kept.at("thread_counts").size(), 2U);
+  ASSERT_EQ(kept.at("ceilings").size(), 2U);
+  for (int i = 0; i < 2; ++i) {
+    const json& count = kept.at("thread_counts")[i];
+    EXPECT_EQ(count.at("threads"), i + 1);
+    EXPECT_EQ(count.at("runs"), 1);
+    EXPECT_GT(count.at("wall_s").at("median"), count.at("compute_s").at("median"));
+    EXPECT_EQ(count.at("frames_per_s").at("median"), 0);
+    EXPECT_EQ(kept.at("ceilings")[i].at("threads"), i + 1);
+    EXPECT_GT(kept.at("ceilings")[i].at("all_gflops"), 0);
+    // Stages count what they make, whatever the number of threads.
+    const json& stage = count.at("stages")[0];
+    EXPECT_EQ(keys_of(stage), (Arguments{"bytes", "cells", "columns", "name", "operations",
+                                         "own_columns", "seconds"}));
+    EXPECT_GE(stage.at("columns"), stage.at("own_columns"));
+    double pool_s = 0;
+    for (const json& worker : count.at("workers")) {
+      if (worker.at("is_in_pool").get<bool>()) {
+        pool_s += worker.at("work_s").get<double>() + worker.at("wait_s").get<double>();
+      }
+    }
+    EXPECT_NEAR(std::remainder(pool_s, count.at("wall_s").at("median").get<double>()), 0, 1e-3);
+  }
+  EXPECT_EQ(kept.at("speed_ups")[0].at("ratio").at("median"), 1);
+  EXPECT_TRUE(kept.at("speed_ups")[0].at("serial_fraction").is_null());
+  EXPECT_TRUE(kept.at("serial_fraction").is_number());
+  EXPECT_FALSE(kept.at("timeline").empty());
+  EXPECT_THAT(read_file(page), HasSubstr("<html"));
+  EXPECT_EQ(out_.entries(), 0U);
+}
+
+TEST_F(ProfileTest, LeavesResultsThatAreThere) {
+  write_file(out_ / "map.pfm", "mine");
+  const ProcessResult result = profile({"--threads", "1"}, match_command());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(read_file(out_ / "map.pfm"), "mine");
+  EXPECT_EQ(out_.entries(), 1U);
+}
+
+TEST_F(ProfileTest, PassesOnWhatAFailingRunSays) {
+  write_file(left_, "no image");
+  const ProcessResult result = profile({"--quiet", "--threads", "1"}, match_command());
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(is_one_line(result, "match")) << result.err;
+  EXPECT_THAT(result.err, HasSubstr(left_));
+  EXPECT_EQ(out_.entries(), 0U);
+  EXPECT_FALSE(fs::exists(json_));
+}
+
+TEST_F(ProfileTest, RefusesWhatItCannotProfile) {
+  const auto refused = [&](const Arguments& own, const Arguments& command, const char* text) {
+    const ProcessResult result = profile(own, command);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_TRUE(is_one_line(result, "profile"));
+    EXPECT_THAT(result.err, HasSubstr(text));
+    EXPECT_EQ(out_.entries(), 0U);
+  };
+  refused({}, {"synth", left_, right_}, "'synth' cannot be profiled, expected match or run");
+  refused({}, {}, "a command is missing");
+  refused({}, match_command({"--report", folder_ / "r.json"}), "--report cannot be profiled");
+  refused({}, match_command({"--trace", folder_ / "t.json"}), "--trace cannot be profiled");
+  refused({}, match_command({"--methud", "ssd"}), "'--method'");
+  refused({}, {"match", left_, right_, "--disparities=0:9"}, "--output is missing");
+  refused({"--runs=0"}, match_command(), "times");  // given twice
+  refused({"--threads", "0"}, match_command(), "threads is 0");
+  refused({"--budget", "-1"}, match_command(), "--budget is -1");
+  refused({"--html", folder_ / "page.txt"}, match_command(), "--html");
+  EXPECT_FALSE(fs::exists(json_));
+}
+
+TEST_F(ProfileTest, EndsWithTheBudgetButMakesARound) {
+  const ProcessResult result = run_vantage(
+      joined({"profile", "--runs", "50", "--budget", "0.001", "--threads", "1", "--json", json_},
+             match_command()));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("the budget ended it after 1 of 50 rounds"));
+  EXPECT_EQ(read_report(json_).at("thread_counts")[0].at("runs"), 1);
+}
+
+TEST_F(ProfileTest, ComparesWithAnotherProgram) {
+  const std::string other = folder_ / "other-vantage";
+  fs::copy_file(VANTAGE_BINARY, other);
+  const ProcessResult result =
+      profile({"--threads", "1", "--quiet", "--against", other}, match_command());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("A  " + other), HasSubstr("stage column SSD"), HasSubstr("too few")));
+  EXPECT_EQ(read_report(json_).at("thread_counts")[0].at("runs"), 1);
+  const ProcessResult missing =
+      profile({"--threads", "1", "--quiet", "--against", folder_ / "none"}, match_command());
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.err, HasSubstr("none cannot be started"));
+  EXPECT_EQ(out_.entries(), 0U);
+}
+
+TEST_F(ProfileTest, EndsCleanlyWhenInterrupted) {
+  const TemporaryFolder streams;
+  const VantageProcess process(
+      joined({"profile", "--runs", "1000", "--threads", "1", "--json", json_}, match_command()),
+      streams.path());
+  while (out_.entries() == 0 && !process.has_ended()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  process.send(SIGTERM);
+  const ProcessResult result = process.wait();
+  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("interrupted, nothing is kept"));
+  EXPECT_EQ(out_.entries(), 0U);
+  EXPECT_FALSE(fs::exists(json_));
+}
+
+TEST_F(ProfileTest, AnswersHelpOfBoth) {
+  const ProcessResult own = run_vantage({"profile", "--help"});
+  EXPECT_EQ(own.exit_code, 0);
+  EXPECT_THAT(own.out,
+              AllOf(HasSubstr("--compare"), HasSubstr("--budget"), HasSubstr("match|run")));
+  const ProcessResult of_match = run_vantage({"profile", "match", "--help"});
+  EXPECT_EQ(of_match.exit_code, 0);
+  EXPECT_THAT(of_match.out, HasSubstr("--disparities"));
+}
+
+/// Two files made from one measured profile, and what --compare says of them.
+class ComparedProfiles : public ProfileTest {
+ protected:
+  ComparedProfiles() {
+    const ProcessResult result = profile({"--threads", "1", "--quiet"}, match_command());
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    first_ = read_report(json_);
+    json& count = first_["thread_counts"][0];
+    count["runs"] = 5;
+    count["wall_s"] = {{"median", 2.0}, {"least", 1.9}, {"most", 2.1}};
+    second_ = first_;
+  }
+
+  [[nodiscard]] ProcessResult compare() const {
+    write_file(folder_ / "a.json", first_.dump());
+    write_file(folder_ / "b.json", second_.dump());
+    return run_vantage({"profile", "--compare", folder_ / "a.json", folder_ / "b.json"});
+  }
+
+  json first_;
+  json second_;
+};
+
+TEST_F(ComparedProfiles, HaveAVerdictOnlyWhereRangesAreApart) {
+  ProcessResult result = compare();
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("no difference seen"), Not(HasSubstr("faster")),
+                                Not(HasSubstr("slower")), Not(HasSubstr("warning"))));
+  second_["thread_counts"][0]["wall_s"] = {{"median", 1.0}, {"least", 0.9}, {"most", 1.1}};
+  result = compare();
+  EXPECT_THAT(result.out, AllOf(HasSubstr("2.00x faster"), HasSubstr("0.500")));
+  second_["isa"] = "another";
+  EXPECT_THAT(compare().out, HasSubstr("warning: the instruction set differs"));
+}
+
+TEST_F(ComparedProfiles, MustBeProfiles) {
+  const auto refused = [&](const char* text) {
+    const ProcessResult result = compare();
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_TRUE(is_one_line(result, "profile"));
+    EXPECT_THAT(result.err, AllOf(HasSubstr(folder_ / "b.json"), HasSubstr(text)));
+  };
+  second_["thread_counts"][0]["wall_s"].erase("median");
+  refused("thread_counts[0].wall_s.median is missing or wrong, expected a number");
+  second_ = first_;
+  second_["thread_counts"] = 7;
+  refused("thread_counts is missing or wrong, expected a list");
+  second_ = first_;
+  second_["profile_schema"] = 2;
+  refused("profile_schema is 2, expected 1");
+  second_ = json::array();
+  refused("is no profile");
+  const ProcessResult one = run_vantage({"profile", "--compare", folder_ / "a.json"});
+  EXPECT_EQ(one.exit_code, 2);
+  EXPECT_THAT(one.err, HasSubstr("--compare is given 1 file, expected two"));
+  const ProcessResult missing =
+      run_vantage({"profile", "--compare", folder_ / "a.json", folder_ / "none.json"});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.err, HasSubstr("none.json: cannot be read"));
+}
+
+/// Of a sequence, in a folder that holds a finished run.
+class ProfiledRun : public RunTest {
+ protected:
+  ProfiledRun() {
+    const ProcessResult result = run(out_, {"--frames", "0-2"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    before_ = results_in(out_);
+    entries_ = folder_.entries();
+  }
+
+  void expect_untouched() const {
+    EXPECT_TRUE(same_files(results_in(out_), before_));
+    EXPECT_EQ(folder_.entries(), entries_ + 1);  // and the profile
+    EXPECT_FALSE(fs::exists(out_ + "/profile.json"));
+  }
+
+  [[nodiscard]] json profiled(const Arguments& command) const {
+    const std::string kept = folder_ / "profile.json";
+    const ProcessResult result =
+        run_vantage(joined({"profile", "--runs", "1", "--threads", "2", "--json", kept}, command));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.exit_code == 0 ? read_report(kept) : json();
+  }
+
+  std::string out_ = folder_ / "out";
+  FolderContent before_;
+  std::size_t entries_ = 0;
+};
+
+TEST_F(ProfiledRun, BeginsAnewAndLeavesTheFolderAlone) {
+  const json kept = profiled(arguments(out_, {"--resume", "--save", "disparity"}));
+  const json& count = kept.at("thread_counts")[0];
+  EXPECT_GT(count.at("frames_per_s").at("median"), 0);
+  const auto decode = std::ranges::find_if(
+      count.at("parts"), [](const json& part) { return part.at("name") == "decode"; });
+  ASSERT_NE(decode, count.at("parts").end());
+  EXPECT_EQ(decode->at("count"), kFrames);  // all frames, not those that are left
+  EXPECT_TRUE(kept.at("serial_fraction").is_null());
+  expect_untouched();
+}
+
+TEST_F(ProfiledRun, TakesAJobFile) {
+  const TemporaryFolder jobs;
+  write_file(jobs / "job.toml", "left = \"" + left_ + "\"\nright = \"" + right_ +
+                                    "\"\noutput = \"" + out_ +
+                                    "\"\ndisparities = \"0:9\"\nframes = \"0-4\"\n");
+  const json kept = profiled({"run", jobs / "job.toml"});
+  const auto& parts = kept.at("thread_counts")[0].at("parts");
+  const auto decode =
+      std::ranges::find_if(parts, [](const json& part) { return part.at("name") == "decode"; });
+  ASSERT_NE(decode, parts.end());
+  EXPECT_EQ(decode->at("count"), 5);
+  expect_untouched();
+}
+
+}  // namespace
+}  // namespace vantage
