@@ -309,6 +309,7 @@ int command_profile(const Arguments& arguments) {
   if (words.empty()) {
     throw UsageError("a command is missing, expected match or run with its arguments");
   }
+  interrupt_flag();  // from here on there are folders to remove
   const std::unique_ptr<ProfiledCommand> command = ProfiledCommand::read(words);
   if (command == nullptr) {
     return kExitDone;

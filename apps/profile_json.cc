@@ -241,7 +241,8 @@ void take(const SettingValue& value, const std::string& where, std::vector<T>& f
   }
   field.clear();
   for (const SettingValue& member : value) {
-    take(member, fmt::format("{}[{}]", where, field.size()), field.emplace_back());
+    const std::string member_name = fmt::format("{}[{}]", where, field.size());
+    take(member, member_name, field.emplace_back());
   }
 }
 

@@ -283,6 +283,28 @@ TEST_F(ProfiledRun, BeginsAnewAndLeavesTheFolderAlone) {
   expect_untouched();
 }
 
+TEST_F(ProfiledRun, IsEndedWithTheProfile) {
+  const TemporaryFolder streams;
+  const VantageProcess process(
+      joined({"profile", "--runs", "1000", "--threads", "1", "--json", folder_ / "profile.json"},
+             arguments(out_)),
+      streams.path());
+  const auto a_run_is_under_way = [&] {
+    std::error_code ignored;
+    return std::ranges::any_of(fs::directory_iterator(folder_.path()), [&](const auto& entry) {
+      return fs::exists(entry.path() / "out" / ".vantage", ignored);
+    });
+  };
+  while (!a_run_is_under_way() && !process.has_ended()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  process.send(SIGTERM);
+  const ProcessResult result = process.wait();
+  EXPECT_EQ(result.exit_code, 130) << result.err;
+  EXPECT_TRUE(same_files(results_in(out_), before_));
+  EXPECT_EQ(folder_.entries(), entries_);
+}
+
 TEST_F(ProfiledRun, TakesAJobFile) {
   const TemporaryFolder jobs;
   write_file(jobs / "job.toml", "left = \"" + left_ + "\"\nright = \"" + right_ +
