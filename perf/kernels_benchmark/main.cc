@@ -4,6 +4,7 @@
 // part of the roof is above the kernel.
 
 #include <benchmark/benchmark.h>
+#include <time.h>
 
 #include <functional>
 #include <string>
@@ -15,35 +16,34 @@
 namespace vantage::perf {
 namespace {
 
-using benchmark::Counter;
-
-void count_work(benchmark::State& state, const KernelBenchmark& kernel,
-                const CoreCeilings& ceilings) {
-  constexpr auto kRate = Counter::kIsIterationInvariantRate;
-  const double units = kernel.units_per_call;
-  // Inverted: seconds per 10⁻⁹ units.
-  state.counters["ns/" + std::string(kernel.unit)] =
-      Counter(1e-9 * units, kRate | Counter::kInvert);
-  if (kernel.work.operations > 0) {
-    state.counters["GFLOP/s"] = Counter(1e-9 * units * kernel.work.operations, kRate);
-  }
-  if (kernel.work.bytes > 0) {
-    state.counters["GB/s"] = Counter(1e-9 * units * kernel.work.bytes, kRate);
-    state.counters["of_roof"] = Counter(units * least_seconds(kernel.work, ceilings), kRate);
-    state.SetLabel(is_bound_by_arithmetic(kernel.work, ceilings) ? "arithmetic"
-                                                                 : "loads and stores");
-  }
+/// Of this process: what else the machine does shows less than by the wall clock.
+double processor_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 void run(benchmark::State& state, long long target, const KernelBenchmark& kernel) {
   kernels::force_target(target);
   const CoreCeilings& ceilings = ceilings_of(kernels::target_in_use());
   const std::function<void()> call = kernel.prepare();
+  const double begin_s = processor_seconds();
   for (auto _ : state) {
     call();
     benchmark::ClobberMemory();
   }
-  count_work(state, kernel, ceilings);
+  const double units = kernel.units_per_call * static_cast<double>(state.iterations());
+  const double unit_ns = 1e9 * (processor_seconds() - begin_s) / units;
+  const KernelWork& work = kernel.work;
+  state.counters["ns/" + std::string(kernel.unit)] = unit_ns;
+  if (work.operations > 0) {
+    state.counters["GFLOP/s"] = work.operations / unit_ns;
+  }
+  if (work.bytes > 0) {
+    state.counters["GB/s"] = work.bytes / unit_ns;
+    state.counters["of_roof"] = 1e9 * least_seconds(work, ceilings) / unit_ns;
+    state.SetLabel(is_bound_by_arithmetic(work, ceilings) ? "arithmetic" : "loads and stores");
+  }
   kernels::force_target(0);
 }
 
