@@ -1,6 +1,7 @@
 // What scheduling costs where there is nothing to schedule: empty tasks, empty stages of a chain,
 // empty steps of frames, plans; and what spans cost with and without a trace. All contenders of a
-// table interleaved in one run. Prints tables; --json FILE writes the figures.
+// table interleaved in one run; executors have tables of their own, because the waiting threads of
+// one would keep processors from the next. Prints tables; --json FILE writes the figures.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -33,41 +34,28 @@ struct Settings {
   int threads = 1;
 };
 
-/// The executors, the serial one as what a plain loop costs.
-std::vector<std::unique_ptr<Executor>> all_executors(int threads) {
-  std::vector<std::unique_ptr<Executor>> executors;
-  executors.push_back(make_executor(ExecutorKind::kSerial, 1));
-  executors.push_back(make_executor(ExecutorKind::kTbb, threads));
-  executors.push_back(make_executor(ExecutorKind::kOpenMp, threads));
-  return executors;
-}
-
 std::string on_threads(const Executor& executor) {
   return fmt::format("{}, {} thread{}", executor.name(), executor.thread_count(),
                      executor.thread_count() > 1 ? "s" : "");
 }
 
-nlohmann::json empty_tasks(const Settings& settings) {
+nlohmann::json empty_tasks(Executor& executor, int rounds) {
   constexpr int kTasks = 4096;  // of all loops of a round, about
-  const auto executors = all_executors(settings.threads);
   std::vector<Contender> contenders;
   std::vector<double> work;
   for (const int per_thread : {1, 4, 16, 64}) {
-    for (const auto& executor : executors) {
-      const int tasks = per_thread * settings.threads;
-      const int loops = std::max(1, kTasks / tasks);
-      contenders.push_back({fmt::format("{}, {} tasks", on_threads(*executor), tasks),
-                            [executor = executor.get(), tasks, loops] {
-                              for (int loop = 0; loop < loops; ++loop) {
-                                executor->parallel_for(
-                                    tasks, [](int task) { benchmark::DoNotOptimize(task); });
-                              }
-                            }});
-      work.push_back(static_cast<double>(tasks) * loops);
-    }
+    const int tasks = per_thread * executor.thread_count();
+    const int loops = std::max(1, kTasks / tasks);
+    contenders.push_back({fmt::format("{} tasks", tasks), [&executor, tasks, loops] {
+                            for (int loop = 0; loop < loops; ++loop) {
+                              executor.parallel_for(
+                                  tasks, [](int task) { benchmark::DoNotOptimize(task); });
+                            }
+                          }});
+    work.push_back(static_cast<double>(tasks) * loops);
   }
-  return print_table("loops of empty tasks", time_interleaved(contenders, settings.rounds), work,
-                     "task");
+  return print_table("loops of empty tasks: " + on_threads(executor),
+                     time_interleaved(contenders, rounds), work, "task");
 }
 
 /// Makes nothing of nothing.
@@ -99,58 +87,50 @@ class EmptyChain {
   std::vector<const scheduler::RowStage*> chain_;
 };
 
-nlohmann::json empty_stages(const Settings& settings) {
+nlohmann::json empty_stages(Executor& executor, int rounds) {
   constexpr int kStages = 8;
   constexpr int kStripColumns = 64;
   constexpr int kBandRows = 64;
-  const auto executors = all_executors(settings.threads);
-  const scheduler::Machine machine = scheduler::detect_machine();
+  const int threads = executor.thread_count();
   scheduler::ScratchPool scratch;
   std::vector<std::unique_ptr<EmptyChain>> chains;
   std::vector<Contender> contenders;
   std::vector<double> work;
   for (const int per_thread : {1, 4, 16, 64}) {
-    const scheduler::Extent extent{kStripColumns * settings.threads, kBandRows * per_thread};
+    const scheduler::Extent extent{kStripColumns * threads, kBandRows * per_thread};
     chains.push_back(std::make_unique<EmptyChain>(extent, kStages));
-    for (const auto& executor : executors) {
-      scheduler::PlanRequest request;
-      request.threads = executor->thread_count();
-      request.strip_columns = kStripColumns;
-      request.band_rows = kBandRows;
-      request.pass_ends = std::vector<int>{};
-      const auto plan = plan_chain(chains.back()->stages(), machine, request);
-      contenders.push_back(
-          {fmt::format("{}, {} tasks", on_threads(*executor), per_thread * settings.threads),
-           [chain = chains.back().get(), plan, executor = executor.get(), &scratch] {
-             run_strips(chain->stages(), plan, *executor, scratch);
-           }});
-      work.push_back(static_cast<double>(extent.rows) * settings.threads * kStages);
-    }
+    scheduler::PlanRequest request;
+    request.threads = threads;
+    request.strip_columns = kStripColumns;
+    request.band_rows = kBandRows;
+    request.pass_ends = std::vector<int>{};
+    const auto plan = plan_chain(chains.back()->stages(), scheduler::detect_machine(), request);
+    contenders.push_back({fmt::format("{} tasks", per_thread * threads),
+                          [chain = chains.back().get(), plan, &executor, &scratch] {
+                            run_strips(chain->stages(), plan, executor, scratch);
+                          }});
+    work.push_back(static_cast<double>(extent.rows) * threads * kStages);
   }
-  return print_table(
-      fmt::format("{} empty stages, tasks of {} rows: ns per row of a stage", kStages, kBandRows),
-      time_interleaved(contenders, settings.rounds), work, "row");
+  return print_table(fmt::format("{} empty stages, tasks of {} rows, ns per row of a stage: {}",
+                                 kStages, kBandRows, on_threads(executor)),
+                     time_interleaved(contenders, rounds), work, "row");
 }
 
-nlohmann::json empty_frames(const Settings& settings) {
+nlohmann::json empty_frames(Executor& executor, int rounds) {
   constexpr int kFrames = 1000;
-  const auto executors = all_executors(settings.threads);
   std::vector<Contender> contenders;
   for (const int in_flight : {1, 2, 8}) {
-    for (const auto& executor : executors) {
-      contenders.push_back({fmt::format("{}, {} in flight", on_threads(*executor), in_flight),
-                            [executor = executor.get(), in_flight] {
-                              int left = kFrames;
-                              const auto nothing = [](int slot) { benchmark::DoNotOptimize(slot); };
-                              scheduler::FrameSteps steps;
-                              steps.read = [&left](int /*slot*/) { return left-- > 0; };
-                              steps.prepare = steps.compute = steps.encode = steps.write = nothing;
-                              run_frames(*executor, in_flight, steps);
-                            }});
-    }
+    contenders.push_back({fmt::format("{} in flight", in_flight), [&executor, in_flight] {
+                            int left = kFrames;
+                            const auto nothing = [](int slot) { benchmark::DoNotOptimize(slot); };
+                            scheduler::FrameSteps steps;
+                            steps.read = [&left](int /*slot*/) { return left-- > 0; };
+                            steps.prepare = steps.compute = steps.encode = steps.write = nothing;
+                            run_frames(executor, in_flight, steps);
+                          }});
   }
-  return print_table("frames with empty steps", time_interleaved(contenders, settings.rounds),
-                     kFrames, "frame");
+  return print_table("frames with empty steps: " + on_threads(executor),
+                     time_interleaved(contenders, rounds), kFrames, "frame");
 }
 
 nlohmann::json plans(const Settings& settings) {
@@ -262,9 +242,13 @@ int main(int argc, char** argv) {
   options.finish();
   double idle_span_ns = 0;
   nlohmann::json tables = nlohmann::json::array();
-  tables.push_back(empty_tasks(settings));
-  tables.push_back(empty_stages(settings));
-  tables.push_back(empty_frames(settings));
+  for (const ExecutorKind kind :
+       {ExecutorKind::kSerial, ExecutorKind::kTbb, ExecutorKind::kOpenMp}) {
+    const auto executor = make_executor(kind, settings.threads);
+    tables.push_back(empty_tasks(*executor, settings.rounds));
+    tables.push_back(empty_stages(*executor, settings.rounds));
+    tables.push_back(empty_frames(*executor, settings.rounds));
+  }
   tables.push_back(plans(settings));
   tables.push_back(spans(settings, idle_span_ns));
   for (auto& table : traced_maps(settings, idle_span_ns)) {
