@@ -9,12 +9,17 @@
 #include "engine/build_info.h"
 #include "engine/profiling/machine_ceilings.h"
 #include "engine/simd.h"
-#include "scheduler/machine.h"
+#include "scheduler/topology.h"
 
 namespace vantage::apps {
 namespace {
 
-void print_table(const BuildInfo& build, const scheduler::Machine& machine) {
+std::string counted(int count, const std::string& what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+void print_table(const BuildInfo& build, const scheduler::Topology& topology) {
+  const scheduler::Machine& machine = topology.machine;
   constexpr std::size_t kKib = 1024;
   fmt::print("Vantage            {}\n", build.version);
   fmt::print("compiler           {}\n", build.compiler);
@@ -22,9 +27,15 @@ void print_table(const BuildInfo& build, const scheduler::Machine& machine) {
   fmt::print("instruction sets   {} in use\n", instruction_set_in_use());
   fmt::print("  available here   {}\n", fmt::join(available_instruction_sets(), " "));
   fmt::print("  in this build    {}\n", fmt::join(built_instruction_sets(), " "));
-  fmt::print("hardware threads   {} on {} core{}, {} NUMA node{}\n", machine.hardware_threads,
-             machine.cores, machine.cores == 1 ? "" : "s", machine.numa_nodes,
-             machine.numa_nodes == 1 ? "" : "s");
+  fmt::print("hardware threads   {} on {}, {}{}\n", machine.hardware_threads,
+             counted(machine.cores, "core"), counted(machine.numa_nodes, "NUMA node"),
+             topology.system == nullptr ? " (simulated)" : "");
+  for (const scheduler::NumaNode& node : topology.nodes) {
+    fmt::print("  {:<17}{} on {}, {} MiB\n", fmt::format("NUMA node {}", node.number),
+               counted(node.hardware_threads(), "thread"),
+               counted(static_cast<int>(node.cores.size()), "core"),
+               node.memory_bytes / kKib / kKib);
+  }
   fmt::print("caches             L1 {} KiB, L2 {} KiB, L3 {} KiB\n", machine.l1_data_bytes / kKib,
              machine.l2_bytes / kKib, machine.l3_bytes / kKib);
   fmt::print("memory             {} MiB\n", machine.memory_bytes / kKib / kKib);
@@ -50,7 +61,15 @@ SettingValue as_json(const MachineCeilings& ceilings) {
           {"all_memory_gb_per_s", ceilings.all_memory_gb_per_s}};
 }
 
-SettingValue as_json(const BuildInfo& build, const scheduler::Machine& machine) {
+SettingValue as_json(const BuildInfo& build, const scheduler::Topology& topology) {
+  const scheduler::Machine& machine = topology.machine;
+  SettingValue nodes = SettingValue::array();
+  for (const scheduler::NumaNode& node : topology.nodes) {
+    nodes.push_back({{"node", node.number},
+                     {"hardware_threads", node.hardware_threads()},
+                     {"cores", node.cores},
+                     {"memory_bytes", node.memory_bytes}});
+  }
   return {{"version", build.version},
           {"compiler", build.compiler},
           {"opencv", build.opencv},
@@ -61,6 +80,8 @@ SettingValue as_json(const BuildInfo& build, const scheduler::Machine& machine) 
           {"hardware_threads", machine.hardware_threads},
           {"cores", machine.cores},
           {"numa_nodes", machine.numa_nodes},
+          {"nodes", nodes},
+          {"is_simulated", topology.system == nullptr},
           {"l1_data_bytes", machine.l1_data_bytes},
           {"l2_bytes", machine.l2_bytes},
           {"l3_bytes", machine.l3_bytes},
@@ -80,21 +101,21 @@ int command_info(const Arguments& arguments) {
     return kExitDone;
   }
   const BuildInfo build = build_info();
-  Execution execution({});
-  const scheduler::Machine& machine = execution.machine();
+  const scheduler::Topology topology = scheduler::detect_topology();
   std::optional<MachineCeilings> ceilings;
   if (measure) {
     constexpr double kSeconds = 2;
+    Execution execution({});
     ceilings = measure_ceilings(execution, kSeconds);
   }
   if (json) {
-    SettingValue document = as_json(build, machine);
+    SettingValue document = as_json(build, topology);
     if (ceilings) {
       document["ceilings"] = as_json(*ceilings);
     }
     fmt::print("{}\n", document.dump(2));
   } else {
-    print_table(build, machine);
+    print_table(build, topology);
     if (ceilings) {
       print_table(*ceilings);
     }

@@ -7,6 +7,7 @@
 namespace vantage::apps {
 void add_common_settings(Settings& settings, CommonOptions& options) {
   using scheduler::ExecutorKind;
+  using scheduler::ThreadBinding;
   settings.begin_group("Execution (never changes a result)", false);
   settings.integer("threads", options.execution.threads, "N",
                    "Threads, 1 to 1024; auto: all this process may use");
@@ -15,6 +16,12 @@ void add_common_settings(Settings& settings, CommonOptions& options) {
                                  {"openmp", ExecutorKind::kOpenMp},
                                  {"serial", ExecutorKind::kSerial}},
                                 "What runs the threads");
+  settings.choice<ThreadBinding>("bind", options.execution.binding,
+                                 {{"none", ThreadBinding::kNone},
+                                  {"node", ThreadBinding::kNodes},
+                                  {"core", ThreadBinding::kCores}},
+                                 "Keep each thread on the cores of one NUMA node, or on one core; "
+                                 "auto: on nodes where one has too few cores for all threads");
   settings.integer("strip-width", options.execution.strip_width_px, "PX",
                    "Columns of a strip; auto: from the cache sizes");
   settings.integer("band-height", options.execution.band_height_px, "PX",

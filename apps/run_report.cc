@@ -10,6 +10,7 @@
 #include "engine/build_info.h"
 #include "engine/io/atomic_file.h"
 #include "engine/simd.h"
+#include "engine/thread_placement.h"
 #include "scheduler/trace_summary.h"
 
 namespace vantage::apps {
@@ -95,6 +96,21 @@ void RunReport::set_plan(const scheduler::ChainPlan& plan) {
 void RunReport::set_execution(Execution& execution) {
   isa_ = instruction_set_in_use();
   threads_ = execution.executor().thread_count();
+  const scheduler::ThreadPlaces places =
+      thread_places(execution.options(), scheduler::detect_topology());
+  binding_ = {{"to", std::string(name_of(places.binding))},
+              {"is_in_effect", places.system != nullptr},
+              {"nodes", SettingValue::array()}};
+  if (places.binding == scheduler::ThreadBinding::kNone) {
+    places_summary_.clear();
+    return;
+  }
+  for (const scheduler::NodeThreads& node : places.nodes) {
+    binding_["nodes"].push_back({{"node", node.number}, {"threads", node.count()}});
+  }
+  places_summary_ =
+      fmt::format(" on {} NUMA node{}{}", places.nodes.size(), places.nodes.size() == 1 ? "" : "s",
+                  places.system == nullptr ? " (simulated, so not bound)" : "");
 }
 
 SettingValue RunReport::json() const {
@@ -113,6 +129,9 @@ SettingValue RunReport::json() const {
       {"cells", cells_},
       {"cells_per_second", cells_per_second()},
       {"peak_memory_bytes", peak_memory_bytes()}};
+  if (!binding_.is_null()) {
+    document["binding"] = binding_;
+  }
   if (!tuning_.is_null()) {
     document["tuning"] = tuning_;
   }
@@ -145,8 +164,8 @@ void RunReport::write(const std::string& path) {
 }
 
 void RunReport::print_summary() const {
-  std::string line =
-      fmt::format("{}: {} thread{}, {};", command_, threads_, threads_ == 1 ? "" : "s", isa_);
+  std::string line = fmt::format("{}: {} thread{}{}, {};", command_, threads_,
+                                 threads_ == 1 ? "" : "s", places_summary_, isa_);
   if (!tuning_summary_.empty()) {
     line += fmt::format(" {};", tuning_summary_);
   }

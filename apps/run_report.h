@@ -56,7 +56,7 @@ class RunReport {
   /// Stages, cells and plan of a match; its compute time is not added.
   void add_match(const MatchReport& match);
   void set_plan(const scheduler::ChainPlan& plan);
-  /// Threads and instruction set.
+  /// Threads, where they run (key `binding`), and instruction set.
   void set_execution(Execution& execution);
   /// What is used of a tuning file, or why nothing, under the key `tuning`; `summary` goes into the
   /// line on stderr.
@@ -112,6 +112,8 @@ class RunReport {
   SettingValue more_results_ = SettingValue::object();
   std::string isa_;
   int threads_ = 0;
+  SettingValue binding_;
+  std::string places_summary_;  // of the threads; empty where they are not bound
   double compute_seconds_ = 0;
   double cells_ = 0;
   std::vector<std::pair<std::string, double>> stages_;

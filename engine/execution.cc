@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/error.h"
+#include "engine/thread_placement.h"
 
 namespace vantage {
 namespace {
@@ -28,6 +29,12 @@ void ExecutionOptions::validate() const {
   if (threads && *threads > 1024) {
     throw UsageError(fmt::format("threads is {}, expected at most 1024", *threads));
   }
+  if (executor == scheduler::ExecutorKind::kSerial && binding &&
+      *binding != scheduler::ThreadBinding::kNone) {
+    throw UsageError(fmt::format(
+        "bind is {}, expected auto or none: a serial executor has no threads of its own",
+        name_of(*binding)));
+  }
 }
 
 int thread_count(const ExecutionOptions& options, const scheduler::Machine& machine) {
@@ -36,11 +43,11 @@ int thread_count(const ExecutionOptions& options, const scheduler::Machine& mach
              : options.threads.value_or(machine.hardware_threads);
 }
 
-Execution::Execution(const ExecutionOptions& options)
-    : options_(options), machine_(scheduler::detect_machine()) {
+Execution::Execution(const ExecutionOptions& options) : options_(options) {
   options_.validate();
-  executor_ = scheduler::make_executor(options_.executor,
-                                       options_.threads.value_or(machine_.hardware_threads));
+  const scheduler::Topology topology = scheduler::detect_topology();
+  machine_ = topology.machine;
+  executor_ = scheduler::make_executor(options_.executor, thread_places(options_, topology));
 }
 
 void Execution::for_each_band(int rows,

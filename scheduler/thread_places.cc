@@ -100,7 +100,7 @@ std::vector<int> divide_in_proportion(int total, const std::vector<int>& weights
   for (const int weight : weights) {
     weight_so_far += weight;
     // Rounding sums, not parts: the last one is the total.
-    const std::int64_t end = (2 * total * weight_so_far + sum) / (2 * sum);
+    const std::int64_t end = (2 * std::int64_t{total} * weight_so_far + sum) / (2 * sum);
     parts.push_back(static_cast<int>(end - given));
     given = end;
   }

@@ -8,6 +8,7 @@
 #include "engine/build_info.h"
 #include "engine/matching/match_chain.h"
 #include "engine/simd.h"
+#include "engine/thread_placement.h"
 
 namespace vantage {
 namespace {
@@ -117,9 +118,15 @@ TuningKey make_tuning_key(const scheduler::Machine& machine, const MatchOptions&
       fmt::format("{}, L1 {} KiB, L2 {} KiB, L3 {} KiB, {} threads on {} cores", machine.processor,
                   machine.l1_data_bytes / kKib, machine.l2_bytes / kKib, machine.l3_bytes / kKib,
                   machine.hardware_threads, machine.cores);
+  if (machine.numa_nodes > 1) {
+    key.machine += fmt::format(" of {} nodes", machine.numa_nodes);
+  }
   key.threads = fmt::format("{} threads, {}, {}",
                             execution.threads ? std::to_string(*execution.threads) : "all",
                             name_of(execution.executor), instruction_set_in_use());
+  if (execution.binding) {
+    key.threads += fmt::format(", bound to {}", name_of(*execution.binding));
+  }
   key.method = method_text(match, images);
   key.size = fmt::format(
       "about {}x{} pixels, {} disparities", class_of(images.width_px, kRootsOfTwo),

@@ -18,8 +18,8 @@ struct TunedImages {
 /// What decides which plan is the fastest, in classes: work of one class shares its tuning. All
 /// parts are plain text, meant to be read.
 struct TuningKey {
-  std::string machine;  ///< processor, caches, threads and cores
-  std::string threads;  ///< that may be used, executor, instruction set
+  std::string machine;  ///< processor, caches, threads and cores, NUMA nodes if there are several
+  std::string threads;  ///< that may be used, executor, instruction set, binding if it was given
   /// Cost and aggregation; sizes of windows, smoothing and iterations as powers of two; whether
   /// cells are integers.
   std::string method;

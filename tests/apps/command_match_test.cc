@@ -103,7 +103,7 @@ TEST_F(MatchCommand, ReportHasTheKeysOfTheContract) {
   }
   EXPECT_THAT(keys,
               ElementsAre("command", "version", "settings", "plan", "isa", "threads", "seconds",
-                          "cells", "cells_per_second", "peak_memory_bytes", "tuning"));
+                          "cells", "cells_per_second", "peak_memory_bytes", "binding", "tuning"));
   EXPECT_EQ(report["command"], "match");
   EXPECT_EQ(report["settings"]["disparities"], "0:9");
   EXPECT_EQ(report["threads"], 2);

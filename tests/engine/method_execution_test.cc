@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <string>
 
 #include "engine/matching/stereo_matcher.h"
@@ -29,6 +30,20 @@ DisparityMaps maps_of(const PhotographPair& pair, const MatchOptions& options,
   return maps;
 }
 
+/// While it exists, Executions plan for the machine that hwloc's `description` stands for.
+class SimulatedMachine {
+ public:
+  explicit SimulatedMachine(const std::string& description) {
+    ::setenv(kVariable, description.c_str(), 1);
+  }
+  SimulatedMachine(const SimulatedMachine&) = delete;
+  SimulatedMachine& operator=(const SimulatedMachine&) = delete;
+  ~SimulatedMachine() { ::unsetenv(kVariable); }
+
+ private:
+  static constexpr const char* kVariable = "HWLOC_SYNTHETIC";
+};
+
 class MethodExecution : public ::testing::TestWithParam<MethodCase> {};
 
 TEST_P(MethodExecution, PlansAndExecutorsGiveIdenticalResults) {
@@ -54,6 +69,20 @@ TEST_P(MethodExecution, PlansAndExecutorsGiveIdenticalResults) {
         expect_identical({.threads = threads, .executor = executor},
                          "executor " + std::to_string(static_cast<int>(executor)) + ", threads " +
                              std::to_string(threads));
+      }
+    }
+    for (const ExecutorKind executor : {ExecutorKind::kTbb, ExecutorKind::kOpenMp}) {
+#ifdef __SANITIZE_THREAD__
+      if (executor == ExecutorKind::kOpenMp) {
+        continue;
+      }
+#endif
+      for (const auto binding :
+           {scheduler::ThreadBinding::kNodes, scheduler::ThreadBinding::kCores}) {
+        expect_identical({.threads = 2, .executor = executor, .binding = binding}, "bound here");
+        const SimulatedMachine machine("node:2 core:2 pu:1");
+        expect_identical({.threads = 3, .executor = executor, .binding = binding},
+                         "on two nodes, as if bound to them");
       }
     }
     for (const int strip : {1, 16, 23, 500}) {

@@ -1,0 +1,168 @@
+// --bind, and machines with several NUMA nodes as hwloc simulates them: results are the same.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sched.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/apps/run_fixture.h"
+
+namespace vantage {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+const std::string kTwoNodes = "HWLOC_SYNTHETIC=node:2 core:4 pu:2";
+
+class MatchOnNodes : public PairTest {
+ protected:
+  /// `machine`: a variable for hwloc; empty for this one.
+  [[nodiscard]] ProcessResult match_on(const std::string& machine, const std::string& out,
+                                       const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> environment;
+    if (!machine.empty()) {
+      environment.push_back(machine);
+    }
+    return run_vantage(
+        joined({"match", left_, right_, "-o", out, "--disparities=0:9", "--method", "bayes"}, more),
+        environment);
+  }
+};
+
+TEST_F(MatchOnNodes, ResultsAreTheSame) {
+  const std::string expected_map = folder_ / "expected.pfm";
+  ASSERT_EQ(match_on("", expected_map, {"--executor", "serial"}).exit_code, 0);
+  const std::string expected = read_file(expected_map);
+  struct Way {
+    std::string machine;
+    std::vector<std::string> options;
+  };
+  const std::vector<Way> ways = {
+      {"", {"--bind", "core"}},
+      {"", {"--bind", "node", "--threads", "3"}},
+      {kTwoNodes, {}},
+      {kTwoNodes, {"--bind", "none"}},
+      {kTwoNodes, {"--bind", "core", "--threads", "5"}},
+      {kTwoNodes, {"--executor", "openmp"}},
+      {kTwoNodes, {"--executor", "serial"}},
+      {"HWLOC_SYNTHETIC=pack:2 node:2 core:3 pu:1", {"--strip-width", "16", "--band-height", "9"}},
+      {"HWLOC_SYNTHETIC=node:4 core:1 pu:1", {"--bind", "node", "--threads", "3"}},
+      {"HWLOC_SYNTHETIC=node:1 core:5 pu:1", {"--bind", "core"}}};
+  for (const Way& way : ways) {
+    const std::string map = folder_ / "map.pfm";
+    const ProcessResult result = match_on(way.machine, map, way.options);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(read_file(map), expected) << way.machine << testing::PrintToString(way.options);
+  }
+}
+
+TEST_F(MatchOnNodes, ReportsTellWhereThreadsRan) {
+  const auto binding = [&](const std::string& machine, const std::vector<std::string>& options) {
+    const std::string report = folder_ / "r.json";
+    const ProcessResult result =
+        match_on(machine, folder_ / "map.pfm", joined({"--report", report}, options));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return std::pair(json::parse(read_file(report)).at("binding"), result.err);
+  };
+  const json nodes = {{{"node", 0}, {"threads", 8}}, {{"node", 1}, {"threads", 8}}};
+  const auto [all, says] = binding(kTwoNodes, {});
+  EXPECT_EQ(all, (json{{"to", "node"}, {"is_in_effect", false}, {"nodes", nodes}}));
+  EXPECT_THAT(says, HasSubstr("16 threads on 2 NUMA nodes (simulated, so not bound)"));
+  const json none = {{"to", "none"}, {"is_in_effect", false}, {"nodes", json::array()}};
+  EXPECT_EQ(binding(kTwoNodes, {"--threads", "4"}).first, none) << "one node is enough";
+  EXPECT_EQ(binding(kTwoNodes, {"--executor", "serial"}).first, none);
+  const json here = binding("", {"--bind", "core"}).first;
+  EXPECT_EQ(here.at("to"), "core");
+  EXPECT_EQ(here.at("is_in_effect"), true);
+}
+
+TEST_F(MatchOnNodes, TracesHaveTheThreadsOfAllNodes) {
+  const std::string report = folder_ / "r.json";
+  ASSERT_EQ(match_on("HWLOC_SYNTHETIC=node:2 core:1 pu:1", folder_ / "map.pfm",
+                     {"--trace", folder_ / "t.json", "--report", report})
+                .exit_code,
+            0);
+  const json totals = json::parse(read_file(report)).at("trace");
+  double all_s = 0;
+  int in_pool = 0;
+  for (const json& thread : totals.at("threads")) {
+    if (thread.at("is_in_pool")) {
+      ++in_pool;
+      all_s += thread.at("work_seconds").get<double>() + thread.at("wait_seconds").get<double>();
+    }
+  }
+  EXPECT_GE(in_pool, 1);
+  EXPECT_LE(in_pool, 3);  // a caller whose node has but one thread sleeps
+  EXPECT_NEAR(all_s / in_pool, totals.at("wall_seconds").get<double>(), 1e-3);
+}
+
+TEST_F(MatchOnNodes, SerialExecutorsAreNotBound) {
+  const std::string out = folder_ / "map.pfm";
+  const ProcessResult result = match_on("", out, {"--executor", "serial", "--bind", "core"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(is_one_line(result, "match"));
+  EXPECT_THAT(result.err, HasSubstr("bind is core, expected auto or none"));
+  EXPECT_THAT(match_on("", out, {"--bind", "socket"}).err,
+              HasSubstr("--bind is 'socket', expected one of none|node|core"));
+}
+
+TEST_F(MatchOnNodes, ConfigurationsHaveTheBinding) {
+  EXPECT_THAT(run_vantage({"match", "--print-config"}).out, HasSubstr("bind = \"auto\""));
+  EXPECT_THAT(run_vantage({"match", "--bind=node", "--print-config"}).out,
+              HasSubstr("bind = \"node\""));
+}
+
+class RunOnNodes : public RunTest {};
+
+TEST_F(RunOnNodes, ResultsAreTheSame) {
+  const FolderContent expected = undisturbed(kImageOutputs);
+  int runs = 0;
+  for (const std::string machine : {"node:2 core:2 pu:1", "node:3 core:1 pu:1", "node:2 core:4"}) {
+    for (const std::vector<std::string>& options :
+         {std::vector<std::string>{}, {"--in-flight", "1"}, {"--bind", "core", "--threads", "5"}}) {
+      const std::string out = folder_ / ("out" + std::to_string(++runs));
+      const ProcessResult result = run_vantage(arguments(out, joined(kImageOutputs, options)),
+                                               {"HWLOC_SYNTHETIC=" + machine});
+      ASSERT_EQ(result.exit_code, 0) << result.err;
+      EXPECT_TRUE(same_files(results_in(out), expected))
+          << machine << testing::PrintToString(options);
+    }
+  }
+}
+
+TEST(InfoOnNodes, ListsThem) {
+  const ProcessResult table = run_vantage({"info"}, {kTwoNodes});
+  EXPECT_THAT(table.out, HasSubstr("16 on 8 cores, 2 NUMA nodes (simulated)"));
+  EXPECT_THAT(table.out, HasSubstr("NUMA node 1      8 threads on 4 cores, 1024 MiB"));
+  const json info = json::parse(run_vantage({"info", "--json"}, {kTwoNodes}).out);
+  EXPECT_EQ(info.at("is_simulated"), true);
+  ASSERT_EQ(info.at("nodes").size(), 2U);
+  EXPECT_EQ(info.at("nodes")[1].at("hardware_threads"), 8);
+  EXPECT_EQ(info.at("nodes")[1].at("cores")[0], (json{8, 9}));
+}
+
+TEST(InfoOnNodes, CountsWhatTheAffinityMaskLeaves) {
+  cpu_set_t before;
+  ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  std::size_t number = 0;
+  while (!CPU_ISSET(number, &before)) {
+    ++number;
+  }
+  CPU_SET(number, &one);
+  ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+  const json info = json::parse(run_vantage({"info", "--json"}).out);
+  ASSERT_EQ(sched_setaffinity(0, sizeof before, &before), 0);
+  if (info.at("is_simulated")) {
+    GTEST_SKIP() << "HWLOC_SYNTHETIC or HWLOC_XMLFILE stands for another machine";
+  }
+  EXPECT_EQ(info.at("hardware_threads"), 1);
+}
+
+}  // namespace
+}  // namespace vantage
