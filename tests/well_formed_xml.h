@@ -24,10 +24,11 @@ struct XmlOutline {
 };
 
 /// Reads the subset of XML that charts need: one root, elements with quoted attributes that are
-/// given once, the five entities, a declaration. Whatever else there is counts as an error.
+/// given once, the five entities, a declaration, ASCII. Whatever else there is counts as an error.
 class XmlReader {
  public:
-  explicit XmlReader(std::string_view text) : text_(text) {}
+  /// `most`: the last character code that needs no escape; 255 for texts in UTF-8.
+  explicit XmlReader(std::string_view text, unsigned char most = 126) : text_(text), most_(most) {}
 
   XmlOutline read() {
     take("<?xml");
@@ -82,7 +83,7 @@ class XmlReader {
   /// Characters up to `end`.
   void content(char end) {
     for (; ok() && peek() != end; ++position_) {
-      if (peek() == '<' || peek() == '>' || static_cast<unsigned char>(peek()) > 126) {
+      if (peek() == '<' || peek() == '>' || static_cast<unsigned char>(peek()) > most_) {
         return fail("a character that must be escaped");
       }
       if (peek() == '&' && !starts_with("&amp;") && !starts_with("&lt;") && !starts_with("&gt;") &&
@@ -127,6 +128,7 @@ class XmlReader {
   }
 
   std::string_view text_;
+  unsigned char most_;
   std::size_t position_ = 0;
   XmlOutline outline_;
 };

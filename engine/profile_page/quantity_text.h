@@ -16,10 +16,16 @@ std::string quantity_text(double value, std::string_view unit);
 /// "1.24 (1.21–1.30) ms".
 std::string sample_text(const ProfileSample& sample, std::string_view unit);
 
+/// The same without a prefix, `suffix` right behind it: "1.92 (1.88–1.95)×".
+std::string plain_sample_text(const ProfileSample& sample, std::string_view suffix = "");
+
 /// Of a share, 1 being all: "43 %", "4.3 %", "0.43 %".
 std::string percent_text(double share);
 
 /// Three significant digits without exponent up to a million: "12.4", "0.031", "1240".
 std::string number_text(double value);
+
+/// A whole number: "0", "12800", "1.28 M".
+std::string count_text(double count);
 
 }  // namespace vantage

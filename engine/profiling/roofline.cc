@@ -1,8 +1,14 @@
 #include "engine/profiling/roofline.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace vantage {
+namespace {
+
+bool is_positive(double value) { return value > 0 && std::isfinite(value); }
+
+}  // namespace
 
 ThreadRoofs thread_roofs(const MachineCeilings& ceilings) {
   const double threads = std::max(1, ceilings.threads);
@@ -21,7 +27,8 @@ std::optional<ThreadRoofs> roofs_of_most_threads(const Profile& profile) {
     return std::nullopt;
   }
   const ThreadRoofs roofs = thread_roofs(*found);
-  if (!(roofs.gflops > 0 && roofs.l2_gb_per_s > 0 && roofs.memory_gb_per_s > 0)) {
+  if (!is_positive(roofs.gflops) || !is_positive(roofs.l2_gb_per_s) ||
+      !is_positive(roofs.memory_gb_per_s)) {
     return std::nullopt;
   }
   return roofs;
@@ -30,7 +37,7 @@ std::optional<ThreadRoofs> roofs_of_most_threads(const Profile& profile) {
 std::optional<RooflinePlace> place_on_roofline(const StageProfile& stage,
                                                const ThreadRoofs& roofs) {
   const double seconds = stage.seconds.median;
-  if (!(seconds > 0 && stage.operations > 0 && stage.bytes > 0)) {
+  if (!is_positive(seconds) || !is_positive(stage.operations) || !is_positive(stage.bytes)) {
     return std::nullopt;
   }
   RooflinePlace place;
