@@ -14,6 +14,7 @@
 #include "engine/io/displacement_io.h"
 #include "engine/io/photograph_io.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/memory_use.h"
 #include "engine/sequence/preview_range.h"
 #include "engine/simd.h"
 
@@ -84,6 +85,18 @@ void match_images(const MatchJob& job, const StereoMatcher& matcher,
   matcher.match_several(images[0], others, request, maps, &report);
 }
 
+MemoryUse memory_use(const std::vector<Photograph>& images, const DisparityMaps& maps,
+                     const StereoMatcher& matcher, Execution& execution) {
+  MemoryUse use;
+  for (const Photograph& image : images) {
+    use.add("photographs", held_bytes(image));
+  }
+  use.add("maps", held_bytes(maps));
+  matcher.add_memory_use(use);
+  add_scratch_use(execution, use);
+  return use;
+}
+
 }  // namespace
 
 int command_match(const Arguments& arguments) {
@@ -136,6 +149,8 @@ int command_match(const Arguments& arguments) {
     return result;
   });
   report.add_match(match);
+  report.set_memory(
+      memory_use(images, maps, matcher, tuned_execution ? *tuned_execution : execution));
   report.timed_file_access("write", [&] { write_results(job, maps); });
 
   report.write(job.common.report);

@@ -12,6 +12,7 @@
 #include "apps/run_session.h"
 #include "apps/run_settings.h"
 #include "engine/error.h"
+#include "engine/memory_use.h"
 #include "engine/sequence/sequence_join.h"
 #include "engine/simd.h"
 
@@ -127,6 +128,8 @@ int command_run(const Arguments& arguments) {
     };
     sequence = SequenceRunner(job.sequence, execution).run(run, layout, journal);
   }
+  add_scratch_use(execution, sequence.memory);
+  report.set_memory(sequence.memory);
   join_if_whole(job, session, layout, sequence, journal, report);
   fill_report(job, session, sequence, DeliveredFrames(layout), report);
   report.write(job.common.report);

@@ -16,6 +16,7 @@
 #include "apps/view_pipeline.h"
 #include "apps/view_renderer.h"
 #include "apps/wanted_views.h"
+#include "engine/memory_use.h"
 #include "engine/simd.h"
 #include "engine/view_geometry/view_pose.h"
 
@@ -81,6 +82,19 @@ SettingValue describe(const ViewPose& pose, const SynthesizedView& view) {
   return entry;
 }
 
+/// Of the pair; what renders views is not told apart.
+MemoryUse memory_use(const PairWithMaps& input, Execution& execution) {
+  MemoryUse use;
+  use.add("photographs", held_bytes(input.left) + held_bytes(input.right));
+  if (input.unrectified) {
+    use.add("photographs",
+            held_bytes(input.unrectified->left) + held_bytes(input.unrectified->right));
+  }
+  use.add("maps", held_bytes(input.maps));
+  add_scratch_use(execution, use);
+  return use;
+}
+
 }  // namespace
 
 int command_synth(const Arguments& arguments) {
@@ -139,6 +153,7 @@ int command_synth(const Arguments& arguments) {
     }
     warn_of_empty_views(settings.command(), input, poses, empty_views);
   }
+  report.set_memory(memory_use(input, execution));
   report.set_results({{"views", rendered.views}});
   report.write(job.common.report);
   if (!job.common.quiet) {

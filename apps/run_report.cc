@@ -16,18 +16,21 @@
 namespace vantage::apps {
 namespace {
 
-/// Most memory this process has had resident; 0 where the system does not tell. Not getrusage():
-/// its figure starts with that of the process that started this one.
-long long peak_memory_bytes() {
+/// A figure of this process; 0 where the system does not tell.
+std::size_t process_bytes(std::string_view name) {
   std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    long long kib = 0;
-    if (std::sscanf(line.c_str(), "VmHWM: %lld kB", &kib) == 1) {
+  for (std::string key; status >> key; std::getline(status, key)) {
+    std::size_t kib = 0;
+    if (key == name && status >> kib) {
       return kib * 1024;
     }
   }
   return 0;
 }
+
+/// Most memory this process has had resident. Not getrusage(): its figure starts with that of the
+/// process that started this one.
+std::size_t peak_memory_bytes() { return process_bytes("VmHWM:"); }
 
 /// Milliseconds of what is over soon, seconds of what takes long.
 std::string time_text(double seconds) {
@@ -37,7 +40,9 @@ std::string time_text(double seconds) {
 }  // namespace
 
 RunReport::RunReport(std::string command, SettingValue settings)
-    : command_(std::move(command)), settings_(std::move(settings)) {}
+    : command_(std::move(command)),
+      settings_(std::move(settings)),
+      bytes_at_start_(process_bytes("VmRSS:")) {}
 
 void RunReport::start_trace(const std::string& path) {
   if (!path.empty()) {
@@ -113,7 +118,23 @@ void RunReport::set_execution(Execution& execution) {
                   places.system == nullptr ? " (simulated, so not bound)" : "");
 }
 
+SettingValue RunReport::memory_json(std::size_t peak_bytes) const {
+  MemoryUse memory = *memory_;
+  memory.add("program", bytes_at_start_);
+  std::size_t known_bytes = 0;
+  for (const MemoryUse::Owner& owner : memory.owners) {
+    known_bytes += owner.bytes;
+  }
+  memory.add("other", std::max(peak_bytes, known_bytes) - known_bytes);
+  SettingValue owners = SettingValue::object();
+  for (const MemoryUse::Owner& owner : memory.owners) {
+    owners[owner.name] = owner.bytes;
+  }
+  return {{"owners", owners}};
+}
+
 SettingValue RunReport::json() const {
+  const std::size_t peak_bytes = peak_memory_bytes();
   SettingValue stages = SettingValue::object();
   for (const auto& [name, seconds] : stages_) {
     stages[name] = seconds;
@@ -128,9 +149,12 @@ SettingValue RunReport::json() const {
       {"seconds", {{"wall", wall_seconds()}, {"compute", compute_seconds_}, {"stages", stages}}},
       {"cells", cells_},
       {"cells_per_second", cells_per_second()},
-      {"peak_memory_bytes", peak_memory_bytes()}};
+      {"peak_memory_bytes", peak_bytes}};
   if (!binding_.is_null()) {
     document["binding"] = binding_;
+  }
+  if (memory_) {
+    document["memory"] = memory_json(peak_bytes);
   }
   if (!tuning_.is_null()) {
     document["tuning"] = tuning_;

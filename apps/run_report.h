@@ -1,7 +1,9 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -11,6 +13,7 @@
 #include "apps/setting_value.h"
 #include "engine/execution.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/memory_use.h"
 #include "scheduler/strip_plan.h"
 #include "scheduler/trace.h"
 
@@ -64,6 +67,9 @@ class RunReport {
     tuning_ = std::move(tuning);
     tuning_summary_ = std::move(summary);
   }
+  /// What the command held of memory, under the key `memory`: its owners, what the program had when
+  /// the command began, and what else there was at the peak.
+  void set_memory(MemoryUse memory) { memory_ = std::move(memory); }
   /// Command-specific findings under the key `results`.
   void set_results(SettingValue results) { results_ = std::move(results); }
   /// One more of them, which set_results() does not replace.
@@ -98,16 +104,19 @@ class RunReport {
   }
   [[nodiscard]] static double seconds_since(Clock::time_point start);
   [[nodiscard]] double cells_per_second() const;
+  [[nodiscard]] SettingValue memory_json(std::size_t peak_bytes) const;
 
   std::string command_;
   SettingValue settings_;
   Clock::time_point start_ = Clock::now();
+  std::size_t bytes_at_start_;
   SettingValue plan_;
   std::string trace_path_;
   std::unique_ptr<scheduler::Trace> trace_;  // null: none is recorded
   SettingValue trace_totals_;
   SettingValue tuning_;
   std::string tuning_summary_;
+  std::optional<MemoryUse> memory_;
   SettingValue results_;
   SettingValue more_results_ = SettingValue::object();
   std::string isa_;

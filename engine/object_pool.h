@@ -29,6 +29,15 @@ class ObjectPool {
     std::unique_ptr<T> object_;
   };
 
+  /// Calls visit(object) for all that are not lent.
+  template <typename Visit>
+  void for_each_idle(const Visit& visit) const {
+    const std::lock_guard lock(mutex_);
+    for (const std::unique_ptr<T>& object : free_) {
+      visit(*object);
+    }
+  }
+
   [[nodiscard]] Loan borrow() {
     const std::lock_guard lock(mutex_);
     if (free_.empty()) {
@@ -41,7 +50,7 @@ class ObjectPool {
   }
 
  private:
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::vector<std::unique_ptr<T>> free_;
   std::size_t created_ = 0;
 };

@@ -192,4 +192,21 @@ void CostImage::prepare(const Photograph& photograph, const MethodParameters& pa
   }
 }
 
+std::size_t CostImage::held_bytes() const {
+  std::size_t bytes = 0;
+  const auto add = [&bytes](const auto& planes_of_channels) {
+    for (const auto& planes : planes_of_channels) {
+      for (const auto& plane : planes) {
+        bytes += plane.plain.held_bytes() + plane.mirrored.held_bytes();
+      }
+    }
+  };
+  add(planes_->features);
+  add(planes_->codes);
+  for (std::size_t c = 0; c < planes_->levels.size(); ++c) {
+    bytes += planes_->levels[c].held_bytes() + planes_->smooth_levels[c].held_bytes();
+  }
+  return bytes;
+}
+
 }  // namespace vantage

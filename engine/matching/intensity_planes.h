@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <variant>
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
+#include "engine/memory_use.h"
 #include "kernels/candidates.h"
 
 namespace vantage {
@@ -24,6 +26,7 @@ class IntensityPlane {
   /// The first pixel of row y (of a mirrored plane: the image's last column).
   [[nodiscard]] Pixel* row(int y) { return pixels_.row(y) + margin_begin_; }
   [[nodiscard]] const Pixel* row(int y) const { return pixels_.row(y) + margin_begin_; }
+  [[nodiscard]] std::size_t held_bytes() const { return vantage::held_bytes(pixels_); }
 
  private:
   Image<Pixel> pixels_;
@@ -38,6 +41,10 @@ struct IntensityPlanes {
   IntensityPlane<Pixel> left;
   IntensityPlane<Pixel> right;
   IntensityPlane<Pixel> right_mirrored;
+
+  [[nodiscard]] std::size_t held_bytes() const {
+    return left.held_bytes() + right.held_bytes() + right_mirrored.held_bytes();
+  }
 };
 
 /// Which map the planes are for.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
 
@@ -34,6 +35,9 @@ class CostImage {
   /// range and lanes count. Identical for any `execution`.
   void prepare(const Photograph& photograph, const MethodParameters& parameters,
                const kernels::CandidateGeometry& geometry, CostImageUse use, Execution& execution);
+
+  /// What all planes take.
+  [[nodiscard]] std::size_t held_bytes() const;
 
   struct Planes;
   [[nodiscard]] const Planes& planes() const { return *planes_; }

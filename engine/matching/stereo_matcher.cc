@@ -14,6 +14,18 @@
 namespace vantage {
 namespace {
 
+std::size_t held_bytes_of(const RefinementWork& work) {
+  const EdgeSnappingWork& edges = work.edge_snapping;
+  std::size_t bytes = held_bytes(edges.grey) + held_bytes(edges.smooth_x) +
+                      held_bytes(edges.gradient_x) + held_bytes(edges.gradient_y) +
+                      held_bytes(edges.edges) + held_bytes(work.filled_medians.before) +
+                      held_bytes(work.filled_medians.pixels);
+  for (const SpeckleWork& speckles : work.speckles) {
+    bytes += held_bytes(speckles.runs) + held_bytes(speckles.row_begin);
+  }
+  return bytes;
+}
+
 /// Times one stage after the other for a report, and shows them in traces.
 class StageClock {
  public:
@@ -116,6 +128,16 @@ struct WinnerMerge {
 };
 
 }  // namespace
+
+std::size_t held_bytes(const DisparityMaps& maps) {
+  std::size_t bytes = held_bytes(maps.left_unmatched) + held_bytes(maps.right_unmatched);
+  for (const Image<float>* map :
+       {&maps.left, &maps.right, &maps.left_confidence, &maps.right_confidence,
+        &maps.left_disparity_y, &maps.right_disparity_y}) {
+    bytes += held_bytes(*map);
+  }
+  return bytes;
+}
 
 StereoMatcher::StereoMatcher(const MatchOptions& options, Execution& execution)
     : options_(options), execution_(execution) {
@@ -307,6 +329,22 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
                               .unmatched = &unmatched};
   refine_maps(options_.resolved_refinement(), to_refine, nullptr, execution_, *work,
               [&](std::string_view step) { clock.begin(step); });
+}
+
+void StereoMatcher::add_memory_use(MemoryUse& use) const {
+  prepared_.for_each_idle([&use](const Prepared& prepared) {
+    std::size_t bytes = prepared.pair.grey_8.held_bytes() + prepared.pair.grey_float.held_bytes();
+    for (const CostImage& image : prepared.images) {
+      bytes += image.held_bytes();
+    }
+    for (const Image<float>* image : {&prepared.candidate_disparity_px, &prepared.energy,
+                                      &prepared.candidate_confidence, &prepared.candidate_energy}) {
+      bytes += held_bytes(*image);
+    }
+    use.add("prepared images", bytes);
+  });
+  refinement_works_.for_each_idle(
+      [&use](const RefinementWork& work) { use.add("refinement", held_bytes_of(work)); });
 }
 
 void StereoMatcher::compute_map(Reference reference, const ChainInput& input, Prepared& prepared,

@@ -10,6 +10,7 @@
 #include "engine/image/photograph.h"
 #include "engine/matching/match_chain.h"
 #include "engine/matching/match_options.h"
+#include "engine/memory_use.h"
 #include "engine/object_pool.h"
 #include "engine/refinement/refine_maps.h"
 #include "scheduler/strip_plan.h"
@@ -43,6 +44,9 @@ struct DisparityPrior {
 
   [[nodiscard]] bool empty() const { return left_px.empty() && right_px.empty(); }
 };
+
+/// What the maps take that are there.
+std::size_t held_bytes(const DisparityMaps& maps);
 
 /// What the caller wants. With refinement (options.raw == false) all of it is computed anyway.
 struct MatchRequest {
@@ -104,6 +108,10 @@ class StereoMatcher {
   void match_several(const Photograph& reference, std::span<const OtherView> others,
                      const MatchRequest& request, DisparityMaps& maps,
                      MatchReport* report = nullptr) const;
+
+  /// Working memory that is kept from call to call, as far as no call uses it at the moment:
+  /// "prepared images" and "refinement". Strips work in the scratch memory of the execution.
+  void add_memory_use(MemoryUse& use) const;
 
   [[nodiscard]] const MatchOptions& options() const { return options_; }
 

@@ -65,6 +65,9 @@ class FrameWorker {
   /// Time during which at least one frame was in compute(), or rectified.
   [[nodiscard]] double compute_seconds() const { return compute_clock_.seconds(); }
 
+  /// Of matching; see StereoMatcher.
+  void add_memory_use(MemoryUse& use) const { matcher_.add_memory_use(use); }
+
   /// Of the reference's map.
   [[nodiscard]] const DisparityMap& primary_map(const FrameSlot& slot) const;
   /// Copies what `stream`, none of floats, shows of the frame to `picture`, whose memory is reused.

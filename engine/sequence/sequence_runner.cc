@@ -12,6 +12,7 @@
 #include "engine/sequence/commit_queue.h"
 #include "engine/sequence/delivered_frames.h"
 #include "engine/sequence/frame_feed.h"
+#include "engine/sequence/frame_memory.h"
 #include "engine/sequence/leftovers.h"
 #include "engine/sequence/segment_writer.h"
 #include "scheduler/frame_pipeline.h"
@@ -83,6 +84,10 @@ class Run {
     report_.interrupted = outcome.interrupted;
     report_.frames -= frames_of_segment_;  // the videos of an unfinished chunk are given up
     report_.compute_seconds = worker_.compute_seconds();
+    for (const FrameSlot& slot : slots_) {
+      report_.memory.add("frames in flight", held_bytes(slot));
+    }
+    worker_.add_memory_use(report_.memory);
     return std::move(report_);
   }
 

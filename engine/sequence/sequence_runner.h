@@ -8,6 +8,7 @@
 
 #include "engine/execution.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/memory_use.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/sequence/flicker.h"
 #include "engine/sequence/frame_worker.h"
@@ -53,6 +54,7 @@ struct SequenceReport {
   double compute_seconds = 0;
   std::vector<SequenceStage> stages;  ///< in order of first appearance
   scheduler::ChainPlan plan;          ///< of the last frame
+  MemoryUse memory;                   ///< "frames in flight" and that of matching them
 };
 
 /// What a run works on and how.

@@ -103,12 +103,17 @@ TEST_F(MatchCommand, ReportHasTheKeysOfTheContract) {
   }
   EXPECT_THAT(keys,
               ElementsAre("command", "version", "settings", "plan", "isa", "threads", "seconds",
-                          "cells", "cells_per_second", "peak_memory_bytes", "binding", "tuning"));
+                          "cells", "cells_per_second", "peak_memory_bytes", "binding", "memory",
+                          "tuning"));
   EXPECT_EQ(report["command"], "match");
   EXPECT_EQ(report["settings"]["disparities"], "0:9");
   EXPECT_EQ(report["threads"], 2);
   EXPECT_EQ(report["cells"], 71.0 * 53 * 10 * 2);
   EXPECT_GT(report["peak_memory_bytes"], 1 << 20);
+  const auto& owners = report["memory"]["owners"];
+  EXPECT_GE(owners["photographs"], 2 * 71 * 53);
+  EXPECT_GE(owners["maps"], 2 * 71 * 53 * 4);
+  EXPECT_GT(owners["program"], 1 << 20);
   EXPECT_GE(report["plan"]["passes"].size(), 1U);
   const auto& seconds = report["seconds"];
   EXPECT_TRUE(seconds["stages"].contains("read"));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "tests/apps/preloaded.h"
@@ -148,6 +149,32 @@ TEST_F(RunMemory, IsNotMoreThanAllowed) {
       EXPECT_LE(report["results"]["planned_memory_bytes"], mib * 1048576.0) << job[3];
     }
   }
+}
+
+TEST_F(RunMemory, HasOwners) {
+  const nlohmann::json report =
+      report_of(large_arguments({"--frames", "0-19", "--in-flight", "4", "--method", "membrane",
+                                 "--iterations", "4", "--iterations-per-pass", "2"}));
+  const auto owners = report["memory"]["owners"].get<std::map<std::string, double>>();
+  for (const char* owner : {"program", "frames in flight", "prepared images", "refinement", "rings",
+                            "stored iterations", "other"}) {
+    EXPECT_GT(owners.count(owner), 0U) << owner;
+  }
+  constexpr double kPixels = kLargeWidth * kLargeHeight;
+  // Two colour photographs, two maps and two masks each.
+  EXPECT_GE(owners.at("frames in flight"), 4 * kPixels * (2 * 3 + 2 * 4 + 2));
+  EXPECT_LE(owners.at("frames in flight"), 4 * kPixels * (2 * 3 + 4 * 4 + 2) * 1.5);
+  // Two threads, each with a frame whose 20 candidates take 32 lanes.
+  EXPECT_GE(owners.at("stored iterations"), kPixels * 32 * 4);
+  EXPECT_LE(owners.at("stored iterations"), 4 * kPixels * 32 * 4);
+  double sum = 0;
+  for (const auto& [owner, bytes] : owners) {
+    EXPECT_LE(bytes, report["peak_memory_bytes"].get<double>()) << owner;
+    sum += bytes;
+  }
+  // "other" is what is left, if anything is; beyond that owners may have had their most apart.
+  EXPECT_GE(sum, report["peak_memory_bytes"].get<double>());
+  EXPECT_LE(sum, 1.25 * report["peak_memory_bytes"].get<double>());
 }
 
 /// Messages, names, tasks, file formats: what a frame allocates is small and does not grow.

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/execution.h"
+#include "engine/image/image.h"
+#include "engine/image/photograph.h"
+
+namespace vantage {
+
+/// Bytes by what they are for. Each owner's figure is the most that it held, asked when its work is
+/// done; not all owners need have held their most at one time, so that sums can exceed the peak of
+/// a process.
+struct MemoryUse {
+  struct Owner {
+    std::string name;
+    std::size_t bytes = 0;
+  };
+  std::vector<Owner> owners;
+
+  /// Adds up when the name has been there before; owners of nothing are left out.
+  void add(const std::string& name, std::size_t bytes) {
+    if (bytes == 0) {
+      return;
+    }
+    const auto known = std::ranges::find(owners, name, &Owner::name);
+    if (known != owners.end()) {
+      known->bytes += bytes;
+    } else {
+      owners.push_back({name, bytes});
+    }
+  }
+};
+
+/// What the rows of an image take. Memory that a larger image has left behind in it is not told.
+template <typename T>
+std::size_t held_bytes(const Image<T>& image) {
+  return sizeof(T) * image.view().stride() * static_cast<std::size_t>(image.height());
+}
+inline std::size_t held_bytes(const Photograph& photograph) {
+  return std::visit([](const auto& image) { return held_bytes(image); }, photograph.pixels);
+}
+template <typename T>
+std::size_t held_bytes(const std::vector<T>& values) {
+  return sizeof(T) * values.capacity();
+}
+
+/// The scratch memory of strips ("rings"), between passes ("stored iterations") and of other row
+/// work ("row work").
+inline void add_scratch_use(Execution& execution, MemoryUse& use) {
+  using scheduler::ScratchUse;
+  const scheduler::ScratchPool& scratch = execution.scratch();
+  use.add("rings", scratch.most_leased_bytes(ScratchUse::kRings));
+  use.add("stored iterations", scratch.most_leased_bytes(ScratchUse::kStored));
+  use.add("row work", scratch.most_leased_bytes(ScratchUse::kOther));
+}
+
+}  // namespace vantage

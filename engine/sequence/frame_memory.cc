@@ -1,0 +1,23 @@
+#include "engine/sequence/frame_memory.h"
+
+#include "engine/memory_use.h"
+
+namespace vantage {
+
+std::size_t held_bytes(const FrameSlot& slot) {
+  std::size_t bytes = held_bytes(slot.pair.left) + held_bytes(slot.pair.right) +
+                      held_bytes(slot.maps) + held_bytes(slot.preview) + held_bytes(slot.stereo) +
+                      held_bytes(slot.encoded);
+  for (const Photograph& photograph : slot.rectified) {
+    bytes += held_bytes(photograph);
+  }
+  for (const Image<float>& map : slot.photograph_maps) {
+    bytes += held_bytes(map);
+  }
+  for (const SynthesizedView& view : slot.views) {
+    bytes += held_bytes(view.image) + held_bytes(view.holes) + held_bytes(view.sources);
+  }
+  return bytes;
+}
+
+}  // namespace vantage
