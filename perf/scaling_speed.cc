@@ -124,7 +124,7 @@ nlohmann::json fit_curves(const Pair& pair, int rounds) {
   for (const auto& [name, method] :
        {std::pair{"Bayes", MatchMethod::kBayes}, {"membrane", MatchMethod::kMembrane}}) {
     fit(fmt::format("{}: iterations, at 480x270, 64 disparities; per iteration", name),
-        {5, 10, 20, 40, 80}, [&](int iterations) {
+        {4, 8, 16, 32}, [&](int iterations) {
           Point point{.width = 480, .height = 270, .options = method_options(method, kDisparities)};
           point.options.parameters.iterations = iterations;
           return point;
@@ -231,10 +231,11 @@ class ThreadScaling {
   std::vector<Contender> contenders_;  // per number of threads: all rows, its share (not the last)
 };
 
-nlohmann::json over_threads(const GreyPair& pair, int disparities, const std::vector<int>& counts,
+nlohmann::json over_threads(int width, int height, int disparities, const std::vector<int>& counts,
                             int rounds) {
-  const std::string title = fmt::format("{}x{}, {} disparities, over threads", pair.left.width(),
-                                        pair.left.height(), disparities);
+  const GreyPair pair = corner(make_pair(width, height, disparities), width, height);
+  const std::string title =
+      fmt::format("{}x{}, {} disparities, over threads", width, height, disparities);
   fmt::print("\n{}\n{:<26} {:>7} {:>10} {:>20} {:>10} {:>10} {:>20}\n", title, "", "threads",
              "median ms", "speed-up", "efficiency", "serial", "weak efficiency");
   nlohmann::json rows = nlohmann::json::array();
@@ -257,7 +258,7 @@ nlohmann::json over_threads(const GreyPair& pair, int disparities, const std::ve
 int main(int argc, char** argv) {
   using namespace vantage::perf;
   const std::string usage =
-      "scaling_speed [--only curves|threads] [--rounds N] [--threads N] [--json FILE]";
+      "scaling_speed [--only curves|1282x1110|1920x1080] [--rounds N] [--threads N] [--json FILE]";
   CommandLine options(argc, argv, usage);
   const auto json_path = options.text("--json");
   const std::string only = options.text("--only").value_or("");
@@ -265,21 +266,22 @@ int main(int argc, char** argv) {
   const int threads =
       options.number("--threads", vantage::scheduler::detect_machine().hardware_threads);
   options.finish();
-  if (!only.empty() && only != "curves" && only != "threads") {
+  const auto wanted = [&only](const std::string& part) { return only.empty() || only == part; };
+  if (!wanted("curves") && !wanted("1282x1110") && !wanted("1920x1080")) {
     fmt::print(stderr, "{}\n", usage);
     return 2;
   }
   fmt::print("instruction set {}, {} threads\n", vantage::instruction_set_in_use(), threads);
+  const std::vector<int> counts = thread_counts(threads);
   nlohmann::json tables = nlohmann::json::array();
-  const Pair wide = make_pair(1920, 1080, 128);
-  if (only != "threads") {
-    tables = fit_curves(wide, rounds + 2);
+  if (wanted("curves")) {
+    tables = fit_curves(make_pair(1920, 1080, 128), rounds);
   }
-  if (only != "curves") {
-    const std::vector<int> counts = thread_counts(threads);
-    tables.push_back(
-        over_threads(corner(make_pair(1282, 1110, 256), 1282, 1110), 256, counts, rounds));
-    tables.push_back(over_threads(corner(wide, 1920, 1080), 128, counts, rounds));
+  if (wanted("1282x1110")) {
+    tables.push_back(over_threads(1282, 1110, 256, counts, rounds));
+  }
+  if (wanted("1920x1080")) {
+    tables.push_back(over_threads(1920, 1080, 128, counts, rounds));
   }
   if (json_path) {
     std::ofstream(*json_path) << tables.dump(2) << '\n';
