@@ -130,11 +130,14 @@ nlohmann::json fit_curves(const Pair& pair, int rounds) {
           return point;
         });
   }
-  fit("SSD: window, at 1920x540, 64 disparities", {5, 9, 15, 21, 31, 51}, [&](int window) {
+  const auto with_window = [](int window) {
     Point point{.width = 1920, .options = method_options(MatchMethod::kSsd, kDisparities)};
     point.options.parameters.window_px = window;
     return point;
-  });
+  };
+  fit("SSD: window, cells with room for their candidate's number, at 1920x540, 64 disparities",
+      {5, 9, 15, 21}, with_window);
+  fit("SSD: window, cells without, at 1920x540, 64 disparities", {23, 31, 51, 101}, with_window);
   return tables;
 }
 
