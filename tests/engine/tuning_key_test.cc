@@ -90,6 +90,12 @@ TEST_F(TuningKeyTest, DifferentWorkHasDifferentKeys) {
   add(key());
   machine_.hardware_threads = 16;
   add(key());
+  machine_.numa_nodes = 2;
+  add(key());
+  execution_.binding = scheduler::ThreadBinding::kNone;
+  add(key());
+  execution_.binding = scheduler::ThreadBinding::kCores;
+  add(key());
 }
 
 TEST_F(TuningKeyTest, HasTextForEveryMethodAndSize) {
