@@ -25,7 +25,7 @@ struct ExecutorCase {
 
 /// What test runners print of a case instead of its bytes.
 inline void PrintTo(const ExecutorCase& executor, std::ostream* stream) {
-  *stream << executor.name << " with " << executor.threads << " threads" << executor.where;
+  *stream << executor.name << " with " << executor.threads << " threads " << executor.where;
 }
 
 inline std::string executor_test_name(const testing::TestParamInfo<ExecutorCase>& info) {
