@@ -73,11 +73,25 @@ std::string stages(const Profile& profile, const ThreadCountProfile& count) {
   return table.empty() ? "" : "\n" + table.text();
 }
 
+/// Those that can be seen, and the others in one row.
 void add_parts(const std::vector<PartProfile>& parts, const char* kind,
                const ThreadCountProfile& count, TextTable& table) {
+  constexpr double kLeastShare = 1e-3;
+  PartProfile others;
+  int hidden = 0;
   for (const PartProfile& part : parts) {
-    table.add({part.name, kind, sample_text(part.seconds, "s"),
-               share_text(part.seconds.median, count), number_text(part.count)});
+    if (part.seconds.median < kLeastShare * pool_seconds(count)) {
+      ++hidden;
+      others.seconds.median += part.seconds.median;
+      others.count += part.count;
+    } else {
+      table.add({part.name, kind, sample_text(part.seconds, "s"),
+                 share_text(part.seconds.median, count), number_text(part.count)});
+    }
+  }
+  if (hidden > 0) {
+    table.add({fmt::format("{} more", hidden), kind, quantity_text(others.seconds.median, "s"),
+               share_text(others.seconds.median, count), number_text(others.count)});
   }
 }
 
@@ -91,7 +105,8 @@ std::string parts(const ThreadCountProfile& count) {
   const WaitingProfile& waiting = count.waiting_for;
   text += fmt::format(
       "  Of the pool's time {} are lost to reading and decoding, {} to encoding and writing,\n"
-      "  {} to tasks that others finish later, {} to nothing at all.\n",
+
+      "  {} to work of others that is not shared; {} pass while nothing recorded is done.\n",
       share_text(waiting.reading_s.median, count), share_text(waiting.writing_s.median, count),
       share_text(waiting.computing_s.median, count), share_text(waiting.nothing_s.median, count));
   return text;

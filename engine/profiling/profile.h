@@ -48,9 +48,9 @@ struct ThreadProfile {
 /// waiting_causes().
 struct WaitingProfile {
   ProfileSample reading_s;    ///< frames or images being read or decoded
-  ProfileSample computing_s;  ///< tasks of other threads
+  ProfileSample computing_s;  ///< other work
   ProfileSample writing_s;    ///< results being encoded or written
-  ProfileSample nothing_s;    ///< no thread worked at all
+  ProfileSample nothing_s;    ///< no thread did anything that is recorded
 };
 
 /// One thread doing one thing, for drawing: the innermost of what was recorded.

@@ -10,8 +10,8 @@ namespace {
 using scheduler::SpanKind;
 using scheduler::SpanRecord;
 
-constexpr std::array<std::string_view, 4> kReadingSpans = {"read", "read frame", "prepare frame",
-                                                           "decode"};
+constexpr std::array<std::string_view, 5> kReadingSpans = {"open", "read", "read frame",
+                                                           "prepare frame", "decode"};
 constexpr std::array<std::string_view, 6> kWritingSpans = {"write",       "encode frame", "encode",
                                                            "write frame", "deliver",      "join"};
 constexpr std::string_view kDiskWait = "disk";
