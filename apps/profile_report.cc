@@ -7,6 +7,7 @@
 #include "apps/setting_value.h"
 #include "apps/text_table.h"
 #include "engine/profile_page/quantity_text.h"
+#include "engine/profiling/profile_findings.h"
 #include "engine/profiling/roofline.h"
 #include "engine/profiling/stage_figures.h"
 
@@ -19,12 +20,31 @@ std::string threads_text(int threads) {
   return fmt::format("{} thread{}", threads, threads == 1 ? "" : "s");
 }
 
-/// Time of the pool's threads while a run lasts.
-double pool_seconds(const ThreadCountProfile& count) { return count.wall_s.median * count.threads; }
+std::string share_text(double seconds, double all_s) {
+  return all_s > 0 ? percent_text(seconds / all_s) : kUnknown;
+}
 
-std::string share_text(double seconds, const ThreadCountProfile& count) {
-  const double all = pool_seconds(count);
-  return all > 0 ? percent_text(seconds / all) : kUnknown;
+/// `sentence` in lines that fit, indented.
+std::string wrapped(const std::string& sentence) {
+  constexpr std::size_t kColumns = 98;
+  std::string text;
+  std::string line;
+  for (const std::string& word : split(sentence, ' ')) {
+    if (!line.empty() && line.size() + 1 + word.size() > kColumns) {
+      text += "  " + line + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return text + "  " + line + "\n";
+}
+
+std::string findings(const Profile& profile) {
+  std::string text;
+  for (const ProfileFinding& finding : profile_findings(profile)) {
+    text += wrapped(finding.text);
+  }
+  return text.empty() ? "" : "What holds it back\n" + text + "\n";
 }
 
 std::string scaling(const Profile& profile) {
@@ -55,12 +75,12 @@ std::string stages(const Profile& profile, const ThreadCountProfile& count) {
   TextTable table(
       fmt::format("Stages of matching on {}, time over all threads, rates of one thread",
                   threads_text(count.threads)),
-      {"", "time", "share", "ns/cell", "cells/s", "halo", "GB/s", "GFLOP/s", "of roof", "roof"});
+      {"", "time", "of work", "ns/cell", "cells/s", "halo", "GB/s", "GFLOP/s", "of roof", "roof"});
   for (const StageProfile& stage : count.stages) {
     const bool known = stage.cells > 0;
     const auto place = roofs ? place_on_roofline(stage, *roofs) : std::nullopt;
     table.add({stage.name, quantity_text(stage.seconds.median, "s"),
-               share_text(stage.seconds.median, count),
+               share_text(stage.seconds.median, pool_work_s(count)),
                known ? number_text(nanoseconds_per_cell(stage)) : kUnknown,
                known ? quantity_text(cells_per_second(stage), "") : kUnknown,
                percent_text(halo_share(stage)), place ? number_text(place->gb_per_s) : kUnknown,
@@ -80,35 +100,37 @@ void add_parts(const std::vector<PartProfile>& parts, const char* kind,
   PartProfile others;
   int hidden = 0;
   for (const PartProfile& part : parts) {
-    if (part.seconds.median < kLeastShare * pool_seconds(count)) {
+    if (part.seconds.median < kLeastShare * pool_time_s(count)) {
       ++hidden;
       others.seconds.median += part.seconds.median;
       others.count += part.count;
     } else {
       table.add({part.name, kind, sample_text(part.seconds, "s"),
-                 share_text(part.seconds.median, count), number_text(part.count)});
+                 share_text(part.seconds.median, pool_time_s(count)), number_text(part.count)});
     }
   }
   if (hidden > 0) {
     table.add({fmt::format("{} more", hidden), kind, quantity_text(others.seconds.median, "s"),
-               share_text(others.seconds.median, count), number_text(others.count)});
+               share_text(others.seconds.median, pool_time_s(count)), number_text(others.count)});
   }
 }
 
 std::string parts(const ThreadCountProfile& count) {
   TextTable table(
       fmt::format("Work and waiting on {}, over all threads", threads_text(count.threads)),
-      {"", "", "time", "share", "times"});
+      {"", "", "time", "of time", "times"});
   add_parts(count.parts, "work", count, table);
   add_parts(count.waits, "wait", count, table);
   std::string text = "\n" + table.text();
+  const auto share_of = [&](const ProfileSample& seconds) {
+    return share_text(seconds.median, pool_time_s(count));
+  };
   const WaitingProfile& waiting = count.waiting_for;
   text += fmt::format(
       "  Of the pool's time {} are lost to reading and decoding, {} to encoding and writing,\n"
-
       "  {} to work of others that is not shared; {} pass while nothing recorded is done.\n",
-      share_text(waiting.reading_s.median, count), share_text(waiting.writing_s.median, count),
-      share_text(waiting.computing_s.median, count), share_text(waiting.nothing_s.median, count));
+      share_of(waiting.reading_s), share_of(waiting.writing_s), share_of(waiting.computing_s),
+      share_of(waiting.nothing_s));
   return text;
 }
 
@@ -134,21 +156,6 @@ std::string memory(const Profile& profile) {
               ? fmt::format("Memory: {} at the peak; the command does not tell whose\n",
                             quantity_text(static_cast<double>(profile.peak_memory_bytes), "B"))
               : table.text());
-}
-
-/// `sentence` in lines that fit.
-std::string wrapped(const std::string& sentence) {
-  constexpr std::size_t kColumns = 98;
-  std::string text;
-  std::string line;
-  for (const std::string& word : split(sentence, ' ')) {
-    if (!line.empty() && line.size() + 1 + word.size() > kColumns) {
-      text += "  " + line + "\n";
-      line.clear();
-    }
-    line += (line.empty() ? "" : " ") + word;
-  }
-  return text + "  " + line + "\n";
 }
 
 std::string counters(const HardwareCounts& hardware, int threads) {
@@ -187,8 +194,9 @@ std::string describe(const Profile& profile) {
   return fmt::format("{}\n{}, {}, vantage {}; {} run{} each\n\n", profile.command,
                      profile.processor, profile.isa, profile.version, most.runs,
                      most.runs == 1 ? "" : "s") +
-         scaling(profile) + stages(profile, most) + parts(most) + workers(most) +
-         ceilings(profile) + memory(profile) + counters(profile.hardware, most.threads);
+         findings(profile) + scaling(profile) + stages(profile, most) + parts(most) +
+         workers(most) + ceilings(profile) + memory(profile) +
+         counters(profile.hardware, most.threads);
 }
 
 std::string describe(const ProfileComparison& comparison, const std::string& first_name,
