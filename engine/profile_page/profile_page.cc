@@ -13,6 +13,8 @@ std::string profile_page(const Profile& profile) {
   const PartColours colours(profile);
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+      "<meta http-equiv=\"Content-Security-Policy\" "
+      "content=\"default-src 'none'; style-src 'unsafe-inline'\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width\"/>\n"
       "<title>{} – Vantage profile</title>\n<style>{}</style>\n</head>\n<body>\n"
       "{}<main>\n{}{}{}{}</main>\n</body>\n</html>\n",

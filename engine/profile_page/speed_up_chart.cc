@@ -36,7 +36,11 @@ std::string speed_up_chart(const Profile& profile) {
   const ChartArea area = {
       {kAxesLeft, kAxesTop}, kWidth - kAxesLeft - kAxesRight, kHeight - kAxesTop - kAxesBottom};
   SvgPicture picture(kWidth, kHeight, "Speed-up against the number of threads");
-  draw_axes(area, x_axis, y_axis, picture);
+  std::vector<Axis::Tick> measured;
+  for (const SpeedUp& speed_up : profile.speed_ups) {
+    measured.push_back({x_axis.place(speed_up.threads), std::to_string(speed_up.threads)});
+  }
+  draw_axes(area, x_axis, measured, y_axis, picture);
   const auto point = [&](double x, double y) { return place_in(area, x_axis, y_axis, x, y); };
   picture.line({point(fewest, 1), point(most, most / fewest)}, "ideal");
   if (profile.serial_fraction) {

@@ -78,12 +78,17 @@ std::string SvgPicture::markup() const {
 }
 
 void draw_axes(const ChartArea& area, const Axis& x_axis, const Axis& y_axis, SvgPicture& picture) {
+  draw_axes(area, x_axis, x_axis.ticks(), y_axis, picture);
+}
+
+void draw_axes(const ChartArea& area, const Axis& x_axis, const std::vector<Axis::Tick>& x_ticks,
+               const Axis& y_axis, SvgPicture& picture) {
   const double left = area.corner.x;
   const double right = left + area.width;
   const double top = area.corner.y;
   const double bottom = top + area.height;
   double last_label_end = -std::numeric_limits<double>::infinity();
-  for (const Axis::Tick& tick : x_axis.ticks()) {
+  for (const Axis::Tick& tick : x_ticks) {
     const double x = left + tick.place * area.width;
     picture.line({{x, top}, {x, bottom}}, "grid");
     const double half = text_width(tick.label, kTextSize) / 2;

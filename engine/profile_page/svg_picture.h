@@ -45,6 +45,9 @@ inline constexpr double kAxesBottom = 40;
 
 /// Grid lines, ticks with labels, and titles around `area`.
 void draw_axes(const ChartArea& area, const Axis& x_axis, const Axis& y_axis, SvgPicture& picture);
+/// The same with ticks at `x_ticks` instead of those of the axis.
+void draw_axes(const ChartArea& area, const Axis& x_axis, const std::vector<Axis::Tick>& x_ticks,
+               const Axis& y_axis, SvgPicture& picture);
 
 /// Where a value of both axes is; not finite if an axis cannot show it.
 DrawingPoint place_in(const ChartArea& area, const Axis& x_axis, const Axis& y_axis, double x,

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "engine/io/markup_text.h"
 #include "engine/profile_page/page_sections.h"
 #include "engine/profile_page/page_table.h"
@@ -21,7 +23,7 @@ std::string timeline_markup(const Profile& profile, const PartColours& colours) 
   return colours.timeline_legend(profile) + timeline_chart(profile, colours) +
          note(fmt::format("The run with the median wall time. What is too short to be seen is "
                           "joined.{}",
-                          has_frames ? " Every other frame is paler; where there is room, the "
+                          has_frames ? " Every other frame is fainter; where there is room, the "
                                        "frame's number stands in it."
                                      : ""));
 }
@@ -37,21 +39,44 @@ std::string use_of_threads(const ThreadCountProfile& most) {
     table.rows.push_back(
         {escaped_markup(worker.name) + (worker.is_in_pool ? "" : " (outside of the pool)"),
          worker.is_in_pool ? bar_cell(share, percent_text(share)) : "",
-         quantity_text(worker.work_s, "s"), quantity_text(worker.wait_s, "s")});
+         quantity_text(worker.work_s, "s"),
+         worker.is_in_pool ? quantity_text(worker.wait_s, "s") : "–"});
   }
   return table_markup(table) +
          paragraph(fmt::format("The busiest thread of the pool works {} times the mean.",
                                plain_sample_text(most.imbalance)));
 }
 
+constexpr double kLeastShare = 0.001;
+
+void add_row(const std::string& name, const std::string& time, double share, double spans,
+             PageTable& table) {
+  table.rows.push_back({name, time, bar_cell(share, percent_text(share)), count_text(spans)});
+}
+
+/// What takes hardly any time shares a row.
 void add_rows(const std::vector<PartProfile>& parts, double all_s, bool are_waits,
               const PartColours& colours, PageTable& table) {
+  int small_parts = 0;
+  double small_s = 0;
+  double small_spans = 0;
   for (const PartProfile& part : parts) {
     const double share = share_of(part.seconds.median, all_s);
-    table.rows.push_back({are_waits ? colour_key("wait", part.name + " (waiting)")
-                                    : colour_key(colours.class_of(part.name), part.name),
-                          sample_text(part.seconds, "s"), bar_cell(share, percent_text(share)),
-                          count_text(part.count)});
+    if (all_s > 0 && share < kLeastShare) {
+      ++small_parts;
+      small_s += part.seconds.median;
+      small_spans += part.count;
+      continue;
+    }
+    add_row(are_waits ? colour_key("wait", part.name + " (waiting)")
+                      : colour_key(colours.class_of(part.name), part.name),
+            sample_text(part.seconds, "s"), share, part.count, table);
+  }
+  if (small_parts > 0) {
+    add_row(colour_key(are_waits ? "wait" : "part-more",
+                       fmt::format("{} more, each below {}{}", small_parts,
+                                   percent_text(kLeastShare), are_waits ? " (waiting)" : "")),
+            quantity_text(small_s, "s"), share_of(small_s, all_s), small_spans, table);
   }
 }
 
@@ -64,7 +89,11 @@ std::string time_by_part(const ThreadCountProfile& most, const PartColours& colo
   const double all_s = pool_time_s(most);
   add_rows(most.parts, all_s, false, colours, table);
   add_rows(most.waits, all_s, true, colours, table);
-  return table_markup(table);
+  const bool has_others = !std::ranges::all_of(most.workers, &ThreadProfile::is_in_pool);
+  return table_markup(table) +
+         (has_others
+              ? note("What threads outside of the pool do is compared with its time as well.")
+              : "");
 }
 
 std::string waiting_causes_markup(const ThreadCountProfile& most) {
@@ -97,11 +126,12 @@ std::string thread_section(const Profile& profile, const PartColours& colours) {
     return timeline;
   }
   const ThreadCountProfile& most = profile.thread_counts.back();
-  return timeline +
-         side_by_side(
-             section_markup("Where the threads' time goes", time_by_part(most, colours)) +
-                 section_markup("What waiting threads wait for", waiting_causes_markup(most)),
-             section_markup("Use of threads", use_of_threads(most)));
+  std::string left = section_markup("Where the threads' time goes", time_by_part(most, colours));
+  std::string right = section_markup("Use of threads", use_of_threads(most));
+  // What fills up the shorter column.
+  (most.workers.size() < most.parts.size() + most.waits.size() ? right : left) +=
+      section_markup("What waiting threads wait for", waiting_causes_markup(most));
+  return timeline + side_by_side(left, right);
 }
 
 }  // namespace vantage

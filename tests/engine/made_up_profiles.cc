@@ -115,7 +115,7 @@ ThreadCountProfile run_on(int threads) {
   const double waited_s = wall_s * threads - work_s;
   count.waits = {{"idle", around(0.6 * waited_s), 4100},
                  {"wait for tasks", around(0.4 * waited_s), 60000},
-                 {"disk", around(0.2), 12}};
+                 {"disk", around(0.02), 12}};
   count.waiting_for = {.reading_s = around(0.5 * waited_s),
                        .computing_s = around(0.3 * waited_s),
                        .writing_s = around(0.15 * waited_s),
