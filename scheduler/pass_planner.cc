@@ -18,11 +18,18 @@ constexpr std::size_t kFewParts = 3;
 // programs want room too.
 constexpr double kLevel3Share = 0.4;
 // Time per cell while the strips of all threads live in their level-2 caches, in the level 3 that
-// they share, or beyond, level 1 being 1. Iterations stream through their rings, so that level 3 is
-// nearly as good as level 2: ten of Bayes on 450x375x64, strips of 225 columns in level 3 took 0.93
-// of the time of 57 columns in level 2, whose halos are wider (Zen 4, 2026-11-21).
+// they share, or beyond, level 1 being 1. Iterations stream through their rings, so that a level 3
+// of a few cores is nearly as good as level 2: ten of Bayes on 450x375x64, strips of 225 columns in
+// level 3 took 0.93 of the time of 57 columns in level 2, whose halos are wider (Zen 4,
+// 2026-11-21).
 constexpr double kLevel2Time = 1.35;
 constexpr double kLevel3Time = 1.5;
+// A level 3 that dozens of cores share is far from each of them: ten iterations on 1282x278x256
+// took 2.8 (diffusion) and 1.8 (Bayes) times as long per cell as in level 2 (Xeon with 480 MiB,
+// 2026-11-22). Where it has more bytes for each core in sight than this many level 2, which no core
+// has for its own, most of its cores are out of sight: of a virtual machine or an affinity mask.
+constexpr double kFarLevel3Time = 3.0;
+constexpr double kMostLevel3PerCore = 32;
 constexpr double kMemoryTime = 4.0;
 // Starting a row of a stage takes as long as this many bytes of its cells.
 constexpr double kRowStartBytes = 1024;
@@ -168,7 +175,12 @@ double PassPlanner::cache_time(std::size_t scratch_bytes) const {
     return kLevel2Time;
   }
   const bool shared = bytes * threads_ <= kLevel3Share * static_cast<double>(machine_.l3_bytes);
-  return shared ? kLevel3Time : kMemoryTime;
+  if (!shared) {
+    return kMemoryTime;
+  }
+  const bool is_far = static_cast<double>(machine_.l3_bytes) >
+                      kMostLevel3PerCore * static_cast<double>(machine_.l2_bytes) * machine_.cores;
+  return is_far ? kFarLevel3Time : kLevel3Time;
 }
 
 double PassPlanner::imbalance(int tasks) const {

@@ -55,6 +55,9 @@ struct ChainPlan {
 /// empty.
 Range rows_of_step(const ChainPlan& plan, const PassPlan& pass, int step, int rows);
 
+/// Of all passes (PassPlan::expected_time) and of storing what they hand on.
+double total_expected_time(const ChainPlan& plan);
+
 /// Cuts `chain` into passes, strips and bands so that the rings of a strip stay in the level-2
 /// cache and there are enough tasks for the threads. Strip and band sizes beyond the image are cut
 /// to it. The plan never changes results, only speed. Throws std::logic_error for a chain that

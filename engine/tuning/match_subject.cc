@@ -61,16 +61,6 @@ bool is_same_plan(const scheduler::ChainPlan& a, const scheduler::ChainPlan& b) 
          });
 }
 
-/// In the unit of scheduler::PassPlan::expected_time, on one thread.
-double model_time(const scheduler::ChainPlan& plan) {
-  constexpr double kPassTime = 3;
-  double time = kPassTime * static_cast<double>(plan.passes.size() - 1);
-  for (const scheduler::PassPlan& pass : plan.passes) {
-    time += pass.expected_time;
-  }
-  return time;
-}
-
 }  // namespace
 
 MatchSubject::MatchSubject(const MatchSubjectOptions& options, const TuningPair& pair)
@@ -249,7 +239,7 @@ void MatchSubject::plan_all(const std::vector<TunedSettings>& settings) {
     Known one;
     one.settings = fresh[i];
     one.plan = plans[i];
-    one.model_time = model_time(plans[i]) / threads_of(fresh[i]);
+    one.model_time = scheduler::total_expected_time(plans[i]) / threads_of(fresh[i]);
     known_.push_back(std::move(one));
   }
 }

@@ -275,6 +275,42 @@ TEST(StripPlan, IterationsCostTheSameHoweverManyThereAre) {
   }
 }
 
+TEST(StripPlan, StripsFillLevelThreeOnlyWhereItIsNear) {
+  Machine machine;
+  machine.cores = 2;
+  machine.l2_bytes = std::size_t{2} << 20U;
+  PlanRequest request;
+  const GeometryChain chain = iterations({1282, 1110}, 10, 1024);
+  const auto most_scratch = [&](std::size_t l3_megabytes) {
+    machine.l3_bytes = l3_megabytes << 20U;
+    const ChainPlan plan = plan_chain(chain.stages(), machine, request);
+    expect_sound(plan, chain.stages());
+    std::size_t most = 0;
+    for (const PassPlan& pass : plan.passes) {
+      most = std::max(most, pass.scratch_bytes);
+    }
+    return most;
+  };
+  for (const int threads : {1, 2}) {
+    request.threads = threads;
+    EXPECT_GT(most_scratch(64), machine.l2_bytes) << threads;
+    // Shared with cores that are out of sight.
+    EXPECT_LT(most_scratch(480), machine.l2_bytes) << threads;
+    EXPECT_LT(most_scratch(0), machine.l2_bytes) << threads;
+  }
+}
+
+TEST(StripPlan, StoringStatesCostsTime) {
+  const GeometryChain chain({400, 300}, 12, 1);
+  PlanRequest request;
+  request.pass_ends = std::vector<int>{};
+  const ChainPlan whole = plan_chain(chain.stages(), Machine{}, request);
+  EXPECT_EQ(total_expected_time(whole), expected_time(whole));
+  request.pass_ends = std::vector<int>{4, 8};
+  const ChainPlan cut = plan_chain(chain.stages(), Machine{}, request);
+  EXPECT_GT(total_expected_time(cut), expected_time(cut) + 2);
+}
+
 TEST(StripPlan, ShortPassesRunVeryLongChainsToo) {
   for (const Extent extent : {Extent{1, 1}, Extent{20, 15}, Extent{200, 100}}) {
     const GeometryChain chain = iterations(extent, 1000, 64);

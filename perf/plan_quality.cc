@@ -1,0 +1,337 @@
+// How good the cost model's plans are: for several sizes and methods, the default plan against the
+// best of a sweep over strips, bands and iterations per pass that does not ask the cost model which
+// are worth a try; what was best is timed once more in turn with the default. --bad-starts also
+// lets the tuner begin at bad plans and says how much of the best it recovers. --json FILE writes
+// the figures.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/simd.h"
+#include "engine/tuning/match_subject.h"
+#include "engine/tuning/tuner.h"
+#include "perf/speed_methods.h"
+#include "perf/stopwatch.h"
+
+namespace vantage::perf {
+namespace {
+
+struct Size {
+  int width = 0;
+  int height = 0;
+  int disparities = 0;
+};
+
+constexpr std::array<Size, 5> kSizes = {
+    {{450, 375, 64}, {640, 480, 64}, {1282, 1110, 256}, {1920, 1080, 128}, {1920, 1080, 256}}};
+
+struct Settings {
+  std::vector<Size> sizes{kSizes.begin(), kSizes.end()};
+  std::string only;    ///< part of the names of the methods wanted; empty: all
+  int rounds = 7;      ///< of the comparison at the end
+  double seconds = 8;  ///< about, of one sweep: longer frames are measured on lower images
+  bool bad_starts = false;
+  double tune_seconds = 10;  ///< budget of one search from a bad start
+  std::optional<int> threads;
+  std::optional<std::string> json;
+};
+
+// Widths and heights of equal parts: numbers of parts, each about so many times the last.
+constexpr double kPartsStep = 1.4;
+constexpr int kLeastStripColumns = 16;
+constexpr std::array kBands = {1, 2, 3, 4, 6, 8, 12, 16};
+constexpr std::array kIterationsPerPass = {1, 2, 3, 5, 10};
+// So many of the sweep's best, at full height, meet all heights of bands and then the default.
+constexpr std::size_t kBestStrips = 2;
+constexpr std::size_t kFinalists = 3;
+// Lower images in the sweep are at least so high.
+constexpr int kLeastRows = 128;
+
+int divide_up(int total, int part) { return (total + part - 1) / part; }
+
+double now_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Settings and how long a frame took with them.
+struct Measured {
+  TunedSettings settings;
+  double seconds = 0;
+};
+
+void sort_by_time(std::vector<Measured>& all) { std::ranges::sort(all, {}, &Measured::seconds); }
+
+/// Frame times of several settings, timed in turn.
+using Rounds = std::map<std::string, std::vector<double>>;
+
+/// A size and a method, at full height and lower.
+class Case {
+ public:
+  Case(const SpeedMethod& method, const Size& size, const Settings& settings)
+      : method_(method), size_(size), settings_(settings) {
+    ExecutionOptions execution;
+    execution.threads = settings.threads;
+    Execution threads(execution);
+    pair_ = make_tuning_pair(size.width, size.height, method.options.disparities, true, threads);
+    subject_ = std::make_unique<MatchSubject>(
+        MatchSubjectOptions{.match = method.options, .execution = execution}, pair_);
+    const double frame_seconds = measure(*subject_, {});
+    const int rows = std::max(kLeastRows, static_cast<int>(size.height * settings.seconds /
+                                                           (frame_seconds * kSweepFrames)));
+    sweep_rows_ = std::min(size.height, rows);
+    lower_pair_ = top_rows(pair_, sweep_rows_);
+    lower_ = std::make_unique<MatchSubject>(
+        MatchSubjectOptions{.match = method.options, .execution = execution}, lower_pair_);
+  }
+
+  nlohmann::json run() {
+    std::vector<Measured> finalists = sweep();
+    std::vector<TunedSettings> contenders = {TunedSettings{}};
+    for (std::size_t i = 0; i < std::min(kFinalists, finalists.size()); ++i) {
+      contenders.push_back(finalists[i].settings);
+    }
+    std::vector<std::pair<std::string, TunedSettings>> recovered;
+    if (settings_.bad_starts) {
+      for (const auto& [name, start] : bad_starts()) {
+        recovered.emplace_back(name, tune_from(start));
+        contenders.push_back(start);
+        contenders.push_back(recovered.back().second);
+      }
+    }
+    const Rounds rounds = race(contenders);
+    return report(rounds, finalists, recovered);
+  }
+
+ private:
+  // A sweep measures about so many plans, and each twice.
+  static constexpr double kSweepFrames = 160;
+
+  static double measure(MatchSubject& subject, const TunedSettings& settings) {
+    return subject.measure(settings);
+  }
+
+  [[nodiscard]] bool is_iterative() const {
+    return method_.options.resolved().aggregation >= Aggregation::kDiffusion;
+  }
+
+  /// The fastest at full height of all strips × iterations per pass × bands, best first.
+  std::vector<Measured> sweep() {
+    std::vector<std::optional<int>> iterations = {std::nullopt};
+    if (is_iterative()) {
+      iterations.assign(kIterationsPerPass.begin(), kIterationsPerPass.end());
+    }
+    std::vector<Measured> strips;
+    for (double parts = 1; size_.width / parts >= kLeastStripColumns;
+         parts = std::max(parts + 1, parts * kPartsStep)) {
+      const int strip_px = divide_up(size_.width, static_cast<int>(parts));
+      for (const std::optional<int>& of_pass : iterations) {
+        const TunedSettings settings{.strip_width_px = strip_px, .iterations_per_pass = of_pass};
+        strips.push_back({settings, measure(*lower_, settings)});
+      }
+    }
+    sort_by_time(strips);
+    std::vector<Measured> all;
+    for (std::size_t i = 0; i < std::min(kBestStrips, strips.size()); ++i) {
+      TunedSettings settings = strips[i].settings;
+      all.push_back({settings, measure(*subject_, settings)});
+      for (const int bands : kBands) {
+        settings.band_height_px = divide_up(size_.height, bands);
+        all.push_back({settings, measure(*subject_, settings)});
+      }
+    }
+    sort_by_time(all);
+    return all;
+  }
+
+  [[nodiscard]] std::vector<std::pair<std::string, TunedSettings>> bad_starts() const {
+    std::vector<std::pair<std::string, TunedSettings>> starts = {
+        {"strips of 8", {.strip_width_px = 8}},
+        {"bands of 8", {.band_height_px = 8}},
+        {"whole width", {.strip_width_px = size_.width, .band_height_px = size_.height}},
+        {"strips of 8, bands of 8", {.strip_width_px = 8, .band_height_px = 8}},
+        {"one thread", {.threads = 1}}};
+    if (is_iterative()) {
+      starts.push_back({"pass by pass", {.iterations_per_pass = 1}});
+      starts.push_back(
+          {"pass by pass, strips of 8", {.strip_width_px = 8, .iterations_per_pass = 1}});
+    }
+    return starts;
+  }
+
+  TunedSettings tune_from(const TunedSettings& start) {
+    const TuningClock clock = now_seconds;
+    Tuner tuner(*subject_, *subject_, clock,
+                {.budget_seconds = settings_.tune_seconds, .start = start});
+    return tuner.tune().settings;
+  }
+
+  Rounds race(const std::vector<TunedSettings>& contenders) {
+    Rounds rounds;
+    for (int round = 0; round <= settings_.rounds; ++round) {
+      std::map<std::string, double> seconds;
+      for (const TunedSettings& contender : contenders) {
+        const std::string name = to_string(contender);
+        if (!seconds.contains(name)) {
+          seconds[name] = measure(*subject_, contender);
+        }
+      }
+      for (const auto& [name, time] : seconds) {
+        if (round > 0) {  // the first one warms up
+          rounds[name].push_back(time);
+        }
+      }
+    }
+    return rounds;
+  }
+
+  [[nodiscard]] nlohmann::json report(
+      const Rounds& rounds, const std::vector<Measured>& finalists,
+      const std::vector<std::pair<std::string, TunedSettings>>& recovered) {
+    const auto of_settings = [&](const TunedSettings& settings) -> const std::vector<double>& {
+      return rounds.at(to_string(settings));
+    };
+    TunedSettings best;
+    for (std::size_t i = 0; i < std::min(kFinalists, finalists.size()); ++i) {
+      const TunedSettings& one = finalists[i].settings;
+      if (median(of_settings(one)) < median(of_settings(best))) {
+        best = one;
+      }
+    }
+    const auto over_best = [&](const TunedSettings& settings) {
+      std::vector<double> values;
+      for (std::size_t round = 0; round < of_settings(best).size(); ++round) {
+        values.push_back(of_settings(settings)[round] / of_settings(best)[round]);
+      }
+      return values;
+    };
+    const auto text = [](const std::vector<double>& values) {
+      return fmt::format("{:.3f} ({:.2f}-{:.2f})", median(values), least(values), most(values));
+    };
+    const auto figures = [](const std::vector<double>& values) {
+      return nlohmann::json{
+          {"median", median(values)}, {"least", least(values)}, {"most", most(values)}};
+    };
+    const std::vector<double> of_default = over_best({});
+    const std::string default_plan = plan_text();
+    fmt::print("{:<24} {:>9.2f} {:>19}  {:<24} {}\n", method_.name, 1e3 * median(of_settings({})),
+               text(of_default), default_plan, to_string(best));
+    nlohmann::json result = {{"method", method_.name},
+                             {"width", size_.width},
+                             {"height", size_.height},
+                             {"disparities", size_.disparities},
+                             {"sweep_rows", sweep_rows_},
+                             {"default_seconds", figures(of_settings({}))},
+                             {"default_plan", default_plan},
+                             {"best", to_string(best)},
+                             {"default_over_best", figures(of_default)}};
+    if (settings_.bad_starts) {
+      const auto starts = bad_starts();
+      for (std::size_t i = 0; i < recovered.size(); ++i) {
+        const auto& [name, found] = recovered[i];
+        fmt::print("  from {:<26} {:>19} to {:>19}  {}\n", name, text(over_best(starts[i].second)),
+                   text(over_best(found)), to_string(found));
+        result["bad_starts"].push_back({{"start", name},
+                                        {"start_over_best", figures(over_best(starts[i].second))},
+                                        {"found", to_string(found)},
+                                        {"found_over_best", figures(over_best(found))}});
+      }
+    }
+    std::fflush(stdout);
+    return result;
+  }
+
+  /// The default plan in words.
+  [[nodiscard]] std::string plan_text() const {
+    Execution execution({.threads = settings_.threads});
+    const StereoMatcher matcher(method_.options, execution);
+    const scheduler::ChainPlan plan = matcher.plan(pair_.left, pair_.right);
+    const scheduler::PassPlan& pass = plan.passes.front();
+    return fmt::format("{}x{}, {} passes{}", pass.strip_columns, pass.band_rows, plan.passes.size(),
+                       plan.steps > 1 ? " in steps" : "");
+  }
+
+  const SpeedMethod& method_;
+  Size size_;
+  const Settings& settings_;
+  int sweep_rows_ = 0;
+  TuningPair pair_;
+  TuningPair lower_pair_;
+  std::unique_ptr<MatchSubject> subject_;
+  std::unique_ptr<MatchSubject> lower_;
+};
+
+int usage() {
+  fmt::print(stderr,
+             "plan_quality [--size WIDTHxHEIGHTxDISPARITIES] [--only NAME] [--rounds N] "
+             "[--seconds S] [--threads N] [--bad-starts] [--tune-seconds S] [--json FILE]\n");
+  return 2;
+}
+
+int run_benchmark(int argc, char** argv) {
+  Settings settings;
+  for (int i = 1; i < argc; ++i) {
+    const std::string option = argv[i];
+    if (option == "--bad-starts") {
+      settings.bad_starts = true;
+      continue;
+    }
+    if (++i == argc) {
+      return usage();
+    }
+    const char* value = argv[i];
+    if (option == "--size") {
+      Size size;
+      if (std::sscanf(value, "%dx%dx%d", &size.width, &size.height, &size.disparities) != 3) {
+        return usage();
+      }
+      settings.sizes = {size};
+    } else if (option == "--only") {
+      settings.only = value;
+    } else if (option == "--rounds") {
+      settings.rounds = std::max(1, std::atoi(value));
+    } else if (option == "--seconds") {
+      settings.seconds = std::max(0.1, std::atof(value));
+    } else if (option == "--threads") {
+      settings.threads = std::max(1, std::atoi(value));
+    } else if (option == "--tune-seconds") {
+      settings.tune_seconds = std::max(1.0, std::atof(value));
+    } else if (option == "--json") {
+      settings.json = value;
+    } else {
+      return usage();
+    }
+  }
+  fmt::print("instruction set {}, {} threads\n", instruction_set_in_use(),
+             settings.threads.value_or(scheduler::detect_machine().hardware_threads));
+  nlohmann::json results = nlohmann::json::array();
+  for (const Size& size : settings.sizes) {
+    fmt::print("\n{}x{}, {} disparities\n{:<24} {:>9} {:>19}  {:<24} {}\n", size.width, size.height,
+               size.disparities, "", "default", "default / best", "default plan", "best found");
+    for (const SpeedMethod& method : speed_methods(size.disparities, settings.only)) {
+      results.push_back(Case(method, size, settings).run());
+    }
+  }
+  if (settings.json) {
+    std::ofstream(*settings.json) << results.dump(2) << '\n';
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace vantage::perf
+
+int main(int argc, char** argv) { return vantage::perf::run_benchmark(argc, argv); }
