@@ -46,6 +46,11 @@ TEST(CompareProfiles, SeesNoDifferenceWhereRangesOverlap) {
   EXPECT_EQ(figure(comparison, "wall").verdict, Verdict::kNoDifference);
   EXPECT_EQ(verdict_text(figure(comparison, "wall")), "no difference seen");
   EXPECT_NEAR(figure(comparison, "wall").ratio(), 1.15, 1e-12);
+  // Nor where a median lies outside of the other range.
+  Profile faster = made_up();
+  faster.thread_counts[0].wall_s = {1.5, 1.0, 1.95};
+  EXPECT_EQ(figure(compare_profiles(made_up(), faster), "wall").verdict, Verdict::kNoDifference);
+  EXPECT_EQ(figure(compare_profiles(faster, made_up()), "wall").verdict, Verdict::kNoDifference);
 }
 
 TEST(CompareProfiles, TellsFasterFromSlower) {
