@@ -161,6 +161,7 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   FramePair first;
   report.timed_file_access("open", [&] { read_first_pair(*session.pairs, first); });
   session.shape = shape_of(first.left);
+  session.shape.is_video = !session.pairs->sound().file.empty();
   session.shape.frames_kept = session.pairs->frames_kept();
   session.shape.pair_count = session.pairs->pair_count();
   session.selection = {.frame_count = session.pairs->pair_count(),

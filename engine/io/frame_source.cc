@@ -14,6 +14,8 @@ namespace vantage {
 void FetchedFrame::decode() {
   if (!file.empty()) {
     photograph = read_photograph(file, std::move(photograph));
+  } else if (!picture.is_empty()) {
+    picture.convert(photograph);
   }
 }
 

@@ -8,19 +8,21 @@
 
 #include "engine/image/photograph.h"
 #include "engine/io/frame_rate.h"
+#include "engine/io/video_picture.h"
 
 namespace vantage {
 
 /// A frame on its way from a source: fetched in order by one thread, decoded by any.
 struct FetchedFrame {
-  std::filesystem::path file;  ///< the image file still to be read; empty: `photograph` is there
+  std::filesystem::path file;  ///< the image file still to be read; empty: none
+  VideoPicture picture;        ///< that the photograph is still to be made of; empty: none
   Photograph photograph;       ///< reused from frame to frame
   int frames_missing = 0;      ///< frames of a video that should lie between it and the one before
   /// What is odd about the frame though it can be used ("2 frames are missing before it").
   std::vector<std::string> remarks;
 
-  /// Reads `file`, if there is one, into `photograph`. Thread rule: concurrently for different
-  /// frames. Throws Error naming the file.
+  /// Makes `photograph` of `file` or `picture`, if there is one. Thread rule: concurrently for
+  /// different frames. Throws Error naming the file or frame.
   void decode();
 };
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <string_view>
 #include <type_traits>
 
@@ -120,8 +119,8 @@ std::array<double, 2> luma_weights(AVColorSpace matrix, int rows) {
 }
 
 /// For 16-bit luma and chroma that had `bits` bits, and RGB in 0..white.
-ColourFactors make_colour_factors(const std::array<double, 2>& weights, bool full_range, int bits,
-                                  double white) {
+kernels::ColourFactors make_colour_factors(const std::array<double, 2>& weights, bool full_range,
+                                           int bits, double white) {
   const auto [red, blue] = weights;
   const double green = 1 - red - blue;
   const double full = std::ldexp(1.0, 16) - std::ldexp(1.0, 16 - bits);
@@ -134,31 +133,13 @@ ColourFactors make_colour_factors(const std::array<double, 2>& weights, bool ful
           .blue_of_blue = static_cast<float>(chroma * 2 * (1 - blue))};
 }
 
-/// 16-bit luma and chroma → RGB, one row.
-template <typename T>
-void convert_row(const AVFrame& yuv, int y, const ColourFactors& factors, T* rgb) {
+/// Row y of three planes of 16 bits.
+kernels::LumaChromaRow row_of(const AVFrame& yuv, int y) {
   const auto row = [&](int plane) {
     return reinterpret_cast<const std::uint16_t*>(yuv.data[plane] +
                                                   std::ptrdiff_t{y} * yuv.linesize[plane]);
   };
-  const std::uint16_t* luma = row(0);
-  const std::uint16_t* chroma_blue = row(1);
-  const std::uint16_t* chroma_red = row(2);
-  const ColourFactors f = factors;
-  static constexpr float kWhite = std::numeric_limits<T>::max();
-  constexpr float kNeutral = 128 * 256;
-  const auto store = [](float level) {
-    return static_cast<T>(static_cast<int>(std::min(std::max(level, 0.0F), kWhite) + 0.5F));
-  };
-  const int width = yuv.width;
-  for (int x = 0; x < width; ++x) {
-    const float grey = (static_cast<float>(luma[x]) - f.black) * f.grey;
-    const float blue = static_cast<float>(chroma_blue[x]) - kNeutral;
-    const float red = static_cast<float>(chroma_red[x]) - kNeutral;
-    rgb[3 * x] = store(grey + f.red_of_red * red);
-    rgb[3 * x + 1] = store(grey - f.green_of_red * red - f.green_of_blue * blue);
-    rgb[3 * x + 2] = store(grey + f.blue_of_blue * blue);
-  }
+  return {row(0), row(1), row(2), yuv.width};
 }
 
 }  // namespace
@@ -234,7 +215,7 @@ void FrameToPhotograph::fill(const AVFrame& frame, Image<T>& image) {
     throw Error("its pixel format cannot be converted");
   }
   for (int y = 0; yuv_ != nullptr && y < frame.height; ++y) {
-    convert_row(*yuv_, y, factors_, image.row(y));
+    kernels::rgb_row(row_of(*yuv_, y), factors_, image.row(y));
   }
 }
 

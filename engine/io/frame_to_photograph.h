@@ -5,18 +5,9 @@
 
 #include "engine/image/photograph.h"
 #include "engine/io/libav.h"
+#include "kernels/rgb_row/rgb_row.h"
 
 namespace vantage {
-
-/// RGB from 16-bit luma and chroma.
-struct ColourFactors {
-  float black = 0;  ///< luma of it
-  float grey = 1;   ///< per luma
-  float red_of_red = 0;
-  float green_of_red = 0;
-  float green_of_blue = 0;
-  float blue_of_blue = 0;
-};
 
 /// Makes photographs of decoded frames: RGB of colours, one channel of grey; 8-bit, or 16-bit where
 /// the frame has more bits. Chroma is interpolated bicubically from where it was sampled. Matrix
@@ -50,7 +41,7 @@ class FrameToPhotograph {
   std::vector<std::uint16_t> levels_;  ///< what each grey sample becomes; empty: not grey
   LibavScaler scaler_;
   LibavFrame yuv_;  ///< 16-bit luma and chroma of every pixel; empty: the scaler makes the result
-  ColourFactors factors_;
+  kernels::ColourFactors factors_;
 };
 
 }  // namespace vantage

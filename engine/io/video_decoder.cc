@@ -8,6 +8,7 @@
 #include "engine/error.h"
 #include "engine/io/file_bytes.h"
 #include "engine/io/photograph_io.h"
+#include "scheduler/trace.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -118,6 +119,10 @@ bool VideoDecoder::begin_at(const PossibleStart& start) {
 }
 
 VideoDecoder::Step VideoDecoder::next() {
+  // With several frames under way at once this thread hands out packets and waits for frames.
+  const scheduler::Span span("decode video", codec_->active_thread_type == FF_THREAD_FRAME
+                                                 ? scheduler::SpanKind::kWait
+                                                 : scheduler::SpanKind::kWork);
   for (;;) {
     const int result = avcodec_receive_frame(codec_.get(), frame_.get());
     if (result >= 0) {

@@ -19,13 +19,14 @@ VideoFrames::VideoFrames(std::string name)
 
 bool VideoFrames::fetch(FetchedFrame& frame) {
   frame.file.clear();
+  frame.picture = {};
   frame.frames_missing = 0;
   frame.remarks.clear();
   if (next_index_ < next_good_) {
     throw Error(fmt::format("{}: lies behind damage ({})", describe(next_index_++), damage_));
   }
   try {
-    if (!reader_->read(frame.photograph)) {
+    if (!reader_->read(frame.picture)) {
       return false;
     }
   } catch (const Error& error) {

@@ -9,8 +9,9 @@
 
 namespace vantage {
 
-/// The frames of a video file. They are decoded by fetch(), each from those before it. Damage loses
-/// the frames up to the next one that decoding is known to be able to begin with.
+/// The frames of a video file. They are decoded by fetch(), each from those before it, and become
+/// photographs in FetchedFrame::decode(). Damage loses the frames up to the next one that decoding
+/// is known to be able to begin with.
 class VideoFrames : public FrameSource {
  public:
   /// Throws Error as VideoReader does.

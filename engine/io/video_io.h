@@ -6,6 +6,7 @@
 
 #include "engine/image/photograph.h"
 #include "engine/io/frame_rate.h"
+#include "engine/io/video_picture.h"
 
 namespace vantage {
 
@@ -14,7 +15,8 @@ namespace vantage {
 /// have one channel, as far as their decoder tells. Colours are converted by the matrix, range and
 /// place of chroma the stream is flagged with, and rounded; unspecified, they are BT.601 below 720
 /// rows, BT.709 from there, with limited range.
-/// Up to four threads decode; they change nothing, not even which frame is found damaged.
+/// Half as many threads as there are processors decode, up to four; they change nothing, not even
+/// which frame is found damaged.
 /// Thread rule: one thread at a time; different readers are independent.
 class VideoReader {
  public:
@@ -33,11 +35,14 @@ class VideoReader {
   /// are counted, the frame that is cut counts.
   [[nodiscard]] int frame_count() const;
 
-  /// Decodes the next frame into `frame`, whose memory is reused; false after the last one. Throws
-  /// Error naming the frame when it is damaged or cut off, or the file ends before the frames it
-  /// promised: the video ends there, as later frames are made from the damaged one.
+  /// Decodes the next frame, whose picture any thread may make a photograph of; false after the
+  /// last one. Throws Error naming the frame when it is damaged or cut off, or the file ends before
+  /// the frames it promised: the video ends there, as later frames are made from the damaged one.
+  bool read(VideoPicture& picture);
+  /// Likewise, and makes the photograph, whose memory is reused. A frame that cannot be converted
+  /// is an Error too, after which the next one can be read.
   bool read(Photograph& frame);
-  /// read() without the picture.
+  /// read() without the result.
   bool skip();
 
   /// Goes to the last frame of first..last that can be decoded without those before it, which is

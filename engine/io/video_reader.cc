@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/io/frame_to_photograph.h"
 #include "engine/io/video_decoder.h"
 #include "engine/io/video_io.h"
 #include "engine/io/video_timing.h"
@@ -25,8 +24,10 @@ namespace {
 /// More make a small picture no faster, and every one keeps a picture.
 constexpr unsigned kMaxDecoderThreads = 4;
 
+/// Half of the processors: a run keeps all of them busy with other frames meanwhile.
 int decoder_threads() {
-  return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, kMaxDecoderThreads));
+  return static_cast<int>(
+      std::clamp(std::thread::hardware_concurrency() / 2, 1U, kMaxDecoderThreads));
 }
 
 }  // namespace
@@ -40,7 +41,7 @@ struct VideoReader::State {
   int width = 0;
   int height = 0;
   VideoTiming timing;
-  FrameToPhotograph conversion;
+  std::shared_ptr<PictureConverters> converters = std::make_shared<PictureConverters>();
   int frames_read = 0;
   bool ended = false;
   std::optional<double> frame_seconds;  ///< when the last frame is shown
@@ -191,16 +192,22 @@ std::optional<FrameRate> VideoReader::frame_rate() const { return state_->timing
 int VideoReader::frame_count() const { return state_->timing.frames; }
 int VideoReader::frames_missing() const { return state_->frames_missing; }
 
-bool VideoReader::read(Photograph& frame) {
+bool VideoReader::read(VideoPicture& picture) {
   State& state = *state_;
   if (!state.advance()) {
     return false;
   }
-  try {
-    state.conversion.convert(state.decoder->frame(), frame);
-  } catch (const Error& error) {
-    state.fail(fmt::format("frame {}: {}", state.frames_read - 1, error.what()));
+  picture = VideoPicture(state.decoder->frame(), state.converters,
+                         fmt::format("{}: frame {}", state.path.string(), state.frames_read - 1));
+  return true;
+}
+
+bool VideoReader::read(Photograph& frame) {
+  VideoPicture picture;
+  if (!read(picture)) {
+    return false;
   }
+  picture.convert(frame);
   return true;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <variant>
 
 #include "engine/error.h"
@@ -37,6 +38,9 @@ std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) 
   const std::size_t photograph = photograph_bytes(shape.source, shape);
   // Fetched and decoded; a packed frame holds both images once more.
   std::size_t bytes = 4 * photograph;
+  if (shape.is_video) {
+    bytes += 2 * photograph;  // as the decoder has left them, at most
+  }
   if (shape.is_rectified_here) {
     bytes += 2 * photograph;
     if (views_show_photographs(options)) {
@@ -62,6 +66,11 @@ std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) 
   // A map on its way into a file: with unknown pixels replaced, and encoded.
   bytes += 2 * pixels * sizeof(float) + photograph;
   return bytes;
+}
+
+/// What converting the pictures of one frame takes: luma and chroma of every pixel in 16 bits.
+std::size_t conversion_bytes(const PairShape& shape) {
+  return shape.is_video ? 2 * 3 * sizeof(std::uint16_t) * pixels_of(shape.source) : 0;
 }
 
 /// Where rectified pixels lie in the photographs, and back.
@@ -204,12 +213,13 @@ MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& requ
     threads = probe.executor().thread_count();
   }
   fixed += static_cast<std::size_t>(threads) * kThreadBytes;
-  const std::size_t of_matched = match_bytes(options, shape) + view_bytes(options, shape);
+  const std::size_t of_worked_on =
+      match_bytes(options, shape) + view_bytes(options, shape) + conversion_bytes(shape);
   const int wanted = request.in_flight.value_or(default_frames_in_flight(threads));
   for (plan.in_flight = std::min(wanted, kMostInFlight); plan.in_flight >= 1; --plan.in_flight) {
     const auto matched = static_cast<std::size_t>(std::min(plan.in_flight, threads));
     const std::size_t frames =
-        static_cast<std::size_t>(plan.in_flight) * plan.frame_bytes + matched * of_matched;
+        static_cast<std::size_t>(plan.in_flight) * plan.frame_bytes + matched * of_worked_on;
     plan.chain_bytes = scheduler::kDefaultMemoryBytes;
     if (request.memory_bytes) {
       const std::size_t limit = *request.memory_bytes;

@@ -26,6 +26,7 @@ struct PairShape {
   ImageExtent source;  ///< before rectification, which keeps the size
   int channels = 1;
   int bytes_per_value = 1;
+  bool is_video = false;                      ///< they come from videos
   bool is_rectified_here = false;             ///< a calibration is applied
   int frames_kept = 0;                        ///< PairSource::frames_kept()
   int pair_count = 1;                         ///< of the input

@@ -2,36 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cassert>
 #include <cstdlib>
 #include <utility>
-#include <variant>
 
 #include "engine/error.h"
 #include "engine/sequence/frame_numbering.h"
 
 namespace vantage {
-namespace {
-
-/// Copies into the memory that `target` has.
-void copy_photograph(const Photograph& source, Photograph& target) {
-  std::visit(
-      [&]<typename T>(const Image<T>& image) {
-        if (!std::holds_alternative<Image<T>>(target.pixels)) {
-          target.pixels = Image<T>();
-        }
-        auto& copy = std::get<Image<T>>(target.pixels);
-        copy.resize(image.width(), image.height(), image.channels());
-        for (int y = 0; y < image.height(); ++y) {
-          std::copy_n(image.row(y), image.width() * image.channels(), copy.row(y));
-        }
-      },
-      source.pixels);
-}
-
-}  // namespace
-
 MovingCameraPairs::MovingCameraPairs(std::unique_ptr<FrameSource> source, int step)
     : source_(std::move(source)), distance_(std::abs(step)), later_is_left_(step < 0) {
   if (pair_count() < 1) {
@@ -61,15 +39,6 @@ bool MovingCameraImages::fetch(FramePair& pair) {
   source().skip_to(pair.index + distance());
   source().fetch(later(pair));
   return true;
-}
-
-void MovingCameraImages::decode(FramePair& pair) const {
-  pair.fetched[0].decode();
-  std::swap(pair.left, pair.fetched[0].photograph);
-  if (pair.wants_right) {
-    pair.fetched[1].decode();
-    std::swap(pair.right, pair.fetched[1].photograph);
-  }
 }
 
 MovingCameraVideo::MovingCameraVideo(std::unique_ptr<FrameSource> source, int step)
@@ -116,14 +85,9 @@ bool MovingCameraVideo::fetch(FramePair& pair) {
                                        missing == 1 ? " is" : "s are",
                                        source().describe(pair.index), source().describe(last)));
   }
-  std::swap(earlier(pair).photograph, first_frame.fetched.photograph);
-  copy_photograph(last_frame.fetched.photograph, later(pair).photograph);
+  earlier(pair).picture = std::move(first_frame.fetched.picture);
+  later(pair).picture = last_frame.fetched.picture.share();
   return true;
-}
-
-void MovingCameraVideo::decode(FramePair& pair) const {
-  std::swap(pair.left, pair.fetched[0].photograph);
-  std::swap(pair.right, pair.fetched[1].photograph);
 }
 
 void MovingCameraVideo::skip_to(int index) {

@@ -48,20 +48,19 @@ class MovingCameraImages : public MovingCameraPairs {
   using MovingCameraPairs::MovingCameraPairs;
 
   bool fetch(FramePair& pair) override;
-  void decode(FramePair& pair) const override;
   void skip_to(int index) override { next_index_ = index; }
 
  private:
   int next_index_ = 0;
 };
 
-/// A video: every frame is decoded once and kept until it has been the earlier one of a pair.
+/// A video: every frame is decoded once and its picture kept until it has been the earlier one of a
+/// pair. Each of the two pairs makes a photograph of its own of it.
 class MovingCameraVideo : public MovingCameraPairs {
  public:
   MovingCameraVideo(std::unique_ptr<FrameSource> source, int step);
 
   bool fetch(FramePair& pair) override;
-  void decode(FramePair& pair) const override;
   void skip_to(int index) override;
   [[nodiscard]] int frames_kept() const override { return static_cast<int>(kept_.size()); }
 

@@ -69,6 +69,15 @@ void PairSourceOptions::validate() const {
   }
 }
 
+void PairSource::decode(FramePair& pair) const {
+  pair.fetched[0].decode();
+  pair.left.pixels.swap(pair.fetched[0].photograph.pixels);
+  if (pair.wants_right) {
+    pair.fetched[1].decode();
+    pair.right.pixels.swap(pair.fetched[1].photograph.pixels);
+  }
+}
+
 std::unique_ptr<PairSource> open_pair_source(const PairSourceOptions& options) {
   options.validate();
   if (!options.stereo.empty()) {

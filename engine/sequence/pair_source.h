@@ -62,15 +62,16 @@ class PairSource {
   /// frames is bad; the call after that goes on with the next pair. Image files are found to be bad
   /// by decode().
   virtual bool fetch(FramePair& pair) = 0;
-  /// Makes `left` and `right` of what was fetched: reads image files, takes packed frames apart.
-  /// Thread rule: concurrently for different pairs. Throws Error.
-  virtual void decode(FramePair& pair) const = 0;
+  /// Makes `left` and `right` of what was fetched: reads image files, converts the pictures of
+  /// videos, takes packed frames apart. Thread rule: concurrently for different pairs. Throws
+  /// Error.
+  virtual void decode(FramePair& pair) const;
 
   /// Has the next fetch() give pair `index` (0 ≤ index ≤ pair_count()).
   virtual void skip_to(int index) = 0;
   /// Pairs there are in all: frames that have a partner.
   [[nodiscard]] virtual int pair_count() const = 0;
-  /// Decoded frames that the source itself keeps in memory.
+  /// Decoded frames, no larger than photographs, that the source itself keeps in memory.
   [[nodiscard]] virtual int frames_kept() const { return 0; }
   /// "left/000012.png, right/000012.png" or "film.mp4 frame 12".
   [[nodiscard]] virtual std::string describe(int index) const = 0;

@@ -102,15 +102,6 @@ bool TwoCameraPairs::fetch(FramePair& pair) {
   return true;
 }
 
-void TwoCameraPairs::decode(FramePair& pair) const {
-  pair.fetched[0].decode();
-  std::swap(pair.left, pair.fetched[0].photograph);
-  if (pair.wants_right) {
-    pair.fetched[1].decode();
-    std::swap(pair.right, pair.fetched[1].photograph);
-  }
-}
-
 void TwoCameraPairs::skip_to(int index) {
   assert(index >= 0 && index <= pair_count_);
   left_->skip_to(first_left_ + index);

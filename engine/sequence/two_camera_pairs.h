@@ -18,7 +18,6 @@ class TwoCameraPairs final : public PairSource {
                  int offset_frames, bool numbers_matter);
 
   bool fetch(FramePair& pair) override;
-  void decode(FramePair& pair) const override;
   void skip_to(int index) override;
   [[nodiscard]] int pair_count() const override { return pair_count_; }
   [[nodiscard]] std::string describe(int index) const override;

@@ -1,13 +1,23 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "engine/io/frame_source.h"
+#include "engine/io/libav_scaler.h"
 #include "engine/io/photograph_io.h"
 #include "engine/io/video_io.h"
 #include "tests/engine/io_test_support.h"
+
+extern "C" {
+#include <libavutil/frame.h>
+#include <libavutil/pixfmt.h>
+}
 
 namespace vantage::test {
 
@@ -16,6 +26,16 @@ inline Photograph plain_photograph(int width, int height, int value) {
   Photograph photograph{Image<std::uint8_t>(width, height)};
   std::get<Image<std::uint8_t>>(photograph.pixels).fill(static_cast<std::uint8_t>(value));
   return photograph;
+}
+
+/// The same as a picture of a video.
+inline VideoPicture plain_picture(int width, int height, int value) {
+  const LibavFrame frame = make_picture(width, height, AV_PIX_FMT_GRAY8);
+  for (int y = 0; y < height; ++y) {
+    std::fill_n(frame->data[0] + std::ptrdiff_t{y} * frame->linesize[0], width,
+                static_cast<std::uint8_t>(value));
+  }
+  return {*frame, std::make_shared<PictureConverters>(), "made-up video"};
 }
 
 /// A 2×1 image whose value tells it from the others.

@@ -37,7 +37,7 @@ class MadeUpVideo : public FrameSource {
     if (bad.contains(index)) {
       throw Error(describe(index) + " is bad");
     }
-    frame.photograph = test::plain_photograph(2, 2, index);
+    frame.picture = test::plain_picture(2, 2, index);
     frame.frames_missing = missing.contains(index) ? missing[index] : 0;
     frame.remarks.assign(frame.frames_missing > 0 ? 1 : 0, describe(index) + " comes late");
     return true;

@@ -101,6 +101,9 @@ struct Outcome {
 Outcome fetch_from(FrameSource& source) {
   Outcome outcome;
   outcome.problem = error_of([&] { outcome.is_end = !source.fetch(outcome.frame); });
+  if (outcome.problem.empty() && !outcome.is_end) {
+    outcome.frame.decode();
+  }
   return outcome;
 }
 
