@@ -123,9 +123,6 @@ int command_match(const Arguments& arguments) {
   const bool first_is_left = !job.has_several() || job.is_left();
   const Photograph& left = images[first_is_left ? 0 : 1];
   const Photograph& right = images[first_is_left ? 1 : 0];
-  if (job.check_rectification && !job.match.disparities_y) {
-    warn_unless_rectified(settings, job.common, left, right, report);
-  }
   choose_disparities(settings, job.common, left, right, job.match, execution, report);
   const AppliedTuning tuning = job.has_several()
                                    ? no_tuning("tuning is for pairs, there are more images")
@@ -141,16 +138,20 @@ int command_match(const Arguments& arguments) {
     tuned_execution.emplace(with_tuned(job.common.execution, tuning.settings));
     report.set_execution(*tuned_execution);
   }
-  const StereoMatcher matcher(job.match, tuned_execution ? *tuned_execution : execution);
+  Execution& chosen = tuned_execution ? *tuned_execution : execution;
+  const StereoMatcher matcher(job.match, chosen);
   DisparityMaps maps;
-  const MatchReport match = report.timed_compute([&] {
-    MatchReport result;
-    match_images(job, matcher, images, maps, result);
-    return result;
-  });
+  MatchReport match;
+  const auto compute = [&] {
+    report.timed_compute([&] { match_images(job, matcher, images, maps, match); });
+  };
+  if (job.check_rectification && !job.match.disparities_y) {
+    warn_unless_rectified_beside(compute, settings, job.common, left, right, chosen, report);
+  } else {
+    compute();
+  }
   report.add_match(match);
-  report.set_memory(
-      memory_use(images, maps, matcher, tuned_execution ? *tuned_execution : execution));
+  report.set_memory(memory_use(images, maps, matcher, chosen));
   report.timed_file_access("write", [&] { write_results(job, maps); });
 
   report.write(job.common.report);

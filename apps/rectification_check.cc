@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <optional>
 
 #include "apps/match_settings.h"
 #include "apps/vertical_error_report.h"
@@ -24,6 +25,46 @@ bool expects_negative_disparities(const Settings& settings) {
   return -range.min > range.max;
 }
 
+struct Look {
+  std::optional<VerticalError> error;
+  double seconds = 0;
+};
+
+Look look_at_rows(const Photograph& left, const Photograph& right) {
+  const scheduler::Span span("check");
+  const auto start = std::chrono::steady_clock::now();
+  Look look;
+  look.error = check_rectification(left, right);
+  look.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return look;
+}
+
+void tell(const Look& look, const Settings& settings, const CommonOptions& common,
+          RunReport& report) {
+  report.add_stage("check", look.seconds);
+  if (!look.error) {
+    return;
+  }
+  const VerticalError& error = *look.error;
+  SettingValue values = vertical_error_values(error);
+  const bool is_rectified = error.systematic_px <= kRectificationLimit_px;
+  values["limit_px"] = kRectificationLimit_px;
+  values["is_rectified"] = is_rectified;
+  const bool looks_exchanged = error.looks_exchanged() && !expects_negative_disparities(settings);
+  values["looks_exchanged"] = looks_exchanged;
+  report.add_result("rectification", std::move(values));
+  if (!is_rectified && !common.quiet) {
+    fmt::print(stderr,
+               "{}: warning: the pair is not rectified: rows are off by {:.2f} px (limit {}), {}; "
+               "see 'vantage rectify'\n",
+               settings.command(), error.systematic_px, kRectificationLimit_px,
+               vertical_error_text(error));
+  }
+  if (looks_exchanged && !common.quiet) {
+    fmt::print(stderr, "{}: warning: {}\n", settings.command(), exchanged_text(error));
+  }
+}
+
 }  // namespace
 
 void add_rectification_check_setting(Settings& settings, bool& wanted) {
@@ -39,36 +80,25 @@ void add_rectification_check_setting(Settings& settings, bool& wanted) {
 
 void warn_unless_rectified(const Settings& settings, const CommonOptions& common,
                            const Photograph& left, const Photograph& right, RunReport& report) {
-  if (left.width() != right.width() || left.height() != right.height()) {
-    return;  // whoever uses the pair will say so
+  // Of images that differ in size whoever uses the pair will say so.
+  if (left.width() == right.width() && left.height() == right.height()) {
+    tell(look_at_rows(left, right), settings, common, report);
   }
-  const auto start = std::chrono::steady_clock::now();
-  const auto error = [&] {
-    const scheduler::Span span("check");
-    return check_rectification(left, right);
-  }();
-  report.add_stage("check",
-                   std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  if (!error) {
-    return;
-  }
-  SettingValue values = vertical_error_values(*error);
-  const bool is_rectified = error->systematic_px <= kRectificationLimit_px;
-  values["limit_px"] = kRectificationLimit_px;
-  values["is_rectified"] = is_rectified;
-  const bool looks_exchanged = error->looks_exchanged() && !expects_negative_disparities(settings);
-  values["looks_exchanged"] = looks_exchanged;
-  report.add_result("rectification", std::move(values));
-  if (!is_rectified && !common.quiet) {
-    fmt::print(stderr,
-               "{}: warning: the pair is not rectified: rows are off by {:.2f} px (limit {}), {}; "
-               "see 'vantage rectify'\n",
-               settings.command(), error->systematic_px, kRectificationLimit_px,
-               vertical_error_text(*error));
-  }
-  if (looks_exchanged && !common.quiet) {
-    fmt::print(stderr, "{}: warning: {}\n", settings.command(), exchanged_text(*error));
-  }
+}
+
+void warn_unless_rectified_beside(const std::function<void()>& work, const Settings& settings,
+                                  const CommonOptions& common, const Photograph& left,
+                                  const Photograph& right, Execution& execution,
+                                  RunReport& report) {
+  Look look;
+  execution.executor().parallel_for(2, [&](int task) {
+    if (task == 0) {
+      work();
+    } else {
+      look = look_at_rows(left, right);
+    }
+  });
+  tell(look, settings, common, report);
 }
 
 }  // namespace vantage::apps

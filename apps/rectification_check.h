@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "apps/option_groups.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
@@ -22,5 +24,10 @@ void add_rectification_check_setting(Settings& settings, bool& wanted);
 /// compute time. Says nothing about pairs with too few points in common to tell.
 void warn_unless_rectified(const Settings& settings, const CommonOptions& common,
                            const Photograph& left, const Photograph& right, RunReport& report);
+/// The same while `work` is done with the same pair, as looking keeps but one thread busy. What
+/// there is to say is said when both are done; `work` may throw.
+void warn_unless_rectified_beside(const std::function<void()>& work, const Settings& settings,
+                                  const CommonOptions& common, const Photograph& left,
+                                  const Photograph& right, Execution& execution, RunReport& report);
 
 }  // namespace vantage::apps
