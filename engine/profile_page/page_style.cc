@@ -44,7 +44,7 @@ dd { margin: 0; }
 .facts div { display: flex; gap: 6px; }
 .facts dd { color: var(--ink); }
 .figures {
-  display: grid; grid-template-columns: repeat(auto-fit, minmax(160px, 1fr)); gap: 12px;
+  display: grid; grid-template-columns: repeat(auto-fit, minmax(138px, 1fr)); gap: 12px;
   margin: 22px 0 0;
 }
 .figures div { padding: 10px 14px 12px; background: var(--panel); border-radius: 8px; }
