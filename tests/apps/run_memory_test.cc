@@ -156,8 +156,8 @@ TEST_F(RunMemory, HasOwners) {
       report_of(large_arguments({"--frames", "0-19", "--in-flight", "4", "--method", "membrane",
                                  "--iterations", "4", "--iterations-per-pass", "2"}));
   const auto owners = report["memory"]["owners"].get<std::map<std::string, double>>();
-  for (const char* owner : {"program", "frames in flight", "prepared images", "refinement", "rings",
-                            "stored iterations", "other"}) {
+  for (const char* owner :
+       {"program", "frames in flight", "prepared images", "rings", "stored iterations", "other"}) {
     EXPECT_GT(owners.count(owner), 0U) << owner;
   }
   constexpr double kPixels = kLargeWidth * kLargeHeight;
