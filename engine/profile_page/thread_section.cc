@@ -121,7 +121,7 @@ std::string waiting_causes_markup(const ThreadCountProfile& most) {
 }  // namespace
 
 std::string thread_section(const Profile& profile, const PartColours& colours) {
-  const std::string timeline = section_markup("Timeline", timeline_markup(profile, colours));
+  std::string timeline = section_markup("Timeline", timeline_markup(profile, colours));
   if (profile.thread_counts.empty()) {
     return timeline;
   }
