@@ -18,7 +18,7 @@ namespace {
 constexpr int kMostInFlight = 64;
 constexpr int kDefaultMostInFlight = 34;  // more only help to even out unequal frames
 /// The program, its libraries and what they set up at first use.
-constexpr std::size_t kProcessBytes = std::size_t{77} << 20;
+constexpr std::size_t kProcessBytes = std::size_t{84} << 20;
 /// Of a thread: stack, arena of the allocator.
 constexpr std::size_t kThreadBytes = std::size_t{3} << 20;
 
