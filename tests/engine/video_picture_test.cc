@@ -41,7 +41,7 @@ constexpr int kGroup = 7;
 
 TEST(VideoPicture, ThreadsMakeTheSamePhotographsInAnyOrder) {
   const TemporaryFolder folder;
-  test::put_numbered_video(folder / "a.mp4", kFrames, kRate, 70, 46);
+  test::put_numbered_video(folder / "a.mp4", kFrames, kRate, 638, 478);  // long enough to overlap
   std::vector<FetchedFrame> frames(kFrames);
   {
     const auto source = open_frame_source(folder / "a.mp4");
