@@ -26,13 +26,17 @@ class Arithmetic(unittest.TestCase):
         self.assertEqual(result["ratio"], {"median": 1.5, "least": 0.6, "most": 3})
 
     def test_a_verdict_needs_ranges_that_are_apart(self):
-        self.assertEqual(compare.compared([3, 4], [1, 2])["verdict"], "B is faster")
-        self.assertEqual(compare.compared([1, 2], [3, 4])["verdict"], "A is faster")
-        self.assertEqual(compare.compared([1, 3], [2, 4])["verdict"], "")
-        self.assertEqual(compare.compared([1, 2], [2, 3])["verdict"], "")  # they touch
-        self.assertEqual(compare.compared([2, 3], [1, 2])["verdict"], "")
-        self.assertEqual(compare.compared([1, 9], [2, 3])["verdict"], "")  # one within the other
-        self.assertEqual(compare.compared([1], [2])["verdict"], "")  # one run has no range
+        verdict = lambda first, second: compare.compared(5 * first, 5 * second)["verdict"]
+        self.assertEqual(verdict([3, 4], [1, 2]), "B is faster")
+        self.assertEqual(verdict([1, 2], [3, 4]), "A is faster")
+        self.assertEqual(verdict([1, 3], [2, 4]), "")
+        self.assertEqual(verdict([1, 2], [2, 3]), "")  # they touch
+        self.assertEqual(verdict([2, 3], [1, 2]), "")
+        self.assertEqual(verdict([1, 9], [2, 3]), "")  # one within the other
+
+    def test_a_verdict_needs_rounds(self):
+        self.assertEqual(compare.compared([1] * 4, [2] * 4)["verdict"], "")
+        self.assertEqual(compare.compared([1] * 5, [2] * 5)["verdict"], "A is faster")
 
     def test_times_of_nothing_have_no_ratio(self):
         self.assertIsNone(compare.compared([0, 0], [0, 0])["ratio"])
@@ -103,7 +107,7 @@ class Program(unittest.TestCase):
 
     def test_two_commands_with_figures(self):
         results = Path(self.folder.name) / "results.json"
-        done = program("--rounds", "2", "--json", str(results), self.command(4), self.command(1),
+        done = program("--rounds", "5", "--json", str(results), self.command(4), self.command(1),
                        "--", "{json}")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("B is faster", done.stdout)
