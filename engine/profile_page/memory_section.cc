@@ -29,13 +29,11 @@ std::string memory_section(const Profile& profile) {
   if (profile.memory.empty()) {
     return section_markup(kTitle, sum + note("Whose they were is not known."));
   }
-  if (owned <= peak) {
-    add("not accounted for: program, libraries, what they keep", peak - owned);
-    return section_markup(kTitle, sum + table_markup(table));
-  }
-  return section_markup(kTitle, sum + table_markup(table) +
-                                    note("Owners come to more than the process: their peaks were "
-                                         "not at one moment."));
+  const std::string remark = owned > peak ? note(
+                                                "Owners come to more than the process: their "
+                                                "peaks were not at one moment.")
+                                          : "";
+  return section_markup(kTitle, sum + table_markup(table) + remark);
 }
 
 }  // namespace vantage

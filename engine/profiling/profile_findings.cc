@@ -177,6 +177,9 @@ Finding scaling(const Profile& profile) {
   if (serial < kNoSerialPart) {
     return ProfileFinding{Kind::kScaling, measured + "; no serial part is to be seen."};
   }
+  if (serial >= 1) {
+    return ProfileFinding{Kind::kScaling, measured + "; more threads are not faster."};
+  }
   return ProfileFinding{
       Kind::kScaling,
       fmt::format("{}, which implies a serial part of {}: more threads could make it at most "

@@ -101,10 +101,9 @@ TEST_F(MatchCommand, ReportHasTheKeysOfTheContract) {
   for (const auto& [key, value] : report.items()) {
     keys.push_back(key);
   }
-  EXPECT_THAT(keys,
-              ElementsAre("command", "version", "settings", "plan", "isa", "threads", "seconds",
-                          "cells", "cells_per_second", "peak_memory_bytes", "binding", "memory",
-                          "tuning"));
+  EXPECT_THAT(keys, ElementsAre("command", "version", "settings", "plan", "isa", "threads",
+                                "seconds", "cells", "cells_per_second", "peak_memory_bytes",
+                                "binding", "memory", "tuning"));
   EXPECT_EQ(report["command"], "match");
   EXPECT_EQ(report["settings"]["disparities"], "0:9");
   EXPECT_EQ(report["threads"], 2);

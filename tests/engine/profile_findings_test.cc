@@ -150,6 +150,8 @@ TEST(ProfileFindings, SpeedUpTellsTheSerialPart) {
               HasSubstr("a serial part of 8.0 %: more threads could make it at most 12.5 times"));
   profile.serial_fraction = -0.02;
   EXPECT_THAT(text_of(profile, Kind::kScaling), HasSubstr("no serial part is to be seen"));
+  profile.serial_fraction = 1.07;
+  EXPECT_THAT(text_of(profile, Kind::kScaling), HasSubstr("more threads are not faster"));
 }
 
 TEST(ProfileFindings, ComeInTheirOrder) {

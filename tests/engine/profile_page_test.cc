@@ -87,7 +87,6 @@ TEST(ProfilePage, ShowsAMatch) {
                            "results being encoded or written",
                            "Amdahl",
                            "rows between stages",
-                           "not accounted for",
                            "perf_event says not supported"}) {
     EXPECT_TRUE(has(page, text)) << text;
   }
