@@ -18,11 +18,6 @@ constexpr double kCells = kColumns * kLanes;
 constexpr std::size_t kCellCount = kColumns * kLanes;
 constexpr int kPixels = 512;
 
-// Of one exponential or logarithm of kernels/cells/exp_log-inl.h.
-constexpr double kExponential = 17;
-constexpr double kLogarithm = 24;
-constexpr double kMeasurement = 1 + kExponential + 2;  // of the squared residual
-
 /// Rows of feature planes and the cells they are compared into.
 template <typename T, int kPlanes>
 struct Pairs {
@@ -102,40 +97,45 @@ void likelihood_of_evidence(Cells& data) {
 
 KernelBenchmarks cost_kernels() {
   const auto model = kernels::ContaminatedGaussian::of(5, 0.01);
-  const auto cells = [](std::string name, KernelWork work, auto call) {
-    return on_own_data<Cells>(std::move(name), "cell", kCells, work, call);
+  const auto cells = [](std::string name, const kernels::KernelWork& work, auto call) {
+    return on_own_data<Cells>(std::move(name), "cell", kCells, per_cell(work, kLanes), call);
   };
-  const auto grey = [](std::string name, double operations, auto call) {
-    return on_own_data<Grey>(std::move(name), "cell", kCells, {operations, 8}, call);
+  const auto grey = [](std::string name, const kernels::KernelWork& work, auto call) {
+    return on_own_data<Grey>(std::move(name), "cell", kCells, per_cell(work, kLanes), call);
   };
-  const auto pixels = [](std::string name, KernelWork work, auto call) {
+  const auto pixels = [](std::string name, UnitWork work, auto call) {
     return on_own_data<ImageRows>(std::move(name), "pixel", ImageRows::kWidth, work, call);
   };
   return {
-      grey("squared_row", 2, [](Grey& d) { kernels::squared_row(d.row, d.cells.data()); }),
-      grey("absolute_row", 2, [](Grey& d) { kernels::absolute_row(d.row, 20, d.cells.data()); }),
-      grey("contaminated_energy_row", 2 + kMeasurement + kLogarithm + 1,
+      grey("squared_row", kernels::squared_work(1),
+           [](Grey& d) { kernels::squared_row(d.row, d.cells.data()); }),
+      grey("absolute_row", kernels::absolute_work(1),
+           [](Grey& d) { kernels::absolute_row(d.row, 20, d.cells.data()); }),
+      grey("contaminated_energy_row", kernels::contaminated_energy_work(1),
            [model](Grey& d) { kernels::contaminated_energy_row(d.row, model, d.cells.data()); }),
       grey(
-          "contaminated_likelihood_row", 2 + kMeasurement,
+          "contaminated_likelihood_row", kernels::contaminated_likelihood_work(1),
           [model](Grey& d) { kernels::contaminated_likelihood_row(d.row, model, d.cells.data()); }),
       on_own_data<Sampled>(
-          "sampling_insensitive_row", "cell", kCells, {9, 16},
+          "sampling_insensitive_row", "cell", kCells,
+          per_cell(kernels::sampling_insensitive_work(1), kLanes),
           [](Sampled& d) { kernels::sampling_insensitive_row(d.row, d.cells.data()); }),
       on_own_data<Gradients>(
-          "negated_evidence_row/L2", "cell", kCells, {8, 16},
+          "negated_evidence_row/L2", "cell", kCells,
+          per_cell(kernels::negated_evidence_work(false, 1), kLanes),
           [](Gradients& d) { kernels::negated_evidence_row(d.row, false, d.cells.data()); }),
       on_own_data<Gradients>(
-          "negated_evidence_row/octagon", "cell", kCells, {9, 16},
+          "negated_evidence_row/octagon", "cell", kCells,
+          per_cell(kernels::negated_evidence_work(true, 1), kLanes),
           [](Gradients& d) { kernels::negated_evidence_row(d.row, true, d.cells.data()); }),
-      on_own_data<Codes>("hamming_row", "cell", kCells, {5, 12},
+      on_own_data<Codes>("hamming_row", "cell", kCells, per_cell(kernels::hamming_work(1), kLanes),
                          [](Codes& d) { kernels::hamming_row(d.row, d.cells.data()); }),
-      cells("likelihood_of_costs", {1 + kMeasurement, 8},
+      cells("likelihood_of_costs", kernels::kLikelihoodOfCostsWork,
             [model](Cells& d) { kernels::likelihood_of_costs(d.row, model, d.cells.data()); }),
-      cells("likelihood_of_energies", {1 + kExponential, 8},
+      cells("likelihood_of_energies", kernels::kLikelihoodOfEnergiesWork,
             [](Cells& d) { kernels::likelihood_of_energies(d.row, d.cells.data()); }),
-      cells("likelihood_of_evidence", {1 + 2 + kExponential + 2, 12}, likelihood_of_evidence),
-      cells("multiply_cells", {1, 12},
+      cells("likelihood_of_evidence", kernels::kLikelihoodOfEvidenceWork, likelihood_of_evidence),
+      cells("multiply_cells", kernels::kCombineCellsWork,
             [](Cells& d) {
               kernels::multiply_cells(d.ones.data(), kColumns * kLanes, d.cells.data());
             }),

@@ -21,6 +21,8 @@ constexpr int kColumns = 16;
 constexpr int kLanes = 64;
 constexpr double kCells = kColumns * kLanes;
 constexpr int kCarryingPitch = kLanes + kernels::kCertaintyFloats;
+constexpr float kMu = 0.4F;
+constexpr float kFloor = 0.01F;  // of the prior
 
 class Rows {
  public:
@@ -52,9 +54,9 @@ class Rows {
   BayesRow bayes(const StarRows& rows, int radius, BayesState state) {
     BayesRow row;
     row.star = rows.star();
-    row.prior = {taps_, radius, 0.01F};
+    row.prior = {taps_, radius, kFloor};
     row.state = state;
-    row.mu = 0.4F;
+    row.mu = kMu;
     row.count = kLanes;
     row.output = output_.row(0);
     row.work = work_.row(0);
@@ -69,27 +71,32 @@ class Rows {
   Image<float> work_{kernels::bayes_work_floats(kLanes, 1), 1};
 };
 
-KernelBenchmark row(std::string name, KernelWork work, void (*call)(Rows&)) {
-  return on_own_data<Rows>(std::move(name), "cell", kCells, work, call);
+KernelBenchmark row(std::string name, const kernels::KernelWork& work, void (*call)(Rows&)) {
+  return on_own_data<Rows>(std::move(name), "cell", kCells, per_cell(work, kLanes), call);
 }
 
 }  // namespace
 
 KernelBenchmarks iteration_kernels() {
-  // Product of the star 4, estimate of 1/√ 1, Newton's step 4, p0 1; the sum over lanes 1.
-  constexpr double kHalf = 11;
+  using kernels::bayes_half_work;
   return {
-      // Sum, tap, floor; cells wait in working memory for the sum over their column.
-      row("bayes_start_row", {4, 16}, [](Rows& d) { d.bayes_start(); }),
-      row("bayes_half_row", {kHalf + 2, 28}, [](Rows& d) { d.bayes_half(0); }),
-      row("bayes_half_row/three taps", {kHalf + 6, 44}, [](Rows& d) { d.bayes_half(1); }),
-      // Sum of the star 4, exponential 17, p0 1, sum over lanes 1; tap, floor, logarithm, μ.
-      row("bayes_general_row", {23 + 28, 36}, [](Rows& d) { d.bayes_general(); }),
-      row("diffusion_row", {6, 24}, [](Rows& d) { d.diffusion(0); }),
-      row("diffusion_row/membrane", {8, 28}, [](Rows& d) { d.diffusion(0.075F); }),
-      row("local_stopping_row/margin", {10, 24},
+      row("bayes_start_row", kernels::bayes_start_work(BayesState::kSmoothed, 0),
+          [](Rows& d) { d.bayes_start(); }),
+      row("bayes_half_row", bayes_half_work(BayesState::kSmoothed, 0),
+          [](Rows& d) { d.bayes_half(0); }),
+      row("bayes_half_row/three taps", bayes_half_work(BayesState::kSmoothed, 1),
+          [](Rows& d) { d.bayes_half(1); }),
+      row("bayes_general_row",
+          kernels::bayes_general_work(BayesState::kLogSmoothed, 0,
+                                      kernels::bayes_scales_sums(kMu, kFloor)),
+          [](Rows& d) { d.bayes_general(); }),
+      row("diffusion_row", kernels::kDiffusionWork, [](Rows& d) { d.diffusion(0); }),
+      row("diffusion_row/membrane", kernels::kMembraneWork, [](Rows& d) { d.diffusion(0.075F); }),
+      row("local_stopping_row/margin",
+          kernels::local_stopping_work(CertaintyMeasure::kMargin, true, true),
           [](Rows& d) { d.stopping(CertaintyMeasure::kMargin); }),
-      row("local_stopping_row/entropy", {6 + 1 + 3 + 17 + 3, 32},
+      row("local_stopping_row/entropy",
+          kernels::local_stopping_work(CertaintyMeasure::kEntropy, true, true),
           [](Rows& d) { d.stopping(CertaintyMeasure::kEntropy); }),
   };
 }

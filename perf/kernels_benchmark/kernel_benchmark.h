@@ -9,13 +9,13 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/matching/column_work.h"
+
 namespace vantage::perf {
 
-/// What a kernel does for one cell (candidate disparity of a pixel) or pixel. Counted from its
-/// code: operations are additions, multiplications, divisions, roots, comparisons, minima and
-/// maxima, on integers or floats; one that multiplies and adds is two. Bytes are loaded from and
-/// stored to rows. 0: not counted.
-struct KernelWork {
+/// What a kernel does for one cell (candidate disparity of a pixel) or pixel: operations as
+/// kernels/kernel_work.h counts them, bytes loaded from and stored to rows. 0: not counted.
+struct UnitWork {
   double operations = 0;
   double bytes = 0;
 };
@@ -25,7 +25,7 @@ struct KernelBenchmark {
   std::string name;
   std::string_view unit;      ///< "cell" or "pixel"
   double units_per_call = 1;  ///< how many of them a call makes
-  KernelWork work;            ///< of each
+  UnitWork work;              ///< of each
   /// Makes the data, on the instruction set in use, and returns the call.
   std::function<std::function<void()>()> prepare;
   bool has_vectors = true;  ///< false: plain code, the same on all instruction sets
@@ -38,6 +38,17 @@ KernelBenchmarks selection_kernels();
 KernelBenchmarks iteration_kernels();
 KernelBenchmarks view_kernels();
 KernelBenchmarks refinement_kernels();
+
+/// Of a cell, by the table of kernels/kernel_work.h.
+inline UnitWork per_cell(const kernels::KernelWork& work, int candidates) {
+  const scheduler::ColumnWork column = column_work(work, candidates);
+  return {column.operations / column.cells, column.bytes / column.cells};
+}
+/// Of a pixel, where the kernel has no work but on whole columns.
+inline UnitWork per_column(const kernels::KernelWork& work) {
+  constexpr double kValueBytes = 4;
+  return {work.operations_per_column, kValueBytes * work.values_per_column};
+}
 
 /// `size` values that begin at a cache line, and a few more that may be read behind them.
 template <typename T>
@@ -65,7 +76,7 @@ class AlignedValues {
 /// A benchmark of `call` on one `Data`, made anew for each instruction set.
 template <class Data, class Call>
 KernelBenchmark on_own_data(std::string name, std::string_view unit, double units_per_call,
-                            KernelWork work, Call call) {
+                            UnitWork work, Call call) {
   return {std::move(name), unit, units_per_call, work,
           [call] { return [call, data = std::make_shared<Data>()] { call(*data); }; }};
 }

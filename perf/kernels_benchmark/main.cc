@@ -34,7 +34,7 @@ void run(benchmark::State& state, long long target, const KernelBenchmark& kerne
   }
   const double units = kernel.units_per_call * static_cast<double>(state.iterations());
   const double unit_ns = 1e9 * (processor_seconds() - begin_s) / units;
-  const KernelWork& work = kernel.work;
+  const UnitWork& work = kernel.work;
   state.counters["ns/" + std::string(kernel.unit)] = unit_ns;
   if (work.operations > 0) {
     state.counters["GFLOP/s"] = work.operations / unit_ns;

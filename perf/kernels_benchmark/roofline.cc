@@ -61,11 +61,11 @@ const CoreCeilings& ceilings_of(long long target) {
   return place != known.end() ? place->second : known.emplace(target, measure()).first->second;
 }
 
-double least_seconds(const KernelWork& work, const CoreCeilings& ceilings) {
+double least_seconds(const UnitWork& work, const CoreCeilings& ceilings) {
   return std::max(work.operations / ceilings.operations_per_s, work.bytes / ceilings.bytes_per_s);
 }
 
-bool is_bound_by_arithmetic(const KernelWork& work, const CoreCeilings& ceilings) {
+bool is_bound_by_arithmetic(const UnitWork& work, const CoreCeilings& ceilings) {
   return work.operations / ceilings.operations_per_s > work.bytes / ceilings.bytes_per_s;
 }
 

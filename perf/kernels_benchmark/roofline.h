@@ -15,9 +15,9 @@ const CoreCeilings& ceilings_of(long long target);
 
 /// Least time in which a unit of `work` can be done: that of its operations or of its bytes,
 /// whichever is more. 0 where nothing is counted.
-double least_seconds(const KernelWork& work, const CoreCeilings& ceilings);
+double least_seconds(const UnitWork& work, const CoreCeilings& ceilings);
 
 /// Whether arithmetic and not loads and stores make that time.
-bool is_bound_by_arithmetic(const KernelWork& work, const CoreCeilings& ceilings);
+bool is_bound_by_arithmetic(const UnitWork& work, const CoreCeilings& ceilings);
 
 }  // namespace vantage::perf

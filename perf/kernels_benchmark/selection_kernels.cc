@@ -79,37 +79,43 @@ struct Rows {
   }
 };
 
-KernelBenchmark of_cells(std::string name, KernelWork work, void (*call)(Rows&)) {
-  return on_own_data<Rows>(std::move(name), "cell", kCells, work, call);
+KernelBenchmark of_cells(std::string name, const kernels::KernelWork& work, void (*call)(Rows&)) {
+  return on_own_data<Rows>(std::move(name), "cell", kCells, per_cell(work, kLanes), call);
 }
 
-/// Three cells, a number and a disparity each; doubles, whose operations are not counted.
-KernelBenchmark of_pixels(std::string name, void (*call)(Rows&)) {
-  return on_own_data<Rows>(std::move(name), "pixel", kColumns, {0, 20}, call);
+// Fractions are compared, which the table does not count; cells are looked at once or twice.
+constexpr kernels::KernelWork kIndexedAtBorderWork = {0, 0, 1, 0};
+constexpr kernels::KernelWork kPlainAtBorderWork = {0, 0, 2, 0};
+
+KernelBenchmark parabola(std::string name, bool of_probabilities, void (*call)(Rows&)) {
+  return on_own_data<Rows>(std::move(name), "pixel", kColumns,
+                           per_column(kernels::parabola_work(of_probabilities)), call);
 }
 
 }  // namespace
 
 KernelBenchmarks selection_kernels() {
   return {
-      of_cells("locate_minima_row", {1, 4}, [](Rows& d) { d.locate(); }),
-      of_cells("select_winners_row/indexed, border", {0, 4}, [](Rows& d) { d.select(kIndexBits); }),
-      of_cells("select_winners_row/plain, border", {0, 8}, [](Rows& d) { d.select(0); }),
-      of_cells("mean_energy_row", {2, 8}, [](Rows& d) { d.mean_energies(); }),
-      // The least, and where it is.
-      of_cells("select_cell_winners_row/energies", {2, 8},
+      of_cells("locate_minima_row", kernels::kLocateMinimaWork, [](Rows& d) { d.locate(); }),
+      of_cells("select_winners_row/indexed, border", kIndexedAtBorderWork,
+               [](Rows& d) { d.select(kIndexBits); }),
+      of_cells("select_winners_row/plain, border", kPlainAtBorderWork,
+               [](Rows& d) { d.select(0); }),
+      of_cells("mean_energy_row", kernels::kMeanEnergyWork, [](Rows& d) { d.mean_energies(); }),
+      of_cells("select_cell_winners_row/energies", kernels::cell_winner_work(true, false),
                [](Rows& d) { d.select_cells(kInside, false, false); }),
-      of_cells("select_cell_winners_row/probabilities", {2, 8},
+      of_cells("select_cell_winners_row/probabilities", kernels::cell_winner_work(true, false),
                [](Rows& d) { d.select_cells(kInside, true, false); }),
-      of_cells("select_cell_winners_row/energies, border", {2, 8},
+      of_cells("select_cell_winners_row/energies, border", kernels::cell_winner_work(true, false),
                [](Rows& d) { d.select_cells(kAtBorder, false, false); }),
-      of_cells("select_cell_winners_row/margin", {5, 8},
+      of_cells("select_cell_winners_row/margin", kernels::cell_winner_work(true, true),
                [](Rows& d) { d.select_cells(kInside, false, true); }),
-      // A difference, a product, a minimum, an exponential, a product and two sums.
-      of_cells("cell_entropy_row", {3 + 17 + 3, 4}, [](Rows& d) { d.entropy(); }),
-      of_pixels("parabola_disparity_row/sums", [](Rows& d) { d.parabola_of_sums(); }),
-      of_pixels("parabola_disparity_row/energies", [](Rows& d) { d.parabola_of_cells(false); }),
-      of_pixels("parabola_disparity_row/probabilities", [](Rows& d) { d.parabola_of_cells(true); }),
+      of_cells("cell_entropy_row", kernels::kCellEntropyWork, [](Rows& d) { d.entropy(); }),
+      parabola("parabola_disparity_row/sums", false, [](Rows& d) { d.parabola_of_sums(); }),
+      parabola("parabola_disparity_row/energies", false,
+               [](Rows& d) { d.parabola_of_cells(false); }),
+      parabola("parabola_disparity_row/probabilities", true,
+               [](Rows& d) { d.parabola_of_cells(true); }),
   };
 }
 

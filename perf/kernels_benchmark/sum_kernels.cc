@@ -136,30 +136,31 @@ struct Cascade {
 }  // namespace
 
 KernelBenchmarks sum_kernels() {
-  const auto row_sum = [](std::string name, KernelWork work, bool minima, bool store) {
-    return on_own_data<AlongRows>(std::move(name), "cell", AlongRows::kCells, work,
+  const auto row_sum = [](std::string name, bool minima, bool store) {
+    return on_own_data<AlongRows>(std::move(name), "cell", AlongRows::kCells,
+                                  per_cell(kernels::row_sum_work(store), kLanes),
                                   [minima, store](AlongRows& d) { d.add(minima, store); });
   };
-  // Of the cascade: 15 down the rows, for the columns of the halo, too; 10 along them.
-  constexpr double kWidened = static_cast<double>(Cascade::kInputColumns) / Cascade::kColumns;
   return {
       on_own_data<SquaredDifferences>("interleave_rows", "pixel", SquaredDifferences::kPixels,
                                       {0, 6}, [](SquaredDifferences& d) { d.interleave(); }),
-      // Two differences of 16 bits, each times its sign and squared, and the sum.
       on_own_data<SquaredDifferences>("column_ssd_row/8-bit", "cell", SquaredDifferences::kCells,
-                                      {8, 12}, [](SquaredDifferences& d) { d.of_8_bit(); }),
+                                      per_cell(kernels::kColumnSsdPairsWork, kLanes),
+                                      [](SquaredDifferences& d) { d.of_8_bit(); }),
       on_own_data<SquaredDifferences>("column_ssd_row/float", "cell", SquaredDifferences::kCells,
-                                      {8, 16}, [](SquaredDifferences& d) { d.of_float(); }),
-      on_own_data<Costs>("column_sum_row", "cell", Costs::kCount, {8, 16},
-                         [](Costs& d) { d.add(); }),
-      row_sum("row_sum/sums", {2, 12}, false, true),
-      row_sum("row_sum/minima", {3, 8}, true, false),
-      row_sum("row_sum/both", {3, 12}, true, true),
+                                      per_cell(kernels::kColumnSsdFloatWork, kLanes),
+                                      [](SquaredDifferences& d) { d.of_float(); }),
+      on_own_data<Costs>("column_sum_row", "cell", Costs::kCount,
+                         per_cell(kernels::kColumnSumWork, kLanes), [](Costs& d) { d.add(); }),
+      row_sum("row_sum/sums", false, true),
+      row_sum("row_sum/minima", true, false),
+      row_sum("row_sum/both", true, true),
       on_own_data<Gaussian>("symmetric_sum/13 rows", "cell", Gaussian::kCount,
-                            {1 + 3 * Gaussian::kRadius, 4 * (2 * Gaussian::kRadius + 1) + 4},
+                            per_cell(kernels::symmetric_sum_work(Gaussian::kRadius), kLanes),
                             [](Gaussian& d) { d.add(); }),
       on_own_data<Cascade>("box_cascade_row", "cell", Cascade::kColumns * Cascade::kLanesHere,
-                           {15 * kWidened + 10, 44 * kWidened + 4}, [](Cascade& d) { d.add(); }),
+                           per_cell(kernels::kBoxCascadeWork, Cascade::kLanesHere),
+                           [](Cascade& d) { d.add(); }),
   };
 }
 

@@ -185,7 +185,7 @@ struct Blend {
 };
 
 template <class Data>
-KernelBenchmark of_pixels(std::string name, KernelWork work, void (*call)(Data&)) {
+KernelBenchmark of_pixels(std::string name, UnitWork work, void (*call)(Data&)) {
   return on_own_data<Data>(std::move(name), "pixel", kWidth, work, call);
 }
 
