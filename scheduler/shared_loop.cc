@@ -1,5 +1,7 @@
 #include "scheduler/shared_loop.h"
 
+#include <utility>
+
 namespace vantage::scheduler {
 
 SharedLoop::SharedLoop(int task_count, const std::vector<int>& threads_of_nodes,
@@ -29,8 +31,9 @@ void SharedLoop::wait() {
   for (int left = unfinished_.load(); left != 0; left = unfinished_.load()) {
     unfinished_.wait(left);
   }
-  if (error_) {
-    std::rethrow_exception(error_);
+  // Helpers may outlive the caller's interest in the loop, but not in its exception.
+  if (const std::exception_ptr error = std::exchange(error_, nullptr)) {
+    std::rethrow_exception(error);
   }
 }
 

@@ -1,10 +1,10 @@
 #include "scheduler/tbb_node_frames.h"
 
+#include <oneapi/tbb/spin_mutex.h>
 #include <oneapi/tbb/task_group.h>
 
 #include <algorithm>
 #include <cstddef>
-#include <mutex>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -19,7 +19,7 @@ class Turnstile {
 
   /// True if `slot` may pass now; else leave() of the one before it will say so.
   bool arrive(int slot) {
-    const std::lock_guard lock(mutex_);
+    const tbb::spin_mutex::scoped_lock lock(mutex_);
     const bool passes = slot == next_ && !occupied_;
     occupied_ = occupied_ || passes;
     waiting_[static_cast<std::size_t>(slot)] = !passes;
@@ -27,7 +27,7 @@ class Turnstile {
   }
   /// To be called by the slot that has passed; the one that may pass now, if it has arrived.
   std::optional<int> leave() {
-    const std::lock_guard lock(mutex_);
+    const tbb::spin_mutex::scoped_lock lock(mutex_);
     next_ = (next_ + 1) % static_cast<int>(waiting_.size());
     const auto next = static_cast<std::size_t>(next_);
     occupied_ = waiting_[next];
@@ -36,7 +36,7 @@ class Turnstile {
   }
 
  private:
-  std::mutex mutex_;
+  tbb::spin_mutex mutex_;  // held for a few instructions
   int next_ = 0;
   bool occupied_ = false;
   std::vector<bool> waiting_;
