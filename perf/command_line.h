@@ -49,13 +49,13 @@ class CommandLine {
       refuse();
     }
   }
-
- private:
+  /// For values that only the program can judge.
   [[noreturn]] void refuse() const {
     fmt::print(stderr, "{}\n", usage_);
     std::exit(2);
   }
 
+ private:
   std::string usage_;
   std::map<std::string, std::string> values_;
 };

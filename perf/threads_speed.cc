@@ -18,6 +18,7 @@
 #include "engine/matching/stereo_matcher.h"
 #include "engine/simd.h"
 #include "perf/bench_pair.h"
+#include "perf/command_line.h"
 #include "perf/speed_methods.h"
 #include "perf/stopwatch.h"
 
@@ -193,39 +194,22 @@ nlohmann::json compare(const Settings& settings) {
           {"rows", rows}};
 }
 
-int usage() {
-  fmt::print(stderr,
-             "threads_speed [--size WIDTHxHEIGHT] [--disparities N] [--rounds N] [--threads N] "
-             "[--only NAME] [--json FILE]\n");
-  return 2;
-}
-
 int run_benchmark(int argc, char** argv) {
+  CommandLine line(argc, argv,
+                   "threads_speed [--size WIDTHxHEIGHT] [--disparities N] [--rounds N] "
+                   "[--threads N] [--only NAME] [--json FILE]");
   Settings settings;
-  for (int i = 1; i < argc; i += 2) {
-    const std::string option = argv[i];
-    if (i + 1 == argc) {
-      return usage();
-    }
-    const char* value = argv[i + 1];
-    if (option == "--size") {
-      if (std::sscanf(value, "%dx%d", &settings.width, &settings.height) != 2) {
-        return usage();
-      }
-    } else if (option == "--disparities") {
-      settings.disparities = std::max(1, std::atoi(value));
-    } else if (option == "--rounds") {
-      settings.rounds = std::max(1, std::atoi(value));
-    } else if (option == "--threads") {
-      settings.threads = std::max(1, std::atoi(value));
-    } else if (option == "--only") {
-      settings.only = value;
-    } else if (option == "--json") {
-      settings.json = value;
-    } else {
-      return usage();
+  if (const std::optional<std::string> size = line.text("--size")) {
+    if (std::sscanf(size->c_str(), "%dx%d", &settings.width, &settings.height) != 2) {
+      line.refuse();
     }
   }
+  settings.disparities = line.number("--disparities", settings.disparities);
+  settings.rounds = line.number("--rounds", settings.rounds);
+  settings.threads = line.number("--threads", settings.threads);
+  settings.only = line.text("--only").value_or(settings.only);
+  settings.json = line.text("--json");
+  line.finish();
   fmt::print("instruction set {}, {} hardware threads\n", instruction_set_in_use(),
              scheduler::detect_machine().hardware_threads);
   const nlohmann::json table = compare(settings);
