@@ -60,6 +60,14 @@ TEST_F(ProfileTest, KeepsWhereTheTimeOfAPairGoes) {
   EXPECT_THAT(kept.at("command"), HasSubstr("vantage match " + left_));
   EXPECT_THAT(kept.at("date"), testing::MatchesRegex(".*-..-..T..:..:..Z"));
   EXPECT_GT(kept.at("peak_memory_bytes"), 1'000'000);
+  std::set<std::string> owners;
+  for (const json& owner : kept.at("memory")) {
+    owners.insert(owner.at("name").get<std::string>());
+    EXPECT_LE(owner.at("bytes"), kept.at("peak_memory_bytes")) << owner;
+  }
+  for (const char* owner : {"program", "photographs", "maps", "rings"}) {
+    EXPECT_EQ(owners.count(owner), 1U) << owner;
+  }
   ASSERT_EQ(kept.at("thread_counts").size(), 2U);
   ASSERT_EQ(kept.at("ceilings").size(), 2U);
   for (int i = 0; i < 2; ++i) {
