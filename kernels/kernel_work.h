@@ -175,6 +175,30 @@ constexpr KernelWork bayes_general_work(BayesState state, int prior_radius, bool
   return scaled ? work + KernelWork{4 + 1 + 1, kLaneTreeOperations, kStarValues - 1, 0} : work;
 }
 
+// --- levels -----------------------------------------------------------------------------------
+
+/// Of a coarse column: the least likelihood that counts and the product of four, its logarithm and
+/// the largest of them; then the difference in steps, cut. A byte is a quarter of a value.
+inline constexpr KernelWork kReduceLikelihoodsWork = {4 + 3 + kLogOperations + 1 + 3,
+                                                      kLaneTreeOperations, 4 + 0.25, 0};
+inline constexpr KernelWork kExpandCompactWork = {1 + kExp2Operations, 0, 0.25 + 1, 0};
+inline constexpr KernelWork kCompactProbabilitiesWork = {1 + kLogOperations + 3, 0, 1 + 0.25, 0};
+/// Start of four columns from one of the coarser level: made once, then copied, along the row and
+/// down to the next one.
+constexpr KernelWork bayes_start_from_coarser_work(BayesState state, int prior_radius) {
+  const KernelWork work = kExpandCompactWork + bayes_state_work(state, prior_radius);
+  return {work.operations / 4, work.operations_per_column / 4, 2, 0};
+}
+
+/// Rounding a magnitude to a half float: the largest one, the exponent, two additions.
+inline constexpr double kToHalfOperations = 4;
+inline constexpr KernelWork kReduceEnergiesWork = {3 + 1 + kToHalfOperations, 0, 4 + 0.5, 0};
+inline constexpr KernelWork kHalfEnergiesWork = {1 + kToHalfOperations, 0, 1 + 0.5, 0};
+/// The exponent and the unit.
+inline constexpr KernelWork kExpandHalfWork = {2, 0, 0.5 + 1, 0};
+/// And the mean with the level's own.
+inline constexpr KernelWork kCoarserSupportWork = kExpandHalfWork + KernelWork{2, 0, 1, 0};
+
 // --- selection --------------------------------------------------------------------------------
 
 /// The least cell of a column; `places`: and where it is, which looks at the cells again.
