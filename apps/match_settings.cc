@@ -126,6 +126,10 @@ void add_aggregation_settings(Settings& settings, MethodOverrides& parameters) {
   settings.integer("iterations", parameters.iterations, "N",
                    "diffusion, membrane, local-stopping, bayes: how many, 0 to 10000; " +
                        shared(book.iterations));
+  settings.integer("levels", parameters.levels, "N",
+                   "Coarse to fine, iterations at each level: how many levels, each half as wide "
+                   "and high as the one before, 1 (the image alone) to 10; " +
+                       shared(book.levels));
   settings.number("lambda", parameters.lambda, "L",
                   "diffusion, local-stopping: step, above 0 and below 0.25; membrane: at most "
                   "1/(4 + beta); " +

@@ -11,10 +11,13 @@
 #include "engine/error.h"
 #include "engine/matching/cost_bounds.h"
 #include "engine/matching/stage_bayes.h"
+#include "engine/matching/stage_box_mean.h"
 #include "engine/matching/stage_column_ssd.h"
 #include "engine/matching/stage_column_sum.h"
 #include "engine/matching/stage_diffusion.h"
 #include "engine/matching/stage_disparity_prior.h"
+#include "engine/matching/stage_level_energies.h"
+#include "engine/matching/stage_level_likelihoods.h"
 #include "engine/matching/stage_smoothing.h"
 #include "engine/matching/stage_window_selection.h"
 
@@ -42,7 +45,7 @@ kernels::CandidateGeometry candidate_geometry(const MatchOptions& options, Refer
 
 bool uses_column_ssd(const MethodParameters& parameters) {
   return parameters.cost == MatchCost::kSquared && parameters.aggregation == Aggregation::kBox &&
-         parameters.colour == ColourUse::kLuma;
+         parameters.colour == ColourUse::kLuma && parameters.levels == 1;
 }
 
 namespace {
@@ -83,6 +86,15 @@ float most_contrast(const MethodParameters& parameters) {
                                                 : std::numeric_limits<float>::infinity();
 }
 
+/// Of the costs of `input`, those drawn towards a prior included.
+CostBounds bounds_of(const MethodParameters& parameters, const ChainInput& input) {
+  CostBounds bounds = cost_bounds(parameters, static_cast<int>(input.partners.size()));
+  if (!input.prior_px.empty()) {
+    bounds.largest += static_cast<float>(input.prior_weight) * (bounds.largest - bounds.least);
+  }
+  return bounds;
+}
+
 WindowSelectionSettings window_selection(const MethodParameters& parameters) {
   WindowSelectionSettings settings;
   settings.radius = parameters.window_px / 2;
@@ -97,30 +109,39 @@ WindowSelectionSettings window_selection(const MethodParameters& parameters) {
 
 MatchChain::MatchChain(const MethodParameters& parameters,
                        const kernels::CandidateGeometry& geometry, const ChainInput& input,
-                       const MapOutputs& outputs)
-    : geometry_(geometry), outputs_(outputs) {
+                       const MapOutputs& outputs, const ChainLevel& level)
+    : geometry_(geometry),
+      outputs_(outputs),
+      height_(level.costs != nullptr ? level.costs->extent().rows : outputs.disparity_px.height()) {
   if (input.pair != nullptr) {
     add_column_ssd(parameters, *input.pair);
     return;
   }
-  const int height = outputs_.disparity_px.height();
-  const CellMeaning meaning = parameters.aggregation == Aggregation::kBayes
-                                  ? CellMeaning::kLikelihood
-                                  : CellMeaning::kEnergy;
-  auto costs =
-      make_cost_stage(parameters, geometry_, *input.reference, input.partners, meaning, height);
-  if (!input.prior_px.empty()) {
-    costs = make_disparity_prior_stage(std::move(costs), geometry_, meaning, input.prior_px,
-                                       static_cast<float>(input.prior_weight),
-                                       most_contrast(parameters));
+  half_scale_ = half_scale(bounds_of(parameters, input));
+  add_costs(parameters, input, level);
+  if (level.reduced != nullptr) {
+    add(parameters.aggregation == Aggregation::kBayes
+            ? make_likelihood_reduction_stage(geometry_, *level.reduced)
+            : make_energy_reduction_stage(geometry_, half_scale_, *level.reduced));
+    return;
   }
-  add(std::move(costs));
-  if (parameters.aggregation == Aggregation::kBox) {
+  if (level.coarser != nullptr && parameters.aggregation != Aggregation::kBayes) {
+    add(make_coarser_energy_stage(geometry_, height_,
+                                  parameters.aggregation == Aggregation::kMembrane
+                                      ? CoarserUse::kStart
+                                      : CoarserUse::kSupport,
+                                  half_scale_, *level.coarser));
+  }
+  if (parameters.aggregation == Aggregation::kBox && level.result == nullptr) {
     add_box(parameters, input);
     return;
   }
-  add_aggregation(parameters);
-  add_selection(parameters);
+  add_aggregation(parameters, level);
+  if (level.result != nullptr) {
+    add_result(parameters, *level.result);
+  } else {
+    add_selection(parameters);
+  }
 }
 
 std::vector<int> MatchChain::pass_ends(int iterations) const {
@@ -136,13 +157,38 @@ void MatchChain::add(std::unique_ptr<scheduler::RowStage> stage) {
   stages_.push_back(std::move(stage));
 }
 
+void MatchChain::add_all(std::vector<std::unique_ptr<scheduler::RowStage>> stages) {
+  for (auto& stage : stages) {
+    add(std::move(stage));
+  }
+}
+
+/// What the level starts from: costs of the images, or of the level as they were stored.
+void MatchChain::add_costs(const MethodParameters& parameters, const ChainInput& input,
+                           const ChainLevel& level) {
+  const bool is_bayes = parameters.aggregation == Aggregation::kBayes;
+  if (level.costs != nullptr) {
+    add(is_bayes ? make_level_likelihood_stage(geometry_, *level.costs)
+                 : make_level_energy_stage(geometry_, half_scale_, *level.costs));
+    return;
+  }
+  const CellMeaning meaning = is_bayes ? CellMeaning::kLikelihood : CellMeaning::kEnergy;
+  auto costs =
+      make_cost_stage(parameters, geometry_, *input.reference, input.partners, meaning, height_);
+  if (!input.prior_px.empty()) {
+    costs = make_disparity_prior_stage(std::move(costs), geometry_, meaning, input.prior_px,
+                                       static_cast<float>(input.prior_weight),
+                                       most_contrast(parameters));
+  }
+  add(std::move(costs));
+}
+
 void MatchChain::add_column_ssd(const MethodParameters& parameters, const PreparedPair& pair) {
   const bool left = geometry_.direction < 0;
-  const int height = outputs_.disparity_px.height();
   WindowSelectionSettings settings = window_selection(parameters);
   const auto add_stages = [&](const auto& planes, auto... shift) {
     add(make_column_ssd_stage(left ? planes.left : planes.right,
-                              left ? planes.right_mirrored : planes.left, geometry_, height,
+                              left ? planes.right_mirrored : planes.left, geometry_, height_,
                               settings.radius, shift...));
   };
   if (pair.is_8_bit) {
@@ -157,58 +203,57 @@ void MatchChain::add_column_ssd(const MethodParameters& parameters, const Prepar
 }
 
 void MatchChain::add_box(const MethodParameters& parameters, const ChainInput& input) {
-  CostBounds bounds = cost_bounds(parameters, static_cast<int>(input.partners.size()));
-  if (!input.prior_px.empty()) {
-    bounds.largest += static_cast<float>(input.prior_weight) * (bounds.largest - bounds.least);
-  }
+  const CostBounds bounds = bounds_of(parameters, input);
   const ColumnSumScale quantised =
       column_sum_scale(bounds.least, bounds.largest, parameters.window_px);
   WindowSelectionSettings settings = window_selection(parameters);
   settings.energy_scale = 1.0F / quantised.scale;
   settings.energy_offset = quantised.offset;
-  add(make_column_sum_stage(geometry_, outputs_.disparity_px.height(), settings.radius,
-                            quantised.offset, quantised.scale));
+  add(make_column_sum_stage(geometry_, height_, settings.radius, quantised.offset,
+                            quantised.scale));
   add(make_window_selection_stage(geometry_, settings, outputs_));
 }
 
-void MatchChain::add_aggregation(const MethodParameters& parameters) {
-  const int height = outputs_.disparity_px.height();
-  const auto add_all = [this](std::vector<std::unique_ptr<scheduler::RowStage>> stages) {
-    for (auto& stage : stages) {
-      add(std::move(stage));
-    }
-  };
+void MatchChain::add_aggregation(const MethodParameters& parameters, const ChainLevel& level) {
   first_iteration_ = static_cast<int>(stages_.size());
   switch (parameters.aggregation) {
     case Aggregation::kNone:
+      break;
     case Aggregation::kBox:
+      add_all(make_box_mean_stages(geometry_, height_, parameters.window_px / 2));
       break;
     case Aggregation::kGaussian:
-      add_all(make_gaussian_stages(geometry_, height, parameters.aggregation_sigma_px));
+      add_all(make_gaussian_stages(geometry_, height_, parameters.aggregation_sigma_px));
       break;
     case Aggregation::kBoxCascade:
-      add_all(make_box_cascade_stages(geometry_, height, parameters.aggregation_sigma_px));
+      add_all(make_box_cascade_stages(geometry_, height_, parameters.aggregation_sigma_px));
       break;
     case Aggregation::kDiffusion:
     case Aggregation::kMembrane:
       iterations_ = parameters.iterations;
       for (int i = 0; i < iterations_; ++i) {
-        add(make_diffusion_stage(parameters, geometry_, height));
+        add(make_diffusion_stage(parameters, geometry_, height_));
       }
       break;
     case Aggregation::kLocalStopping:
       iterations_ = parameters.iterations;
       for (int i = 0; i < iterations_; ++i) {
-        add(make_local_stopping_stage(parameters, geometry_, height,
+        add(make_local_stopping_stage(parameters, geometry_, height_,
                                       {.is_first = i == 0, .is_last = i + 1 == iterations_}));
       }
       break;
     case Aggregation::kBayes:
       iterations_ = parameters.iterations;
-      add_all(make_bayes_stages(parameters, geometry_, height));
+      add_all(make_bayes_stages(parameters, geometry_, height_, level.coarser));
       ++first_iteration_;  // behind the start
       break;
   }
+}
+
+void MatchChain::add_result(const MethodParameters& parameters, LevelVolume& result) {
+  add(parameters.aggregation == Aggregation::kBayes
+          ? make_level_probability_stage(geometry_, result)
+          : make_energy_store_stage(geometry_, half_scale_, result));
 }
 
 void MatchChain::add_selection(const MethodParameters& parameters) {

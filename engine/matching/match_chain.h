@@ -6,6 +6,7 @@
 
 #include "engine/image/image.h"
 #include "engine/matching/intensity_planes.h"
+#include "engine/matching/level_volume.h"
 #include "engine/matching/match_options.h"
 #include "engine/matching/stage_cell_selection.h"
 #include "engine/matching/stage_cost.h"
@@ -19,7 +20,7 @@ kernels::CandidateGeometry candidate_geometry(const MatchOptions& options, Refer
                                               int width, int height);
 
 /// Whether box sums of squared differences of luma can be made by the column SSD stage, which is
-/// faster than making costs first and summing them: the maps are the same.
+/// faster than making costs first and summing them: the maps are the same. Levels need the costs.
 bool uses_column_ssd(const MethodParameters& parameters);
 
 /// What a chain compares: the pair, for the column SSD stage, or a reference and its partners.
@@ -33,12 +34,25 @@ struct ChainInput {
   double prior_weight = 0;
 };
 
-/// The stages that compute one disparity map: cost → aggregation → selection.
+/// Where a chain stands in matching from coarse to fine. Volumes are of the format of the method
+/// (stage_level_likelihoods for Bayesian diffusion, stage_level_energies for others), of their
+/// level's size, and outlive the chain. As it is: the only level.
+struct ChainLevel {
+  /// What levels above the image's own start from, in place of costs; null: costs of the input.
+  const LevelVolume* costs = nullptr;
+  const LevelVolume* coarser = nullptr;  ///< result of the next coarser level; null: there is none
+  LevelVolume* result = nullptr;         ///< where cells go in place of winners
+  /// Where costs go, reduced to the next coarser level: nothing else is made.
+  LevelVolume* reduced = nullptr;
+};
+
+/// The stages that compute one disparity map, or one level of it: cost → aggregation → selection.
 class MatchChain {
  public:
   /// `parameters` must be valid. What `input` points at and the outputs must outlive the chain.
+  /// `geometry`: of the level.
   MatchChain(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
-             const ChainInput& input, const MapOutputs& outputs);
+             const ChainInput& input, const MapOutputs& outputs, const ChainLevel& level = {});
 
   [[nodiscard]] scheduler::Chain stages() const { return pointers_; }
   /// Stage counts after which to cut the chain so that each pass holds `iterations`, see
@@ -47,13 +61,19 @@ class MatchChain {
 
  private:
   void add(std::unique_ptr<scheduler::RowStage> stage);
+  void add_all(std::vector<std::unique_ptr<scheduler::RowStage>> stages);
+  void add_costs(const MethodParameters& parameters, const ChainInput& input,
+                 const ChainLevel& level);
   void add_column_ssd(const MethodParameters& parameters, const PreparedPair& pair);
   void add_box(const MethodParameters& parameters, const ChainInput& input);
-  void add_aggregation(const MethodParameters& parameters);
+  void add_aggregation(const MethodParameters& parameters, const ChainLevel& level);
+  void add_result(const MethodParameters& parameters, LevelVolume& result);
   void add_selection(const MethodParameters& parameters);
 
   kernels::CandidateGeometry geometry_;
   MapOutputs outputs_;
+  int height_;            ///< of the level
+  float half_scale_ = 1;  ///< of volumes that hold energies
   int first_iteration_ = 0;
   int iterations_ = 0;
   std::vector<std::unique_ptr<scheduler::RowStage>> stages_;

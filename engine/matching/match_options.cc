@@ -107,7 +107,13 @@ void MatchOptions::validate() const {
         "rectified pairs only");
   }
   validate_candidates(disparities, disparities_y);
-  vantage::validate(resolved());
+  const MethodParameters in_force = resolved();
+  vantage::validate(in_force);
+  if (in_force.levels > 1 && disparities_y) {
+    throw UsageError(fmt::format(
+        "levels is {}, expected 1 with disparities-y: coarse to fine searches along rows only",
+        in_force.levels));
+  }
   validate_refinement(resolved_refinement(), disparities_y.has_value());
 }
 

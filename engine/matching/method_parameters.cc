@@ -13,6 +13,7 @@ namespace {
 // 181² · 255² is the largest windowed sum of squares that fits 31 bits.
 constexpr int kMaxWindow = 181;
 constexpr int kMaxIterations = 10000;
+constexpr int kMaxLevels = 10;
 constexpr double kMaxAggregationSigma = 16;
 
 constexpr MethodParameters kCommon{
@@ -24,6 +25,7 @@ constexpr MethodParameters kCommon{
     .window_px = 9,
     .aggregation_sigma_px = 2,
     .iterations = 10,
+    .levels = 1,
     .lambda = 0.15,
     .beta = 0.5,
     .certainty = Certainty::kMargin,
@@ -65,6 +67,7 @@ void take_over(const MethodParametersOf<From>& overrides, MethodParametersOf<To>
   take(overrides.window_px, target.window_px);
   take(overrides.aggregation_sigma_px, target.aggregation_sigma_px);
   take(overrides.iterations, target.iterations);
+  take(overrides.levels, target.levels);
   take(overrides.lambda, target.lambda);
   take(overrides.beta, target.beta);
   take(overrides.certainty, target.certainty);
@@ -93,6 +96,8 @@ bool is_positive(double value) { return value > 0 && std::isfinite(value); }
 void validate_diffusion(const MethodParameters& parameters) {
   require(parameters.iterations >= 0 && parameters.iterations <= kMaxIterations, "iterations",
           parameters.iterations, fmt::format("a number from 0 to {}", kMaxIterations));
+  require(parameters.levels >= 1 && parameters.levels <= kMaxLevels, "levels", parameters.levels,
+          fmt::format("a number from 1 to {}", kMaxLevels));
   if (parameters.aggregation == Aggregation::kMembrane) {
     require(parameters.beta >= 0 && std::isfinite(parameters.beta), "beta", parameters.beta,
             "a number of at least 0");

@@ -58,12 +58,15 @@ struct MethodParametersOf {
   Field<int> window_px;                ///< box: side of the square window, odd, 1..181
   Field<double> aggregation_sigma_px;  ///< Gaussian, box cascade: σ, 0.5..16
   Field<int> iterations;               ///< of diffusion, membrane, local stopping, Bayes: 0..10000
-  Field<double> lambda;                ///< step: 0 < λ < ¼; membrane: λ ≤ 1/(4+β)
-  Field<double> beta;                  ///< membrane: pull towards the first cost, ≥ 0
-  Field<Certainty> certainty;          ///< local stopping
-  Field<double> mu;                    ///< Bayes: weight of the neighbours, 0 < μ ≤ 1
-  Field<double> sigma_prior;           ///< Bayes: σP in pixels of disparity, > 0
-  Field<double> epsilon_prior;         ///< Bayes: εP, inside (0, 1)
+  /// Coarse to fine, 1..10: `iterations` at each level, from an image of 1/2^(levels − 1) of the
+  /// size to the image itself; levels that would be a single pixel are left out. 1: flat.
+  Field<int> levels;
+  Field<double> lambda;             ///< step: 0 < λ < ¼; membrane: λ ≤ 1/(4+β)
+  Field<double> beta;               ///< membrane: pull towards the first cost, ≥ 0
+  Field<Certainty> certainty;       ///< local stopping
+  Field<double> mu;                 ///< Bayes: weight of the neighbours, 0 < μ ≤ 1
+  Field<double> sigma_prior;        ///< Bayes: σP in pixels of disparity, > 0
+  Field<double> epsilon_prior;      ///< Bayes: εP, inside (0, 1)
   Field<double> sigma_measurement;  ///< σM in grey levels, > 0: contaminated cost, Bayes, entropy
   Field<double> epsilon_measurement;  ///< εM, inside (0, 1): contaminated cost, Bayes
 

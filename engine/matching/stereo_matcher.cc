@@ -189,7 +189,10 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
   const ChainInput input = prepare_inputs(left, right, true, false, false, *prepared).first;
   const auto geometry = candidate_geometry(options_, Reference::kLeft, left.width(), left.height());
   DisparityMap map(left.width(), left.height());
-  const MatchChain chain(parameters_, geometry, input, {.disparity_px = map.view()});
+  const LevelVolume coarser;  // nobody looks into it
+  const auto extents = level_extents({left.width(), left.height()}, parameters_.levels);
+  const MatchChain chain(parameters_, geometry, input, {.disparity_px = map.view()},
+                         {.coarser = extents.size() > 1 ? &coarser : nullptr});
   std::vector<scheduler::ChainPlan> plans;
   for (const ExecutionOptions& execution : executions) {
     plans.push_back(plan_of(chain, execution, thread_count(execution, execution_.machine())));
@@ -342,6 +345,7 @@ void StereoMatcher::add_memory_use(MemoryUse& use) const {
       bytes += held_bytes(*image);
     }
     use.add("prepared images", bytes);
+    use.add("coarse levels", prepared.levels.held_bytes());
   });
   refinement_works_.for_each_idle(
       [&use](const RefinementWork& work) { use.add("refinement", held_bytes_of(work)); });
@@ -359,7 +363,7 @@ void StereoMatcher::compute_map(Reference reference, const ChainInput& input, Pr
   if (result.confidence != nullptr) {
     outputs.confidence = result.confidence->view();
   }
-  run_chain(geometry, input, outputs, report);
+  run_levels(geometry, input, outputs, prepared.levels, report);
 }
 
 /// Vertical disparities one after the other, each like a search along rows between shifted images;
@@ -395,7 +399,7 @@ void StereoMatcher::search_rows(const kernels::CandidateGeometry& geometry, cons
     for (CostPartner& partner : shifted.partners) {
       partner.disparity_y_px = d;
     }
-    run_chain(geometry, shifted, outputs, report);
+    run_levels(geometry, shifted, outputs, prepared.levels, report);
     merge.disparity_y_px = d;
     execution_.for_each_band(height, [&](int first_row, int end_row) {
       for (int y = first_row; y < end_row; ++y) {
@@ -421,13 +425,23 @@ scheduler::ChainPlan StereoMatcher::plan_of(const MatchChain& chain,
   return scheduler::plan_chain(chain.stages(), execution_.machine(), request);
 }
 
-void StereoMatcher::run_chain(const kernels::CandidateGeometry& geometry, const ChainInput& input,
-                              const MapOutputs& outputs, MatchReport& report) const {
-  const MatchChain chain(parameters_, geometry, input, outputs);
+/// One map along rows: flat or coarse to fine.
+void StereoMatcher::run_levels(const kernels::CandidateGeometry& geometry, const ChainInput& input,
+                               const MapOutputs& outputs, CoarseLevels& levels,
+                               MatchReport& report) const {
+  double columns = static_cast<double>(geometry.width) * outputs.disparity_px.height();
+  if (parameters_.levels == 1) {
+    run_chain(MatchChain(parameters_, geometry, input, outputs), report);
+  } else {
+    columns = match_coarse_to_fine(parameters_, geometry, input, outputs, levels, execution_,
+                                   [&](const MatchChain& chain) { run_chain(chain, report); });
+  }
+  report.cells += columns * options_.disparities.count();
+}
+
+void StereoMatcher::run_chain(const MatchChain& chain, MatchReport& report) const {
   report.plan = plan_of(chain, execution_.options(), execution_.executor().thread_count());
   scheduler::run_strips(chain.stages(), report.plan, execution_.executor(), execution_.scratch());
-  report.cells += static_cast<double>(geometry.width) * outputs.disparity_px.height() *
-                  options_.disparities.count();
 }
 
 }  // namespace vantage

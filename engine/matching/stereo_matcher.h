@@ -8,6 +8,7 @@
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
+#include "engine/matching/coarse_to_fine.h"
 #include "engine/matching/match_chain.h"
 #include "engine/matching/match_options.h"
 #include "engine/memory_use.h"
@@ -72,15 +73,18 @@ struct StageTime {
 
 struct MatchReport {
   std::vector<StageTime> stages;
-  scheduler::ChainPlan plan;  ///< of one map; both maps use the same
-  double cells = 0;           ///< width × height × disparities × maps computed
+  /// Of one map; both maps use the same. With several levels the image's own: the others', which
+  /// are a third of the work, are made the same way.
+  scheduler::ChainPlan plan;
+  double cells = 0;  ///< width × height × disparities × maps computed, of all levels
 };
 
 /// Computes disparity maps of rectified pairs (EQUATIONS §1, §3, §5).
 ///
 /// Thread rule: match() may be called concurrently for different results. Results are identical for
 /// any ExecutionOptions, and on any instruction set but for Bayesian diffusion, whose probabilities
-/// agree to 1e-5 between instruction sets and between processors of different makers.
+/// agree to 1e-5 between instruction sets and between processors of different makers (with several
+/// levels: where the rounding of what is stored between them does).
 class StereoMatcher {
  public:
   /// Throws UsageError for invalid options. `execution` must outlive the matcher.
@@ -92,7 +96,8 @@ class StereoMatcher {
   void match(const Photograph& left, const Photograph& right, const MatchRequest& request,
              DisparityMaps& maps, MatchReport* report = nullptr) const;
 
-  /// How the map of the left image is going to be worked off: what a report of match() says.
+  /// How the map of the left image is going to be worked off, with several levels the finest of
+  /// them: what a report of match() says.
   /// Errors as match(), without a vertical search.
   [[nodiscard]] scheduler::ChainPlan plan(const Photograph& left, const Photograph& right) const;
   /// The same for each of `executions` in place of the matcher's own; the machine stays the same.
@@ -110,7 +115,8 @@ class StereoMatcher {
                      MatchReport* report = nullptr) const;
 
   /// Working memory that is kept from call to call, as far as no call uses it at the moment:
-  /// "prepared images" and "refinement". Strips work in the scratch memory of the execution.
+  /// "prepared images", "coarse levels" and "refinement". Strips work in the scratch memory of the
+  /// execution.
   void add_memory_use(MemoryUse& use) const;
 
   [[nodiscard]] const MatchOptions& options() const { return options_; }
@@ -124,6 +130,7 @@ class StereoMatcher {
     Image<float> candidate_confidence;
     Image<float> candidate_energy;
     Image<float> energy;
+    CoarseLevels levels;
   };
   /// One map and what goes with it; confidence and disparity_y_px null where not wanted.
   struct Result {
@@ -144,8 +151,9 @@ class StereoMatcher {
                    const Result& result, MatchReport& report) const;
   void search_rows(const kernels::CandidateGeometry& geometry, const ChainInput& input,
                    Prepared& prepared, const Result& result, MatchReport& report) const;
-  void run_chain(const kernels::CandidateGeometry& geometry, const ChainInput& input,
-                 const MapOutputs& outputs, MatchReport& report) const;
+  void run_levels(const kernels::CandidateGeometry& geometry, const ChainInput& input,
+                  const MapOutputs& outputs, CoarseLevels& levels, MatchReport& report) const;
+  void run_chain(const MatchChain& chain, MatchReport& report) const;
 
   MatchOptions options_;
   MethodParameters parameters_;

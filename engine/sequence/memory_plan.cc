@@ -84,7 +84,7 @@ std::size_t rectification_bytes(const SequenceOptions& options, const PairShape&
               : 0);
 }
 
-/// What matching one frame takes beside its strips: images of what costs compare.
+/// What matching one frame takes beside its strips: images of what costs compare, coarse levels.
 std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) {
   const std::size_t pixels = pixels_of(shape.source);
   const std::size_t channels = options.match.resolved().colour == ColourUse::kChannels
@@ -92,7 +92,10 @@ std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) 
                                    : 1;
   // Levels with lower and upper bounds or gradients, of both images, and mirrored copies.
   constexpr std::size_t kPlanes = 4 * 2;
-  return pixels * channels * kPlanes * sizeof(float);
+  return pixels * channels * kPlanes * sizeof(float) +
+         coarse_level_bytes(options.match.resolved(),
+                            {shape.source.width_px, shape.source.height_px},
+                            options.match.disparities.count());
 }
 
 bool is_on_baseline(const SequenceOptions& options, const ViewPath& view) {

@@ -95,6 +95,9 @@ std::string method_text(const MatchOptions& match, const TunedImages& images) {
   const MethodParameters parameters = match.resolved();
   std::string text = fmt::format("{} {}{}", name_of(parameters.cost),
                                  name_of(parameters.aggregation), reach_of(parameters));
+  if (parameters.levels > 1) {
+    text += fmt::format(", {} levels", parameters.levels);
+  }
   if (uses_column_ssd(parameters) && !match.disparities_y) {
     text += images.is_8_bit_grey ? ", 8-bit grey" : ", any images";
   } else if (parameters.colour == ColourUse::kChannels) {

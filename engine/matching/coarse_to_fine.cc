@@ -1,0 +1,121 @@
+#include "engine/matching/coarse_to_fine.h"
+
+#include <string_view>
+
+#include "engine/matching/level_stages.h"
+#include "engine/matching/stage_level_energies.h"
+#include "engine/matching/stage_level_likelihoods.h"
+#include "scheduler/trace.h"
+
+namespace vantage {
+namespace {
+
+/// Of levels in traces.
+constexpr std::array<std::string_view, 10> kLevelNames = {
+    "level 0", "level 1", "level 2", "level 3", "level 4",
+    "level 5", "level 6", "level 7", "level 8", "level 9"};
+
+int cell_bytes(const MethodParameters& parameters) {
+  return parameters.aggregation == Aggregation::kBayes ? 1 : 2;
+}
+
+/// The costs of the next coarser level from those of a coarse one. Its rows need no strips: a block
+/// is all that a cell looks at.
+void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
+                  LevelVolume& coarser, Execution& execution) {
+  const bool is_bayes = parameters.aggregation == Aggregation::kBayes;
+  execution.for_each_band(coarser.extent().rows, [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      if (is_bayes) {
+        reduce_energy_row(finer, y, coarser);
+      } else {
+        reduce_half_energy_row(finer, y, coarser);
+      }
+    }
+  });
+}
+
+}  // namespace
+
+std::vector<scheduler::Extent> level_extents(scheduler::Extent extent, int levels) {
+  std::vector<scheduler::Extent> extents = {extent};
+  while (static_cast<int>(extents.size()) < levels) {
+    const scheduler::Extent next = coarser_extent(extents.back());
+    if (next.columns <= 1 && next.rows <= 1) {
+      break;
+    }
+    extents.push_back(next);
+  }
+  return extents;
+}
+
+void CoarseLevels::resize(const MethodParameters& parameters,
+                          const std::vector<scheduler::Extent>& extents, int lanes) {
+  costs_.resize(extents.size() - 1);
+  for (std::size_t i = 0; i < costs_.size(); ++i) {
+    costs_[i].resize(extents[i + 1], lanes, cell_bytes(parameters));
+  }
+}
+
+LevelVolume& CoarseLevels::begin_result(int level) {
+  const LevelVolume& like = costs(level);
+  LevelVolume& volume = result(level);
+  volume.resize(like.extent(), like.lanes(), like.cell_bytes());
+  return volume;
+}
+
+std::size_t CoarseLevels::held_bytes() const {
+  std::size_t bytes = results_[0].held_bytes() + results_[1].held_bytes();
+  for (const LevelVolume& volume : costs_) {
+    bytes += volume.held_bytes();
+  }
+  return bytes;
+}
+
+std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
+                               int candidates) {
+  const auto extents = level_extents(extent, parameters.levels);
+  const int lanes = kernels::CandidateGeometry{.count = candidates}.lanes();
+  std::size_t bytes = 0;
+  for (std::size_t level = 1; level < extents.size(); ++level) {
+    const std::size_t of_level = static_cast<std::size_t>(extents[level].columns) *
+                                 static_cast<std::size_t>(extents[level].rows) *
+                                 static_cast<std::size_t>(lanes * cell_bytes(parameters));
+    bytes += (level <= 2 ? 2 : 1) * of_level;
+  }
+  return bytes;
+}
+
+double match_coarse_to_fine(const MethodParameters& parameters,
+                            const kernels::CandidateGeometry& geometry, const ChainInput& input,
+                            const MapOutputs& outputs, CoarseLevels& levels, Execution& execution,
+                            const std::function<void(const MatchChain&)>& run) {
+  const auto extents =
+      level_extents({geometry.width, outputs.disparity_px.height()}, parameters.levels);
+  const int coarsest = static_cast<int>(extents.size()) - 1;
+  levels.resize(parameters, extents, geometry.lanes());
+  if (coarsest > 0) {
+    const scheduler::Span span("reduce");
+    run(MatchChain(parameters, geometry, input, outputs, {.reduced = &levels.costs(1)}));
+    for (int level = 2; level <= coarsest; ++level) {
+      reduce_level(parameters, levels.costs(level - 1), levels.costs(level), execution);
+    }
+  }
+  double columns = 0;
+  for (int level = coarsest; level >= 0; --level) {
+    const scheduler::Span span(kLevelNames[static_cast<std::size_t>(level)]);
+    const scheduler::Extent extent = extents[static_cast<std::size_t>(level)];
+    kernels::CandidateGeometry of_level = geometry;
+    of_level.width = extent.columns;
+    ChainLevel place{.coarser = level < coarsest ? &levels.result(level + 1) : nullptr};
+    if (level > 0) {
+      place.costs = &levels.costs(level);
+      place.result = &levels.begin_result(level);
+    }
+    run(MatchChain(parameters, of_level, input, outputs, place));
+    columns += static_cast<double>(extent.columns) * extent.rows;
+  }
+  return columns;
+}
+
+}  // namespace vantage

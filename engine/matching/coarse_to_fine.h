@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "engine/execution.h"
+#include "engine/matching/level_volume.h"
+#include "engine/matching/match_chain.h"
+#include "kernels/candidates.h"
+#include "scheduler/range.h"
+
+namespace vantage {
+
+/// The grids of an image of `extent` and of its coarser levels, half as many columns and rows each,
+/// rounded up: `levels` of them, or fewer where a level would be a single pixel.
+std::vector<scheduler::Extent> level_extents(scheduler::Extent extent, int levels);
+
+/// What is stored of coarse levels while one map is computed: costs of each, results of two.
+/// Working memory, reused from map to map without allocating.
+class CoarseLevels {
+ public:
+  /// For `extents` of levels, the image's own first.
+  void resize(const MethodParameters& parameters, const std::vector<scheduler::Extent>& extents,
+              int lanes);
+
+  /// level ≥ 1.
+  [[nodiscard]] LevelVolume& costs(int level) {
+    return costs_[static_cast<std::size_t>(level) - 1];
+  }
+  /// The memory is that of level + 2, whose result nobody needs any more, too.
+  [[nodiscard]] LevelVolume& result(int level) {
+    return results_[static_cast<std::size_t>(level) % 2];
+  }
+  /// Gives the result of `level` its size.
+  LevelVolume& begin_result(int level);
+
+  [[nodiscard]] std::size_t held_bytes() const;
+
+ private:
+  std::vector<LevelVolume> costs_;
+  std::array<LevelVolume, 2> results_;
+};
+
+/// What CoarseLevels takes for images of `extent` and `candidates` disparities; 0 for one level.
+std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
+                               int candidates);
+
+/// Computes one map coarse to fine (6.7): costs are reduced level by level, energies −ln p0 being
+/// added up over blocks of 2×2 columns for Bayesian diffusion and averaged for other methods. Then
+/// each level is aggregated, the coarsest first, starting from what the coarser one ended with:
+/// Bayesian diffusion with its probabilities as the first state and its own likelihoods, the
+/// membrane with its energies and the pull of its own costs, all others with the mean of their own
+/// costs and its energies. Disparities keep their number and unit on all levels. The finest level's
+/// costs come from the images, twice, and are never stored.
+///
+/// `run` is called with one chain after the other: the first reduces the image's costs, the last
+/// selects winners into `outputs`. parameters.levels > 1; geometry and outputs are the image's;
+/// input without ChainInput::pair. Returns the cell columns of all levels.
+double match_coarse_to_fine(const MethodParameters& parameters,
+                            const kernels::CandidateGeometry& geometry, const ChainInput& input,
+                            const MapOutputs& outputs, CoarseLevels& levels, Execution& execution,
+                            const std::function<void(const MatchChain&)>& run);
+
+}  // namespace vantage
