@@ -23,7 +23,8 @@ inline constexpr float kFloatToHalf = 0x1p-112F;
 /// Bits that the significand of a half float has less.
 inline constexpr int kHalfShift = 13;
 
-/// The half float nearest to `value`, the even one of two.
+/// The half float nearest to `value`, the even one of two; below 2^−14, where floats of this scale
+/// lose bits themselves, to half a step and a 2^−13th.
 inline std::uint16_t to_half(float value) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
   const float magnitude = std::min(std::bit_cast<float>(bits & 0x7FFFFFFFU), kLargestHalf);

@@ -168,8 +168,9 @@ std::vector<double> box_cascade_taps(double sigma_px) {
   return taps;
 }
 
-Volume plain_membrane(const Volume& first, double lambda, double beta, int iterations) {
-  Volume energies = first;
+Volume plain_membrane(const Volume& first, double lambda, double beta, int iterations,
+                      const Volume* start) {
+  Volume energies = start != nullptr ? *start : first;
   for (int n = 0; n < iterations; ++n) {
     Volume next = energies;
     for_each_cell(energies, [&](int x, int y, int i) {
@@ -252,10 +253,11 @@ std::vector<double> prior_kernel(int count, double sigma_prior, double epsilon_p
   return kernel;
 }
 
-Volume plain_bayes(const Volume& energies, const MethodParameters& parameters) {
+Volume plain_bayes(const Volume& energies, const MethodParameters& parameters,
+                   const Volume* start) {
   const std::vector<double> kernel =
       prior_kernel(energies.count(), parameters.sigma_prior, parameters.epsilon_prior);
-  Volume probabilities = probabilities_of(energies);
+  Volume probabilities = start != nullptr ? *start : probabilities_of(energies);
   for (int n = 0; n < parameters.iterations; ++n) {
     Volume smooth_energies = smoothed(probabilities, kernel);
     for (double& cell : smooth_energies.cells) {

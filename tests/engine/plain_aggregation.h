@@ -21,8 +21,9 @@ std::vector<double> box_cascade_taps(double sigma_px);
 
 /// (6.7), `iterations` times.
 Volume plain_diffusion(const Volume& first, double lambda, int iterations);
-/// (6.9), `iterations` times.
-Volume plain_membrane(const Volume& first, double lambda, double beta, int iterations);
+/// (6.9), `iterations` times, from `start`; null: from `first`.
+Volume plain_membrane(const Volume& first, double lambda, double beta, int iterations,
+                      const Volume* start = nullptr);
 
 /// How distinct the least cell of a column is, over all its cells: (6.13), or (6.15) with
 /// p ∝ exp(−scale · (E − Emin)). A single cell has the margin 0.
@@ -36,8 +37,10 @@ Volume plain_local_stopping(const Volume& first, double lambda, Certainty certai
 /// wP over the offsets −(D − 1) … D − 1, summing to 1 (6.33).
 std::vector<double> prior_kernel(int count, double sigma_prior, double epsilon_prior);
 
-/// Probabilities after Bayesian diffusion (6.25)–(6.37), in logarithms, for any μ.
-Volume plain_bayes(const Volume& energies, const MethodParameters& parameters);
+/// Probabilities after Bayesian diffusion (6.25)–(6.37), in logarithms, for any μ. `start`: what
+/// the first iteration takes for the probabilities; null: those of the energies.
+Volume plain_bayes(const Volume& energies, const MethodParameters& parameters,
+                   const Volume* start = nullptr);
 /// The same for μ = ½ as products (EQUATIONS §3).
 Volume plain_bayes_products(const Volume& energies, const MethodParameters& parameters);
 

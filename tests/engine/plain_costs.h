@@ -15,6 +15,8 @@ struct Volume {
   int height = 0;
   DisparityRange range;
   int direction = -1;  ///< the partner of x is x + direction · d
+  /// Cells stand for several of the images': there all candidates count as having partners.
+  bool is_coarse = false;
   std::vector<double> cells;
 
   Volume() = default;
@@ -29,7 +31,7 @@ struct Volume {
   [[nodiscard]] double at(int x, int y, int i) const { return cells[index(x, y, i)]; }
   [[nodiscard]] int partner(int x, int i) const { return x + direction * (range.min + i); }
   [[nodiscard]] bool has_partner(int x, int i) const {
-    return partner(x, i) >= 0 && partner(x, i) < width;
+    return is_coarse || (partner(x, i) >= 0 && partner(x, i) < width);
   }
 
  private:

@@ -70,35 +70,13 @@ PlainChoice choose(const Volume& energies, int x, int y, const MethodParameters&
 }  // namespace
 
 Volume plain_aggregate(const Photograph& reference, const Photograph& other, Reference reference_is,
-                       DisparityRange range, const MethodParameters& parameters) {
-  if (parameters.aggregation == Aggregation::kBayes) {
-    Volume cells = plain_bayes(
-        plain_measurement_energies(reference, other, reference_is, range, parameters), parameters);
-    for (double& cell : cells.cells) {
-      cell = -std::log(cell);
-    }
-    return cells;
-  }
-  const Volume costs = plain_costs(reference, other, reference_is, range, parameters);
-  switch (parameters.aggregation) {
-    case Aggregation::kBox:
-      return plain_box_mean(costs, parameters.window_px, parameters.border);
-    case Aggregation::kGaussian:
-      return plain_convolution(costs, gaussian_taps(parameters.aggregation_sigma_px));
-    case Aggregation::kBoxCascade:
-      return plain_convolution(costs, box_cascade_taps(parameters.aggregation_sigma_px));
-    case Aggregation::kDiffusion:
-      return plain_diffusion(costs, parameters.lambda, parameters.iterations);
-    case Aggregation::kMembrane:
-      return plain_membrane(costs, parameters.lambda, parameters.beta, parameters.iterations);
-    case Aggregation::kLocalStopping:
-      return plain_local_stopping(costs, parameters.lambda, parameters.certainty,
-                                  entropy_scale(parameters), parameters.iterations);
-    case Aggregation::kNone:
-    case Aggregation::kBayes:
-      break;
-  }
-  return costs;
+                       DisparityRange range, const MethodParameters& parameters,
+                       StoredCells stored) {
+  return plain_coarse_to_fine(
+      parameters.aggregation == Aggregation::kBayes
+          ? plain_measurement_energies(reference, other, reference_is, range, parameters)
+          : plain_costs(reference, other, reference_is, range, parameters),
+      parameters, stored);
 }
 
 PlainMap plain_select(const Volume& energies, const MethodParameters& parameters) {
@@ -116,10 +94,10 @@ DisparityRange possible_range(DisparityRange range, int width_px) {
 }
 
 PlainMap plain_match(const Photograph& left, const Photograph& right, Reference reference,
-                     DisparityRange range, const MethodParameters& parameters) {
+                     DisparityRange range, const MethodParameters& parameters, StoredCells stored) {
   const bool is_left = reference == Reference::kLeft;
   return plain_select(plain_aggregate(is_left ? left : right, is_left ? right : left, reference,
-                                      possible_range(range, left.width()), parameters),
+                                      possible_range(range, left.width()), parameters, stored),
                       parameters);
 }
 

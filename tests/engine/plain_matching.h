@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "tests/engine/plain_aggregation.h"
+#include "tests/engine/plain_levels.h"
 
 namespace vantage::testing {
 
@@ -29,7 +29,8 @@ struct PlainMap {
 
 /// Cells after aggregation, as energies (−log p for Bayes); NaN where border `valid` has no window.
 Volume plain_aggregate(const Photograph& reference, const Photograph& other, Reference reference_is,
-                       DisparityRange range, const MethodParameters& parameters);
+                       DisparityRange range, const MethodParameters& parameters,
+                       StoredCells stored = StoredCells::kCompact);
 
 /// Winner-take-all among the candidates with a partner, smallest disparity of equals, and the
 /// parabola of EQUATIONS §3.
@@ -38,7 +39,8 @@ PlainMap plain_select(const Volume& energies, const MethodParameters& parameters
 /// The whole method on one grid. Disparities that no pixel of such an image can have are left out
 /// of `range`, as the matcher does.
 PlainMap plain_match(const Photograph& left, const Photograph& right, Reference reference,
-                     DisparityRange range, const MethodParameters& parameters);
+                     DisparityRange range, const MethodParameters& parameters,
+                     StoredCells stored = StoredCells::kCompact);
 
 /// `range` without what no pixel of an image `width_px` wide can have.
 DisparityRange possible_range(DisparityRange range, int width_px);

@@ -403,6 +403,50 @@ TEST(KernelWork, OfBayesianDiffusion) {
   }
 }
 
+TEST(KernelWork, OfLikelihoodsOfLevels) {
+  const Star star;
+  expect_work(kReduceLikelihoodsWork, [&] {
+    Cells logs;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const Counted upper = most(star.up[i], 1e-9) * most(star.left[i], 1e-9);
+      const Counted lower = most(star.down[i], 1e-9) * most(star.right[i], 1e-9);
+      logs.push_back(logarithm(upper * lower));
+    }
+    const Counted top = joined(logs, -1e9, [](Counted a, Counted b) { return most(a, b); });
+    for (const Counted& log : logs) {
+      least((top - log) * 8, 255);
+    }
+  });
+  expect_cell_work(kExpandCompactWork, [] { power_of_two(Counted(7) * -0.125); });
+  expect_cell_work(kCompactProbabilitiesWork, [] {
+    least(most(logarithm(most(Counted(0.2), 1e-9)) * Counted(-11.5), 0), 255);
+  });
+  // One column is made for four.
+  for (const BayesState state : {BayesState::kSmoothed, BayesState::kProbability}) {
+    const KernelWork shared = bayes_start_from_coarser_work(state, 1);
+    const KernelWork own{4 * shared.operations, 4 * shared.operations_per_column};
+    expect_work(own, [&] {
+      Cells p;
+      for (std::size_t i = 0; i < kCount; ++i) {
+        p.push_back(power_of_two(Counted(-7) * 0.125));
+      }
+      bayes_state_of(p, state, 1);
+    });
+  }
+}
+
+TEST(KernelWork, OfEnergiesOfLevels) {
+  const auto to_half = [](Counted energy) {
+    return least(magnitude(energy), 65504) * Counted(0x1p-112) + 1 + 4095;
+  };
+  const auto of_half = [](Counted half) { return half * Counted(0x1p112); };
+  const Counted a = 3;
+  expect_cell_work(kReduceEnergiesWork, [&] { to_half(((a + a) + (a + a)) * 0.25); });
+  expect_cell_work(kHalfEnergiesWork, [&] { to_half(a * 0.5); });
+  expect_cell_work(kExpandHalfWork, [&] { of_half(a) * Counted(2); });
+  expect_cell_work(kCoarserSupportWork, [&] { Counted(0.5) * (a + of_half(a) * Counted(2)); });
+}
+
 TEST(KernelWork, OfSelections) {
   const Cells cells = made_up_cells(1);
   const auto place = [&](Counted best) {

@@ -1,0 +1,250 @@
+// Matching with several levels: against the plain transcription, and what it must not depend on.
+#include "engine/matching/coarse_to_fine.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/matching/stereo_matcher.h"
+#include "tests/engine/identical_maps.h"
+#include "tests/engine/oracle_comparison.h"
+
+namespace vantage {
+namespace {
+
+using scheduler::Extent;
+using testing::expect_equals_oracle;
+using testing::identical;
+using testing::name_of;
+using testing::PixelKind;
+using testing::plain_match;
+using testing::PlainMap;
+using testing::StoredCells;
+using testing::textured_pair;
+using testing::Tolerance;
+using testing::tolerance_of;
+
+TEST(LevelExtents, HalveAndRoundUp) {
+  const std::vector<Extent> expected = {{37, 29}, {19, 15}, {10, 8}, {5, 4}};
+  EXPECT_EQ(level_extents({37, 29}, 4), expected);
+  EXPECT_EQ(level_extents({37, 29}, 1), (std::vector<Extent>{{37, 29}}));
+}
+
+TEST(LevelExtents, LeaveOutSinglePixels) {
+  EXPECT_EQ(level_extents({1, 1}, 10), (std::vector<Extent>{{1, 1}}));
+  EXPECT_EQ(level_extents({2, 2}, 10), (std::vector<Extent>{{2, 2}}));
+  EXPECT_EQ(level_extents({1, 7}, 10), (std::vector<Extent>{{1, 7}, {1, 4}, {1, 2}}));
+  EXPECT_EQ(level_extents({5, 3}, 10), (std::vector<Extent>{{5, 3}, {3, 2}, {2, 1}}));
+}
+
+MatchOptions options_of(Aggregation aggregation, MatchCost cost, int levels, DisparityRange range) {
+  MatchOptions options;
+  options.disparities = range;
+  options.parameters.aggregation = aggregation;
+  options.parameters.cost = cost;
+  options.parameters.levels = levels;
+  options.parameters.iterations = 3;
+  options.parameters.subpixel = Subpixel::kNone;
+  if (aggregation == Aggregation::kBox) {
+    options.parameters.window_px = 5;
+  }
+  if (cost == MatchCost::kGradient) {
+    options.parameters.certainty = Certainty::kEntropy;  // there is no margin of evidence
+  }
+  return options;
+}
+
+/// Stored cells that lie half way between two steps may be rounded either way, which then changes
+/// what starts from them.
+Tolerance tolerance_with_levels(const MethodParameters& parameters) {
+  Tolerance tolerance = tolerance_of(parameters);
+  tolerance.tie = std::max(tolerance.tie, 2e-3);
+  tolerance.share = 0.99;
+  tolerance.confidence = std::max(tolerance.confidence, 2e-2);
+  tolerance.confidence_share = std::min(tolerance.confidence_share, 0.97);
+  tolerance.strays = 2;
+  return tolerance;
+}
+
+using Combination = std::tuple<Aggregation, MatchCost>;
+
+class CoarseToFine : public ::testing::TestWithParam<Combination> {};
+
+TEST_P(CoarseToFine, EqualsTheOracle) {
+  const auto [aggregation, cost] = GetParam();
+  Execution execution({.threads = 2});
+  struct Shape {
+    int width;
+    int height;
+    DisparityRange range;
+  };
+  for (const Shape& shape :
+       {Shape{1, 1, {0, 0}}, Shape{1, 7, {-2, 2}}, Shape{13, 11, {0, 4}}, Shape{13, 11, {0, 39}},
+        Shape{37, 29, {-4, 12}}, Shape{37, 29, {0, 39}}}) {
+    const auto pair = textured_pair(shape.width, shape.height, shape.range, PixelKind::kGrey8, 3);
+    for (const int levels : {2, 4}) {
+      const MatchOptions options = options_of(aggregation, cost, levels, shape.range);
+      expect_equals_oracle(pair, options, execution, tolerance_with_levels(options.resolved()),
+                           std::to_string(shape.width) + "x" + std::to_string(shape.height) + ", " +
+                               std::to_string(levels) + " levels, " +
+                               std::to_string(shape.range.count()) + " candidates");
+    }
+  }
+}
+
+/// What bytes and half floats leave out decides few pixels.
+TEST_P(CoarseToFine, StoredCellsAreExactEnough) {
+  const auto [aggregation, cost] = GetParam();
+  const DisparityRange range{0, 15};
+  const auto pair = textured_pair(61, 43, range, PixelKind::kGrey8, 4);
+  const MethodParameters parameters = options_of(aggregation, cost, 4, range).resolved();
+  const auto map_of = [&](StoredCells stored) {
+    return plain_match(pair.left, pair.right, Reference::kLeft, range, parameters, stored);
+  };
+  const PlainMap exact = map_of(StoredCells::kExact);
+  const PlainMap compact = map_of(StoredCells::kCompact);
+  std::size_t equal = 0;
+  for (std::size_t k = 0; k < exact.choices.size(); ++k) {
+    equal += exact.choices[k].winner == compact.choices[k].winner ? 1 : 0;
+  }
+  EXPECT_GE(equal, 0.99 * static_cast<double>(exact.choices.size()));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Combinations, CoarseToFine,
+    ::testing::Values(Combination{Aggregation::kBayes, MatchCost::kContaminated},
+                      Combination{Aggregation::kBayes, MatchCost::kCensus},
+                      Combination{Aggregation::kBayes, MatchCost::kGradient},
+                      Combination{Aggregation::kMembrane, MatchCost::kSquared},
+                      Combination{Aggregation::kDiffusion, MatchCost::kBirchfieldTomasi},
+                      Combination{Aggregation::kLocalStopping, MatchCost::kSquared},
+                      Combination{Aggregation::kNone, MatchCost::kAbsolute},
+                      Combination{Aggregation::kBox, MatchCost::kSquared},
+                      Combination{Aggregation::kBox, MatchCost::kGradient},
+                      Combination{Aggregation::kGaussian, MatchCost::kTruncated},
+                      Combination{Aggregation::kBoxCascade, MatchCost::kGradient}),
+    [](const auto& instance) {
+      return name_of(std::get<Aggregation>(instance.param)) + "_" +
+             name_of(std::get<MatchCost>(instance.param));
+    });
+
+DisparityMaps maps_of(const Photograph& left, const Photograph& right, const MatchOptions& options,
+                      MatchReport* report = nullptr) {
+  Execution execution({.threads = 2});
+  DisparityMaps maps;
+  StereoMatcher(options, execution).match(left, right, {.confidence = true}, maps, report);
+  return maps;
+}
+
+/// A surface of little texture at disparity 6, with noise that hides it from single pixels and
+/// their next neighbours.
+std::pair<Photograph, Photograph> weakly_textured_pair(int width, int height, int disparity_px) {
+  std::mt19937 random(5);
+  const auto noise = [&] { return static_cast<int>(random() % 13) - 6; };
+  const int wide = width + disparity_px;
+  std::vector<int> world;
+  for (int k = 0; k < wide * height; ++k) {
+    world.push_back(120 + static_cast<int>(random() % 7));
+  }
+  Image<std::uint8_t> left(width, height);
+  Image<std::uint8_t> right(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const auto seen = [&](int column) {
+        return static_cast<std::uint8_t>(world[static_cast<std::size_t>(y * wide + column)] +
+                                         noise());
+      };
+      left.at(x, y) = seen(x);
+      right.at(x, y) = seen(x + disparity_px);
+    }
+  }
+  return {Photograph{std::move(left)}, Photograph{std::move(right)}};
+}
+
+TEST(CoarseToFineMatcher, FindsWhatOnlyLargeRegionsTell) {
+  constexpr int kDisparity = 6;
+  const auto [left, right] = weakly_textured_pair(120, 90, kDisparity);
+  MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 1, {0, 15});
+  options.raw = true;
+  const auto wrong = [&](int levels, int iterations) {
+    options.parameters.levels = levels;
+    options.parameters.iterations = iterations;
+    const DisparityMaps maps = maps_of(left, right, options);
+    int count = 0;
+    for (int y = 0; y < 90; ++y) {
+      for (int x = 15; x < 120; ++x) {
+        count += maps.left.at(x, y) != kDisparity ? 1 : 0;
+      }
+    }
+    return count;
+  };
+  const int flat = wrong(1, 10);
+  const int coarse_to_fine = wrong(5, 5);
+  EXPECT_GT(flat, 90 * 105 / 10) << "an easy scene shows nothing";
+  EXPECT_LT(coarse_to_fine, flat / 10);
+}
+
+TEST(CoarseToFineMatcher, OneLevelIsFlat) {
+  const auto pair = textured_pair(2, 2, {0, 1}, PixelKind::kGrey8, 3);
+  MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 1, {0, 1});
+  const DisparityMaps flat = maps_of(pair.left, pair.right, options);
+  options.parameters.levels = 7;  // of which an image of 2×2 pixels has one
+  EXPECT_TRUE(identical(maps_of(pair.left, pair.right, options), flat));
+}
+
+TEST(CoarseToFineMatcher, CountsTheCellsOfAllLevels) {
+  const auto pair = textured_pair(37, 29, {0, 9}, PixelKind::kGrey8, 3);
+  MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 3, {0, 9});
+  options.raw = true;
+  MatchReport report;
+  maps_of(pair.left, pair.right, options, &report);
+  EXPECT_EQ(report.cells, 2.0 * 10 * (37 * 29 + 19 * 15 + 10 * 8));
+}
+
+TEST(CoarseToFineMatcher, KeepsItsWorkingMemoryFromPairToPair) {
+  Execution execution({.threads = 2});
+  MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 4, {0, 9});
+  const StereoMatcher matcher(options, execution);
+  const auto large = textured_pair(37, 29, {0, 9}, PixelKind::kGrey8, 3);
+  const auto small = textured_pair(21, 31, {0, 9}, PixelKind::kGrey8, 4);
+  DisparityMaps maps;
+  for (const auto* pair : {&large, &small, &large}) {
+    matcher.match(pair->left, pair->right, {.confidence = true}, maps);
+    EXPECT_TRUE(identical(maps, maps_of(pair->left, pair->right, options)));
+  }
+}
+
+TEST(CoarseToFineMatcher, SeveralImagesGoToo) {
+  Execution execution({.threads = 2});
+  const auto pair = textured_pair(37, 29, {0, 9}, PixelKind::kGrey8, 3);
+  MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 3, {0, 9});
+  options.raw = true;
+  DisparityMaps of_one;
+  const OtherView other{&pair.right, 1};
+  StereoMatcher(options, execution).match_several(pair.left, {&other, 1}, {}, of_one);
+  EXPECT_TRUE(identical(of_one.left, maps_of(pair.left, pair.right, options).left));
+}
+
+TEST(CoarseToFineMatcher, VerticalSearchIsRefused) {
+  Execution execution({.threads = 1});
+  MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 3, {0, 9});
+  options.disparities_y = DisparityRange{-1, 1};
+  try {
+    const StereoMatcher matcher(options, execution);
+    FAIL() << "no error";
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(),
+                 "levels is 3, expected 1 with disparities-y: coarse to fine searches along rows "
+                 "only");
+  }
+}
+
+}  // namespace
+}  // namespace vantage

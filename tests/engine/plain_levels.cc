@@ -1,0 +1,187 @@
+#include "tests/engine/plain_levels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vantage::testing {
+namespace {
+
+double entropy_scale(const MethodParameters& parameters) {
+  return 1 / (2 * parameters.sigma_measurement * parameters.sigma_measurement);
+}
+
+/// Calls visit(x, y, i) for every cell.
+template <typename Visit>
+void for_each_cell(const Volume& volume, Visit visit) {
+  for (int y = 0; y < volume.height; ++y) {
+    for (int x = 0; x < volume.width; ++x) {
+      for (int i = 0; i < volume.count(); ++i) {
+        visit(x, y, i);
+      }
+    }
+  }
+}
+
+/// Calls visit(x, y) for every column.
+template <typename Visit>
+void for_each_column(const Volume& volume, Visit visit) {
+  for (int y = 0; y < volume.height; ++y) {
+    for (int x = 0; x < volume.width; ++x) {
+      visit(x, y);
+    }
+  }
+}
+
+/// Nearest number of 11 significant bits, and of none below 2^−24: a half float.
+double nearest_half(double value) {
+  int exponent = 0;
+  std::frexp(value, &exponent);
+  const int unit = std::max(exponent - 11, -24);
+  return std::ldexp(std::nearbyint(std::ldexp(value, -unit)), unit);
+}
+
+/// Means over blocks of 2×2 columns, of those that are there.
+Volume block_means(const Volume& finer) {
+  Volume coarser = finer;
+  coarser.is_coarse = true;
+  coarser.width = (finer.width + 1) / 2;
+  coarser.height = (finer.height + 1) / 2;
+  coarser.cells.assign(static_cast<std::size_t>(coarser.width * coarser.height * finer.count()), 0);
+  for_each_cell(coarser, [&](int x, int y, int i) {
+    double sum = 0;
+    int samples = 0;
+    for (int v = 2 * y; v < std::min(2 * y + 2, finer.height); ++v) {
+      for (int u = 2 * x; u < std::min(2 * x + 2, finer.width); ++u) {
+        sum += finer.at(u, v, i);
+        ++samples;
+      }
+    }
+    coarser.at(x, y, i) = sum / samples;
+  });
+  return coarser;
+}
+
+/// −log p0 of four columns, above the least of a column.
+Volume block_sums(Volume finer, StoredCells stored) {
+  if (stored == StoredCells::kCompact && !finer.is_coarse) {
+    for (double& energy : finer.cells) {
+      energy = std::min(energy, 31 * std::log(2.0));
+    }
+  }
+  Volume coarser = block_means(finer);
+  for_each_column(coarser, [&](int x, int y) {
+    double least = coarser.at(x, y, 0);
+    for (int i = 0; i < coarser.count(); ++i) {
+      least = std::min(least, coarser.at(x, y, i));
+    }
+    for (int i = 0; i < coarser.count(); ++i) {
+      double& energy = coarser.at(x, y, i);
+      energy = 4 * (energy - least);
+      if (stored == StoredCells::kCompact) {
+        energy = std::min(std::nearbyint(8 * energy), 255.0) / 8;
+      }
+    }
+  });
+  return coarser;
+}
+
+Volume reduced(const Volume& finer, const MethodParameters& parameters, StoredCells stored) {
+  if (parameters.aggregation == Aggregation::kBayes) {
+    return block_sums(finer, stored);
+  }
+  Volume coarser = block_means(finer);
+  if (stored == StoredCells::kCompact) {
+    std::transform(coarser.cells.begin(), coarser.cells.end(), coarser.cells.begin(), nearest_half);
+  }
+  return coarser;
+}
+
+/// The result of a coarse level on the grid of the next finer one.
+Volume expanded(const Volume& coarser, const Volume& finer, const MethodParameters& parameters,
+                StoredCells stored) {
+  Volume result = finer;
+  for_each_cell(result, [&](int x, int y, int i) {
+    double energy = coarser.at(x / 2, y / 2, i);
+    if (stored == StoredCells::kCompact) {
+      if (parameters.aggregation == Aggregation::kBayes) {
+        energy = std::min(std::nearbyint(8 * energy / std::log(2.0)), 255.0) / 8 * std::log(2.0);
+      } else {
+        energy = nearest_half(energy);
+      }
+    }
+    result.at(x, y, i) = energy;
+  });
+  return result;
+}
+
+Volume plain_bayes_level(const Volume& costs, const Volume* coarser,
+                         const MethodParameters& parameters) {
+  Volume start;
+  if (coarser != nullptr) {
+    start = *coarser;
+    for_each_column(start, [&](int x, int y) {
+      double sum = 0;
+      for (int i = 0; i < start.count(); ++i) {
+        start.at(x, y, i) = std::exp(-start.at(x, y, i));
+        sum += start.at(x, y, i);
+      }
+      for (int i = 0; i < start.count(); ++i) {
+        start.at(x, y, i) /= sum;
+      }
+    });
+  }
+  Volume cells = plain_bayes(costs, parameters, coarser != nullptr ? &start : nullptr);
+  for (double& cell : cells.cells) {
+    cell = -std::log(cell);
+  }
+  return cells;
+}
+
+}  // namespace
+
+Volume plain_level(const Volume& costs, const Volume* coarser, const MethodParameters& parameters) {
+  if (parameters.aggregation == Aggregation::kBayes) {
+    return plain_bayes_level(costs, coarser, parameters);
+  }
+  if (parameters.aggregation == Aggregation::kMembrane) {
+    return plain_membrane(costs, parameters.lambda, parameters.beta, parameters.iterations,
+                          coarser);
+  }
+  Volume start = costs;
+  if (coarser != nullptr) {
+    for (std::size_t k = 0; k < start.cells.size(); ++k) {
+      start.cells[k] = (start.cells[k] + coarser->cells[k]) / 2;
+    }
+  }
+  switch (parameters.aggregation) {
+    case Aggregation::kBox:
+      return plain_box_mean(start, parameters.window_px, parameters.border);
+    case Aggregation::kGaussian:
+      return plain_convolution(start, gaussian_taps(parameters.aggregation_sigma_px));
+    case Aggregation::kBoxCascade:
+      return plain_convolution(start, box_cascade_taps(parameters.aggregation_sigma_px));
+    case Aggregation::kDiffusion:
+      return plain_diffusion(start, parameters.lambda, parameters.iterations);
+    case Aggregation::kLocalStopping:
+      return plain_local_stopping(start, parameters.lambda, parameters.certainty,
+                                  entropy_scale(parameters), parameters.iterations);
+    default:
+      return start;
+  }
+}
+
+Volume plain_coarse_to_fine(const Volume& costs, const MethodParameters& parameters,
+                            StoredCells stored) {
+  if (parameters.levels <= 1 || (costs.width <= 2 && costs.height <= 2)) {
+    return plain_level(costs, nullptr, parameters);
+  }
+  MethodParameters of_coarser = parameters;
+  --of_coarser.levels;
+  of_coarser.border = Border::kClip;
+  const Volume coarser =
+      expanded(plain_coarse_to_fine(reduced(costs, parameters, stored), of_coarser, stored), costs,
+               parameters, stored);
+  return plain_level(costs, &coarser, parameters);
+}
+
+}  // namespace vantage::testing

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "tests/engine/plain_aggregation.h"
+
+namespace vantage::testing {
+
+/// What is stored of coarse levels.
+enum class StoredCells {
+  kExact,
+  kCompact,  ///< as the matcher stores them: steps of 1/8 of logarithms, or half floats
+};
+
+/// Cells after aggregation on one grid, as energies (−log p for Bayes); NaN where border `valid`
+/// has no window. `costs`: energies, −log p0 for Bayes. `coarser`: what the next coarser level
+/// ended with, on the grid of `costs`; null: there is none.
+Volume plain_level(const Volume& costs, const Volume* coarser, const MethodParameters& parameters);
+
+/// The same of all levels, the coarsest first. Without coarse levels: plain_level().
+Volume plain_coarse_to_fine(const Volume& costs, const MethodParameters& parameters,
+                            StoredCells stored);
+
+}  // namespace vantage::testing

@@ -1,0 +1,216 @@
+#include "kernels/compact_likelihoods/compact_likelihoods.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "tests/kernels/kernel_test_utils.h"
+
+namespace vantage::kernels {
+namespace {
+
+struct Shape {
+  int columns;
+  int count;
+};
+constexpr Shape kShapes[] = {{1, 1}, {2, 3}, {3, 16}, {5, 17}, {7, 40}, {4, 64}, {3, 100}};
+
+int lanes_of(const Shape& shape) { return CandidateGeometry{.count = shape.count}.lanes(); }
+
+/// Likelihoods over many orders of magnitude, 0 in lanes that are no candidates.
+std::vector<float> random_likelihoods(const Shape& shape, double least_exponent,
+                                      std::mt19937& random) {
+  std::vector<float> cells;
+  for (int k = 0; k < shape.columns * lanes_of(shape); ++k) {
+    const double exponent = least_exponent * random_int(random, 0, 10000) / 10000;
+    cells.push_back(k % lanes_of(shape) < shape.count ? static_cast<float>(std::exp2(exponent))
+                                                      : 0.0F);
+  }
+  return cells;
+}
+
+/// Energies of the blocks of two rows, in double: −ln of products, above the least of a column.
+std::vector<double> plain_energies(const Shape& shape, const std::vector<float>& upper,
+                                   const std::vector<float>& lower) {
+  const int lanes = lanes_of(shape);
+  std::vector<double> energies;
+  for (int b = 0; b < (shape.columns + 1) / 2; ++b) {
+    const int left = 2 * b;
+    const int right = std::min(2 * b + 1, shape.columns - 1);
+    std::vector<double> column;
+    for (int i = 0; i < shape.count; ++i) {
+      const auto energy = [&](const std::vector<float>& row, int x) {
+        return -std::log(static_cast<double>(row[static_cast<std::size_t>(x * lanes + i)]));
+      };
+      column.push_back(energy(upper, left) + energy(upper, right) + energy(lower, left) +
+                       energy(lower, right));
+    }
+    const double least = *std::min_element(column.begin(), column.end());
+    for (const double energy : column) {
+      energies.push_back(energy - least);
+    }
+  }
+  return energies;
+}
+
+class CompactLikelihoods : public EveryTarget {};
+
+TEST_P(CompactLikelihoods, EnergiesOfBlocksAreSums) {
+  std::mt19937 random(1);
+  for (const Shape& shape : kShapes) {
+    for (const bool has_lower : {true, false}) {
+      const int lanes = lanes_of(shape);
+      const auto upper = random_likelihoods(shape, -20, random);
+      const auto lower = has_lower ? random_likelihoods(shape, -20, random) : upper;
+      const BlockRow<float> row{upper.data(), lower.data(), shape.columns, lanes};
+      const auto cells = static_cast<std::size_t>(row.blocks() * lanes);
+      std::vector<float> work(static_cast<std::size_t>(lanes), -7);
+      GuardedRow<std::uint8_t> actual(cells, 3, 77);
+      reduce_likelihoods_row(row, work.data(), actual.data());
+      EXPECT_TRUE(actual.intact());
+      std::vector<std::uint8_t> reference(cells);
+      reduce_likelihoods_row_ref(row, reference.data());
+      ASSERT_EQ(actual.values(), reference) << shape.columns << " columns of " << shape.count;
+      const auto plain = plain_energies(shape, upper, lower);
+      for (std::size_t k = 0; k < cells; ++k) {
+        const auto lane = static_cast<int>(k) % lanes;
+        if (lane >= shape.count) {
+          const std::size_t first = k - static_cast<std::size_t>(lane);
+          ASSERT_GE(reference[k],
+                    *std::max_element(&reference[first], &reference[first] + shape.count));
+          continue;
+        }
+        const std::size_t block = k / static_cast<std::size_t>(lanes);
+        const double energy =
+            plain[block * static_cast<std::size_t>(shape.count) + static_cast<std::size_t>(lane)];
+        ASSERT_NEAR(reference[k] * kEnergyStep, std::min(energy, kMostCompact * kEnergyStep + 0.0),
+                    kEnergyStep / 2 + 1e-4);
+      }
+    }
+  }
+}
+
+TEST_P(CompactLikelihoods, VanishingLikelihoodsStayFinite) {
+  const std::vector<float> zero(16, 0.0F);
+  std::vector<float> one_seen(16, 0.0F);
+  one_seen[3] = 1;
+  const BlockRow<float> row{one_seen.data(), zero.data(), 1, 16};
+  std::vector<float> work(16);
+  std::vector<std::uint8_t> energies(16);
+  reduce_likelihoods_row(row, work.data(), energies.data());
+  EXPECT_EQ(energies[3], 0);
+  EXPECT_EQ(energies[2], kMostCompact);
+  EXPECT_EQ(energies[15], kMostCompact);
+}
+
+TEST_P(CompactLikelihoods, CompactEnergiesOfBlocksAreSums) {
+  std::mt19937 random(2);
+  for (const Shape& shape : kShapes) {
+    const int lanes = lanes_of(shape);
+    std::vector<std::uint8_t> rows[2];
+    for (auto& cells : rows) {
+      for (int k = 0; k < shape.columns * lanes; ++k) {
+        const int most = k % 3 == 0 ? kMostCompact : 60;
+        cells.push_back(static_cast<std::uint8_t>(
+            k % lanes < shape.count ? random_int(random, 0, most) : kMostCompact));
+      }
+    }
+    for (const int lower : {0, 1}) {
+      const BlockRow<std::uint8_t> row{rows[0].data(), rows[lower].data(), shape.columns, lanes};
+      const auto cells = static_cast<std::size_t>(row.blocks() * lanes);
+      GuardedRow<std::uint8_t> actual(cells, 5, 77);
+      reduce_compact_energies_row(row, actual.data());
+      EXPECT_TRUE(actual.intact());
+      std::vector<std::uint8_t> reference(cells);
+      reduce_compact_energies_row_ref(row, reference.data());
+      ASSERT_EQ(actual.values(), reference) << shape.columns << " columns of " << shape.count;
+    }
+  }
+}
+
+TEST(CompactLikelihoodsReference, AddsUpAndSubtractsTheLeast) {
+  // Lanes 0, 1 and 2 of three columns: blocks {0, 1} and {2}.
+  std::vector<std::uint8_t> upper(48, 255);
+  std::vector<std::uint8_t> lower(48, 255);
+  const auto set = [](std::vector<std::uint8_t>& row, int column, int a, int b, int c) {
+    const int values[] = {a, b, c};
+    for (int lane = 0; lane < 3; ++lane) {
+      row[static_cast<std::size_t>(16 * column + lane)] = static_cast<std::uint8_t>(values[lane]);
+    }
+  };
+  set(upper, 0, 0, 10, 200);
+  set(upper, 1, 5, 0, 200);
+  set(lower, 0, 7, 0, 0);
+  set(lower, 1, 0, 1, 3);
+  set(upper, 2, 0, 20, 100);
+  set(lower, 2, 1, 0, 100);
+  std::vector<std::uint8_t> energies(32);
+  reduce_compact_energies_row_ref({upper.data(), lower.data(), 3, 16}, energies.data());
+  EXPECT_EQ(energies[0], 1);    // 12 − 11
+  EXPECT_EQ(energies[1], 0);    // 11
+  EXPECT_EQ(energies[2], 255);  // 403 − 11
+  EXPECT_EQ(energies[16], 0);   // 2 · (0 + 1)
+  EXPECT_EQ(energies[17], 38);  // 2 · (20 + 0) − 2
+  EXPECT_EQ(energies[18], 255);
+}
+
+TEST_P(CompactLikelihoods, ExpandToPowers) {
+  for (const Shape& shape : kShapes) {
+    const int lanes = lanes_of(shape);
+    std::vector<std::uint8_t> cells;
+    for (int k = 0; k < shape.columns * lanes; ++k) {
+      cells.push_back(static_cast<std::uint8_t>(k * 37 % 256));
+    }
+    const CompactRow row{cells.data(), shape.columns, lanes, shape.count};
+    GuardedRow<float> likelihoods(cells.size(), 1, -3);
+    GuardedRow<float> probabilities(cells.size(), 1, -3);
+    likelihoods_of_compact_row(row, likelihoods.data());
+    probabilities_of_compact_row(row, probabilities.data());
+    EXPECT_TRUE(likelihoods.intact());
+    EXPECT_TRUE(probabilities.intact());
+    std::vector<float> reference(cells.size());
+    likelihoods_of_compact_row_ref(row, reference.data());
+    ASSERT_EQ(likelihoods.values(), reference);
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const bool is_candidate = static_cast<int>(k) % lanes < shape.count;
+      const double expected = is_candidate ? std::exp(-cells[k] / 8.0) : 0;
+      ASSERT_NEAR(reference[k], expected, 1e-5 * expected);
+    }
+    probabilities_of_compact_row_ref(row, reference.data());
+    ASSERT_EQ(probabilities.values(), reference);
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const bool is_candidate = static_cast<int>(k) % lanes < shape.count;
+      const double expected = is_candidate ? std::exp2(-cells[k] / 8.0) : 0;
+      ASSERT_NEAR(reference[k], expected, 1e-5 * expected);
+    }
+  }
+}
+
+TEST_P(CompactLikelihoods, ProbabilitiesSurviveToHalfAStep) {
+  std::mt19937 random(3);
+  std::vector<float> probabilities = {0, 1, 0.5F, 1e-38F, 1e-30F, 1.0000001F, 0.999F, 0.25F};
+  while (probabilities.size() < 256) {
+    probabilities.push_back(static_cast<float>(std::exp2(-random_int(random, 0, 36000) / 1000.0)));
+  }
+  GuardedRow<std::uint8_t> compact(probabilities.size(), 7, 99);
+  compact_probabilities_row(probabilities.data(), static_cast<int>(probabilities.size()),
+                            compact.data());
+  EXPECT_TRUE(compact.intact());
+  std::vector<std::uint8_t> reference(probabilities.size());
+  compact_probabilities_row_ref(probabilities.data(), static_cast<int>(probabilities.size()),
+                                reference.data());
+  ASSERT_EQ(compact.values(), reference);
+  for (std::size_t k = 0; k < probabilities.size(); ++k) {
+    const double exponent = probabilities[k] > 0 ? -std::log2(probabilities[k]) : 1000;
+    ASSERT_NEAR(reference[k] / 8.0, std::clamp(exponent, 0.0, 255 / 8.0), 0.5 / 8 + 1e-5);
+  }
+}
+
+VANTAGE_ON_EVERY_TARGET(CompactLikelihoods);
+
+}  // namespace
+}  // namespace vantage::kernels
