@@ -37,7 +37,7 @@ const Names<MatchCost>& cost_names() {
       {"squared", MatchCost::kSquared},     {"absolute", MatchCost::kAbsolute},
       {"truncated", MatchCost::kTruncated}, {"birchfield-tomasi", MatchCost::kBirchfieldTomasi},
       {"gradient", MatchCost::kGradient},   {"contaminated", MatchCost::kContaminated},
-      {"census", MatchCost::kCensus}};
+      {"census", MatchCost::kCensus},       {"census-5x5", MatchCost::kSmallCensus}};
   return names;
 }
 

@@ -70,6 +70,8 @@ constexpr KernelWork negated_evidence_work(bool octagon, int channels) {
 }
 /// Twice exclusive or and counting the bits of bytes, and three additions of those counts.
 constexpr KernelWork hamming_work(int channels) { return compare_work(7, 2, channels); }
+/// The same of one code.
+constexpr KernelWork small_hamming_work(int channels) { return compare_work(5, 1, channels); }
 
 inline constexpr KernelWork kLikelihoodOfCostsWork = cell_work(1 + kMeasurementOperations);
 inline constexpr KernelWork kLikelihoodOfEnergiesWork = cell_work(1 + kExp2Operations);

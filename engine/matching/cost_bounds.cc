@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kWhite = 255;
 constexpr double kCensusBits = 62;
+constexpr double kSmallCensusBits = 24;
 
 /// Largest response of a gradient filter along one axis (EQUATIONS §2), with room for rounding.
 double largest_gradient(GradientFilter filter) {
@@ -38,6 +39,8 @@ CostBounds bounds_of_one(const MethodParameters& parameters) {
       return {0, static_cast<float>(-std::log(parameters.epsilon_measurement))};
     case MatchCost::kCensus:
       return {0, static_cast<float>(kCensusBits)};
+    case MatchCost::kSmallCensus:
+      return {0, static_cast<float>(kSmallCensusBits)};
     case MatchCost::kGradient: {
       // The octagon norm is at most (1.4142 + 0.0396 · 1.4142) times the larger component.
       const double longest = 1.04 * std::numbers::sqrt2 * largest_gradient(parameters.gradient);

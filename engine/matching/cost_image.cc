@@ -154,6 +154,20 @@ void prepare_census(Margins margins, Execution& execution, CostImage::Planes& pl
   });
 }
 
+void prepare_small_census(Margins margins, Execution& execution, CostImage::Planes& planes) {
+  for_each_channel(planes, [&](std::size_t c) { resize(planes.codes[c][0], planes, margins); });
+  for_each_row(planes, execution, [&](std::size_t c, int y) {
+    kernels::SmallCensusRows rows{};
+    for (int v = -kernels::kSmallCensusRadius; v <= kernels::kSmallCensusRadius; ++v) {
+      rows[static_cast<std::size_t>(v + kernels::kSmallCensusRadius)] =
+          planes.levels[c].row(std::clamp(y + v, 0, planes.height - 1));
+    }
+    FeaturePlane<std::uint32_t>& codes = planes.codes[c][0];
+    kernels::small_census_code_row(rows, planes.width, codes.plain.row(y));
+    codes.finish_row(planes.width, y, planes.has_mirrored);
+  });
+}
+
 }  // namespace
 
 CostImage::CostImage() : planes_(std::make_unique<Planes>()) {}
@@ -188,6 +202,10 @@ void CostImage::prepare(const Photograph& photograph, const MethodParameters& pa
     case MatchCost::kCensus:
       prepare_levels(photograph, execution, planes);
       prepare_census(margins, execution, planes);
+      break;
+    case MatchCost::kSmallCensus:
+      prepare_levels(photograph, execution, planes);
+      prepare_small_census(margins, execution, planes);
       break;
   }
 }

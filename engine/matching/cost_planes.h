@@ -31,7 +31,7 @@ struct FeaturePlane {
 ///   squared, absolute, truncated, contaminated:  grey levels
 ///   Birchfield–Tomasi:  grey levels, their least and largest values within half a pixel
 ///   gradient:           α·gx, α·gy, |g|/2
-/// and `codes[channel]` the two halves of census codes.
+/// and `codes[channel]` the two halves of census codes, or the small ones in the first.
 struct CostImage::Planes {
   int width = 0;
   int height = 0;

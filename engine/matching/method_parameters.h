@@ -19,6 +19,7 @@ enum class MatchCost {
   kGradient,          ///< −evidence (5.5)
   kContaminated,  ///< −log[(1−ε) exp(−ΔI²/2σ²) + ε], contaminated Gaussian (6.26 ff.)
   kCensus,        ///< Hamming distance of 9×7 census codes
+  kSmallCensus,   ///< the same of 5×5 ones: sharper, less sure where texture is weak
 };
 /// How cells gather support from their neighbours.
 enum class Aggregation {

@@ -114,12 +114,15 @@ FeaturePairs<float, kPlanes> PartnerRows::features(int y, Range columns) const {
 template FeaturePairs<float, 1> PartnerRows::features(int y, Range columns) const;
 template FeaturePairs<float, 3> PartnerRows::features(int y, Range columns) const;
 
-FeaturePairs<std::uint32_t, 2> PartnerRows::codes(int y, Range columns) const {
-  return pairs<std::uint32_t, 2>(
+template <int kPlanes>
+FeaturePairs<std::uint32_t, kPlanes> PartnerRows::codes(int y, Range columns) const {
+  return pairs<std::uint32_t, kPlanes>(
       y, columns, [](const CostImage::Planes& planes, int channel) -> const auto& {
         return planes.codes[static_cast<std::size_t>(channel)];
       });
 }
+template FeaturePairs<std::uint32_t, 1> PartnerRows::codes(int y, Range columns) const;
+template FeaturePairs<std::uint32_t, 2> PartnerRows::codes(int y, Range columns) const;
 
 FeaturePairs<float, 1> PartnerRows::grey_levels(int y, Range columns, float* work) const {
   FeaturePairs<float, 1> row = features<1>(y, columns);

@@ -44,7 +44,9 @@ class PartnerRows {
   template <int kPlanes>
   [[nodiscard]] kernels::FeaturePairs<float, kPlanes> features(int y,
                                                                scheduler::Range columns) const;
-  [[nodiscard]] kernels::FeaturePairs<std::uint32_t, 2> codes(int y,
+  /// kPlanes: 2, of small codes 1.
+  template <int kPlanes>
+  [[nodiscard]] kernels::FeaturePairs<std::uint32_t, kPlanes> codes(int y,
                                                               scheduler::Range columns) const;
   /// The first feature plane; interpolated in `work` where necessary.
   [[nodiscard]] kernels::FeaturePairs<float, 1> grey_levels(int y, scheduler::Range columns,

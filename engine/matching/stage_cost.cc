@@ -125,6 +125,8 @@ class CostStage final : public scheduler::RowStage {
         return kernels::sampling_insensitive_work(channels);
       case MatchCost::kGradient:
         return kernels::negated_evidence_work(parameters_.norm == GradientNorm::kOctagon, channels);
+      case MatchCost::kSmallCensus:
+        return kernels::small_hamming_work(channels);
       case MatchCost::kCensus:
         break;
     }
@@ -186,7 +188,10 @@ class CostStage final : public scheduler::RowStage {
                                       parameters_.norm == GradientNorm::kOctagon, cells);
         break;
       case MatchCost::kCensus:
-        kernels::hamming_row(partner.codes(y, columns), cells);
+        kernels::hamming_row(partner.codes<2>(y, columns), cells);
+        break;
+      case MatchCost::kSmallCensus:
+        kernels::hamming_row(partner.codes<1>(y, columns), cells);
         break;
     }
   }
@@ -261,6 +266,8 @@ std::string_view cost_of_whole_pixels(MatchCost cost) {
       return "gradient";
     case MatchCost::kCensus:
       return "census";
+    case MatchCost::kSmallCensus:
+      return "census-5x5";
     default:
       return {};
   }

@@ -29,6 +29,8 @@ std::string_view name_of(MatchCost cost) {
       return "contaminated";
     case MatchCost::kCensus:
       return "census";
+    case MatchCost::kSmallCensus:
+      return "census-5x5";
   }
   return "";
 }

@@ -22,12 +22,27 @@ void census_code_row(const CensusRows& rows, int width, std::uint32_t* first_hal
 void census_code_row_ref(const CensusRows& rows, int width, std::uint32_t* first_half,
                          std::uint32_t* second_half);
 
+/// The small window of census codes: 5×5.
+inline constexpr int kSmallCensusRadius = 2;
+
+/// Rows y − 2 … y + 2 of an image.
+using SmallCensusRows = std::array<const float*, 2 * kSmallCensusRadius + 1>;
+
+/// The same with the 24 neighbours in a window of 5×5, in one word. Rows are read from column −2
+/// on, up to the next multiple of kLaneMultiple and 2 columns more.
+void small_census_code_row(const SmallCensusRows& rows, int width, std::uint32_t* codes);
+void small_census_code_row_ref(const SmallCensusRows& rows, int width, std::uint32_t* codes);
+
 /// Planes: the two halves of census codes.
 using CensusPairs = FeaturePairs<std::uint32_t, 2>;
+/// Plane: small census codes.
+using SmallCensusPairs = FeaturePairs<std::uint32_t, 1>;
 
-/// Hamming distances of codes, 0..62. Of three channels: the mean. Writes columns × lanes floats,
-/// identical on every instruction set.
+/// Hamming distances of codes, 0..62; of small ones, 0..24. Of three channels: the mean. Writes
+/// columns × lanes floats, identical on every instruction set.
 void hamming_row(const CensusPairs& row, float* cells);
+void hamming_row(const SmallCensusPairs& row, float* cells);
 void hamming_row_ref(const CensusPairs& row, float* cells);
+void hamming_row_ref(const SmallCensusPairs& row, float* cells);
 
 }  // namespace vantage::kernels

@@ -19,6 +19,7 @@ using Vec = hn::VFromD<Tag>;
 using TagCode = hn::ScalableTag<std::uint32_t>;
 using VecCode = hn::VFromD<TagCode>;
 using Code = Features<std::uint32_t, 2>;
+using SmallCode = Features<std::uint32_t, 1>;
 
 // Shifts `half` to the left and puts in whether the neighbours are less than the centre.
 HWY_INLINE void append(const float* neighbours, Vec centre, VecCode& half) {
@@ -55,31 +56,74 @@ void census_codes(const CensusRows& rows, int width, std::uint32_t* first_half,
   }
 }
 
-// Bits set in the lanes of two vectors together.
-HWY_INLINE VecCode count_bits(VecCode a, VecCode b) {
-#if HWY_TARGET == HWY_SCALAR
-  return hn::Add(hn::PopulationCount(a), hn::PopulationCount(b));
-#else
+void small_census_codes(const SmallCensusRows& rows, int width, std::uint32_t* codes) {
+  const Tag d;
   const TagCode d32;
-  const hn::Repartition<std::uint8_t, TagCode> d8;
-  // The counts of four bytes are added in 32-bit lanes: none exceeds 8 bits on the way.
-  const auto of_bytes = hn::BitCast(d32, hn::Add(hn::PopulationCount(hn::BitCast(d8, a)),
-                                                 hn::PopulationCount(hn::BitCast(d8, b))));
+  for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(d))) {
+    const Vec centre = hn::LoadU(d, rows[kSmallCensusRadius] + x);
+    VecCode code = hn::Zero(d32);
+    for (int v = 0; v <= 2 * kSmallCensusRadius; ++v) {
+      for (int u = -kSmallCensusRadius; u <= kSmallCensusRadius; ++u) {
+        if (u != 0 || v != kSmallCensusRadius) {
+          append(rows[v] + x + u, centre, code);
+        }
+      }
+    }
+    hn::StoreU(code, d32, codes + x);
+  }
+}
+
+#if HWY_TARGET != HWY_SCALAR
+// Sums of the four bytes of each lane, none above 255.
+HWY_INLINE VecCode add_bytes(hn::VFromD<hn::Repartition<std::uint8_t, TagCode>> counts) {
+  const TagCode d32;
+  const VecCode of_bytes = hn::BitCast(d32, counts);
   const VecCode of_pairs = hn::Add(of_bytes, hn::ShiftRight<16>(of_bytes));
   return hn::And(hn::Add(of_pairs, hn::ShiftRight<8>(of_pairs)), hn::Set(d32, 0xFF));
+}
+#endif
+
+// Bits set in the lanes of the vectors of a code together.
+HWY_INLINE VecCode count_bits(const Code& code) {
+#if HWY_TARGET == HWY_SCALAR
+  return hn::Add(hn::PopulationCount(code[0]), hn::PopulationCount(code[1]));
+#else
+  const hn::Repartition<std::uint8_t, TagCode> d8;
+  return add_bytes(hn::Add(hn::PopulationCount(hn::BitCast(d8, code[0])),
+                           hn::PopulationCount(hn::BitCast(d8, code[1]))));
+#endif
+}
+HWY_INLINE VecCode count_bits(const SmallCode& code) {
+#if HWY_TARGET == HWY_SCALAR
+  return hn::PopulationCount(code[0]);
+#else
+  const hn::Repartition<std::uint8_t, TagCode> d8;
+  return add_bytes(hn::PopulationCount(hn::BitCast(d8, code[0])));
 #endif
 }
 
 struct Hamming {
   HWY_INLINE Vec operator()(const Code& reference, const Code& partner) const {
-    const VecCode different =
-        count_bits(hn::Xor(reference[0], partner[0]), hn::Xor(reference[1], partner[1]));
-    return hn::ConvertTo(Tag(), hn::BitCast(hn::ScalableTag<std::int32_t>(), different));
+    return distance(
+        Code{hn::Xor(reference[0], partner[0]), hn::Xor(reference[1], partner[1])});
+  }
+  HWY_INLINE Vec operator()(const SmallCode& reference, const SmallCode& partner) const {
+    return distance(SmallCode{hn::Xor(reference[0], partner[0])});
   }
   HWY_INLINE Vec finish(Vec cost) const { return cost; }
+
+ private:
+  template <class AnyCode>
+  HWY_INLINE Vec distance(const AnyCode& different) const {
+    return hn::ConvertTo(Tag(),
+                         hn::BitCast(hn::ScalableTag<std::int32_t>(), count_bits(different)));
+  }
 };
 
 void hamming(const CensusPairs& row, float* cells) { compare_row<false>(row, Hamming(), cells); }
+void small_hamming(const SmallCensusPairs& row, float* cells) {
+  compare_row<false>(row, Hamming(), cells);
+}
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -88,6 +132,8 @@ HWY_AFTER_NAMESPACE();
 namespace vantage::kernels {
 HWY_EXPORT(census_codes);
 HWY_EXPORT(hamming);
+HWY_EXPORT(small_census_codes);
+HWY_EXPORT(small_hamming);
 
 void census_code_row(const CensusRows& rows, int width, std::uint32_t* first_half,
                      std::uint32_t* second_half) {
@@ -95,6 +141,12 @@ void census_code_row(const CensusRows& rows, int width, std::uint32_t* first_hal
 }
 void hamming_row(const CensusPairs& row, float* cells) {
   HWY_DYNAMIC_DISPATCH(hamming)(row, cells);
+}
+void small_census_code_row(const SmallCensusRows& rows, int width, std::uint32_t* codes) {
+  HWY_DYNAMIC_DISPATCH(small_census_codes)(rows, width, codes);
+}
+void hamming_row(const SmallCensusPairs& row, float* cells) {
+  HWY_DYNAMIC_DISPATCH(small_hamming)(row, cells);
 }
 
 }  // namespace vantage::kernels

@@ -40,6 +40,7 @@ using Grey = Pairs<float, 1>;
 using Sampled = Pairs<float, 3>;
 using Gradients = Pairs<float, 3>;
 using Codes = Pairs<std::uint32_t, 2>;
+using SmallCodes = Pairs<std::uint32_t, 1>;
 
 struct Cells {
   AlignedValues<float> cells{kCellCount, 1000, 1e-3F, 1};
@@ -84,6 +85,13 @@ struct ImageRows {
       rows[y] = row(y);
     }
     kernels::census_code_row(rows, kWidth, first_code.data(), second_code.data());
+  }
+  void small_census() {
+    kernels::SmallCensusRows rows;
+    for (std::size_t y = 0; y < rows.size(); ++y) {
+      rows[y] = row(y);
+    }
+    kernels::small_census_code_row(rows, kWidth, first_code.data());
   }
   void bounds() { kernels::sampling_bounds_row(row(0), kWidth, first.data(), second.data()); }
 };
@@ -130,6 +138,9 @@ KernelBenchmarks cost_kernels() {
           [](Gradients& d) { kernels::negated_evidence_row(d.row, true, d.cells.data()); }),
       on_own_data<Codes>("hamming_row", "cell", kCells, per_cell(kernels::hamming_work(1), kLanes),
                          [](Codes& d) { kernels::hamming_row(d.row, d.cells.data()); }),
+      on_own_data<SmallCodes>("hamming_row/5x5", "cell", kCells,
+                              per_cell(kernels::small_hamming_work(1), kLanes),
+                              [](SmallCodes& d) { kernels::hamming_row(d.row, d.cells.data()); }),
       cells("likelihood_of_costs", kernels::kLikelihoodOfCostsWork,
             [model](Cells& d) { kernels::likelihood_of_costs(d.row, model, d.cells.data()); }),
       cells("likelihood_of_energies", kernels::kLikelihoodOfEnergiesWork,
@@ -142,6 +153,8 @@ KernelBenchmarks cost_kernels() {
       pixels("separable_filter_row", {18, 48}, [](ImageRows& d) { d.filter(); }),
       pixels("evidence_planes_row/L2", {7, 20}, [](ImageRows& d) { d.evidence_planes(); }),
       pixels("census_code_row", {62 * 3, 62 * 4 + 4 + 8}, [](ImageRows& d) { d.census(); }),
+      pixels("census_code_row/5x5", {24 * 3, 24 * 4 + 4 + 4},
+             [](ImageRows& d) { d.small_census(); }),
       pixels("sampling_bounds_row", {8, 20}, [](ImageRows& d) { d.bounds(); }),
   };
 }

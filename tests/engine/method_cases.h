@@ -40,6 +40,10 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
     p.cost = MatchCost::kCensus;
     p.window_px = 5;
   });
+  add("small_census_cascade", MatchMethod::kSsd, [](MethodOverrides& p) {
+    p.cost = MatchCost::kSmallCensus;
+    p.aggregation = Aggregation::kBoxCascade;
+  });
   add("birchfield_tomasi_none", MatchMethod::kSsd, [](MethodOverrides& p) {
     p.cost = MatchCost::kBirchfieldTomasi;
     p.aggregation = Aggregation::kNone;

@@ -298,6 +298,8 @@ std::string name_of(MatchCost cost) {
       return "contaminated";
     case MatchCost::kCensus:
       return "census";
+    case MatchCost::kSmallCensus:
+      return "small_census";
   }
   return "?";
 }

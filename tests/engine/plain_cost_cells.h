@@ -154,10 +154,14 @@ class PlainCostCells {
         const double by = b.gradient.y.at(whole, partner_y);
         return parameters_.alpha * length(ax - bx, ay - by) - (length(ax, ay) + length(bx, by)) / 2;
       }
-      case MatchCost::kCensus: {
+      case MatchCost::kCensus:
+      case MatchCost::kSmallCensus: {
+        const bool is_small = parameters_.cost == MatchCost::kSmallCensus;
+        const int columns = is_small ? 2 : 4;
+        const int rows = is_small ? 2 : 3;
         int different = 0;
-        for (int v = -3; v <= 3; ++v) {
-          for (int u = -4; u <= 4; ++u) {
+        for (int v = -rows; v <= rows; ++v) {
+          for (int u = -columns; u <= columns; ++u) {
             different +=
                 (a.level.at(x + u, y + v) < a.level.at(x, y)) !=
                         (b.level.at(whole + u, partner_y + v) < b.level.at(whole, partner_y))

@@ -64,11 +64,15 @@ double distance_to_interval(double value, const Plane& plane, int x, int y) {
   return std::max({0.0, value - most, least - value});
 }
 
-/// Which of the 62 neighbours in a window of 9 × 7 are darker than its centre.
-std::vector<bool> census_code(const Plane& plane, int x, int y) {
+/// Which of the neighbours in a window reaching this far are darker than its centre.
+struct CensusWindow {
+  int columns;
+  int rows;
+};
+std::vector<bool> census_code(const Plane& plane, int x, int y, CensusWindow window) {
   std::vector<bool> code;
-  for (int v = -3; v <= 3; ++v) {
-    for (int u = -4; u <= 4; ++u) {
+  for (int v = -window.rows; v <= window.rows; ++v) {
+    for (int u = -window.columns; u <= window.columns; ++u) {
       if (u != 0 || v != 0) {
         code.push_back(plane.at(x + u, y + v) < plane.at(x, y));
       }
@@ -77,9 +81,9 @@ std::vector<bool> census_code(const Plane& plane, int x, int y) {
   return code;
 }
 
-double census_distance(const Channel& channel, int x, int partner, int y) {
-  const std::vector<bool> a = census_code(channel.reference, x, y);
-  const std::vector<bool> b = census_code(channel.other, partner, y);
+double census_distance(const Channel& channel, int x, int partner, int y, CensusWindow window) {
+  const std::vector<bool> a = census_code(channel.reference, x, y, window);
+  const std::vector<bool> b = census_code(channel.other, partner, y, window);
   int different = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     different += a[i] != b[i] ? 1 : 0;
@@ -123,7 +127,9 @@ double cost_of_channel(const Channel& channel, int x, int partner, int y,
     case MatchCost::kContaminated:
       return contaminated(difference * difference, parameters);
     case MatchCost::kCensus:
-      return census_distance(channel, x, partner, y);
+      return census_distance(channel, x, partner, y, {.columns = 4, .rows = 3});
+    case MatchCost::kSmallCensus:
+      return census_distance(channel, x, partner, y, {.columns = 2, .rows = 2});
   }
   return std::numeric_limits<double>::quiet_NaN();
 }

@@ -67,6 +67,8 @@ TEST(PlainCosts, ByHand) {
   // on the centre row eight, on the six rows that replicate it eight each. Of 50: the same but 200.
   // Columns of right around 1: 12 12 12 12 | 50 | 25 200 200 200. Three columns differ, seven rows.
   EXPECT_DOUBLE_EQ(cost_at(MatchCost::kCensus, left, right, 2, 1), 21);
+  // Of 10 20 | 60 | 30 30 all are darker, of 12 12 | 50 | 25 200 all but one, on five rows.
+  EXPECT_DOUBLE_EQ(cost_at(MatchCost::kSmallCensus, left, right, 2, 1), 5);
 }
 
 TEST(PlainCosts, ColourAndDepths) {

@@ -29,7 +29,7 @@ using testing::PlainPartner;
 constexpr MatchCost kCosts[] = {MatchCost::kSquared,   MatchCost::kAbsolute,
                                 MatchCost::kTruncated, MatchCost::kBirchfieldTomasi,
                                 MatchCost::kGradient,  MatchCost::kContaminated,
-                                MatchCost::kCensus};
+                                MatchCost::kCensus,    MatchCost::kSmallCensus};
 constexpr MatchCost kCostsOfGreyLevels[] = {MatchCost::kSquared, MatchCost::kAbsolute,
                                             MatchCost::kTruncated, MatchCost::kContaminated};
 constexpr CellMeaning kMeanings[] = {CellMeaning::kEnergy, CellMeaning::kLikelihood};
@@ -187,6 +187,7 @@ class StageCost : public ::testing::Test {
       case MatchCost::kGradient:
         return 1e-3;
       case MatchCost::kCensus:
+      case MatchCost::kSmallCensus:
         return partners * 1e-5;
       default:
         return partners * 1e-4;
@@ -407,7 +408,8 @@ TEST_F(StageCost, RefusesBaselinesItCannotServe) {
   test.partners[0].ratio = .5;
   for (const auto& [cost, name] :
        {std::pair{MatchCost::kBirchfieldTomasi, "birchfield-tomasi"},
-        std::pair{MatchCost::kGradient, "gradient"}, std::pair{MatchCost::kCensus, "census"}}) {
+        std::pair{MatchCost::kGradient, "gradient"}, std::pair{MatchCost::kCensus, "census"},
+        std::pair{MatchCost::kSmallCensus, "census-5x5"}}) {
     test.parameters.cost = cost;
     try {
       make_stage(test);

@@ -67,7 +67,35 @@ TEST_P(Census, Codes) {
   }
 }
 
-TEST_P(Census, HammingDistance) {
+TEST_P(Census, SmallCodes) {
+  for (const int width : {1, 2, 15, 16, 17, 40}) {
+    const Window window(width);
+    const SmallCensusRows rows = {window.rows[1], window.rows[2], window.rows[3], window.rows[4],
+                                  window.rows[5]};
+    const auto padded = static_cast<std::size_t>((width + 15) / 16 * 16);
+    GuardedRow<std::uint32_t> codes(padded, 1, 0xABCDU);
+    small_census_code_row(rows, width, codes.data());
+    std::vector<std::uint32_t> codes_ref(padded);
+    small_census_code_row_ref(rows, width, codes_ref.data());
+    for (int x = 0; x < width; ++x) {
+      const auto k = static_cast<std::size_t>(x);
+      ASSERT_EQ(codes.values()[k], codes_ref[k]);
+      int bit = 23;
+      for (const float* row : rows) {
+        for (int u = -2; u <= 2; ++u) {
+          if (row != rows[2] || u != 0) {
+            ASSERT_EQ((codes_ref[k] >> bit--) & 1U, row[x + u] < rows[2][x] ? 1U : 0U);
+          }
+        }
+      }
+      ASSERT_EQ(codes_ref[k] >> 24U, 0U);
+    }
+    EXPECT_TRUE(codes.intact());
+  }
+}
+
+template <int kPlanes>
+void expect_hamming_distances() {
   const auto draw = [](std::mt19937& random) -> std::uint32_t {
     switch (random() % 6) {
       case 0:
@@ -78,7 +106,8 @@ TEST_P(Census, HammingDistance) {
         return static_cast<std::uint32_t>(random());
     }
   };
-  for_each_feature_rows<std::uint32_t, 2>(draw, [](const CensusPairs& row) {
+  using Pairs = FeaturePairs<std::uint32_t, kPlanes>;
+  for_each_feature_rows<std::uint32_t, kPlanes>(draw, [](const Pairs& row) {
     const auto cells = equal_cells(
         cell_count(row), [&](float* out) { hamming_row(row, out); },
         [&](float* out) { hamming_row_ref(row, out); });
@@ -87,7 +116,7 @@ TEST_P(Census, HammingDistance) {
         int different = 0;
         for (int c = 0; c < row.channels; ++c) {
           const auto& [a, b] = row.channel[static_cast<std::size_t>(c)];
-          for (std::size_t p = 0; p < 2; ++p) {
+          for (std::size_t p = 0; p < kPlanes; ++p) {
             for (int bit = 0; bit < 32; ++bit) {
               different += static_cast<int>(((a[p][j] >> bit) & 1U) ^
                                             ((b[p][j * row.partner_step + i] >> bit) & 1U));
@@ -100,6 +129,9 @@ TEST_P(Census, HammingDistance) {
     }
   });
 }
+
+TEST_P(Census, HammingDistance) { expect_hamming_distances<2>(); }
+TEST_P(Census, SmallHammingDistance) { expect_hamming_distances<1>(); }
 
 }  // namespace
 }  // namespace vantage::kernels
