@@ -37,7 +37,8 @@ const Names<MatchCost>& cost_names() {
       {"squared", MatchCost::kSquared},     {"absolute", MatchCost::kAbsolute},
       {"truncated", MatchCost::kTruncated}, {"birchfield-tomasi", MatchCost::kBirchfieldTomasi},
       {"gradient", MatchCost::kGradient},   {"contaminated", MatchCost::kContaminated},
-      {"census", MatchCost::kCensus},       {"census-5x5", MatchCost::kSmallCensus}};
+      {"census", MatchCost::kCensus},       {"census-5x5", MatchCost::kSmallCensus},
+      {"combined", MatchCost::kCombined}};
   return names;
 }
 
@@ -97,13 +98,24 @@ void add_cost_settings(Settings& settings, MethodOverrides& parameters) {
                              "which the costs are averaged; auto: luma");
   settings.number("truncation", parameters.truncation, "T",
                   "Cost truncated: its most, in grey levels, above 0; " + shared(book.truncation));
-  settings.number("sigma-measurement", parameters.sigma_measurement, "S",
-                  "Cost contaminated, aggregation bayes, certainty entropy: the noise in grey "
-                  "levels, above 0; " +
-                      shared(book.sigma_measurement));
-  settings.number("epsilon-measurement", parameters.epsilon_measurement, "E",
-                  "Cost contaminated, aggregation bayes: the share of outliers, between 0 and 1; " +
-                      shared(book.epsilon_measurement));
+  settings.number(
+      "sigma-measurement", parameters.sigma_measurement, "S",
+      "Cost contaminated or combined, aggregation bayes, certainty entropy: the noise in "
+      "grey levels, above 0; " +
+          shared(book.sigma_measurement));
+  settings.number(
+      "epsilon-measurement", parameters.epsilon_measurement, "E",
+      "Cost contaminated or combined, aggregation bayes: the share of outliers, between "
+      "0 and 1; " +
+          shared(book.epsilon_measurement));
+  settings.number("sigma-census", parameters.sigma_census, "S",
+                  "Cost combined: how many census bits differ by noise, as a share of all, at most "
+                  "1; 0 leaves them out; " +
+                      shared(book.sigma_census));
+  settings.number("sigma-gradient", parameters.sigma_gradient, "S",
+                  "Cost combined: the noise of gradients in grey levels per pixel; 0 leaves them "
+                  "out; " +
+                      shared(book.sigma_gradient));
   add_gradient_settings(settings, parameters);
 }
 

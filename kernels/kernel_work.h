@@ -73,6 +73,18 @@ constexpr KernelWork hamming_work(int channels) { return compare_work(7, 2, chan
 /// The same of one code.
 constexpr KernelWork small_hamming_work(int channels) { return compare_work(5, 1, channels); }
 
+/// Of grey levels two distances of three operations and the least of them; of gradients two
+/// differences of two joined by or, and their sum; both scaled and cut off to steps. Then the sum
+/// or product of the terms, and two operations that make floats of them. Planes but those of codes
+/// are 16-bit.
+constexpr KernelWork combined_work(int channels, bool has_census, bool has_gradient) {
+  const double levels = 3.0 / 2 * channels;
+  const KernelWork grey = {7.0 * channels + (channels - 1) + 2 + 2, 0, levels + 1, levels};
+  const KernelWork census = {7 + 1, 0, 2, 2};
+  const KernelWork gradient = {7 + 2 + 1, 0, 1, 1};
+  return grey + (has_census ? census : KernelWork{}) + (has_gradient ? gradient : KernelWork{});
+}
+
 inline constexpr KernelWork kLikelihoodOfCostsWork = cell_work(1 + kMeasurementOperations);
 inline constexpr KernelWork kLikelihoodOfEnergiesWork = cell_work(1 + kExp2Operations);
 /// The least of the column first.

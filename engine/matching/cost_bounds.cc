@@ -4,12 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/matching/combined_terms.h"
+#include "kernels/census/census.h"
+
 namespace vantage {
 namespace {
 
 constexpr double kWhite = 255;
-constexpr double kCensusBits = 62;
-constexpr double kSmallCensusBits = 24;
 
 /// Largest response of a gradient filter along one axis (EQUATIONS §2), with room for rounding.
 double largest_gradient(GradientFilter filter) {
@@ -38,9 +39,13 @@ CostBounds bounds_of_one(const MethodParameters& parameters) {
     case MatchCost::kContaminated:
       return {0, static_cast<float>(-std::log(parameters.epsilon_measurement))};
     case MatchCost::kCensus:
-      return {0, static_cast<float>(kCensusBits)};
+      return {0, static_cast<float>(kernels::kCensusBits)};
     case MatchCost::kSmallCensus:
-      return {0, static_cast<float>(kSmallCensusBits)};
+      return {0, static_cast<float>(kernels::kSmallCensusBits)};
+    case MatchCost::kCombined:
+      // Each of three terms is rounded to whole units.
+      return {0, static_cast<float>(largest_combined_energy(parameters) +
+                                    3.0 / kernels::kEnergyUnitsPerNat)};
     case MatchCost::kGradient: {
       // The octagon norm is at most (1.4142 + 0.0396 · 1.4142) times the larger component.
       const double longest = 1.04 * std::numbers::sqrt2 * largest_gradient(parameters.gradient);

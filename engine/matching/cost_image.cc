@@ -5,6 +5,7 @@
 #include "engine/matching/image_gradient.h"
 #include "engine/matching/stage_cost.h"
 #include "kernels/census/census.h"
+#include "kernels/combined_cost/fixed_planes.h"
 #include "kernels/evidence/evidence.h"
 #include "kernels/pixel_cost/pixel_cost.h"
 
@@ -135,22 +136,93 @@ void prepare_gradients(const MethodParameters& parameters, Margins margins, Exec
   });
 }
 
+using CodePlanes = std::array<FeaturePlane<std::uint32_t>, 2>;
+
+void resize_codes(const CostImage::Planes& planes, Margins margins, CodePlanes& codes) {
+  for (FeaturePlane<std::uint32_t>& half : codes) {
+    resize(half, planes, margins);
+  }
+}
+
+void code_row(const CostImage::Planes& planes, const IntensityPlane<float>& levels, int y,
+              CodePlanes& codes) {
+  kernels::CensusRows rows{};
+  for (int v = -kernels::kCensusRadiusY; v <= kernels::kCensusRadiusY; ++v) {
+    rows[static_cast<std::size_t>(v + kernels::kCensusRadiusY)] =
+        levels.row(std::clamp(y + v, 0, planes.height - 1));
+  }
+  auto& [first_half, second_half] = codes;
+  kernels::census_code_row(rows, planes.width, first_half.plain.row(y), second_half.plain.row(y));
+  first_half.finish_row(planes.width, y, planes.has_mirrored);
+  second_half.finish_row(planes.width, y, planes.has_mirrored);
+}
+
 void prepare_census(Margins margins, Execution& execution, CostImage::Planes& planes) {
+  for_each_channel(planes, [&](std::size_t c) { resize_codes(planes, margins, planes.codes[c]); });
+  for_each_row(planes, execution, [&](std::size_t c, int y) {
+    code_row(planes, planes.levels[c], y, planes.codes[c]);
+  });
+}
+
+void prepare_fixed_levels(Margins margins, Execution& execution, CostImage::Planes& planes) {
   for_each_channel(planes, [&](std::size_t c) {
-    for (FeaturePlane<std::uint32_t>& half : planes.codes[c]) {
-      resize(half, planes, margins);
+    for (FeaturePlane<std::uint16_t>& plane : planes.fixed_levels[c]) {
+      resize(plane, planes, margins);
     }
   });
   for_each_row(planes, execution, [&](std::size_t c, int y) {
-    kernels::CensusRows rows{};
-    for (int v = -kernels::kCensusRadiusY; v <= kernels::kCensusRadiusY; ++v) {
-      rows[static_cast<std::size_t>(v + kernels::kCensusRadiusY)] =
-          planes.levels[c].row(std::clamp(y + v, 0, planes.height - 1));
+    auto& [level, least, most] = planes.fixed_levels[c];
+    kernels::fixed_levels_row(planes.levels[c].row(y), planes.width,
+                              {level.plain.row(y), least.plain.row(y), most.plain.row(y)});
+    for (FeaturePlane<std::uint16_t>& plane : planes.fixed_levels[c]) {
+      plane.finish_row(planes.width, y, planes.has_mirrored);
     }
-    auto& [first_half, second_half] = planes.codes[c];
-    kernels::census_code_row(rows, planes.width, first_half.plain.row(y), second_half.plain.row(y));
-    first_half.finish_row(planes.width, y, planes.has_mirrored);
-    second_half.finish_row(planes.width, y, planes.has_mirrored);
+  });
+}
+
+void fixed_gradient_row(const CostImage::Planes& planes, const IntensityPlane<float>& levels, int y,
+                        std::array<FeaturePlane<std::uint16_t>, 2>& gradients) {
+  auto& [gx, gy] = gradients;
+  kernels::fixed_gradient_row(levels.row(std::max(0, y - 1)), levels.row(y),
+                              levels.row(std::min(planes.height - 1, y + 1)), planes.width,
+                              gx.plain.row(y), gy.plain.row(y));
+  gx.finish_row(planes.width, y, planes.has_mirrored);
+  gy.finish_row(planes.width, y, planes.has_mirrored);
+}
+
+/// Grey levels of the channels, codes and gradients of luma.
+void prepare_combined(const Photograph& photograph, const MethodParameters& parameters,
+                      Margins margins, Execution& execution, CostImage::Planes& planes) {
+  prepare_fixed_levels(margins, execution, planes);
+  const bool has_census = parameters.sigma_census > 0;
+  const bool has_gradient = parameters.sigma_gradient > 0;
+  if (planes.channels > 1 && (has_census || has_gradient)) {
+    planes.luma.resize(planes.width, planes.height, kFilterMarginBefore, kFilterMarginBehind);
+    execution.for_each_band(planes.height, [&](int first_row, int end_row) {
+      for (int y = first_row; y < end_row; ++y) {
+        grey_levels_row(photograph, y, planes.luma.row(y));
+        planes.luma.fill_margins(y);
+      }
+    });
+  }
+  const IntensityPlane<float>& luma = planes.channels > 1 ? planes.luma : planes.levels[0];
+  if (has_census) {
+    resize_codes(planes, margins, planes.codes[0]);
+  }
+  for (FeaturePlane<std::uint16_t>& plane : planes.fixed_gradients) {
+    if (has_gradient) {
+      resize(plane, planes, margins);
+    }
+  }
+  execution.for_each_band(planes.height, [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      if (has_census) {
+        code_row(planes, luma, y, planes.codes[0]);
+      }
+      if (has_gradient) {
+        fixed_gradient_row(planes, luma, y, planes.fixed_gradients);
+      }
+    }
   });
 }
 
@@ -207,24 +279,30 @@ void CostImage::prepare(const Photograph& photograph, const MethodParameters& pa
       prepare_levels(photograph, execution, planes);
       prepare_small_census(margins, execution, planes);
       break;
+    case MatchCost::kCombined:
+      prepare_levels(photograph, execution, planes);
+      prepare_combined(photograph, parameters, margins, execution, planes);
+      break;
   }
 }
 
 std::size_t CostImage::held_bytes() const {
   std::size_t bytes = 0;
-  const auto add = [&bytes](const auto& planes_of_channels) {
-    for (const auto& planes : planes_of_channels) {
-      for (const auto& plane : planes) {
-        bytes += plane.plain.held_bytes() + plane.mirrored.held_bytes();
-      }
+  const auto add = [&bytes](const auto& planes) {
+    for (const auto& plane : planes) {
+      bytes += plane.plain.held_bytes() + plane.mirrored.held_bytes();
     }
   };
-  add(planes_->features);
-  add(planes_->codes);
+  for (std::size_t c = 0; c < planes_->features.size(); ++c) {
+    add(planes_->features[c]);
+    add(planes_->codes[c]);
+    add(planes_->fixed_levels[c]);
+  }
+  add(planes_->fixed_gradients);
   for (std::size_t c = 0; c < planes_->levels.size(); ++c) {
     bytes += planes_->levels[c].held_bytes() + planes_->smooth_levels[c].held_bytes();
   }
-  return bytes;
+  return bytes + planes_->luma.held_bytes();
 }
 
 }  // namespace vantage

@@ -31,7 +31,9 @@ struct FeaturePlane {
 ///   squared, absolute, truncated, contaminated:  grey levels
 ///   Birchfield–Tomasi:  grey levels, their least and largest values within half a pixel
 ///   gradient:           α·gx, α·gy, |g|/2
-/// and `codes[channel]` the two halves of census codes, or the small ones in the first.
+/// and `codes[channel]` the two halves of census codes, or small ones in the first. Combined:
+/// `fixed_levels[channel]` holds 16-bit grey levels and their bounds, `codes[0]` the luma's codes,
+/// `fixed_gradients` its gradient.
 struct CostImage::Planes {
   int width = 0;
   int height = 0;
@@ -39,9 +41,12 @@ struct CostImage::Planes {
   bool has_mirrored = false;
   std::array<std::array<FeaturePlane<float>, 3>, 3> features;
   std::array<std::array<FeaturePlane<std::uint32_t>, 2>, 3> codes;
+  std::array<std::array<FeaturePlane<std::uint16_t>, 3>, 3> fixed_levels;
+  std::array<FeaturePlane<std::uint16_t>, 2> fixed_gradients;
   /// What features are made of where they are not the grey levels themselves.
   std::array<IntensityPlane<float>, 3> levels;
   std::array<IntensityPlane<float>, 3> smooth_levels;
+  IntensityPlane<float> luma;  ///< combined cost of colour channels: what codes are made of
 };
 
 }  // namespace vantage

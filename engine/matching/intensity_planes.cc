@@ -105,6 +105,7 @@ void IntensityPlane<Pixel>::fill_margins(int y) {
 }
 
 template class IntensityPlane<std::uint8_t>;
+template class IntensityPlane<std::uint16_t>;
 template class IntensityPlane<std::uint32_t>;
 template class IntensityPlane<float>;
 

@@ -14,7 +14,8 @@ namespace vantage {
 
 /// One image's intensities as matching costs read them: rows with margins, so that every lane of
 /// every candidate can be loaded, and optionally mirrored, so that the partners of growing
-/// disparities lie at growing addresses. Pixel is uint8_t or float, or uint32_t for census codes.
+/// disparities lie at growing addresses. Pixel is uint8_t or float, or an
+/// unsigned integer of what costs are made of.
 template <typename Pixel>
 class IntensityPlane {
  public:

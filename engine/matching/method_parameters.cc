@@ -34,6 +34,8 @@ constexpr MethodParameters kCommon{
     .epsilon_prior = 0.01,
     .sigma_measurement = 5,
     .epsilon_measurement = 0.1,
+    .sigma_census = 0.2,
+    .sigma_gradient = 0,
     .truncation = 20,
     .alpha = 1,
     .norm = GradientNorm::kL2,
@@ -76,6 +78,8 @@ void take_over(const MethodParametersOf<From>& overrides, MethodParametersOf<To>
   take(overrides.epsilon_prior, target.epsilon_prior);
   take(overrides.sigma_measurement, target.sigma_measurement);
   take(overrides.epsilon_measurement, target.epsilon_measurement);
+  take(overrides.sigma_census, target.sigma_census);
+  take(overrides.sigma_gradient, target.sigma_gradient);
   take(overrides.truncation, target.truncation);
   take(overrides.alpha, target.alpha);
   take(overrides.norm, target.norm);
@@ -198,6 +202,11 @@ void validate(const MethodParameters& parameters) {
           parameters.sigma_measurement, "a number of grey levels above 0");
   require(is_probability(parameters.epsilon_measurement), "epsilon-measurement",
           parameters.epsilon_measurement, "a number between 0 and 1, both excluded");
+  require(parameters.sigma_census >= 0 && parameters.sigma_census <= 1, "sigma-census",
+          parameters.sigma_census, "a share of bits from 0, which leaves the term out, to 1");
+  require(parameters.sigma_gradient >= 0 && std::isfinite(parameters.sigma_gradient),
+          "sigma-gradient", parameters.sigma_gradient,
+          "a number of grey levels per pixel, at least 0, which leaves the term out");
   require(is_positive(parameters.truncation), "truncation", parameters.truncation,
           "a number of grey levels above 0");
   require(parameters.alpha >= 0 && std::isfinite(parameters.alpha), "alpha", parameters.alpha,

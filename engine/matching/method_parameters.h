@@ -20,6 +20,7 @@ enum class MatchCost {
   kContaminated,  ///< −log[(1−ε) exp(−ΔI²/2σ²) + ε], contaminated Gaussian (6.26 ff.)
   kCensus,        ///< Hamming distance of 9×7 census codes
   kSmallCensus,   ///< the same of 5×5 ones: sharper, less sure where texture is weak
+  kCombined,      ///< Σ −log of contaminated Gaussians: grey levels, census, gradients
 };
 /// How cells gather support from their neighbours.
 enum class Aggregation {
@@ -62,14 +63,17 @@ struct MethodParametersOf {
   /// Coarse to fine, 1..10: `iterations` at each level, from an image of 1/2^(levels − 1) of the
   /// size to the image itself; levels that would be a single pixel are left out. 1: flat.
   Field<int> levels;
-  Field<double> lambda;             ///< step: 0 < λ < ¼; membrane: λ ≤ 1/(4+β)
-  Field<double> beta;               ///< membrane: pull towards the first cost, ≥ 0
-  Field<Certainty> certainty;       ///< local stopping
-  Field<double> mu;                 ///< Bayes: weight of the neighbours, 0 < μ ≤ 1
-  Field<double> sigma_prior;        ///< Bayes: σP in pixels of disparity, > 0
-  Field<double> epsilon_prior;      ///< Bayes: εP, inside (0, 1)
-  Field<double> sigma_measurement;  ///< σM in grey levels, > 0: contaminated cost, Bayes, entropy
-  Field<double> epsilon_measurement;  ///< εM, inside (0, 1): contaminated cost, Bayes
+  Field<double> lambda;         ///< step: 0 < λ < ¼; membrane: λ ≤ 1/(4+β)
+  Field<double> beta;           ///< membrane: pull towards the first cost, ≥ 0
+  Field<Certainty> certainty;   ///< local stopping
+  Field<double> mu;             ///< Bayes: weight of the neighbours, 0 < μ ≤ 1
+  Field<double> sigma_prior;    ///< Bayes: σP in pixels of disparity, > 0
+  Field<double> epsilon_prior;  ///< Bayes: εP, inside (0, 1)
+  /// σM in grey levels, > 0: contaminated and combined cost, Bayes, entropy.
+  Field<double> sigma_measurement;
+  Field<double> epsilon_measurement;  ///< εM, inside (0, 1): the same
+  Field<double> sigma_census;  ///< combined cost: σ of the share of census bits, 0..1; 0: no term
+  Field<double> sigma_gradient;  ///< combined cost: σ in grey levels per pixel, ≥ 0; 0: no term
 
   Field<double> truncation;  ///< truncated cost: grey levels, > 0
   Field<double> alpha;       ///< gradient evidence: weight of the gradients' difference, ≥ 0

@@ -82,10 +82,10 @@ CandidateRange PartnerRows::columns_with_all_partners() const {
 }
 
 template <typename T, int kPlanes, typename PlanesOfChannel>
-FeaturePairs<T, kPlanes> PartnerRows::pairs(int y, Range columns,
+FeaturePairs<T, kPlanes> PartnerRows::pairs(int y, Range columns, int channels,
                                             const PlanesOfChannel& planes_of_channel) const {
   FeaturePairs<T, kPlanes> row;
-  row.channels = channels();
+  row.channels = channels;
   row.partner_step = step();
   row.columns = columns.size();
   row.lanes = geometry_.lanes();
@@ -107,7 +107,7 @@ FeaturePairs<T, kPlanes> PartnerRows::pairs(int y, Range columns,
 template <int kPlanes>
 FeaturePairs<float, kPlanes> PartnerRows::features(int y, Range columns) const {
   return pairs<float, kPlanes>(
-      y, columns, [](const CostImage::Planes& planes, int channel) -> const auto& {
+      y, columns, channels(), [](const CostImage::Planes& planes, int channel) -> const auto& {
         return planes.features[static_cast<std::size_t>(channel)];
       });
 }
@@ -117,12 +117,33 @@ template FeaturePairs<float, 3> PartnerRows::features(int y, Range columns) cons
 template <int kPlanes>
 FeaturePairs<std::uint32_t, kPlanes> PartnerRows::codes(int y, Range columns) const {
   return pairs<std::uint32_t, kPlanes>(
-      y, columns, [](const CostImage::Planes& planes, int channel) -> const auto& {
+      y, columns, channels(), [](const CostImage::Planes& planes, int channel) -> const auto& {
         return planes.codes[static_cast<std::size_t>(channel)];
       });
 }
 template FeaturePairs<std::uint32_t, 1> PartnerRows::codes(int y, Range columns) const;
 template FeaturePairs<std::uint32_t, 2> PartnerRows::codes(int y, Range columns) const;
+
+FeaturePairs<std::uint32_t, 2> PartnerRows::luma_codes(int y, Range columns) const {
+  return pairs<std::uint32_t, 2>(
+      y, columns, 1, [](const CostImage::Planes& planes, int /*channel*/) -> const auto& {
+        return planes.codes[0];
+      });
+}
+
+FeaturePairs<std::uint16_t, 3> PartnerRows::fixed_levels(int y, Range columns) const {
+  return pairs<std::uint16_t, 3>(
+      y, columns, channels(), [](const CostImage::Planes& planes, int channel) -> const auto& {
+        return planes.fixed_levels[static_cast<std::size_t>(channel)];
+      });
+}
+
+FeaturePairs<std::uint16_t, 2> PartnerRows::fixed_gradients(int y, Range columns) const {
+  return pairs<std::uint16_t, 2>(
+      y, columns, 1, [](const CostImage::Planes& planes, int /*channel*/) -> const auto& {
+        return planes.fixed_gradients;
+      });
+}
 
 FeaturePairs<float, 1> PartnerRows::grey_levels(int y, Range columns, float* work) const {
   FeaturePairs<float, 1> row = features<1>(y, columns);

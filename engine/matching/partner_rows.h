@@ -47,14 +47,21 @@ class PartnerRows {
   /// kPlanes: 2, of small codes 1.
   template <int kPlanes>
   [[nodiscard]] kernels::FeaturePairs<std::uint32_t, kPlanes> codes(int y,
-                                                              scheduler::Range columns) const;
+                                                                    scheduler::Range columns) const;
+  /// The planes of the combined cost; gradients and the codes there are of one channel.
+  [[nodiscard]] kernels::FeaturePairs<std::uint16_t, 3> fixed_levels(
+      int y, scheduler::Range columns) const;
+  [[nodiscard]] kernels::FeaturePairs<std::uint16_t, 2> fixed_gradients(
+      int y, scheduler::Range columns) const;
+  [[nodiscard]] kernels::FeaturePairs<std::uint32_t, 2> luma_codes(int y,
+                                                                   scheduler::Range columns) const;
   /// The first feature plane; interpolated in `work` where necessary.
   [[nodiscard]] kernels::FeaturePairs<float, 1> grey_levels(int y, scheduler::Range columns,
                                                             float* work) const;
 
  private:
   template <typename T, int kPlanes, typename PlanesOfChannel>
-  kernels::FeaturePairs<T, kPlanes> pairs(int y, scheduler::Range columns,
+  kernels::FeaturePairs<T, kPlanes> pairs(int y, scheduler::Range columns, int channels,
                                           const PlanesOfChannel& planes_of_channel) const;
   [[nodiscard]] int partner_row(int y) const;
   /// Where a shift of 0 leads from column x in a row of the partner, mirrored or not.

@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "engine/error.h"
 #include "engine/matching/column_work.h"
+#include "engine/matching/combined_terms.h"
 #include "engine/matching/partner_rows.h"
 #include "kernels/census/census.h"
+#include "kernels/combined_cost/combined_cost.h"
 #include "kernels/evidence/evidence.h"
 #include "kernels/pixel_cost/pixel_cost.h"
 
@@ -33,6 +36,10 @@ class CostStage final : public scheduler::RowStage {
         count_(geometry.count),
         partners_(std::move(partners)),
         meaning_(meaning),
+        combined_cells_(meaning == CellMeaning::kEnergy ? kernels::CombinedCells::kEnergy
+                                                        : kernels::CombinedCells::kLikelihood),
+        combined_of_luma_(combined_model(1)),
+        combined_of_channels_(combined_model(3)),
         without_partner_(value_without_partner()) {}
 
   [[nodiscard]] std::string_view name() const override { return "cost"; }
@@ -98,6 +105,10 @@ class CostStage final : public scheduler::RowStage {
 
   /// Of cells whose partner is outside, unless they have the cost of the border.
   [[nodiscard]] std::optional<float> value_without_partner() const {
+    if (parameters_.cost == MatchCost::kCombined) {
+      const double energy = combined_energy_without_partner(parameters_);
+      return static_cast<float>(meaning_ == CellMeaning::kEnergy ? energy : std::exp(-energy));
+    }
     if (meaning_ == CellMeaning::kLikelihood) {
       return measurement_.likelihood_without_partner();
     }
@@ -109,6 +120,11 @@ class CostStage final : public scheduler::RowStage {
       default:
         return std::nullopt;
     }
+  }
+
+  [[nodiscard]] kernels::CombinedModel combined_model(int channels) const {
+    return kernels::combined_model(combined_sigmas(parameters_), parameters_.epsilon_measurement,
+                                   channels, combined_cells_);
   }
 
   /// What energies() and likelihoods() do.
@@ -127,6 +143,9 @@ class CostStage final : public scheduler::RowStage {
         return kernels::negated_evidence_work(parameters_.norm == GradientNorm::kOctagon, channels);
       case MatchCost::kSmallCensus:
         return kernels::small_hamming_work(channels);
+      case MatchCost::kCombined:
+        return kernels::combined_work(channels, combined_of_luma_.has_census,
+                                      combined_of_luma_.has_gradient);
       case MatchCost::kCensus:
         break;
     }
@@ -141,6 +160,8 @@ class CostStage final : public scheduler::RowStage {
                              : energy_work(channels) + kernels::kLikelihoodOfEnergiesWork;
       case MatchCost::kGradient:
         return energy_work(channels) + kernels::kLikelihoodOfEvidenceWork;
+      case MatchCost::kCombined:
+        return energy_work(channels);
       default:
         return energy_work(channels) + kernels::kLikelihoodOfCostsWork;
     }
@@ -193,6 +214,9 @@ class CostStage final : public scheduler::RowStage {
       case MatchCost::kSmallCensus:
         kernels::hamming_row(partner.codes<1>(y, columns), cells);
         break;
+      case MatchCost::kCombined:
+        combine(partner, y, columns, cells);
+        break;
     }
   }
 
@@ -220,11 +244,28 @@ class CostStage final : public scheduler::RowStage {
             static_cast<float>(std::max(kLeastSigma, parameters_.sigma_measurement)),
             measurement_.epsilon, cells);
         break;
+      case MatchCost::kCombined:
+        combine(partner, y, columns, cells);
+        break;
       default:
         energies(partner, y, columns, work, cells);
         kernels::likelihood_of_costs({columns.size(), lanes_, count_}, measurement_, cells);
         break;
     }
+  }
+
+  void combine(const PartnerRows& partner, int y, Range columns, float* cells) const {
+    const kernels::CombinedModel& model =
+        partner.channels() == 1 ? combined_of_luma_ : combined_of_channels_;
+    kernels::CombinedRow row;
+    row.levels = partner.fixed_levels(y, columns);
+    if (model.has_census) {
+      row.codes = partner.luma_codes(y, columns);
+    }
+    if (model.has_gradient) {
+      row.gradients = partner.fixed_gradients(y, columns);
+    }
+    kernels::combined_row(row, model, combined_cells_, cells);
   }
 
   /// Only columns near the borders have such cells.
@@ -254,6 +295,9 @@ class CostStage final : public scheduler::RowStage {
   int count_;
   std::vector<PartnerRows> partners_;
   CellMeaning meaning_;
+  kernels::CombinedCells combined_cells_;
+  kernels::CombinedModel combined_of_luma_;
+  kernels::CombinedModel combined_of_channels_;
   std::optional<float> without_partner_;
 };
 
@@ -268,6 +312,8 @@ std::string_view cost_of_whole_pixels(MatchCost cost) {
       return "census";
     case MatchCost::kSmallCensus:
       return "census-5x5";
+    case MatchCost::kCombined:
+      return "combined";
     default:
       return {};
   }

@@ -70,18 +70,19 @@ enum class CellMeaning {
 ///
 /// Energies: the costs of MatchCost in grey levels (of 0..255) to the power the cost has; evidence
 /// is negated. Of colour channels: the mean of their costs. A cell whose partner is outside has the
-/// cost of the clamped coordinate; evidence has 0, the contaminated Gaussian −log ε. With several
-/// partners: the sum of their costs.
+/// cost of the clamped coordinate; evidence has 0, the contaminated Gaussian −log ε, the combined
+/// cost half of the most that its terms can be. With several partners: the sum of their costs.
 /// Likelihoods: exp(−cost) of the contaminated cost, which is (1−ε) exp(−ΔI²/2σ²) + ε for one
 /// channel; else (1−ε) exp(−r²/2σ²) + ε, with r² = the squared cost, r = any other cost, and for
 /// evidence (1−ε) exp((E − max over the column)/σ) + ε, E of the cells with a partner; ε where the
-/// partner is outside. With several partners: the product.
+/// partner is outside. Of the combined cost, whose energies are logarithms already: their
+/// exponential, of cells without partner too. With several partners: the product.
 ///
 /// `reference`, prepared as a reference, `partners` (at least one), prepared as partners of this
 /// direction, and their planes must outlive the stage; all prepared with `parameters`, this range
 /// and equal sizes. A grey image beside a colour one has the same level in all channels. Throws
 /// UsageError for a baseline ratio out of range, and for one not ±1 with a cost that compares more
-/// than grey levels: Birchfield–Tomasi, gradient, census.
+/// than grey levels: Birchfield–Tomasi, gradient, census, combined.
 std::unique_ptr<scheduler::RowStage> make_cost_stage(const MethodParameters& parameters,
                                                      const kernels::CandidateGeometry& geometry,
                                                      const CostImage& reference,

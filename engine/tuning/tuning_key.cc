@@ -31,6 +31,8 @@ std::string_view name_of(MatchCost cost) {
       return "census";
     case MatchCost::kSmallCensus:
       return "census-5x5";
+    case MatchCost::kCombined:
+      return "combined";
   }
   return "";
 }

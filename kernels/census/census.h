@@ -10,6 +10,8 @@ namespace vantage::kernels {
 /// The window of census codes.
 inline constexpr int kCensusRadiusX = 4;
 inline constexpr int kCensusRadiusY = 3;
+/// Neighbours in it, each a bit.
+inline constexpr int kCensusBits = 62;
 
 /// Rows y − 3 … y + 3 of an image.
 using CensusRows = std::array<const float*, 2 * kCensusRadiusY + 1>;
@@ -24,6 +26,7 @@ void census_code_row_ref(const CensusRows& rows, int width, std::uint32_t* first
 
 /// The small window of census codes: 5×5.
 inline constexpr int kSmallCensusRadius = 2;
+inline constexpr int kSmallCensusBits = 24;
 
 /// Rows y − 2 … y + 2 of an image.
 using SmallCensusRows = std::array<const float*, 2 * kSmallCensusRadius + 1>;

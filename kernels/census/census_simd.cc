@@ -104,8 +104,7 @@ HWY_INLINE VecCode count_bits(const SmallCode& code) {
 
 struct Hamming {
   HWY_INLINE Vec operator()(const Code& reference, const Code& partner) const {
-    return distance(
-        Code{hn::Xor(reference[0], partner[0]), hn::Xor(reference[1], partner[1])});
+    return distance(Code{hn::Xor(reference[0], partner[0]), hn::Xor(reference[1], partner[1])});
   }
   HWY_INLINE Vec operator()(const SmallCode& reference, const SmallCode& partner) const {
     return distance(SmallCode{hn::Xor(reference[0], partner[0])});

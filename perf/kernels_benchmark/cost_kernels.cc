@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "kernels/census/census.h"
+#include "kernels/combined_cost/combined_cost.h"
 #include "kernels/evidence/evidence.h"
 #include "kernels/gradient/gradient.h"
 #include "kernels/pixel_cost/pixel_cost.h"
@@ -41,6 +42,14 @@ using Sampled = Pairs<float, 3>;
 using Gradients = Pairs<float, 3>;
 using Codes = Pairs<std::uint32_t, 2>;
 using SmallCodes = Pairs<std::uint32_t, 1>;
+
+/// All terms of the combined cost.
+struct Combined {
+  Pairs<std::uint16_t, 3> levels;
+  Codes codes;
+  Pairs<std::uint16_t, 2> gradients;
+  kernels::CombinedRow row{levels.row, codes.row, gradients.row};
+};
 
 struct Cells {
   AlignedValues<float> cells{kCellCount, 1000, 1e-3F, 1};
@@ -105,6 +114,10 @@ void likelihood_of_evidence(Cells& data) {
 
 KernelBenchmarks cost_kernels() {
   const auto model = kernels::ContaminatedGaussian::of(5, 0.01);
+  using kernels::CombinedCells;
+  const kernels::CombinedSigmas sigmas{.grey_levels = 5, .census_share = 0.2};
+  const auto energies = kernels::combined_model(sigmas, 0.1, 1, CombinedCells::kEnergy);
+  const auto likelihoods = kernels::combined_model(sigmas, 0.1, 1, CombinedCells::kLikelihood);
   const auto cells = [](std::string name, const kernels::KernelWork& work, auto call) {
     return on_own_data<Cells>(std::move(name), "cell", kCells, per_cell(work, kLanes), call);
   };
@@ -141,6 +154,18 @@ KernelBenchmarks cost_kernels() {
       on_own_data<SmallCodes>("hamming_row/5x5", "cell", kCells,
                               per_cell(kernels::small_hamming_work(1), kLanes),
                               [](SmallCodes& d) { kernels::hamming_row(d.row, d.cells.data()); }),
+      on_own_data<Combined>("combined_row/energy", "cell", kCells,
+                            per_cell(kernels::combined_work(1, true, false), kLanes),
+                            [energies](Combined& d) {
+                              kernels::combined_row(d.row, energies, CombinedCells::kEnergy,
+                                                    d.codes.cells.data());
+                            }),
+      on_own_data<Combined>("combined_row/likelihood", "cell", kCells,
+                            per_cell(kernels::combined_work(1, true, false), kLanes),
+                            [likelihoods](Combined& d) {
+                              kernels::combined_row(d.row, likelihoods, CombinedCells::kLikelihood,
+                                                    d.codes.cells.data());
+                            }),
       cells("likelihood_of_costs", kernels::kLikelihoodOfCostsWork,
             [model](Cells& d) { kernels::likelihood_of_costs(d.row, model, d.cells.data()); }),
       cells("likelihood_of_energies", kernels::kLikelihoodOfEnergiesWork,

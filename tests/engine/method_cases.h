@@ -66,6 +66,14 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
   add("bayes_planar", MatchMethod::kBayes, [](MethodOverrides& p) { p.sigma_prior = 0.1; });
   add("bayes", MatchMethod::kBayes, [](MethodOverrides& p) { p.sigma_prior = 0.4; });
   add("bayes_general", MatchMethod::kBayes, [](MethodOverrides& p) { p.mu = 0.3; });
+  add("bayes_combined", MatchMethod::kBayes, [](MethodOverrides& p) {
+    p.cost = MatchCost::kCombined;
+    p.sigma_gradient = 4;
+  });
+  add("combined_box", MatchMethod::kSsd, [](MethodOverrides& p) {
+    p.cost = MatchCost::kCombined;
+    p.colour = ColourUse::kChannels;
+  });
   add("bayes_of_evidence", MatchMethod::kBayes,
       [](MethodOverrides& p) { p.cost = MatchCost::kGradient; });
   return cases;

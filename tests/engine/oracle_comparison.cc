@@ -300,6 +300,8 @@ std::string name_of(MatchCost cost) {
       return "census";
     case MatchCost::kSmallCensus:
       return "small_census";
+    case MatchCost::kCombined:
+      return "combined";
   }
   return "?";
 }

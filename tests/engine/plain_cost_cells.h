@@ -29,10 +29,12 @@ class PlainCostCells {
       : parameters_(parameters),
         geometry_(geometry),
         meaning_(meaning),
-        reference_(channels_of(reference)),
+        reference_(channels_of(reference, parameters.colour)),
+        reference_luma_(channels_of(reference, ColourUse::kLuma).front()),
         partners_(partners) {
     for (const PlainPartner& partner : partners) {
-      partner_channels_.push_back(channels_of(*partner.photograph));
+      partner_channels_.push_back(channels_of(*partner.photograph, parameters.colour));
+      partner_luma_.push_back(channels_of(*partner.photograph, ColourUse::kLuma).front());
     }
   }
 
@@ -55,9 +57,10 @@ class PlainCostCells {
     Gradient gradient;
   };
 
-  [[nodiscard]] std::vector<Channel> channels_of(const Photograph& photograph) const {
+  [[nodiscard]] std::vector<Channel> channels_of(const Photograph& photograph,
+                                                 ColourUse colour) const {
     std::vector<Channel> channels;
-    for (const Plane& plane : planes_of(photograph, parameters_.colour)) {
+    for (const Plane& plane : planes_of(photograph, colour)) {
       channels.push_back({plane, {}});
       if (parameters_.cost == MatchCost::kGradient) {
         channels.back().gradient = gradient_of(plane, parameters_.gradient, parameters_.prefilter);
@@ -89,7 +92,10 @@ class PlainCostCells {
     }
     for (std::size_t i = 0; i < energies.size(); ++i) {
       double& cell = energies[i];
-      if (!is_inside[i]) {
+      if (parameters_.cost == MatchCost::kCombined) {
+        cell = is_inside[i] ? cell : combined_energy_without_partner(parameters_);
+        cell = is_energy ? cell : std::exp(-cell);
+      } else if (!is_inside[i]) {
         cell = !is_energy                                     ? epsilon
                : parameters_.cost == MatchCost::kGradient     ? 0
                : parameters_.cost == MatchCost::kContaminated ? -std::log(epsilon)
@@ -124,7 +130,35 @@ class PlainCostCells {
           cost(reference_[std::min(c, reference_.size() - 1)], x, y,
                partner_channels_[p][std::min(c, partner_channels_[p].size() - 1)], at, partner_y);
     }
-    return sum / static_cast<double>(channels);
+    const double mean = sum / static_cast<double>(channels);
+    if (parameters_.cost != MatchCost::kCombined) {
+      return mean;
+    }
+    const int whole = static_cast<int>(std::lround(at));
+    const Plane& a = reference_luma_.level;
+    const Plane& b = partner_luma_[p].level;
+    const double dx = (a.at(x + 1, y) - a.at(x - 1, y)) / 2 -
+                      (b.at(whole + 1, partner_y) - b.at(whole - 1, partner_y)) / 2;
+    const double dy = (a.at(x, y + 1) - a.at(x, y - 1)) / 2 -
+                      (b.at(whole, partner_y + 1) - b.at(whole, partner_y - 1)) / 2;
+    return combined_energy(
+        {mean, hamming(a, x, y, b, whole, partner_y) / 62, std::abs(dx) + std::abs(dy)},
+        parameters_);
+  }
+
+  /// Of windows reaching `columns` and `rows` far.
+  [[nodiscard]] static double hamming(const Plane& a, int x, int y, const Plane& b, int partner,
+                                      int partner_y, int columns = 4, int rows = 3) {
+    int different = 0;
+    for (int v = -rows; v <= rows; ++v) {
+      for (int u = -columns; u <= columns; ++u) {
+        different += (a.at(x + u, y + v) < a.at(x, y)) !=
+                             (b.at(partner + u, partner_y + v) < b.at(partner, partner_y))
+                         ? 1
+                         : 0;
+      }
+    }
+    return different;
   }
 
   [[nodiscard]] double cost(const Channel& a, int x, int y, const Channel& b, double at,
@@ -144,6 +178,7 @@ class PlainCostCells {
       case MatchCost::kContaminated:
         return -std::log(measurement(difference * difference));
       case MatchCost::kBirchfieldTomasi:
+      case MatchCost::kCombined:
         return std::min(distance(a.level.at(x, y), b.level, whole, partner_y),
                         distance(level, a.level, x, y));
       case MatchCost::kGradient: {
@@ -155,22 +190,9 @@ class PlainCostCells {
         return parameters_.alpha * length(ax - bx, ay - by) - (length(ax, ay) + length(bx, by)) / 2;
       }
       case MatchCost::kCensus:
-      case MatchCost::kSmallCensus: {
-        const bool is_small = parameters_.cost == MatchCost::kSmallCensus;
-        const int columns = is_small ? 2 : 4;
-        const int rows = is_small ? 2 : 3;
-        int different = 0;
-        for (int v = -rows; v <= rows; ++v) {
-          for (int u = -columns; u <= columns; ++u) {
-            different +=
-                (a.level.at(x + u, y + v) < a.level.at(x, y)) !=
-                        (b.level.at(whole + u, partner_y + v) < b.level.at(whole, partner_y))
-                    ? 1
-                    : 0;
-          }
-        }
-        return different;
-      }
+        return hamming(a.level, x, y, b.level, whole, partner_y);
+      case MatchCost::kSmallCensus:
+        return hamming(a.level, x, y, b.level, whole, partner_y, 2, 2);
     }
     return std::numeric_limits<double>::quiet_NaN();
   }
@@ -198,8 +220,10 @@ class PlainCostCells {
   kernels::CandidateGeometry geometry_;
   CellMeaning meaning_;
   std::vector<Channel> reference_;
+  Channel reference_luma_;
   std::vector<PlainPartner> partners_;
   std::vector<std::vector<Channel>> partner_channels_;
+  std::vector<Channel> partner_luma_;
 };
 
 }  // namespace vantage::testing

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 namespace vantage::testing {
@@ -109,6 +110,36 @@ double contaminated(double squared_difference, const MethodParameters& parameter
   return -std::log((1 - epsilon) * std::exp(-squared_difference / (2 * sigma * sigma)) + epsilon);
 }
 
+/// |Δgx| + |Δgy| of central differences.
+double gradient_difference(const Channel& channel, int x, int partner, int y) {
+  const auto gradient = [&](const Plane& plane, int column, int dx, int dy) {
+    return (plane.at(column + dx, y + dy) - plane.at(column - dx, y - dy)) / 2;
+  };
+  double sum = 0;
+  for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}}) {
+    sum +=
+        std::abs(gradient(channel.reference, x, dx, dy) - gradient(channel.other, partner, dx, dy));
+  }
+  return sum;
+}
+
+double sampling_insensitive(const Channel& channel, int x, int partner, int y) {
+  return std::min(distance_to_interval(channel.reference.at(x, y), channel.other, partner, y),
+                  distance_to_interval(channel.other.at(partner, y), channel.reference, x, y));
+}
+
+double combined_cost(const std::vector<Channel>& channels, const Channel& luma, int x, int partner,
+                     int y, const MethodParameters& parameters) {
+  CombinedResiduals residuals;
+  for (const Channel& channel : channels) {
+    residuals.grey_levels += sampling_insensitive(channel, x, partner, y);
+  }
+  residuals.grey_levels /= static_cast<double>(channels.size());
+  residuals.census_share = census_distance(luma, x, partner, y, {.columns = 4, .rows = 3}) / 62;
+  residuals.gradient_levels_px = gradient_difference(luma, x, partner, y);
+  return combined_energy(residuals, parameters);
+}
+
 double cost_of_channel(const Channel& channel, int x, int partner, int y,
                        const MethodParameters& parameters) {
   const double difference = channel.reference.at(x, y) - channel.other.at(partner, y);
@@ -120,8 +151,7 @@ double cost_of_channel(const Channel& channel, int x, int partner, int y,
     case MatchCost::kTruncated:
       return std::min(std::abs(difference), parameters.truncation);
     case MatchCost::kBirchfieldTomasi:
-      return std::min(distance_to_interval(channel.reference.at(x, y), channel.other, partner, y),
-                      distance_to_interval(channel.other.at(partner, y), channel.reference, x, y));
+      return sampling_insensitive(channel, x, partner, y);
     case MatchCost::kGradient:
       return -evidence(channel, x, partner, y, parameters);
     case MatchCost::kContaminated:
@@ -130,6 +160,8 @@ double cost_of_channel(const Channel& channel, int x, int partner, int y,
       return census_distance(channel, x, partner, y, {.columns = 4, .rows = 3});
     case MatchCost::kSmallCensus:
       return census_distance(channel, x, partner, y, {.columns = 2, .rows = 2});
+    case MatchCost::kCombined:
+      break;  // no mean over channels
   }
   return std::numeric_limits<double>::quiet_NaN();
 }
@@ -214,6 +246,27 @@ Gradient gradient_of(const Plane& plane, GradientFilter filter, bool prefilter) 
   return {correlate(smooth, derivative, across), correlate(smooth, across, derivative)};
 }
 
+double combined_energy(const CombinedResiduals& residuals, const MethodParameters& parameters) {
+  const double epsilon = parameters.epsilon_measurement;
+  const auto term = [&](double residual, double sigma) {
+    return -std::log((1 - epsilon) * std::exp(-residual * residual / (2 * sigma * sigma)) +
+                     epsilon);
+  };
+  double energy = term(residuals.grey_levels, parameters.sigma_measurement);
+  if (parameters.sigma_census > 0) {
+    energy += term(residuals.census_share, parameters.sigma_census);
+  }
+  if (parameters.sigma_gradient > 0) {
+    energy += term(residuals.gradient_levels_px, parameters.sigma_gradient);
+  }
+  return energy;
+}
+
+double combined_energy_without_partner(const MethodParameters& parameters) {
+  constexpr double kFar = 1e9;
+  return combined_energy({kFar, kFar, kFar}, parameters) / 2;
+}
+
 double length_of(double x, double y, GradientNorm norm) {
   if (norm == GradientNorm::kL2) {
     return std::sqrt(x * x + y * y);
@@ -235,6 +288,10 @@ Volume plain_costs(const Photograph& reference, const Photograph& other, Referen
           gradient_of(other_planes[c], parameters.gradient, parameters.prefilter);
     }
   }
+  const Channel luma{planes_of(reference, ColourUse::kLuma).front(),
+                     planes_of(other, ColourUse::kLuma).front(),
+                     {},
+                     {}};
   Volume costs(reference.width(), reference.height(), range, reference_is);
   for (int y = 0; y < costs.height; ++y) {
     for (int x = 0; x < costs.width; ++x) {
@@ -247,6 +304,12 @@ Volume plain_costs(const Photograph& reference, const Photograph& other, Referen
           continue;
         }
         const int partner = std::clamp(costs.partner(x, i), 0, costs.width - 1);
+        if (parameters.cost == MatchCost::kCombined) {
+          costs.at(x, y, i) = costs.has_partner(x, i)
+                                  ? combined_cost(channels, luma, x, partner, y, parameters)
+                                  : combined_energy_without_partner(parameters);
+          continue;
+        }
         for (const Channel& channel : channels) {
           costs.at(x, y, i) += cost_of_channel(channel, x, partner, y, parameters);
         }
@@ -272,6 +335,9 @@ Volume plain_measurement_energies(const Photograph& reference, const Photograph&
       }
       for (int i = 0; i < energies.count(); ++i) {
         double& cell = energies.at(x, y, i);
+        if (parameters.cost == MatchCost::kCombined) {
+          continue;  // logarithms already
+        }
         if (!energies.has_partner(x, i)) {
           cell = -std::log(epsilon);
         } else if (parameters.cost == MatchCost::kGradient) {

@@ -177,6 +177,16 @@ TEST(KernelWork, OfCosts) {
     const Counted y = magnitude(b - a);
     Counted(0.4) * (x + y) + Counted(0.56) * most(x, y) - (a + b);
   });
+  const auto bounded = [&] { return least(most(a - b, b - a), most(b - a, a - b)); };
+  const auto step = [](Counted residual) { return least(residual * 0.1, 63); };
+  const auto to_float = [](Counted value) { (value - 0) * Counted(1. / 512); };
+  expect_cell_work(combined_work(1, false, false), [&] { to_float(step(bounded())); });
+  const auto gradient = [&] { return step(((a - b) + (b - a)) + ((a - b) + (b - a))); };
+  expect_cell_work(combined_work(3, false, true),
+                   [&] { to_float(step(bounded() + bounded() + bounded()) + gradient()); });
+  const KernelWork hamming = hamming_work(1);
+  EXPECT_EQ(combined_work(1, true, false).operations,
+            combined_work(1, false, false).operations + hamming.operations + 1);
   expect_cell_work(kLikelihoodOfCostsWork, [&] { measured(difference * difference); });
   expect_cell_work(kLikelihoodOfEnergiesWork, [&] { power_of_two(a * Counted(-kLog2E)); });
 }
