@@ -9,15 +9,19 @@
 
 namespace vantage::perf {
 
-/// The options `--name VALUE` of a program. Anything else ends it with `usage` and exit code 2.
+/// The options `--name VALUE` and flags `--name` of a program. Anything else ends it with `usage`
+/// and exit code 2. Values do not begin with two dashes.
 class CommandLine {
  public:
   CommandLine(int argc, char** argv, std::string usage) : usage_(std::move(usage)) {
-    for (int i = 1; i < argc; i += 2) {
-      if (i + 1 == argc || std::string(argv[i]).rfind("--", 0) != 0) {
+    const auto is_name = [](const std::string& text) { return text.rfind("--", 0) == 0; };
+    for (int i = 1; i < argc; ++i) {
+      const std::string name = argv[i];
+      if (!is_name(name)) {
         refuse();
       }
-      values_[argv[i]] = argv[i + 1];
+      const bool has_value = i + 1 < argc && !is_name(argv[i + 1]);
+      values_[name] = has_value ? std::optional<std::string>(argv[++i]) : std::nullopt;
     }
   }
 
@@ -26,9 +30,24 @@ class CommandLine {
     if (place == values_.end()) {
       return std::nullopt;
     }
+    if (!place->second) {
+      refuse();
+    }
     std::optional<std::string> value = place->second;
     values_.erase(place);
     return value;
+  }
+  /// Whether `--name` was given, which takes no value.
+  [[nodiscard]] bool flag(const std::string& name) {
+    const auto place = values_.find(name);
+    if (place == values_.end()) {
+      return false;
+    }
+    if (place->second) {
+      refuse();
+    }
+    values_.erase(place);
+    return true;
   }
   /// A whole number ≥ 1.
   [[nodiscard]] int number(const std::string& name, int otherwise) {
@@ -57,7 +76,7 @@ class CommandLine {
 
  private:
   std::string usage_;
-  std::map<std::string, std::string> values_;
+  std::map<std::string, std::optional<std::string>> values_;  ///< empty of flags
 };
 
 }  // namespace vantage::perf

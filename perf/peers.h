@@ -70,43 +70,52 @@ inline DisparityMap to_map(const cv::Mat& sixteenths, int min_disparity) {
   return map;
 }
 
-/// A matcher's left and right maps: the right one from the mirrored, exchanged images. The images
-/// are padded on the left as far as the range reaches, because it leaves those columns out.
-struct PeerMaps {
-  DisparityMap left;
-  DisparityMap right;
+/// A matcher's left and right maps in 16ths of pixels, the right one from the mirrored, exchanged
+/// images. The images are padded as far as the range reaches, because it leaves the columns out
+/// that lack a candidate.
+struct PeerDisparities {
+  cv::Mat left;
+  cv::Mat right;
 };
 
-/// Both maps of a matcher: see PeerMaps.
-inline PeerMaps both_maps(cv::StereoMatcher& matcher, const cv::Mat& left, const cv::Mat& right,
-                          DisparityRange range) {
-  const int pad = range.min + opencv_candidates(range);
+inline PeerDisparities both_disparities(cv::StereoMatcher& matcher, const cv::Mat& left,
+                                        const cv::Mat& right, DisparityRange range) {
+  const int pad_left = std::max(0, range.min + opencv_candidates(range));
+  const int pad_right = std::max(0, -range.min);
   const auto one_map = [&](const cv::Mat& reference, const cv::Mat& other) {
     cv::Mat padded_reference;
     cv::Mat padded_other;
     cv::Mat disparity;
-    cv::copyMakeBorder(reference, padded_reference, 0, 0, pad, 0, cv::BORDER_REPLICATE);
-    cv::copyMakeBorder(other, padded_other, 0, 0, pad, 0, cv::BORDER_REPLICATE);
+    cv::copyMakeBorder(reference, padded_reference, 0, 0, pad_left, pad_right,
+                       cv::BORDER_REPLICATE);
+    cv::copyMakeBorder(other, padded_other, 0, 0, pad_left, pad_right, cv::BORDER_REPLICATE);
     matcher.compute(padded_reference, padded_other, disparity);
-    return cv::Mat(disparity.colRange(pad, disparity.cols));
+    return cv::Mat(disparity.colRange(pad_left, pad_left + reference.cols));
   };
   cv::Mat left_flipped;
   cv::Mat right_flipped;
   cv::flip(left, left_flipped, 1);
   cv::flip(right, right_flipped, 1);
-  cv::Mat right_disparity;
-  cv::flip(one_map(right_flipped, left_flipped), right_disparity, 1);
-  return {to_map(one_map(left, right), range.min), to_map(right_disparity, range.min)};
+  PeerDisparities disparities;
+  disparities.left = one_map(left, right);
+  cv::flip(one_map(right_flipped, left_flipped), disparities.right, 1);
+  return disparities;
+}
+
+/// See PeerDisparities; what the matcher calls invalid is NaN.
+struct PeerMaps {
+  DisparityMap left;
+  DisparityMap right;
+};
+
+inline PeerMaps to_maps(const PeerDisparities& disparities, DisparityRange range) {
+  return {to_map(disparities.left, range.min), to_map(disparities.right, range.min)};
 }
 
 inline PeerMaps sgbm_maps(const cv::Mat& left, const cv::Mat& right, DisparityRange range,
                           int block, int mode) {
-  return both_maps(*make_sgbm(range, block, left.channels(), mode), left, right, range);
-}
-
-inline PeerMaps bm_maps(const cv::Mat& left, const cv::Mat& right, DisparityRange range,
-                        int window_px) {
-  return both_maps(*make_bm(range, window_px), left, right, range);
+  return to_maps(
+      both_disparities(*make_sgbm(range, block, left.channels(), mode), left, right, range), range);
 }
 
 }  // namespace vantage::perf

@@ -1,0 +1,188 @@
+// Judges methods, presets and experiments (perf/experiments.toml) on scenes with truth, beside
+// every setting of OpenCV's StereoSGBM, each with the post-processing that is best for it. Both
+// maps are made; the left one is judged, or with --views the views made of both. Prints Markdown
+// tables; see perf/README.md for options.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/setting_value.h"
+#include "engine/error.h"
+#include "perf/command_line.h"
+#include "perf/interleaved.h"
+#include "perf/quality/map_contender.h"
+#include "perf/quality/results.h"
+#include "perf/quality/sgbm_search.h"
+#include "perf/quality/sub_pixel.h"
+#include "perf/quality/view_tables.h"
+
+namespace vantage::perf {
+namespace {
+
+constexpr const char* kUsage =
+    "quality [--data FOLDER] [--experiments FILE.toml] [--only NAME,…|none] [--peers NAME,…|none] "
+    "[--scenes NAME|GROUP,…] [--tuning] [--held-out] [--no-time] [--rounds N] [--threads N] "
+    "[--csv FILE] [--sub-pixel] [--views] [--search-peers]";
+
+/// Those of `all` that a list names, in the order of `all`; all without a list.
+template <typename T, typename IsNamed>
+std::vector<T> chosen(const std::vector<T>& all, const std::optional<std::string>& list,
+                      const char* what, const IsNamed& is_named) {
+  if (!list) {
+    return all;
+  }
+  std::vector<T> result;
+  if (*list == "none") {
+    return result;
+  }
+  const std::vector<std::string> names = apps::split(*list, ',');
+  for (const std::string& name : names) {
+    if (std::ranges::none_of(all, [&](const T& one) { return is_named(one, name); })) {
+      throw UsageError(fmt::format("there is no {} '{}'", what, name));
+    }
+  }
+  for (const T& one : all) {
+    if (std::ranges::any_of(names, [&](const std::string& name) { return is_named(one, name); })) {
+      result.push_back(one);
+    }
+  }
+  return result;
+}
+
+std::vector<const TrueScene*> chosen_scenes(CommandLine& line, const std::filesystem::path& data) {
+  std::vector<const TrueScene*> scenes;
+  for (const TrueScene& scene : true_scenes()) {
+    scenes.push_back(&scene);
+  }
+  scenes = chosen(scenes, line.text("--scenes"), "scene or group",
+                  [](const TrueScene* scene, const std::string& name) {
+                    return scene->name == name || scene->group == name;
+                  });
+  const bool only_tuning = line.flag("--tuning");
+  const bool only_held_out = line.flag("--held-out");
+  std::erase_if(scenes, [&](const TrueScene* scene) {
+    if ((only_tuning && !scene->is_tuning) || (only_held_out && scene->is_tuning)) {
+      return true;
+    }
+    const bool is_missing = !std::filesystem::exists(data / scene->folder);
+    if (is_missing) {
+      fmt::print(stderr, "scene {} left out: no folder {}\n", scene->name,
+                 (data / scene->folder).string());
+    }
+    return is_missing;
+  });
+  if (scenes.empty()) {
+    throw UsageError("no scenes are left");
+  }
+  return scenes;
+}
+
+template <typename T>
+bool is_named(const T& one, const std::string& name) {
+  return one.name == name;
+}
+
+std::vector<MapContender> chosen_contenders(CommandLine& line,
+                                            const std::vector<SgbmSetting>& peers) {
+  const std::string file = line.text("--experiments").value_or(VANTAGE_EXPERIMENTS);
+  std::vector<MapContender> contenders =
+      chosen(experiments(file), line.text("--only"), "experiment", is_named<MapContender>);
+  for (const SgbmSetting& peer : peers) {
+    contenders.push_back(sgbm_contender(peer));
+  }
+  if (contenders.empty()) {
+    throw UsageError("no contenders are left");
+  }
+  return contenders;
+}
+
+/// Adds the outcome of every contender. Without rounds nothing is timed.
+void judge(const TrueScene& scene, const std::filesystem::path& data, int rounds,
+           Execution& execution, Results& results) {
+  const LoadedScene loaded = load_scene(scene, data);
+  std::vector<std::unique_ptr<MapMaker>> makers;
+  std::vector<Contender> timed;
+  for (const MapContender& contender : results.contenders) {
+    makers.push_back(contender.prepare(loaded.pair, execution));
+    timed.push_back({contender.name, [maker = makers.back().get()] { maker->match(); }});
+  }
+  const std::vector<Timing> timings = time_interleaved(timed, rounds);
+  for (std::size_t i = 0; i < makers.size(); ++i) {
+    Outcome outcome;
+    const DisparityMap& map = makers[i]->maps().left;
+    outcome.bad = bad_pixels(map, loaded);
+    if (scene.is_fractional) {
+      outcome.sub_pixel = sub_pixel_figures(map, loaded);
+    }
+    if (rounds > 0) {
+      outcome.milliseconds = timings[i].median() * 1e3;
+    }
+    results.outcomes[i].push_back(outcome);
+  }
+  results.truth_sub_pixel.push_back(scene.is_fractional ? sub_pixel_figures(loaded.truth, loaded)
+                                                        : SubPixelFigures());
+}
+
+void run(CommandLine& line) {
+  constexpr int kUsualRounds = 3;
+  const std::filesystem::path data = line.text("--data").value_or(VANTAGE_SHARED_DATA);
+  const std::vector<SgbmSetting> peers =
+      chosen(sgbm_settings(), line.text("--peers"), "setting of StereoSGBM", is_named<SgbmSetting>);
+  Results results{chosen_contenders(line, peers), chosen_scenes(line, data), {}, {}};
+  const int usual_threads = scheduler::detect_machine().hardware_threads;
+  Execution execution({.threads = line.number("--threads", usual_threads)});
+  const int wanted_rounds = line.number("--rounds", kUsualRounds);
+  const int rounds = line.flag("--no-time") ? 0 : wanted_rounds;
+  const std::optional<std::string> csv = line.text("--csv");
+  const bool wants_sub_pixel = line.flag("--sub-pixel");
+  const bool wants_views = line.flag("--views");
+  const bool searches_peers = line.flag("--search-peers");
+  line.finish();
+  if ((wants_views && (csv || wants_sub_pixel)) || (searches_peers && wants_sub_pixel)) {
+    throw UsageError("--csv does not go with --views, --sub-pixel with neither that nor a search");
+  }
+
+  if (searches_peers) {
+    search_sgbm_post_processing(peers, results.scenes, data, csv.value_or(""), execution);
+    return;
+  }
+  if (wants_views) {
+    print_view_tables(results.contenders, results.scenes, data, execution);
+    return;
+  }
+  results.outcomes.resize(results.contenders.size());
+  for (const TrueScene* scene : results.scenes) {
+    fmt::print(stderr, "{}\n", scene->name);
+    judge(*scene, data, rounds, execution, results);
+  }
+  print_tables(results);
+  if (wants_sub_pixel) {
+    print_sub_pixel_tables(results);
+  }
+  if (csv) {
+    write_csv(results, *csv);
+  }
+}
+
+}  // namespace
+}  // namespace vantage::perf
+
+int main(int argc, char** argv) {
+  try {
+    vantage::perf::CommandLine line(argc, argv, vantage::perf::kUsage);
+    vantage::perf::run(line);
+  } catch (const vantage::UsageError& error) {
+    fmt::print(stderr, "quality: {}\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "quality: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,109 @@
+#include "perf/quality/map_contender.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "apps/match_settings.h"
+#include "apps/settings.h"
+#include "apps/toml_file.h"
+#include "engine/error.h"
+
+namespace vantage::perf {
+namespace {
+
+class OurMaps : public MapMaker {
+ public:
+  OurMaps(MatchOptions options, const ScenePair& pair, Execution& execution)
+      : pair_(pair), matcher_(in_range(std::move(options), pair.range), execution) {}
+  void match() override { matcher_.match(pair_.left, pair_.right, {}, maps_); }
+  const DisparityMaps& maps() override { return maps_; }
+
+ private:
+  static MatchOptions in_range(MatchOptions options, DisparityRange range) {
+    options.disparities = range;
+    return options;
+  }
+
+  const ScenePair& pair_;
+  StereoMatcher matcher_;
+  DisparityMaps maps_;
+};
+
+class SgbmMaps : public MapMaker {
+ public:
+  SgbmMaps(const SgbmSetting& setting, const ScenePair& pair, Execution& execution)
+      : setting_(setting),
+        pair_(pair),
+        execution_(execution),
+        matcher_(make_sgbm_matcher(setting, pair)) {}
+  void match() override {
+    cv::setNumThreads(execution_.executor().thread_count());
+    disparities_ = both_disparities(*matcher_, pair_.left_opencv, pair_.right_opencv, pair_.range);
+    filter_opencv_speckles(setting_.post_processing, pair_.range, disparities_);
+    cv::setNumThreads(1);
+  }
+  const DisparityMaps& maps() override {
+    maps_ = refine_peer_maps(setting_.post_processing, pair_, to_maps(disparities_, pair_.range),
+                             execution_);
+    return maps_;
+  }
+
+ private:
+  SgbmSetting setting_;
+  const ScenePair& pair_;
+  Execution& execution_;
+  cv::Ptr<cv::StereoSGBM> matcher_;
+  PeerDisparities disparities_;
+  DisparityMaps maps_;
+};
+
+/// Takes `note` out of the entry.
+std::string take_note(apps::SettingValue& entry) {
+  const auto note = entry.find("note");
+  if (note == entry.end()) {
+    return "";
+  }
+  std::string text = apps::to_text(*note);
+  entry.erase(note);
+  return text;
+}
+
+MapContender experiment(const std::string& name, apps::SettingValue entry) {
+  if (!entry.is_object()) {
+    apps::reject_value(entry, "a table of settings");
+  }
+  std::string note = take_note(entry);
+  MatchOptions options;
+  apps::Settings settings("", "");
+  apps::add_match_settings(settings, options);
+  settings.set_values(entry);
+  options.validate();
+  return {name, std::move(note), false, [options](const ScenePair& pair, Execution& execution) {
+            return std::make_unique<OurMaps>(options, pair, execution);
+          }};
+}
+
+}  // namespace
+
+MapContender sgbm_contender(const SgbmSetting& setting) {
+  return {setting.name, "StereoSGBM, " + to_text(setting.post_processing), true,
+          [setting](const ScenePair& pair, Execution& execution) {
+            return std::make_unique<SgbmMaps>(setting, pair, execution);
+          }};
+}
+
+std::vector<MapContender> experiments(const std::filesystem::path& file) {
+  std::vector<MapContender> contenders;
+  const apps::SettingValue entries = apps::read_toml_document(file.string());
+  for (const auto& [name, entry] : entries.items()) {
+    try {
+      contenders.push_back(experiment(name, entry));
+    } catch (const UsageError& error) {
+      throw UsageError(fmt::format("{}: {}: {}", file.string(), name, error.what()));
+    }
+  }
+  return contenders;
+}
+
+}  // namespace vantage::perf

@@ -1,0 +1,75 @@
+#include "perf/quality/sgbm_settings.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include "engine/refinement/refine_maps.h"
+
+namespace vantage::perf {
+
+std::string to_text(const SgbmPostProcessing& post) {
+  return fmt::format(
+      "uniqueness {}, disp12MaxDiff {}, speckles {}/{}, cross-check {}, our speckles {}, fill {}",
+      post.uniqueness_percent,
+      post.disp12_max_diff_px == kNoDisp12Check ? "off" : std::to_string(post.disp12_max_diff_px),
+      post.opencv_speckle_px, post.opencv_speckle_range_px, post.cross_check_px,
+      post.speckle_size_px, post.fill == Fill::kMedian ? "median" : "constant");
+}
+
+const std::vector<SgbmSetting>& sgbm_settings() {
+  static const std::vector<SgbmSetting> settings = {
+      {"sgbm-3", cv::StereoSGBM::MODE_SGBM, 3, {10, 1, 100, 2, 1, 0, Fill::kConstant}},
+      {"sgbm-5", cv::StereoSGBM::MODE_SGBM, 5, {10, 1, 100, 2, 1, 0, Fill::kConstant}},
+      {"3way-3", cv::StereoSGBM::MODE_SGBM_3WAY, 3, {10, 1, 100, 2, 1, 0, Fill::kConstant}},
+      {"3way-5", cv::StereoSGBM::MODE_SGBM_3WAY, 5, {10, 1, 100, 2, 1, 0, Fill::kConstant}},
+      {"hh-3", cv::StereoSGBM::MODE_HH, 3, {10, 1, 100, 2, 1, 0, Fill::kConstant}},
+      {"hh-5", cv::StereoSGBM::MODE_HH, 5, {10, 1, 100, 2, 1, 0, Fill::kConstant}},
+  };
+  return settings;
+}
+
+cv::Ptr<cv::StereoSGBM> make_sgbm_matcher(const SgbmSetting& setting, const ScenePair& pair) {
+  cv::Ptr<cv::StereoSGBM> matcher =
+      make_sgbm(pair.range, setting.block_px, pair.left_opencv.channels(), setting.mode);
+  matcher->setUniquenessRatio(setting.post_processing.uniqueness_percent);
+  matcher->setDisp12MaxDiff(setting.post_processing.disp12_max_diff_px);
+  matcher->setSpeckleWindowSize(0);
+  return matcher;
+}
+
+void filter_opencv_speckles(const SgbmPostProcessing& post, DisparityRange range,
+                            PeerDisparities& disparities) {
+  constexpr int kUnitsPerPixel = cv::StereoMatcher::DISP_SCALE;
+  if (post.opencv_speckle_px == 0) {
+    return;
+  }
+  for (cv::Mat* map : {&disparities.left, &disparities.right}) {
+    cv::filterSpeckles(*map, (range.min - 1) * kUnitsPerPixel, post.opencv_speckle_px,
+                       post.opencv_speckle_range_px * kUnitsPerPixel);
+  }
+}
+
+DisparityMaps refine_peer_maps(const SgbmPostProcessing& post, const ScenePair& pair, PeerMaps maps,
+                               Execution& execution) {
+  DisparityMaps refined;
+  refined.left = std::move(maps.left);
+  refined.right = std::move(maps.right);
+  RefinementOptions options{};
+  options.cross_check = true;
+  options.cross_check_px = post.cross_check_px;
+  options.confidence_threshold = -std::numeric_limits<double>::infinity();
+  options.speckle_size_px = post.speckle_size_px;
+  options.fill = post.fill;
+  RefinementWork work;
+  const MapToRefine left{MapSide::kLeft, &pair.left, &refined.left,
+                         nullptr,        nullptr,    &refined.left_unmatched};
+  const MapToRefine right{MapSide::kRight, &pair.right, &refined.right,
+                          nullptr,         nullptr,     &refined.right_unmatched};
+  refine_maps(options, left, &right, execution, work, [](std::string_view) {});
+  return refined;
+}
+
+}  // namespace vantage::perf
