@@ -4,23 +4,26 @@
 // tables; see perf/README.md for options.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "apps/setting_value.h"
 #include "engine/error.h"
 #include "perf/command_line.h"
-#include "perf/interleaved.h"
 #include "perf/quality/map_contender.h"
 #include "perf/quality/results.h"
 #include "perf/quality/sgbm_search.h"
 #include "perf/quality/sub_pixel.h"
 #include "perf/quality/view_tables.h"
+#include "perf/stopwatch.h"
 
 namespace vantage::perf {
 namespace {
@@ -30,29 +33,36 @@ constexpr const char* kUsage =
     "[--scenes NAME|GROUP,…] [--tuning] [--held-out] [--no-time] [--rounds N] [--threads N] "
     "[--csv FILE] [--sub-pixel] [--views] [--search-peers]";
 
-/// Those of `all` that a list names, in the order of `all`; all without a list.
-template <typename T, typename IsNamed>
+/// Those of `all` that a list names, in the order of `all`; all without a list. `names_of` gives
+/// the names that one goes by.
+template <typename T, typename NamesOf>
 std::vector<T> chosen(const std::vector<T>& all, const std::optional<std::string>& list,
-                      const char* what, const IsNamed& is_named) {
+                      const char* option, const NamesOf& names_of) {
   if (!list) {
     return all;
   }
-  std::vector<T> result;
-  if (*list == "none") {
-    return result;
+  std::set<std::string> known = {"none"};
+  for (const T& one : all) {
+    known.merge(std::set<std::string>(names_of(one)));
   }
   const std::vector<std::string> names = apps::split(*list, ',');
   for (const std::string& name : names) {
-    if (std::ranges::none_of(all, [&](const T& one) { return is_named(one, name); })) {
-      throw UsageError(fmt::format("there is no {} '{}'", what, name));
+    if (!known.contains(name)) {
+      throw UsageError(
+          fmt::format("{} names '{}', expected some of {}", option, name, fmt::join(known, ", ")));
     }
   }
-  for (const T& one : all) {
-    if (std::ranges::any_of(names, [&](const std::string& name) { return is_named(one, name); })) {
-      result.push_back(one);
-    }
-  }
+  std::vector<T> result;
+  std::ranges::copy_if(all, std::back_inserter(result), [&](const T& one) {
+    const std::set<std::string> own = names_of(one);
+    return std::ranges::any_of(names, [&](const std::string& name) { return own.contains(name); });
+  });
   return result;
+}
+
+template <typename T>
+std::set<std::string> name_of(const T& one) {
+  return {one.name};
 }
 
 std::vector<const TrueScene*> chosen_scenes(CommandLine& line, const std::filesystem::path& data) {
@@ -60,10 +70,9 @@ std::vector<const TrueScene*> chosen_scenes(CommandLine& line, const std::filesy
   for (const TrueScene& scene : true_scenes()) {
     scenes.push_back(&scene);
   }
-  scenes = chosen(scenes, line.text("--scenes"), "scene or group",
-                  [](const TrueScene* scene, const std::string& name) {
-                    return scene->name == name || scene->group == name;
-                  });
+  scenes = chosen(scenes, line.text("--scenes"), "--scenes", [](const TrueScene* scene) {
+    return std::set<std::string>{scene->name, scene->group};
+  });
   const bool only_tuning = line.flag("--tuning");
   const bool only_held_out = line.flag("--held-out");
   std::erase_if(scenes, [&](const TrueScene* scene) {
@@ -83,16 +92,11 @@ std::vector<const TrueScene*> chosen_scenes(CommandLine& line, const std::filesy
   return scenes;
 }
 
-template <typename T>
-bool is_named(const T& one, const std::string& name) {
-  return one.name == name;
-}
-
 std::vector<MapContender> chosen_contenders(CommandLine& line,
                                             const std::vector<SgbmSetting>& peers) {
   const std::string file = line.text("--experiments").value_or(VANTAGE_EXPERIMENTS);
   std::vector<MapContender> contenders =
-      chosen(experiments(file), line.text("--only"), "experiment", is_named<MapContender>);
+      chosen(experiments(file), line.text("--only"), "--only", name_of<MapContender>);
   for (const SgbmSetting& peer : peers) {
     contenders.push_back(sgbm_contender(peer));
   }
@@ -102,28 +106,41 @@ std::vector<MapContender> chosen_contenders(CommandLine& line,
   return contenders;
 }
 
+/// Medians of `rounds` rounds, everybody in turn, after one that warms up; none without rounds.
+std::vector<std::optional<FrameTime>> time_in_turn(
+    const std::vector<std::unique_ptr<MapMaker>>& makers, int rounds) {
+  std::vector<std::vector<FrameTime>> times(makers.size());
+  for (int round = 0; round <= rounds; ++round) {
+    for (std::size_t i = 0; i < makers.size(); ++i) {
+      const Stopwatch watch;
+      makers[i]->match();
+      if (round > 0) {
+        times[i].push_back(watch.per_frame(1));
+      }
+    }
+  }
+  std::vector<std::optional<FrameTime>> medians(makers.size());
+  for (std::size_t i = 0; i < makers.size() && rounds > 0; ++i) {
+    medians[i] = FrameTime{median(of(times[i], &FrameTime::wall)),
+                           median(of(times[i], &FrameTime::processor))};
+  }
+  return medians;
+}
+
 /// Adds the outcome of every contender. Without rounds nothing is timed.
 void judge(const TrueScene& scene, const std::filesystem::path& data, int rounds,
            Execution& execution, Results& results) {
   const LoadedScene loaded = load_scene(scene, data);
   std::vector<std::unique_ptr<MapMaker>> makers;
-  std::vector<Contender> timed;
   for (const MapContender& contender : results.contenders) {
     makers.push_back(contender.prepare(loaded.pair, execution));
-    timed.push_back({contender.name, [maker = makers.back().get()] { maker->match(); }});
   }
-  const std::vector<Timing> timings = time_interleaved(timed, rounds);
+  const std::vector<std::optional<FrameTime>> times = time_in_turn(makers, rounds);
   for (std::size_t i = 0; i < makers.size(); ++i) {
-    Outcome outcome;
     const DisparityMap& map = makers[i]->maps().left;
-    outcome.bad = bad_pixels(map, loaded);
-    if (scene.is_fractional) {
-      outcome.sub_pixel = sub_pixel_figures(map, loaded);
-    }
-    if (rounds > 0) {
-      outcome.milliseconds = timings[i].median() * 1e3;
-    }
-    results.outcomes[i].push_back(outcome);
+    results.outcomes[i].push_back(
+        {bad_pixels(map, loaded), times[i],
+         scene.is_fractional ? sub_pixel_figures(map, loaded) : SubPixelFigures()});
   }
   results.truth_sub_pixel.push_back(scene.is_fractional ? sub_pixel_figures(loaded.truth, loaded)
                                                         : SubPixelFigures());
@@ -133,7 +150,7 @@ void run(CommandLine& line) {
   constexpr int kUsualRounds = 3;
   const std::filesystem::path data = line.text("--data").value_or(VANTAGE_SHARED_DATA);
   const std::vector<SgbmSetting> peers =
-      chosen(sgbm_settings(), line.text("--peers"), "setting of StereoSGBM", is_named<SgbmSetting>);
+      chosen(sgbm_settings(), line.text("--peers"), "--peers", name_of<SgbmSetting>);
   Results results{chosen_contenders(line, peers), chosen_scenes(line, data), {}, {}};
   const int usual_threads = scheduler::detect_machine().hardware_threads;
   Execution execution({.threads = line.number("--threads", usual_threads)});

@@ -8,14 +8,15 @@
 #include "perf/quality/map_contender.h"
 #include "perf/quality/sub_pixel.h"
 #include "perf/quality/true_scenes.h"
+#include "perf/stopwatch.h"
 
 namespace vantage::perf {
 
 /// One contender on one scene.
 struct Outcome {
   BadPixels bad;
-  std::optional<double> milliseconds;  ///< of both maps; empty: not timed
-  SubPixelFigures sub_pixel;           ///< of scenes with fractional truth
+  std::optional<FrameTime> time;  ///< of both maps; empty: not timed
+  SubPixelFigures sub_pixel;      ///< of scenes with fractional truth
 };
 
 struct Results {
