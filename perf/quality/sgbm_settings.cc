@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <limits>
-#include <string>
 #include <string_view>
 
 #include "engine/refinement/refine_maps.h"
@@ -11,22 +10,18 @@
 namespace vantage::perf {
 
 std::string to_text(const SgbmPostProcessing& post) {
-  return fmt::format(
-      "uniqueness {}, disp12MaxDiff {}, speckles {}/{}, cross-check {}, our speckles {}, fill {}",
-      post.uniqueness_percent,
-      post.disp12_max_diff_px == kNoDisp12Check ? "off" : std::to_string(post.disp12_max_diff_px),
-      post.opencv_speckle_px, post.opencv_speckle_range_px, post.cross_check_px,
-      post.speckle_size_px, post.fill == Fill::kMedian ? "median" : "constant");
+  return fmt::format("uniqueness {}, speckles {}/{}, our speckles {}", post.uniqueness_percent,
+                     post.opencv_speckle_px, post.opencv_speckle_range_px, post.speckle_size_px);
 }
 
 const std::vector<SgbmSetting>& sgbm_settings() {
   static const std::vector<SgbmSetting> settings = {
-      {"sgbm-3", cv::StereoSGBM::MODE_SGBM, 3, {10, 1, 100, 2, 1, 0, Fill::kConstant}},
-      {"sgbm-5", cv::StereoSGBM::MODE_SGBM, 5, {10, 1, 100, 2, 1, 0, Fill::kConstant}},
-      {"3way-3", cv::StereoSGBM::MODE_SGBM_3WAY, 3, {10, 1, 100, 2, 1, 0, Fill::kConstant}},
-      {"3way-5", cv::StereoSGBM::MODE_SGBM_3WAY, 5, {10, 1, 100, 2, 1, 0, Fill::kConstant}},
-      {"hh-3", cv::StereoSGBM::MODE_HH, 3, {10, 1, 100, 2, 1, 0, Fill::kConstant}},
-      {"hh-5", cv::StereoSGBM::MODE_HH, 5, {10, 1, 100, 2, 1, 0, Fill::kConstant}},
+      {"sgbm-3", cv::StereoSGBM::MODE_SGBM, 3, {10, 100, 2, 0}},
+      {"sgbm-5", cv::StereoSGBM::MODE_SGBM, 5, {10, 100, 2, 0}},
+      {"3way-3", cv::StereoSGBM::MODE_SGBM_3WAY, 3, {10, 100, 2, 0}},
+      {"3way-5", cv::StereoSGBM::MODE_SGBM_3WAY, 5, {10, 100, 2, 0}},
+      {"hh-3", cv::StereoSGBM::MODE_HH, 3, {10, 100, 2, 0}},
+      {"hh-5", cv::StereoSGBM::MODE_HH, 5, {10, 100, 2, 0}},
   };
   return settings;
 }
@@ -35,7 +30,6 @@ cv::Ptr<cv::StereoSGBM> make_sgbm_matcher(const SgbmSetting& setting, const Scen
   cv::Ptr<cv::StereoSGBM> matcher =
       make_sgbm(pair.range, setting.block_px, pair.left_opencv.channels(), setting.mode);
   matcher->setUniquenessRatio(setting.post_processing.uniqueness_percent);
-  matcher->setDisp12MaxDiff(setting.post_processing.disp12_max_diff_px);
   matcher->setSpeckleWindowSize(0);
   return matcher;
 }
@@ -59,10 +53,10 @@ DisparityMaps refine_peer_maps(const SgbmPostProcessing& post, const ScenePair& 
   refined.right = std::move(maps.right);
   RefinementOptions options{};
   options.cross_check = true;
-  options.cross_check_px = post.cross_check_px;
+  options.cross_check_px = 1;
   options.confidence_threshold = -std::numeric_limits<double>::infinity();
   options.speckle_size_px = post.speckle_size_px;
-  options.fill = post.fill;
+  options.fill = Fill::kMedian;
   RefinementWork work;
   const MapToRefine left{MapSide::kLeft, &pair.left, &refined.left,
                          nullptr,        nullptr,    &refined.left_unmatched};

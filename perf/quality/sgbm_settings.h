@@ -11,21 +11,17 @@
 
 namespace vantage::perf {
 
-/// More than any difference: OpenCV 4.6 takes what it documents as "no check", 0 and less, for 1.
-inline constexpr int kNoDisp12Check = 4096;
-
-/// What is done to the winners of OpenCV's StereoSGBM, in this order.
+/// What differs between settings in what is done to the winners of OpenCV's StereoSGBM, in this
+/// order; our cross-check at 1 px goes before our speckle removal, our fill with medians is the
+/// last step.
 struct SgbmPostProcessing {
   int uniqueness_percent;  ///< by which the winner must beat the others
-  int disp12_max_diff_px;  ///< of OpenCV's own check, which looks at one volume
   int opencv_speckle_px;   ///< OpenCV's filter takes regions of at most so many pixels; 0: none
   int opencv_speckle_range_px;
-  double cross_check_px;  ///< ours, of the maps of both images
-  int speckle_size_px;    ///< ours
-  Fill fill;
+  int speckle_size_px;  ///< ours
 };
 
-/// "uniqueness 10, disp12 1, …"
+/// "uniqueness 10, speckles 100/2, our speckles 0"
 std::string to_text(const SgbmPostProcessing& post_processing);
 
 struct SgbmSetting {
