@@ -108,14 +108,11 @@ struct PeerMaps {
   DisparityMap right;
 };
 
-inline PeerMaps to_maps(const PeerDisparities& disparities, DisparityRange range) {
-  return {to_map(disparities.left, range.min), to_map(disparities.right, range.min)};
-}
-
 inline PeerMaps sgbm_maps(const cv::Mat& left, const cv::Mat& right, DisparityRange range,
                           int block, int mode) {
-  return to_maps(
-      both_disparities(*make_sgbm(range, block, left.channels(), mode), left, right, range), range);
+  const PeerDisparities disparities =
+      both_disparities(*make_sgbm(range, block, left.channels(), mode), left, right, range);
+  return {to_map(disparities.left, range.min), to_map(disparities.right, range.min)};
 }
 
 }  // namespace vantage::perf

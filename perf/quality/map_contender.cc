@@ -14,8 +14,8 @@ namespace {
 
 class OurMaps : public MapMaker {
  public:
-  OurMaps(MatchOptions options, const ScenePair& pair, Execution& execution)
-      : pair_(pair), matcher_(in_range(std::move(options), pair.range), execution) {}
+  OurMaps(const MatchOptions& options, const ScenePair& pair, Execution& execution)
+      : pair_(pair), matcher_(in_range(options, pair.range), execution) {}
   void match() override { matcher_.match(pair_.left, pair_.right, {}, maps_); }
   const DisparityMaps& maps() override { return maps_; }
 
@@ -44,8 +44,7 @@ class SgbmMaps : public MapMaker {
     cv::setNumThreads(1);
   }
   const DisparityMaps& maps() override {
-    maps_ = refine_peer_maps(setting_.post_processing, pair_, to_maps(disparities_, pair_.range),
-                             execution_);
+    refine_peer_maps(setting_.post_processing, pair_, disparities_, execution_, maps_);
     return maps_;
   }
 

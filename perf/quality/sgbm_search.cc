@@ -55,11 +55,11 @@ void try_uniqueness(SgbmSetting setting, const LoadedScene& scene, Execution& ex
   const PeerDisparities winners =
       both_disparities(*make_sgbm_matcher(setting, scene.pair), scene.pair.left_opencv,
                        scene.pair.right_opencv, scene.pair.range);
+  DisparityMaps maps;
   for (Tried& one : tried) {
     PeerDisparities filtered = copy(winners);
     filter_opencv_speckles(one.post_processing, scene.pair.range, filtered);
-    const DisparityMaps maps = refine_peer_maps(one.post_processing, scene.pair,
-                                                to_maps(filtered, scene.pair.range), execution);
+    refine_peer_maps(one.post_processing, scene.pair, filtered, execution, maps);
     one.of_scenes.push_back(bad_pixels(maps.left, scene));
   }
 }

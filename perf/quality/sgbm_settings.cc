@@ -15,13 +15,14 @@ std::string to_text(const SgbmPostProcessing& post) {
 }
 
 const std::vector<SgbmSetting>& sgbm_settings() {
+  // What search_sgbm_post_processing() found on the scenes of true_scenes().
   static const std::vector<SgbmSetting> settings = {
-      {"sgbm-3", cv::StereoSGBM::MODE_SGBM, 3, {10, 100, 2, 0}},
-      {"sgbm-5", cv::StereoSGBM::MODE_SGBM, 5, {10, 100, 2, 0}},
-      {"3way-3", cv::StereoSGBM::MODE_SGBM_3WAY, 3, {10, 100, 2, 0}},
-      {"3way-5", cv::StereoSGBM::MODE_SGBM_3WAY, 5, {10, 100, 2, 0}},
-      {"hh-3", cv::StereoSGBM::MODE_HH, 3, {10, 100, 2, 0}},
-      {"hh-5", cv::StereoSGBM::MODE_HH, 5, {10, 100, 2, 0}},
+      {"sgbm-3", cv::StereoSGBM::MODE_SGBM, 3, {0, 0, 0, 100}},
+      {"sgbm-5", cv::StereoSGBM::MODE_SGBM, 5, {0, 0, 0, 100}},
+      {"3way-3", cv::StereoSGBM::MODE_SGBM_3WAY, 3, {0, 100, 1, 0}},
+      {"3way-5", cv::StereoSGBM::MODE_SGBM_3WAY, 5, {0, 100, 1, 0}},
+      {"hh-3", cv::StereoSGBM::MODE_HH, 3, {10, 100, 1, 0}},
+      {"hh-5", cv::StereoSGBM::MODE_HH, 5, {10, 100, 1, 0}},
   };
   return settings;
 }
@@ -46,11 +47,11 @@ void filter_opencv_speckles(const SgbmPostProcessing& post, DisparityRange range
   }
 }
 
-DisparityMaps refine_peer_maps(const SgbmPostProcessing& post, const ScenePair& pair, PeerMaps maps,
-                               Execution& execution) {
-  DisparityMaps refined;
-  refined.left = std::move(maps.left);
-  refined.right = std::move(maps.right);
+void refine_peer_maps(const SgbmPostProcessing& post, const ScenePair& pair,
+                      const PeerDisparities& disparities, Execution& execution,
+                      DisparityMaps& refined) {
+  refined.left = to_map(disparities.left, pair.range.min);
+  refined.right = to_map(disparities.right, pair.range.min);
   RefinementOptions options{};
   options.cross_check = true;
   options.cross_check_px = 1;
@@ -63,7 +64,6 @@ DisparityMaps refine_peer_maps(const SgbmPostProcessing& post, const ScenePair& 
   const MapToRefine right{MapSide::kRight, &pair.right, &refined.right,
                           nullptr,         nullptr,     &refined.right_unmatched};
   refine_maps(options, left, &right, execution, work, [](std::string_view) {});
-  return refined;
 }
 
 }  // namespace vantage::perf

@@ -40,7 +40,8 @@ cv::Ptr<cv::StereoSGBM> make_sgbm_matcher(const SgbmSetting& setting, const Scen
 /// What make_sgbm_matcher() leaves to do.
 void filter_opencv_speckles(const SgbmPostProcessing& post_processing, DisparityRange range,
                             PeerDisparities& disparities);
-DisparityMaps refine_peer_maps(const SgbmPostProcessing& post_processing, const ScenePair& pair,
-                               PeerMaps maps, Execution& execution);
+void refine_peer_maps(const SgbmPostProcessing& post_processing, const ScenePair& pair,
+                      const PeerDisparities& disparities, Execution& execution,
+                      DisparityMaps& refined);
 
 }  // namespace vantage::perf

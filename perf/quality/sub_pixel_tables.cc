@@ -11,10 +11,12 @@
 namespace vantage::perf {
 namespace {
 
-SubPixelFigures mean(const std::vector<SubPixelFigures>& all) {
+template <typename OfScene>
+SubPixelFigures mean(const std::vector<std::size_t>& scenes, const OfScene& of_scene) {
   SubPixelFigures sum;
-  const auto n = static_cast<double>(all.size());
-  for (const SubPixelFigures& one : all) {
+  const auto n = static_cast<double>(scenes.size());
+  for (const std::size_t scene : scenes) {
+    const SubPixelFigures& one = of_scene(scene);
     for (std::size_t bin = 0; bin < kFractionBins; ++bin) {
       sum.fraction_percent[bin] += one.fraction_percent[bin] / n;
     }
@@ -47,17 +49,14 @@ void print_group(const Results& results, const SceneGroup& group) {
   }
   titles.insert(titles.end(), {"fullest ÷ emptiest", "mean error, px", "RMS, px"});
   print_header(titles);
-  std::vector<SubPixelFigures> figures;
-  for (const std::size_t scene : scenes) {
-    figures.push_back(results.truth_sub_pixel[scene]);
-  }
-  print_row("truth", mean(figures));
+  print_row("truth", mean(scenes, [&](std::size_t scene) -> const SubPixelFigures& {
+              return results.truth_sub_pixel[scene];
+            }));
   for (std::size_t i = 0; i < results.contenders.size(); ++i) {
-    figures.clear();
-    for (const std::size_t scene : scenes) {
-      figures.push_back(results.outcomes[i][scene].sub_pixel);
-    }
-    print_row(results.contenders[i].name, mean(figures));
+    print_row(results.contenders[i].name,
+              mean(scenes, [&](std::size_t scene) -> const SubPixelFigures& {
+                return results.outcomes[i][scene].sub_pixel;
+              }));
   }
 }
 
