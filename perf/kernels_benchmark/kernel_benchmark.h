@@ -36,6 +36,7 @@ KernelBenchmarks cost_kernels();
 KernelBenchmarks sum_kernels();
 KernelBenchmarks selection_kernels();
 KernelBenchmarks iteration_kernels();
+KernelBenchmarks level_kernels();
 KernelBenchmarks view_kernels();
 KernelBenchmarks refinement_kernels();
 

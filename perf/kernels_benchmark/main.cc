@@ -73,7 +73,7 @@ void register_all() {
     })->Iterations(1);
   });
   for (const auto& family : {cost_kernels, sum_kernels, selection_kernels, iteration_kernels,
-                             view_kernels, refinement_kernels}) {
+                             level_kernels, view_kernels, refinement_kernels}) {
     for (const KernelBenchmark& kernel : family()) {
       const auto add = [&kernel](long long target, const std::string& suffix) {
         benchmark::RegisterBenchmark(

@@ -23,6 +23,8 @@ TEST_F(MatchCommandOptions, BadValuesAreRefusedWithTheirBound) {
   const std::vector<Refused> cases = {
       {{"--window", "182"}, "window is 182, expected an odd number from 1 to 181"},
       {{"--iterations", "-1"}, "iterations is -1, expected a number from 0 to 10000"},
+      {{"--levels", "0"}, "levels is 0, expected a number from 1 to 10"},
+      {{"--levels", "2", "--disparities-y=-1:1"}, "levels is 2, expected 1 with disparities-y"},
       {{"--method", "diffusion", "--lambda", "0.25"}, "lambda is 0.25, expected a number above 0"},
       {{"--method", "membrane", "--lambda", "0.23"}, "at most 1/(4 + beta) = 0.2222"},
       {{"--method", "membrane", "--beta", "-1"}, "beta is -1, expected a number of at least 0"},
@@ -100,6 +102,7 @@ TEST_F(MatchCommandOptions, ReportShowsWhatWasSetAndWhatIsInForce) {
   EXPECT_EQ(resolved["aggregate"], "membrane");
   EXPECT_EQ(resolved["cost"], "squared");
   EXPECT_EQ(resolved["iterations"], 3);
+  EXPECT_EQ(resolved["levels"], 1);
   EXPECT_EQ(resolved["beta"], 0.5);
   EXPECT_EQ(resolved["cross-check"], "none");
   EXPECT_EQ(resolved["confidence-threshold"], "none");

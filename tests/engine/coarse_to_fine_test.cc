@@ -65,10 +65,10 @@ MatchOptions options_of(Aggregation aggregation, MatchCost cost, int levels, Dis
 /// what starts from them.
 Tolerance tolerance_with_levels(const MethodParameters& parameters) {
   Tolerance tolerance = tolerance_of(parameters);
-  tolerance.tie = std::max(tolerance.tie, 2e-3);
-  tolerance.share = 0.99;
-  tolerance.confidence = std::max(tolerance.confidence, 2e-2);
-  tolerance.confidence_share = std::min(tolerance.confidence_share, 0.97);
+  tolerance.tie = std::max(tolerance.tie, 1e-3);
+  tolerance.share = 0.995;
+  tolerance.confidence = std::max(tolerance.confidence, 5e-3);
+  tolerance.confidence_share = std::min(tolerance.confidence_share, 0.99);
   tolerance.strays = 2;
   return tolerance;
 }

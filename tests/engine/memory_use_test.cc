@@ -106,6 +106,29 @@ TEST(MemoryUse, OfPreparedImagesIsThatOfTheirPlanes) {
             (2 * 5 + 3) * kPixels * sizeof(float));
 }
 
+TEST(MemoryUse, OfCoarseLevelsIsThatOfTheirCells) {
+  MatchOptions options;
+  options.method = MatchMethod::kBayes;
+  options.disparities = {0, 36};  // 48 lanes of a byte
+  options.parameters.iterations = 1;
+  const auto levels = [&](int count) {
+    options.parameters.levels = count;
+    return bytes_of(use_of(options, {.threads = 2}), "coarse levels");
+  };
+  EXPECT_EQ(levels(1), 0U);
+  const std::size_t first = std::size_t{306} * 42 * 48;
+  const std::size_t second = std::size_t{153} * 21 * 48;
+  const std::size_t third = std::size_t{77} * 11 * 48;
+  // Costs of all, and results of two.
+  expect_images_of(levels(2), 2 * first, 2);
+  expect_images_of(levels(4), 2 * (first + second) + third, 5);
+  const std::size_t planned =
+      coarse_level_bytes(options.resolved(), {kWidth, kHeight}, options.disparities.count());
+  EXPECT_EQ(planned, 2 * (first + second) + third);
+  options.method = MatchMethod::kMembrane;
+  expect_images_of(levels(2), 2 * 2 * first, 2);
+}
+
 TEST(MemoryUse, OfFramesIsThatOfTheirImages) {
   FrameSlot slot;
   EXPECT_EQ(held_bytes(slot), 0U);

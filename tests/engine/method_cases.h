@@ -73,6 +73,21 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
   add("combined_box", MatchMethod::kSsd, [](MethodOverrides& p) {
     p.cost = MatchCost::kCombined;
     p.colour = ColourUse::kChannels;
+  add("bayes_levels", MatchMethod::kBayes, [](MethodOverrides& p) {
+    p.levels = 4;
+    p.iterations = 3;
+  });
+  add("membrane_levels", MatchMethod::kMembrane, [](MethodOverrides& p) {
+    p.levels = 3;
+    p.iterations = 4;
+  });
+  add("diffusion_levels", MatchMethod::kDiffusion, [](MethodOverrides& p) {
+    p.levels = 3;
+    p.iterations = 4;
+  });
+  add("box_levels", MatchMethod::kSsd, [](MethodOverrides& p) {
+    p.levels = 3;
+    p.window_px = 5;
   });
   add("bayes_of_evidence", MatchMethod::kBayes,
       [](MethodOverrides& p) { p.cost = MatchCost::kGradient; });

@@ -175,6 +175,7 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
        {0.49, 16.1, kNan},
        "from 0.5 to 16"},
       {"iterations", parameter(&P::iterations), {0, 10000}, {-1, 10001}, "from 0 to 10000"},
+      {"levels", parameter(&P::levels), {1, 10}, {-1, 0, 11}, "from 1 to 10"},
       {"lambda",
        parameter(&P::lambda),
        {0.01, 0.249},

@@ -74,6 +74,8 @@ TEST_F(TuningKeyTest, DifferentWorkHasDifferentKeys) {
   add(key());
   match_.parameters.iterations = 50;
   add(key());
+  match_.parameters.levels = 4;
+  add(key());
   match_.parameters.colour = ColourUse::kChannels;
   add(key());
   match_.method = MatchMethod::kMembrane;
