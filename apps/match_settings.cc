@@ -142,6 +142,13 @@ void add_aggregation_settings(Settings& settings, MethodOverrides& parameters) {
                    "Coarse to fine, iterations at each level: how many levels, each half as wide "
                    "and high as the one before, 1 (the image alone) to 10; " +
                        shared(book.levels));
+  settings.integer(
+      "candidate-blocks", parameters.candidate_blocks, "K",
+      "bayes with levels: on the finest levels only the K blocks of 16 disparities, up "
+      "to 8, that hold the coarser level's winners around; 0: all; " +
+          shared(book.candidate_blocks));
+  settings.integer("pruned-levels", parameters.pruned_levels, "N",
+                   "How many of the finest levels that is, 1 to 10; " + shared(book.pruned_levels));
   settings.number("lambda", parameters.lambda, "L",
                   "diffusion, local-stopping: step, above 0 and below 0.25; membrane: at most "
                   "1/(4 + beta); " +

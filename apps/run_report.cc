@@ -73,6 +73,8 @@ void RunReport::add_match(const MatchReport& match) {
     add_stage(stage.name, stage.seconds);
   }
   cells_ += match.cells;
+  finest_cells_ += match.finest_cells;
+  finest_pixels_ += match.finest_pixels;
   set_plan(match.plan);
 }
 
@@ -150,6 +152,9 @@ SettingValue RunReport::json() const {
       {"cells", cells_},
       {"cells_per_second", cells_per_second()},
       {"peak_memory_bytes", peak_bytes}};
+  if (finest_pixels_ > 0) {
+    document["candidates_per_pixel"] = finest_cells_ / finest_pixels_;
+  }
   if (!binding_.is_null()) {
     document["binding"] = binding_;
   }

@@ -125,6 +125,8 @@ class RunReport {
   std::string places_summary_;  // of the threads; empty where they are not bound
   double compute_seconds_ = 0;
   double cells_ = 0;
+  double finest_cells_ = 0;   ///< see MatchReport
+  double finest_pixels_ = 0;  ///< 0: not known
   std::vector<std::pair<std::string, double>> stages_;
 };
 

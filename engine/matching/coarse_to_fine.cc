@@ -1,5 +1,7 @@
 #include "engine/matching/coarse_to_fine.h"
 
+#include <algorithm>
+#include <optional>
 #include <string_view>
 
 #include "engine/matching/level_stages.h"
@@ -14,6 +16,13 @@ namespace {
 constexpr std::array<std::string_view, 10> kLevelNames = {
     "level 0", "level 1", "level 2", "level 3", "level 4",
     "level 5", "level 6", "level 7", "level 8", "level 9"};
+
+/// All but the coarsest at most.
+int pruned_level_count(const MethodParameters& parameters, std::size_t levels) {
+  return parameters.candidate_blocks == 0
+             ? 0
+             : std::min(parameters.pruned_levels, static_cast<int>(levels) - 1);
+}
 
 int cell_bytes(const MethodParameters& parameters) {
   return parameters.aggregation == Aggregation::kBayes ? 1 : 2;
@@ -50,18 +59,41 @@ std::vector<scheduler::Extent> level_extents(scheduler::Extent extent, int level
 }
 
 void CoarseLevels::resize(const MethodParameters& parameters,
-                          const std::vector<scheduler::Extent>& extents, int lanes) {
+                          const std::vector<scheduler::Extent>& extents, int candidates) {
+  const int lanes = kernels::CandidateGeometry{.count = candidates}.lanes();
   costs_.resize(extents.size() - 1);
   for (std::size_t i = 0; i < costs_.size(); ++i) {
     costs_[i].resize(extents[i + 1], lanes, cell_bytes(parameters));
+  }
+  blocks_.resize(static_cast<std::size_t>(pruned_level_count(parameters, extents.size())));
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    blocks_[i].resize(extents[i], candidates, parameters.candidate_blocks);
   }
 }
 
 LevelVolume& CoarseLevels::begin_result(int level) {
   const LevelVolume& like = costs(level);
   LevelVolume& volume = result(level);
-  volume.resize(like.extent(), like.lanes(), like.cell_bytes());
+  const CandidateBlocks* const of_level = blocks(level);
+  volume.resize(like.extent(), of_level != nullptr ? of_level->lanes() : like.lanes(),
+                like.cell_bytes());
   return volume;
+}
+
+void CoarseLevels::choose_blocks(int level, const kernels::CandidateGeometry& geometry,
+                                 Execution& execution) {
+  // Only the finest level selects disparities, for which there must be partners.
+  blocks_[static_cast<std::size_t>(level)].choose(
+      winners_.view(), level == 0 ? std::optional(geometry) : std::nullopt, execution);
+}
+
+Image<std::int32_t>* CoarseLevels::begin_winners(int level) {
+  if (level == 0 || level > pruned_levels()) {
+    return nullptr;
+  }
+  const scheduler::Extent extent = costs(level).extent();
+  winners_.resize(extent.columns, extent.rows);
+  return &winners_;
 }
 
 std::size_t CoarseLevels::held_bytes() const {
@@ -69,7 +101,10 @@ std::size_t CoarseLevels::held_bytes() const {
   for (const LevelVolume& volume : costs_) {
     bytes += volume.held_bytes();
   }
-  return bytes;
+  for (const CandidateBlocks& blocks : blocks_) {
+    bytes += blocks.held_bytes();
+  }
+  return bytes + vantage::held_bytes(winners_);
 }
 
 std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
@@ -86,14 +121,15 @@ std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Ex
   return bytes;
 }
 
-double match_coarse_to_fine(const MethodParameters& parameters,
-                            const kernels::CandidateGeometry& geometry, const ChainInput& input,
-                            const MapOutputs& outputs, CoarseLevels& levels, Execution& execution,
-                            const std::function<void(const MatchChain&)>& run) {
+LevelCells match_coarse_to_fine(const MethodParameters& parameters,
+                                const kernels::CandidateGeometry& geometry, const ChainInput& input,
+                                const MapOutputs& outputs, CoarseLevels& levels,
+                                Execution& execution,
+                                const std::function<void(const MatchChain&)>& run) {
   const auto extents =
       level_extents({geometry.width, outputs.disparity_px.height()}, parameters.levels);
   const int coarsest = static_cast<int>(extents.size()) - 1;
-  levels.resize(parameters, extents, geometry.lanes());
+  levels.resize(parameters, extents, geometry.count);
   if (coarsest > 0) {
     const scheduler::Span span("reduce");
     run(MatchChain(parameters, geometry, input, outputs, {.reduced = &levels.costs(1)}));
@@ -101,21 +137,30 @@ double match_coarse_to_fine(const MethodParameters& parameters,
       reduce_level(parameters, levels.costs(level - 1), levels.costs(level), execution);
     }
   }
-  double columns = 0;
+  LevelCells cells;
   for (int level = coarsest; level >= 0; --level) {
     const scheduler::Span span(kLevelNames[static_cast<std::size_t>(level)]);
     const scheduler::Extent extent = extents[static_cast<std::size_t>(level)];
     kernels::CandidateGeometry of_level = geometry;
     of_level.width = extent.columns;
     ChainLevel place{.coarser = level < coarsest ? &levels.result(level + 1) : nullptr};
+    if (levels.blocks(level) != nullptr) {
+      levels.choose_blocks(level, geometry, execution);
+      place.blocks = levels.blocks(level);
+      place.coarser_blocks = levels.blocks(level + 1);
+    }
+    place.winners = levels.begin_winners(level);
     if (level > 0) {
       place.costs = &levels.costs(level);
       place.result = &levels.begin_result(level);
     }
     run(MatchChain(parameters, of_level, input, outputs, place));
-    columns += static_cast<double>(extent.columns) * extent.rows;
+    cells.finest_level = place.blocks != nullptr
+                             ? place.blocks->cells()
+                             : static_cast<double>(extent.columns) * extent.rows * geometry.count;
+    cells.all_levels += cells.finest_level;
   }
-  return columns;
+  return cells;
 }
 
 }  // namespace vantage

@@ -2,10 +2,13 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
 #include "engine/execution.h"
+#include "engine/image/image.h"
+#include "engine/matching/candidate_blocks.h"
 #include "engine/matching/level_volume.h"
 #include "engine/matching/match_chain.h"
 #include "kernels/candidates.h"
@@ -17,13 +20,14 @@ namespace vantage {
 /// rounded up: `levels` of them, or fewer where a level would be a single pixel.
 std::vector<scheduler::Extent> level_extents(scheduler::Extent extent, int levels);
 
-/// What is stored of coarse levels while one map is computed: costs of each, results of two.
+/// What is stored of coarse levels while one map is computed: costs of each, results of two, and
+/// which candidates are looked at on levels that do not look at all.
 /// Working memory, reused from map to map without allocating.
 class CoarseLevels {
  public:
-  /// For `extents` of levels, the image's own first.
+  /// For `extents` of levels, the image's own first, and so many candidates.
   void resize(const MethodParameters& parameters, const std::vector<scheduler::Extent>& extents,
-              int lanes);
+              int candidates);
 
   /// level ≥ 1.
   [[nodiscard]] LevelVolume& costs(int level) {
@@ -36,11 +40,31 @@ class CoarseLevels {
   /// Gives the result of `level` its size.
   LevelVolume& begin_result(int level);
 
+  /// The candidates of `level`, null: all. Those of pruned levels have to be chosen first.
+  [[nodiscard]] const CandidateBlocks* blocks(int level) const {
+    return level < pruned_levels() ? &blocks_[static_cast<std::size_t>(level)] : nullptr;
+  }
+  /// Chooses those of a pruned level from the winners of the next coarser one. `geometry`: the
+  /// image's.
+  void choose_blocks(int level, const kernels::CandidateGeometry& geometry, Execution& execution);
+  /// Where the winners of `level` go; null where no level needs them.
+  [[nodiscard]] Image<std::int32_t>* begin_winners(int level);
+
   [[nodiscard]] std::size_t held_bytes() const;
 
  private:
+  [[nodiscard]] int pruned_levels() const { return static_cast<int>(blocks_.size()); }
+
   std::vector<LevelVolume> costs_;
   std::array<LevelVolume, 2> results_;
+  std::vector<CandidateBlocks> blocks_;  ///< of pruned levels
+  Image<std::int32_t> winners_;          ///< of the level before
+};
+
+/// Cells that were aggregated.
+struct LevelCells {
+  double all_levels = 0;
+  double finest_level = 0;
 };
 
 /// What CoarseLevels takes for images of `extent` and `candidates` disparities; 0 for one level.
@@ -57,10 +81,15 @@ std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Ex
 ///
 /// `run` is called with one chain after the other: the first reduces the image's costs, the last
 /// selects winners into `outputs`. parameters.levels > 1; geometry and outputs are the image's;
-/// input without ChainInput::pair. Returns the cell columns of all levels.
-double match_coarse_to_fine(const MethodParameters& parameters,
-                            const kernels::CandidateGeometry& geometry, const ChainInput& input,
-                            const MapOutputs& outputs, CoarseLevels& levels, Execution& execution,
-                            const std::function<void(const MatchChain&)>& run);
+/// input without ChainInput::pair.
+///
+/// With parameters.candidate_blocks > 0 the finest `pruned_levels` levels, all but the coarsest at
+/// most, look at few candidates of each tile only (CandidateBlocks): those near the winners of the
+/// next coarser level. Costs are reduced from all candidates all the same.
+LevelCells match_coarse_to_fine(const MethodParameters& parameters,
+                                const kernels::CandidateGeometry& geometry, const ChainInput& input,
+                                const MapOutputs& outputs, CoarseLevels& levels,
+                                Execution& execution,
+                                const std::function<void(const MatchChain&)>& run);
 
 }  // namespace vantage

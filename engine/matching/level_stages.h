@@ -70,12 +70,13 @@ class LevelReductionStage : public scheduler::RowStage {
   LevelVolume& coarser_;
 };
 
-/// Last stage that keeps the float cells of a level in a volume, columns one behind the other.
+/// Last stage that keeps the float cells of a level in a volume, columns one behind the other, of
+/// as many lanes.
 class LevelStoreStage : public scheduler::RowStage {
  public:
   LevelStoreStage(const kernels::CandidateGeometry& geometry, LevelVolume& volume)
       : RowStage(volume.extent()),
-        lanes_(geometry.lanes()),
+        lanes_(volume.lanes()),
         count_(geometry.count),
         volume_(volume) {}
 

@@ -11,6 +11,8 @@
 #include "engine/error.h"
 #include "engine/matching/cost_bounds.h"
 #include "engine/matching/stage_bayes.h"
+#include "engine/matching/stage_block_selection.h"
+#include "engine/matching/stage_block_source.h"
 #include "engine/matching/stage_box_mean.h"
 #include "engine/matching/stage_column_ssd.h"
 #include "engine/matching/stage_column_sum.h"
@@ -138,9 +140,9 @@ MatchChain::MatchChain(const MethodParameters& parameters,
   }
   add_aggregation(parameters, level);
   if (level.result != nullptr) {
-    add_result(parameters, *level.result);
+    add_result(parameters, level);
   } else {
-    add_selection(parameters);
+    add_selection(parameters, level);
   }
 }
 
@@ -168,19 +170,33 @@ void MatchChain::add_costs(const MethodParameters& parameters, const ChainInput&
                            const ChainLevel& level) {
   const bool is_bayes = parameters.aggregation == Aggregation::kBayes;
   if (level.costs != nullptr) {
-    add(is_bayes ? make_level_likelihood_stage(geometry_, *level.costs)
+    add(is_bayes ? make_level_likelihood_stage(geometry_, *level.costs, level.blocks)
                  : make_level_energy_stage(geometry_, half_scale_, *level.costs));
     return;
   }
   const CellMeaning meaning = is_bayes ? CellMeaning::kLikelihood : CellMeaning::kEnergy;
-  auto costs =
-      make_cost_stage(parameters, geometry_, *input.reference, input.partners, meaning, height_);
-  if (!input.prior_px.empty()) {
-    costs = make_disparity_prior_stage(std::move(costs), geometry_, meaning, input.prior_px,
-                                       static_cast<float>(input.prior_weight),
-                                       most_contrast(parameters));
+  const auto costs_of = [&](int first_candidate, int count) {
+    kernels::CandidateGeometry candidates = geometry_;
+    candidates.disparity_min += first_candidate;
+    candidates.count = count;
+    auto costs =
+        make_cost_stage(parameters, candidates, *input.reference, input.partners, meaning, height_);
+    if (!input.prior_px.empty()) {
+      costs = make_disparity_prior_stage(std::move(costs), geometry_, meaning, input.prior_px,
+                                         static_cast<float>(input.prior_weight),
+                                         most_contrast(parameters), first_candidate);
+    }
+    return costs;
+  };
+  if (level.blocks == nullptr) {
+    add(costs_of(0, geometry_.count));
+    return;
   }
-  add(std::move(costs));
+  std::vector<std::unique_ptr<scheduler::RowStage>> of_blocks;
+  for (int first = 0; first < geometry_.count; first += kernels::kLaneMultiple) {
+    of_blocks.push_back(costs_of(first, std::min(kernels::kLaneMultiple, geometry_.count - first)));
+  }
+  add(make_block_source_stage(std::move(of_blocks), *level.blocks));
 }
 
 void MatchChain::add_column_ssd(const MethodParameters& parameters, const PreparedPair& pair) {
@@ -244,19 +260,26 @@ void MatchChain::add_aggregation(const MethodParameters& parameters, const Chain
       break;
     case Aggregation::kBayes:
       iterations_ = parameters.iterations;
-      add_all(make_bayes_stages(parameters, geometry_, height_, level.coarser));
+      add_all(make_bayes_stages(parameters, geometry_, height_,
+                                {.volume = level.coarser, .blocks = level.coarser_blocks},
+                                level.blocks));
       ++first_iteration_;  // behind the start
       break;
   }
 }
 
-void MatchChain::add_result(const MethodParameters& parameters, LevelVolume& result) {
+void MatchChain::add_result(const MethodParameters& parameters, const ChainLevel& level) {
   add(parameters.aggregation == Aggregation::kBayes
-          ? make_level_probability_stage(geometry_, result)
-          : make_energy_store_stage(geometry_, half_scale_, result));
+          ? make_level_probability_stage(
+                geometry_, {.probabilities = level.result, .winners = level.winners}, level.blocks)
+          : make_energy_store_stage(geometry_, half_scale_, *level.result));
 }
 
-void MatchChain::add_selection(const MethodParameters& parameters) {
+void MatchChain::add_selection(const MethodParameters& parameters, const ChainLevel& level) {
+  if (level.blocks != nullptr) {
+    add(make_block_selection_stage(geometry_, parameters.subpixel, outputs_, *level.blocks));
+    return;
+  }
   CellSelectionSettings settings;
   settings.cells_are_probabilities = parameters.aggregation == Aggregation::kBayes;
   settings.subpixel = parameters.subpixel;

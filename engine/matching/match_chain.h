@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "engine/image/image.h"
+#include "engine/matching/candidate_blocks.h"
 #include "engine/matching/intensity_planes.h"
 #include "engine/matching/level_volume.h"
 #include "engine/matching/match_options.h"
@@ -44,6 +46,12 @@ struct ChainLevel {
   LevelVolume* result = nullptr;         ///< where cells go in place of winners
   /// Where costs go, reduced to the next coarser level: nothing else is made.
   LevelVolume* reduced = nullptr;
+  /// Bayesian diffusion: the candidates that are looked at, here and on the coarser level; null:
+  /// all. Where this level has fewer than all, there is a coarser one.
+  const CandidateBlocks* blocks = nullptr;
+  const CandidateBlocks* coarser_blocks = nullptr;
+  /// Beside `result`: where the most probable candidates go; null: not wanted.
+  Image<std::int32_t>* winners = nullptr;
 };
 
 /// The stages that compute one disparity map, or one level of it: cost → aggregation → selection.
@@ -67,8 +75,8 @@ class MatchChain {
   void add_column_ssd(const MethodParameters& parameters, const PreparedPair& pair);
   void add_box(const MethodParameters& parameters, const ChainInput& input);
   void add_aggregation(const MethodParameters& parameters, const ChainLevel& level);
-  void add_result(const MethodParameters& parameters, LevelVolume& result);
-  void add_selection(const MethodParameters& parameters);
+  void add_result(const MethodParameters& parameters, const ChainLevel& level);
+  void add_selection(const MethodParameters& parameters, const ChainLevel& level);
 
   kernels::CandidateGeometry geometry_;
   MapOutputs outputs_;

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "engine/error.h"
+#include "engine/matching/candidate_blocks.h"
 
 namespace vantage {
 namespace {
@@ -26,6 +27,8 @@ constexpr MethodParameters kCommon{
     .aggregation_sigma_px = 2,
     .iterations = 10,
     .levels = 1,
+    .candidate_blocks = 0,
+    .pruned_levels = 2,
     .lambda = 0.15,
     .beta = 0.5,
     .certainty = Certainty::kMargin,
@@ -70,6 +73,8 @@ void take_over(const MethodParametersOf<From>& overrides, MethodParametersOf<To>
   take(overrides.aggregation_sigma_px, target.aggregation_sigma_px);
   take(overrides.iterations, target.iterations);
   take(overrides.levels, target.levels);
+  take(overrides.candidate_blocks, target.candidate_blocks);
+  take(overrides.pruned_levels, target.pruned_levels);
   take(overrides.lambda, target.lambda);
   take(overrides.beta, target.beta);
   take(overrides.certainty, target.certainty);
@@ -97,11 +102,30 @@ bool is_probability(double value) { return value > 0 && value < 1; }
 
 bool is_positive(double value) { return value > 0 && std::isfinite(value); }
 
+void validate_pruning(const MethodParameters& parameters) {
+  const int blocks = parameters.candidate_blocks;
+  require(blocks >= 0 && blocks <= CandidateBlocks::kMostBlocks, "candidate-blocks", blocks,
+          fmt::format("a number from 0 (all candidates) to {}", CandidateBlocks::kMostBlocks));
+  require(parameters.pruned_levels >= 1 && parameters.pruned_levels <= kMaxLevels, "pruned-levels",
+          parameters.pruned_levels, fmt::format("a number from 1 to {}", kMaxLevels));
+  if (blocks == 0) {
+    return;
+  }
+  require(parameters.levels > 1, "candidate-blocks", blocks,
+          "0 with a single level: candidates are chosen by the winners of a coarser level");
+  require(parameters.aggregation == Aggregation::kBayes, "candidate-blocks", blocks,
+          "0 but with the aggregation bayes: for energies, candidates that were not looked at have "
+          "no value that is neutral to their neighbours");
+  require(!is_evidence(parameters), "candidate-blocks", blocks,
+          "0 with the cost gradient: its likelihoods compare a candidate with the best of all");
+}
+
 void validate_diffusion(const MethodParameters& parameters) {
   require(parameters.iterations >= 0 && parameters.iterations <= kMaxIterations, "iterations",
           parameters.iterations, fmt::format("a number from 0 to {}", kMaxIterations));
   require(parameters.levels >= 1 && parameters.levels <= kMaxLevels, "levels", parameters.levels,
           fmt::format("a number from 1 to {}", kMaxLevels));
+  validate_pruning(parameters);
   if (parameters.aggregation == Aggregation::kMembrane) {
     require(parameters.beta >= 0 && std::isfinite(parameters.beta), "beta", parameters.beta,
             "a number of at least 0");

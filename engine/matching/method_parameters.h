@@ -63,6 +63,10 @@ struct MethodParametersOf {
   /// Coarse to fine, 1..10: `iterations` at each level, from an image of 1/2^(levels − 1) of the
   /// size to the image itself; levels that would be a single pixel are left out. 1: flat.
   Field<int> levels;
+  /// Bayes with levels: blocks of 16 candidates that are looked at in each tile of 8×8 pixels of
+  /// the finest `pruned_levels` levels, 1..8; 0: all candidates.
+  Field<int> candidate_blocks;
+  Field<int> pruned_levels;     ///< 1..10; the coarsest level always looks at all candidates
   Field<double> lambda;         ///< step: 0 < λ < ¼; membrane: λ ≤ 1/(4+β)
   Field<double> beta;           ///< membrane: pull towards the first cost, ≥ 0
   Field<Certainty> certainty;   ///< local stopping

@@ -5,8 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <numeric>
+#include <optional>
 
 #include "engine/image/image.h"
+#include "engine/matching/block_star.h"
 #include "engine/matching/column_work.h"
 #include "engine/matching/star_stage.h"
 #include "kernels/bayes_step/bayes_step.h"
@@ -39,18 +42,45 @@ std::vector<float> prior_taps(const MethodParameters& parameters, int count) {
 
 enum class Form { kStart, kHalf, kGeneral };
 
+/// As many candidates as columns of cells have room for.
+kernels::CandidateGeometry cell_geometry(const kernels::CandidateGeometry& geometry,
+                                         const CandidateBlocks* blocks) {
+  kernels::CandidateGeometry cells = geometry;
+  if (blocks != nullptr) {
+    cells.count = blocks->lanes();
+  }
+  return cells;
+}
+
+/// Working memory of a kernel on columns of so many lanes, of blocks that need not be neighbours.
+std::size_t work_floats(int lanes, int radius, const CandidateBlocks* blocks) {
+  const int segments = blocks == nullptr ? 1 : lanes / kernels::kLaneMultiple;
+  return static_cast<std::size_t>(kernels::bayes_work_floats(lanes, radius, segments));
+}
+
+/// What neighbours have in place of candidates that were not looked at: the state of p = 0.
+float absent_state(BayesState state, float mu, float floor) {
+  return state == BayesState::kLogSmoothed ? mu * std::log2(floor) : floor;
+}
+
 class BayesStage final : public StarStage {
  public:
   BayesStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
-             int height, Form form, BayesState state)
-      : StarStage(geometry, height),
+             int height, Form form, BayesState state, const CandidateBlocks* blocks)
+      : StarStage(cell_geometry(geometry, blocks), height),
         form_(form),
         state_(state),
         mu_(static_cast<float>(parameters.mu)),
         taps_(prior_taps(parameters, geometry.count)),
         floor_(static_cast<float>(parameters.epsilon_prior)),
-        neutral_(lanes(), 1) {
+        neutral_(lanes(), 1),
+        blocks_(blocks) {
     neutral_.fill(form == Form::kHalf ? 1.0F : 0.0F);
+    if (blocks != nullptr) {
+      const BayesState of_input =
+          form == Form::kHalf ? BayesState::kSmoothed : BayesState::kLogSmoothed;
+      stars_.emplace(*blocks, absent_state(of_input, mu_, floor_));
+    }
   }
 
   [[nodiscard]] std::string_view name() const override {
@@ -68,22 +98,43 @@ class BayesStage final : public StarStage {
   [[nodiscard]] int window_rows() const override { return form_ == Form::kStart ? 1 : 3; }
   [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
                                         scheduler::Extent /*input*/) const override {
-    return sizeof(float) * static_cast<std::size_t>(kernels::bayes_work_floats(lanes(), radius()));
+    return sizeof(float) *
+           (work_floats(lanes(), radius(), blocks_) + (stars_ ? stars_->work_floats() : 0));
   }
 
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
-    return vantage::column_work(kernel_work(), count());
+    return vantage::column_work(kernel_work(), candidates_in(blocks_, count()));
   }
 
   void make_row(const scheduler::RowTask& task) const override {
     kernels::BayesRow row;
-    row.star = star(task, lanes(), neutral_.row(0));
     row.prior = {taps_.data(), radius(), floor_};
     row.state = state_;
     row.mu = mu_;
-    row.count = count();
     row.output = reinterpret_cast<float*>(task.output);
+    row.source_pitch = row.output_pitch = lanes();
     row.work = reinterpret_cast<float*>(task.state);
+    if (blocks_ == nullptr) {
+      row.star = star(task, lanes(), neutral_.row(0));
+      row.count = count();
+      make_columns(row);
+      return;
+    }
+    float* const star_work = row.work + work_floats(lanes(), radius(), blocks_);
+    for (int x = task.columns.begin; x < task.columns.end;) {
+      const CandidateBlocks::Run run = blocks_->run_at(x, task.y, task.columns.end);
+      const BlockSegments segments(run.blocks);
+      row.star = stars_->star(task, run, neutral_.row(0), star_work);
+      row.count = blocks_->count(run.blocks);
+      row.segment_ends = segments.ends();
+      make_columns(row);
+      row.output += run.columns.size() * row.output_pitch;
+      x = run.columns.end;
+    }
+  }
+
+ private:
+  void make_columns(kernels::BayesRow& row) const {
     switch (form_) {
       case Form::kStart:
         row.star.source = row.star.centre;
@@ -97,8 +148,6 @@ class BayesStage final : public StarStage {
         break;
     }
   }
-
- private:
   [[nodiscard]] int radius() const { return static_cast<int>(taps_.size()) - 1; }
   [[nodiscard]] kernels::KernelWork kernel_work() const {
     switch (form_) {
@@ -118,6 +167,8 @@ class BayesStage final : public StarStage {
   std::vector<float> taps_;
   float floor_;
   Image<float> neutral_;  ///< stands for the neighbours outside the image
+  const CandidateBlocks* blocks_;
+  std::optional<BlockStars> stars_;  ///< where there are blocks
 };
 
 /// The state before the first iteration of a level, from the probabilities that the next coarser
@@ -127,30 +178,36 @@ class BayesFromCoarserStage final : public scheduler::RowStage {
  public:
   BayesFromCoarserStage(const MethodParameters& parameters,
                         const kernels::CandidateGeometry& geometry, int height, BayesState state,
-                        const LevelVolume& coarser)
+                        const CoarserProbabilities& coarser, const CandidateBlocks* blocks)
       : RowStage({geometry.width, height}),
-        lanes_(geometry.lanes()),
+        lanes_(cell_geometry(geometry, blocks).lanes()),
         count_(geometry.count),
         state_(state),
         mu_(static_cast<float>(parameters.mu)),
         taps_(prior_taps(parameters, geometry.count)),
         floor_(static_cast<float>(parameters.epsilon_prior)),
-        coarser_(coarser) {}
+        coarser_(coarser),
+        blocks_(blocks),
+        all_blocks_(static_cast<std::size_t>(geometry.lanes() / kernels::kLaneMultiple)) {
+    std::iota(all_blocks_.begin(), all_blocks_.end(), std::uint16_t{0});
+  }
 
   [[nodiscard]] std::string_view name() const override { return "Bayes start from coarser"; }
   [[nodiscard]] std::size_t bytes_per_column() const override { return sizeof(float) * lanes(); }
-  /// Of one block: probabilities and states of coarser columns, and what smoothing needs.
+  /// Of a few coarser columns: probabilities as floats and as bytes, states, and what smoothing
+  /// needs.
   [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
                                         scheduler::Extent /*input*/) const override {
-    return sizeof(float) * (2 * kBlockColumns * lanes() +
-                            static_cast<std::size_t>(kernels::bayes_work_floats(lanes_, radius())));
+    return sizeof(float) *
+               (2 * kCoarserColumns * lanes() + work_floats(lanes_, radius(), blocks_)) +
+           kCoarserColumns * lanes();
   }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
-    return vantage::column_work(kernels::bayes_start_from_coarser_work(state_, radius()), count_);
+    return vantage::column_work(kernels::bayes_start_from_coarser_work(state_, radius()),
+                                candidates_in(blocks_, count_));
   }
 
   void make_row(const scheduler::RowTask& task) const override {
-    auto* const output = reinterpret_cast<float*>(task.output);
     if (task.y % 2 == 1 && task.previous != nullptr) {
       // Both rows are the same one of the coarser level.
       if (task.previous != task.output) {
@@ -159,46 +216,74 @@ class BayesFromCoarserStage final : public scheduler::RowStage {
       }
       return;
     }
-    auto* const probabilities = reinterpret_cast<float*>(task.state);
-    float* const states = probabilities + kBlockColumns * lanes();
-    const int end = (task.columns.end + 1) / 2;
-    for (int first = task.columns.begin / 2; first < end; first += kBlockColumns) {
-      const int columns = std::min(kBlockColumns, end - first);
-      make_states(task.y / 2, first, columns, probabilities, states);
-      for (int x = std::max(2 * first, task.columns.begin);
-           x < std::min(2 * (first + columns), task.columns.end); ++x) {
-        std::copy_n(states + lanes() * static_cast<std::size_t>(x / 2 - first), lanes(),
+    if (blocks_ == nullptr) {
+      make_columns(task, {task.columns, all_blocks_}, count_);
+      return;
+    }
+    for (int x = task.columns.begin; x < task.columns.end;) {
+      const CandidateBlocks::Run run = blocks_->run_at(x, task.y, task.columns.end);
+      make_columns(task, run, blocks_->count(run.blocks));
+      x = run.columns.end;
+    }
+  }
+
+ private:
+  static constexpr int kCoarserColumns = 8;
+
+  [[nodiscard]] std::size_t lanes() const { return static_cast<std::size_t>(lanes_); }
+  [[nodiscard]] int radius() const { return static_cast<int>(taps_.size()) - 1; }
+
+  /// count: candidates in the lanes of the run.
+  void make_columns(const scheduler::RowTask& task, const CandidateBlocks::Run& run,
+                    int count) const {
+    const std::size_t run_lanes = run.blocks.size() * kernels::kLaneMultiple;
+    auto* const output = reinterpret_cast<float*>(task.output);
+    const float* const states = reinterpret_cast<const float*>(task.state);
+    const int end = (run.columns.end + 1) / 2;
+    for (int first = run.columns.begin / 2; first < end; first += kCoarserColumns) {
+      const int columns = std::min(kCoarserColumns, end - first);
+      make_states(task, run.blocks, count, first, columns);
+      for (int x = std::max(2 * first, run.columns.begin);
+           x < std::min(2 * (first + columns), run.columns.end); ++x) {
+        std::copy_n(states + run_lanes * static_cast<std::size_t>(x / 2 - first), run_lanes,
                     output + lanes() * static_cast<std::size_t>(x - task.columns.begin));
       }
     }
   }
 
- private:
-  static constexpr int kBlockColumns = 8;
-
-  [[nodiscard]] std::size_t lanes() const { return static_cast<std::size_t>(lanes_); }
-  [[nodiscard]] int radius() const { return static_cast<int>(taps_.size()) - 1; }
-
-  /// Of columns of the coarser level. Behind `states` lies the kernel's working memory.
-  void make_states(int coarser_row, int first, int columns, float* probabilities,
-                   float* states) const {
+  /// Of columns of the coarser level, at the beginning of the state.
+  void make_states(const scheduler::RowTask& task, BlockList blocks, int count, int first,
+                   int columns) const {
+    const int run_lanes = static_cast<int>(blocks.size()) * kernels::kLaneMultiple;
+    auto* const states = reinterpret_cast<float*>(task.state);
+    float* const probabilities = states + kCoarserColumns * lanes();
+    float* const work = probabilities + kCoarserColumns * lanes();
+    auto* const bytes =
+        reinterpret_cast<std::uint8_t*>(work + work_floats(lanes_, radius(), blocks_));
+    for (int j = 0; j < columns; ++j) {
+      const int x = first + j;
+      const BlockList own =
+          coarser_.blocks == nullptr ? all_blocks_ : coarser_.blocks->at(x, task.y / 2);
+      copy_blocks<std::uint8_t>(coarser_.volume->column<std::uint8_t>(x, task.y / 2), own, blocks,
+                                kernels::kMostCompact,
+                                bytes + static_cast<std::ptrdiff_t>(j) * run_lanes);
+    }
     kernels::probabilities_of_compact_row(
-        {.cells = coarser_.column<std::uint8_t>(first, coarser_row),
-         .columns = columns,
-         .lanes = lanes_,
-         .count = count_},
-        probabilities);
+        {.cells = bytes, .columns = columns, .lanes = run_lanes, .count = count}, probabilities);
+    const BlockSegments segments(blocks);
     kernels::BayesRow row;
     row.star.centre = row.star.up = row.star.down = row.star.source = probabilities;
     row.star.left_of_first = row.star.right_of_last = probabilities;
     row.star.columns = columns;
-    row.star.lanes = lanes_;
+    row.star.lanes = run_lanes;
     row.prior = {taps_.data(), radius(), floor_};
     row.state = state_;
     row.mu = mu_;
-    row.count = count_;
+    row.count = count;
     row.output = states;
-    row.work = states + kBlockColumns * lanes();
+    row.source_pitch = row.output_pitch = run_lanes;
+    row.segment_ends = segments.ends();
+    row.work = work;
     kernels::bayes_start_row(row);
   }
 
@@ -208,26 +293,29 @@ class BayesFromCoarserStage final : public scheduler::RowStage {
   float mu_;
   std::vector<float> taps_;
   float floor_;
-  const LevelVolume& coarser_;
+  CoarserProbabilities coarser_;
+  const CandidateBlocks* blocks_;
+  std::vector<std::uint16_t> all_blocks_;
 };
 
 }  // namespace
 
 std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const LevelVolume* coarser) {
+    const CoarserProbabilities& coarser, const CandidateBlocks* blocks) {
   const bool half = parameters.mu == 0.5 && parameters.epsilon_prior >= kLeastEpsilonOfProductForm;
   const BayesState between = half ? BayesState::kSmoothed : BayesState::kLogSmoothed;
   std::vector<std::unique_ptr<scheduler::RowStage>> stages;
   for (int i = 0; i <= parameters.iterations; ++i) {
     const Form form = i == 0 ? Form::kStart : half ? Form::kHalf : Form::kGeneral;
     const BayesState state = i == parameters.iterations ? BayesState::kProbability : between;
-    if (i == 0 && coarser != nullptr) {
-      stages.push_back(
-          std::make_unique<BayesFromCoarserStage>(parameters, geometry, height, state, *coarser));
+    if (i == 0 && coarser.volume != nullptr) {
+      stages.push_back(std::make_unique<BayesFromCoarserStage>(parameters, geometry, height, state,
+                                                               coarser, blocks));
       continue;
     }
-    stages.push_back(std::make_unique<BayesStage>(parameters, geometry, height, form, state));
+    stages.push_back(
+        std::make_unique<BayesStage>(parameters, geometry, height, form, state, blocks));
   }
   return stages;
 }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/matching/candidate_blocks.h"
 #include "engine/matching/level_volume.h"
 #include "engine/matching/method_parameters.h"
 #include "kernels/candidates.h"
@@ -10,19 +11,29 @@
 
 namespace vantage {
 
+/// The probabilities that the next coarser level ended with (stage_level_likelihoods).
+struct CoarserProbabilities {
+  const LevelVolume* volume = nullptr;  ///< null: there is no coarser level
+  /// The candidates that were looked at there, in whose lanes they lie; null: all.
+  const CandidateBlocks* blocks = nullptr;
+};
+
 /// The stages of Bayesian diffusion (6.25)–(6.37) after the chain's first stage, which must be the
 /// cost stage with likelihoods (CellMeaning::kLikelihood): a start, then one stage an iteration.
 /// The last one's cells are probabilities, float, geometry.lanes() a column, that sum to 1; lanes
 /// that are no candidates hold 0.
 ///
-/// `coarser`: the probabilities that the next coarser level ended with (stage_level_likelihoods),
-/// which must outlive the stages; the start is then made of them instead of the likelihoods, which
-/// only the iterations look at. Null: there is no coarser level.
+/// `coarser` must outlive the stages; the start is made of it instead of the likelihoods, which
+/// then only the iterations look at.
+///
+/// `blocks`: the candidates that are looked at, in whose lanes the cells of all stages lie; all
+/// others have the probability 0. Null: all, and always so without a coarser level. Must outlive
+/// the stages.
 ///
 /// μ = ½ takes the form without exponentials and logarithms, unless εP is so small (below 1e-7)
 /// that the product of five smoothed probabilities could leave the range of normal floats.
 std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const LevelVolume* coarser = nullptr);
+    const CoarserProbabilities& coarser = {}, const CandidateBlocks* blocks = nullptr);
 
 }  // namespace vantage

@@ -12,14 +12,16 @@ class DisparityPriorStage final : public scheduler::RowStage {
  public:
   DisparityPriorStage(std::unique_ptr<scheduler::RowStage> costs,
                       const kernels::CandidateGeometry& geometry, CellMeaning meaning,
-                      ImageView<const float> prior_px, float weight, float most_contrast)
+                      ImageView<const float> prior_px, float weight, float most_contrast,
+                      int first_candidate)
       : RowStage(costs->extent()),
         costs_(std::move(costs)),
         geometry_(geometry),
         meaning_(meaning),
         prior_px_(prior_px),
         weight_(weight),
-        most_contrast_(most_contrast) {}
+        most_contrast_(most_contrast),
+        first_candidate_(first_candidate) {}
 
   [[nodiscard]] std::string_view name() const override { return "cost with prior"; }
   [[nodiscard]] std::size_t bytes_per_column() const override { return costs_->bytes_per_column(); }
@@ -32,7 +34,7 @@ class DisparityPriorStage final : public scheduler::RowStage {
     const scheduler::ColumnWork prior =
         vantage::column_work(meaning_ == CellMeaning::kEnergy ? kernels::kEnergiesWithPriorWork
                                                               : kernels::kLikelihoodsWithPriorWork,
-                             geometry_.count);
+                             static_cast<int>(costs_->column_work().cells));
     scheduler::ColumnWork work = costs_->column_work();
     work.operations += prior.operations;
     work.bytes += prior.bytes;
@@ -44,9 +46,10 @@ class DisparityPriorStage final : public scheduler::RowStage {
     const kernels::DisparityPriorRow row{
         .prior_px = prior_px_.row(task.y) + task.columns.begin,
         .columns = task.columns.size(),
-        .lanes = geometry_.lanes(),
+        .lanes = static_cast<int>(bytes_per_column() / sizeof(float)),
         .count = geometry_.count,
         .disparity_min = geometry_.disparity_min,
+        .first_candidate = first_candidate_,
         .weight = weight_,
         .most_contrast = most_contrast_,
     };
@@ -65,15 +68,17 @@ class DisparityPriorStage final : public scheduler::RowStage {
   ImageView<const float> prior_px_;
   float weight_;
   float most_contrast_;
+  int first_candidate_;
 };
 
 }  // namespace
 
 std::unique_ptr<scheduler::RowStage> make_disparity_prior_stage(
     std::unique_ptr<scheduler::RowStage> costs, const kernels::CandidateGeometry& geometry,
-    CellMeaning meaning, ImageView<const float> prior_px, float weight, float most_contrast) {
+    CellMeaning meaning, ImageView<const float> prior_px, float weight, float most_contrast,
+    int first_candidate) {
   return std::make_unique<DisparityPriorStage>(std::move(costs), geometry, meaning, prior_px,
-                                               weight, most_contrast);
+                                               weight, most_contrast, first_candidate);
 }
 
 }  // namespace vantage

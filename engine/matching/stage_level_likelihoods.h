@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
+#include "engine/image/image.h"
+#include "engine/matching/candidate_blocks.h"
 #include "engine/matching/level_volume.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
@@ -19,12 +22,22 @@ std::unique_ptr<scheduler::RowStage> make_likelihood_reduction_stage(
 /// Row y of `coarser` from the energies of a coarse level.
 void reduce_energy_row(const LevelVolume& finer, int y, LevelVolume& coarser);
 
-/// Source stage: the likelihoods of a coarse level, from its energies.
+/// Source stage: the likelihoods of a coarse level, from its energies. `blocks`: the candidates
+/// that are looked at, in whose lanes the cells then lie; null: all. Must outlive the stage.
 std::unique_ptr<scheduler::RowStage> make_level_likelihood_stage(
-    const kernels::CandidateGeometry& geometry, const LevelVolume& energies);
+    const kernels::CandidateGeometry& geometry, const LevelVolume& energies,
+    const CandidateBlocks* blocks = nullptr);
 
-/// Last stage: keeps the probabilities that a level ends with.
+/// What becomes of the probabilities that a level ends with.
+struct LevelResult {
+  LevelVolume* probabilities = nullptr;
+  /// The most probable candidates, the smallest of equals; of the level's size. Null: not wanted.
+  Image<std::int32_t>* winners = nullptr;
+};
+/// Last stage: keeps the probabilities that a level ends with. `blocks`: as above; the volume has
+/// as many lanes as they have.
 std::unique_ptr<scheduler::RowStage> make_level_probability_stage(
-    const kernels::CandidateGeometry& geometry, LevelVolume& probabilities);
+    const kernels::CandidateGeometry& geometry, const LevelResult& result,
+    const CandidateBlocks* blocks = nullptr);
 
 }  // namespace vantage

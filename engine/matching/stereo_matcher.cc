@@ -429,14 +429,19 @@ scheduler::ChainPlan StereoMatcher::plan_of(const MatchChain& chain,
 void StereoMatcher::run_levels(const kernels::CandidateGeometry& geometry, const ChainInput& input,
                                const MapOutputs& outputs, CoarseLevels& levels,
                                MatchReport& report) const {
-  double columns = static_cast<double>(geometry.width) * outputs.disparity_px.height();
+  const double pixels = static_cast<double>(geometry.width) * outputs.disparity_px.height();
+  report.finest_pixels += pixels;
   if (parameters_.levels == 1) {
     run_chain(MatchChain(parameters_, geometry, input, outputs), report);
-  } else {
-    columns = match_coarse_to_fine(parameters_, geometry, input, outputs, levels, execution_,
-                                   [&](const MatchChain& chain) { run_chain(chain, report); });
+    report.cells += pixels * options_.disparities.count();
+    report.finest_cells += pixels * options_.disparities.count();
+    return;
   }
-  report.cells += columns * options_.disparities.count();
+  const LevelCells cells =
+      match_coarse_to_fine(parameters_, geometry, input, outputs, levels, execution_,
+                           [&](const MatchChain& chain) { run_chain(chain, report); });
+  report.cells += cells.all_levels;
+  report.finest_cells += cells.finest_level;
 }
 
 void StereoMatcher::run_chain(const MatchChain& chain, MatchReport& report) const {

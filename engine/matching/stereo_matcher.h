@@ -76,7 +76,11 @@ struct MatchReport {
   /// Of one map; both maps use the same. With several levels the image's own: the others', which
   /// are a third of the work, are made the same way.
   scheduler::ChainPlan plan;
-  double cells = 0;  ///< width × height × disparities × maps computed, of all levels
+  /// Width × height × disparities × maps computed, of all levels; of levels that look at few
+  /// candidates those.
+  double cells = 0;
+  double finest_cells = 0;   ///< of these, the finest level's
+  double finest_pixels = 0;  ///< width × height × maps computed
 };
 
 /// Computes disparity maps of rectified pairs (EQUATIONS §1, §3, §5).

@@ -101,6 +101,10 @@ std::string method_text(const MatchOptions& match, const TunedImages& images) {
                                  name_of(parameters.aggregation), reach_of(parameters));
   if (parameters.levels > 1) {
     text += fmt::format(", {} levels", parameters.levels);
+    if (parameters.candidate_blocks > 0) {
+      text +=
+          fmt::format(", {} blocks on {}", parameters.candidate_blocks, parameters.pruned_levels);
+    }
   }
   if (uses_column_ssd(parameters) && !match.disparities_y) {
     text += images.is_8_bit_grey ? ", 8-bit grey" : ", any images";

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <span>
 
 #include "kernels/candidates.h"
 #include "kernels/cells/exp_log.h"
@@ -33,7 +35,15 @@ struct BayesRow {
   BayesState state = BayesState::kSmoothed;
   float mu = 0.5F;          ///< for kLogSmoothed
   int count = 0;            ///< candidates: lanes [0, count)
-  float* output = nullptr;  ///< star.lanes floats a column; not an input
+  float* output = nullptr;  ///< not an input
+  /// Floats from column to column of star.source and of the output, ≥ star.lanes, multiples of
+  /// kLaneMultiple.
+  std::ptrdiff_t source_pitch = 0;
+  std::ptrdiff_t output_pitch = 0;
+  /// Where runs of lanes end whose candidates follow each other: the prior does not reach from one
+  /// to the next. Multiples of kLaneMultiple, ascending, the last one star.lanes; empty: all lanes
+  /// are one run.
+  std::span<const int> segment_ends;
   /// bayes_work_floats() floats, 64-byte aligned; any contents.
   float* work = nullptr;
 };
@@ -50,8 +60,9 @@ inline int bayes_work_margin(int prior_radius) {
   return (prior_radius + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
 }
 
-inline int bayes_work_floats(int lanes, int prior_radius) {
-  return bayes_work_columns(lanes) * (lanes + 2 * bayes_work_margin(prior_radius));
+/// `segments`: of lanes, see BayesRow::segment_ends.
+inline int bayes_work_floats(int lanes, int prior_radius, int segments = 1) {
+  return bayes_work_columns(lanes) * (lanes + (segments + 1) * bayes_work_margin(prior_radius));
 }
 
 /// Before the first iteration: p = p0 normalised, and its state. Only star.source, columns and

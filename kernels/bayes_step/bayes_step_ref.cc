@@ -6,11 +6,17 @@
 namespace vantage::kernels {
 namespace {
 
+/// Whether candidates `a` and `b` ≥ a lie in one run of lanes.
+bool in_one_segment(const BayesRow& row, int a, int b) {
+  return std::none_of(row.segment_ends.begin(), row.segment_ends.end(),
+                      [a, b](int end) { return a < end && end <= b; });
+}
+
 /// p(lane) = p0 · weight(x, lane), normalised, smoothed along the column, written as the state.
 template <class Weight>
 void make_column(const BayesRow& row, int x, Weight weight) {
-  const float* const source = row.star.source + x * row.star.lanes;
-  float* const output = row.output + x * row.star.lanes;
+  const float* const source = row.star.source + x * row.source_pitch;
+  float* const output = row.output + x * row.output_pitch;
   double sum = 0;
   for (int i = 0; i < row.star.lanes; ++i) {
     sum += source[i] * weight(x, i);
@@ -23,7 +29,8 @@ void make_column(const BayesRow& row, int x, Weight weight) {
     }
     double smoothed = row.prior.floor;
     for (int k = -row.prior.radius; k <= row.prior.radius; ++k) {
-      if (i + k >= 0 && i + k < row.count) {
+      if (i + k >= 0 && i + k < row.count &&
+          in_one_segment(row, std::min(i, i + k), std::max(i, i + k))) {
         smoothed += row.prior.taps[std::abs(k)] * p(i + k);
       }
     }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 #include "kernels/bayes_step/bayes_step.h"
 #include "kernels/candidates.h"
@@ -40,8 +41,8 @@ HWY_INLINE void each_column(const BayesRow& row, Column column) {
     at.centre += star.pitch;
     at.up += star.up_pitch;
     at.down += star.down_pitch;
-    at.source += star.lanes;
-    output += star.lanes;
+    at.source += row.source_pitch;
+    output += row.output_pitch;
   }
 }
 
@@ -94,7 +95,8 @@ HWY_INLINE void half_row_in_registers(const BayesRow& row) {
                        HWY_ATTR { half_column_in_registers<kBlocks>(at, scale, floor, output); });
 }
 
-// Unnormalised probabilities of a few columns in memory, with zeros on both sides of each. First
+// Unnormalised probabilities of a few columns in memory, with zeros on both sides of each segment
+// of lanes: candidates there are none beside it, or are taken for impossible. First
 // all of them are made, then all are normalised: one column after the other would wait for the sum
 // over its lanes each time.
 class WorkColumns {
@@ -103,10 +105,16 @@ class WorkColumns {
       : row_(row),
         columns_(bayes_work_columns(row.star.lanes)),
         margin_(bayes_work_margin(row.prior.radius)),
-        pitch_(row.star.lanes + 2 * margin_) {
+        segment_ends_(row.segment_ends.empty() ? std::span<const int>(&row.star.lanes, 1)
+                                               : row.segment_ends),
+        pitch_(row.star.lanes + (static_cast<int>(segment_ends_.size()) + 1) * margin_) {
     for (int j = 0; j < columns_; ++j) {
       std::fill_n(p(j) - margin_, margin_, 0.0F);
-      std::fill_n(p(j) + row.star.lanes, margin_, 0.0F);
+      float* behind = p(j);
+      for (const int end : segment_ends_) {
+        std::fill_n(behind + end, margin_, 0.0F);
+        behind += margin_;
+      }
     }
   }
 
@@ -122,7 +130,7 @@ class WorkColumns {
       if (filled == columns_ || output == last_output()) {
         for (int j = 0; j < filled; ++j) {
           finish(p(j), normalise[j], block_output);
-          block_output += row_.star.lanes;
+          block_output += row_.output_pitch;
         }
         filled = 0;
       }
@@ -134,30 +142,42 @@ class WorkColumns {
 
   [[nodiscard]] float* p(int column) const { return row_.work + column * pitch_ + margin_; }
   [[nodiscard]] const float* last_output() const {
-    return row_.output + static_cast<std::ptrdiff_t>(row_.star.columns - 1) * row_.star.lanes;
+    return row_.output + (row_.star.columns - 1) * row_.output_pitch;
   }
 
   // Returns the factor that normalises the column.
   template <class Weight>
   HWY_INLINE FloatVec make(const StarColumns& at, Weight weight, float* p) const {
     const FloatTag df;
-    const int lanes = row_.star.lanes;
     LaneBlock16 sums;
     sums.fill(hn::Zero(df));
-    for (int lane = 0; lane < lanes; lane += kLaneMultiple) {
-      for (int part = 0; part < kParts; ++part) {
-        const int first = lane + part * kFloatLanes;
-        const FloatVec value = weight(at, first);
-        hn::Store(value, df, p + first);
-        sums.part[part] = hn::Add(sums.part[part], value);
+    int lane = 0;
+    for (const int end : segment_ends_) {
+      for (; lane < end; lane += kLaneMultiple) {
+        for (int part = 0; part < kParts; ++part) {
+          const int first = lane + part * kFloatLanes;
+          const FloatVec value = weight(at, first);
+          hn::Store(value, df, p + first);
+          sums.part[part] = hn::Add(sums.part[part], value);
+        }
       }
+      p += margin_;
     }
     return hn::Div(hn::Set(df, 1.0F), sum_lanes(sums));
   }
 
   HWY_INLINE void finish(const float* p, FloatVec normalise, float* output) const {
+    int begin = 0;
+    for (const int end : segment_ends_) {
+      finish_segment(p + begin, normalise, output + begin, end - begin);
+      p += margin_;
+      begin = end;
+    }
+  }
+
+  HWY_INLINE void finish_segment(const float* p, FloatVec normalise, float* output,
+                                 int lanes) const {
     const FloatTag df;
-    const int lanes = row_.star.lanes;
     if (row_.state == BayesState::kProbability) {
       for (int lane = 0; lane < lanes; lane += kFloatLanes) {
         hn::Store(hn::Mul(hn::Load(df, p + lane), normalise), df, output + lane);
@@ -165,35 +185,35 @@ class WorkColumns {
       return;
     }
     if (row_.state == BayesState::kSmoothed) {
-      smooth(p, normalise, output, [](FloatVec smoothed) HWY_ATTR { return smoothed; });
+      smooth(p, normalise, output, lanes, [](FloatVec smoothed) HWY_ATTR { return smoothed; });
     } else {
       const FloatVec mu = hn::Set(df, row_.mu * kLog2E);
-      smooth(p, normalise, output, [mu](FloatVec smoothed) HWY_ATTR {
+      smooth(p, normalise, output, lanes, [mu](FloatVec smoothed) HWY_ATTR {
         return hn::Mul(mu, log_of_normal<true>(smoothed));
       });
     }
   }
 
   template <class State>
-  HWY_INLINE void smooth(const float* p, FloatVec normalise, float* output, State state) const {
+  HWY_INLINE void smooth(const float* p, FloatVec normalise, float* output, int lanes,
+                         State state) const {
     switch (row_.prior.radius) {
       case 0:
-        return smooth_with<0>(p, normalise, output, state);
+        return smooth_with<0>(p, normalise, output, lanes, state);
       case 1:
-        return smooth_with<1>(p, normalise, output, state);
+        return smooth_with<1>(p, normalise, output, lanes, state);
       default:
-        return smooth_with<-1>(p, normalise, output, state);
+        return smooth_with<-1>(p, normalise, output, lanes, state);
     }
   }
 
   // kRadius: of the prior, −1: any.
   template <int kRadius, class State>
-  HWY_INLINE void smooth_with(const float* p, FloatVec normalise, float* output,
+  HWY_INLINE void smooth_with(const float* p, FloatVec normalise, float* output, int lanes,
                               State state) const {
     const FloatTag df;
     const float* const taps = row_.prior.taps;
     const int radius = kRadius >= 0 ? kRadius : row_.prior.radius;
-    const int lanes = row_.star.lanes;
     const FloatVec floor = hn::Set(df, row_.prior.floor);
     for (int lane = 0; lane < lanes; lane += kFloatLanes) {
       FloatVec sum = hn::Mul(hn::Load(df, p + lane), hn::Set(df, taps[0]));
@@ -208,6 +228,7 @@ class WorkColumns {
   const BayesRow& row_;
   int columns_;
   int margin_;
+  std::span<const int> segment_ends_;
   int pitch_;
 };
 

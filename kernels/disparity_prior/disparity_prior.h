@@ -30,6 +30,8 @@ struct DisparityPriorRow {
   int lanes = 0;  ///< a multiple of kLaneMultiple
   int count = 0;  ///< candidates: lanes [0, count)
   int disparity_min = 0;
+  /// Of likelihoods: the candidate in lane 0, where cells are those of some candidates only.
+  int first_candidate = 0;
   float weight = 1;  ///< ≥ 0
   /// Of energies: most that the contrast of a column counts, see energies_with_prior_row().
   float most_contrast = std::numeric_limits<float>::infinity();

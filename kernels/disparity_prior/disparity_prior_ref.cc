@@ -51,7 +51,8 @@ void likelihoods_with_prior_row_ref(const DisparityPriorRow& row, float* cells) 
       continue;
     }
     for (int i = 0; i < row.lanes; ++i) {
-      cells[i] *= exp2_of_negative(exponent_scale * share_of_depth(row, j, i));
+      cells[i] *=
+          exp2_of_negative(exponent_scale * share_of_depth(row, j, row.first_candidate + i));
     }
   }
 }

@@ -85,7 +85,8 @@ void likelihoods_with_prior(const DisparityPriorRow& row, float* HWY_RESTRICT ce
     }
     const ShareOfDepth share(row, j);
     for (int lane = 0; lane < row.lanes; lane += kFloatLanes) {
-      const FloatVec factor = exp2_of_negative(hn::Mul(exponent_scale, share(lane)));
+      const FloatVec factor =
+          exp2_of_negative(hn::Mul(exponent_scale, share(row.first_candidate + lane)));
       hn::StoreU(hn::Mul(hn::LoadU(d, cells + lane), factor), d, cells + lane);
     }
   }

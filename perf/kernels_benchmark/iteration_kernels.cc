@@ -59,6 +59,7 @@ class Rows {
     row.mu = kMu;
     row.count = kLanes;
     row.output = output_.row(0);
+    row.source_pitch = row.output_pitch = kLanes;
     row.work = work_.row(0);
     return row;
   }

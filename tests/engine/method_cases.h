@@ -73,6 +73,7 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
   add("combined_box", MatchMethod::kSsd, [](MethodOverrides& p) {
     p.cost = MatchCost::kCombined;
     p.colour = ColourUse::kChannels;
+  });
   add("bayes_levels", MatchMethod::kBayes, [](MethodOverrides& p) {
     p.levels = 4;
     p.iterations = 3;

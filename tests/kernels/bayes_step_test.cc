@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "kernels/candidates.h"
@@ -20,6 +21,20 @@ struct Shape {
 constexpr Shape kShapes[] = {{1, 1},  {2, 3},  {3, 16},  {5, 17},  {1, 33}, {4, 64},
                              {3, 80}, {2, 96}, {2, 113}, {2, 128}, {1, 300}};
 
+/// Runs of lanes: one, every kLaneMultiple lanes one, or a cut behind the first ones.
+std::vector<int> segment_ends(int lanes, int kind) {
+  std::vector<int> ends;
+  for (int end = kLaneMultiple; kind > 0 && end < lanes; end += kLaneMultiple) {
+    if (kind == 1 || ends.empty()) {
+      ends.push_back(end);
+    }
+  }
+  if (kind > 0) {
+    ends.push_back(lanes);
+  }
+  return ends;
+}
+
 class BayesStep : public EveryTarget {
  protected:
   /// Compares a kernel with its reference on random rows; `low`, `high` bound the cells.
@@ -33,24 +48,36 @@ class BayesStep : public EveryTarget {
              {BayesState::kSmoothed, BayesState::kLogSmoothed, BayesState::kProbability}) {
           const int lanes = CandidateGeometry{1, 0, shape.count, -1}.lanes();
           StarRows rows(shape.columns, lanes, lanes, low, high, ++seed);
-          for (int i = 0; i < shape.columns * lanes; ++i) {
-            const bool is_candidate = i % lanes < shape.count;
-            rows.source()[i] = is_candidate ? 0.1F + 0.01F * static_cast<float>(i % 7) : 0.0F;
+          // Columns of the source and of the output need not lie one behind the other.
+          const int source_pitch = lanes + static_cast<int>(seed % 2) * kLaneMultiple;
+          const int output_pitch = lanes + static_cast<int>(seed % 3) * kLaneMultiple;
+          Image<float> source(source_pitch * shape.columns, 1);
+          for (int i = 0; i < source.width(); ++i) {
+            const bool is_candidate = i % source_pitch < shape.count;
+            source.at(i, 0) = is_candidate ? 0.1F + 0.01F * static_cast<float>(i % 7) : 0.0F;
           }
           if (seed % 2 == 0) {
             rows.remove_up(neutral);
           }
           BayesRow row;
           row.star = rows.star();
+          row.star.source = source.row(0);
+          row.source_pitch = source_pitch;
+          row.output_pitch = output_pitch;
+          const std::vector<int> ends = segment_ends(lanes, static_cast<int>(seed % 4));
+          row.segment_ends = ends;
           row.prior = {taps.data(), radius, floor};
           row.state = state;
           row.mu = 0.7F;
           row.count = shape.count;
-          Image<float> work(bayes_work_floats(lanes, radius), 1);
+          Image<float> work(
+              bayes_work_floats(lanes, radius, std::max(1, static_cast<int>(ends.size()))), 1);
           work.fill(-7);  // any contents
           row.work = work.row(0);
-          Image<float> expected(lanes * shape.columns, 1);
-          Image<float> actual(lanes * shape.columns, 1);
+          Image<float> expected(output_pitch * shape.columns, 1);
+          Image<float> actual(output_pitch * shape.columns, 1);
+          expected.fill(5);  // what lies between columns stays
+          actual.fill(5);
           row.output = expected.row(0);
           reference(row);
           row.output = actual.row(0);
@@ -92,6 +119,7 @@ TEST_P(BayesStep, ProbabilitiesSumToOne) {
   row.prior = {&tap, 0, 0.01F};
   row.state = BayesState::kProbability;
   row.count = 64;
+  row.source_pitch = row.output_pitch = lanes;
   Image<float> work(bayes_work_floats(lanes, 0), 1);
   row.work = work.row(0);
   Image<float> output(lanes * 3, 1);

@@ -1,0 +1,352 @@
+// Levels on which few candidates are looked at, against levels that look at all, and what whole
+// pruned runs must not depend on.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/matching/candidate_blocks.h"
+#include "engine/matching/stage_bayes.h"
+#include "engine/matching/stage_block_selection.h"
+#include "engine/matching/stage_block_source.h"
+#include "engine/matching/stage_level_likelihoods.h"
+#include "engine/matching/stereo_matcher.h"
+#include "tests/engine/cell_stages.h"
+#include "tests/engine/identical_maps.h"
+#include "tests/engine/oracle_comparison.h"
+
+namespace vantage {
+namespace {
+
+using kernels::CandidateGeometry;
+using scheduler::Extent;
+using testing::CellSource;
+using testing::CellVolume;
+using testing::identical;
+
+constexpr Extent kExtent{41, 19};
+
+/// A level between two others: its energies, the coarser level's probabilities, and blocks.
+struct Level {
+  CandidateGeometry geometry;
+  LevelVolume energies;
+  LevelVolume coarser;
+  CandidateBlocks blocks;
+
+  /// `spread`: blocks that winners of a tile lie in.
+  Level(int candidates, int most, int spread)
+      : geometry{.width = kExtent.columns, .disparity_min = 0, .count = candidates} {
+    std::mt19937 random(static_cast<unsigned>(candidates));
+    const Extent coarse{(kExtent.columns + 1) / 2, (kExtent.rows + 1) / 2};
+    energies.resize(kExtent, geometry.lanes(), 1);
+    coarser.resize(coarse, geometry.lanes(), 1);
+    for (LevelVolume* volume : {&energies, &coarser}) {
+      for (int y = 0; y < volume->extent().rows; ++y) {
+        auto* cells = volume->column<std::uint8_t>(0, y);
+        for (int k = 0; k < volume->extent().columns * geometry.lanes(); ++k) {
+          cells[k] = static_cast<std::uint8_t>(random() % 60);
+        }
+      }
+    }
+    Image<std::int32_t> winners(coarse.columns, coarse.rows);
+    for (int y = 0; y < coarse.rows; ++y) {
+      for (int x = 0; x < coarse.columns; ++x) {
+        const int block =
+            (x / 8 + y / 4 + static_cast<int>(random() % 4) * spread / 4) * kernels::kLaneMultiple;
+        winners.at(x, y) = (block + 8) % candidates;
+      }
+    }
+    Execution execution({.threads = 1});
+    blocks.resize(kExtent, candidates, most);
+    blocks.choose(winners.view(), std::nullopt, execution);
+  }
+};
+
+MethodParameters bayes_parameters(double sigma_prior, double mu) {
+  MethodOverrides overrides;
+  overrides.iterations = 3;
+  overrides.sigma_prior = sigma_prior;
+  overrides.mu = mu;
+  return resolve(MatchMethod::kBayes, overrides);
+}
+
+/// Keeps the probabilities of the last stage as floats, in all lanes that `blocks` has.
+class ProbabilitySink final : public scheduler::RowStage {
+ public:
+  ProbabilitySink(CellVolume<float>& volume, const CandidateBlocks* blocks, int lanes)
+      : RowStage(volume.extent), volume_(volume), blocks_(blocks), lanes_(lanes) {}
+  [[nodiscard]] std::string_view name() const override { return "probability sink"; }
+  [[nodiscard]] std::size_t bytes_per_column() const override { return 0; }
+  void make_row(const scheduler::RowTask& task) const override {
+    for (int x = task.columns.begin; x < task.columns.end; ++x) {
+      const float* cells = task.input.row<float>(task.y) +
+                           static_cast<std::ptrdiff_t>(x - task.input.columns().begin) * lanes_;
+      for (int lane = 0; lane < volume_.lanes; ++lane) {
+        if (blocks_ == nullptr) {
+          volume_.at(x, task.y, lane) = cells[lane];
+        }
+      }
+      if (blocks_ != nullptr) {
+        const BlockList list = blocks_->at(x, task.y);
+        for (int lane = 0; lane < 16 * static_cast<int>(list.size()); ++lane) {
+          volume_.at(x, task.y, candidate_of(list, lane)) = cells[lane];
+        }
+      }
+    }
+  }
+
+ private:
+  CellVolume<float>& volume_;
+  const CandidateBlocks* blocks_;
+  int lanes_;
+};
+
+/// Makes the likelihoods of candidates that are not looked at impossible.
+class MaskedSource final : public scheduler::RowStage {
+ public:
+  MaskedSource(std::unique_ptr<scheduler::RowStage> inner, const CandidateBlocks& blocks, int lanes)
+      : RowStage(inner->extent()), inner_(std::move(inner)), blocks_(blocks), lanes_(lanes) {}
+  [[nodiscard]] std::string_view name() const override { return "masked source"; }
+  [[nodiscard]] std::size_t bytes_per_column() const override { return inner_->bytes_per_column(); }
+  void make_row(const scheduler::RowTask& task) const override {
+    inner_->make_row(task);
+    auto* cells = reinterpret_cast<float*>(task.output);
+    for (int x = task.columns.begin; x < task.columns.end; ++x, cells += lanes_) {
+      const BlockList list = blocks_.at(x, task.y);
+      for (int lane = 0; lane < lanes_; ++lane) {
+        if (std::ranges::find(list, lane / 16) == list.end()) {
+          cells[lane] = 0;
+        }
+      }
+    }
+  }
+
+ private:
+  std::unique_ptr<scheduler::RowStage> inner_;
+  const CandidateBlocks& blocks_;
+  int lanes_;
+};
+
+/// The final probabilities of a level, all candidates of it; pruned, or as if all were looked at
+/// but those not in blocks were impossible.
+CellVolume<float> probabilities_of(const Level& level, const MethodParameters& parameters,
+                                   bool pruned, bool every_way) {
+  CellVolume<float> result(kExtent, level.geometry.lanes());
+  const CandidateBlocks* const blocks = pruned ? &level.blocks : nullptr;
+  std::vector<std::unique_ptr<scheduler::RowStage>> stages;
+  stages.push_back(make_level_likelihood_stage(level.geometry, level.energies, blocks));
+  if (!pruned) {
+    stages.back() = std::make_unique<MaskedSource>(std::move(stages.back()), level.blocks,
+                                                   level.geometry.lanes());
+  }
+  for (auto& stage : make_bayes_stages(parameters, level.geometry, kExtent.rows,
+                                       {.volume = &level.coarser}, blocks)) {
+    stages.push_back(std::move(stage));
+  }
+  stages.push_back(std::make_unique<ProbabilitySink>(
+      result, blocks, pruned ? level.blocks.lanes() : level.geometry.lanes()));
+  std::vector<const scheduler::RowStage*> chain;
+  for (const auto& stage : stages) {
+    chain.push_back(stage.get());
+  }
+  scheduler::run_whole_image(chain);
+  if (every_way) {
+    const CellVolume<float> expected = result;
+    testing::run_in_strips(chain, [&] { ASSERT_EQ(result.cells, expected.cells); });
+  }
+  return result;
+}
+
+/// With a prior that does not reach from one candidate to the next, what is not looked at is the
+/// same as what is impossible.
+TEST(PrunedLevel, EqualsALevelWhereTheOthersAreImpossible) {
+  for (const int candidates : {5, 40, 100, 200}) {
+    for (const double mu : {0.5, 0.7}) {
+      const Level level(candidates, 3, 3);
+      const MethodParameters parameters = bayes_parameters(0.1, mu);
+      const CellVolume<float> pruned = probabilities_of(level, parameters, true, false);
+      const CellVolume<float> masked = probabilities_of(level, parameters, false, false);
+      for (std::size_t k = 0; k < pruned.cells.size(); ++k) {
+        ASSERT_NEAR(pruned.cells[k], masked.cells[k], 2e-5)
+            << candidates << " candidates, mu " << mu << ", cell " << k;
+      }
+    }
+  }
+}
+
+TEST(PrunedLevel, DoesNotDependOnHowItIsCut) {
+  const Level level(100, 3, 3);
+  probabilities_of(level, bayes_parameters(0.4, 0.5), true, true);
+}
+
+/// Where all blocks are looked at, bit for bit the same.
+TEST(PrunedLevel, WithAllCandidatesIsTheFullLevel) {
+  for (const int candidates : {3, 16, 30, 61}) {
+    const Level level(candidates, 8, 4);
+    ASSERT_EQ(level.blocks.cells(),
+              static_cast<double>(kExtent.columns) * kExtent.rows * candidates);
+    for (const double sigma_prior : {0.1, 0.4, 2.0}) {
+      for (const double mu : {0.5, 0.7}) {
+        const MethodParameters parameters = bayes_parameters(sigma_prior, mu);
+        EXPECT_EQ(probabilities_of(level, parameters, true, false).cells,
+                  probabilities_of(level, parameters, false, false).cells)
+            << candidates << " candidates";
+      }
+    }
+  }
+}
+
+MatchOptions pruned_options(DisparityRange range, int blocks) {
+  MatchOptions options;
+  options.method = MatchMethod::kBayes;
+  options.disparities = range;
+  options.parameters.cost = MatchCost::kCensus;
+  options.parameters.sigma_measurement = 10;
+  options.parameters.sigma_prior = 0.4;
+  options.parameters.epsilon_prior = 5e-5;
+  options.parameters.iterations = 3;
+  options.parameters.levels = 4;
+  options.parameters.candidate_blocks = blocks;
+  options.raw = true;
+  return options;
+}
+
+DisparityMaps maps_of(const testing::PhotographPair& pair, const MatchOptions& options,
+                      const ExecutionOptions& how = {.threads = 2}, MatchReport* report = nullptr) {
+  Execution execution(how);
+  DisparityMaps maps;
+  StereoMatcher(options, execution)
+      .match(pair.left, pair.right, {.confidence = true}, maps, report);
+  return maps;
+}
+
+TEST(PrunedMatching, OfSixteenCandidatesIsFullMatching) {
+  for (const Extent extent : {Extent{1, 1}, Extent{1, 7}, Extent{13, 11}, Extent{70, 37}}) {
+    const DisparityRange range{0, std::min(15, extent.columns - 1)};
+    const auto pair =
+        testing::textured_pair(extent.columns, extent.rows, range, testing::PixelKind::kGrey8, 3);
+    EXPECT_TRUE(identical(maps_of(pair, pruned_options(range, 1)),
+                          maps_of(pair, pruned_options(range, 0))));
+  }
+}
+
+TEST(PrunedMatching, DoesNotDependOnExecution) {
+  const DisparityRange range{-3, 60};
+  const auto pair = testing::textured_pair(83, 45, range, testing::PixelKind::kGrey8, 3);
+  const MatchOptions options = pruned_options(range, 2);
+  const DisparityMaps expected =
+      maps_of(pair, options, {.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
+  for (const int threads : {2, 3}) {
+    for (const auto executor : {scheduler::ExecutorKind::kTbb, scheduler::ExecutorKind::kOpenMp}) {
+      for (const int strip : {5, 16, 1000}) {
+        for (const int band : {3, 1000}) {
+          for (const int iterations : {1, 2}) {
+            EXPECT_TRUE(identical(expected, maps_of(pair, options,
+                                                    {.threads = threads,
+                                                     .executor = executor,
+                                                     .strip_width_px = strip,
+                                                     .band_height_px = band,
+                                                     .iterations_per_pass = iterations})))
+                << threads << " threads, strips of " << strip << ", bands of " << band;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(PrunedMatching, WiderRangesThanImagesHaveADisparityEverywhere) {
+  for (const Extent extent : {Extent{1, 1}, Extent{5, 3}, Extent{33, 17}}) {
+    const auto pair =
+        testing::textured_pair(extent.columns, extent.rows, {0, 3}, testing::PixelKind::kGrey8, 3);
+    const DisparityMaps maps = maps_of(pair, pruned_options({-90, 120}, 1));
+    for (int y = 0; y < extent.rows; ++y) {
+      for (int x = 0; x < extent.columns; ++x) {
+        EXPECT_FALSE(std::isnan(maps.left.at(x, y)));
+        EXPECT_FALSE(std::isnan(maps.right.at(x, y)));
+      }
+    }
+  }
+}
+
+/// A bar 3 pixels wide far in front of a background.
+TEST(PrunedMatching, ThinObjectsSurvive) {
+  constexpr int kWidth = 220;
+  constexpr int kHeight = 60;
+  constexpr int kBar = 71;
+  constexpr int kBackground = 9;
+  std::mt19937 random(7);
+  const auto grey = [&] { return static_cast<std::uint8_t>(random() % 200 + 20); };
+  Image<std::uint8_t> left(kWidth, kHeight);
+  Image<std::uint8_t> right(kWidth, kHeight);
+  std::vector<std::uint8_t> world(kWidth + kBackground);
+  for (int y = 0; y < kHeight; ++y) {
+    std::generate(world.begin(), world.end(), grey);
+    for (int x = 0; x < kWidth; ++x) {
+      left.at(x, y) = world[static_cast<std::size_t>(x)];
+      right.at(x, y) = world[static_cast<std::size_t>(x + kBackground)];
+    }
+    for (int x = 150; x < 153; ++x) {
+      left.at(x, y) = right.at(x - kBar, y) = grey();
+    }
+  }
+  const testing::PhotographPair pair{Photograph{std::move(left)}, Photograph{std::move(right)}};
+  MatchReport full_report;
+  MatchReport pruned_report;
+  MatchOptions options = pruned_options({0, 127}, 0);
+  options.parameters.cost = MatchCost::kContaminated;
+  const DisparityMaps full = maps_of(pair, options, {.threads = 2}, &full_report);
+  options.parameters.candidate_blocks = 2;
+  const DisparityMaps pruned = maps_of(pair, options, {.threads = 2}, &pruned_report);
+  int found = 0;
+  int different = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 150; x < 153; ++x) {
+      found += std::abs(pruned.left.at(x, y) - kBar) < 1 ? 1 : 0;
+    }
+    for (int x = 127; x < kWidth; ++x) {
+      different += std::abs(pruned.left.at(x, y) - full.left.at(x, y)) > 1 ? 1 : 0;
+    }
+  }
+  EXPECT_GE(found, 3 * kHeight * 95 / 100);
+  EXPECT_LE(different, (kWidth - 127) * kHeight / 100);
+  EXPECT_EQ(full_report.finest_cells, full_report.finest_pixels * 128);
+  EXPECT_LT(pruned_report.finest_cells, full_report.finest_cells / 4);
+  EXPECT_LT(pruned_report.cells, full_report.cells / 3);
+}
+
+TEST(PrunedMatching, IsRefusedWhereItHasNoMeaning) {
+  const auto message = [](auto change) {
+    MatchOptions options = pruned_options({0, 63}, 2);
+    change(options.parameters);
+    try {
+      validate(options.resolved());
+    } catch (const UsageError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message([](MethodOverrides&) {}), "");
+  EXPECT_EQ(message([](MethodOverrides& p) { p.candidate_blocks = 9; }),
+            "candidate-blocks is 9, expected a number from 0 (all candidates) to 8");
+  EXPECT_EQ(message([](MethodOverrides& p) { p.pruned_levels = 0; }),
+            "pruned-levels is 0, expected a number from 1 to 10");
+  EXPECT_EQ(message([](MethodOverrides& p) { p.levels = 1; }),
+            "candidate-blocks is 2, expected 0 with a single level: candidates are chosen by the "
+            "winners of a coarser level");
+  EXPECT_EQ(message([](MethodOverrides& p) { p.aggregation = Aggregation::kMembrane; }),
+            "candidate-blocks is 2, expected 0 but with the aggregation bayes: for energies, "
+            "candidates that were not looked at have no value that is neutral to their neighbours");
+  EXPECT_EQ(message([](MethodOverrides& p) { p.cost = MatchCost::kGradient; }),
+            "candidate-blocks is 2, expected 0 with the cost gradient: its likelihoods compare a "
+            "candidate with the best of all");
+}
+
+}  // namespace
+}  // namespace vantage
