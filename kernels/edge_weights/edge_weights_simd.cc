@@ -1,0 +1,43 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/edge_weights/edge_weights_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include "kernels/cells/exp_log-inl.h"
+#include "kernels/edge_weights/edge_weights.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+void edge_weights(const float* first, const float* second, int count, const EdgeModel& model,
+                  float* weights) {
+  const hn::ScalableTag<float> df;
+  const int step = static_cast<int>(hn::Lanes(df));
+  const auto exponent_of_level = hn::Set(df, -kLog2E / model.contrast);
+  const auto least = hn::Set(df, model.least);
+  const auto rest = hn::Set(df, 1.0F - model.least);
+  int x = 0;
+  for (; x + step <= count; x += step) {
+    const auto difference = hn::AbsDiff(hn::LoadU(df, first + x), hn::LoadU(df, second + x));
+    const auto power = exp2_of_negative(hn::Mul(difference, exponent_of_level));
+    hn::StoreU(hn::Add(hn::Mul(rest, power), least), df, weights + x);
+  }
+  edge_weights_row_ref(first + x, second + x, count - x, model, weights + x);
+}
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(edge_weights);
+
+void edge_weights_row(const float* first, const float* second, int count, const EdgeModel& model,
+                      float* weights) {
+  HWY_DYNAMIC_DISPATCH(edge_weights)(first, second, count, model, weights);
+}
+
+}  // namespace vantage::kernels
+#endif

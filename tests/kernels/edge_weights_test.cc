@@ -1,0 +1,55 @@
+#include "kernels/edge_weights/edge_weights.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+#include "tests/kernels/kernel_test_utils.h"
+
+namespace vantage::kernels {
+namespace {
+
+class EdgeWeightsRow : public EveryTarget {};
+VANTAGE_ON_EVERY_TARGET(EdgeWeightsRow);
+
+TEST_P(EdgeWeightsRow, FallWithTheDifferenceOfGreyLevels) {
+  std::mt19937 random(3);
+  for (const int count : {0, 1, 2, 3, 7, 8, 15, 16, 17, 31, 64, 101}) {
+    for (const EdgeModel& model :
+         {EdgeModel{0, 8}, EdgeModel{0.2F, 8}, EdgeModel{0.7F, 0.01F}, EdgeModel{1, 3}}) {
+      std::vector<float> pixels;
+      for (int x = 0; x < 2 * count + 1; ++x) {
+        pixels.push_back(static_cast<float>(random_int(random, 0, 255 * 64)) / 64);
+      }
+      const float* const second = pixels.data() + count;  // unaligned
+      const auto size = static_cast<std::size_t>(count);
+      GuardedRow<float> weights(size, random() % 5, -7);
+      edge_weights_row(pixels.data(), second, count, model, weights.data());
+      EXPECT_TRUE(weights.intact());
+      std::vector<float> reference(size);
+      edge_weights_row_ref(pixels.data(), second, count, model, reference.data());
+      ASSERT_EQ(weights.values(), reference) << count;
+      for (std::size_t x = 0; x < size; ++x) {
+        const double difference = std::abs(static_cast<double>(pixels[x]) - second[x]);
+        ASSERT_NEAR(reference[x],
+                    model.least + (1.0 - model.least) * std::exp(-difference / model.contrast),
+                    1e-5);
+        ASSERT_GE(reference[x], model.least);
+        ASSERT_LE(reference[x], 1);
+      }
+    }
+  }
+}
+
+TEST_P(EdgeWeightsRow, EqualPixelsCountInFull) {
+  const std::vector<float> pixels(21, 77.25F);
+  std::vector<float> weights(20);
+  edge_weights_row(pixels.data(), pixels.data() + 1, 20, {0.3F, 8}, weights.data());
+  EXPECT_EQ(weights, std::vector<float>(20, 1.0F));
+}
+
+}  // namespace
+}  // namespace vantage::kernels
