@@ -149,6 +149,9 @@ void add_aggregation_settings(Settings& settings, MethodOverrides& parameters) {
           shared(book.candidate_blocks));
   settings.integer("pruned-levels", parameters.pruned_levels, "N",
                    "How many of the finest levels that is, 1 to 10; " + shared(book.pruned_levels));
+  settings.integer("final-iterations", parameters.final_iterations, "N",
+                   "Several levels: iterations of the finest one, the image itself, 0 to 10000; "
+                   "auto: as --iterations");
   settings.number("lambda", parameters.lambda, "L",
                   "diffusion, local-stopping: step, above 0 and below 0.25; membrane: at most "
                   "1/(4 + beta); " +
@@ -168,6 +171,21 @@ void add_aggregation_settings(Settings& settings, MethodOverrides& parameters) {
   settings.number("epsilon-prior", parameters.epsilon_prior, "E",
                   "bayes: the share of neighbours of any disparity, between 0 and 1; " +
                       shared(book.epsilon_prior));
+  settings.number("prior-growth", parameters.prior_growth, "G",
+                  "bayes with several levels: --sigma-prior of a level over that of the next finer "
+                  "one, 1 to 4; " +
+                      shared(book.prior_growth));
+  settings.number("level-weight", parameters.level_weight, "W",
+                  "bayes with several levels: how much of the evidence of four pixels is that of "
+                  "one of the next coarser level, above 0 and at most 1; " +
+                      shared(book.level_weight));
+  settings.number("edge-weight", parameters.edge_weight, "W",
+                  "bayes: how much neighbours count across intensity edges, 0 to 1, where edges do "
+                  "not matter; " +
+                      shared(book.edge_weight));
+  settings.number("edge-contrast", parameters.edge_contrast, "C",
+                  "bayes: difference in grey levels that is an edge for --edge-weight, above 0; " +
+                      shared(book.edge_contrast));
 }
 
 void add_selection_settings(Settings& settings, MatchOptions& options) {

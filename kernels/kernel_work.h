@@ -35,6 +35,9 @@ struct KernelWork {
 /// cells/exp_log-inl.h, cell_winner/logarithm-inl.h: operations of one value.
 inline constexpr double kExp2Operations = 17;
 inline constexpr double kLogOperations = 24;
+/// bayes_step/powers-inl.h; the power without its least exponent.
+inline constexpr double kFusedPowerOperations = 13;
+inline constexpr double kScaledLogOperations = 20;
 inline constexpr double kDoubleLogOperations = 30;
 /// A sum or an extreme over the sixteen partial ones of a column.
 inline constexpr double kLaneTreeOperations = kLaneMultiple - 1;
@@ -170,8 +173,8 @@ constexpr KernelWork bayes_state_work(BayesState state, int prior_radius) {
     return {sum + 1, normalise, 0, 0};
   }
   const double smooth = 1 + 3.0 * prior_radius + 2;
-  return {sum + smooth + (state == BayesState::kLogSmoothed ? kLogOperations + 1 : 0), normalise, 0,
-          0};
+  return {sum + smooth + (state == BayesState::kLogSmoothed ? kScaledLogOperations : 0), normalise,
+          0, 0};
 }
 constexpr KernelWork bayes_start_work(BayesState state, int prior_radius) {
   return bayes_state_work(state, prior_radius) + KernelWork{0, 0, 2, 0};
@@ -182,11 +185,17 @@ constexpr KernelWork bayes_start_work(BayesState state, int prior_radius) {
 constexpr KernelWork bayes_half_work(BayesState state, int prior_radius) {
   return bayes_state_work(state, prior_radius) + KernelWork{4 + 1 + 3 + 2, 0, kStarValues + 1, 0};
 }
-/// Sum of the star, power, product. scaled: the largest sum of the column first.
-constexpr KernelWork bayes_general_work(BayesState state, int prior_radius, bool scaled) {
-  const KernelWork work = bayes_state_work(state, prior_radius) +
-                          KernelWork{4 + kExp2Operations + 1, 0, kStarValues + 1, 0};
-  return scaled ? work + KernelWork{4 + 1 + 1, kLaneTreeOperations, kStarValues - 1, 0} : work;
+/// Sum of the star, power, product. scaled: the largest sum of the column first, and powers have a
+/// least exponent. weighted: four neighbours are multiplied by weights, which are loaded per
+/// column.
+constexpr KernelWork bayes_general_work(BayesState state, int prior_radius, bool scaled,
+                                        bool weighted) {
+  const double sum = weighted ? 8 : 4;
+  const KernelWork work =
+      bayes_state_work(state, prior_radius) +
+      KernelWork{sum + kFusedPowerOperations + 1, 0, kStarValues + 1, weighted ? 4.0 : 0.0};
+  return scaled ? work + KernelWork{sum + 1 + 1 + 1, kLaneTreeOperations, kStarValues - 1, 0}
+                : work;
 }
 
 // --- levels -----------------------------------------------------------------------------------

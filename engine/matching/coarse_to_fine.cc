@@ -33,10 +33,11 @@ int cell_bytes(const MethodParameters& parameters) {
 void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
                   LevelVolume& coarser, Execution& execution) {
   const bool is_bayes = parameters.aggregation == Aggregation::kBayes;
+  const auto weight = static_cast<float>(parameters.level_weight);
   execution.for_each_band(coarser.extent().rows, [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
       if (is_bayes) {
-        reduce_energy_row(finer, y, coarser);
+        reduce_energy_row(finer, y, weight, coarser);
       } else {
         reduce_half_energy_row(finer, y, coarser);
       }
@@ -143,7 +144,8 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
     const scheduler::Extent extent = extents[static_cast<std::size_t>(level)];
     kernels::CandidateGeometry of_level = geometry;
     of_level.width = extent.columns;
-    ChainLevel place{.coarser = level < coarsest ? &levels.result(level + 1) : nullptr};
+    ChainLevel place{.number = level,
+                     .coarser = level < coarsest ? &levels.result(level + 1) : nullptr};
     if (levels.blocks(level) != nullptr) {
       levels.choose_blocks(level, geometry, execution);
       place.blocks = levels.blocks(level);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -123,7 +124,8 @@ MatchChain::MatchChain(const MethodParameters& parameters,
   add_costs(parameters, input, level);
   if (level.reduced != nullptr) {
     add(parameters.aggregation == Aggregation::kBayes
-            ? make_likelihood_reduction_stage(geometry_, *level.reduced)
+            ? make_likelihood_reduction_stage(
+                  geometry_, static_cast<float>(parameters.level_weight), *level.reduced)
             : make_energy_reduction_stage(geometry_, half_scale_, *level.reduced));
     return;
   }
@@ -138,7 +140,7 @@ MatchChain::MatchChain(const MethodParameters& parameters,
     add_box(parameters, input);
     return;
   }
-  add_aggregation(parameters, level);
+  add_aggregation(at_level(parameters, level.number), input, level);
   if (level.result != nullptr) {
     add_result(parameters, level);
   } else {
@@ -230,7 +232,11 @@ void MatchChain::add_box(const MethodParameters& parameters, const ChainInput& i
   add(make_window_selection_stage(geometry_, settings, outputs_));
 }
 
-void MatchChain::add_aggregation(const MethodParameters& parameters, const ChainLevel& level) {
+/// `parameters`: of the level.
+void MatchChain::add_aggregation(const MethodParameters& parameters, const ChainInput& input,
+                                 const ChainLevel& level) {
+  const EdgeWeights* const edges =
+      input.edges.empty() ? nullptr : &input.edges[static_cast<std::size_t>(level.number)];
   first_iteration_ = static_cast<int>(stages_.size());
   switch (parameters.aggregation) {
     case Aggregation::kNone:
@@ -262,7 +268,7 @@ void MatchChain::add_aggregation(const MethodParameters& parameters, const Chain
       iterations_ = parameters.iterations;
       add_all(make_bayes_stages(parameters, geometry_, height_,
                                 {.volume = level.coarser, .blocks = level.coarser_blocks},
-                                level.blocks));
+                                level.blocks, edges));
       ++first_iteration_;  // behind the start
       break;
   }

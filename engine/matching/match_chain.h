@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/image/image.h"
 #include "engine/matching/candidate_blocks.h"
+#include "engine/matching/edge_weights.h"
 #include "engine/matching/intensity_planes.h"
 #include "engine/matching/level_volume.h"
 #include "engine/matching/match_options.h"
@@ -34,12 +36,16 @@ struct ChainInput {
   /// `pair`. See DisparityPrior.
   ImageView<const float> prior_px = {};
   double prior_weight = 0;
+  /// How neighbours in the reference count for each other, one for each level, the image's own
+  /// first; empty: all alike. See EdgeWeightLevels.
+  std::span<const EdgeWeights> edges = {};
 };
 
 /// Where a chain stands in matching from coarse to fine. Volumes are of the format of the method
 /// (stage_level_likelihoods for Bayesian diffusion, stage_level_energies for others), of their
 /// level's size, and outlive the chain. As it is: the only level.
 struct ChainLevel {
+  int number = 0;  ///< 0: the image's own
   /// What levels above the image's own start from, in place of costs; null: costs of the input.
   const LevelVolume* costs = nullptr;
   const LevelVolume* coarser = nullptr;  ///< result of the next coarser level; null: there is none
@@ -74,7 +80,8 @@ class MatchChain {
                  const ChainLevel& level);
   void add_column_ssd(const MethodParameters& parameters, const PreparedPair& pair);
   void add_box(const MethodParameters& parameters, const ChainInput& input);
-  void add_aggregation(const MethodParameters& parameters, const ChainLevel& level);
+  void add_aggregation(const MethodParameters& parameters, const ChainInput& input,
+                       const ChainLevel& level);
   void add_result(const MethodParameters& parameters, const ChainLevel& level);
   void add_selection(const MethodParameters& parameters, const ChainLevel& level);
 

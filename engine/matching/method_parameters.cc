@@ -15,6 +15,7 @@ namespace {
 constexpr int kMaxWindow = 181;
 constexpr int kMaxIterations = 10000;
 constexpr int kMaxLevels = 10;
+constexpr double kMaxPriorGrowth = 4;
 constexpr double kMaxAggregationSigma = 16;
 
 constexpr MethodParameters kCommon{
@@ -29,12 +30,17 @@ constexpr MethodParameters kCommon{
     .levels = 1,
     .candidate_blocks = 0,
     .pruned_levels = 2,
+    .final_iterations = 10,
     .lambda = 0.15,
     .beta = 0.5,
     .certainty = Certainty::kMargin,
     .mu = 0.5,
     .sigma_prior = 0.4,
     .epsilon_prior = 0.01,
+    .prior_growth = 1,
+    .level_weight = 1,
+    .edge_weight = 1,
+    .edge_contrast = 8,
     .sigma_measurement = 5,
     .epsilon_measurement = 0.1,
     .sigma_census = 0.2,
@@ -75,12 +81,17 @@ void take_over(const MethodParametersOf<From>& overrides, MethodParametersOf<To>
   take(overrides.levels, target.levels);
   take(overrides.candidate_blocks, target.candidate_blocks);
   take(overrides.pruned_levels, target.pruned_levels);
+  take(overrides.final_iterations, target.final_iterations);
   take(overrides.lambda, target.lambda);
   take(overrides.beta, target.beta);
   take(overrides.certainty, target.certainty);
   take(overrides.mu, target.mu);
   take(overrides.sigma_prior, target.sigma_prior);
   take(overrides.epsilon_prior, target.epsilon_prior);
+  take(overrides.prior_growth, target.prior_growth);
+  take(overrides.level_weight, target.level_weight);
+  take(overrides.edge_weight, target.edge_weight);
+  take(overrides.edge_contrast, target.edge_contrast);
   take(overrides.sigma_measurement, target.sigma_measurement);
   take(overrides.epsilon_measurement, target.epsilon_measurement);
   take(overrides.sigma_census, target.sigma_census);
@@ -126,6 +137,9 @@ void validate_diffusion(const MethodParameters& parameters) {
   require(parameters.levels >= 1 && parameters.levels <= kMaxLevels, "levels", parameters.levels,
           fmt::format("a number from 1 to {}", kMaxLevels));
   validate_pruning(parameters);
+  require(parameters.final_iterations >= 0 && parameters.final_iterations <= kMaxIterations,
+          "final-iterations", parameters.final_iterations,
+          fmt::format("a number from 0 to {}", kMaxIterations));
   if (parameters.aggregation == Aggregation::kMembrane) {
     require(parameters.beta >= 0 && std::isfinite(parameters.beta), "beta", parameters.beta,
             "a number of at least 0");
@@ -147,6 +161,15 @@ void validate_bayes(const MethodParameters& parameters) {
           "a number of pixels above 0");
   require(is_probability(parameters.epsilon_prior), "epsilon-prior", parameters.epsilon_prior,
           "a number between 0 and 1, both excluded");
+  require(parameters.prior_growth >= 1 && parameters.prior_growth <= kMaxPriorGrowth,
+          "prior-growth", parameters.prior_growth,
+          fmt::format("a number from 1 to {}", kMaxPriorGrowth));
+  require(parameters.level_weight > 0 && parameters.level_weight <= 1, "level-weight",
+          parameters.level_weight, "a number above 0 and at most 1");
+  require(parameters.edge_weight >= 0 && parameters.edge_weight <= 1, "edge-weight",
+          parameters.edge_weight, "a number from 0 to 1");
+  require(is_positive(parameters.edge_contrast), "edge-contrast", parameters.edge_contrast,
+          "a number of grey levels above 0");
 }
 
 void validate_combination(const MethodParameters& parameters) {
@@ -211,6 +234,18 @@ MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides) {
     result.cost = natural_cost(*overrides.aggregation);
   }
   take_over(overrides, result);
+  if (!overrides.final_iterations) {
+    result.final_iterations = result.iterations;
+  }
+  return result;
+}
+
+MethodParameters at_level(const MethodParameters& parameters, int level) {
+  MethodParameters result = parameters;
+  if (level == 0 && parameters.levels > 1) {
+    result.iterations = parameters.final_iterations;
+  }
+  result.sigma_prior *= std::pow(parameters.prior_growth, level);
   return result;
 }
 

@@ -67,6 +67,7 @@ struct MethodParametersOf {
   /// the finest `pruned_levels` levels, 1..8; 0: all candidates.
   Field<int> candidate_blocks;
   Field<int> pruned_levels;     ///< 1..10; the coarsest level always looks at all candidates
+  Field<int> final_iterations;  ///< of the image's own level where there are several: 0..10000
   Field<double> lambda;         ///< step: 0 < λ < ¼; membrane: λ ≤ 1/(4+β)
   Field<double> beta;           ///< membrane: pull towards the first cost, ≥ 0
   Field<Certainty> certainty;   ///< local stopping
@@ -78,6 +79,13 @@ struct MethodParametersOf {
   Field<double> epsilon_measurement;  ///< εM, inside (0, 1): the same
   Field<double> sigma_census;  ///< combined cost: σ of the share of census bits, 0..1; 0: no term
   Field<double> sigma_gradient;  ///< combined cost: σ in grey levels per pixel, ≥ 0; 0: no term
+  Field<double> prior_growth;    ///< Bayes: σP of a level ÷ that of the next finer one, 1..4
+  /// Bayes: energies of a coarse level are this share of the sum of those of 2×2 pixels, which are
+  /// not independent of each other; 0 < w ≤ 1.
+  Field<double> level_weight;
+  /// Bayes: weight of a neighbour beyond the strongest intensity edge, 0..1; 1: edges do not count.
+  Field<double> edge_weight;
+  Field<double> edge_contrast;  ///< Bayes: grey levels over which the weight falls, > 0
 
   Field<double> truncation;  ///< truncated cost: grey levels, > 0
   Field<double> alpha;       ///< gradient evidence: weight of the gradients' difference, ≥ 0
@@ -109,6 +117,9 @@ MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides);
 
 /// Throws UsageError naming field, value and limit, or why a combination makes no sense.
 void validate(const MethodParameters& parameters);
+
+/// What is in force on one level, the image's own being 0: iterations and σP.
+MethodParameters at_level(const MethodParameters& parameters, int level);
 
 /// Whether cells hold −evidence, which is compared with 0 and has no scale of its own.
 inline bool is_evidence(const MethodParameters& parameters) {

@@ -66,13 +66,15 @@ float absent_state(BayesState state, float mu, float floor) {
 class BayesStage final : public StarStage {
  public:
   BayesStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
-             int height, Form form, BayesState state, const CandidateBlocks* blocks)
+             int height, Form form, BayesState state, const EdgeWeights* edges,
+             const CandidateBlocks* blocks)
       : StarStage(cell_geometry(geometry, blocks), height),
         form_(form),
         state_(state),
         mu_(static_cast<float>(parameters.mu)),
         taps_(prior_taps(parameters, geometry.count)),
         floor_(static_cast<float>(parameters.epsilon_prior)),
+        edges_(edges),
         neutral_(lanes(), 1),
         blocks_(blocks) {
     neutral_.fill(form == Form::kHalf ? 1.0F : 0.0F);
@@ -116,6 +118,7 @@ class BayesStage final : public StarStage {
     row.work = reinterpret_cast<float*>(task.state);
     if (blocks_ == nullptr) {
       row.star = star(task, lanes(), neutral_.row(0));
+      row.weights = weights(task.y, task.columns.begin);
       row.count = count();
       make_columns(row);
       return;
@@ -125,6 +128,7 @@ class BayesStage final : public StarStage {
       const CandidateBlocks::Run run = blocks_->run_at(x, task.y, task.columns.end);
       const BlockSegments segments(run.blocks);
       row.star = stars_->star(task, run, neutral_.row(0), star_work);
+      row.weights = weights(task.y, x);
       row.count = blocks_->count(run.blocks);
       row.segment_ends = segments.ends();
       make_columns(row);
@@ -149,6 +153,15 @@ class BayesStage final : public StarStage {
     }
   }
   [[nodiscard]] int radius() const { return static_cast<int>(taps_.size()) - 1; }
+  /// From column x of row y on.
+  [[nodiscard]] kernels::StarWeights weights(int y, int x) const {
+    if (edges_ == nullptr) {
+      return {};
+    }
+    return {.beside = edges_->beside(y) + x,
+            .above = edges_->above(y) + x,
+            .below = edges_->above(y + 1) + x};
+  }
   [[nodiscard]] kernels::KernelWork kernel_work() const {
     switch (form_) {
       case Form::kStart:
@@ -158,7 +171,8 @@ class BayesStage final : public StarStage {
       case Form::kGeneral:
         break;
     }
-    return kernels::bayes_general_work(state_, radius(), kernels::bayes_scales_sums(mu_, floor_));
+    return kernels::bayes_general_work(state_, radius(), kernels::bayes_scales_sums(mu_, floor_),
+                                       edges_ != nullptr);
   }
 
   Form form_;
@@ -166,6 +180,7 @@ class BayesStage final : public StarStage {
   float mu_;
   std::vector<float> taps_;
   float floor_;
+  const EdgeWeights* edges_;
   Image<float> neutral_;  ///< stands for the neighbours outside the image
   const CandidateBlocks* blocks_;
   std::optional<BlockStars> stars_;  ///< where there are blocks
@@ -302,8 +317,9 @@ class BayesFromCoarserStage final : public scheduler::RowStage {
 
 std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const CoarserProbabilities& coarser, const CandidateBlocks* blocks) {
-  const bool half = parameters.mu == 0.5 && parameters.epsilon_prior >= kLeastEpsilonOfProductForm;
+    const CoarserProbabilities& coarser, const CandidateBlocks* blocks, const EdgeWeights* edges) {
+  const bool half = parameters.mu == 0.5 && edges == nullptr &&
+                    parameters.epsilon_prior >= kLeastEpsilonOfProductForm;
   const BayesState between = half ? BayesState::kSmoothed : BayesState::kLogSmoothed;
   std::vector<std::unique_ptr<scheduler::RowStage>> stages;
   for (int i = 0; i <= parameters.iterations; ++i) {
@@ -315,7 +331,7 @@ std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
       continue;
     }
     stages.push_back(
-        std::make_unique<BayesStage>(parameters, geometry, height, form, state, blocks));
+        std::make_unique<BayesStage>(parameters, geometry, height, form, state, edges, blocks));
   }
   return stages;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/matching/candidate_blocks.h"
+#include "engine/matching/edge_weights.h"
 #include "engine/matching/level_volume.h"
 #include "engine/matching/method_parameters.h"
 #include "kernels/candidates.h"
@@ -30,10 +31,15 @@ struct CoarserProbabilities {
 /// others have the probability 0. Null: all, and always so without a coarser level. Must outlive
 /// the stages.
 ///
-/// μ = ½ takes the form without exponentials and logarithms, unless εP is so small (below 1e-7)
-/// that the product of five smoothed probabilities could leave the range of normal floats.
+/// `edges`: of the image of this level, which must outlive the stages: they weight neighbours
+/// (7.3), p ∝ p0 · Π pS^(μ·w) with w = 1 for the column itself. Null: all neighbours count 1.
+///
+/// μ = ½ takes the form without exponentials and logarithms, unless neighbours are weighted or εP
+/// is so small (below 1e-7) that the product of five smoothed probabilities could leave the range
+/// of normal floats.
 std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const CoarserProbabilities& coarser = {}, const CandidateBlocks* blocks = nullptr);
+    const CoarserProbabilities& coarser = {}, const CandidateBlocks* blocks = nullptr,
+    const EdgeWeights* edges = nullptr);
 
 }  // namespace vantage

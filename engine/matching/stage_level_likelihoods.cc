@@ -15,7 +15,9 @@ namespace {
 
 class LikelihoodReductionStage final : public LevelReductionStage {
  public:
-  using LevelReductionStage::LevelReductionStage;
+  LikelihoodReductionStage(const kernels::CandidateGeometry& geometry, float weight,
+                           LevelVolume& coarser)
+      : LevelReductionStage(geometry, coarser), weight_(weight) {}
 
   /// Of one block.
   [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
@@ -27,9 +29,12 @@ class LikelihoodReductionStage final : public LevelReductionStage {
   }
 
   void make_row(const scheduler::RowTask& task) const override {
-    kernels::reduce_likelihoods_row(blocks(task), reinterpret_cast<float*>(task.state),
+    kernels::reduce_likelihoods_row(blocks(task), weight_, reinterpret_cast<float*>(task.state),
                                     coarser().column<std::uint8_t>(task.columns.begin, task.y));
   }
+
+ private:
+  float weight_;
 };
 
 class LevelLikelihoodStage final : public LevelSourceStage {
@@ -161,12 +166,12 @@ class LevelProbabilityStage final : public LevelStoreStage {
 }  // namespace
 
 std::unique_ptr<scheduler::RowStage> make_likelihood_reduction_stage(
-    const kernels::CandidateGeometry& geometry, LevelVolume& coarser) {
-  return std::make_unique<LikelihoodReductionStage>(geometry, coarser);
+    const kernels::CandidateGeometry& geometry, float weight, LevelVolume& coarser) {
+  return std::make_unique<LikelihoodReductionStage>(geometry, weight, coarser);
 }
 
-void reduce_energy_row(const LevelVolume& finer, int y, LevelVolume& coarser) {
-  kernels::reduce_compact_energies_row(block_row<std::uint8_t>(finer, y),
+void reduce_energy_row(const LevelVolume& finer, int y, float weight, LevelVolume& coarser) {
+  kernels::reduce_compact_energies_row(block_row<std::uint8_t>(finer, y), weight,
                                        coarser.column<std::uint8_t>(0, y));
 }
 

@@ -15,12 +15,13 @@ namespace vantage {
 // see float cells, geometry.lanes() a column; volumes must have that many lanes of one byte and
 // outlive the stages.
 
-/// Last stage: the energies −ln p0 of the next coarser level, each the sum of those of four columns
-/// (BlockRow), from the likelihoods of a level of geometry.width columns.
+/// Last stage: the energies −ln p0 of the next coarser level, each `weight` (above 0, at most 1)
+/// times the sum of those of four columns (BlockRow), from the likelihoods of a level of
+/// geometry.width columns.
 std::unique_ptr<scheduler::RowStage> make_likelihood_reduction_stage(
-    const kernels::CandidateGeometry& geometry, LevelVolume& coarser);
+    const kernels::CandidateGeometry& geometry, float weight, LevelVolume& coarser);
 /// Row y of `coarser` from the energies of a coarse level.
-void reduce_energy_row(const LevelVolume& finer, int y, LevelVolume& coarser);
+void reduce_energy_row(const LevelVolume& finer, int y, float weight, LevelVolume& coarser);
 
 /// Source stage: the likelihoods of a coarse level, from its energies. `blocks`: the candidates
 /// that are looked at, in whose lanes the cells then lie; null: all. Must outlive the stage.

@@ -226,9 +226,9 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   }
 
   const bool confidence = wants_confidence(request);
-  const auto compute = [&](bool needed, Reference reference, const ChainInput& input,
-                           DisparityMap& map, Image<float>& map_confidence, DisparityMap& map_y,
-                           std::string_view name) {
+  const auto compute = [&](bool needed, Reference reference, const Photograph& photograph,
+                           ChainInput& input, DisparityMap& map, Image<float>& map_confidence,
+                           DisparityMap& map_y, std::string_view name) {
     const bool two_dimensional = options_.disparities_y.has_value();
     const int width = needed ? left.width() : 0;
     const int height = needed ? left.height() : 0;
@@ -237,14 +237,15 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     map_y.resize(two_dimensional ? width : 0, two_dimensional ? height : 0);
     if (needed) {
       clock.begin(name);
+      input.edges = prepared->edges.prepare(photograph, parameters_, execution_);
       compute_map(reference, input, *prepared,
                   {map, confidence ? &map_confidence : nullptr, two_dimensional ? &map_y : nullptr},
                   times);
     }
   };
-  compute(needs_left, Reference::kLeft, left_input, maps.left, maps.left_confidence,
+  compute(needs_left, Reference::kLeft, left, left_input, maps.left, maps.left_confidence,
           maps.left_disparity_y, "match left");
-  compute(needs_right, Reference::kRight, right_input, maps.right, maps.right_confidence,
+  compute(needs_right, Reference::kRight, right, right_input, maps.right, maps.right_confidence,
           maps.right_disparity_y, "match right");
 
   if (options_.raw) {
@@ -313,6 +314,7 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
   map_confidence.resize(confidence ? width : 0, confidence ? height : 0);
   map_y.resize(two_dimensional ? width : 0, two_dimensional ? height : 0);
   clock.begin("match");
+  input.edges = prepared->edges.prepare(reference, parameters_, execution_);
   compute_map(side, input, *prepared,
               {map, confidence ? &map_confidence : nullptr, two_dimensional ? &map_y : nullptr},
               times);
@@ -336,7 +338,8 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
 
 void StereoMatcher::add_memory_use(MemoryUse& use) const {
   prepared_.for_each_idle([&use](const Prepared& prepared) {
-    std::size_t bytes = prepared.pair.grey_8.held_bytes() + prepared.pair.grey_float.held_bytes();
+    std::size_t bytes = prepared.pair.grey_8.held_bytes() + prepared.pair.grey_float.held_bytes() +
+                        prepared.edges.held_bytes();
     for (const CostImage& image : prepared.images) {
       bytes += image.held_bytes();
     }

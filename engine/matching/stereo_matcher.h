@@ -135,6 +135,7 @@ class StereoMatcher {
     Image<float> candidate_energy;
     Image<float> energy;
     CoarseLevels levels;
+    EdgeWeightLevels edges;  ///< of the map that is being computed
   };
   /// One map and what goes with it; confidence and disparity_y_px null where not wanted.
   struct Result {

@@ -93,6 +93,7 @@ std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) 
   // Levels with lower and upper bounds or gradients, of both images, and mirrored copies.
   constexpr std::size_t kPlanes = 4 * 2;
   return pixels * channels * kPlanes * sizeof(float) +
+         edge_weight_bytes(options.match.resolved(), pixels) +
          coarse_level_bytes(options.match.resolved(),
                             {shape.source.width_px, shape.source.height_px},
                             options.match.disparities.count());

@@ -90,7 +90,7 @@ std::string reach_of(const MethodParameters& parameters) {
     case Aggregation::kMembrane:
     case Aggregation::kLocalStopping:
     case Aggregation::kBayes:
-      return fmt::format(" about {} iterations", class_of(parameters.iterations, 1));
+      return fmt::format(" about {} iterations", class_of(at_level(parameters, 0).iterations, 1));
   }
   return "";
 }

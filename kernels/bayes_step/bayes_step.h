@@ -27,15 +27,27 @@ enum class BayesState {
   kProbability,  ///< p itself, normalised, after the last iteration
 };
 
+/// How much the neighbours of each column count, from 0 to 1, beside the column itself with 1:
+/// diffusion mediated by intensity edges (7.3). Weights of neighbours that are neutral columns are
+/// any finite numbers.
+struct StarWeights {
+  const float* beside = nullptr;  ///< [x], x in [0, columns]: of columns x − 1 and x for each other
+  const float* above = nullptr;  ///< [x], x in [0, columns): of the column above x
+  const float* below = nullptr;  ///< [x]: of the column below x
+
+  [[nodiscard]] bool are_given() const { return beside != nullptr; }
+};
+
 /// One row of Bayesian diffusion (6.32)–(6.37). `star.source` holds the likelihoods p0 up to a
 /// factor per column; lanes that are no candidates hold 0 there.
 struct BayesRow {
   StarRow star;
   PriorKernel prior;
   BayesState state = BayesState::kSmoothed;
-  float mu = 0.5F;          ///< for kLogSmoothed
-  int count = 0;            ///< candidates: lanes [0, count)
-  float* output = nullptr;  ///< not an input
+  float mu = 0.5F;           ///< for kLogSmoothed
+  StarWeights weights = {};  ///< for bayes_general_row; not given: all count 1
+  int count = 0;             ///< candidates: lanes [0, count)
+  float* output = nullptr;   ///< not an input
   /// Floats from column to column of star.source and of the output, ≥ star.lanes, multiples of
   /// kLaneMultiple.
   std::ptrdiff_t source_pitch = 0;
@@ -80,8 +92,8 @@ inline bool bayes_scales_sums(float mu, float floor) {
   return 5.0F * mu * std::log2(floor) <= 0.8F * kLeastExponent;
 }
 
-/// Any μ: p ∝ p0 · 2^(sum of μ · log₂ pS over the star). Cells are μ · log₂ pS; neutral columns
-/// hold 0.
+/// Any μ: p ∝ p0 · 2^(sum of μ · log₂ pS over the star, neighbours weighted). Cells are
+/// μ · log₂ pS; neutral columns hold 0. Relative error of p below 1e-5.
 void bayes_general_row(const BayesRow& row);
 
 /// The same, plainly, in double arithmetic.

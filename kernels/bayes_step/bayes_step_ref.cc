@@ -63,10 +63,14 @@ void bayes_half_row_ref(const BayesRow& row) {
 
 void bayes_general_row_ref(const BayesRow& row) {
   const StarRow& star = row.star;
-  const auto sum = [&star](int x, int i) {
-    return static_cast<double>(star.centre[x * star.pitch + i]) + star.left_of(x)[i] +
-           star.right_of(x)[i] + star.up[x * star.up_pitch + i] +
-           star.down[x * star.down_pitch + i];
+  const auto weight = [&row](const float* weights, int x) {
+    return row.weights.are_given() ? static_cast<double>(weights[x]) : 1.0;
+  };
+  const auto sum = [&](int x, int i) {
+    return star.centre[x * star.pitch + i] + weight(row.weights.beside, x) * star.left_of(x)[i] +
+           weight(row.weights.beside, x + 1) * star.right_of(x)[i] +
+           weight(row.weights.above, x) * star.up[x * star.up_pitch + i] +
+           weight(row.weights.below, x) * star.down[x * star.down_pitch + i];
   };
   all_columns(row, [&](int x, int i) {
     // A factor that cancels, so that not all of a column can underflow.

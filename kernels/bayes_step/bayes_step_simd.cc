@@ -10,8 +10,8 @@
 #include <span>
 
 #include "kernels/bayes_step/bayes_step.h"
+#include "kernels/bayes_step/powers-inl.h"
 #include "kernels/candidates.h"
-#include "kernels/cells/exp_log-inl.h"
 #include "kernels/cells/lane_sums-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,16 +26,17 @@ struct StarColumns {
   const float* up;
   const float* down;
   const float* source;
+  int x;
 };
 
 // Calls column(columns, output) for each column of the row, left to right.
 template <class Column>
 HWY_INLINE void each_column(const BayesRow& row, Column column) {
   const StarRow& star = row.star;
-  StarColumns at{star.centre, star.left_of_first, nullptr, star.up, star.down, star.source};
+  StarColumns at{star.centre, star.left_of_first, nullptr, star.up, star.down, star.source, 0};
   float* output = row.output;
-  for (int x = 0; x < star.columns; ++x) {
-    at.right = x + 1 < star.columns ? at.centre + star.pitch : star.right_of_last;
+  for (; at.x < star.columns; ++at.x) {
+    at.right = at.x + 1 < star.columns ? at.centre + star.pitch : star.right_of_last;
     column(at, output);
     at.left = at.centre;
     at.centre += star.pitch;
@@ -107,7 +108,8 @@ class WorkColumns {
         margin_(bayes_work_margin(row.prior.radius)),
         segment_ends_(row.segment_ends.empty() ? std::span<const int>(&row.star.lanes, 1)
                                                : row.segment_ends),
-        pitch_(row.star.lanes + (static_cast<int>(segment_ends_.size()) + 1) * margin_) {
+        pitch_(row.star.lanes + (static_cast<int>(segment_ends_.size()) + 1) * margin_),
+        logarithm_(row.mu) {
     for (int j = 0; j < columns_; ++j) {
       std::fill_n(p(j) - margin_, margin_, 0.0F);
       float* behind = p(j);
@@ -118,7 +120,7 @@ class WorkColumns {
     }
   }
 
-  // Makes p = weight(columns, lane) for all columns of the row and leaves the row's state.
+  // Makes p = weight(columns)(lane) for all columns of the row and leaves the row's state.
   template <class Weight>
   HWY_INLINE void run(Weight weight) const {
     FloatVec normalise[kMostColumns];
@@ -149,6 +151,7 @@ class WorkColumns {
   template <class Weight>
   HWY_INLINE FloatVec make(const StarColumns& at, Weight weight, float* p) const {
     const FloatTag df;
+    const auto weight_of_lanes = weight(at);
     LaneBlock16 sums;
     sums.fill(hn::Zero(df));
     int lane = 0;
@@ -156,7 +159,7 @@ class WorkColumns {
       for (; lane < end; lane += kLaneMultiple) {
         for (int part = 0; part < kParts; ++part) {
           const int first = lane + part * kFloatLanes;
-          const FloatVec value = weight(at, first);
+          const FloatVec value = weight_of_lanes(first);
           hn::Store(value, df, p + first);
           sums.part[part] = hn::Add(sums.part[part], value);
         }
@@ -187,10 +190,8 @@ class WorkColumns {
     if (row_.state == BayesState::kSmoothed) {
       smooth(p, normalise, output, lanes, [](FloatVec smoothed) HWY_ATTR { return smoothed; });
     } else {
-      const FloatVec mu = hn::Set(df, row_.mu * kLog2E);
-      smooth(p, normalise, output, lanes, [mu](FloatVec smoothed) HWY_ATTR {
-        return hn::Mul(mu, log_of_normal<true>(smoothed));
-      });
+      smooth(p, normalise, output, lanes,
+             [this](FloatVec smoothed) HWY_ATTR { return logarithm_.of(smoothed); });
     }
   }
 
@@ -202,6 +203,8 @@ class WorkColumns {
         return smooth_with<0>(p, normalise, output, lanes, state);
       case 1:
         return smooth_with<1>(p, normalise, output, lanes, state);
+      case 2:
+        return smooth_with<2>(p, normalise, output, lanes, state);
       default:
         return smooth_with<-1>(p, normalise, output, lanes, state);
     }
@@ -230,12 +233,13 @@ class WorkColumns {
   int margin_;
   std::span<const int> segment_ends_;
   int pitch_;
+  ScaledLogarithm logarithm_;
 };
 
 void bayes_start_row_simd(const BayesRow& row) {
-  const FloatTag df;
-  WorkColumns(row).run([df](const StarColumns& at, int lane)
-                           HWY_ATTR { return hn::Load(df, at.source + lane); });
+  WorkColumns(row).run([](const StarColumns& at) HWY_ATTR {
+    return [&at](int lane) HWY_ATTR { return hn::Load(FloatTag(), at.source + lane); };
+  });
 }
 
 void bayes_half_row_simd(const BayesRow& row) {
@@ -261,60 +265,93 @@ void bayes_half_row_simd(const BayesRow& row) {
         break;
     }
   }
-  WorkColumns(row).run([](const StarColumns& at, int lane)
-                           HWY_ATTR { return half_weight(at, lane); });
+  WorkColumns(row).run([](const StarColumns& at) HWY_ATTR {
+    return [&at](int lane) HWY_ATTR { return half_weight(at, lane); };
+  });
 }
 
-HWY_INLINE FloatVec star_sum(const StarColumns& at, int lane) {
-  const FloatTag df;
-  const auto load = [&](const float* cells) HWY_ATTR { return hn::Load(df, cells + lane); };
-  return hn::Add(
-      hn::Add(hn::Add(load(at.up), load(at.down)), hn::Add(load(at.left), load(at.right))),
-      load(at.centre));
-}
+// The sum of a star's states.
+struct StarSum {
+  StarSum(const BayesRow& /*row*/, const StarColumns& columns) : at(columns) {}
+  HWY_INLINE FloatVec of(int lane) const {
+    const FloatTag df;
+    const auto load = [&](const float* cells) HWY_ATTR { return hn::Load(df, cells + lane); };
+    return hn::Add(
+        hn::Add(hn::Add(load(at.up), load(at.down)), hn::Add(load(at.left), load(at.right))),
+        load(at.centre));
+  }
+  const StarColumns& at;
+};
+
+// The same with a weight for each of the neighbours.
+struct WeightedStarSum {
+  WeightedStarSum(const BayesRow& row, const StarColumns& columns)
+      : at(columns),
+        left(row.weights.beside[columns.x]),
+        right(row.weights.beside[columns.x + 1]),
+        up(row.weights.above[columns.x]),
+        down(row.weights.below[columns.x]) {}
+  HWY_INLINE FloatVec of(int lane) const {
+    const FloatTag df;
+    const auto load = [&](const float* cells) HWY_ATTR { return hn::Load(df, cells + lane); };
+    const FloatVec vertical =
+        hn::MulAdd(hn::Set(df, up), load(at.up), hn::Mul(hn::Set(df, down), load(at.down)));
+    const FloatVec horizontal = hn::MulAdd(hn::Set(df, left), load(at.left), load(at.centre));
+    return hn::Add(vertical, hn::MulAdd(hn::Set(df, right), load(at.right), horizontal));
+  }
+  const StarColumns& at;
+  float left;
+  float right;
+  float up;
+  float down;
+};
 
 // The largest sum of a column, in every lane. Lanes that are no candidates have the state of p = 0,
 // which no candidate is below.
-HWY_INLINE FloatVec largest_sum(const StarColumns& at, int lanes) {
+template <class Sum>
+HWY_INLINE FloatVec largest_sum(const Sum& star, int lanes) {
   const FloatTag df;
   LaneBlock16 most;
   most.fill(hn::Set(df, std::numeric_limits<float>::lowest()));
   for (int lane = 0; lane < lanes; lane += kLaneMultiple) {
     for (int part = 0; part < kParts; ++part) {
-      const FloatVec sum = star_sum(at, lane + part * kFloatLanes);
-      most.part[part] = hn::Max(most.part[part], sum);
+      most.part[part] = hn::Max(most.part[part], star.of(lane + part * kFloatLanes));
     }
   }
   return max_lanes(most);
 }
 
 // kScaled: the largest sum becomes 0, so that some lane stays above the underflow.
-template <bool kScaled>
+template <class Sum, bool kScaled>
 HWY_INLINE void general_columns(const BayesRow& row) {
-  const FloatTag df;
-  const int lanes = row.star.lanes;
-  const float* column = nullptr;
-  FloatVec largest = hn::Zero(df);
-  WorkColumns(row).run([&](const StarColumns& at, int lane) HWY_ATTR {
-    if constexpr (kScaled) {
-      if (at.centre != column) {
-        column = at.centre;
-        largest = largest_sum(at, lanes);
+  WorkColumns(row).run([&row](const StarColumns& at) HWY_ATTR {
+    // Made where they stay: copies would go through memory, in pieces of another size than they are
+    // loaded in.
+    return [star = Sum(row, at), largest = kScaled ? largest_sum(Sum(row, at), row.star.lanes)
+                                                   : hn::Zero(FloatTag())](int lane) HWY_ATTR {
+      FloatVec exponent = star.of(lane);
+      if constexpr (kScaled) {
+        exponent = hn::Sub(exponent, largest);
       }
-    }
-    FloatVec exponent = star_sum(at, lane);
-    if constexpr (kScaled) {
-      exponent = hn::Sub(exponent, largest);
-    }
-    return hn::Mul(hn::Load(df, at.source + lane), exp2_of_negative<true>(exponent));
+      return hn::Mul(hn::Load(FloatTag(), star.at.source + lane), power_of_two<kScaled>(exponent));
+    };
   });
 }
 
-void bayes_general_row_simd(const BayesRow& row) {
+template <class Sum>
+HWY_INLINE void general_row(const BayesRow& row) {
   if (bayes_scales_sums(row.mu, row.prior.floor)) {
-    general_columns<true>(row);
+    general_columns<Sum, true>(row);
   } else {
-    general_columns<false>(row);
+    general_columns<Sum, false>(row);
+  }
+}
+
+void bayes_general_row_simd(const BayesRow& row) {
+  if (row.weights.are_given()) {
+    general_row<WeightedStarSum>(row);
+  } else {
+    general_row<StarSum>(row);
   }
 }
 

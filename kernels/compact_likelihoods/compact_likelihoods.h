@@ -21,15 +21,23 @@ inline constexpr float kLeastCompactProbability = 2.3283064365386963e-10F;
 /// Likelihoods below 2^−31 count as this: the product of four stays a normal number.
 inline constexpr float kLeastReducedLikelihood = 4.656612873077393e-10F;
 
-/// The energy of a block is the sum of those of its four columns. Cells are likelihoods in [0, 1],
-/// up to a factor per column; those of lanes that are no candidates are 0. `work`: row.lanes
-/// floats. Energies of lanes that are no candidates are not less than those of any candidate.
-void reduce_likelihoods_row(const BlockRow<float>& row, float* work, std::uint8_t* energies);
-void reduce_likelihoods_row_ref(const BlockRow<float>& row, std::uint8_t* energies);
+/// The energy of a block is `weight` (above 0, at most 1) times the sum of those of its four
+/// columns. Cells are likelihoods in [0, 1], up to a factor per column; those of lanes that are no
+/// candidates are 0. `work`: row.lanes floats. Energies of lanes that are no candidates are not
+/// less than those of any candidate.
+void reduce_likelihoods_row(const BlockRow<float>& row, float weight, float* work,
+                            std::uint8_t* energies);
+void reduce_likelihoods_row_ref(const BlockRow<float>& row, float weight, std::uint8_t* energies);
 
-/// The same of compact energies. Lanes that are no candidates as above.
-void reduce_compact_energies_row(const BlockRow<std::uint8_t>& row, std::uint8_t* energies);
-void reduce_compact_energies_row_ref(const BlockRow<std::uint8_t>& row, std::uint8_t* energies);
+/// Weights of compact energies are multiples of 1/this.
+inline constexpr int kCompactWeightUnits = 16384;
+
+/// The same of compact energies, halves of a step being rounded up. Lanes that are no candidates as
+/// above.
+void reduce_compact_energies_row(const BlockRow<std::uint8_t>& row, float weight,
+                                 std::uint8_t* energies);
+void reduce_compact_energies_row_ref(const BlockRow<std::uint8_t>& row, float weight,
+                                     std::uint8_t* energies);
 
 /// Compact cells, `lanes` a column.
 struct CompactRow {

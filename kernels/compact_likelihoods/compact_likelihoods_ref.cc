@@ -24,7 +24,7 @@ void powers_row(const CompactRow& row, float exponent_of_step, float* output) {
 
 }  // namespace
 
-void reduce_likelihoods_row_ref(const BlockRow<float>& row, std::uint8_t* energies) {
+void reduce_likelihoods_row_ref(const BlockRow<float>& row, float weight, std::uint8_t* energies) {
   const auto likelihood = [&](const float* cells, std::ptrdiff_t column, int lane) {
     return std::max(cells[column + lane], kLeastReducedLikelihood);
   };
@@ -40,12 +40,14 @@ void reduce_likelihoods_row_ref(const BlockRow<float>& row, std::uint8_t* energi
     const float most = *std::max_element(logs.begin(), logs.end());
     for (int lane = 0; lane < row.lanes; ++lane) {
       energies[b * row.lanes + lane] =
-          to_byte((most - logs[static_cast<std::size_t>(lane)]) * (1 / kEnergyStep));
+          to_byte((most - logs[static_cast<std::size_t>(lane)]) * (weight / kEnergyStep));
     }
   }
 }
 
-void reduce_compact_energies_row_ref(const BlockRow<std::uint8_t>& row, std::uint8_t* energies) {
+void reduce_compact_energies_row_ref(const BlockRow<std::uint8_t>& row, float weight,
+                                     std::uint8_t* energies) {
+  const long units = std::lround(weight * kCompactWeightUnits);
   for (int b = 0; b < row.blocks(); ++b) {
     std::vector<int> sums;
     for (int lane = 0; lane < row.lanes; ++lane) {
@@ -54,8 +56,9 @@ void reduce_compact_energies_row_ref(const BlockRow<std::uint8_t>& row, std::uin
     }
     const int least = *std::min_element(sums.begin(), sums.end());
     for (int lane = 0; lane < row.lanes; ++lane) {
+      const long above = (sums[static_cast<std::size_t>(lane)] - least) * units;
       energies[b * row.lanes + lane] = static_cast<std::uint8_t>(
-          std::min(sums[static_cast<std::size_t>(lane)] - least, kMostCompact));
+          std::min<long>((above + kCompactWeightUnits / 2) / kCompactWeightUnits, kMostCompact));
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -30,10 +31,11 @@ HWY_INLINE FloatVec load_steps(const std::uint8_t* bytes) {
   return hn::ConvertTo(FloatTag(), hn::PromoteTo(IntTag(), hn::LoadU(ByteTag(), bytes)));
 }
 
-void reduce_likelihoods(const BlockRow<float>& row, float* work, std::uint8_t* energies) {
+void reduce_likelihoods(const BlockRow<float>& row, float weight, float* work,
+                        std::uint8_t* energies) {
   const FloatTag df;
   const FloatVec least = hn::Set(df, kLeastReducedLikelihood);
-  const FloatVec steps = hn::Set(df, 1 / kEnergyStep);
+  const FloatVec steps = hn::Set(df, weight / kEnergyStep);
   for (int b = 0; b < row.blocks(); ++b, energies += row.lanes) {
     const auto load = [&](const float* cells, std::ptrdiff_t at)
                           HWY_ATTR { return hn::Max(hn::LoadU(df, cells + at), least); };
@@ -58,10 +60,14 @@ void reduce_likelihoods(const BlockRow<float>& row, float* work, std::uint8_t* e
   }
 }
 
-void reduce_compact_energies(const BlockRow<std::uint8_t>& row, std::uint8_t* energies) {
+void reduce_compact_energies(const BlockRow<std::uint8_t>& row, float weight,
+                             std::uint8_t* energies) {
   const hn::CappedTag<std::uint16_t, kLaneMultiple> d16;
+  const hn::RebindToSigned<decltype(d16)> di16;
   const hn::Rebind<std::uint8_t, decltype(d16)> d8;
   const int step = static_cast<int>(hn::Lanes(d16));
+  const auto units =
+      hn::Set(di16, static_cast<std::int16_t>(std::lround(weight * kCompactWeightUnits)));
   for (int b = 0; b < row.blocks(); ++b, energies += row.lanes) {
     const auto sum = [&](int lane) HWY_ATTR {
       const auto load = [&](const std::uint8_t* cells, std::ptrdiff_t column) HWY_ATTR {
@@ -77,11 +83,10 @@ void reduce_compact_energies(const BlockRow<std::uint8_t>& row, std::uint8_t* en
     HWY_ALIGN std::uint16_t of_lane[kLaneMultiple];
     hn::Store(least, d16, of_lane);
     const auto bottom = hn::Set(d16, *std::min_element(of_lane, of_lane + step));
-    const auto most = hn::Set(d16, static_cast<std::uint16_t>(kMostCompact));
-    const hn::RebindToSigned<decltype(d16)> di16;
     for (int lane = 0; lane < row.lanes; lane += step) {
-      const auto above = hn::Min(hn::Sub(sum(lane), bottom), most);
-      hn::StoreU(hn::DemoteTo(d8, hn::BitCast(di16, above)), d8, energies + lane);
+      // At most 4 · 255, doubled: the product's fixed point is at 2^15. Bytes saturate.
+      const auto above = hn::BitCast(di16, hn::ShiftLeft<1>(hn::Sub(sum(lane), bottom)));
+      hn::StoreU(hn::DemoteTo(d8, hn::MulFixedPoint15(above, units)), d8, energies + lane);
     }
   }
 }
@@ -134,11 +139,13 @@ HWY_EXPORT(likelihoods);
 HWY_EXPORT(probabilities);
 HWY_EXPORT(compact_probabilities);
 
-void reduce_likelihoods_row(const BlockRow<float>& row, float* work, std::uint8_t* energies) {
-  HWY_DYNAMIC_DISPATCH(reduce_likelihoods)(row, work, energies);
+void reduce_likelihoods_row(const BlockRow<float>& row, float weight, float* work,
+                            std::uint8_t* energies) {
+  HWY_DYNAMIC_DISPATCH(reduce_likelihoods)(row, weight, work, energies);
 }
-void reduce_compact_energies_row(const BlockRow<std::uint8_t>& row, std::uint8_t* energies) {
-  HWY_DYNAMIC_DISPATCH(reduce_compact_energies)(row, energies);
+void reduce_compact_energies_row(const BlockRow<std::uint8_t>& row, float weight,
+                                 std::uint8_t* energies) {
+  HWY_DYNAMIC_DISPATCH(reduce_compact_energies)(row, weight, energies);
 }
 void likelihoods_of_compact_row(const CompactRow& row, float* output) {
   HWY_DYNAMIC_DISPATCH(likelihoods)(row, output);
