@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "kernels/cells/exp_log.h"
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
@@ -25,22 +25,23 @@ void powers_row(const CompactRow& row, float exponent_of_step, float* output) {
 }  // namespace
 
 void reduce_likelihoods_row_ref(const BlockRow<float>& row, float weight, std::uint8_t* energies) {
-  const auto likelihood = [&](const float* cells, std::ptrdiff_t column, int lane) {
-    return std::max(cells[column + lane], kLeastReducedLikelihood);
+  const auto likelihood = [](const float* cells, std::ptrdiff_t cell) {
+    return std::max(cells[cell], kLeastReducedLikelihood);
+  };
+  const auto log = [&](int block, int lane) {
+    const std::ptrdiff_t left = row.left(block) + lane;
+    const std::ptrdiff_t right = row.right(block) + lane;
+    const float upper = likelihood(row.upper, left) * likelihood(row.upper, right);
+    const float lower = likelihood(row.lower, left) * likelihood(row.lower, right);
+    return log_of_normal(upper * lower);
   };
   for (int b = 0; b < row.blocks(); ++b) {
-    std::vector<float> logs;
-    for (int lane = 0; lane < row.lanes; ++lane) {
-      const float upper =
-          likelihood(row.upper, row.left(b), lane) * likelihood(row.upper, row.right(b), lane);
-      const float lower =
-          likelihood(row.lower, row.left(b), lane) * likelihood(row.lower, row.right(b), lane);
-      logs.push_back(log_of_normal(upper * lower));
+    float most = log(b, 0);
+    for (int lane = 1; lane < row.lanes; ++lane) {
+      most = std::max(most, log(b, lane));
     }
-    const float most = *std::max_element(logs.begin(), logs.end());
     for (int lane = 0; lane < row.lanes; ++lane) {
-      energies[b * row.lanes + lane] =
-          to_byte((most - logs[static_cast<std::size_t>(lane)]) * (weight / kEnergyStep));
+      energies[b * row.lanes + lane] = to_byte((most - log(b, lane)) * (weight / kEnergyStep));
     }
   }
 }
@@ -48,15 +49,18 @@ void reduce_likelihoods_row_ref(const BlockRow<float>& row, float weight, std::u
 void reduce_compact_energies_row_ref(const BlockRow<std::uint8_t>& row, float weight,
                                      std::uint8_t* energies) {
   const long units = std::lround(weight * kCompactWeightUnits);
+  const auto sum = [&](int block, int lane) {
+    const std::ptrdiff_t left = row.left(block) + lane;
+    const std::ptrdiff_t right = row.right(block) + lane;
+    return row.upper[left] + row.upper[right] + row.lower[left] + row.lower[right];
+  };
   for (int b = 0; b < row.blocks(); ++b) {
-    std::vector<int> sums;
-    for (int lane = 0; lane < row.lanes; ++lane) {
-      sums.push_back(row.upper[row.left(b) + lane] + row.upper[row.right(b) + lane] +
-                     row.lower[row.left(b) + lane] + row.lower[row.right(b) + lane]);
+    int least = sum(b, 0);
+    for (int lane = 1; lane < row.lanes; ++lane) {
+      least = std::min(least, sum(b, lane));
     }
-    const int least = *std::min_element(sums.begin(), sums.end());
     for (int lane = 0; lane < row.lanes; ++lane) {
-      const long above = (sums[static_cast<std::size_t>(lane)] - least) * units;
+      const long above = (sum(b, lane) - least) * units;
       energies[b * row.lanes + lane] = static_cast<std::uint8_t>(
           std::min<long>((above + kCompactWeightUnits / 2) / kCompactWeightUnits, kMostCompact));
     }

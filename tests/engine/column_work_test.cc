@@ -1,4 +1,5 @@
 // What stages tell profiles about their work.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -6,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/matching/level_stages.h"
 #include "engine/matching/match_chain.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
@@ -30,6 +32,7 @@ struct ChainCase {
   bool has_prior = false;
   std::vector<double> baseline_ratios = {1};
   bool wants_all_outputs = true;
+  ChainLevel level = {};
 };
 
 /// The work of each stage, first to last, and the bytes of its output columns.
@@ -77,7 +80,7 @@ std::vector<StageWork> works_of(const MatchOptions& method, const ChainCase& mad
     outputs.confidence = maps[1].view();
     outputs.energy = maps[2].view();
   }
-  const MatchChain chain(parameters, geometry, input, outputs);
+  const MatchChain chain(parameters, geometry, input, outputs, made.level);
   std::vector<StageWork> works;
   for (const scheduler::RowStage* stage : chain.stages()) {
     works.push_back({std::string(stage->name()), stage->column_work(), stage->bytes_per_column()});
@@ -118,6 +121,38 @@ TEST_P(ColumnWorkOfMethods, EveryStageKnowsItsOwn) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, ColumnWorkOfMethods, ::testing::ValuesIn(method_cases({})),
                          [](const auto& instance) { return instance.param.name; });
+
+TEST(ColumnWork, StagesOfLevelsKnowTheirs) {
+  const int lanes = 48;
+  for (const char* name : {"bayes_levels", "membrane_levels", "diffusion_levels", "box_levels"}) {
+    const MatchOptions method = method_named(name);
+    const int cell_bytes = method.method == MatchMethod::kBayes ? 1 : 2;
+    // As if the level were as large as the image: what it does to a column is the same.
+    LevelVolume costs;
+    LevelVolume coarser;
+    LevelVolume result;
+    costs.resize({kWidth, kHeight}, lanes, cell_bytes);
+    coarser.resize(coarser_extent({kWidth, kHeight}), lanes, cell_bytes);
+    result.resize({kWidth, kHeight}, lanes, cell_bytes);
+    const auto stored = static_cast<double>(lanes * cell_bytes);
+    std::vector<std::string> names;
+    for (const ChainLevel& level :
+         {ChainLevel{.reduced = &coarser}, ChainLevel{.coarser = &coarser},
+          ChainLevel{.costs = &costs, .coarser = &coarser, .result = &result}}) {
+      for (const StageWork& stage : works_of(method, {.level = level})) {
+        EXPECT_EQ(stage.work.cells, kCandidates) << stage.name;
+        EXPECT_GE(stage.work.operations, kCandidates) << stage.name;
+        EXPECT_LE(stage.work.operations, 300 * kCandidates) << stage.name;
+        // A result is selected, or stored.
+        const double output_bytes = static_cast<double>(stage.output_bytes);
+        EXPECT_GE(stage.work.bytes, output_bytes > 0 ? output_bytes : stored) << stage.name;
+        names.push_back(stage.name);
+      }
+    }
+    EXPECT_THAT(names, ::testing::IsSupersetOf({"cost", "reduce", "stored level", "store level"}))
+        << name;
+  }
+}
 
 TEST(ColumnWork, OfIterationsIsThatOfTheirEquations) {
   // (6.7): three additions of neighbours, two products, one addition; (6.9): one of either more.
