@@ -13,6 +13,7 @@
 
 #include "engine/error.h"
 #include "engine/matching/stereo_matcher.h"
+#include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/identical_maps.h"
 #include "tests/engine/oracle_comparison.h"
 
@@ -73,6 +74,14 @@ Tolerance tolerance_with_levels(const MethodParameters& parameters) {
   return tolerance;
 }
 
+DisparityMaps maps_of(const Photograph& left, const Photograph& right, const MatchOptions& options,
+                      MatchReport* report = nullptr) {
+  Execution execution({.threads = 2});
+  DisparityMaps maps;
+  StereoMatcher(options, execution).match(left, right, {.confidence = true}, maps, report);
+  return maps;
+}
+
 using Combination = std::tuple<Aggregation, MatchCost>;
 
 class CoarseToFine : public ::testing::TestWithParam<Combination> {};
@@ -117,6 +126,33 @@ TEST_P(CoarseToFine, StoredCellsAreExactEnough) {
   EXPECT_GE(equal, 0.99 * static_cast<double>(exact.choices.size()));
 }
 
+/// The chains of all levels on the executor that stores every row.
+TEST_P(CoarseToFine, WholeImageExecutorGivesTheSame) {
+  const auto [aggregation, cost] = GetParam();
+  const DisparityRange range{-3, 17};
+  const auto pair = textured_pair(37, 29, range, PixelKind::kColour8, 5);
+  MatchOptions options = options_of(aggregation, cost, 4, range);
+  options.raw = true;
+  const MethodParameters parameters = options.resolved();
+  Execution execution({.threads = 2});
+  const auto geometry = candidate_geometry(options, Reference::kLeft, 37, 29);
+  CostImage left;
+  CostImage right;
+  left.prepare(pair.left, parameters, geometry, {true, false, false}, execution);
+  right.prepare(pair.right, parameters, geometry, {false, true, false}, execution);
+  DisparityMap map(37, 29);
+  CoarseLevels levels;
+  int chains = 0;
+  match_coarse_to_fine(parameters, geometry, {nullptr, &left, {CostPartner{&right}}},
+                       {.disparity_px = map.view()}, levels, execution,
+                       [&](const MatchChain& chain) {
+                         scheduler::run_whole_image(chain.stages());
+                         ++chains;
+                       });
+  EXPECT_EQ(chains, 1 + 4);
+  EXPECT_TRUE(identical(map, maps_of(pair.left, pair.right, options).left));
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Combinations, CoarseToFine,
     ::testing::Values(Combination{Aggregation::kBayes, MatchCost::kContaminated},
@@ -134,14 +170,6 @@ INSTANTIATE_TEST_SUITE_P(
       return name_of(std::get<Aggregation>(instance.param)) + "_" +
              name_of(std::get<MatchCost>(instance.param));
     });
-
-DisparityMaps maps_of(const Photograph& left, const Photograph& right, const MatchOptions& options,
-                      MatchReport* report = nullptr) {
-  Execution execution({.threads = 2});
-  DisparityMaps maps;
-  StereoMatcher(options, execution).match(left, right, {.confidence = true}, maps, report);
-  return maps;
-}
 
 /// A surface of little texture at disparity 6, with noise that hides it from single pixels and
 /// their next neighbours.
