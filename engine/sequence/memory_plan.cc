@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "engine/error.h"
+#include "engine/matching/coarse_to_fine.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/synthesis/photograph_grid.h"
 #include "engine/synthesis/three_step_synthesizer.h"
