@@ -1,6 +1,7 @@
 #include "engine/matching/edge_weights.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/image/grey_levels.h"
 #include "engine/matching/coarse_to_fine.h"
@@ -63,9 +64,10 @@ std::span<const EdgeWeights> EdgeWeightLevels::prepare(const Photograph& referen
   const auto extents = level_extents({reference.width(), reference.height()}, parameters.levels);
   const kernels::EdgeModel model{.least = static_cast<float>(parameters.edge_weight),
                                  .contrast = static_cast<float>(parameters.edge_contrast)};
+  grey_.resize(extents.size());
   levels_.resize(extents.size());
   for (std::size_t level = 0; level < extents.size(); ++level) {
-    Image<float>& grey = grey_[level % 2];
+    Image<float>& grey = grey_[level];
     grey.resize(extents[level].columns, extents[level].rows);
     if (level == 0) {
       execution.for_each_band(grey.height(), [&](int first_row, int end_row) {
@@ -74,7 +76,7 @@ std::span<const EdgeWeights> EdgeWeightLevels::prepare(const Photograph& referen
         }
       });
     } else {
-      halve(grey_[(level - 1) % 2].view(), grey.view(), execution);
+      halve(std::as_const(grey_[level - 1]).view(), grey.view(), execution);
     }
     levels_[level].prepare(grey.view(), model, execution);
   }
@@ -82,7 +84,10 @@ std::span<const EdgeWeights> EdgeWeightLevels::prepare(const Photograph& referen
 }
 
 std::size_t EdgeWeightLevels::held_bytes() const {
-  std::size_t bytes = vantage::held_bytes(grey_[0]) + vantage::held_bytes(grey_[1]);
+  std::size_t bytes = 0;
+  for (const Image<float>& grey : grey_) {
+    bytes += vantage::held_bytes(grey);
+  }
   for (const EdgeWeights& level : levels_) {
     bytes += level.held_bytes();
   }

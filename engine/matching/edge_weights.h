@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -46,7 +45,7 @@ class EdgeWeightLevels {
   [[nodiscard]] std::size_t held_bytes() const;
 
  private:
-  std::array<Image<float>, 2> grey_;  ///< of two levels in turn
+  std::vector<Image<float>> grey_;  ///< of each level
   std::vector<EdgeWeights> levels_;
 };
 
