@@ -108,6 +108,36 @@ TEST_P(CoarseToFine, EqualsTheOracle) {
   }
 }
 
+/// Evidence, prior, iterations and weights of neighbours that differ from level to level.
+TEST(CoarseToFineOfEdges, EqualsTheOracle) {
+  Execution execution({.threads = 2});
+  struct Shape {
+    int width;
+    int height;
+    DisparityRange range;
+    PixelKind pixels;
+  };
+  for (const Shape& shape :
+       {Shape{1, 1, {0, 0}, PixelKind::kGrey8}, Shape{1, 7, {-2, 2}, PixelKind::kGrey8},
+        Shape{13, 11, {0, 39}, PixelKind::kGrey8}, Shape{37, 29, {-4, 12}, PixelKind::kColour8},
+        Shape{61, 43, {0, 16}, PixelKind::kGrey8}}) {
+    const auto pair = textured_pair(shape.width, shape.height, shape.range, shape.pixels, 3);
+    for (const int levels : {1, 2, 5}) {
+      MatchOptions options =
+          options_of(Aggregation::kBayes, MatchCost::kCensus, levels, shape.range);
+      options.parameters.sigma_measurement = 12.4;
+      options.parameters.epsilon_prior = 5e-6;
+      options.parameters.final_iterations = 2;
+      options.parameters.prior_growth = 1.2;
+      options.parameters.level_weight = 0.6;
+      options.parameters.edge_weight = 0.2;
+      expect_equals_oracle(pair, options, execution, tolerance_with_levels(options.resolved()),
+                           std::to_string(shape.width) + "x" + std::to_string(shape.height) + ", " +
+                               std::to_string(levels) + " levels");
+    }
+  }
+}
+
 /// What bytes and half floats leave out decides few pixels.
 TEST_P(CoarseToFine, StoredCellsAreExactEnough) {
   const auto [aggregation, cost] = GetParam();

@@ -78,6 +78,20 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
     p.levels = 4;
     p.iterations = 3;
   });
+  add("bayes_edges", MatchMethod::kBayes, [](MethodOverrides& p) {
+    p.edge_weight = 0.2;
+    p.sigma_prior = 0.4;
+  });
+  add("bayes_edges_levels", MatchMethod::kBayes, [](MethodOverrides& p) {
+    p.levels = 4;
+    p.iterations = 3;
+    p.final_iterations = 2;
+    p.edge_weight = 0.2;
+    p.edge_contrast = 12;
+    p.prior_growth = 1.2;
+    p.level_weight = 0.6;
+    p.epsilon_prior = 5e-6;
+  });
   add("membrane_levels", MatchMethod::kMembrane, [](MethodOverrides& p) {
     p.levels = 3;
     p.iterations = 4;

@@ -158,6 +158,25 @@ std::function<void(MatchOptions&, double)> refinement(
   };
 }
 
+TEST(MethodParameters, DifferFromLevelToLevel) {
+  MethodOverrides overrides;
+  overrides.iterations = 5;
+  overrides.levels = 3;
+  overrides.sigma_prior = 0.5;
+  overrides.prior_growth = 1.5;
+  const auto at = [&overrides](int level) {
+    return at_level(resolve(MatchMethod::kBayes, overrides), level);
+  };
+  EXPECT_EQ(at(0).iterations, 5);  // unless the last are asked for
+  overrides.final_iterations = 2;
+  EXPECT_EQ(at(0).iterations, 2);
+  EXPECT_EQ(at(1).iterations, 5);
+  EXPECT_EQ(at(0).sigma_prior, 0.5);
+  EXPECT_EQ(at(2).sigma_prior, 0.5 * 1.5 * 1.5);
+  overrides.levels = 1;
+  EXPECT_EQ(at(0).iterations, 5);
+}
+
 TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -175,6 +194,35 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
        {0.49, 16.1, kNan},
        "from 0.5 to 16"},
       {"iterations", parameter(&P::iterations), {0, 10000}, {-1, 10001}, "from 0 to 10000"},
+      {"final-iterations",
+       parameter(&P::final_iterations),
+       {0, 10000},
+       {-1, 10001},
+       "from 0 to 10000"},
+      {"prior-growth",
+       parameter(&P::prior_growth),
+       {1, 4},
+       {0.99, 4.01, kNan},
+       "from 1 to 4",
+       MatchMethod::kBayes},
+      {"level-weight",
+       parameter(&P::level_weight),
+       {0.001, 1},
+       {0, -0.1, 1.001, kNan},
+       "above 0 and at most 1",
+       MatchMethod::kBayes},
+      {"edge-weight",
+       parameter(&P::edge_weight),
+       {0, 1},
+       {-0.01, 1.01, kNan},
+       "from 0 to 1",
+       MatchMethod::kBayes},
+      {"edge-contrast",
+       parameter(&P::edge_contrast),
+       {0.01, 255},
+       {0, -1, kNan, kInfinity},
+       "above 0",
+       MatchMethod::kBayes},
       {"levels", parameter(&P::levels), {1, 10}, {-1, 0, 11}, "from 1 to 10"},
       {"lambda",
        parameter(&P::lambda),

@@ -253,10 +253,18 @@ std::vector<double> prior_kernel(int count, double sigma_prior, double epsilon_p
   return kernel;
 }
 
-Volume plain_bayes(const Volume& energies, const MethodParameters& parameters,
-                   const Volume* start) {
+Volume plain_bayes(const Volume& energies, const MethodParameters& parameters, const Volume* start,
+                   const Volume* grey) {
   const std::vector<double> kernel =
       prior_kernel(energies.count(), parameters.sigma_prior, parameters.epsilon_prior);
+  const auto edge_weight = [&](int x, int y, int u, int v) {
+    if (grey == nullptr) {
+      return 1.0;
+    }
+    const double difference = std::abs(grey->at(x, y, 0) - grey->at(u, v, 0));
+    return parameters.edge_weight +
+           (1 - parameters.edge_weight) * std::exp(-difference / parameters.edge_contrast);
+  };
   Volume probabilities = start != nullptr ? *start : probabilities_of(energies);
   for (int n = 0; n < parameters.iterations; ++n) {
     Volume smooth_energies = smoothed(probabilities, kernel);
@@ -268,7 +276,7 @@ Volume plain_bayes(const Volume& energies, const MethodParameters& parameters,
       double sum = smooth_energies.at(x, y, i);
       for (const auto& [dx, dy] : kNeighbours) {
         if (is_inside(energies, x + dx, y + dy)) {
-          sum += smooth_energies.at(x + dx, y + dy, i);
+          sum += edge_weight(x, y, x + dx, y + dy) * smooth_energies.at(x + dx, y + dy, i);
         }
       }
       next.at(x, y, i) += parameters.mu * sum;

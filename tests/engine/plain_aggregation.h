@@ -38,9 +38,10 @@ Volume plain_local_stopping(const Volume& first, double lambda, Certainty certai
 std::vector<double> prior_kernel(int count, double sigma_prior, double epsilon_prior);
 
 /// Probabilities after Bayesian diffusion (6.25)–(6.37), in logarithms, for any μ. `start`: what
-/// the first iteration takes for the probabilities; null: those of the energies.
+/// the first iteration takes for the probabilities; null: those of the energies. `grey`: the grey
+/// levels that weight neighbours by edge_weight and edge_contrast; null: neighbours count alike.
 Volume plain_bayes(const Volume& energies, const MethodParameters& parameters,
-                   const Volume* start = nullptr);
+                   const Volume* start = nullptr, const Volume* grey = nullptr);
 /// The same for μ = ½ as products (EQUATIONS §3).
 Volume plain_bayes_products(const Volume& energies, const MethodParameters& parameters);
 

@@ -354,4 +354,10 @@ Volume plain_measurement_energies(const Photograph& reference, const Photograph&
   return energies;
 }
 
+Volume plain_grey(const Photograph& photograph) {
+  Volume grey(photograph.width(), photograph.height(), {0, 0}, Reference::kLeft);
+  grey.cells = planes_of(photograph, ColourUse::kLuma).front().values;
+  return grey;
+}
+
 }  // namespace vantage::testing

@@ -89,4 +89,7 @@ Volume plain_measurement_energies(const Photograph& reference, const Photograph&
                                   Reference reference_is, DisparityRange range,
                                   const MethodParameters& parameters);
 
+/// Grey levels, luma of colours, as cells of one candidate.
+Volume plain_grey(const Photograph& photograph);
+
 }  // namespace vantage::testing

@@ -61,8 +61,8 @@ Volume block_means(const Volume& finer) {
   return coarser;
 }
 
-/// −log p0 of four columns, above the least of a column.
-Volume block_sums(Volume finer, StoredCells stored) {
+/// `weight` times −log p0 of four columns, above the least of a column.
+Volume block_sums(Volume finer, double weight, StoredCells stored) {
   if (stored == StoredCells::kCompact && !finer.is_coarse) {
     for (double& energy : finer.cells) {
       energy = std::min(energy, 31 * std::log(2.0));
@@ -76,7 +76,7 @@ Volume block_sums(Volume finer, StoredCells stored) {
     }
     for (int i = 0; i < coarser.count(); ++i) {
       double& energy = coarser.at(x, y, i);
-      energy = 4 * (energy - least);
+      energy = 4 * weight * (energy - least);
       if (stored == StoredCells::kCompact) {
         energy = std::min(std::nearbyint(8 * energy), 255.0) / 8;
       }
@@ -87,7 +87,7 @@ Volume block_sums(Volume finer, StoredCells stored) {
 
 Volume reduced(const Volume& finer, const MethodParameters& parameters, StoredCells stored) {
   if (parameters.aggregation == Aggregation::kBayes) {
-    return block_sums(finer, stored);
+    return block_sums(finer, parameters.level_weight, stored);
   }
   Volume coarser = block_means(finer);
   if (stored == StoredCells::kCompact) {
@@ -115,7 +115,7 @@ Volume expanded(const Volume& coarser, const Volume& finer, const MethodParamete
 }
 
 Volume plain_bayes_level(const Volume& costs, const Volume* coarser,
-                         const MethodParameters& parameters) {
+                         const MethodParameters& parameters, const Volume& grey) {
   Volume start;
   if (coarser != nullptr) {
     start = *coarser;
@@ -130,7 +130,7 @@ Volume plain_bayes_level(const Volume& costs, const Volume* coarser,
       }
     });
   }
-  Volume cells = plain_bayes(costs, parameters, coarser != nullptr ? &start : nullptr);
+  Volume cells = plain_bayes(costs, parameters, coarser != nullptr ? &start : nullptr, &grey);
   for (double& cell : cells.cells) {
     cell = -std::log(cell);
   }
@@ -139,9 +139,10 @@ Volume plain_bayes_level(const Volume& costs, const Volume* coarser,
 
 }  // namespace
 
-Volume plain_level(const Volume& costs, const Volume* coarser, const MethodParameters& parameters) {
+Volume plain_level(const Volume& costs, const Volume* coarser, const MethodParameters& parameters,
+                   const Volume& grey) {
   if (parameters.aggregation == Aggregation::kBayes) {
-    return plain_bayes_level(costs, coarser, parameters);
+    return plain_bayes_level(costs, coarser, parameters, grey);
   }
   if (parameters.aggregation == Aggregation::kMembrane) {
     return plain_membrane(costs, parameters.lambda, parameters.beta, parameters.iterations,
@@ -171,17 +172,23 @@ Volume plain_level(const Volume& costs, const Volume* coarser, const MethodParam
 }
 
 Volume plain_coarse_to_fine(const Volume& costs, const MethodParameters& parameters,
-                            StoredCells stored) {
+                            const Volume& grey, StoredCells stored) {
+  MethodParameters of_level = parameters;
+  if (parameters.levels > 1) {
+    of_level.iterations = parameters.final_iterations;
+  }
   if (parameters.levels <= 1 || (costs.width <= 2 && costs.height <= 2)) {
-    return plain_level(costs, nullptr, parameters);
+    return plain_level(costs, nullptr, of_level, grey);
   }
   MethodParameters of_coarser = parameters;
   --of_coarser.levels;
+  of_coarser.final_iterations = parameters.iterations;  // for the image's own level only
+  of_coarser.sigma_prior *= parameters.prior_growth;
   of_coarser.border = Border::kClip;
-  const Volume coarser =
-      expanded(plain_coarse_to_fine(reduced(costs, parameters, stored), of_coarser, stored), costs,
-               parameters, stored);
-  return plain_level(costs, &coarser, parameters);
+  const Volume coarser = expanded(plain_coarse_to_fine(reduced(costs, parameters, stored),
+                                                       of_coarser, block_means(grey), stored),
+                                  costs, parameters, stored);
+  return plain_level(costs, &coarser, of_level, grey);
 }
 
 }  // namespace vantage::testing

@@ -76,7 +76,7 @@ Volume plain_aggregate(const Photograph& reference, const Photograph& other, Ref
       parameters.aggregation == Aggregation::kBayes
           ? plain_measurement_energies(reference, other, reference_is, range, parameters)
           : plain_costs(reference, other, reference_is, range, parameters),
-      parameters, stored);
+      parameters, plain_grey(reference), stored);
 }
 
 PlainMap plain_select(const Volume& energies, const MethodParameters& parameters) {

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
 #include <vector>
 
 #include "kernels/candidates.h"
@@ -38,8 +41,9 @@ std::vector<int> segment_ends(int lanes, int kind) {
 class BayesStep : public EveryTarget {
  protected:
   /// Compares a kernel with its reference on random rows; `low`, `high` bound the cells.
+  /// is_weighted: neighbours have weights.
   static void compare(Kernel kernel, Kernel reference, float low, float high, float neutral,
-                      double bound, float floor = 0.01F) {
+                      double bound, float floor = 0.01F, bool is_weighted = false) {
     const std::vector<float> taps{0.99F, 0.3F, 0.04F};
     unsigned seed = 1;
     for (const Shape shape : kShapes) {
@@ -70,6 +74,12 @@ class BayesStep : public EveryTarget {
           row.state = state;
           row.mu = 0.7F;
           row.count = shape.count;
+          const std::vector<float> weights = random_weights(3 * shape.columns + 1, seed);
+          if (is_weighted) {
+            row.weights = {.beside = weights.data(),
+                           .above = weights.data() + shape.columns + 1,
+                           .below = weights.data() + 2 * shape.columns + 1};
+          }
           Image<float> work(
               bayes_work_floats(lanes, radius, std::max(1, static_cast<int>(ends.size()))), 1);
           work.fill(-7);  // any contents
@@ -92,6 +102,17 @@ class BayesStep : public EveryTarget {
       }
     }
   }
+
+ private:
+  /// From 0 to 1, both included.
+  static std::vector<float> random_weights(int count, unsigned seed) {
+    std::mt19937 random(seed);
+    std::vector<float> weights;
+    for (int i = 0; i < count; ++i) {
+      weights.push_back(static_cast<float>(random_int(random, 0, 64)) / 64);
+    }
+    return weights;
+  }
 };
 
 TEST_P(BayesStep, StartEqualsReference) {
@@ -103,7 +124,76 @@ TEST_P(BayesStep, HalfEqualsReference) {
 }
 
 TEST_P(BayesStep, GeneralEqualsReference) {
-  compare(bayes_general_row, bayes_general_row_ref, -8, 0, 0, 5e-6);
+  compare(bayes_general_row, bayes_general_row_ref, -8, 0, 0, 1e-5);
+}
+
+TEST_P(BayesStep, WeightedEqualsReference) {
+  compare(bayes_general_row, bayes_general_row_ref, -8, 0, 0, 1e-5, 0.01F, true);
+  compare(bayes_general_row, bayes_general_row_ref, -10, 0, 0, 1e-5, 5e-6F, true);
+}
+
+TEST_P(BayesStep, WeightedSurvivesSumsFarBelowTheRangeOfExponentials) {
+  compare(bayes_general_row, bayes_general_row_ref, -300, -290, 0, 5e-4, 1e-30F, true);
+}
+
+TEST_P(BayesStep, WeightsOfOneChangeNothing) {
+  const int lanes = 48;
+  const float tap = 0.99F;
+  StarRows rows(5, lanes, lanes, -8, 0, 9);
+  BayesRow row;
+  row.star = rows.star();
+  row.prior = {&tap, 0, 0.01F};
+  row.state = BayesState::kProbability;
+  row.count = lanes;
+  Image<float> work(bayes_work_floats(lanes, 0), 1);
+  row.work = work.row(0);
+  const auto result = [&row](StarWeights weights) {
+    std::vector<float> output(5 * 48 + 16);
+    void* aligned = output.data();
+    std::size_t space = output.size() * sizeof(float);
+    row.output = static_cast<float*>(std::align(64, 5 * 48 * sizeof(float), aligned, space));
+    row.weights = weights;
+    bayes_general_row(row);
+    return std::vector<float>(row.output, row.output + 5 * 48);
+  };
+  const std::vector<float> ones(6, 1.0F);
+  const std::vector<float> expected = result({});
+  const std::vector<float> actual = result({ones.data(), ones.data(), ones.data()});
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    ASSERT_NEAR(actual[i], expected[i], 2e-6);
+  }
+}
+
+TEST_P(BayesStep, EachNeighbourHasItsOwnWeight) {
+  // Two candidates, and one neighbour at a time that is for the second: weight w makes
+  // p(1) ÷ p(0) = 2^(2 w).
+  const int lanes = 16;
+  const std::vector<float> weights{0.25F, 0.5F, 0.75F, 1.0F};  // left, right, up, down
+  for (std::size_t k = 0; k < 4; ++k) {
+    StarRows rows(1, lanes, lanes, 0, 0, 1);
+    std::fill_n(rows.source(), lanes, 0.0F);
+    rows.source()[0] = rows.source()[1] = 1;
+    Image<float> states(lanes, 4);
+    states.fill(0);
+    states.at(0, static_cast<int>(k)) = -2;
+    BayesRow row;
+    row.star = rows.star();
+    row.star.left_of_first = states.row(0);
+    row.star.right_of_last = states.row(1);
+    row.star.up = states.row(2);
+    row.star.down = states.row(3);
+    const float tap = 0.99F;
+    row.prior = {&tap, 0, 0.01F};
+    row.state = BayesState::kProbability;
+    row.count = 2;
+    row.weights = {weights.data(), weights.data() + 2, weights.data() + 3};
+    Image<float> work(bayes_work_floats(lanes, 0), 1);
+    row.work = work.row(0);
+    Image<float> output(lanes, 1);
+    row.output = output.row(0);
+    bayes_general_row(row);
+    EXPECT_NEAR(output.at(1, 0) / output.at(0, 0), std::exp2(2 * weights[k]), 1e-4) << k;
+  }
 }
 
 TEST_P(BayesStep, GeneralSurvivesSumsFarBelowTheRangeOfExponentials) {

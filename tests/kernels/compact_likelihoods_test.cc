@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <random>
 #include <vector>
 
@@ -59,9 +60,12 @@ std::vector<double> plain_energies(const Shape& shape, const std::vector<float>&
 
 class CompactLikelihoods : public EveryTarget {};
 
-TEST_P(CompactLikelihoods, EnergiesOfBlocksAreSums) {
+constexpr float kWeights[] = {1, 0.6F, 0.015F};
+
+TEST_P(CompactLikelihoods, EnergiesOfBlocksAreWeightedSums) {
   std::mt19937 random(1);
   for (const Shape& shape : kShapes) {
+    const float weight = kWeights[random() % std::size(kWeights)];
     for (const bool has_lower : {true, false}) {
       const int lanes = lanes_of(shape);
       const auto upper = random_likelihoods(shape, -20, random);
@@ -70,10 +74,10 @@ TEST_P(CompactLikelihoods, EnergiesOfBlocksAreSums) {
       const auto cells = static_cast<std::size_t>(row.blocks() * lanes);
       std::vector<float> work(static_cast<std::size_t>(lanes), -7);
       GuardedRow<std::uint8_t> actual(cells, 3, 77);
-      reduce_likelihoods_row(row, work.data(), actual.data());
+      reduce_likelihoods_row(row, weight, work.data(), actual.data());
       EXPECT_TRUE(actual.intact());
       std::vector<std::uint8_t> reference(cells);
-      reduce_likelihoods_row_ref(row, reference.data());
+      reduce_likelihoods_row_ref(row, weight, reference.data());
       ASSERT_EQ(actual.values(), reference) << shape.columns << " columns of " << shape.count;
       const auto plain = plain_energies(shape, upper, lower);
       for (std::size_t k = 0; k < cells; ++k) {
@@ -86,6 +90,7 @@ TEST_P(CompactLikelihoods, EnergiesOfBlocksAreSums) {
         }
         const std::size_t block = k / static_cast<std::size_t>(lanes);
         const double energy =
+            weight *
             plain[block * static_cast<std::size_t>(shape.count) + static_cast<std::size_t>(lane)];
         ASSERT_NEAR(reference[k] * kEnergyStep, std::min(energy, kMostCompact * kEnergyStep + 0.0),
                     kEnergyStep / 2 + 1e-4);
@@ -101,13 +106,13 @@ TEST_P(CompactLikelihoods, VanishingLikelihoodsStayFinite) {
   const BlockRow<float> row{one_seen.data(), zero.data(), 1, 16};
   std::vector<float> work(16);
   std::vector<std::uint8_t> energies(16);
-  reduce_likelihoods_row(row, work.data(), energies.data());
+  reduce_likelihoods_row(row, 1, work.data(), energies.data());
   EXPECT_EQ(energies[3], 0);
   EXPECT_EQ(energies[2], kMostCompact);
   EXPECT_EQ(energies[15], kMostCompact);
 }
 
-TEST_P(CompactLikelihoods, CompactEnergiesOfBlocksAreSums) {
+TEST_P(CompactLikelihoods, CompactEnergiesOfBlocksAreWeightedSums) {
   std::mt19937 random(2);
   for (const Shape& shape : kShapes) {
     const int lanes = lanes_of(shape);
@@ -120,13 +125,14 @@ TEST_P(CompactLikelihoods, CompactEnergiesOfBlocksAreSums) {
       }
     }
     for (const int lower : {0, 1}) {
+      const float weight = kWeights[random() % std::size(kWeights)];
       const BlockRow<std::uint8_t> row{rows[0].data(), rows[lower].data(), shape.columns, lanes};
       const auto cells = static_cast<std::size_t>(row.blocks() * lanes);
       GuardedRow<std::uint8_t> actual(cells, 5, 77);
-      reduce_compact_energies_row(row, actual.data());
+      reduce_compact_energies_row(row, weight, actual.data());
       EXPECT_TRUE(actual.intact());
       std::vector<std::uint8_t> reference(cells);
-      reduce_compact_energies_row_ref(row, reference.data());
+      reduce_compact_energies_row_ref(row, weight, reference.data());
       ASSERT_EQ(actual.values(), reference) << shape.columns << " columns of " << shape.count;
     }
   }
@@ -149,13 +155,19 @@ TEST(CompactLikelihoodsReference, AddsUpAndSubtractsTheLeast) {
   set(upper, 2, 0, 20, 100);
   set(lower, 2, 1, 0, 100);
   std::vector<std::uint8_t> energies(32);
-  reduce_compact_energies_row_ref({upper.data(), lower.data(), 3, 16}, energies.data());
+  const BlockRow<std::uint8_t> row{upper.data(), lower.data(), 3, 16};
+  reduce_compact_energies_row_ref(row, 1, energies.data());
   EXPECT_EQ(energies[0], 1);    // 12 − 11
   EXPECT_EQ(energies[1], 0);    // 11
   EXPECT_EQ(energies[2], 255);  // 403 − 11
   EXPECT_EQ(energies[16], 0);   // 2 · (0 + 1)
   EXPECT_EQ(energies[17], 38);  // 2 · (20 + 0) − 2
   EXPECT_EQ(energies[18], 255);
+  reduce_compact_energies_row_ref(row, 0.5F, energies.data());
+  EXPECT_EQ(energies[0], 1);  // ½, rounded up
+  EXPECT_EQ(energies[2], 196);
+  EXPECT_EQ(energies[17], 19);
+  EXPECT_EQ(energies[18], 199);
 }
 
 TEST_P(CompactLikelihoods, ExpandToPowers) {

@@ -83,6 +83,25 @@ Counted logarithm(Counted x) {
   return Counted(exponent) * kLn2 + (tail + f);
 }
 
+Counted fused_power_of_two(Counted exponent) {
+  const Counted shifted = exponent + 0;
+  const Counted f = exponent - (shifted - 0);
+  const Counted low = Counted(0.69) + Counted(0.24) * f;
+  const Counted high = Counted(0.056) + Counted(0.0096) * f;
+  const Counted power = (low + high * (f * f)) * f + 1;
+  return power + 0;  // to the exponent
+}
+
+Counted scaled_logarithm(Counted x) {
+  const Counted exponent = x - 0;        // √½ is subtracted from the bits
+  const Counted f = (x - exponent) - 1;  // and the exponent's
+  const Counted f2 = f * f;
+  const auto line = [&f](double a, double b) { return Counted(a) + Counted(b) * f; };
+  const Counted low = line(0.48, -0.36) * f2 + line(1.44, -0.72);
+  const Counted high = Counted(0.17) * f2 + line(0.3, -0.27);
+  return (low + high * (f2 * f2)) * f + exponent * Counted(0.3);
+}
+
 using Lanes = std::array<Counted, kLaneMultiple>;
 
 template <class Operation>
@@ -365,8 +384,7 @@ Cells bayes_state_of(const Cells& p, BayesState state, int prior_radius) {
       smoothed = smoothed + Counted(0.01) * (p[i] + p[(i + 1) % p.size()]);
     }
     smoothed = smoothed * factor + 0.01;
-    result.push_back(state == BayesState::kSmoothed ? smoothed
-                                                    : Counted(0.3) * logarithm(smoothed));
+    result.push_back(state == BayesState::kSmoothed ? smoothed : scaled_logarithm(smoothed));
   }
   return result;
 }
@@ -385,8 +403,13 @@ TEST(KernelWork, OfBayesianDiffusion) {
     }
     return p;
   };
-  const auto general = [&](bool scaled) {
+  const auto general = [&](bool scaled, bool weighted) {
     const auto sum = [&](std::size_t i) {
+      if (weighted) {
+        const Counted weight = 0.5;
+        return star.up[i] * weight + star.down[i] * weight +
+               (star.left[i] * weight + star.right[i] * weight) + star.centre[i];
+      }
       return star.up[i] + star.down[i] + (star.left[i] + star.right[i]) + star.centre[i];
     };
     Counted largest = -1e9;
@@ -395,7 +418,8 @@ TEST(KernelWork, OfBayesianDiffusion) {
     }
     Cells p;
     for (std::size_t i = 0; i < kCount; ++i) {
-      p.push_back(star.source[i] * power_of_two(scaled ? sum(i) - largest : sum(i)));
+      p.push_back(star.source[i] *
+                  fused_power_of_two(scaled ? most(sum(i) - largest, kLeastExponent) : sum(i)));
     }
     return p;
   };
@@ -406,8 +430,10 @@ TEST(KernelWork, OfBayesianDiffusion) {
                   [&] { bayes_state_of(star.source, state, radius); });
       expect_work(bayes_half_work(state, radius), [&] { bayes_state_of(half(), state, radius); });
       for (const bool scaled : {false, true}) {
-        expect_work(bayes_general_work(state, radius, scaled),
-                    [&] { bayes_state_of(general(scaled), state, radius); });
+        for (const bool weighted : {false, true}) {
+          expect_work(bayes_general_work(state, radius, scaled, weighted),
+                      [&] { bayes_state_of(general(scaled, weighted), state, radius); });
+        }
       }
     }
   }

@@ -1,0 +1,133 @@
+#include "engine/matching/edge_weights.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+namespace vantage {
+namespace {
+
+MethodParameters parameters_with(double edge_weight, int levels) {
+  MethodParameters parameters = book_parameters(MatchMethod::kBayes);
+  parameters.edge_weight = edge_weight;
+  parameters.edge_contrast = 5;
+  parameters.levels = levels;
+  return parameters;
+}
+
+Photograph random_photograph(int width, int height, int channels) {
+  std::mt19937 random(7);
+  Image<std::uint8_t> image(width, height, channels);
+  for (int y = 0; y < height; ++y) {
+    std::generate_n(image.row(y), width * channels,
+                    [&] { return static_cast<std::uint8_t>(random() % 40); });
+  }
+  return {std::move(image)};
+}
+
+/// Luma in double, and of coarser levels the mean of what is there of each block.
+struct PlainGrey {
+  int width = 0;
+  int height = 0;
+  std::vector<double> levels;
+  [[nodiscard]] double at(int x, int y) const {
+    return levels[static_cast<std::size_t>(y * width + x)];
+  }
+  [[nodiscard]] double weight(int x, int y, int u, int v) const {
+    return 0.2 + 0.8 * std::exp(-std::abs(at(x, y) - at(u, v)) / 5);
+  }
+};
+
+PlainGrey plain_grey(const Photograph& photograph) {
+  const auto& image = std::get<Image<std::uint8_t>>(photograph.pixels);
+  PlainGrey grey{image.width(), image.height(), {}};
+  for (int y = 0; y < grey.height; ++y) {
+    for (int x = 0; x < grey.width; ++x) {
+      grey.levels.push_back(image.channels() == 1
+                                ? image.at(x, y)
+                                : 0.299 * image.at(x, y, 0) + 0.587 * image.at(x, y, 1) +
+                                      0.114 * image.at(x, y, 2));
+    }
+  }
+  return grey;
+}
+
+PlainGrey halved(const PlainGrey& finer) {
+  PlainGrey coarser{(finer.width + 1) / 2, (finer.height + 1) / 2, {}};
+  for (int y = 0; y < coarser.height; ++y) {
+    for (int x = 0; x < coarser.width; ++x) {
+      double sum = 0;
+      int samples = 0;
+      for (int v = 2 * y; v < std::min(2 * y + 2, finer.height); ++v) {
+        for (int u = 2 * x; u < std::min(2 * x + 2, finer.width); ++u, ++samples) {
+          sum += finer.at(u, v);
+        }
+      }
+      coarser.levels.push_back(sum / samples);
+    }
+  }
+  return coarser;
+}
+
+TEST(EdgeWeightLevels, AreThoseOfNeighboursOnEachLevel) {
+  Execution execution({.threads = 2});
+  EdgeWeightLevels levels;
+  struct Shape {
+    int width;
+    int height;
+    int channels;
+  };
+  for (const Shape& shape : {Shape{37, 29, 1}, Shape{21, 13, 3}, Shape{1, 7, 1}, Shape{1, 1, 1},
+                             Shape{5, 1, 3}, Shape{64, 33, 1}}) {
+    const Photograph photograph = random_photograph(shape.width, shape.height, shape.channels);
+    const auto weights = levels.prepare(photograph, parameters_with(0.2, 4), execution);
+    PlainGrey grey = plain_grey(photograph);
+    for (const EdgeWeights& level : weights) {
+      for (int y = 0; y < grey.height; ++y) {
+        for (int x = 0; x <= grey.width; ++x) {
+          const bool inside = x > 0 && x < grey.width;
+          ASSERT_NEAR(level.beside(y)[x], inside ? grey.weight(x - 1, y, x, y) : 1, 2e-6);
+        }
+      }
+      for (int y = 0; y <= grey.height; ++y) {
+        for (int x = 0; x < grey.width; ++x) {
+          const bool inside = y > 0 && y < grey.height;
+          ASSERT_NEAR(level.above(y)[x], inside ? grey.weight(x, y - 1, x, y) : 1, 2e-6);
+        }
+      }
+      grey = halved(grey);
+    }
+  }
+}
+
+TEST(EdgeWeightLevels, AsManyAsTheImageHas) {
+  Execution execution({.threads = 1});
+  EdgeWeightLevels levels;
+  const Photograph photograph = random_photograph(37, 29, 1);
+  EXPECT_EQ(levels.prepare(photograph, parameters_with(0.2, 1), execution).size(), 1U);
+  EXPECT_EQ(levels.prepare(photograph, parameters_with(0.2, 10), execution).size(), 6U);
+  EXPECT_TRUE(levels.prepare(photograph, parameters_with(1, 4), execution).empty());
+  MethodParameters membrane = parameters_with(0.2, 4);
+  membrane.aggregation = Aggregation::kMembrane;
+  EXPECT_TRUE(levels.prepare(photograph, membrane, execution).empty());
+}
+
+TEST(EdgeWeightLevels, TakeWhatIsPlanned) {
+  Execution execution({.threads = 1});
+  EdgeWeightLevels levels;
+  const Photograph photograph = random_photograph(320, 240, 1);
+  const MethodParameters parameters = parameters_with(0.2, 5);
+  levels.prepare(photograph, parameters, execution);
+  const auto held = static_cast<double>(levels.held_bytes());
+  const auto planned = static_cast<double>(edge_weight_bytes(parameters, 320 * 240));
+  EXPECT_LE(held, 1.1 * planned);  // rows are padded
+  EXPECT_GE(held, 0.8 * planned);
+  EXPECT_EQ(edge_weight_bytes(parameters_with(1, 5), 320 * 240), 0U);
+}
+
+}  // namespace
+}  // namespace vantage
