@@ -30,8 +30,13 @@ class Rows {
   void bayes_half(int radius) {
     kernels::bayes_half_row(bayes(probabilities_, radius, BayesState::kSmoothed));
   }
-  void bayes_general() {
-    kernels::bayes_general_row(bayes(logarithms_, 0, BayesState::kLogSmoothed));
+  void bayes_general(int radius) {
+    kernels::bayes_general_row(bayes(logarithms_, radius, BayesState::kLogSmoothed));
+  }
+  void bayes_weighted() {
+    BayesRow row = bayes(logarithms_, 1, BayesState::kLogSmoothed);
+    row.weights = {weights_.row(0), weights_.row(1), weights_.row(2)};
+    kernels::bayes_general_row(row);
   }
   void diffusion(float pull) {
     kernels::DiffusionRow row;
@@ -51,6 +56,11 @@ class Rows {
   }
 
  private:
+  static Image<float> made_weights() {
+    Image<float> weights(kColumns + 1, 3);
+    weights.fill(0.7F);
+    return weights;
+  }
   BayesRow bayes(const StarRows& rows, int radius, BayesState state) {
     BayesRow row;
     row.star = rows.star();
@@ -67,6 +77,7 @@ class Rows {
   StarRows probabilities_{kColumns, kLanes, kLanes, 0.01F, 1, 1};
   StarRows logarithms_{kColumns, kLanes, kLanes, -2, 0, 2};
   StarRows carrying_{kColumns, kLanes, kCarryingPitch, 0, 1, 3};
+  Image<float> weights_ = made_weights();
   float taps_[2] = {0.99F, 0.04F};
   Image<float> output_{kColumns * kCarryingPitch, 1};
   Image<float> work_{kernels::bayes_work_floats(kLanes, 1), 1};
@@ -80,6 +91,10 @@ KernelBenchmark row(std::string name, const kernels::KernelWork& work, void (*ca
 
 KernelBenchmarks iteration_kernels() {
   using kernels::bayes_half_work;
+  const auto general_work = [](int radius, bool weighted) {
+    return kernels::bayes_general_work(BayesState::kLogSmoothed, radius,
+                                       kernels::bayes_scales_sums(kMu, kFloor), weighted);
+  };
   return {
       row("bayes_start_row", kernels::bayes_start_work(BayesState::kSmoothed, 0),
           [](Rows& d) { d.bayes_start(); }),
@@ -87,10 +102,11 @@ KernelBenchmarks iteration_kernels() {
           [](Rows& d) { d.bayes_half(0); }),
       row("bayes_half_row/three taps", bayes_half_work(BayesState::kSmoothed, 1),
           [](Rows& d) { d.bayes_half(1); }),
-      row("bayes_general_row",
-          kernels::bayes_general_work(BayesState::kLogSmoothed, 0,
-                                      kernels::bayes_scales_sums(kMu, kFloor)),
-          [](Rows& d) { d.bayes_general(); }),
+      row("bayes_general_row", general_work(0, false), [](Rows& d) { d.bayes_general(0); }),
+      row("bayes_general_row/three taps", general_work(1, false),
+          [](Rows& d) { d.bayes_general(1); }),
+      row("bayes_general_row/three taps, weighted", general_work(1, true),
+          [](Rows& d) { d.bayes_weighted(); }),
       row("diffusion_row", kernels::kDiffusionWork, [](Rows& d) { d.diffusion(0); }),
       row("diffusion_row/membrane", kernels::kMembraneWork, [](Rows& d) { d.diffusion(0.075F); }),
       row("local_stopping_row/margin",
