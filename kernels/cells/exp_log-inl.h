@@ -18,19 +18,12 @@ namespace vantage::kernels::HWY_NAMESPACE {
 
 using ExpLogVec = hwy::HWY_NAMESPACE::VFromD<hwy::HWY_NAMESPACE::ScalableTag<float>>;
 
-// a · b + c. kFused: in one rounding where the instruction set can, which is faster but makes
-// results depend on it; else the steps of exp_log.h exactly.
-template <bool kFused>
+// a · b + c in two roundings, as exp_log.h does.
 HWY_INLINE ExpLogVec multiply_add(ExpLogVec a, ExpLogVec b, ExpLogVec c) {
   namespace hn = hwy::HWY_NAMESPACE;
-  if constexpr (kFused) {
-    return hn::MulAdd(a, b, c);
-  } else {
-    return hn::Add(hn::Mul(a, b), c);
-  }
+  return hn::Add(hn::Mul(a, b), c);
 }
 
-template <bool kFused = false>
 HWY_INLINE ExpLogVec exp2_of_negative(ExpLogVec exponent) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<float> df;
@@ -40,18 +33,16 @@ HWY_INLINE ExpLogVec exp2_of_negative(ExpLogVec exponent) {
   const ExpLogVec shifted = hn::Add(exponent, round);
   const ExpLogVec f = hn::Sub(exponent, hn::Sub(shifted, round));
   const auto line = [&](int k) HWY_ATTR {
-    return multiply_add<kFused>(hn::Set(df, kExp2Polynomial[k + 1]), f,
-                                hn::Set(df, kExp2Polynomial[k]));
+    return multiply_add(hn::Set(df, kExp2Polynomial[k + 1]), f, hn::Set(df, kExp2Polynomial[k]));
   };
   const ExpLogVec f2 = hn::Mul(f, f);
-  const ExpLogVec low = multiply_add<kFused>(line(2), f2, line(0));
-  const ExpLogVec sum = multiply_add<kFused>(hn::Set(df, kExp2Polynomial[4]), hn::Mul(f2, f2), low);
-  const ExpLogVec power = multiply_add<kFused>(sum, f, hn::Set(df, 1.0F));
+  const ExpLogVec low = multiply_add(line(2), f2, line(0));
+  const ExpLogVec sum = multiply_add(hn::Set(df, kExp2Polynomial[4]), hn::Mul(f2, f2), low);
+  const ExpLogVec power = multiply_add(sum, f, hn::Set(df, 1.0F));
   return hn::BitCast(
       df, hn::Add(hn::BitCast(d32, power), hn::ShiftLeft<23>(hn::BitCast(d32, shifted))));
 }
 
-template <bool kFused = false>
 HWY_INLINE ExpLogVec log_of_normal(ExpLogVec value) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<float> df;
@@ -61,16 +52,15 @@ HWY_INLINE ExpLogVec log_of_normal(ExpLogVec value) {
   const ExpLogVec f =
       hn::Sub(hn::BitCast(df, hn::Sub(bits, hn::ShiftLeft<23>(exponent))), hn::Set(df, 1.0F));
   const auto line = [&](int k) HWY_ATTR {
-    return multiply_add<kFused>(hn::Set(df, kLogPolynomial[k + 1]), f,
-                                hn::Set(df, kLogPolynomial[k]));
+    return multiply_add(hn::Set(df, kLogPolynomial[k + 1]), f, hn::Set(df, kLogPolynomial[k]));
   };
   const ExpLogVec square = hn::Mul(f, f);
-  const ExpLogVec low = multiply_add<kFused>(line(2), square, line(0));
-  const ExpLogVec high = multiply_add<kFused>(hn::Set(df, kLogPolynomial[6]), square, line(4));
-  const ExpLogVec sum = multiply_add<kFused>(high, hn::Mul(square, square), low);
+  const ExpLogVec low = multiply_add(line(2), square, line(0));
+  const ExpLogVec high = multiply_add(hn::Set(df, kLogPolynomial[6]), square, line(4));
+  const ExpLogVec sum = multiply_add(high, hn::Mul(square, square), low);
   const ExpLogVec tail =
       hn::Sub(hn::Mul(hn::Mul(sum, f), square), hn::Mul(hn::Set(df, 0.5F), square));
-  return multiply_add<kFused>(hn::ConvertTo(df, exponent), hn::Set(df, kLn2), hn::Add(tail, f));
+  return multiply_add(hn::ConvertTo(df, exponent), hn::Set(df, kLn2), hn::Add(tail, f));
 }
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
