@@ -195,22 +195,36 @@ void add_selection_settings(Settings& settings, MatchOptions& options) {
                             "Refinement of the winner between candidates; auto: parabola");
 }
 
-void add_edge_snapping_setting(Settings& settings, RefinementOverrides& refinement) {
-  constexpr int kUsualPx = 4;
-  Setting& setting = settings.add(
-      "edge-snapping", "PX|on",
-      fmt::format("Move discontinuities to intensity edges at most PX columns away, 0 to 16; on: "
-                  "{}; auto: 0, which leaves them",
-                  kUsualPx));
-  std::optional<int>& field = refinement.edge_snapping_px;
-  setting.set = [&field](const SettingValue& value) {
+/// A number of pixels, or `on` for the usual one.
+void add_usual_pixels(Settings& settings, const std::string& name, std::optional<int>& field,
+                      int usual_px, const std::string& help) {
+  Setting& setting = settings.add(name, "PX|on", help);
+  setting.set = [&field, usual_px](const SettingValue& value) {
     if (is_word(value, "auto")) {
       field.reset();
     } else {
-      field = is_word(value, "on") ? kUsualPx : to_integer(value);
+      field = is_word(value, "on") ? usual_px : to_integer(value);
     }
   };
   setting.get = [&field] { return field ? SettingValue(*field) : SettingValue("auto"); };
+}
+
+void add_edge_snapping_setting(Settings& settings, RefinementOverrides& refinement) {
+  constexpr int kUsualPx = 4;
+  add_usual_pixels(
+      settings, "edge-snapping", refinement.edge_snapping_px, kUsualPx,
+      fmt::format("Move discontinuities to intensity edges at most PX columns away, 0 to 16; on: "
+                  "{}; auto: 0, which leaves them",
+                  kUsualPx));
+}
+
+void add_surface_fit_setting(Settings& settings, RefinementOverrides& refinement) {
+  constexpr int kUsualPx = 10;
+  add_usual_pixels(
+      settings, "surface-fit", refinement.surface_fit_px, kUsualPx,
+      fmt::format("Matched pixels take the values of planes fitted to the matched ones at most PX "
+                  "around, 0 to 16; on: {}; auto: 0, which leaves them",
+                  kUsualPx));
 }
 
 void add_cross_check_setting(Settings& settings, RefinementOverrides& refinement) {
@@ -260,6 +274,7 @@ void add_refinement_settings(Settings& settings, MatchOptions& options) {
   add_confidence_setting(settings, options.refinement);
   settings.integer("speckle-size", options.refinement.speckle_size_px, "PX",
                    "Matched regions of fewer pixels count as unmatched; auto: 0, which keeps them");
+  add_surface_fit_setting(settings, options.refinement);
   settings.choice<Fill>(
       "fill", options.refinement.fill,
       {{"constant", Fill::kConstant},

@@ -9,6 +9,7 @@
 
 #include "engine/error.h"
 #include "engine/matching/match_presets.h"
+#include "kernels/surface_fit/surface_fit.h"
 
 namespace vantage {
 namespace {
@@ -34,6 +35,7 @@ void take_over(const RefinementOverrides& overrides, RefinementOptions& target) 
   take(overrides.cross_check_px, target.cross_check_px);
   take(overrides.confidence_threshold, target.confidence_threshold);
   take(overrides.speckle_size_px, target.speckle_size_px);
+  take(overrides.surface_fit_px, target.surface_fit_px);
   take(overrides.fill, target.fill);
 }
 
@@ -89,6 +91,10 @@ void validate_refinement(const RefinementOptions& refinement, bool is_two_dimens
     throw UsageError(fmt::format("speckle-size is {}, expected a number of pixels, at least 0",
                                  refinement.speckle_size_px));
   }
+  if (refinement.surface_fit_px < 0 || refinement.surface_fit_px > kernels::kMaxSurfaceRadiusPx) {
+    throw UsageError(fmt::format("surface-fit is {}, expected a number of pixels from 0 to {}",
+                                 refinement.surface_fit_px, kernels::kMaxSurfaceRadiusPx));
+  }
 }
 
 }  // namespace
@@ -129,6 +135,7 @@ RefinementOptions MatchOptions::resolved_refinement() const {
       .cross_check_px = std::max(1.0, disparities.count() / 15.0),
       .confidence_threshold = is_evidence(resolved()) ? 0 : kNoThreshold,
       .speckle_size_px = 0,
+      .surface_fit_px = 0,
       .fill = Fill::kConstant,
   };
   take_over(settings_of(preset).refinement, result);
@@ -148,6 +155,7 @@ MatchOptions MatchOptions::spelled_out() const {
       .cross_check_px = in_force.cross_check_px,
       .confidence_threshold = in_force.confidence_threshold,
       .speckle_size_px = in_force.speckle_size_px,
+      .surface_fit_px = in_force.surface_fit_px,
       .fill = in_force.fill,
   };
   return result;

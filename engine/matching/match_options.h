@@ -39,6 +39,9 @@ struct RefinementOptionsOf {
   Field<double> confidence_threshold;
   /// Matched regions of fewer pixels than this count as unmatched; ≥ 0, 0 and 1: none do.
   Field<int> speckle_size_px;
+  /// Matched pixels take the values of planes through the matched ones at most this far around
+  /// (surface_fit); 0: they keep what they have; 0..16.
+  Field<int> surface_fit_px;
   Field<Fill> fill;
 
   friend bool operator==(const RefinementOptionsOf&, const RefinementOptionsOf&) = default;
@@ -74,7 +77,8 @@ struct MatchOptions {
   [[nodiscard]] MethodParameters resolved() const;
   /// What is in force unless `raw`: the fields of `refinement`, else the preset's, else: no
   /// snapping, a cross-check within max(1, D/15) px, a confidence above 0 for gradient evidence
-  /// and any for the others, speckles kept, fill at constant depth.
+  /// and any for the others, speckles kept, no surface fit,
+  /// fill at constant depth.
   [[nodiscard]] RefinementOptions resolved_refinement() const;
   /// The same options with every field set to what is in force, without the preset.
   [[nodiscard]] MatchOptions spelled_out() const;

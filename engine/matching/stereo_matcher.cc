@@ -19,7 +19,8 @@ std::size_t held_bytes_of(const RefinementWork& work) {
   std::size_t bytes = held_bytes(edges.grey) + held_bytes(edges.smooth_x) +
                       held_bytes(edges.gradient_x) + held_bytes(edges.gradient_y) +
                       held_bytes(edges.edges) + held_bytes(work.filled_medians.before) +
-                      held_bytes(work.filled_medians.pixels);
+                      held_bytes(work.filled_medians.pixels) +
+                      held_bytes(work.surface_fit.matched_px);
   for (const SpeckleWork& speckles : work.speckles) {
     bytes += held_bytes(speckles.runs) + held_bytes(speckles.row_begin);
   }

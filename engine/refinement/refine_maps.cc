@@ -63,6 +63,17 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
                     work.speckles[static_cast<std::size_t>(index)], *one.unmatched);
     });
   }
+  if (options.surface_fit_px > 0) {
+    begin_step("surface fit");
+    for (const MapToRefine* one : maps) {
+      for (DisparityMap* map_px : {one->disparity_px, one->disparity_y_px}) {
+        if (map_px != nullptr) {
+          fit_surface(*one->unmatched, options.surface_fit_px, execution, work.surface_fit,
+                      *map_px);
+        }
+      }
+    }
+  }
   begin_step("fill");
   for (const MapToRefine* one : maps) {
     for (DisparityMap* map_px : {one->disparity_px, one->disparity_y_px}) {

@@ -12,6 +12,7 @@
 #include "engine/refinement/filled_medians.h"
 #include "engine/refinement/refinement.h"
 #include "engine/refinement/speckles.h"
+#include "engine/refinement/surface_fit.h"
 
 namespace vantage {
 
@@ -29,14 +30,15 @@ struct MapToRefine {
 struct RefinementWork {
   EdgeSnappingWork edge_snapping;
   std::array<SpeckleWork, 2> speckles;
+  SurfaceFitWork surface_fit;
   FilledMediansWork filled_medians;
 };
 
 /// Makes dense maps of winners (EQUATIONS §5): edge snapping → cross-check → confidence → speckles
-/// → fill, each as `options` says. `other`: the map of the other image, refined as well; null:
-/// there is none, and no cross-check, the unknown pixels are unmatched instead. `begin_step` is
-/// told the name of each step that is taken ahead of it (static storage). Identical for any
-/// `execution`.
+/// → surface fit → fill, each as `options` says. `other`: the map of the other image, refined as
+/// well; null: there is none, and no cross-check, the unknown pixels are unmatched instead.
+/// `begin_step` is told the name of each step that is taken ahead of it (static storage). Identical
+/// for any `execution`.
 void refine_maps(const RefinementOptions& options, const MapToRefine& map, const MapToRefine* other,
                  Execution& execution, RefinementWork& work,
                  const std::function<void(std::string_view)>& begin_step);

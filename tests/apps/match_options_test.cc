@@ -49,6 +49,7 @@ TEST_F(MatchCommandOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--edge-snapping", "17"}, "edge-snapping is 17, expected a number of pixels from 0 to 16"},
       {{"--cross-check", "0.5"}, "cross-check is 0.5, expected a number of at least 1"},
       {{"--speckle-size", "-1"}, "speckle-size is -1, expected"},
+      {{"--surface-fit", "17"}, "surface-fit is 17, expected a number of pixels from 0 to 16"},
       {{"--disparities", "0:4096"}, "(4097 candidates), expected at most 4096"},
       {{"--disparities-y", "-300:300"}, "expected at most 4096"},
       {{"--disparities-y", "3"}, "--disparities-y is '3', expected MIN:MAX"},

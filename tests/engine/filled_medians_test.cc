@@ -163,6 +163,7 @@ TEST(FilledMedians, RefinementTakesThemOfBothComponents) {
                  .cross_check_px = 1,
                  .confidence_threshold = -std::numeric_limits<double>::infinity(),
                  .speckle_size_px = 0,
+                 .surface_fit_px = 0,
                  .fill = fill},
                 map, nullptr, execution, work, [](std::string_view) {});
     EXPECT_TRUE(testing::identical(map_x, map_y));

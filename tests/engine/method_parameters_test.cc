@@ -307,6 +307,7 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
        {kNan, kInfinity},
        "finite"},
       {"speckle-size", refinement(&R::speckle_size_px), {0, 1000}, {-1}, "at least 0"},
+      {"surface-fit", refinement(&R::surface_fit_px), {0, 1, 16}, {-1, 17}, "from 0 to 16"},
   };
   for (const Bound& bound : bounds) {
     const auto complaint_about = [&](double value) {

@@ -144,6 +144,7 @@ struct RefinementCase {
                             .cross_check_px = 1,
                             .confidence_threshold = kNoThreshold,
                             .speckle_size_px = 0,
+                            .surface_fit_px = 0,
                             .fill = Fill::kNone};
   DisparityMap left = map_of({{0, 0, 0, 0, 2, 2, 2, 0, 0, 0}});
   DisparityMap right = map_of({{0, 0, 2, 2, 2, 0, 0, 0, 0, 0}});

@@ -1,0 +1,126 @@
+#include "engine/refinement/surface_fit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/refinement/refine_maps.h"
+#include "tests/engine/identical_maps.h"
+
+namespace vantage {
+namespace {
+
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
+float plane(int x, int y) {
+  return 8 + 0.12F * static_cast<float>(x) - 0.07F * static_cast<float>(y);
+}
+
+/// Winners of a slanted plane, each fifth pixel unmatched: far off or unknown.
+struct SteppedMap {
+  DisparityMap map;
+  Mask unmatched;
+};
+
+SteppedMap stepped_map(int width, int height) {
+  std::mt19937 random(61);
+  SteppedMap result{DisparityMap(width, height), Mask(width, height)};
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const bool is_unmatched = random() % 5 == 0;
+      const float stray = random() % 2 == 0 ? kUnknown : std::round(plane(x, y)) + 1;
+      result.map.at(x, y) = is_unmatched ? stray : std::round(plane(x, y));
+      result.unmatched.at(x, y) = is_unmatched ? 255 : 0;
+    }
+  }
+  return result;
+}
+
+TEST(FitSurface, OnlyMatchedPixelsCountAndChange) {
+  Execution execution({.threads = 2});
+  SurfaceFitWork work;
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 23}, {31, 1}, {53, 41}}) {
+    for (const int radius : {1, 7, 16}) {
+      SteppedMap stepped = stepped_map(width, height);
+      const DisparityMap before = stepped.map.copy();
+      fit_surface(stepped.unmatched, radius, execution, work, stepped.map);
+      // The same with all unmatched pixels unknown: their values have no say.
+      SteppedMap unknown{before.copy(), std::move(stepped.unmatched)};
+      for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+          if (unknown.unmatched.at(x, y) != 0) {
+            unknown.map.at(x, y) = kUnknown;
+          }
+        }
+      }
+      fit_surface(unknown.unmatched, radius, execution, work, unknown.map);
+      for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+          if (unknown.unmatched.at(x, y) == 0) {
+            ASSERT_EQ(stepped.map.at(x, y), unknown.map.at(x, y)) << x << ", " << y;
+            ASSERT_LT(std::abs(stepped.map.at(x, y) - plane(x, y)), 0.75);
+          } else if (std::isnan(before.at(x, y))) {
+            ASSERT_TRUE(std::isnan(stepped.map.at(x, y)));
+          } else {
+            ASSERT_EQ(stepped.map.at(x, y), before.at(x, y));
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(FitSurface, ExecutionsAgree) {
+  SteppedMap stepped = stepped_map(97, 151);
+  DisparityMap serial = stepped.map.copy();
+  SurfaceFitWork work;
+  Execution one({.executor = scheduler::ExecutorKind::kSerial});
+  fit_surface(stepped.unmatched, 10, one, work, serial);
+  EXPECT_FALSE(testing::identical(serial, stepped.map));
+  Execution three({.threads = 3, .executor = scheduler::ExecutorKind::kOpenMp});
+  fit_surface(stepped.unmatched, 10, three, work, stepped.map);
+  EXPECT_TRUE(testing::identical(serial, stepped.map));
+}
+
+TEST(FitSurface, RefinementFitsBothComponentsBeforeItFills) {
+  Execution execution({.threads = 2});
+  RefinementWork work;
+  SteppedMap stepped = stepped_map(40, 30);
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      stepped.map.at(x, y) = stepped.unmatched.at(x, y) != 0 ? kUnknown : stepped.map.at(x, y);
+    }
+  }
+  DisparityMap map_x = stepped.map.copy();
+  DisparityMap map_y = stepped.map.copy();
+  Mask unmatched;
+  const MapToRefine map{.side = MapSide::kLeft,
+                        .disparity_px = &map_x,
+                        .disparity_y_px = &map_y,
+                        .unmatched = &unmatched};
+  std::vector<std::string> steps;
+  refine_maps({.edge_snapping_px = 0,
+               .cross_check = false,
+               .cross_check_px = 1,
+               .confidence_threshold = -std::numeric_limits<double>::infinity(),
+               .speckle_size_px = 0,
+               .surface_fit_px = 6,
+               .fill = Fill::kConstant},
+              map, nullptr, execution, work,
+              [&](std::string_view step) { steps.emplace_back(step); });
+  EXPECT_THAT(steps, ::testing::ElementsAre("surface fit", "fill"));
+  SurfaceFitWork alone;
+  fit_surface(stepped.unmatched, 6, execution, alone, stepped.map);
+  fill_unmatched(stepped.unmatched, MapSide::kLeft, Fill::kConstant, execution, stepped.map);
+  EXPECT_TRUE(testing::identical(map_x, stepped.map));
+  EXPECT_TRUE(testing::identical(map_y, stepped.map));
+}
+
+}  // namespace
+}  // namespace vantage
