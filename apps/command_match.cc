@@ -97,6 +97,22 @@ MemoryUse memory_use(const std::vector<Photograph>& images, const DisparityMaps&
   return use;
 }
 
+/// What was estimated, for those who asked for it.
+void print_levels(const MatchReport& match) {
+  if (!match.levels) {
+    return;
+  }
+  const PairLevels& levels = *match.levels;
+  std::string text = levels.has_levels
+                         ? fmt::format("right levels x {:.4g} {:+.4g}", levels.of_right.luma.gain,
+                                       levels.of_right.luma.offset)
+                         : "levels left as they are";
+  if (levels.sigma_measurement) {
+    text += fmt::format(", noise {:.3g}", *levels.sigma_measurement);
+  }
+  fmt::print(stderr, "match: of {} matches: {}\n", levels.matches, text);
+}
+
 }  // namespace
 
 int command_match(const Arguments& arguments) {
@@ -159,6 +175,7 @@ int command_match(const Arguments& arguments) {
     fmt::print(stderr, "match: {}x{} pixels, disparities {}:{}, {} -> {}\n", images[0].width(),
                images[0].height(), job.match.disparities.min, job.match.disparities.max, job.left,
                job.output);
+    print_levels(match);
     report.print_summary();
   }
   return kExitDone;

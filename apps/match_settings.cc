@@ -86,6 +86,35 @@ bool is_word(const SettingValue& value, std::string_view word) {
   return value.is_string() && value.get_ref<const std::string&>() == word;
 }
 
+void add_exposure_setting(Settings& settings, MethodOverrides& parameters) {
+  settings.choice<bool>(
+      "match-exposure", parameters.match_exposure, {{"estimated", true}, {"none", false}},
+      "What makes the right image's grey levels the left's before they are "
+      "compared: gain and offset estimated from each pair, or nothing; auto: none");
+}
+
+void add_sigma_measurement_setting(Settings& settings, MethodOverrides& parameters) {
+  Setting& setting =
+      settings.add("sigma-measurement", "S|estimated",
+                   "Cost contaminated or combined, aggregation bayes, certainty entropy: the noise "
+                   "in grey levels, above 0; estimated: from each pair; " +
+                       shared(book_parameters(MatchMethod::kSsd).sigma_measurement));
+  setting.set = [&parameters](const SettingValue& value) {
+    const bool is_estimated = is_word(value, "estimated");
+    const bool is_number = !is_estimated && !is_word(value, "auto");
+    parameters.sigma_measurement = is_number ? std::optional(to_number(value)) : std::nullopt;
+    parameters.estimate_sigma_measurement =
+        is_number || is_estimated ? std::optional(is_estimated) : std::nullopt;
+  };
+  setting.get = [&parameters]() -> SettingValue {
+    if (parameters.estimate_sigma_measurement == true) {
+      return "estimated";
+    }
+    return parameters.sigma_measurement ? SettingValue(*parameters.sigma_measurement)
+                                        : SettingValue("auto");
+  };
+}
+
 void add_cost_settings(Settings& settings, MethodOverrides& parameters) {
   const MethodParameters book = book_parameters(MatchMethod::kSsd);
   settings.begin_group("Matching: cost");
@@ -98,11 +127,8 @@ void add_cost_settings(Settings& settings, MethodOverrides& parameters) {
                              "which the costs are averaged; auto: luma");
   settings.number("truncation", parameters.truncation, "T",
                   "Cost truncated: its most, in grey levels, above 0; " + shared(book.truncation));
-  settings.number(
-      "sigma-measurement", parameters.sigma_measurement, "S",
-      "Cost contaminated or combined, aggregation bayes, certainty entropy: the noise in "
-      "grey levels, above 0; " +
-          shared(book.sigma_measurement));
+  add_exposure_setting(settings, parameters);
+  add_sigma_measurement_setting(settings, parameters);
   settings.number(
       "epsilon-measurement", parameters.epsilon_measurement, "E",
       "Cost contaminated or combined, aggregation bayes: the share of outliers, between "

@@ -33,4 +33,15 @@ void grey_levels_row(const Photograph& photograph, int y, float* grey) {
       photograph.pixels);
 }
 
+void channel_levels_row(const Photograph& photograph, int channel, int y, float* levels) {
+  std::visit(
+      [&]<typename T>(const Image<T>& image) {
+        const T* pixel = image.row(y) + channel;
+        for (int x = 0; x < image.width(); ++x) {
+          levels[x] = static_cast<float>(pixel[x * image.channels()]) * kGreyLevelsPerUnit<T>;
+        }
+      },
+      photograph.pixels);
+}
+
 }  // namespace vantage

@@ -9,4 +9,7 @@ namespace vantage {
 /// concurrently.
 void grey_levels_row(const Photograph& photograph, int y, float* grey);
 
+/// The same of one colour channel, 0..2, of a photograph of at least 3.
+void channel_levels_row(const Photograph& photograph, int channel, int y, float* levels);
+
 }  // namespace vantage

@@ -34,21 +34,30 @@ void resize(FeaturePlane<T>& plane, const CostImage::Planes& planes, Margins mar
   }
 }
 
+void change_levels(const LevelChange& change, int width, float* levels) {
+  if (change.is_none()) {
+    return;
+  }
+  const auto gain = static_cast<float>(change.gain);
+  const auto offset = static_cast<float>(change.offset);
+  std::transform(levels, levels + width, levels,
+                 [&](float level) { return gain * level + offset; });
+}
+
+void luma_row(const Photograph& photograph, const CostImage::Planes& planes, int y, float* levels) {
+  grey_levels_row(photograph, y, levels);
+  change_levels(planes.level_changes.luma, planes.width, levels);
+}
+
 /// The grey levels of one channel, or luma.
 void level_row(const Photograph& photograph, const CostImage::Planes& planes, std::size_t channel,
                int y, float* levels) {
   if (planes.channels == 1) {
-    grey_levels_row(photograph, y, levels);
+    luma_row(photograph, planes, y, levels);
     return;
   }
-  std::visit(
-      [&]<typename T>(const Image<T>& image) {
-        const T* pixel = image.row(y) + channel;
-        for (int x = 0; x < image.width(); ++x) {
-          levels[x] = static_cast<float>(pixel[x * image.channels()]) * kGreyLevelsPerUnit<T>;
-        }
-      },
-      photograph.pixels);
+  channel_levels_row(photograph, static_cast<int>(channel), y, levels);
+  change_levels(planes.level_changes.channels[channel], planes.width, levels);
 }
 
 /// Calls body(channel) for every channel.
@@ -200,7 +209,7 @@ void prepare_combined(const Photograph& photograph, const MethodParameters& para
     planes.luma.resize(planes.width, planes.height, kFilterMarginBefore, kFilterMarginBehind);
     execution.for_each_band(planes.height, [&](int first_row, int end_row) {
       for (int y = first_row; y < end_row; ++y) {
-        grey_levels_row(photograph, y, planes.luma.row(y));
+        luma_row(photograph, planes, y, planes.luma.row(y));
         planes.luma.fill_margins(y);
       }
     });
@@ -255,6 +264,7 @@ void CostImage::prepare(const Photograph& photograph, const MethodParameters& pa
   planes.height = photograph.height();
   planes.channels = parameters.colour == ColourUse::kChannels && photograph.channels() >= 3 ? 3 : 1;
   planes.has_mirrored = use.as_partner_of_left;
+  planes.level_changes = use.level_changes;
   const Margins margins = margins_of(geometry);
   switch (parameters.cost) {
     case MatchCost::kSquared:

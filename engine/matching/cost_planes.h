@@ -39,6 +39,7 @@ struct CostImage::Planes {
   int height = 0;
   int channels = 1;  ///< 1 or 3
   bool has_mirrored = false;
+  LevelChanges level_changes;
   std::array<std::array<FeaturePlane<float>, 3>, 3> features;
   std::array<std::array<FeaturePlane<std::uint32_t>, 2>, 3> codes;
   std::array<std::array<FeaturePlane<std::uint16_t>, 3>, 3> fixed_levels;

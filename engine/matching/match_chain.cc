@@ -48,7 +48,8 @@ kernels::CandidateGeometry candidate_geometry(const MatchOptions& options, Refer
 
 bool uses_column_ssd(const MethodParameters& parameters) {
   return parameters.cost == MatchCost::kSquared && parameters.aggregation == Aggregation::kBox &&
-         parameters.colour == ColourUse::kLuma && parameters.levels == 1;
+         parameters.colour == ColourUse::kLuma && parameters.levels == 1 &&
+         !parameters.match_exposure;
 }
 
 namespace {

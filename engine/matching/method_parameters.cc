@@ -22,6 +22,7 @@ constexpr MethodParameters kCommon{
     .cost = MatchCost::kSquared,
     .aggregation = Aggregation::kBox,
     .colour = ColourUse::kLuma,
+    .match_exposure = false,
     .subpixel = Subpixel::kParabola,
     .border = Border::kClip,
     .window_px = 9,
@@ -42,6 +43,7 @@ constexpr MethodParameters kCommon{
     .edge_weight = 1,
     .edge_contrast = 8,
     .sigma_measurement = 5,
+    .estimate_sigma_measurement = false,
     .epsilon_measurement = 0.1,
     .sigma_census = 0.2,
     .sigma_gradient = 0,
@@ -73,6 +75,7 @@ void take_over(const MethodParametersOf<From>& overrides, MethodParametersOf<To>
   take(overrides.cost, target.cost);
   take(overrides.aggregation, target.aggregation);
   take(overrides.colour, target.colour);
+  take(overrides.match_exposure, target.match_exposure);
   take(overrides.subpixel, target.subpixel);
   take(overrides.border, target.border);
   take(overrides.window_px, target.window_px);
@@ -93,6 +96,7 @@ void take_over(const MethodParametersOf<From>& overrides, MethodParametersOf<To>
   take(overrides.edge_weight, target.edge_weight);
   take(overrides.edge_contrast, target.edge_contrast);
   take(overrides.sigma_measurement, target.sigma_measurement);
+  take(overrides.estimate_sigma_measurement, target.estimate_sigma_measurement);
   take(overrides.epsilon_measurement, target.epsilon_measurement);
   take(overrides.sigma_census, target.sigma_census);
   take(overrides.sigma_gradient, target.sigma_gradient);
@@ -185,6 +189,15 @@ void validate_combination(const MethodParameters& parameters) {
         "certainty margin divides by the sum of a pixel's costs, which for the cost gradient have "
         "both signs; expected certainty entropy");
   }
+  const bool is_in_grey_levels =
+      parameters.cost != MatchCost::kGradient && parameters.cost != MatchCost::kCensus;
+  if (parameters.estimate_sigma_measurement && uses_sigma_measurement(parameters) &&
+      !is_in_grey_levels) {
+    throw UsageError(
+        "sigma-measurement is estimated, which gives grey levels, but the costs gradient and "
+        "census "
+        "are none; expected a number");
+  }
 }
 
 }  // namespace
@@ -247,6 +260,18 @@ MethodParameters at_level(const MethodParameters& parameters, int level) {
   }
   result.sigma_prior *= std::pow(parameters.prior_growth, level);
   return result;
+}
+
+bool uses_sigma_measurement(const MethodParameters& parameters) {
+  return parameters.cost == MatchCost::kContaminated || parameters.cost == MatchCost::kCombined ||
+         parameters.aggregation == Aggregation::kBayes ||
+         (parameters.aggregation == Aggregation::kLocalStopping &&
+          parameters.certainty == Certainty::kEntropy);
+}
+
+bool uses_pair_levels(const MethodParameters& parameters) {
+  return (parameters.match_exposure && parameters.cost != MatchCost::kCensus) ||
+         (parameters.estimate_sigma_measurement && uses_sigma_measurement(parameters));
 }
 
 void validate(const MethodParameters& parameters) {

@@ -54,6 +54,9 @@ struct MethodParametersOf {
   Field<MatchCost> cost;
   Field<Aggregation> aggregation;
   Field<ColourUse> colour;
+  /// The right image's grey levels are changed to the left's before they are compared, gain and
+  /// offset estimated from each pair (pair_levels).
+  Field<bool> match_exposure;
   Field<Subpixel> subpixel;
   Field<Border> border;  ///< of box aggregation
 
@@ -76,6 +79,8 @@ struct MethodParametersOf {
   Field<double> epsilon_prior;  ///< Bayes: εP, inside (0, 1)
   /// σM in grey levels, > 0: contaminated and combined cost, Bayes, entropy.
   Field<double> sigma_measurement;
+  /// σM follows from each pair (pair_levels); where it does not, it is sigma_measurement.
+  Field<bool> estimate_sigma_measurement;
   Field<double> epsilon_measurement;  ///< εM, inside (0, 1): the same
   Field<double> sigma_census;  ///< combined cost: σ of the share of census bits, 0..1; 0: no term
   Field<double> sigma_gradient;  ///< combined cost: σ in grey levels per pixel, ≥ 0; 0: no term
@@ -120,6 +125,11 @@ void validate(const MethodParameters& parameters);
 
 /// What is in force on one level, the image's own being 0: iterations and σP.
 MethodParameters at_level(const MethodParameters& parameters, int level);
+/// Whether σM takes part.
+bool uses_sigma_measurement(const MethodParameters& parameters);
+
+/// Whether something is to be estimated from each pair's grey levels.
+bool uses_pair_levels(const MethodParameters& parameters);
 
 /// Whether cells hold −evidence, which is compared with 0 and has no scale of its own.
 inline bool is_evidence(const MethodParameters& parameters) {

@@ -6,6 +6,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
+#include "engine/matching/level_change.h"
 #include "engine/matching/method_parameters.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
@@ -19,6 +20,8 @@ struct CostImageUse {
   /// disparities lie at growing addresses.
   bool as_partner_of_left = true;
   bool as_partner_of_right = true;
+  /// Made to the grey levels before anything is made of them.
+  LevelChanges level_changes = {};
 };
 
 /// Everything that costs look up in one photograph: grey levels or channels, gradients, census

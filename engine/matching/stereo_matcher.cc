@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -147,10 +148,58 @@ StereoMatcher::StereoMatcher(const MatchOptions& options, Execution& execution)
     throw UsageError("disparities is auto, expected the range that the images suggest");
   }
   parameters_ = options_.resolved();
+  if (uses_pair_levels(parameters_)) {
+    levels_ = std::make_unique<PairLevelsEstimator>(options_.disparities, execution_);
+  }
 }
 
 bool StereoMatcher::wants_confidence(const MatchRequest& request) const {
   return request.confidence || (!options_.raw && uses_confidence(options_.resolved_refinement()));
+}
+
+/// What is estimated from a pair's grey levels.
+void StereoMatcher::settle_levels(const Photograph& left, const Photograph& right,
+                                  Prepared& prepared, MatchReport& report) const {
+  // Throws for the whole images, where bands of them would be named otherwise.
+  candidate_geometry(options_, Reference::kLeft, left.width(), left.height());
+  const PairLevels levels =
+      levels_->estimate(left, right, parameters_.colour, parameters_.match_exposure);
+  prepared.of_right = levels.of_right;
+  if (parameters_.estimate_sigma_measurement && levels.sigma_measurement) {
+    prepared.parameters.sigma_measurement = *levels.sigma_measurement;
+  }
+  report.levels = levels;
+}
+
+/// The same of each other image beside the reference; σ is that of the noisiest.
+std::vector<LevelChanges> StereoMatcher::settle_levels(const Photograph& reference,
+                                                       std::span<const OtherView> others,
+                                                       Prepared& prepared,
+                                                       MatchReport& report) const {
+  std::vector<LevelChanges> changes;
+  std::optional<double> sigma;
+  for (const OtherView& other : others) {
+    // In units of x_reference − x_other.
+    const double ratio = other.baseline / std::abs(others.front().baseline);
+    const auto [least, most] =
+        std::minmax({options_.disparities.min * ratio, options_.disparities.max * ratio});
+    const DisparityRange range{static_cast<int>(std::floor(least)),
+                               static_cast<int>(std::ceil(most))};
+    const PairLevels levels =
+        PairLevelsEstimator(range, execution_)
+            .estimate(reference, *other.photograph, parameters_.colour, parameters_.match_exposure);
+    changes.push_back(levels.of_right);
+    if (levels.sigma_measurement) {
+      sigma = std::max(sigma.value_or(0), *levels.sigma_measurement);
+    }
+    if (!report.levels) {
+      report.levels = levels;
+    }
+  }
+  if (parameters_.estimate_sigma_measurement && sigma) {
+    prepared.parameters.sigma_measurement = *sigma;
+  }
+  return changes;
 }
 
 /// What the chains of both maps read.
@@ -170,8 +219,10 @@ std::pair<ChainInput, ChainInput> StereoMatcher::prepare_inputs(const Photograph
     prepared.images.resize(2);
     CostImage& left_image = prepared.images[0];
     CostImage& right_image = prepared.images[1];
-    left_image.prepare(left, parameters_, geometry, {needs_left, false, needs_right}, execution_);
-    right_image.prepare(right, parameters_, geometry, {needs_right, needs_left, false}, execution_);
+    left_image.prepare(left, prepared.parameters, geometry, {needs_left, false, needs_right},
+                       execution_);
+    right_image.prepare(right, prepared.parameters, geometry,
+                        {needs_right, needs_left, false, prepared.of_right}, execution_);
     left_input = {nullptr, &left_image, {CostPartner{&right_image}}};
     right_input = {nullptr, &right_image, {CostPartner{&left_image}}};
   }
@@ -187,6 +238,8 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
     std::span<const ExecutionOptions> executions) const {
   require_equal_sizes(left, "left image", right, "right image");
   const auto prepared = prepared_.borrow();
+  prepared->parameters = parameters_;
+  prepared->of_right = {};
   const ChainInput input = prepare_inputs(left, right, true, false, false, *prepared).first;
   const auto geometry = candidate_geometry(options_, Reference::kLeft, left.width(), left.height());
   DisparityMap map(left.width(), left.height());
@@ -218,6 +271,13 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   const bool needs_left = request.left || !options_.raw;
   const bool needs_right = request.right || !options_.raw;
   const auto prepared = prepared_.borrow();
+  prepared->parameters = parameters_;
+  prepared->of_right = {};
+  if (levels_) {
+    clock.begin("levels");
+    settle_levels(left, right, *prepared, times);
+    clock.begin("prepare");
+  }
   auto [left_input, right_input] =
       prepare_inputs(left, right, needs_left, needs_right, uses_prior, *prepared);
   if (uses_prior) {
@@ -294,13 +354,22 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
   const int height = reference.height();
   const auto geometry = candidate_geometry(options_, Reference::kLeft, width, height);
   const auto prepared = prepared_.borrow();
+  prepared->parameters = parameters_;
+  std::vector<LevelChanges> changes(others.size());
+  if (levels_) {
+    clock.begin("levels");
+    changes = settle_levels(reference, others, *prepared, times);
+    clock.begin("prepare");
+  }
   prepared->images.resize(others.size() + 1);
-  prepared->images[0].prepare(reference, parameters_, geometry, {true, false, false}, execution_);
+  prepared->images[0].prepare(reference, prepared->parameters, geometry, {true, false, false},
+                              execution_);
   ChainInput input{nullptr, prepared->images.data(), {}};
   for (std::size_t k = 0; k < others.size(); ++k) {
     CostImage& image = prepared->images[k + 1];
     const double ratio = others[k].baseline / others.front().baseline;
-    image.prepare(*others[k].photograph, parameters_, geometry, {false, true, true}, execution_);
+    image.prepare(*others[k].photograph, prepared->parameters, geometry,
+                  {false, true, true, changes[k]}, execution_);
     input.partners.push_back({&image, ratio});
   }
 
@@ -338,6 +407,9 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
 }
 
 void StereoMatcher::add_memory_use(MemoryUse& use) const {
+  if (levels_) {
+    levels_->add_memory_use(use);
+  }
   prepared_.for_each_idle([&use](const Prepared& prepared) {
     std::size_t bytes = prepared.pair.grey_8.held_bytes() + prepared.pair.grey_float.held_bytes() +
                         prepared.edges.held_bytes();
@@ -367,7 +439,7 @@ void StereoMatcher::compute_map(Reference reference, const ChainInput& input, Pr
   if (result.confidence != nullptr) {
     outputs.confidence = result.confidence->view();
   }
-  run_levels(geometry, input, outputs, prepared.levels, report);
+  run_levels(geometry, input, outputs, prepared, report);
 }
 
 /// Vertical disparities one after the other, each like a search along rows between shifted images;
@@ -403,7 +475,7 @@ void StereoMatcher::search_rows(const kernels::CandidateGeometry& geometry, cons
     for (CostPartner& partner : shifted.partners) {
       partner.disparity_y_px = d;
     }
-    run_levels(geometry, shifted, outputs, prepared.levels, report);
+    run_levels(geometry, shifted, outputs, prepared, report);
     merge.disparity_y_px = d;
     execution_.for_each_band(height, [&](int first_row, int end_row) {
       for (int y = first_row; y < end_row; ++y) {
@@ -431,18 +503,19 @@ scheduler::ChainPlan StereoMatcher::plan_of(const MatchChain& chain,
 
 /// One map along rows: flat or coarse to fine.
 void StereoMatcher::run_levels(const kernels::CandidateGeometry& geometry, const ChainInput& input,
-                               const MapOutputs& outputs, CoarseLevels& levels,
+                               const MapOutputs& outputs, Prepared& prepared,
                                MatchReport& report) const {
+  const MethodParameters& parameters = prepared.parameters;
   const double pixels = static_cast<double>(geometry.width) * outputs.disparity_px.height();
   report.finest_pixels += pixels;
-  if (parameters_.levels == 1) {
-    run_chain(MatchChain(parameters_, geometry, input, outputs), report);
+  if (parameters.levels == 1) {
+    run_chain(MatchChain(parameters, geometry, input, outputs), report);
     report.cells += pixels * options_.disparities.count();
     report.finest_cells += pixels * options_.disparities.count();
     return;
   }
   const LevelCells cells =
-      match_coarse_to_fine(parameters_, geometry, input, outputs, levels, execution_,
+      match_coarse_to_fine(parameters, geometry, input, outputs, prepared.levels, execution_,
                            [&](const MatchChain& chain) { run_chain(chain, report); });
   report.cells += cells.all_levels;
   report.finest_cells += cells.finest_level;

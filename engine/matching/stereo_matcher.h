@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -11,6 +13,7 @@
 #include "engine/matching/coarse_to_fine.h"
 #include "engine/matching/match_chain.h"
 #include "engine/matching/match_options.h"
+#include "engine/matching/pair_levels.h"
 #include "engine/memory_use.h"
 #include "engine/object_pool.h"
 #include "engine/refinement/refine_maps.h"
@@ -81,6 +84,8 @@ struct MatchReport {
   double cells = 0;
   double finest_cells = 0;   ///< of these, the finest level's
   double finest_pixels = 0;  ///< width × height × maps computed
+  /// What was estimated from the images where parameters ask for it; of several, of the first.
+  std::optional<PairLevels> levels;
 };
 
 /// Computes disparity maps of rectified pairs (EQUATIONS §1, §3, §5).
@@ -130,6 +135,8 @@ class StereoMatcher {
   struct Prepared {
     PreparedPair pair;
     std::vector<CostImage> images;
+    MethodParameters parameters;  ///< with what was estimated from the images
+    LevelChanges of_right;
     DisparityMap candidate_disparity_px;  ///< of one vertical disparity
     Image<float> candidate_confidence;
     Image<float> candidate_energy;
@@ -150,6 +157,12 @@ class StereoMatcher {
                                                                  bool needs_left, bool needs_right,
                                                                  bool uses_prior,
                                                                  Prepared& prepared) const;
+  void settle_levels(const Photograph& left, const Photograph& right, Prepared& prepared,
+                     MatchReport& report) const;
+  [[nodiscard]] std::vector<LevelChanges> settle_levels(const Photograph& reference,
+                                                        std::span<const OtherView> others,
+                                                        Prepared& prepared,
+                                                        MatchReport& report) const;
   [[nodiscard]] scheduler::ChainPlan plan_of(const MatchChain& chain,
                                              const ExecutionOptions& execution, int threads) const;
   void compute_map(Reference reference, const ChainInput& input, Prepared& prepared,
@@ -157,12 +170,13 @@ class StereoMatcher {
   void search_rows(const kernels::CandidateGeometry& geometry, const ChainInput& input,
                    Prepared& prepared, const Result& result, MatchReport& report) const;
   void run_levels(const kernels::CandidateGeometry& geometry, const ChainInput& input,
-                  const MapOutputs& outputs, CoarseLevels& levels, MatchReport& report) const;
+                  const MapOutputs& outputs, Prepared& prepared, MatchReport& report) const;
   void run_chain(const MatchChain& chain, MatchReport& report) const;
 
   MatchOptions options_;
   MethodParameters parameters_;
   Execution& execution_;
+  std::unique_ptr<PairLevelsEstimator> levels_;  ///< null: nothing is estimated
   mutable ObjectPool<Prepared> prepared_;
   mutable ObjectPool<RefinementWork> refinement_works_;
 };

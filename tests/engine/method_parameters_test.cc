@@ -370,6 +370,18 @@ TEST(MatchOptions, CombinationsThatMakeNoSenseAreRefusedWithTheReason) {
   EXPECT_THAT(complaint(options), HasSubstr("expected certainty entropy"));
   options.parameters.certainty = Certainty::kEntropy;
   EXPECT_EQ(complaint(options), "");
+  options.parameters.estimate_sigma_measurement = true;
+  for (const MatchCost cost : {MatchCost::kGradient, MatchCost::kCensus}) {
+    options.parameters.cost = cost;
+    options.parameters.certainty = Certainty::kEntropy;
+    EXPECT_THAT(complaint(options), HasSubstr("sigma-measurement is estimated"));
+    options.method = MatchMethod::kSsd;  // without σM
+    EXPECT_EQ(complaint(options), "");
+    options.method = MatchMethod::kBayes;
+    EXPECT_THAT(complaint(options), HasSubstr("expected a number"));
+  }
+  options.parameters.cost = MatchCost::kCombined;
+  EXPECT_EQ(complaint(options), "");
 }
 
 }  // namespace
