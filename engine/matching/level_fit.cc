@@ -14,7 +14,6 @@ constexpr double kLeastContrast = 2;  ///< standard deviation, grey levels
 constexpr double kLargestGain = 4;
 constexpr double kLeastShare = 0.5;  ///< of the pairs: weight on the line
 constexpr double kLeastCorrelation = 0.7;
-constexpr double kOfMedian = 1.4826;
 
 /// Weighted moments.
 struct Moments {
@@ -66,12 +65,24 @@ double residual(const LevelPair& pair, const LevelChange& line) {
   return pair.reference - (line.gain * pair.other + line.offset);
 }
 
+/// The value that a share `kTenths` / 10 of the residuals is below.
+template <std::size_t kTenths>
+double quantile(std::span<float> residuals) {
+  const auto at = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() * kTenths / 10);
+  std::nth_element(residuals.begin(), at, residuals.end());
+  return *at;
+}
+
 }  // namespace
 
 double robust_sigma(std::span<float> residuals) {
-  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-  std::nth_element(residuals.begin(), middle, residuals.end());
-  return kOfMedian * *middle;
+  constexpr double kOfMedian = 1.4826;
+  return kOfMedian * quantile<5>(residuals);
+}
+
+double noise_sigma(std::span<float> residuals) {
+  constexpr double kSigmas = 1.6449;  // that 90 % of a Gaussian's magnitudes are within
+  return quantile<9>(residuals) / kSigmas;
 }
 
 std::optional<LevelChange> fit_levels(std::span<const LevelPair> pairs) {

@@ -28,4 +28,9 @@ inline constexpr std::size_t kLeastLevelPairs = 200;
 /// whose magnitudes they are, with few outliers. At least one residual.
 double robust_sigma(std::span<float> residuals);
 
+/// The 90 % quantile of `residuals`, each ≥ 0, which are left in another order, over that of a
+/// Gaussian's magnitudes: σ where up to a tenth are outliers, and where so many residuals are 0
+/// that the median is, too. At least one residual.
+double noise_sigma(std::span<float> residuals);
+
 }  // namespace vantage

@@ -25,7 +25,9 @@ constexpr std::size_t kMostMatches = 65536;
 /// Levels nearer to black or white than this may have been cut off.
 constexpr float kUnclippedMargin = 2;
 constexpr float kWhite = 255;
-constexpr double kLeastSigma = 1;
+/// What matches of even the cleanest photographs need: reflections, edges and slanted surfaces are
+/// not what sure matches are made of.
+constexpr double kLeastSigma = 4;
 
 /// Rows that are matched, as one image.
 struct Bands {
@@ -217,7 +219,7 @@ PairLevels PairLevelsEstimator::estimate(const Photograph& left, const Photograp
     for (const Match& match : matches) {
       residuals.push_back(residual(of_left, of_right, match, has_channels ? 1 : 0, changes));
     }
-    result.sigma_measurement = std::max(kLeastSigma, robust_sigma(residuals));
+    result.sigma_measurement = std::max(kLeastSigma, noise_sigma(residuals));
   }
   return result;
 }

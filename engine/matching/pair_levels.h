@@ -18,7 +18,7 @@ struct PairLevels {
   /// Turns the right image's levels into the left's; none where the pair does not tell.
   LevelChanges of_right;
   bool has_levels = false;
-  /// σM in grey levels, at least 1: that of Birchfield and Tomasi's difference at matches, levels
+  /// σM in grey levels, at least 4: that of Birchfield and Tomasi's difference at matches, levels
   /// changed. Empty where there are few matches.
   std::optional<double> sigma_measurement;
   int matches = 0;  ///< that were looked at

@@ -53,6 +53,17 @@ TEST(LevelFit, SaysWhenPairsDoNotTell) {
   EXPECT_FALSE(fit_levels(std::vector<LevelPair>(5000, {100, 90}))) << "no contrast";
 }
 
+TEST(LevelFit, NoiseIsSeenWhereMostResidualsAreZero) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> gaussian(0, 5);
+  std::vector<float> residuals;
+  for (int k = 0; k < 20000; ++k) {
+    residuals.push_back(static_cast<float>(std::max(0.0, std::abs(gaussian(random)) - 4)));
+  }
+  EXPECT_NEAR(robust_sigma(residuals), 0, 0.1);
+  EXPECT_NEAR(noise_sigma(residuals), (5 * 1.6449 - 4) / 1.6449, 0.2);
+}
+
 TEST(RobustSigma, IsThatOfTheGaussianWhateverTheOutliers) {
   std::mt19937 random(6);
   std::normal_distribution<double> gaussian(0, 7);
@@ -61,6 +72,7 @@ TEST(RobustSigma, IsThatOfTheGaussianWhateverTheOutliers) {
     residuals.push_back(static_cast<float>(k % 20 == 0 ? 1000 : std::abs(gaussian(random))));
   }
   EXPECT_NEAR(robust_sigma(residuals), 7, 0.6);
+  EXPECT_NEAR(noise_sigma(residuals), 7, 1.2);
   std::vector<float> one = {3};
   EXPECT_FLOAT_EQ(static_cast<float>(robust_sigma(one)), 3 * 1.4826F);
 }
