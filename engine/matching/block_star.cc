@@ -18,7 +18,7 @@ kernels::StarRow BlockStars::star(const scheduler::RowTask& task, const Candidat
     if (y < input.rows().begin || y >= input.rows().end) {
       cells = neutral;
       pitch = 0;
-    } else if (has_same_blocks(run, y)) {
+    } else if (blocks_.has_blocks_of(run, task.y, y)) {
       cells = column(input, run.columns.begin, y);
       pitch = star.pitch;
     } else {
@@ -37,16 +37,6 @@ kernels::StarRow BlockStars::star(const scheduler::RowTask& task, const Candidat
   star.right_of_last =
       right < input.columns().end ? beside(task, run, right, work + lanes) : neutral;
   return star;
-}
-
-bool BlockStars::has_same_blocks(const CandidateBlocks::Run& run, int y) const {
-  constexpr int kTilePx = CandidateBlocks::kTilePx;
-  for (int x = run.columns.begin; x < run.columns.end; x = (x / kTilePx + 1) * kTilePx) {
-    if (!std::ranges::equal(blocks_.at(x, y), run.blocks)) {
-      return false;
-    }
-  }
-  return true;
 }
 
 /// Column x of the row, for a run beside it.

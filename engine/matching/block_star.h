@@ -33,7 +33,6 @@ class BlockStars {
     return rows.row<float>(y) +
            static_cast<std::ptrdiff_t>(x - rows.columns().begin) * blocks_.lanes();
   }
-  [[nodiscard]] bool has_same_blocks(const CandidateBlocks::Run& run, int y) const;
   const float* beside(const scheduler::RowTask& task, const CandidateBlocks::Run& run, int x,
                       float* work) const;
 

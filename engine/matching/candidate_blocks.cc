@@ -38,6 +38,8 @@ void CandidateBlocks::resize(scheduler::Extent extent, int candidates, int most)
       static_cast<std::size_t>(tile_columns_) * static_cast<std::size_t>(tile_rows_);
   blocks_.resize(tiles * static_cast<std::size_t>(most_));
   counts_.resize(tiles);
+  run_ends_.resize(tiles);
+  is_as_above_.resize(tiles);
 }
 
 void CandidateBlocks::choose(ImageView<const std::int32_t> winners,
@@ -57,6 +59,36 @@ void CandidateBlocks::choose(ImageView<const std::int32_t> winners,
       }
     }
   });
+  execution.for_each_band(tile_rows_, [&](int first_row, int end_row) {
+    for (int tile_y = first_row; tile_y < end_row; ++tile_y) {
+      compare_tiles(tile_y);
+    }
+  });
+}
+
+void CandidateBlocks::compare_tiles(int tile_y) {
+  for (int tile_x = tile_columns_ - 1; tile_x >= 0; --tile_x) {
+    const std::size_t tile = tile_at(tile_x, tile_y);
+    const BlockList blocks = of_tile(tile);
+    const bool goes_on =
+        tile_x + 1 < tile_columns_ && std::ranges::equal(of_tile(tile + 1), blocks);
+    run_ends_[tile] = goes_on ? run_ends_[tile + 1] : tile_x + 1;
+    const bool is_as_above =
+        tile_y > 0 && std::ranges::equal(of_tile(tile_at(tile_x, tile_y - 1)), blocks);
+    is_as_above_[tile] = is_as_above ? 1 : 0;
+  }
+}
+
+bool CandidateBlocks::has_blocks_of(const Run& run, int run_y, int y) const {
+  const int tile_y = std::max(run_y, y) / kTilePx;
+  if (tile_y == std::min(run_y, y) / kTilePx) {
+    return true;
+  }
+  const std::size_t first = tile_at(run.columns.begin / kTilePx, tile_y);
+  const std::size_t last = tile_at((run.columns.end - 1) / kTilePx, tile_y);
+  return std::all_of(is_as_above_.begin() + static_cast<std::ptrdiff_t>(first),
+                     is_as_above_.begin() + static_cast<std::ptrdiff_t>(last) + 1,
+                     [](std::uint8_t is_as_above) { return is_as_above != 0; });
 }
 
 void CandidateBlocks::choose_tile(ImageView<const std::int32_t> winners, Range allowed, int tile_x,
@@ -79,9 +111,7 @@ void CandidateBlocks::choose_tile(ImageView<const std::int32_t> winners, Range a
       }
     }
   }
-  const std::size_t tile =
-      static_cast<std::size_t>(tile_y) * static_cast<std::size_t>(tile_columns_) +
-      static_cast<std::size_t>(tile_x);
+  const std::size_t tile = tile_at(tile_x, tile_y);
   std::uint16_t* const chosen = blocks_.data() + tile * static_cast<std::size_t>(most_);
   int count = 0;
   for (; count < most_; ++count) {
@@ -97,25 +127,6 @@ void CandidateBlocks::choose_tile(ImageView<const std::int32_t> winners, Range a
   counts_[tile] = static_cast<std::uint8_t>(count);
 }
 
-BlockList CandidateBlocks::of_tile(int tile_x, int tile_y) const {
-  const std::size_t tile =
-      static_cast<std::size_t>(tile_y) * static_cast<std::size_t>(tile_columns_) +
-      static_cast<std::size_t>(tile_x);
-  return {blocks_.data() + tile * static_cast<std::size_t>(most_), counts_[tile]};
-}
-
-BlockList CandidateBlocks::at(int x, int y) const { return of_tile(x / kTilePx, y / kTilePx); }
-
-CandidateBlocks::Run CandidateBlocks::run_at(int x, int y, int end) const {
-  const BlockList blocks = at(x, y);
-  const int limit = std::min(end, x + kMostRunColumns);
-  int run_end = (x / kTilePx + 1) * kTilePx;
-  while (run_end < limit && std::ranges::equal(at(run_end, y), blocks)) {
-    run_end += kTilePx;
-  }
-  return {{x, std::min(run_end, limit)}, blocks};
-}
-
 int CandidateBlocks::count(BlockList blocks) const {
   const int lanes = static_cast<int>(blocks.size()) * kLaneMultiple;
   // Only the last block of all can lack candidates.
@@ -129,14 +140,15 @@ double CandidateBlocks::cells() const {
     const int rows = std::min(kTilePx, extent_.rows - tile_y * kTilePx);
     for (int tile_x = 0; tile_x < tile_columns_; ++tile_x) {
       const int columns = std::min(kTilePx, extent_.columns - tile_x * kTilePx);
-      cells += static_cast<double>(rows) * columns * count(of_tile(tile_x, tile_y));
+      cells += static_cast<double>(rows) * columns * count(of_tile(tile_at(tile_x, tile_y)));
     }
   }
   return cells;
 }
 
 std::size_t CandidateBlocks::held_bytes() const {
-  return blocks_.capacity() * sizeof(std::uint16_t) + counts_.capacity();
+  return blocks_.capacity() * sizeof(std::uint16_t) + counts_.capacity() +
+         run_ends_.capacity() * sizeof(int) + is_as_above_.capacity();
 }
 
 int candidates_in(const CandidateBlocks* blocks, int count) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -52,9 +53,17 @@ class CandidateBlocks {
   [[nodiscard]] scheduler::Extent extent() const { return extent_; }
   /// Of a column, for the blocks of any tile.
   [[nodiscard]] int lanes() const { return most_ * kernels::kLaneMultiple; }
-  [[nodiscard]] BlockList at(int x, int y) const;
+  [[nodiscard]] BlockList at(int x, int y) const {
+    return of_tile(tile_at(x / kTilePx, y / kTilePx));
+  }
   /// The run that begins at column x of row y and ends at `end` or before.
-  [[nodiscard]] Run run_at(int x, int y, int end) const;
+  [[nodiscard]] Run run_at(int x, int y, int end) const {
+    const std::size_t tile = tile_at(x / kTilePx, y / kTilePx);
+    const int run_end = run_ends_[tile] * kTilePx;
+    return {{x, std::min({run_end, end, x + kMostRunColumns})}, of_tile(tile)};
+  }
+  /// Whether row y, another one than that of `run` but at most one away, has its blocks there, too.
+  [[nodiscard]] bool has_blocks_of(const Run& run, int run_y, int y) const;
   /// Candidates among the lanes of `blocks`, which come first.
   [[nodiscard]] int count(BlockList blocks) const;
   /// Cells that are looked at, of all pixels.
@@ -65,7 +74,14 @@ class CandidateBlocks {
   [[nodiscard]] std::size_t held_bytes() const;
 
  private:
-  [[nodiscard]] BlockList of_tile(int tile_x, int tile_y) const;
+  [[nodiscard]] std::size_t tile_at(int tile_x, int tile_y) const {
+    return static_cast<std::size_t>(tile_y) * static_cast<std::size_t>(tile_columns_) +
+           static_cast<std::size_t>(tile_x);
+  }
+  [[nodiscard]] BlockList of_tile(std::size_t tile) const {
+    return {blocks_.data() + tile * static_cast<std::size_t>(most_), counts_[tile]};
+  }
+  void compare_tiles(int tile_y);
   void choose_tile(ImageView<const std::int32_t> winners, scheduler::Range allowed, int tile_x,
                    int tile_y, std::vector<int>& votes);
   [[nodiscard]] int block_count() const {
@@ -79,6 +95,8 @@ class CandidateBlocks {
   int tile_rows_ = 0;
   std::vector<std::uint16_t> blocks_;  ///< most_ a tile
   std::vector<std::uint8_t> counts_;
+  std::vector<int> run_ends_;              ///< the first tile to the right with other blocks
+  std::vector<std::uint8_t> is_as_above_;  ///< whether a tile has the blocks of the one above
 };
 
 /// The candidate in a lane of the columns of some blocks.

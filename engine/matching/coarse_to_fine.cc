@@ -119,6 +119,10 @@ std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Ex
                                  static_cast<std::size_t>(lanes * cell_bytes(parameters));
     bytes += (level <= 2 ? 2 : 1) * of_level;
   }
+  if (pruned_level_count(parameters, extents.size()) > 0) {
+    bytes += static_cast<std::size_t>(extents[1].columns) *
+             static_cast<std::size_t>(extents[1].rows) * sizeof(std::int32_t);  // winners
+  }
   return bytes;
 }
 

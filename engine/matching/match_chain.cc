@@ -268,8 +268,8 @@ void MatchChain::add_aggregation(const MethodParameters& parameters, const Chain
     case Aggregation::kBayes:
       iterations_ = parameters.iterations;
       add_all(make_bayes_stages(parameters, geometry_, height_,
-                                {.volume = level.coarser, .blocks = level.coarser_blocks},
-                                level.blocks, edges));
+                                {.volume = level.coarser, .blocks = level.coarser_blocks}, edges,
+                                level.blocks));
       ++first_iteration_;  // behind the start
       break;
   }

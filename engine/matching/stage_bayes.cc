@@ -118,7 +118,7 @@ class BayesStage final : public StarStage {
     row.work = reinterpret_cast<float*>(task.state);
     if (blocks_ == nullptr) {
       row.star = star(task, lanes(), neutral_.row(0));
-      row.weights = weights(task.y, task.columns.begin);
+      row.weights = weights(task.columns.begin, task.y);
       row.count = count();
       make_columns(row);
       return;
@@ -128,7 +128,7 @@ class BayesStage final : public StarStage {
       const CandidateBlocks::Run run = blocks_->run_at(x, task.y, task.columns.end);
       const BlockSegments segments(run.blocks);
       row.star = stars_->star(task, run, neutral_.row(0), star_work);
-      row.weights = weights(task.y, x);
+      row.weights = weights(x, task.y);
       row.count = blocks_->count(run.blocks);
       row.segment_ends = segments.ends();
       make_columns(row);
@@ -153,8 +153,8 @@ class BayesStage final : public StarStage {
     }
   }
   [[nodiscard]] int radius() const { return static_cast<int>(taps_.size()) - 1; }
-  /// From column x of row y on.
-  [[nodiscard]] kernels::StarWeights weights(int y, int x) const {
+  /// From column x on.
+  [[nodiscard]] kernels::StarWeights weights(int x, int y) const {
     if (edges_ == nullptr) {
       return {};
     }
@@ -317,7 +317,7 @@ class BayesFromCoarserStage final : public scheduler::RowStage {
 
 std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const CoarserProbabilities& coarser, const CandidateBlocks* blocks, const EdgeWeights* edges) {
+    const CoarserProbabilities& coarser, const EdgeWeights* edges, const CandidateBlocks* blocks) {
   const bool half = parameters.mu == 0.5 && edges == nullptr &&
                     parameters.epsilon_prior >= kLeastEpsilonOfProductForm;
   const BayesState between = half ? BayesState::kSmoothed : BayesState::kLogSmoothed;

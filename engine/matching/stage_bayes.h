@@ -39,7 +39,7 @@ struct CoarserProbabilities {
 /// of normal floats.
 std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const CoarserProbabilities& coarser = {}, const CandidateBlocks* blocks = nullptr,
-    const EdgeWeights* edges = nullptr);
+    const CoarserProbabilities& coarser = {}, const EdgeWeights* edges = nullptr,
+    const CandidateBlocks* blocks = nullptr);
 
 }  // namespace vantage

@@ -245,8 +245,14 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
   DisparityMap map(left.width(), left.height());
   const LevelVolume coarser;  // nobody looks into it
   const auto extents = level_extents({left.width(), left.height()}, parameters_.levels);
+  const bool is_pruned = parameters_.candidate_blocks > 0 && extents.size() > 1;
+  CandidateBlocks blocks;
+  if (is_pruned) {
+    blocks.resize(extents.front(), geometry.count, parameters_.candidate_blocks);
+  }
   const MatchChain chain(parameters_, geometry, input, {.disparity_px = map.view()},
-                         {.coarser = extents.size() > 1 ? &coarser : nullptr});
+                         {.coarser = extents.size() > 1 ? &coarser : nullptr,
+                          .blocks = is_pruned ? &blocks : nullptr});
   std::vector<scheduler::ChainPlan> plans;
   for (const ExecutionOptions& execution : executions) {
     plans.push_back(plan_of(chain, execution, thread_count(execution, execution_.machine())));

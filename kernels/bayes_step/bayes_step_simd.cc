@@ -100,6 +100,10 @@ HWY_INLINE void half_row_in_registers(const BayesRow& row) {
 // of lanes: candidates there are none beside it, or are taken for impossible. First
 // all of them are made, then all are normalised: one column after the other would wait for the sum
 // over its lanes each time.
+//
+// kBlocks · kLaneMultiple lanes that are one segment, so that loops over them are written out: with
+// few lanes they would take as long as what is in them. 0: any lanes.
+template <int kBlocks>
 class WorkColumns {
  public:
   explicit WorkColumns(const BayesRow& row)
@@ -110,11 +114,11 @@ class WorkColumns {
                                                : row.segment_ends),
         pitch_(row.star.lanes + (static_cast<int>(segment_ends_.size()) + 1) * margin_),
         logarithm_(row.mu) {
-    for (int j = 0; j < columns_; ++j) {
-      std::fill_n(p(j) - margin_, margin_, 0.0F);
+    for (int j = 0; j < std::min(columns_, row.star.columns); ++j) {
+      clear_margin(p(j) - margin_);
       float* behind = p(j);
       for (const int end : segment_ends_) {
-        std::fill_n(behind + end, margin_, 0.0F);
+        clear_margin(behind + end);
         behind += margin_;
       }
     }
@@ -142,9 +146,31 @@ class WorkColumns {
  private:
   static constexpr int kMostColumns = 8;  // of bayes_work_columns()
 
+  void clear_margin(float* margin) const {
+    for (int lane = 0; lane < margin_; lane += kFloatLanes) {
+      hn::Store(hn::Zero(FloatTag()), FloatTag(), margin + lane);
+    }
+  }
   [[nodiscard]] float* p(int column) const { return row_.work + column * pitch_ + margin_; }
   [[nodiscard]] const float* last_output() const {
     return row_.output + (row_.star.columns - 1) * row_.output_pitch;
+  }
+
+  // Calls segment(begin, end, gaps) for each segment of lanes, which begins so many floats farther
+  // on in work memory.
+  template <class Segment>
+  HWY_INLINE void each_segment(Segment segment) const {
+    if constexpr (kBlocks > 0) {
+      segment(0, kBlocks * kLaneMultiple, 0);
+    } else {
+      int begin = 0;
+      int gaps = 0;
+      for (const int end : segment_ends_) {
+        segment(begin, end, gaps);
+        begin = end;
+        gaps += margin_;
+      }
+    }
   }
 
   // Returns the factor that normalises the column.
@@ -154,28 +180,23 @@ class WorkColumns {
     const auto weight_of_lanes = weight(at);
     LaneBlock16 sums;
     sums.fill(hn::Zero(df));
-    int lane = 0;
-    for (const int end : segment_ends_) {
-      for (; lane < end; lane += kLaneMultiple) {
+    each_segment([&](int begin, int end, int gaps) HWY_ATTR {
+      for (int lane = begin; lane < end; lane += kLaneMultiple) {
         for (int part = 0; part < kParts; ++part) {
           const int first = lane + part * kFloatLanes;
           const FloatVec value = weight_of_lanes(first);
-          hn::Store(value, df, p + first);
+          hn::Store(value, df, p + gaps + first);
           sums.part[part] = hn::Add(sums.part[part], value);
         }
       }
-      p += margin_;
-    }
+    });
     return hn::Div(hn::Set(df, 1.0F), sum_lanes(sums));
   }
 
   HWY_INLINE void finish(const float* p, FloatVec normalise, float* output) const {
-    int begin = 0;
-    for (const int end : segment_ends_) {
-      finish_segment(p + begin, normalise, output + begin, end - begin);
-      p += margin_;
-      begin = end;
-    }
+    each_segment([&](int begin, int end, int gaps) HWY_ATTR {
+      finish_segment(p + gaps + begin, normalise, output + begin, end - begin);
+    });
   }
 
   HWY_INLINE void finish_segment(const float* p, FloatVec normalise, float* output,
@@ -236,8 +257,23 @@ class WorkColumns {
   ScaledLogarithm logarithm_;
 };
 
+template <class Weight>
+HWY_INLINE void run_columns(const BayesRow& row, Weight weight) {
+  if (row.segment_ends.size() <= 1) {
+    switch (row.star.lanes) {
+      case kLaneMultiple:
+        return WorkColumns<1>(row).run(weight);
+      case 2 * kLaneMultiple:
+        return WorkColumns<2>(row).run(weight);
+      default:
+        break;
+    }
+  }
+  WorkColumns<0>(row).run(weight);
+}
+
 void bayes_start_row_simd(const BayesRow& row) {
-  WorkColumns(row).run([](const StarColumns& at) HWY_ATTR {
+  run_columns(row, [](const StarColumns& at) HWY_ATTR {
     return [&at](int lane) HWY_ATTR { return hn::Load(FloatTag(), at.source + lane); };
   });
 }
@@ -265,7 +301,7 @@ void bayes_half_row_simd(const BayesRow& row) {
         break;
     }
   }
-  WorkColumns(row).run([](const StarColumns& at) HWY_ATTR {
+  run_columns(row, [](const StarColumns& at) HWY_ATTR {
     return [&at](int lane) HWY_ATTR { return half_weight(at, lane); };
   });
 }
@@ -324,7 +360,7 @@ HWY_INLINE FloatVec largest_sum(const Sum& star, int lanes) {
 // kScaled: the largest sum becomes 0, so that some lane stays above the underflow.
 template <class Sum, bool kScaled>
 HWY_INLINE void general_columns(const BayesRow& row) {
-  WorkColumns(row).run([&row](const StarColumns& at) HWY_ATTR {
+  run_columns(row, [&row](const StarColumns& at) HWY_ATTR {
     // Made where they stay: copies would go through memory, in pieces of another size than they are
     // loaded in.
     return [star = Sum(row, at), largest = kScaled ? largest_sum(Sum(row, at), row.star.lanes)

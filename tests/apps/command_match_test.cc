@@ -103,11 +103,12 @@ TEST_F(MatchCommand, ReportHasTheKeysOfTheContract) {
   }
   EXPECT_THAT(keys, ElementsAre("command", "version", "settings", "plan", "isa", "threads",
                                 "seconds", "cells", "cells_per_second", "peak_memory_bytes",
-                                "binding", "memory", "tuning"));
+                                "candidates_per_pixel", "binding", "memory", "tuning"));
   EXPECT_EQ(report["command"], "match");
   EXPECT_EQ(report["settings"]["disparities"], "0:9");
   EXPECT_EQ(report["threads"], 2);
   EXPECT_EQ(report["cells"], 71.0 * 53 * 10 * 2);
+  EXPECT_EQ(report["candidates_per_pixel"], 10);
   EXPECT_GT(report["peak_memory_bytes"], 1 << 20);
   const auto& owners = report["memory"]["owners"];
   EXPECT_GE(owners["photographs"], 2 * 71 * 53);

@@ -24,6 +24,8 @@ TEST_F(MatchCommandOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--window", "182"}, "window is 182, expected an odd number from 1 to 181"},
       {{"--iterations", "-1"}, "iterations is -1, expected a number from 0 to 10000"},
       {{"--levels", "0"}, "levels is 0, expected a number from 1 to 10"},
+      {{"--levels", "3", "--candidate-blocks", "2", "--method", "membrane"},
+       "candidate-blocks is 2, expected 0 but with the aggregation bayes"},
       {{"--levels", "2", "--disparities-y=-1:1"}, "levels is 2, expected 1 with disparities-y"},
       {{"--method", "diffusion", "--lambda", "0.25"}, "lambda is 0.25, expected a number above 0"},
       {{"--method", "membrane", "--lambda", "0.23"}, "at most 1/(4 + beta) = 0.2222"},
@@ -118,6 +120,8 @@ TEST_F(MatchCommandOptions, ReportShowsWhatWasSetAndWhatIsInForce) {
   EXPECT_EQ(resolved["cost"], "squared");
   EXPECT_EQ(resolved["iterations"], 3);
   EXPECT_EQ(resolved["levels"], 1);
+  EXPECT_EQ(resolved["candidate-blocks"], 0);
+  EXPECT_EQ(resolved["pruned-levels"], 2);
   EXPECT_EQ(resolved["beta"], 0.5);
   EXPECT_EQ(resolved["cross-check"], "none");
   EXPECT_EQ(resolved["confidence-threshold"], "none");

@@ -224,6 +224,8 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
        "above 0",
        MatchMethod::kBayes},
       {"levels", parameter(&P::levels), {1, 10}, {-1, 0, 11}, "from 1 to 10"},
+      {"candidate-blocks", parameter(&P::candidate_blocks), {0}, {-1, 9}, "(all candidates) to 8"},
+      {"pruned-levels", parameter(&P::pruned_levels), {1, 10}, {-1, 0, 11}, "from 1 to 10"},
       {"lambda",
        parameter(&P::lambda),
        {0.01, 0.249},

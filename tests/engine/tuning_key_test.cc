@@ -76,6 +76,10 @@ TEST_F(TuningKeyTest, DifferentWorkHasDifferentKeys) {
   add(key());
   match_.parameters.levels = 4;
   add(key());
+  match_.parameters.candidate_blocks = 2;
+  add(key());
+  match_.parameters.pruned_levels = 1;
+  add(key());
   match_.parameters.colour = ColourUse::kChannels;
   add(key());
   match_.method = MatchMethod::kMembrane;

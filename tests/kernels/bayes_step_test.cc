@@ -145,6 +145,7 @@ TEST_P(BayesStep, WeightsOfOneChangeNothing) {
   row.prior = {&tap, 0, 0.01F};
   row.state = BayesState::kProbability;
   row.count = lanes;
+  row.source_pitch = row.output_pitch = lanes;
   Image<float> work(bayes_work_floats(lanes, 0), 1);
   row.work = work.row(0);
   const auto result = [&row](StarWeights weights) {
@@ -186,6 +187,7 @@ TEST_P(BayesStep, EachNeighbourHasItsOwnWeight) {
     row.prior = {&tap, 0, 0.01F};
     row.state = BayesState::kProbability;
     row.count = 2;
+    row.source_pitch = row.output_pitch = lanes;
     row.weights = {weights.data(), weights.data() + 2, weights.data() + 3};
     Image<float> work(bayes_work_floats(lanes, 0), 1);
     row.work = work.row(0);

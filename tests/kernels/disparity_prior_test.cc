@@ -122,6 +122,28 @@ TEST_P(DisparityPrior, FollowsTheDefinitions) {
   expect_definition(likelihoods_with_prior_row, true, likelihood);
 }
 
+/// Cells of a part of the candidates become what they become among all of them.
+TEST_P(DisparityPrior, LikelihoodsOfSomeCandidatesAreThoseOfAll) {
+  for_each_case(true, [](const PriorCase& all) {
+    std::vector<float> expected = all.cells;
+    likelihoods_with_prior_row(all.row, expected.data());
+    for (int first = 0; first < all.row.lanes; first += kLaneMultiple) {
+      DisparityPriorRow row = all.row;
+      row.lanes = kLaneMultiple;
+      row.first_candidate = first;
+      std::vector<float> cells;
+      std::vector<float> part;
+      for (int j = 0; j < row.columns; ++j) {
+        const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(j) * all.row.lanes + first;
+        cells.insert(cells.end(), all.cells.begin() + at, all.cells.begin() + at + kLaneMultiple);
+        part.insert(part.end(), expected.begin() + at, expected.begin() + at + kLaneMultiple);
+      }
+      likelihoods_with_prior_row(row, cells.data());
+      ASSERT_EQ(cells, part);
+    }
+  });
+}
+
 TEST_P(DisparityPrior, EqualsTheReferenceToTheBit) {
   for (const bool likelihoods : {false, true}) {
     for_each_case(likelihoods, [&](const PriorCase& test) {
