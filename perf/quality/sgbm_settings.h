@@ -34,12 +34,12 @@ struct SgbmSetting {
 /// Three modes × two blocks, each with the post-processing that --search-peers found best for it.
 const std::vector<SgbmSetting>& sgbm_settings();
 
-/// Winners of both maps, before OpenCV's speckle filter. `matcher`: of make_sgbm_matcher().
+/// A matcher that leaves everything after uniqueness to the functions below.
 cv::Ptr<cv::StereoSGBM> make_sgbm_matcher(const SgbmSetting& setting, const ScenePair& pair);
 
-/// What make_sgbm_matcher() leaves to do.
 void filter_opencv_speckles(const SgbmPostProcessing& post_processing, DisparityRange range,
                             PeerDisparities& disparities);
+/// Makes dense maps of what OpenCV's filter has left.
 void refine_peer_maps(const SgbmPostProcessing& post_processing, const ScenePair& pair,
                       const PeerDisparities& disparities, Execution& execution,
                       DisparityMaps& refined);
