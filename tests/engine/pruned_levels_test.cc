@@ -13,6 +13,7 @@
 
 #include "engine/error.h"
 #include "engine/matching/candidate_blocks.h"
+#include "engine/matching/edge_weights.h"
 #include "engine/matching/stage_bayes.h"
 #include "engine/matching/stage_block_selection.h"
 #include "engine/matching/stage_block_source.h"
@@ -94,6 +95,21 @@ MethodParameters bayes_parameters(double sigma_prior, double mu) {
   return resolve(MatchMethod::kBayes, overrides);
 }
 
+constexpr const EdgeWeights* kNoEdges = nullptr;
+
+EdgeWeights random_edges() {
+  std::mt19937 random(3);
+  Image<float> grey(kExtent.columns, kExtent.rows);
+  for (int y = 0; y < kExtent.rows; ++y) {
+    std::generate_n(grey.row(y), kExtent.columns,
+                    [&] { return static_cast<float>(random() % 30); });
+  }
+  Execution execution({.threads = 1});
+  EdgeWeights edges;
+  edges.prepare(grey.view(), {.least = 0.2F, .contrast = 8}, execution);
+  return edges;
+}
+
 /// Keeps the probabilities of the last stage as floats, in all lanes that `blocks` has.
 class ProbabilitySink final : public scheduler::RowStage {
  public:
@@ -154,7 +170,8 @@ class MaskedSource final : public scheduler::RowStage {
 /// The final probabilities of a level, all candidates of it; pruned, or as if all were looked at
 /// but those not in blocks were impossible.
 CellVolume<float> probabilities_of(const Level& level, const MethodParameters& parameters,
-                                   bool pruned, bool every_way) {
+                                   bool pruned, const EdgeWeights* edges = nullptr,
+                                   bool every_way = false) {
   CellVolume<float> result(kExtent, level.geometry.lanes());
   const CandidateBlocks* const blocks = pruned ? &level.blocks : nullptr;
   std::vector<std::unique_ptr<scheduler::RowStage>> stages;
@@ -164,7 +181,7 @@ CellVolume<float> probabilities_of(const Level& level, const MethodParameters& p
                                                    level.geometry.lanes());
   }
   for (auto& stage : make_bayes_stages(parameters, level.geometry, kExtent.rows,
-                                       {.volume = &level.coarser}, nullptr, blocks)) {
+                                       {.volume = &level.coarser}, edges, blocks)) {
     stages.push_back(std::move(stage));
   }
   stages.push_back(std::make_unique<ProbabilitySink>(
@@ -184,16 +201,19 @@ CellVolume<float> probabilities_of(const Level& level, const MethodParameters& p
 /// With a prior that does not reach from one candidate to the next, what is not looked at is the
 /// same as what is impossible.
 TEST(PrunedLevel, EqualsALevelWhereTheOthersAreImpossible) {
+  const EdgeWeights edges = random_edges();
   for (const int candidates : {5, 40, 100, 200}) {
     for (const double mu : {0.5, 0.7}) {
       Level level(candidates, 3, false);
       level.mask_coarser();
       const MethodParameters parameters = bayes_parameters(0.1, mu);
-      const CellVolume<float> pruned = probabilities_of(level, parameters, true, false);
-      const CellVolume<float> masked = probabilities_of(level, parameters, false, false);
-      for (std::size_t k = 0; k < pruned.cells.size(); ++k) {
-        ASSERT_NEAR(pruned.cells[k], masked.cells[k], 2e-5)
-            << candidates << " candidates, mu " << mu << ", cell " << k;
+      for (const EdgeWeights* const weights : {kNoEdges, &edges}) {
+        const CellVolume<float> pruned = probabilities_of(level, parameters, true, weights);
+        const CellVolume<float> masked = probabilities_of(level, parameters, false, weights);
+        for (std::size_t k = 0; k < pruned.cells.size(); ++k) {
+          ASSERT_NEAR(pruned.cells[k], masked.cells[k], 2e-5)
+              << candidates << " candidates, mu " << mu << ", cell " << k;
+        }
       }
     }
   }
@@ -201,11 +221,15 @@ TEST(PrunedLevel, EqualsALevelWhereTheOthersAreImpossible) {
 
 TEST(PrunedLevel, DoesNotDependOnHowItIsCut) {
   const Level level(100, 3, false);
-  probabilities_of(level, bayes_parameters(0.4, 0.5), true, true);
+  const EdgeWeights edges = random_edges();
+  for (const EdgeWeights* const weights : {kNoEdges, &edges}) {
+    probabilities_of(level, bayes_parameters(0.4, 0.5), true, weights, true);
+  }
 }
 
 /// Where all blocks are looked at, bit for bit the same.
 TEST(PrunedLevel, WithAllCandidatesIsTheFullLevel) {
+  const EdgeWeights edges = random_edges();
   for (const int candidates : {3, 16, 30, 61}) {
     const Level level(candidates, 8, true);
     ASSERT_EQ(level.blocks.cells(),
@@ -213,9 +237,11 @@ TEST(PrunedLevel, WithAllCandidatesIsTheFullLevel) {
     for (const double sigma_prior : {0.1, 0.4, 2.0}) {
       for (const double mu : {0.5, 0.7}) {
         const MethodParameters parameters = bayes_parameters(sigma_prior, mu);
-        EXPECT_EQ(probabilities_of(level, parameters, true, false).cells,
-                  probabilities_of(level, parameters, false, false).cells)
-            << candidates << " candidates";
+        for (const EdgeWeights* const weights : {kNoEdges, &edges}) {
+          EXPECT_EQ(probabilities_of(level, parameters, true, weights).cells,
+                    probabilities_of(level, parameters, false, weights).cells)
+              << candidates << " candidates";
+        }
       }
     }
   }
