@@ -125,7 +125,16 @@ void MatchOptions::validate() const {
 
 MethodParameters MatchOptions::resolved() const {
   const PresetSettings settings = settings_of(preset);
-  return resolve(method.value_or(settings.method), merge(settings.parameters, parameters));
+  MethodParameters result =
+      resolve(method.value_or(settings.method), merge(settings.parameters, parameters));
+  // A preset's levels and pruning hold where they can: what else the user chose goes before them.
+  if (disparities_y && !parameters.levels) {
+    result.levels = 1;
+  }
+  if (!parameters.candidate_blocks && !can_prune(result)) {
+    result.candidate_blocks = 0;
+  }
+  return result;
 }
 
 RefinementOptions MatchOptions::resolved_refinement() const {

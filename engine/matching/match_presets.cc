@@ -1,27 +1,49 @@
 #include "engine/matching/match_presets.h"
 
 namespace vantage {
+namespace {
+
+/// Bayesian diffusion from coarse to fine, as docs/COARSE_TO_FINE.md found it: census codes,
+/// weights from intensity edges, candidates around what coarser levels found.
+MethodOverrides coarse_to_fine() {
+  MethodOverrides parameters;
+  parameters.cost = MatchCost::kSmallCensus;
+  parameters.sigma_measurement = 4.8;  // a fifth of the bits
+  parameters.levels = 7;
+  parameters.level_weight = 0.6;
+  parameters.mu = 0.4;
+  parameters.epsilon_prior = 5e-6;
+  parameters.prior_growth = 1.2;
+  parameters.edge_weight = 0.2;
+  parameters.candidate_blocks = 3;
+  return parameters;
+}
+
+}  // namespace
 
 PresetSettings preset_settings(MatchPreset preset) {
   PresetSettings settings;
-  // Compared on ten scenes (docs/QUALITY.md): census codes beat all other costs on photographs,
-  // whose cameras never quite agree in brightness.
-  settings.method = MatchMethod::kSsd;
-  settings.parameters.cost = MatchCost::kCensus;
   settings.refinement.cross_check_px = 1;
   settings.refinement.speckle_size_px = 100;
+  settings.refinement.surface_fit_px = 10;
   switch (preset) {
     case MatchPreset::kFast:
+      settings.method = MatchMethod::kSsd;
+      settings.parameters.cost = MatchCost::kCensus;
       settings.parameters.window_px = 7;
       break;
     case MatchPreset::kBalanced:
-      settings.parameters.aggregation = Aggregation::kBoxCascade;
+      settings.method = MatchMethod::kBayes;
+      settings.parameters = coarse_to_fine();
+      settings.parameters.iterations = 3;
+      settings.parameters.final_iterations = 1;
+      settings.refinement.fill = Fill::kMedian;
       break;
     case MatchPreset::kQuality:
       settings.method = MatchMethod::kBayes;
-      settings.parameters.sigma_measurement = 16;
-      settings.parameters.iterations = 30;
-      // Takes half as long as the other presets take altogether (docs/VIEWS.md).
+      settings.parameters = coarse_to_fine();
+      settings.parameters.iterations = 10;
+      settings.parameters.final_iterations = 5;
       settings.refinement.fill = Fill::kMedian;
       break;
   }

@@ -253,6 +253,11 @@ MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides) {
   return result;
 }
 
+bool can_prune(const MethodParameters& parameters) {
+  return parameters.levels > 1 && parameters.aggregation == Aggregation::kBayes &&
+         !is_evidence(parameters);
+}
+
 MethodParameters at_level(const MethodParameters& parameters, int level) {
   MethodParameters result = parameters;
   if (level == 0 && parameters.levels > 1) {

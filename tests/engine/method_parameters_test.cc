@@ -71,7 +71,13 @@ TEST(MethodParameters, OverridesGoBeforePresetsBeforeTheBook) {
   const MethodParameters resolved = options.resolved();
   EXPECT_EQ(resolved.iterations, 77);
   EXPECT_EQ(resolved.aggregation, Aggregation::kMembrane);
-  EXPECT_EQ(resolved.cost, MatchCost::kCensus);  // the preset's goes with a membrane too
+  EXPECT_EQ(resolved.cost, MatchCost::kSmallCensus);  // the preset's goes with a membrane too
+  EXPECT_EQ(resolved.levels, *preset.parameters.levels);
+  EXPECT_EQ(resolved.candidate_blocks, 0);  // which cannot be pruned
+  EXPECT_EQ(complaint(options), "");
+  options.disparities_y = DisparityRange{-1, 1};
+  EXPECT_EQ(options.resolved().levels, 1);  // nor go from coarse to fine in two dimensions
+  EXPECT_EQ(complaint(options), "");
   EXPECT_EQ(resolved.sigma_measurement, *preset.parameters.sigma_measurement);
   EXPECT_EQ(options.resolved_refinement().speckle_size_px, 3);
   EXPECT_FALSE(options.resolved_refinement().cross_check);
