@@ -14,6 +14,14 @@ struct MethodCase {
   MatchOptions options;  ///< raw, without sub-pixel
 };
 
+/// Whether cells are rounded to steps on the way, so that they stay within other bounds of the
+/// plain transcription than floats: combined costs (stage_cost_test), stored levels
+/// (coarse_to_fine_test).
+inline bool is_stepped(const MethodCase& method) {
+  const MethodParameters parameters = method.options.resolved();
+  return parameters.cost == MatchCost::kCombined || parameters.levels > 1;
+}
+
 /// What test runners print of a case instead of its bytes.
 inline void PrintTo(const MethodCase& method, std::ostream* stream) { *stream << method.name; }
 

@@ -149,6 +149,9 @@ INSTANTIATE_TEST_SUITE_P(
 class AwkwardShapes : public ::testing::TestWithParam<MethodCase> {};
 
 TEST_P(AwkwardShapes, EqualTheOracle) {
+  if (testing::is_stepped(GetParam())) {
+    GTEST_SKIP() << "cells are rounded to steps: see stage_cost_test, coarse_to_fine_test";
+  }
   struct Shape {
     int width;
     int height;

@@ -30,6 +30,9 @@ class PhotographMethods : public ::testing::TestWithParam<MethodCase> {
 };
 
 TEST_P(PhotographMethods, EqualTheOracleOnARenderedScene) {
+  if (testing::is_stepped(GetParam())) {
+    GTEST_SKIP() << "cells are rounded to steps: see stage_cost_test, coarse_to_fine_test";
+  }
   static const PhotographPair pair = [] {
     Execution execution({.threads = 2});
     LayeredSceneOptions options;
@@ -46,6 +49,9 @@ TEST_P(PhotographMethods, EqualTheOracleOnARenderedScene) {
 }
 
 TEST_P(PhotographMethods, EqualTheOracleOnAPhotographedScene) {
+  if (testing::is_stepped(GetParam())) {
+    GTEST_SKIP() << "cells are rounded to steps: see stage_cost_test, coarse_to_fine_test";
+  }
   const std::filesystem::path folder = std::filesystem::path(VANTAGE_SHARED_DATA) / "cones_half";
   if (!std::filesystem::is_directory(folder)) {
     GTEST_SKIP() << "no photographs at " << folder;
