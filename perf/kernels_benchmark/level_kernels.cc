@@ -20,8 +20,8 @@ constexpr std::size_t kCoarseCells = kFineCells / 2;
 class Rows {
  public:
   void reduce_likelihoods() {
-    kernels::reduce_likelihoods_row({upper_.data(), lower_.data(), kColumns, kLanes}, work_.data(),
-                                    bytes_.data());
+    kernels::reduce_likelihoods_row({upper_.data(), lower_.data(), kColumns, kLanes}, 1,
+                                    work_.data(), bytes_.data());
   }
   void likelihoods_of_compact() {
     kernels::likelihoods_of_compact_row({compact_.data(), kColumns, kLanes, kLanes},
