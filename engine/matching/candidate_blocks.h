@@ -112,10 +112,11 @@ int candidates_in(const CandidateBlocks* blocks, int count);
 class BlockSegments {
  public:
   explicit BlockSegments(BlockList blocks);
-  /// Ascending, the last one the number of lanes.
-  [[nodiscard]] std::span<const int> ends() const {
+  /// Ascending, the last one the number of lanes. They lie in this object.
+  [[nodiscard]] std::span<const int> ends() const& {
     return {ends_.data(), static_cast<std::size_t>(count_)};
   }
+  std::span<const int> ends() && = delete;  // a loop over them would outlive the object
 
  private:
   std::array<int, CandidateBlocks::kMostBlocks> ends_;

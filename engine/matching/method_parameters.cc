@@ -11,6 +11,10 @@
 namespace vantage {
 namespace {
 
+bool is_census(MatchCost cost) {
+  return cost == MatchCost::kCensus || cost == MatchCost::kSmallCensus;
+}
+
 // 181² · 255² is the largest windowed sum of squares that fits 31 bits.
 constexpr int kMaxWindow = 181;
 constexpr int kMaxIterations = 10000;
@@ -190,13 +194,12 @@ void validate_combination(const MethodParameters& parameters) {
         "both signs; expected certainty entropy");
   }
   const bool is_in_grey_levels =
-      parameters.cost != MatchCost::kGradient && parameters.cost != MatchCost::kCensus;
+      parameters.cost != MatchCost::kGradient && !is_census(parameters.cost);
   if (parameters.estimate_sigma_measurement && uses_sigma_measurement(parameters) &&
       !is_in_grey_levels) {
     throw UsageError(
-        "sigma-measurement is estimated, which gives grey levels, but the costs gradient and "
-        "census "
-        "are none; expected a number");
+        "sigma-measurement is estimated, which gives grey levels, but the costs gradient, census "
+        "and census-5x5 are none; expected a number");
   }
 }
 
@@ -275,7 +278,7 @@ bool uses_sigma_measurement(const MethodParameters& parameters) {
 }
 
 bool uses_pair_levels(const MethodParameters& parameters) {
-  return (parameters.match_exposure && parameters.cost != MatchCost::kCensus) ||
+  return (parameters.match_exposure && !is_census(parameters.cost)) ||
          (parameters.estimate_sigma_measurement && uses_sigma_measurement(parameters));
 }
 

@@ -74,8 +74,9 @@ class BlockSelectionStage final : public scheduler::RowStage {
   [[nodiscard]] Choice select(const scheduler::RowTask& task,
                               const CandidateBlocks::Run& run) const {
     Choice best;
+    const BlockSegments segments(run.blocks);
     int lane = 0;
-    for (const int end : BlockSegments(run.blocks).ends()) {
+    for (const int end : segments.ends()) {
       const Choice choice = select_segment(task, run, {lane, end});
       for (std::size_t j = 0; j < static_cast<std::size_t>(run.columns.size()); ++j) {
         if (lane == 0 || std::isnan(best.probability[j]) ||

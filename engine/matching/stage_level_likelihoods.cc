@@ -69,8 +69,9 @@ class LevelLikelihoodStage final : public LevelSourceStage {
     auto* output = reinterpret_cast<float*>(task.output);
     for (int x = task.columns.begin; x < task.columns.end; ++x, output += blocks_->lanes()) {
       const BlockList blocks = blocks_->at(x, task.y);
+      const BlockSegments segments(blocks);
       int lane = 0;
-      for (const int end : BlockSegments(blocks).ends()) {
+      for (const int end : segments.ends()) {
         const int first = blocks[static_cast<std::size_t>(lane / kernels::kLaneMultiple)] *
                           kernels::kLaneMultiple;
         kernels::likelihoods_of_compact_row(

@@ -280,7 +280,7 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   prepared->parameters = parameters_;
   prepared->of_right = {};
   if (levels_) {
-    clock.begin("levels");
+    clock.begin("grey levels");
     settle_levels(left, right, *prepared, times);
     clock.begin("prepare");
   }
@@ -363,7 +363,7 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
   prepared->parameters = parameters_;
   std::vector<LevelChanges> changes(others.size());
   if (levels_) {
-    clock.begin("levels");
+    clock.begin("grey levels");
     changes = settle_levels(reference, others, *prepared, times);
     clock.begin("prepare");
   }
