@@ -73,8 +73,14 @@ constexpr KernelWork negated_evidence_work(bool octagon, int channels) {
 }
 /// Twice exclusive or and counting the bits of bytes, and three additions of those counts.
 constexpr KernelWork hamming_work(int channels) { return compare_work(7, 2, channels); }
-/// The same of one code.
-constexpr KernelWork small_hamming_work(int channels) { return compare_work(5, 1, channels); }
+/// The same of three bytes, a quarter of a value each, and their sum.
+constexpr KernelWork small_hamming_work(int channels) {
+  const double mean = channels == 1 ? 0 : 1;
+  return {8.0 * channels + mean, 0, 0.75 * channels + 1, 0.75 * channels};
+}
+/// With one channel, and a value looked up by distance.
+inline constexpr KernelWork kSmallCensusLikelihoodWork = small_hamming_work(1);
+inline constexpr KernelWork kSmallCensusEnergyWork = {3.0 * 2 + 2, 0, 0.75 + 0.25, 0.75};
 
 /// Of grey levels two distances of three operations and the least of them; of gradients two
 /// differences of two joined by or, and their sum; both scaled and cut off to steps. Then the sum
@@ -204,6 +210,9 @@ constexpr KernelWork bayes_general_work(BayesState state, int prior_radius, bool
 /// the largest of them; then the difference in steps, cut. A byte is a quarter of a value.
 inline constexpr KernelWork kReduceLikelihoodsWork = {4 + 3 + kLogOperations + 1 + 3,
                                                       kLaneTreeOperations, 4 + 0.25, 0};
+/// The same of bytes: their sum and the least of them, then the difference times the weight.
+inline constexpr KernelWork kReduceCompactEnergiesWork = {3 + 1 + 2, kLaneTreeOperations,
+                                                          4 * 0.25 + 0.25, 0};
 inline constexpr KernelWork kExpandCompactWork = {1 + kExp2Operations, 0, 0.25 + 1, 0};
 inline constexpr KernelWork kCompactProbabilitiesWork = {1 + kLogOperations + 3, 0, 1 + 0.25, 0};
 /// Start of four columns from one of the coarser level: made once, then copied, along the row and

@@ -236,16 +236,23 @@ void prepare_combined(const Photograph& photograph, const MethodParameters& para
 }
 
 void prepare_small_census(Margins margins, Execution& execution, CostImage::Planes& planes) {
-  for_each_channel(planes, [&](std::size_t c) { resize(planes.codes[c][0], planes, margins); });
+  for_each_channel(planes, [&](std::size_t c) {
+    for (FeaturePlane<std::uint8_t>& bytes : planes.small_codes[c]) {
+      resize(bytes, planes, margins);
+    }
+  });
   for_each_row(planes, execution, [&](std::size_t c, int y) {
     kernels::SmallCensusRows rows{};
     for (int v = -kernels::kSmallCensusRadius; v <= kernels::kSmallCensusRadius; ++v) {
       rows[static_cast<std::size_t>(v + kernels::kSmallCensusRadius)] =
           planes.levels[c].row(std::clamp(y + v, 0, planes.height - 1));
     }
-    FeaturePlane<std::uint32_t>& codes = planes.codes[c][0];
-    kernels::small_census_code_row(rows, planes.width, codes.plain.row(y));
-    codes.finish_row(planes.width, y, planes.has_mirrored);
+    auto& [first, second, third] = planes.small_codes[c];
+    kernels::small_census_code_row(rows, planes.width,
+                                   {first.plain.row(y), second.plain.row(y), third.plain.row(y)});
+    for (FeaturePlane<std::uint8_t>& bytes : planes.small_codes[c]) {
+      bytes.finish_row(planes.width, y, planes.has_mirrored);
+    }
   });
 }
 
@@ -306,6 +313,7 @@ std::size_t CostImage::held_bytes() const {
   for (std::size_t c = 0; c < planes_->features.size(); ++c) {
     add(planes_->features[c]);
     add(planes_->codes[c]);
+    add(planes_->small_codes[c]);
     add(planes_->fixed_levels[c]);
   }
   add(planes_->fixed_gradients);

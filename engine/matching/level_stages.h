@@ -26,7 +26,7 @@ kernels::BlockRow<Cell> block_row(const LevelVolume& finer, int y) {
 }
 
 /// Last stage that makes the volume of the next coarser level: what all formats share. Input cells
-/// are float, geometry.lanes() a column.
+/// have geometry.lanes() a column.
 class LevelReductionStage : public scheduler::RowStage {
  public:
   LevelReductionStage(const kernels::CandidateGeometry& geometry, LevelVolume& coarser)
@@ -52,10 +52,11 @@ class LevelReductionStage : public scheduler::RowStage {
   [[nodiscard]] LevelVolume& coarser() const { return coarser_; }
 
   /// The blocks of a task.
-  [[nodiscard]] kernels::BlockRow<float> blocks(const scheduler::RowTask& task) const {
+  template <typename Cell>
+  [[nodiscard]] kernels::BlockRow<Cell> blocks(const scheduler::RowTask& task) const {
     const int first = 2 * task.columns.begin;
     const auto row = [&](int y) {
-      return task.input.row<float>(y) +
+      return task.input.row<Cell>(y) +
              static_cast<std::ptrdiff_t>(first - task.input.columns().begin) * lanes_;
     };
     return {.upper = row(2 * task.y),

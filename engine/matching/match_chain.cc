@@ -11,6 +11,7 @@
 
 #include "engine/error.h"
 #include "engine/matching/cost_bounds.h"
+#include "engine/matching/small_census_tables.h"
 #include "engine/matching/stage_bayes.h"
 #include "engine/matching/stage_block_selection.h"
 #include "engine/matching/stage_block_source.h"
@@ -21,6 +22,7 @@
 #include "engine/matching/stage_disparity_prior.h"
 #include "engine/matching/stage_level_energies.h"
 #include "engine/matching/stage_level_likelihoods.h"
+#include "engine/matching/stage_small_census_energy.h"
 #include "engine/matching/stage_smoothing.h"
 #include "engine/matching/stage_window_selection.h"
 
@@ -99,6 +101,14 @@ CostBounds bounds_of(const MethodParameters& parameters, const ChainInput& input
   return bounds;
 }
 
+/// Whether energies that coarse levels are made of fit bytes before they are summed up: of the
+/// costs that are few whole numbers.
+bool has_byte_energies(const MethodParameters& parameters, const ChainInput& input) {
+  return parameters.aggregation == Aggregation::kBayes &&
+         parameters.cost == MatchCost::kSmallCensus && parameters.colour == ColourUse::kLuma &&
+         input.partners.size() == 1 && input.prior_px.empty();
+}
+
 WindowSelectionSettings window_selection(const MethodParameters& parameters) {
   WindowSelectionSettings settings;
   settings.radius = parameters.window_px / 2;
@@ -122,14 +132,11 @@ MatchChain::MatchChain(const MethodParameters& parameters,
     return;
   }
   half_scale_ = half_scale(bounds_of(parameters, input));
-  add_costs(parameters, input, level);
   if (level.reduced != nullptr) {
-    add(parameters.aggregation == Aggregation::kBayes
-            ? make_likelihood_reduction_stage(
-                  geometry_, static_cast<float>(parameters.level_weight), *level.reduced)
-            : make_energy_reduction_stage(geometry_, half_scale_, *level.reduced));
+    add_reduction(parameters, input, level);
     return;
   }
+  add_costs(parameters, input, level);
   if (level.coarser != nullptr && parameters.aggregation != Aggregation::kBayes) {
     add(make_coarser_energy_stage(geometry_, height_,
                                   parameters.aggregation == Aggregation::kMembrane
@@ -166,6 +173,23 @@ void MatchChain::add_all(std::vector<std::unique_ptr<scheduler::RowStage>> stage
   for (auto& stage : stages) {
     add(std::move(stage));
   }
+}
+
+/// The way down to the next coarser level.
+void MatchChain::add_reduction(const MethodParameters& parameters, const ChainInput& input,
+                               const ChainLevel& level) {
+  const auto weight = static_cast<float>(parameters.level_weight);
+  if (has_byte_energies(parameters, input)) {
+    add(make_small_census_energy_stage(parameters, geometry_, *input.reference,
+                                       input.partners.front(), height_));
+    add(make_byte_energy_reduction_stage(geometry_, small_census_energies(parameters).step, weight,
+                                         *level.reduced));
+    return;
+  }
+  add_costs(parameters, input, level);
+  add(parameters.aggregation == Aggregation::kBayes
+          ? make_likelihood_reduction_stage(geometry_, weight, *level.reduced)
+          : make_energy_reduction_stage(geometry_, half_scale_, *level.reduced));
 }
 
 /// What the level starts from: costs of the images, or of the level as they were stored.

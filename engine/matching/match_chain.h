@@ -76,6 +76,8 @@ class MatchChain {
  private:
   void add(std::unique_ptr<scheduler::RowStage> stage);
   void add_all(std::vector<std::unique_ptr<scheduler::RowStage>> stages);
+  void add_reduction(const MethodParameters& parameters, const ChainInput& input,
+                     const ChainLevel& level);
   void add_costs(const MethodParameters& parameters, const ChainInput& input,
                  const ChainLevel& level);
   void add_column_ssd(const MethodParameters& parameters, const PreparedPair& pair);

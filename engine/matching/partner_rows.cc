@@ -114,17 +114,21 @@ FeaturePairs<float, kPlanes> PartnerRows::features(int y, Range columns) const {
 template FeaturePairs<float, 1> PartnerRows::features(int y, Range columns) const;
 template FeaturePairs<float, 3> PartnerRows::features(int y, Range columns) const;
 
-template <int kPlanes>
-FeaturePairs<std::uint32_t, kPlanes> PartnerRows::codes(int y, Range columns) const {
-  return pairs<std::uint32_t, kPlanes>(
+kernels::CensusPairs PartnerRows::codes(int y, Range columns) const {
+  return pairs<std::uint32_t, 2>(
       y, columns, channels(), [](const CostImage::Planes& planes, int channel) -> const auto& {
         return planes.codes[static_cast<std::size_t>(channel)];
       });
 }
-template FeaturePairs<std::uint32_t, 1> PartnerRows::codes(int y, Range columns) const;
-template FeaturePairs<std::uint32_t, 2> PartnerRows::codes(int y, Range columns) const;
 
-FeaturePairs<std::uint32_t, 2> PartnerRows::luma_codes(int y, Range columns) const {
+kernels::SmallCensusPairs PartnerRows::small_codes(int y, Range columns) const {
+  return pairs<std::uint8_t, kernels::kSmallCensusBytes>(
+      y, columns, channels(), [](const CostImage::Planes& planes, int channel) -> const auto& {
+        return planes.small_codes[static_cast<std::size_t>(channel)];
+      });
+}
+
+kernels::CensusPairs PartnerRows::luma_codes(int y, Range columns) const {
   return pairs<std::uint32_t, 2>(
       y, columns, 1, [](const CostImage::Planes& planes, int /*channel*/) -> const auto& {
         return planes.codes[0];

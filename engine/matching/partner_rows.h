@@ -8,6 +8,7 @@
 #include "engine/matching/stage_cost.h"
 #include "kernels/candidate_interpolation/candidate_interpolation.h"
 #include "kernels/candidates.h"
+#include "kernels/census/census.h"
 #include "kernels/feature_pairs.h"
 #include "scheduler/range.h"
 
@@ -39,22 +40,19 @@ class PartnerRows {
   /// for interpolated partners.
   [[nodiscard]] const kernels::CandidateGeometry& geometry() const { return geometry_; }
 
-  /// The first `kPlanes` feature planes, or the census codes, of the columns of row y and of their
+  /// The first `kPlanes` feature planes, or census codes, of the columns of row y and of their
   /// partners; of rows outside, the nearest one's. Not for interpolated partners.
   template <int kPlanes>
   [[nodiscard]] kernels::FeaturePairs<float, kPlanes> features(int y,
                                                                scheduler::Range columns) const;
-  /// kPlanes: 2, of small codes 1.
-  template <int kPlanes>
-  [[nodiscard]] kernels::FeaturePairs<std::uint32_t, kPlanes> codes(int y,
-                                                                    scheduler::Range columns) const;
+  [[nodiscard]] kernels::CensusPairs codes(int y, scheduler::Range columns) const;
+  [[nodiscard]] kernels::SmallCensusPairs small_codes(int y, scheduler::Range columns) const;
   /// The planes of the combined cost; gradients and the codes there are of one channel.
   [[nodiscard]] kernels::FeaturePairs<std::uint16_t, 3> fixed_levels(
       int y, scheduler::Range columns) const;
   [[nodiscard]] kernels::FeaturePairs<std::uint16_t, 2> fixed_gradients(
       int y, scheduler::Range columns) const;
-  [[nodiscard]] kernels::FeaturePairs<std::uint32_t, 2> luma_codes(int y,
-                                                                   scheduler::Range columns) const;
+  [[nodiscard]] kernels::CensusPairs luma_codes(int y, scheduler::Range columns) const;
   /// The first feature plane; interpolated in `work` where necessary.
   [[nodiscard]] kernels::FeaturePairs<float, 1> grey_levels(int y, scheduler::Range columns,
                                                             float* work) const;

@@ -12,10 +12,12 @@
 #include "engine/matching/column_work.h"
 #include "engine/matching/combined_terms.h"
 #include "engine/matching/partner_rows.h"
+#include "engine/matching/small_census_tables.h"
 #include "kernels/census/census.h"
 #include "kernels/combined_cost/combined_cost.h"
 #include "kernels/evidence/evidence.h"
 #include "kernels/pixel_cost/pixel_cost.h"
+#include "kernels/small_census/small_census.h"
 
 namespace vantage {
 namespace {
@@ -40,6 +42,7 @@ class CostStage final : public scheduler::RowStage {
                                                         : kernels::CombinedCells::kLikelihood),
         combined_of_luma_(combined_model(1)),
         combined_of_channels_(combined_model(3)),
+        likelihood_by_distance_(small_census_likelihoods(measurement_)),
         without_partner_(value_without_partner()) {}
 
   [[nodiscard]] std::string_view name() const override { return "cost"; }
@@ -162,6 +165,11 @@ class CostStage final : public scheduler::RowStage {
         return energy_work(channels) + kernels::kLikelihoodOfEvidenceWork;
       case MatchCost::kCombined:
         return energy_work(channels);
+      case MatchCost::kSmallCensus:
+        if (channels == 1) {
+          return kernels::kSmallCensusLikelihoodWork;
+        }
+        [[fallthrough]];
       default:
         return energy_work(channels) + kernels::kLikelihoodOfCostsWork;
     }
@@ -209,10 +217,10 @@ class CostStage final : public scheduler::RowStage {
                                       parameters_.norm == GradientNorm::kOctagon, cells);
         break;
       case MatchCost::kCensus:
-        kernels::hamming_row(partner.codes<2>(y, columns), cells);
+        kernels::hamming_row(partner.codes(y, columns), cells);
         break;
       case MatchCost::kSmallCensus:
-        kernels::hamming_row(partner.codes<1>(y, columns), cells);
+        kernels::small_hamming_row(partner.small_codes(y, columns), cells);
         break;
       case MatchCost::kCombined:
         combine(partner, y, columns, cells);
@@ -247,6 +255,13 @@ class CostStage final : public scheduler::RowStage {
       case MatchCost::kCombined:
         combine(partner, y, columns, cells);
         break;
+      case MatchCost::kSmallCensus:
+        if (partner.channels() == 1) {
+          kernels::small_census_likelihood_row(partner.small_codes(y, columns),
+                                               likelihood_by_distance_, cells);
+          break;
+        }
+        [[fallthrough]];
       default:
         energies(partner, y, columns, work, cells);
         kernels::likelihood_of_costs({columns.size(), lanes_, count_}, measurement_, cells);
@@ -298,6 +313,7 @@ class CostStage final : public scheduler::RowStage {
   kernels::CombinedCells combined_cells_;
   kernels::CombinedModel combined_of_luma_;
   kernels::CombinedModel combined_of_channels_;
+  kernels::LikelihoodByDistance likelihood_by_distance_;
   std::optional<float> without_partner_;
 };
 

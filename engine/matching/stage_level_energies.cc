@@ -23,7 +23,7 @@ class EnergyReductionStage final : public LevelReductionStage {
   }
 
   void make_row(const scheduler::RowTask& task) const override {
-    kernels::reduce_energies_row(blocks(task), scale_,
+    kernels::reduce_energies_row(blocks<float>(task), scale_,
                                  coarser().column<std::uint16_t>(task.columns.begin, task.y));
   }
 

@@ -29,12 +29,33 @@ class LikelihoodReductionStage final : public LevelReductionStage {
   }
 
   void make_row(const scheduler::RowTask& task) const override {
-    kernels::reduce_likelihoods_row(blocks(task), weight_, reinterpret_cast<float*>(task.state),
+    kernels::reduce_likelihoods_row(blocks<float>(task), weight_,
+                                    reinterpret_cast<float*>(task.state),
                                     coarser().column<std::uint8_t>(task.columns.begin, task.y));
   }
 
  private:
   float weight_;
+};
+
+class ByteEnergyReductionStage final : public LevelReductionStage {
+ public:
+  ByteEnergyReductionStage(const kernels::CandidateGeometry& geometry, float step, float weight,
+                           LevelVolume& coarser)
+      : LevelReductionStage(geometry, coarser), weight_(weight * (step / kernels::kEnergyStep)) {}
+
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    return vantage::column_work(kernels::kReduceCompactEnergiesWork, count());
+  }
+
+  void make_row(const scheduler::RowTask& task) const override {
+    kernels::reduce_compact_energies_row(
+        blocks<std::uint8_t>(task), weight_,
+        coarser().column<std::uint8_t>(task.columns.begin, task.y));
+  }
+
+ private:
+  float weight_;  ///< of sums in steps of `step`, to compact ones
 };
 
 class LevelLikelihoodStage final : public LevelSourceStage {
@@ -169,6 +190,11 @@ class LevelProbabilityStage final : public LevelStoreStage {
 std::unique_ptr<scheduler::RowStage> make_likelihood_reduction_stage(
     const kernels::CandidateGeometry& geometry, float weight, LevelVolume& coarser) {
   return std::make_unique<LikelihoodReductionStage>(geometry, weight, coarser);
+}
+
+std::unique_ptr<scheduler::RowStage> make_byte_energy_reduction_stage(
+    const kernels::CandidateGeometry& geometry, float step, float weight, LevelVolume& coarser) {
+  return std::make_unique<ByteEnergyReductionStage>(geometry, step, weight, coarser);
 }
 
 void reduce_energy_row(const LevelVolume& finer, int y, float weight, LevelVolume& coarser) {

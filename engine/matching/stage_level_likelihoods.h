@@ -11,15 +11,19 @@
 
 namespace vantage {
 
-// Coarse levels of Bayesian diffusion, in a byte a cell (kernels/compact_likelihoods). All stages
-// see float cells, geometry.lanes() a column; volumes must have that many lanes of one byte and
-// outlive the stages.
+// Coarse levels of Bayesian diffusion, in a byte a cell (kernels/compact_likelihoods). Stages see
+// float cells where nothing else is said, geometry.lanes() a column; volumes must have that many
+// lanes of one byte and outlive the stages.
 
 /// Last stage: the energies −ln p0 of the next coarser level, each `weight` (above 0, at most 1)
 /// times the sum of those of four columns (BlockRow), from the likelihoods of a level of
 /// geometry.width columns.
 std::unique_ptr<scheduler::RowStage> make_likelihood_reduction_stage(
     const kernels::CandidateGeometry& geometry, float weight, LevelVolume& coarser);
+/// The same from energies in bytes, in steps of `step`, at most those of compact energies. Lanes
+/// that are no candidates hold nothing less than any candidate does.
+std::unique_ptr<scheduler::RowStage> make_byte_energy_reduction_stage(
+    const kernels::CandidateGeometry& geometry, float step, float weight, LevelVolume& coarser);
 /// Row y of `coarser` from the energies of a coarse level.
 void reduce_energy_row(const LevelVolume& finer, int y, float weight, LevelVolume& coarser);
 

@@ -31,21 +31,24 @@ inline constexpr int kSmallCensusBits = 24;
 /// Rows y − 2 … y + 2 of an image.
 using SmallCensusRows = std::array<const float*, 2 * kSmallCensusRadius + 1>;
 
-/// The same with the 24 neighbours in a window of 5×5, in one word. Rows are read from column −2
-/// on, up to the next multiple of kLaneMultiple and 2 columns more.
-void small_census_code_row(const SmallCensusRows& rows, int width, std::uint32_t* codes);
-void small_census_code_row_ref(const SmallCensusRows& rows, int width, std::uint32_t* codes);
+/// A code's 24 bits, 8 to a byte, so that a vector of bytes compares as many candidates.
+inline constexpr int kSmallCensusBytes = 3;
+using SmallCensusCodes = std::array<std::uint8_t*, kSmallCensusBytes>;
+
+/// The same with the 24 neighbours in a window of 5×5, the first eight in the first byte. Rows are
+/// read from column −2 on, up to the next multiple of kLaneMultiple and 2 columns more.
+void small_census_code_row(const SmallCensusRows& rows, int width, const SmallCensusCodes& codes);
+void small_census_code_row_ref(const SmallCensusRows& rows, int width,
+                               const SmallCensusCodes& codes);
 
 /// Planes: the two halves of census codes.
 using CensusPairs = FeaturePairs<std::uint32_t, 2>;
-/// Plane: small census codes.
-using SmallCensusPairs = FeaturePairs<std::uint32_t, 1>;
+/// Planes: the bytes of small census codes.
+using SmallCensusPairs = FeaturePairs<std::uint8_t, kSmallCensusBytes>;
 
-/// Hamming distances of codes, 0..62; of small ones, 0..24. Of three channels: the mean. Writes
-/// columns × lanes floats, identical on every instruction set.
+/// Hamming distances of codes, 0..62. Of three channels: the mean. Writes columns × lanes floats,
+/// identical on every instruction set. Small codes: kernels/small_census.
 void hamming_row(const CensusPairs& row, float* cells);
-void hamming_row(const SmallCensusPairs& row, float* cells);
 void hamming_row_ref(const CensusPairs& row, float* cells);
-void hamming_row_ref(const SmallCensusPairs& row, float* cells);
 
 }  // namespace vantage::kernels

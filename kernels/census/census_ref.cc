@@ -22,43 +22,38 @@ void census_code_row_ref(const CensusRows& rows, int width, std::uint32_t* first
   }
 }
 
-void small_census_code_row_ref(const SmallCensusRows& rows, int width, std::uint32_t* codes) {
+void small_census_code_row_ref(const SmallCensusRows& rows, int width,
+                               const SmallCensusCodes& codes) {
   for (int x = 0; x < width; ++x) {
     const float centre = rows[kSmallCensusRadius][x];
-    codes[x] = 0;
+    std::uint32_t code = 0;
     for (const float* row : rows) {
       for (int u = -kSmallCensusRadius; u <= kSmallCensusRadius; ++u) {
         if (u != 0 || row != rows[kSmallCensusRadius]) {
-          codes[x] = 2 * codes[x] + (row[x + u] < centre ? 1 : 0);
+          code = 2 * code + (row[x + u] < centre ? 1 : 0);
         }
       }
     }
+    codes[0][x] = static_cast<std::uint8_t>(code >> 16U);
+    codes[1][x] = static_cast<std::uint8_t>(code >> 8U);
+    codes[2][x] = static_cast<std::uint8_t>(code);
   }
 }
 
-namespace {
-
-template <int kPlanes>
-void hamming_row_plainly(const FeaturePairs<std::uint32_t, kPlanes>& row, float* cells) {
+void hamming_row_ref(const CensusPairs& row, float* cells) {
   for (int j = 0; j < row.columns; ++j) {
     for (int i = 0; i < row.lanes; ++i) {
       const int k = j * row.partner_step + i;
       int different = 0;
       for (int c = 0; c < row.channels; ++c) {
         const auto& [reference, partner] = row.channel[static_cast<std::size_t>(c)];
-        for (std::size_t p = 0; p < kPlanes; ++p) {
-          different += std::popcount(reference[p][j] ^ partner[p][k]);
-        }
+        different += std::popcount(reference[0][j] ^ partner[0][k]) +
+                     std::popcount(reference[1][j] ^ partner[1][k]);
       }
       const auto distance = static_cast<float>(different);
       cells[j * row.lanes + i] = row.channels > 1 ? distance * (1.0F / 3.0F) : distance;
     }
   }
 }
-
-}  // namespace
-
-void hamming_row_ref(const CensusPairs& row, float* cells) { hamming_row_plainly(row, cells); }
-void hamming_row_ref(const SmallCensusPairs& row, float* cells) { hamming_row_plainly(row, cells); }
 
 }  // namespace vantage::kernels

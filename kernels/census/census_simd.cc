@@ -19,7 +19,6 @@ using Vec = hn::VFromD<Tag>;
 using TagCode = hn::ScalableTag<std::uint32_t>;
 using VecCode = hn::VFromD<TagCode>;
 using Code = Features<std::uint32_t, 2>;
-using SmallCode = Features<std::uint32_t, 1>;
 
 // Shifts `half` to the left and puts in whether the neighbours are less than the centre.
 HWY_INLINE void append(const float* neighbours, Vec centre, VecCode& half) {
@@ -56,9 +55,11 @@ void census_codes(const CensusRows& rows, int width, std::uint32_t* first_half,
   }
 }
 
-void small_census_codes(const SmallCensusRows& rows, int width, std::uint32_t* codes) {
+void small_census_codes(const SmallCensusRows& rows, int width, const SmallCensusCodes& codes) {
   const Tag d;
   const TagCode d32;
+  const hn::Rebind<std::uint8_t, TagCode> d8;
+  const VecCode least_byte = hn::Set(d32, 0xFF);
   for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(d))) {
     const Vec centre = hn::LoadU(d, rows[kSmallCensusRadius] + x);
     VecCode code = hn::Zero(d32);
@@ -69,7 +70,13 @@ void small_census_codes(const SmallCensusRows& rows, int width, std::uint32_t* c
         }
       }
     }
-    hn::StoreU(code, d32, codes + x);
+    const auto store = [&](VecCode bits, std::uint8_t* bytes) HWY_ATTR {
+      const auto low = hn::BitCast(hn::ScalableTag<std::int32_t>(), hn::And(bits, least_byte));
+      hn::StoreU(hn::DemoteTo(d8, low), d8, bytes + x);
+    };
+    store(hn::ShiftRight<16>(code), codes[0]);
+    store(hn::ShiftRight<8>(code), codes[1]);
+    store(code, codes[2]);
   }
 }
 
@@ -93,36 +100,17 @@ HWY_INLINE VecCode count_bits(const Code& code) {
                            hn::PopulationCount(hn::BitCast(d8, code[1]))));
 #endif
 }
-HWY_INLINE VecCode count_bits(const SmallCode& code) {
-#if HWY_TARGET == HWY_SCALAR
-  return hn::PopulationCount(code[0]);
-#else
-  const hn::Repartition<std::uint8_t, TagCode> d8;
-  return add_bytes(hn::PopulationCount(hn::BitCast(d8, code[0])));
-#endif
-}
 
 struct Hamming {
   HWY_INLINE Vec operator()(const Code& reference, const Code& partner) const {
-    return distance(Code{hn::Xor(reference[0], partner[0]), hn::Xor(reference[1], partner[1])});
-  }
-  HWY_INLINE Vec operator()(const SmallCode& reference, const SmallCode& partner) const {
-    return distance(SmallCode{hn::Xor(reference[0], partner[0])});
-  }
-  HWY_INLINE Vec finish(Vec cost) const { return cost; }
-
- private:
-  template <class AnyCode>
-  HWY_INLINE Vec distance(const AnyCode& different) const {
+    const Code different{hn::Xor(reference[0], partner[0]), hn::Xor(reference[1], partner[1])};
     return hn::ConvertTo(Tag(),
                          hn::BitCast(hn::ScalableTag<std::int32_t>(), count_bits(different)));
   }
+  HWY_INLINE Vec finish(Vec cost) const { return cost; }
 };
 
 void hamming(const CensusPairs& row, float* cells) { compare_row<false>(row, Hamming(), cells); }
-void small_hamming(const SmallCensusPairs& row, float* cells) {
-  compare_row<false>(row, Hamming(), cells);
-}
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -132,7 +120,6 @@ namespace vantage::kernels {
 HWY_EXPORT(census_codes);
 HWY_EXPORT(hamming);
 HWY_EXPORT(small_census_codes);
-HWY_EXPORT(small_hamming);
 
 void census_code_row(const CensusRows& rows, int width, std::uint32_t* first_half,
                      std::uint32_t* second_half) {
@@ -141,11 +128,8 @@ void census_code_row(const CensusRows& rows, int width, std::uint32_t* first_hal
 void hamming_row(const CensusPairs& row, float* cells) {
   HWY_DYNAMIC_DISPATCH(hamming)(row, cells);
 }
-void small_census_code_row(const SmallCensusRows& rows, int width, std::uint32_t* codes) {
+void small_census_code_row(const SmallCensusRows& rows, int width, const SmallCensusCodes& codes) {
   HWY_DYNAMIC_DISPATCH(small_census_codes)(rows, width, codes);
-}
-void hamming_row(const SmallCensusPairs& row, float* cells) {
-  HWY_DYNAMIC_DISPATCH(small_hamming)(row, cells);
 }
 
 }  // namespace vantage::kernels

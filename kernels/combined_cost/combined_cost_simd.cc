@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "kernels/cells/byte_cells-inl.h"
 #include "kernels/combined_cost/combined_cost.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -20,38 +21,6 @@ void combined(const CombinedRow& row, const CombinedModel& model, CombinedCells 
   combined_row_ref(row, model, meaning, cells);
 }
 #else
-
-// Cells are made in vectors of bytes, one byte a cell, in `grouped` order: of the four float
-// vectors that the cells become, group g of four lanes of vector s is group s of 128-bit block g.
-// Interleaving bytes to words and words to floats then gives the lanes in order.
-
-template <class D8>
-using Tag16 = hn::Repartition<std::uint16_t, D8>;
-template <class D8>
-using Tag32 = hn::Repartition<std::uint32_t, D8>;
-template <class D8>
-using TagFloat = hn::Repartition<float, D8>;
-template <class D>
-using VecOf = hn::VFromD<D>;
-
-// Bytes in lane order to grouped order.
-template <class D8>
-HWY_INLINE VecOf<D8> grouped(D8 d, VecOf<D8> bytes) {
-  constexpr std::size_t kBlocks = hn::MaxLanes(D8()) / 16;
-  if constexpr (kBlocks == 1) {
-    return bytes;
-  } else {
-    const Tag32<D8> d32;
-    HWY_ALIGN std::int32_t from[4 * kBlocks];
-    for (std::size_t block = 0; block < kBlocks; ++block) {
-      for (std::size_t group = 0; group < 4; ++group) {
-        from[4 * block + group] = static_cast<std::int32_t>(group * kBlocks + block);
-      }
-    }
-    return hn::BitCast(
-        d, hn::TableLookupLanes(hn::BitCast(d32, bytes), hn::SetTableIndices(d32, from)));
-  }
-}
 
 // Steps of two vectors of residuals, in grouped order.
 template <class D8>
@@ -66,19 +35,6 @@ HWY_INLINE VecOf<D8> residual_steps(D8 d, VecOf<Tag16<D8> > first, VecOf<Tag16<D
                         hn::BitCast(signed16, hn::Min(hn::MulHigh(residual, multiplier), last)));
   };
   return grouped(d, hn::Combine(d, bytes(second), bytes(first)));
-}
-
-// The bits that are set in each byte.
-template <class D8>
-HWY_INLINE VecOf<D8> bits_of_bytes(D8 d, VecOf<D8> bytes) {
-  alignas(16) static constexpr std::uint8_t kBits[16] = {0, 1, 1, 2, 1, 2, 2, 3,
-                                                         1, 2, 2, 3, 2, 3, 3, 4};
-  const Tag16<D8> d16;
-  const auto table = hn::LoadDup128(d, kBits);
-  const auto nibble = hn::Set(d, 15);
-  const auto upper = hn::BitCast(d, hn::ShiftRight<4>(hn::BitCast(d16, bytes)));
-  return hn::Add(hn::TableLookupBytes(table, hn::And(bytes, nibble)),
-                 hn::TableLookupBytes(table, hn::And(upper, nibble)));
 }
 
 // Sums of neighbouring kBits / 8 bytes of a in the lower, of b in the upper halves of lanes of

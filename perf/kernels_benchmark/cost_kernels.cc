@@ -8,6 +8,7 @@
 #include "kernels/evidence/evidence.h"
 #include "kernels/gradient/gradient.h"
 #include "kernels/pixel_cost/pixel_cost.h"
+#include "kernels/small_census/small_census.h"
 #include "perf/kernels_benchmark/kernel_benchmark.h"
 
 namespace vantage::perf {
@@ -41,7 +42,13 @@ using Grey = Pairs<float, 1>;
 using Sampled = Pairs<float, 3>;
 using Gradients = Pairs<float, 3>;
 using Codes = Pairs<std::uint32_t, 2>;
-using SmallCodes = Pairs<std::uint32_t, 1>;
+
+/// Distances, and what tables make of them.
+struct SmallCodes : Pairs<std::uint8_t, kernels::kSmallCensusBytes> {
+  AlignedValues<std::uint8_t> bytes{kCellCount};
+  kernels::LikelihoodByDistance likelihoods;
+  kernels::EnergyByDistance energies;
+};
 
 /// All terms of the combined cost.
 struct Combined {
@@ -71,6 +78,7 @@ struct ImageRows {
   AlignedValues<float> third{kStride};
   AlignedValues<std::uint32_t> first_code{kStride};
   AlignedValues<std::uint32_t> second_code{kStride};
+  AlignedValues<std::uint8_t> code_bytes{3 * kStride};
 
   const float* row(std::size_t y) { return pixels.data() + y * kStride + kMargin; }
 
@@ -100,7 +108,8 @@ struct ImageRows {
     for (std::size_t y = 0; y < rows.size(); ++y) {
       rows[y] = row(y);
     }
-    kernels::small_census_code_row(rows, kWidth, first_code.data());
+    std::uint8_t* const bytes = code_bytes.data();
+    kernels::small_census_code_row(rows, kWidth, {bytes, bytes + kStride, bytes + 2 * kStride});
   }
   void bounds() { kernels::sampling_bounds_row(row(0), kWidth, first.data(), second.data()); }
 };
@@ -151,9 +160,20 @@ KernelBenchmarks cost_kernels() {
           [](Gradients& d) { kernels::negated_evidence_row(d.row, true, d.cells.data()); }),
       on_own_data<Codes>("hamming_row", "cell", kCells, per_cell(kernels::hamming_work(1), kLanes),
                          [](Codes& d) { kernels::hamming_row(d.row, d.cells.data()); }),
-      on_own_data<SmallCodes>("hamming_row/5x5", "cell", kCells,
-                              per_cell(kernels::small_hamming_work(1), kLanes),
-                              [](SmallCodes& d) { kernels::hamming_row(d.row, d.cells.data()); }),
+      on_own_data<SmallCodes>(
+          "small_hamming_row", "cell", kCells, per_cell(kernels::small_hamming_work(1), kLanes),
+          [](SmallCodes& d) { kernels::small_hamming_row(d.row, d.cells.data()); }),
+      on_own_data<SmallCodes>("small_census_likelihood_row", "cell", kCells,
+                              per_cell(kernels::kSmallCensusLikelihoodWork, kLanes),
+                              [](SmallCodes& d) {
+                                kernels::small_census_likelihood_row(d.row, d.likelihoods,
+                                                                     d.cells.data());
+                              }),
+      on_own_data<SmallCodes>("small_census_energy_row", "cell", kCells,
+                              per_cell(kernels::kSmallCensusEnergyWork, kLanes),
+                              [](SmallCodes& d) {
+                                kernels::small_census_energy_row(d.row, d.energies, d.bytes.data());
+                              }),
       on_own_data<Combined>("combined_row/energy", "cell", kCells,
                             per_cell(kernels::combined_work(1, true, false), kLanes),
                             [energies](Combined& d) {

@@ -123,9 +123,9 @@ TEST(CoarseToFineOfEdges, EqualsTheOracle) {
         Shape{61, 43, {0, 16}, PixelKind::kGrey8}}) {
     const auto pair = textured_pair(shape.width, shape.height, shape.range, shape.pixels, 3);
     for (const int levels : {1, 2, 5}) {
-      MatchOptions options =
-          options_of(Aggregation::kBayes, MatchCost::kCensus, levels, shape.range);
-      options.parameters.sigma_measurement = 12.4;
+      const MatchCost cost = levels == 5 ? MatchCost::kCensus : MatchCost::kSmallCensus;
+      MatchOptions options = options_of(Aggregation::kBayes, cost, levels, shape.range);
+      options.parameters.sigma_measurement = levels == 5 ? 12.4 : 4.8;
       options.parameters.epsilon_prior = 5e-6;
       options.parameters.final_iterations = 2;
       options.parameters.prior_growth = 1.2;
@@ -187,6 +187,7 @@ INSTANTIATE_TEST_SUITE_P(
     Combinations, CoarseToFine,
     ::testing::Values(Combination{Aggregation::kBayes, MatchCost::kContaminated},
                       Combination{Aggregation::kBayes, MatchCost::kCensus},
+                      Combination{Aggregation::kBayes, MatchCost::kSmallCensus},
                       Combination{Aggregation::kBayes, MatchCost::kGradient},
                       Combination{Aggregation::kMembrane, MatchCost::kSquared},
                       Combination{Aggregation::kDiffusion, MatchCost::kBirchfieldTomasi},

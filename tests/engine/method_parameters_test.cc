@@ -379,8 +379,7 @@ TEST(MatchOptions, CombinationsThatMakeNoSenseAreRefusedWithTheReason) {
   options.parameters.certainty = Certainty::kEntropy;
   EXPECT_EQ(complaint(options), "");
   options.parameters.estimate_sigma_measurement = true;
-  for (const MatchCost cost :
-       {MatchCost::kGradient, MatchCost::kCensus, MatchCost::kSmallCensus}) {
+  for (const MatchCost cost : {MatchCost::kGradient, MatchCost::kCensus, MatchCost::kSmallCensus}) {
     options.parameters.cost = cost;
     options.parameters.certainty = Certainty::kEntropy;
     EXPECT_THAT(complaint(options), HasSubstr("sigma-measurement is estimated"));

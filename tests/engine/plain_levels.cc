@@ -61,12 +61,25 @@ Volume block_means(const Volume& finer) {
   return coarser;
 }
 
-/// `weight` times −log p0 of four columns, above the least of a column.
-Volume block_sums(Volume finer, double weight, StoredCells stored) {
+/// What the sums of the first coarse level are made of: of small census codes bytes, in the finest
+/// steps of 1/8 … 1/128 that −ln ε fits in.
+void make_compact(Volume& costs, const MethodParameters& parameters) {
+  const bool in_bytes =
+      parameters.cost == MatchCost::kSmallCensus && parameters.colour == ColourUse::kLuma;
+  int steps = 128;
+  while (steps > 8 && -std::log(parameters.epsilon_measurement) * steps > 255) {
+    steps /= 2;
+  }
+  for (double& energy : costs.cells) {
+    energy = in_bytes ? std::min(std::nearbyint(steps * energy), 255.0) / steps
+                      : std::min(energy, 31 * std::log(2.0));
+  }
+}
+
+/// The level's weight times −log p0 of four columns, above the least of a column.
+Volume block_sums(Volume finer, const MethodParameters& parameters, StoredCells stored) {
   if (stored == StoredCells::kCompact && !finer.is_coarse) {
-    for (double& energy : finer.cells) {
-      energy = std::min(energy, 31 * std::log(2.0));
-    }
+    make_compact(finer, parameters);
   }
   Volume coarser = block_means(finer);
   for_each_column(coarser, [&](int x, int y) {
@@ -76,9 +89,9 @@ Volume block_sums(Volume finer, double weight, StoredCells stored) {
     }
     for (int i = 0; i < coarser.count(); ++i) {
       double& energy = coarser.at(x, y, i);
-      energy = 4 * weight * (energy - least);
+      energy = 4 * parameters.level_weight * (energy - least);
       if (stored == StoredCells::kCompact) {
-        energy = std::min(std::nearbyint(8 * energy), 255.0) / 8;
+        energy = std::min(std::floor(8 * energy + 0.5), 255.0) / 8;
       }
     }
   });
@@ -87,7 +100,7 @@ Volume block_sums(Volume finer, double weight, StoredCells stored) {
 
 Volume reduced(const Volume& finer, const MethodParameters& parameters, StoredCells stored) {
   if (parameters.aggregation == Aggregation::kBayes) {
-    return block_sums(finer, parameters.level_weight, stored);
+    return block_sums(finer, parameters, stored);
   }
   Volume coarser = block_means(finer);
   if (stored == StoredCells::kCompact) {

@@ -1,0 +1,70 @@
+// Cells in vectors of bytes, one byte a cell; included by dispatched files, once per target.
+
+#if defined(VANTAGE_KERNELS_BYTE_CELLS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef VANTAGE_KERNELS_BYTE_CELLS_INL_H_
+#undef VANTAGE_KERNELS_BYTE_CELLS_INL_H_
+#else
+#define VANTAGE_KERNELS_BYTE_CELLS_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#if HWY_TARGET != HWY_SCALAR
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+
+// Cells are made in vectors of bytes, one byte a cell, in `grouped` order: of the four float
+// vectors that the cells become, group g of four lanes of vector s is group s of 128-bit block g.
+// Interleaving bytes to words and words to floats then gives the lanes in order.
+
+template <class D8>
+using Tag16 = hwy::HWY_NAMESPACE::Repartition<std::uint16_t, D8>;
+template <class D8>
+using Tag32 = hwy::HWY_NAMESPACE::Repartition<std::uint32_t, D8>;
+template <class D8>
+using TagFloat = hwy::HWY_NAMESPACE::Repartition<float, D8>;
+template <class D>
+using VecOf = hwy::HWY_NAMESPACE::VFromD<D>;
+
+// Bytes in lane order to grouped order.
+template <class D8>
+HWY_INLINE VecOf<D8> grouped(D8 d, VecOf<D8> bytes) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  constexpr std::size_t kBlocks = hn::MaxLanes(D8()) / 16;
+  if constexpr (kBlocks == 1) {
+    return bytes;
+  } else {
+    const Tag32<D8> d32;
+    HWY_ALIGN std::int32_t from[4 * kBlocks];
+    for (std::size_t block = 0; block < kBlocks; ++block) {
+      for (std::size_t group = 0; group < 4; ++group) {
+        from[4 * block + group] = static_cast<std::int32_t>(group * kBlocks + block);
+      }
+    }
+    return hn::BitCast(
+        d, hn::TableLookupLanes(hn::BitCast(d32, bytes), hn::SetTableIndices(d32, from)));
+  }
+}
+
+// The bits that are set in each byte.
+template <class D8>
+HWY_INLINE VecOf<D8> bits_of_bytes(D8 d, VecOf<D8> bytes) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  alignas(16) static constexpr std::uint8_t kBits[16] = {0, 1, 1, 2, 1, 2, 2, 3,
+                                                         1, 2, 2, 3, 2, 3, 3, 4};
+  const Tag16<D8> d16;
+  const auto table = hn::LoadDup128(d, kBits);
+  const auto nibble = hn::Set(d, 15);
+  const auto upper = hn::BitCast(d, hn::ShiftRight<4>(hn::BitCast(d16, bytes)));
+  return hn::Add(hn::TableLookupBytes(table, hn::And(bytes, nibble)),
+                 hn::TableLookupBytes(table, hn::And(upper, nibble)));
+}
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
+
+#endif
