@@ -329,14 +329,16 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
       .disparity_px = &maps.left,
       .disparity_y_px = options_.disparities_y ? &maps.left_disparity_y : nullptr,
       .confidence = &maps.left_confidence,
-      .unmatched = &maps.left_unmatched};
+      .unmatched = &maps.left_unmatched,
+      .is_result = request.left};
   const MapToRefine right_map{
       .side = MapSide::kRight,
       .image = &right,
       .disparity_px = &maps.right,
       .disparity_y_px = options_.disparities_y ? &maps.right_disparity_y : nullptr,
       .confidence = &maps.right_confidence,
-      .unmatched = &maps.right_unmatched};
+      .unmatched = &maps.right_unmatched,
+      .is_result = request.right};
   refine_maps(options_.resolved_refinement(), left_map, &right_map, execution_, *work,
               [&](std::string_view step) { clock.begin(step); });
 }

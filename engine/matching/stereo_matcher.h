@@ -52,7 +52,8 @@ struct DisparityPrior {
 /// What the maps take that are there.
 std::size_t held_bytes(const DisparityMaps& maps);
 
-/// What the caller wants. With refinement (options.raw == false) all of it is computed anyway.
+/// What the caller wants. With refinement (options.raw == false) both maps are matched for the
+/// cross-check, and one that is not wanted is then left unfinished: its contents mean nothing.
 struct MatchRequest {
   bool left = true;
   bool right = true;

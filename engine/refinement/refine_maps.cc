@@ -27,8 +27,7 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
                  Execution& execution, RefinementWork& work,
                  const std::function<void(std::string_view)>& begin_step) {
   const std::array<const MapToRefine*, 2> both = {&map, other};
-  const int count = other != nullptr ? 2 : 1;
-  const std::span<const MapToRefine* const> maps(both.data(), static_cast<std::size_t>(count));
+  std::span<const MapToRefine* const> maps(both.data(), other != nullptr ? 2 : 1);
 
   if (options.edge_snapping_px > 0) {
     begin_step("edge snapping");
@@ -48,6 +47,9 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
       mark_unknown(one->disparity_px->view(), execution, *one->unmatched);
     }
   }
+  if (other != nullptr && !(map.is_result && other->is_result)) {
+    maps = maps.subspan(map.is_result ? 0 : 1, 1);
+  }
   if (uses_confidence(options)) {
     begin_step("confidence");
     for (const MapToRefine* one : maps) {
@@ -57,7 +59,7 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
   }
   if (options.speckle_size_px > 1) {
     begin_step("speckles");
-    execution.executor().parallel_for(count, [&](int index) {
+    execution.executor().parallel_for(static_cast<int>(maps.size()), [&](int index) {
       const MapToRefine& one = *maps[static_cast<std::size_t>(index)];
       mark_speckles(one.disparity_px->view(), second_component(one), options.speckle_size_px,
                     work.speckles[static_cast<std::size_t>(index)], *one.unmatched);

@@ -24,6 +24,8 @@ struct MapToRefine {
   DisparityMap* disparity_y_px = nullptr;    ///< of a two-dimensional search, else null
   const Image<float>* confidence = nullptr;  ///< where uses_confidence(); else not read
   Mask* unmatched = nullptr;                 ///< result
+  /// false: the map is there for the cross-check of the other one alone and is left as it then is.
+  bool is_result = true;
 };
 
 /// Working memory of refine_maps(), reused from call to call.
@@ -36,9 +38,9 @@ struct RefinementWork {
 
 /// Makes dense maps of winners (EQUATIONS §5): edge snapping → cross-check → confidence → speckles
 /// → surface fit → fill, each as `options` says. `other`: the map of the other image, refined as
-/// well; null: there is none, and no cross-check, the unknown pixels are unmatched instead.
-/// `begin_step` is told the name of each step that is taken ahead of it (static storage). Identical
-/// for any `execution`.
+/// well if it is a result; null: there is none, and no cross-check, the unknown pixels are
+/// unmatched instead. `begin_step` is told the name of each step that is taken ahead of it (static
+/// storage). Identical for any `execution`.
 void refine_maps(const RefinementOptions& options, const MapToRefine& map, const MapToRefine* other,
                  Execution& execution, RefinementWork& work,
                  const std::function<void(std::string_view)>& begin_step);

@@ -152,6 +152,7 @@ void FrameWorker::match(FrameSlot& slot) {
     temporal_.restart();
     temporal_chunk_ = chunk;
   }
+  request.left = request.right = true;  // both are remembered
   request.prior = temporal_.priors_for(*slot.left, *slot.right, execution_);
   matcher_.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
   temporal_.remember(*slot.left, *slot.right, slot.maps, execution_);

@@ -265,6 +265,8 @@ HWY_INLINE void run_columns(const BayesRow& row, Weight weight) {
         return WorkColumns<1>(row).run(weight);
       case 2 * kLaneMultiple:
         return WorkColumns<2>(row).run(weight);
+      case 3 * kLaneMultiple:
+        return WorkColumns<3>(row).run(weight);
       default:
         break;
     }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/refinement/refine_maps.h"
+#include "tests/engine/identical_maps.h"
 
 namespace vantage {
 namespace {
@@ -152,6 +153,8 @@ struct RefinementCase {
   Image<float> right_confidence = map_of({{1, 1, 1, 1, 1, 1, 1, 1, 1, 1}});
   Mask left_unmatched;
   Mask right_unmatched;
+  bool left_is_result = true;
+  bool right_is_result = true;
   std::vector<std::string> steps;
 
   void refine(bool both = true) {
@@ -160,17 +163,39 @@ struct RefinementCase {
     const MapToRefine left_map{.side = MapSide::kLeft,
                                .disparity_px = &left,
                                .confidence = &left_confidence,
-                               .unmatched = &left_unmatched};
+                               .unmatched = &left_unmatched,
+                               .is_result = left_is_result};
     const MapToRefine right_map{.side = MapSide::kRight,
                                 .disparity_px = &right,
                                 .confidence = &right_confidence,
-                                .unmatched = &right_unmatched};
+                                .unmatched = &right_unmatched,
+                                .is_result = right_is_result};
     refine_maps(options, left_map, both ? &right_map : nullptr, execution, work,
                 [&](std::string_view step) { steps.emplace_back(step); });
   }
   [[nodiscard]] std::vector<std::uint8_t> left_mask() const { return rows_of(left_unmatched)[0]; }
   [[nodiscard]] std::vector<std::uint8_t> right_mask() const { return rows_of(right_unmatched)[0]; }
 };
+
+TEST(RefineMaps, AMapThatIsNoResultIsLeftAlone) {
+  for (const bool left_is_result : {true, false}) {
+    RefinementCase both;
+    both.options.fill = Fill::kConstant;
+    both.options.speckle_size_px = 2;
+    both.refine();
+    RefinementCase one;
+    one.options = both.options;
+    (left_is_result ? one.right_is_result : one.left_is_result) = false;
+    one.refine();
+    const RefinementCase untouched;
+    EXPECT_TRUE(identical(one.left, left_is_result ? both.left : untouched.left));
+    EXPECT_TRUE(identical(one.right, left_is_result ? untouched.right : both.right));
+    const auto mask = [&](const RefinementCase& of) {
+      return left_is_result ? of.left_mask() : of.right_mask();
+    };
+    EXPECT_EQ(mask(one), mask(both));
+  }
+}
 
 TEST(RefineMaps, CrossCheckMarksWhatIsHiddenInTheOtherImage) {
   RefinementCase pair;
