@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
 
 #include "kernels/filled_median/filled_median.h"
@@ -16,6 +15,12 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+#if HWY_TARGET == HWY_SCALAR
+// Looking at all samples in every round pays by lanes only.
+void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
+  take_filled_medians_row_ref(row, filled_px);
+}
+#else
 using TagF = hn::ScalableTag<float>;
 using TagI = hn::ScalableTag<std::int32_t>;
 using Vec = hn::VFromD<TagF>;
@@ -42,9 +47,6 @@ struct Brackets {
 // Sums of the absolute differences of channels.
 HWY_INLINE VecI differences(const std::uint8_t* a, const std::uint8_t* b) {
   const TagI d;
-#if HWY_TARGET == HWY_SCALAR
-  return hn::Set(d, std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]));
-#else
   const hn::Repartition<std::uint8_t, TagI> d8;
   const auto of_a = hn::LoadU(d8, a);
   const auto of_b = hn::LoadU(d8, b);
@@ -55,7 +57,6 @@ HWY_INLINE VecI differences(const std::uint8_t* a, const std::uint8_t* b) {
   const VecI of_pairs =
       hn::Add(hn::And(of_bytes, every_other), hn::And(hn::ShiftRight<8>(of_bytes), every_other));
   return hn::ShiftRight<16>(hn::Add(of_pairs, hn::ShiftLeft<16>(of_pairs)));
-#endif
 }
 
 HWY_INLINE Brackets take_samples(const FilledRow& row, int x, const std::int32_t* weights,
@@ -138,8 +139,7 @@ void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
     brackets.most = hn::IfThenElse(hn::RebindMask(d, is_taken), brackets.most, brackets.least);
     while (!hn::AllFalse(d, hn::Lt(brackets.least, brackets.most))) {
       const Vec middle = hn::Add(hn::Mul(brackets.least, half), hn::Mul(brackets.most, half));
-      // Where no number is between, the pivot is the least sample: with it, or all but it, gone
-      // there is always one less.
+      // The least sample itself where no number is between: that leaves out it or all others.
       const auto is_between =
           hn::And(hn::Ge(middle, brackets.least), hn::Lt(middle, brackets.most));
       narrow(samples, hn::IfThenElse(is_between, middle, brackets.least), brackets);
@@ -153,6 +153,7 @@ void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
     x += lanes;
   }
 }
+#endif
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
