@@ -1,6 +1,8 @@
 #include "engine/refinement/filled_medians.h"
 
 #include <algorithm>
+#include <limits>
+#include <type_traits>
 #include <variant>
 
 #include "kernels/filled_median/filled_median.h"
@@ -8,34 +10,56 @@
 namespace vantage {
 namespace {
 
-/// Row by row in grey levels, rounded.
+constexpr int kReachPx = kernels::kFilledMedianReachPx;
+static_assert(kernels::kFilledPixelBytes == 4);
+
 template <typename T>
-void to_grey_levels(const Image<T>& photograph, Execution& execution, Image<std::uint8_t>& levels) {
-  const int width = photograph.width();
-  const int channels = photograph.channels();
-  levels.resize(width, photograph.height(), channels);
-  execution.for_each_band(photograph.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      const T* pixels = photograph.row(y);
-      std::transform(pixels, pixels + width * channels, levels.row(y), [](T value) {
-        const float level = static_cast<float>(value) * kGreyLevelsPerUnit<T>;
-        return static_cast<std::uint8_t>(std::clamp(level, 0.0F, 255.0F) + 0.5F);
-      });
+std::uint8_t grey_level(T value) {
+  if constexpr (std::is_same_v<T, std::uint8_t>) {
+    return value;
+  } else {
+    const float level = static_cast<float>(value) * kGreyLevelsPerUnit<T>;
+    return static_cast<std::uint8_t>(std::clamp(level, 0.0F, 255.0F) + 0.5F);
+  }
+}
+
+/// Gives `framed` the margins that the kernel reads: all its rows are `outside`, over which
+/// write_row(y, values) writes row y of a map of this size, from column 0 on.
+template <typename T, class WriteRow>
+void frame(int width, int height, int channels, T outside, const WriteRow& write_row,
+           Execution& execution, Image<T>& framed) {
+  framed.resize(kReachPx + width + kReachPx + kernels::kFilledRowSlack,
+                kReachPx + height + kReachPx, channels);
+  execution.for_each_band(framed.height(), [&](int first_row, int end_row) {
+    for (int row = first_row; row < end_row; ++row) {
+      T* values = framed.row(row);
+      std::fill_n(values, framed.width() * channels, outside);
+      const int y = row - kReachPx;
+      if (y >= 0 && y < height) {
+        write_row(y, values + kReachPx * channels);
+      }
     }
   });
 }
 
-const Image<std::uint8_t>& grey_levels(const Photograph& photograph, Execution& execution,
-                                       Image<std::uint8_t>& memory) {
-  if (const auto* levels = std::get_if<Image<std::uint8_t>>(&photograph.pixels)) {
-    return *levels;
+/// Three channels in grey levels and a 0 each.
+template <typename T>
+void write_pixels(const T* photograph, int width, int channels, std::uint8_t* pixels) {
+  const int second = channels == 1 ? 0 : 1;
+  const int third = channels == 1 ? 0 : 2;
+  for (int x = 0; x < width; ++x) {
+    pixels[0] = grey_level(photograph[0]);
+    pixels[1] = grey_level(photograph[second]);
+    pixels[2] = grey_level(photograph[third]);
+    pixels[3] = 0;
+    photograph += channels;
+    pixels += kernels::kFilledPixelBytes;
   }
-  if (const auto* values = std::get_if<Image<std::uint16_t>>(&photograph.pixels)) {
-    to_grey_levels(*values, execution, memory);
-  } else {
-    to_grey_levels(std::get<Image<float>>(photograph.pixels), execution, memory);
-  }
-  return memory;
+}
+
+template <typename T>
+T* inside(Image<T>& framed, int y) {
+  return framed.row(kReachPx + y) + kReachPx * framed.channels();
 }
 
 }  // namespace
@@ -44,25 +68,29 @@ void take_filled_medians(const Mask& unmatched, const Photograph& photograph, Ex
                          FilledMediansWork& work, DisparityMap& map_px) {
   const int width = map_px.width();
   const int height = map_px.height();
-  const Image<std::uint8_t>& pixels = grey_levels(photograph, execution, work.pixels);
-  work.before.resize(width, height);
-  execution.for_each_band(height, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      std::copy_n(map_px.row(y), width, work.before.row(y));
-    }
-  });
+  frame(
+      width, height, 1, std::numeric_limits<float>::quiet_NaN(),
+      [&](int y, float* values) { std::copy_n(map_px.row(y), width, values); }, execution,
+      work.before);
+  std::visit(
+      [&](const auto& image) {
+        frame(
+            width, height, kernels::kFilledPixelBytes, std::uint8_t{0},
+            [&](int y, std::uint8_t* pixels) {
+              write_pixels(image.row(y), width, image.channels(), pixels);
+            },
+            execution, work.pixels);
+      },
+      photograph.pixels);
   execution.for_each_band(height, [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
       kernels::take_filled_medians_row(
-          {.disparity_px = work.before.row(y),
+          {.disparity_px = inside(work.before, y),
            .disparity_pitch = static_cast<std::ptrdiff_t>(work.before.view().stride()),
-           .pixels = pixels.row(y),
-           .pixel_pitch = static_cast<std::ptrdiff_t>(pixels.view().stride()),
-           .channels = pixels.channels(),
+           .pixels = inside(work.pixels, y),
+           .pixel_pitch = static_cast<std::ptrdiff_t>(work.pixels.view().stride()),
            .unmatched = unmatched.row(y),
-           .width = width,
-           .rows_above = y,
-           .rows_below = height - 1 - y},
+           .width = width},
           map_px.row(y));
     }
   });

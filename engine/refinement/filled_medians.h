@@ -10,8 +10,8 @@ namespace vantage {
 
 /// Working memory of take_filled_medians(), reused from call to call.
 struct FilledMediansWork {
-  DisparityMap before;
-  Image<std::uint8_t> pixels;  ///< of photographs that are not of 8 bits
+  DisparityMap before;         ///< the map, with margins
+  Image<std::uint8_t> pixels;  ///< of the photograph as the kernel takes them, with margins
 };
 
 /// Gives filled pixels (≠ 0 in `unmatched`) the weighted median of the disparities around them,

@@ -48,8 +48,8 @@ std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) 
       bytes += 2 * pixels * sizeof(float);
     }
   }
-  // Two maps, their confidence, two masks, and as much again for refining them.
-  bytes += pixels * (2 * sizeof(float) + 2 * sizeof(float) + 2 + 2 * sizeof(float));
+  // Two maps, their confidence, two masks; for refining two maps more and an image of four bytes.
+  bytes += pixels * (2 * sizeof(float) + 2 * sizeof(float) + 2 + 2 * sizeof(float) + 4);
   const auto add_view = [&](ImageExtent extent) {  // with masks of holes and sources
     bytes += photograph_bytes(extent, shape) + 2 * pixels_of(extent);
   };

@@ -1,5 +1,7 @@
 // What makes maps better once they are there.
 
+#include <algorithm>
+#include <limits>
 #include <random>
 #include <utility>
 #include <vector>
@@ -17,29 +19,12 @@ constexpr int kWidth = 256;
 constexpr std::size_t kCount = kWidth;
 
 struct Rows {
-  // As far as the median looks in both directions.
-  static constexpr int kReach = kernels::kFilledMedianSamples / 2 * kernels::kFilledMedianStepPx;
-  static constexpr int kRows = 2 * kReach + 1;
-  static constexpr int kEveryFilled = 10;  // pixel of a row was not matched
-
   std::vector<float> own = map_row(1);
   std::vector<float> other = map_row(2);
-  std::vector<float> map;
   std::vector<float> snapped;
-  AlignedValues<std::uint8_t> pixels{kCount * kRows, 256, 1};
-  AlignedValues<std::uint8_t> unmatched{kCount};
   AlignedValues<std::uint8_t> contradicted{kCount};
   AlignedValues<std::uint8_t> edges{kCount, 2, 1};
 
-  Rows() {
-    for (int y = 0; y < kRows; ++y) {
-      const std::vector<float> row = map_row(static_cast<unsigned>(y));
-      map.insert(map.end(), row.begin(), row.end());
-    }
-    for (int x = 0; x < kWidth; x += kEveryFilled) {
-      unmatched.data()[x] = 255;
-    }
-  }
   static std::vector<float> map_row(unsigned seed) {
     std::mt19937 random(seed);
     return kernels::random_disparities(random, kWidth, 0, 40);
@@ -51,22 +36,68 @@ struct Rows {
     snapped = own;
     kernels::snap_discontinuities_row(edges.data(), 3, kWidth, snapped.data());
   }
-  void take_medians() {
-    kernels::FilledRow row;
-    row.disparity_px = map.data() + kReach * kWidth;
-    row.disparity_pitch = kWidth;
-    row.pixels = pixels.data() + kReach * kWidth;
-    row.pixel_pitch = kWidth;
-    row.unmatched = unmatched.data();
-    row.width = kWidth;
-    row.rows_above = row.rows_below = kReach;
-    snapped.assign(row.disparity_px, row.disparity_px + kWidth);
-    kernels::take_filled_medians_row(row, snapped.data());
+};
+
+/// A background and a surface before it, of other colours, whose outline is in the middle; runs of
+/// pixels of both were filled.
+struct FilledRows {
+  static constexpr int kReach = kernels::kFilledMedianReachPx;
+  static constexpr int kRows = 2 * kReach + 1;
+  static constexpr int kPitch = kReach + kWidth + kReach + kernels::kFilledRowSlack;
+  static constexpr int kFirstRun = 5;
+  static constexpr int kEveryRun = 40;  // columns from one to the next
+  /// One that fills vectors partly and one of a few vectors, alternately.
+  static constexpr int kRuns[] = {3, 19};
+
+  std::vector<float> map_px =
+      std::vector<float>(std::size_t{kPitch * kRows}, std::numeric_limits<float>::quiet_NaN());
+  std::vector<std::uint8_t> pixels =
+      std::vector<std::uint8_t>(std::size_t{kPitch * kRows * kernels::kFilledPixelBytes});
+  AlignedValues<std::uint8_t> unmatched{kCount};
+  std::vector<float> filled_px;
+
+  FilledRows() {
+    std::mt19937 random(3);
+    for (int y = 0; y < kRows; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const bool is_front = x >= kWidth / 2;
+        const int place = y * kPitch + kReach + x;
+        // Sub-pixel positions on slightly slanted surfaces.
+        map_px[static_cast<std::size_t>(place)] = (is_front ? 30.0F : 8.0F) +
+                                                  0.01F * static_cast<float>(x) +
+                                                  static_cast<float>(random() % 64) / 256;
+        for (int c = 0; c < 3; ++c) {
+          pixels[static_cast<std::size_t>(place * kernels::kFilledPixelBytes + c)] =
+              static_cast<std::uint8_t>((is_front ? 60 : 110) + random() % 40);
+        }
+      }
+    }
+    int run = 0;
+    for (int x = kFirstRun; x < kWidth; x += kEveryRun) {
+      std::fill_n(unmatched.data() + x, kRuns[run++ % 2], std::uint8_t{255});
+    }
+  }
+  static int filled() {
+    FilledRows rows;
+    return static_cast<int>(
+        std::count(rows.unmatched.data(), rows.unmatched.data() + kWidth, std::uint8_t{255}));
+  }
+  template <class Kernel>
+  void take_medians(Kernel kernel) {
+    constexpr int kFirst = kReach * kPitch + kReach;
+    const kernels::FilledRow row{
+        .disparity_px = map_px.data() + kFirst,
+        .disparity_pitch = kPitch,
+        .pixels = pixels.data() + std::ptrdiff_t{kFirst * kernels::kFilledPixelBytes},
+        .pixel_pitch = std::ptrdiff_t{kPitch * kernels::kFilledPixelBytes},
+        .unmatched = unmatched.data(),
+        .width = kWidth};
+    filled_px.assign(row.disparity_px, row.disparity_px + kWidth);
+    kernel(row, filled_px.data());
   }
 };
 
-KernelBenchmark plain(std::string name, double pixels, void (*call)(Rows&)) {
-  KernelBenchmark kernel = on_own_data<Rows>(std::move(name), "pixel", pixels, {}, call);
+KernelBenchmark plain(KernelBenchmark kernel) {
   kernel.has_vectors = false;
   return kernel;
 }
@@ -74,13 +105,18 @@ KernelBenchmark plain(std::string name, double pixels, void (*call)(Rows&)) {
 }  // namespace
 
 KernelBenchmarks refinement_kernels() {
-  constexpr int kFilled = (kWidth + Rows::kEveryFilled - 1) / Rows::kEveryFilled;
+  const int filled = FilledRows::filled();
   return {
       on_own_data<Rows>("cross_check_row", "pixel", kWidth, {0, 9},
                         [](Rows& d) { d.cross_check(); }),
-      plain("snap_discontinuities_row", kWidth, [](Rows& d) { d.snap(); }),
-      plain("take_filled_medians_row, of filled pixels", kFilled,
-            [](Rows& d) { d.take_medians(); }),
+      plain(on_own_data<Rows>("snap_discontinuities_row", "pixel", kWidth, {},
+                              [](Rows& d) { d.snap(); })),
+      plain(on_own_data<FilledRows>(
+          "take_filled_medians_row_ref, of filled pixels", "pixel", filled, {},
+          [](FilledRows& d) { d.take_medians(kernels::take_filled_medians_row_ref); })),
+      on_own_data<FilledRows>(
+          "take_filled_medians_row, of filled pixels", "pixel", filled, {},
+          [](FilledRows& d) { d.take_medians(kernels::take_filled_medians_row); }),
   };
 }
 

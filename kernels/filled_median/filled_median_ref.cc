@@ -1,6 +1,5 @@
 #include "kernels/filled_median/filled_median.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -9,7 +8,6 @@
 namespace vantage::kernels {
 namespace {
 
-constexpr int kReachPx = kFilledMedianSamples / 2 * kFilledMedianStepPx;
 constexpr int kUnitWeight = 4096;
 
 struct Sample {
@@ -18,26 +16,17 @@ struct Sample {
 };
 using Samples = std::array<Sample, std::size_t{kFilledMedianSamples * kFilledMedianSamples}>;
 
-constexpr int kColours = 3;
-/// By the sum of the absolute differences of three channels.
-using Weights = std::array<int, std::size_t{kColours * 255 + 1}>;
-
-Weights make_weights() {
-  Weights weights{};
+FilledMedianWeights make_weights() {
+  FilledMedianWeights weights{};
   for (std::size_t sum = 0; sum < weights.size(); ++sum) {
-    weights[sum] = static_cast<int>(
+    weights[sum] = static_cast<std::int32_t>(
         std::lround(kUnitWeight * std::exp(-static_cast<double>(sum) / kFilledMedianLevels)));
   }
   return weights;
 }
 
-template <bool kIsGrey>
 int difference(const std::uint8_t* a, const std::uint8_t* b) {
-  if constexpr (kIsGrey) {
-    return kColours * std::abs(*a - *b);
-  } else {
-    return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
-  }
+  return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
 }
 
 /// `count` ≥ 1 samples with `total` > 0 weight, which are put into another order: a quickselect
@@ -74,51 +63,39 @@ float weighted_median(Sample* samples, int count, int total) {
   }
 }
 
-/// How far samples reach towards a border `room_px` away: whole steps.
-int reach(int room_px) {
-  return std::min(kReachPx, room_px / kFilledMedianStepPx * kFilledMedianStepPx);
+}  // namespace
+
+const FilledMedianWeights& filled_median_weights() {
+  static const FilledMedianWeights weights = make_weights();
+  return weights;
 }
 
-template <bool kIsGrey>
-void take_medians(const FilledRow& row, float* filled_px) {
-  static const Weights weights = make_weights();
-  const int above = reach(row.rows_above);
-  const int below = reach(row.rows_below);
+void take_filled_medians_row_ref(const FilledRow& row, float* filled_px) {
+  const FilledMedianWeights& weights = filled_median_weights();
   Samples samples;
   for (int x = 0; x < row.width; ++x) {
     if (row.unmatched[x] == 0) {
       continue;
     }
-    const int first = x - reach(x);
-    const int last = x + reach(row.width - 1 - x);
-    const std::uint8_t* own = row.pixels + x * row.channels;
+    const std::uint8_t* own = row.pixels + x * kFilledPixelBytes;
     int count = 0;
     int total = 0;
-    for (int dy = -above; dy <= below; dy += kFilledMedianStepPx) {
-      const float* disparity_px = row.disparity_px + dy * row.disparity_pitch;
-      const std::uint8_t* pixels = row.pixels + dy * row.pixel_pitch;
-      for (int column = first; column <= last; column += kFilledMedianStepPx) {
-        const int unlike = difference<kIsGrey>(pixels + column * row.channels, own);
+    for (int dy = -kFilledMedianReachPx; dy <= kFilledMedianReachPx; dy += kFilledMedianStepPx) {
+      const float* disparity_px = row.disparity_px + dy * row.disparity_pitch + x;
+      const std::uint8_t* pixels = own + dy * row.pixel_pitch;
+      for (int dx = -kFilledMedianReachPx; dx <= kFilledMedianReachPx; dx += kFilledMedianStepPx) {
+        const int unlike = difference(pixels + dx * kFilledPixelBytes, own);
         const int weight = weights[static_cast<std::size_t>(unlike)];
-        samples[static_cast<std::size_t>(count)] = {disparity_px[column], weight};
-        const bool counts = weight > 0 && !std::isnan(disparity_px[column]);
+        samples[static_cast<std::size_t>(count)] = {disparity_px[dx], weight};
+        const bool counts = weight > 0 && !std::isnan(disparity_px[dx]);
         count += counts ? 1 : 0;
         total += counts ? weight : 0;
       }
     }
     if (count > 0) {
-      filled_px[x] = weighted_median(samples.data(), count, total);
+      // −0 becomes 0 by the sum.
+      filled_px[x] = weighted_median(samples.data(), count, total) + 0.0F;
     }
-  }
-}
-
-}  // namespace
-
-void take_filled_medians_row(const FilledRow& row, float* filled_px) {
-  if (row.channels == 1) {
-    take_medians<true>(row, filled_px);
-  } else {
-    take_medians<false>(row, filled_px);
   }
 }
 

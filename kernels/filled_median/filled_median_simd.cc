@@ -1,0 +1,170 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/filled_median/filled_median_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "kernels/filled_median/filled_median.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SCALAR
+// Looking at all samples in every round pays by lanes only.
+void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
+  take_filled_medians_row_ref(row, filled_px);
+}
+#else
+using TagF = hn::ScalableTag<float>;
+using TagI = hn::ScalableTag<std::int32_t>;
+using Vec = hn::VFromD<TagF>;
+using VecI = hn::VFromD<TagI>;
+constexpr int kStep = static_cast<int>(hn::MaxLanes(TagF()));
+static_assert(kStep - 1 <= kFilledRowSlack);
+constexpr int kSamples = kFilledMedianSamples * kFilledMedianSamples;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// Of as many neighbouring pixels as a vector has lanes: [sample · kStep + lane]. What does not
+// count weighs 0 and is infinite, so that no bracket grows by it.
+struct Samples {
+  HWY_ALIGN float disparity_px[kSamples * kStep];
+  HWY_ALIGN std::int32_t weight[kSamples * kStep];
+};
+
+// A median is one of the samples from `least` to `most`: those below `least` have less than half of
+// all weight, those up to `most` have it.
+struct Brackets {
+  Vec least, most;
+  VecI total;  // weight of all samples
+};
+
+// Sums of the absolute differences of channels.
+HWY_INLINE VecI differences(const std::uint8_t* a, const std::uint8_t* b) {
+  const TagI d;
+  const hn::Repartition<std::uint8_t, TagI> d8;
+  const auto of_a = hn::LoadU(d8, a);
+  const auto of_b = hn::LoadU(d8, b);
+  // One of both is 0.
+  const VecI of_bytes =
+      hn::BitCast(d, hn::Or(hn::SaturatedSub(of_a, of_b), hn::SaturatedSub(of_b, of_a)));
+  const VecI every_other = hn::Set(d, 0x00FF00FF);
+  const VecI of_pairs =
+      hn::Add(hn::And(of_bytes, every_other), hn::And(hn::ShiftRight<8>(of_bytes), every_other));
+  return hn::ShiftRight<16>(hn::Add(of_pairs, hn::ShiftLeft<16>(of_pairs)));
+}
+
+HWY_INLINE Brackets take_samples(const FilledRow& row, int x, const std::int32_t* weights,
+                                 Samples& samples) {
+  const TagF d;
+  const TagI di;
+  const std::uint8_t* own = row.pixels + x * kFilledPixelBytes;
+  const Vec infinity = hn::Set(d, kInfinity);
+  Brackets brackets{infinity, hn::Neg(infinity), hn::Zero(di)};
+  float* sample_px = samples.disparity_px;
+  std::int32_t* sample_weight = samples.weight;
+  for (int dy = -kFilledMedianReachPx; dy <= kFilledMedianReachPx; dy += kFilledMedianStepPx) {
+    const float* row_px = row.disparity_px + dy * row.disparity_pitch + x;
+    const std::uint8_t* row_pixels = own + dy * row.pixel_pitch;
+    HWY_UNROLL(kFilledMedianSamples)
+    for (int dx = -kFilledMedianReachPx; dx <= kFilledMedianReachPx; dx += kFilledMedianStepPx) {
+      const Vec disparity_px = hn::LoadU(d, row_px + dx);
+      const auto is_known = hn::RebindMask(di, hn::Eq(disparity_px, disparity_px));
+      const VecI unlike = differences(row_pixels + dx * kFilledPixelBytes, own);
+      const VecI weight = hn::IfThenElseZero(is_known, hn::GatherIndex(di, weights, unlike));
+      const auto counts = hn::RebindMask(d, hn::Gt(weight, hn::Zero(di)));
+      const Vec counted_px = hn::IfThenElse(counts, disparity_px, infinity);
+      brackets.least = hn::Min(brackets.least, counted_px);
+      brackets.most =
+          hn::Max(brackets.most, hn::IfThenElse(counts, disparity_px, hn::Neg(infinity)));
+      brackets.total = hn::Add(brackets.total, weight);
+      hn::Store(counted_px, d, sample_px);
+      hn::Store(weight, di, sample_weight);
+      sample_px += kStep;
+      sample_weight += kStep;
+    }
+  }
+  return brackets;
+}
+
+// Leaves out the samples on the wrong side of `pivots`. Pivots from `least` on and below `most`
+// leave out at least one.
+HWY_INLINE void narrow(const Samples& samples, Vec pivots, Brackets& brackets) {
+  const TagF d;
+  const TagI di;
+  const Vec infinity = hn::Set(d, kInfinity);
+  VecI weight = hn::Zero(di);
+  Vec most_below = hn::Neg(infinity);
+  Vec least_above = infinity;
+  HWY_UNROLL(kFilledMedianSamples)
+  for (int i = 0; i < kSamples * kStep; i += kStep) {
+    const Vec disparity_px = hn::Load(d, samples.disparity_px + i);
+    const auto is_below = hn::Le(disparity_px, pivots);
+    weight = hn::Add(
+        weight, hn::IfThenElseZero(hn::RebindMask(di, is_below), hn::Load(di, samples.weight + i)));
+    most_below = hn::Max(most_below, hn::IfThenElse(is_below, disparity_px, hn::Neg(infinity)));
+    least_above = hn::Min(least_above, hn::IfThenElse(is_below, infinity, disparity_px));
+  }
+  const auto is_above = hn::RebindMask(d, hn::Lt(hn::Add(weight, weight), brackets.total));
+  brackets.least = hn::IfThenElse(is_above, least_above, brackets.least);
+  brackets.most = hn::IfThenElse(is_above, brackets.most, most_below);
+}
+
+void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
+  const TagF d;
+  const TagI di;
+  const std::int32_t* weights = filled_median_weights().data();
+  const Vec half = hn::Set(d, 0.5F);
+  Samples samples;
+  HWY_ALIGN std::int32_t taken[kStep] = {};
+  HWY_ALIGN float medians_px[kStep];
+  for (int x = 0; x < row.width;) {
+    if (row.unmatched[x] == 0) {
+      ++x;
+      continue;
+    }
+    // The pixels from here on, matched ones among them: they mostly come in runs.
+    const int lanes = std::min(kStep, row.width - x);
+    std::fill_n(taken, kStep, 0);
+    std::copy_n(row.unmatched + x, lanes, taken);
+    Brackets brackets = take_samples(row, x, weights, samples);
+    const auto is_taken =
+        hn::And(hn::Gt(hn::Load(di, taken), hn::Zero(di)), hn::Gt(brackets.total, hn::Zero(di)));
+    // Pixels that keep their values have nothing to search for.
+    brackets.most = hn::IfThenElse(hn::RebindMask(d, is_taken), brackets.most, brackets.least);
+    while (!hn::AllFalse(d, hn::Lt(brackets.least, brackets.most))) {
+      const Vec middle = hn::Add(hn::Mul(brackets.least, half), hn::Mul(brackets.most, half));
+      // The least sample itself where no number is between: that leaves out it or all others.
+      const auto is_between =
+          hn::And(hn::Ge(middle, brackets.least), hn::Lt(middle, brackets.most));
+      narrow(samples, hn::IfThenElse(is_between, middle, brackets.least), brackets);
+    }
+    hn::Store(hn::VecFromMask(di, is_taken), di, taken);
+    // −0 becomes 0 by the sum.
+    hn::Store(hn::Add(brackets.most, hn::Zero(d)), d, medians_px);
+    for (int i = 0; i < lanes; ++i) {
+      filled_px[x + i] = taken[i] != 0 ? medians_px[i] : filled_px[x + i];
+    }
+    x += lanes;
+  }
+}
+#endif
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(take_filled_medians_simd);
+
+void take_filled_medians_row(const FilledRow& row, float* filled_px) {
+  HWY_DYNAMIC_DISPATCH(take_filled_medians_simd)(row, filled_px);
+}
+
+}  // namespace vantage::kernels
+#endif
