@@ -342,11 +342,13 @@ void add_method_settings(Settings& settings, MatchOptions& options) {
   settings.choice("method", options.method, method_names(),
                   "Combination of cost, aggregation and their parameters; auto: the preset's, "
                   "without one ssd");
-  std::string help = "For real photographs, instead of --method; what it sets goes before auto";
+  std::string help =
+      "For real photographs, instead of --method; what it sets goes before auto; auto: balanced, "
+      "none with --method, --cost, --aggregation, --disparities-y or several images";
   for (const auto& [name, preset] : preset_names()) {
     help += fmt::format("; {}: {}", name, describe(preset));
   }
-  settings.choice("preset", options.preset, preset_names(), help, "none");
+  settings.choice("preset", options.preset, preset_names(), help);
 }
 
 }  // namespace
@@ -430,6 +432,7 @@ SettingValue reported_settings(const Settings& settings, const MatchOptions& opt
   add_match_settings(resolved, in_force);
   SettingValue values = settings.values();
   values["resolved"] = resolved.values();
+  values["resolved"]["preset"] = "none";  // its values are all there
   return values;
 }
 

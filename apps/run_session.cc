@@ -92,10 +92,11 @@ std::string outputs_text(const RunJob& job) {
 }
 
 std::string matcher_text(const RunJob& job, const SettingValue& values) {
-  if (job.sequence.match.preset) {
-    return "preset " + values["preset"].get<std::string>();
+  const MatchOptions& match = job.sequence.match;
+  if (match.preset_in_force()) {
+    return "preset " + (match.preset ? values["preset"].get<std::string>() : "balanced");
   }
-  return "method " + (job.sequence.match.method ? values["method"].get<std::string>() : "ssd");
+  return "method " + (match.method ? values["method"].get<std::string>() : "ssd");
 }
 
 std::string strips_text(const scheduler::ChainPlan& plan) {

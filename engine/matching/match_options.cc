@@ -123,8 +123,15 @@ void MatchOptions::validate() const {
   validate_refinement(resolved_refinement(), disparities_y.has_value());
 }
 
+std::optional<MatchPreset> MatchOptions::preset_in_force() const {
+  if (preset || method || parameters.cost || parameters.aggregation || disparities_y) {
+    return preset;
+  }
+  return MatchPreset::kBalanced;
+}
+
 MethodParameters MatchOptions::resolved() const {
-  const PresetSettings settings = settings_of(preset);
+  const PresetSettings settings = settings_of(preset_in_force());
   MethodParameters result =
       resolve(method.value_or(settings.method), merge(settings.parameters, parameters));
   // A preset's levels and pruning hold where they can: what else the user chose goes before them.
@@ -147,14 +154,14 @@ RefinementOptions MatchOptions::resolved_refinement() const {
       .surface_fit_px = 0,
       .fill = Fill::kConstant,
   };
-  take_over(settings_of(preset).refinement, result);
+  take_over(settings_of(preset_in_force()).refinement, result);
   take_over(refinement, result);
   return result;
 }
 
 MatchOptions MatchOptions::spelled_out() const {
   MatchOptions result = *this;
-  result.method = method.value_or(settings_of(preset).method);
+  result.method = method.value_or(settings_of(preset_in_force()).method);
   result.preset.reset();
   result.parameters = as_overrides(resolved());
   const RefinementOptions in_force = resolved_refinement();

@@ -56,7 +56,7 @@ bool uses_confidence(const RefinementOptions& refinement);
 
 /// Everything that decides what a pair's disparity maps are. Defaults are the command line's.
 struct MatchOptions {
-  /// Empty: the preset's, without one SSD. Not both.
+  /// Empty: that of the preset in force. Not both.
   std::optional<MatchMethod> method;
   /// Chooses the method and the defaults of everything that is not set.
   std::optional<MatchPreset> preset;
@@ -73,6 +73,9 @@ struct MatchOptions {
   bool raw = false;
   RefinementOverrides refinement;
 
+  /// Without method and preset it is `balanced`; but none for who composes a method of cost or
+  /// aggregation, which then starts from SSD, nor with `disparities_y`: presets search along rows.
+  [[nodiscard]] std::optional<MatchPreset> preset_in_force() const;
   /// What is in force: the fields of `parameters`, else the preset's, else the method's.
   [[nodiscard]] MethodParameters resolved() const;
   /// What is in force unless `raw`: the fields of `refinement`, else the preset's, else: no

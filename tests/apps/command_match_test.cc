@@ -45,8 +45,12 @@ TEST_F(MatchCommand, WritesEverythingAskedFor) {
 }
 
 TEST_F(MatchCommand, EqualsTheLibrary) {
-  ASSERT_EQ(match(folder_ / "map.pfm", {"--window=3", "--raw", "--border", "valid"}).exit_code, 0);
+  ASSERT_EQ(
+      match(folder_ / "map.pfm", {"--method", "ssd", "--window=3", "--raw", "--border", "valid"})
+          .exit_code,
+      0);
   MatchOptions options;
+  options.method = MatchMethod::kSsd;
   options.disparities = {0, 9};
   options.parameters.window_px = 3;
   options.raw = true;
@@ -94,8 +98,10 @@ TEST_F(MatchCommand, SignedRangesInBothSpellings) {
 }
 
 TEST_F(MatchCommand, ReportHasTheKeysOfTheContract) {
-  ASSERT_EQ(
-      match(folder_ / "map.pfm", {"--report", folder_ / "r.json", "--threads", "2"}).exit_code, 0);
+  ASSERT_EQ(match(folder_ / "map.pfm",
+                  {"--method", "ssd", "--report", folder_ / "r.json", "--threads", "2"})
+                .exit_code,
+            0);
   const auto report = nlohmann::ordered_json::parse(read_file(folder_ / "r.json"));
   std::vector<std::string> keys;
   for (const auto& [key, value] : report.items()) {
@@ -124,19 +130,32 @@ TEST_F(MatchCommand, ReportHasTheKeysOfTheContract) {
 }
 
 TEST_F(MatchCommand, ResultsDoNotDependOnExecution) {
-  ASSERT_EQ(match(folder_ / "a.pfm", {"--executor", "serial"}).exit_code, 0);
-  const std::string expected = read_file(folder_ / "a.pfm");
-  const std::vector<std::vector<std::string>> ways = {
-      {"--executor", "tbb", "--threads", "3", "--strip-width", "7", "--band-height", "5"},
-      {"--executor", "openmp", "--threads", "2"},
-      {"--isa", "SSE4"}};
-  for (const auto& way : ways) {
-    const ProcessResult result = match(folder_ / "b.pfm", way);
-    if (result.exit_code == 2 && way.front() == "--isa") {
-      continue;  // not an x86 machine: the message lists what there is
+  const auto map_of = [&](const std::string& method, const std::vector<std::string>& way) {
+    std::vector<std::string> options = {"--method", method};
+    if (method == "auto") {
+      options.push_back("--levels=3");  // of the preset that is the default
     }
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_EQ(read_file(folder_ / "b.pfm"), expected) << way.front() << ' ' << way[1];
+    options.insert(options.end(), way.begin(), way.end());
+    return options;
+  };
+  for (const std::string method : {"auto", "ssd"}) {
+    ASSERT_EQ(match(folder_ / "a.pfm", map_of(method, {"--executor", "serial"})).exit_code, 0);
+    const std::string expected = read_file(folder_ / "a.pfm");
+    std::vector<std::vector<std::string>> ways = {
+        {"--executor", "tbb", "--threads", "3", "--strip-width", "7", "--band-height", "5"},
+        {"--executor", "openmp", "--threads", "2"}};
+    if (method == "ssd") {
+      ways.push_back({"--isa", "SSE4"});  // the last bits of Bayesian diffusion differ
+    }
+    for (const auto& way : ways) {
+      const ProcessResult result = match(folder_ / "b.pfm", map_of(method, way));
+      if (result.exit_code == 2 && way.front() == "--isa") {
+        continue;  // not an x86 machine: the message lists what there is
+      }
+      ASSERT_EQ(result.exit_code, 0) << result.err;
+      EXPECT_EQ(read_file(folder_ / "b.pfm"), expected)
+          << method << ' ' << way.front() << ' ' << way[1];
+    }
   }
 }
 

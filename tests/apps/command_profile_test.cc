@@ -49,7 +49,8 @@ class ProfileTest : public PairTest {
 TEST_F(ProfileTest, KeepsWhereTheTimeOfAPairGoes) {
   const std::string page = folder_ / "profile.html";
   const ProcessResult result =
-      profile({"--threads", "2,1", "--html", page}, match_command({"--unmatched", out_ / "m.png"}));
+      profile({"--threads", "2,1", "--html", page},
+              match_command({"--method", "ssd", "--unmatched", out_ / "m.png"}));
   ASSERT_EQ(result.exit_code, 0) << result.err;
   for (const char* text : {"Threads", "speed-up", "column SSD", "match left", "What the machine",
                            "level 2", "Memory", "idle"}) {
@@ -150,8 +151,8 @@ TEST_F(ProfileTest, EndsWithTheBudgetButMakesARound) {
 TEST_F(ProfileTest, ComparesWithAnotherProgram) {
   const std::string other = folder_ / "other-vantage";
   fs::copy_file(VANTAGE_BINARY, other);
-  const ProcessResult result =
-      profile({"--threads", "1", "--quiet", "--against", other}, match_command());
+  const ProcessResult result = profile({"--threads", "1", "--quiet", "--against", other},
+                                       match_command({"--method", "ssd"}));
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out,
               AllOf(HasSubstr("A  " + other), HasSubstr("stage column SSD"), HasSubstr("too few")));

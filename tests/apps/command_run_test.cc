@@ -104,7 +104,7 @@ TEST_F(RunCommand, EveryFrameEqualsTheSingleCommands) {
   const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
   EXPECT_EQ(report["command"], "run");
   EXPECT_EQ(report["results"]["frames"], kFrames);
-  EXPECT_EQ(report["cells"], 47.0 * 29 * 10 * 2 * kFrames);
+  EXPECT_GE(report["cells"], 47.0 * 29 * 10 * 2 * kFrames);
   EXPECT_LE(report["seconds"]["compute"], report["seconds"]["wall"]);
 }
 

@@ -82,7 +82,7 @@ TEST_F(SynthCommand, SeveralViewsNeedAPattern) {
 
 TEST_F(SynthCommand, MatchesThePairWithoutMaps) {
   const ProcessResult result = synth({"-o", outputs_ + "/v.png", "--view", "0.5", "--disparities",
-                                      "0:9", "--window", "5", "--report", folder_ / "r.json"});
+                                      "0:9", "--method", "ssd", "--report", folder_ / "r.json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
   EXPECT_EQ(report["cells"], 71.0 * 53 * 10 * 2);

@@ -28,15 +28,21 @@ class TuneTest : public PairTest {
   }
   [[nodiscard]] ProcessResult tune(const Arguments& more = {}) const {
     Arguments arguments = {"tune", "--size", "71x53", "--disparities=0:9", "--budget", "0.4"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run(arguments);
+    return run(with_method(arguments, more));
   }
   [[nodiscard]] ProcessResult match_tuned(const Arguments& more = {}) const {
     Arguments arguments = {
         "match",    left_,  right_, "-o", folder_ / "map.pfm", "--disparities=0:9",
         "--report", report_};
+    return run(with_method(arguments, more));
+  }
+  /// With `more`, and with SSD unless that names a method.
+  static Arguments with_method(Arguments arguments, const Arguments& more) {
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return run(arguments);
+    if (std::ranges::find(more, "--method") == more.end()) {
+      arguments.insert(arguments.end(), {"--method", "ssd"});
+    }
+    return arguments;
   }
   [[nodiscard]] nlohmann::json report() const { return nlohmann::json::parse(read_file(report_)); }
 
@@ -220,8 +226,7 @@ TEST_F(TuneTest, RunUsesItsEntryAndTheFilesAreTheSame) {
     Arguments arguments = {
         "run", "--left",      folder_ / "lefts",   "--right",  folder_ / "rights",
         "-o",  folder_ / out, "--disparities=0:9", "--report", report_};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run(arguments);
+    return run(with_method(arguments, more));
   };
   ProcessResult result = run_sequence("plain", {"--no-tuning"});
   ASSERT_EQ(result.exit_code, 0) << result.err;

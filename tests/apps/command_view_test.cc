@@ -233,8 +233,8 @@ TEST_F(ViewCommand, DeepAndTransparentPhotographsBecomeEightBitColours) {
 }
 
 TEST_F(ViewCommand, MatchesThePairWithoutMaps) {
-  const ProcessResult result = view({"-o", outputs_ + "/p.html", "--disparities", "0:9", "--window",
-                                     "5", "--report", folder_ / "r.json"});
+  const ProcessResult result = view({"-o", outputs_ + "/p.html", "--disparities", "0:9", "--method",
+                                     "ssd", "--report", folder_ / "r.json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
   EXPECT_EQ(report["cells"], 71.0 * 53 * 10 * 2);

@@ -1,5 +1,6 @@
 #include "tests/apps/run_fixture.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <sstream>
 
@@ -123,7 +124,12 @@ RunTest::RunTest() {
 
 std::vector<std::string> RunTest::arguments(const std::string& out,
                                             const std::vector<std::string>& more) const {
-  return joined({"run", "--left", left_, "--right", right_, "-o", out, "--disparities=0:9"}, more);
+  std::vector<std::string> all = {"run",  "--left", left_, "--right",
+                                  right_, "-o",     out,   "--disparities=0:9"};
+  if (std::ranges::find(more, "--method") == more.end()) {
+    all = joined(all, {"--method", "ssd"});  // the quickest: most tests are not about maps
+  }
+  return joined(all, more);
 }
 
 ProcessResult RunTest::run(const std::string& out, const std::vector<std::string>& more) const {

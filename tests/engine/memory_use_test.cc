@@ -76,6 +76,7 @@ TEST(MemoryUse, OfIterationsIsTheStateOfWholeImages) {
 
 TEST(MemoryUse, OfRingsIsThatOfStrips) {
   MatchOptions options;
+  options.method = MatchMethod::kSsd;
   options.disparities = {0, 31};
   const auto rings = [&](int strip_width_px) {
     return bytes_of(use_of(options, {.threads = 1, .strip_width_px = strip_width_px}), "rings");
@@ -90,6 +91,7 @@ TEST(MemoryUse, OfRingsIsThatOfStrips) {
 
 TEST(MemoryUse, OfPreparedImagesIsThatOfTheirPlanes) {
   MatchOptions options;
+  options.method = MatchMethod::kSsd;
   options.disparities = {0, 15};
   // Margins: the candidates on either side, rounded up to lanes.
   const std::size_t margins = std::size_t{kHeight} * (2 * 64);

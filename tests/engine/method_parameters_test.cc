@@ -96,6 +96,30 @@ TEST(MethodParameters, CostFollowsTheAggregationUnlessItIsSet) {
   EXPECT_EQ(options.resolved().cost, MatchCost::kGradient);
 }
 
+TEST(MethodParameters, WithoutAnyChoiceTheyAreThoseOfBalanced) {
+  MatchOptions balanced;
+  balanced.preset = MatchPreset::kBalanced;
+  MatchOptions options;
+  EXPECT_EQ(options.resolved(), balanced.resolved());
+  EXPECT_EQ(options.resolved_refinement(), balanced.resolved_refinement());
+  EXPECT_EQ(options.spelled_out().method, MatchMethod::kBayes);
+  options.parameters.levels = balanced.parameters.levels = 3;
+  EXPECT_EQ(options.resolved(), balanced.resolved());
+
+  const MethodParameters ssd = book_parameters(MatchMethod::kSsd);
+  options = {};
+  options.disparities_y = {0, 1};
+  EXPECT_EQ(options.resolved(), ssd);
+  EXPECT_EQ(options.spelled_out().method, MatchMethod::kSsd);
+  options = {};
+  options.parameters.cost = MatchCost::kSquared;
+  EXPECT_EQ(options.resolved(), ssd);
+  options = {};
+  options.parameters.aggregation = Aggregation::kBox;
+  EXPECT_EQ(options.resolved(), ssd);
+  EXPECT_EQ(options.resolved_refinement().fill, Fill::kConstant);
+}
+
 TEST(MethodParameters, PresetsAreValidAndNotCombinedWithMethods) {
   for (const MatchPreset preset :
        {MatchPreset::kFast, MatchPreset::kBalanced, MatchPreset::kQuality}) {
@@ -128,6 +152,7 @@ TEST(MethodParameters, SpelledOutIsTheSameWithoutPreset) {
 
 TEST(Refinement, DefaultsDependOnRangeAndCost) {
   MatchOptions options;
+  options.method = MatchMethod::kSsd;
   options.disparities = {0, 59};
   EXPECT_EQ(options.resolved_refinement().cross_check_px, 4);
   EXPECT_FALSE(uses_confidence(options.resolved_refinement()));
@@ -362,6 +387,7 @@ TEST(MatchOptions, Candidates) {
 
 TEST(MatchOptions, CombinationsThatMakeNoSenseAreRefusedWithTheReason) {
   MatchOptions options;
+  options.method = MatchMethod::kSsd;
   options.parameters.border = Border::kValid;
   EXPECT_EQ(complaint(options), "");
   options.parameters.aggregation = Aggregation::kNone;

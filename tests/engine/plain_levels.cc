@@ -61,25 +61,34 @@ Volume block_means(const Volume& finer) {
   return coarser;
 }
 
-/// What the sums of the first coarse level are made of: of small census codes bytes, in the finest
-/// steps of 1/8 … 1/128 that −ln ε fits in.
-void make_compact(Volume& costs, const MethodParameters& parameters) {
-  const bool in_bytes =
-      parameters.cost == MatchCost::kSmallCensus && parameters.colour == ColourUse::kLuma;
+/// Of small census codes in bytes: the finest steps a nat of 8 … 128 that −ln ε fits in; 0: costs
+/// are not in bytes.
+int byte_steps(const Volume& costs, const MethodParameters& parameters) {
+  if (costs.is_coarse) {
+    return 8;
+  }
+  if (parameters.cost != MatchCost::kSmallCensus || parameters.colour != ColourUse::kLuma) {
+    return 0;
+  }
   int steps = 128;
   while (steps > 8 && -std::log(parameters.epsilon_measurement) * steps > 255) {
     steps /= 2;
   }
-  for (double& energy : costs.cells) {
-    energy = in_bytes ? std::min(std::nearbyint(steps * energy), 255.0) / steps
-                      : std::min(energy, 31 * std::log(2.0));
-  }
+  return steps;
 }
 
 /// The level's weight times −log p0 of four columns, above the least of a column.
 Volume block_sums(Volume finer, const MethodParameters& parameters, StoredCells stored) {
-  if (stored == StoredCells::kCompact && !finer.is_coarse) {
-    make_compact(finer, parameters);
+  double weight = parameters.level_weight;
+  if (stored == StoredCells::kCompact) {
+    const int steps = byte_steps(finer, parameters);
+    for (double& energy : finer.cells) {
+      energy = steps > 0 ? std::min(std::nearbyint(steps * energy), 255.0) / steps
+                         : std::min(energy, 31 * std::log(2.0));
+    }
+    if (steps > 0) {  // from steps to steps, in multiples of 2^−14
+      weight = std::nearbyint(16384 * weight * 8 / steps) / 16384 * steps / 8;
+    }
   }
   Volume coarser = block_means(finer);
   for_each_column(coarser, [&](int x, int y) {
@@ -89,7 +98,7 @@ Volume block_sums(Volume finer, const MethodParameters& parameters, StoredCells 
     }
     for (int i = 0; i < coarser.count(); ++i) {
       double& energy = coarser.at(x, y, i);
-      energy = 4 * parameters.level_weight * (energy - least);
+      energy = 4 * weight * (energy - least);
       if (stored == StoredCells::kCompact) {
         energy = std::min(std::floor(8 * energy + 0.5), 255.0) / 8;
       }

@@ -15,7 +15,8 @@
 namespace vantage {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
+using testing::identical;
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr double kNoThreshold = -std::numeric_limits<double>::infinity();

@@ -42,6 +42,7 @@ struct Way {
 class SequenceRunnerTest : public testing::Test {
  protected:
   SequenceRunnerTest() {
+    options_.match.method = MatchMethod::kSsd;
     options_.match.disparities = {0, 9};
     options_.match.parameters.window_px = 5;
     options_.chunk_frames = 4;

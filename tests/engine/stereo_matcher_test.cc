@@ -26,6 +26,7 @@ using testing::random_grey;
 
 MatchOptions raw_options(DisparityRange range, int window, Border border, Subpixel subpixel) {
   MatchOptions options;
+  options.method = MatchMethod::kSsd;
   options.disparities = range;
   options.parameters.window_px = window;
   options.parameters.border = border;
@@ -291,6 +292,7 @@ TEST(StereoMatcher, FindsAKnownShiftEverywhere) {
     }
   }
   MatchOptions options;
+  options.method = MatchMethod::kSsd;
   options.disparities = {0, 15};
   Execution execution({});
   DisparityMaps maps;

@@ -18,6 +18,7 @@ class TuningKeyTest : public testing::Test {
     machine_.hardware_threads = 8;
     machine_.cores = 4;
     machine_.l3_bytes = std::size_t{32} << 20;
+    match_.method = MatchMethod::kSsd;
     match_.disparities = {0, 255};
   }
 
