@@ -344,7 +344,7 @@ void add_method_settings(Settings& settings, MatchOptions& options) {
                   "without one ssd");
   std::string help =
       "For real photographs, instead of --method; what it sets goes before auto; auto: balanced, "
-      "none with --method, --cost, --aggregation, --disparities-y or several images";
+      "none with --method, --cost, --aggregate, --disparities-y or several images";
   for (const auto& [name, preset] : preset_names()) {
     help += fmt::format("; {}: {}", name, describe(preset));
   }
