@@ -67,22 +67,10 @@ class Rows {
 
 template <typename Check>
 void for_each_rows(const Check& check) {
-  std::mt19937 random(11);
-  for (const int channels : {1, 3}) {
-    for (const PartnerOrder order : kPartnerOrders) {
-      for (const int columns : {1, 2, 7, 19}) {
-        for (const int lanes : kLaneCounts) {
-          SCOPED_TRACE(testing::Message()
-                       << channels << " channels, order " << static_cast<int>(order) << ", "
-                       << columns << " columns, " << lanes << " lanes");
-          check(Rows(random, channels, order, columns, lanes).row());
-          if (testing::Test::HasFatalFailure()) {
-            return;
-          }
-        }
-      }
-    }
-  }
+  for_each_row_shape(
+      11, [&](std::mt19937& random, int channels, PartnerOrder order, int columns, int lanes) {
+        check(Rows(random, channels, order, columns, lanes).row());
+      });
 }
 
 /// (1−ε) exp(−r²/2σ²) + ε.

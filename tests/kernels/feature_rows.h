@@ -59,10 +59,10 @@ class FeatureRows {
   std::vector<UnalignedRow<T>> rows_;
 };
 
-/// Calls check(rows) for random rows of every shape, and in the order of `draw(random)`'s values.
-template <typename T, int kPlanes, typename Draw, typename Check>
-void for_each_feature_rows(const Draw& draw, const Check& check) {
-  std::mt19937 random(7);
+/// Calls check(random, channels, order, columns, lanes) for rows of every shape.
+template <typename Check>
+void for_each_row_shape(unsigned seed, const Check& check) {
+  std::mt19937 random(seed);
   for (const int channels : {1, 3}) {
     for (const PartnerOrder order : kPartnerOrders) {
       for (const int columns : {1, 2, 7, 19}) {
@@ -70,9 +70,7 @@ void for_each_feature_rows(const Draw& draw, const Check& check) {
           SCOPED_TRACE(testing::Message()
                        << channels << " channels, order " << static_cast<int>(order) << ", "
                        << columns << " columns, " << lanes << " lanes");
-          const FeatureRows<T, kPlanes> rows(random, channels, order, columns, lanes,
-                                             [&] { return draw(random); });
-          check(rows.pairs());
+          check(random, channels, order, columns, lanes);
           if (testing::Test::HasFatalFailure()) {
             return;
           }
@@ -80,6 +78,17 @@ void for_each_feature_rows(const Draw& draw, const Check& check) {
       }
     }
   }
+}
+
+/// Calls check(rows) for random rows of every shape, and in the order of `draw(random)`'s values.
+template <typename T, int kPlanes, typename Draw, typename Check>
+void for_each_feature_rows(const Draw& draw, const Check& check) {
+  for_each_row_shape(
+      7, [&](std::mt19937& random, int channels, PartnerOrder order, int columns, int lanes) {
+        const FeatureRows<T, kPlanes> rows(random, channels, order, columns, lanes,
+                                           [&] { return draw(random); });
+        check(rows.pairs());
+      });
 }
 
 /// Runs kernel(cells) and reference(cells) on rows of cells; both must write the same, and nothing
