@@ -84,9 +84,9 @@ TEST_F(RunPoses, AreTheViewsOfSynth) {
       {"0.25,-0.5", {"--view", "0.25,-0.5"}}};
   for (const auto& [name, options] : views) {
     const ProcessResult view =
-        run_vantage(joined({"synth", left_ + file, right_ + file, "--disparities=0:9",
-                            "--calibration", calibration_, "-o", folder_ / "v.png", "--hole-mask",
-                            folder_ / "h.png", "--source-mask", folder_ / "s.png"},
+        run_vantage(joined({"synth", left_ + file, right_ + file, "--disparities=0:9", "--method",
+                            "ssd", "--calibration", calibration_, "-o", folder_ / "v.png",
+                            "--hole-mask", folder_ / "h.png", "--source-mask", folder_ / "s.png"},
                            options));
     ASSERT_EQ(view.exit_code, 0) << view.err;
     for (const auto& [kind, made] :

@@ -111,7 +111,7 @@ TEST_F(RunResumed, AFolderWithARunIsNotWrittenToByAccident) {
   fs::create_directory(folder_ / "sub");
   fs::rename(folder_ / "moved-left", folder_ / "sub/left");
   EXPECT_EQ(run_vantage({"run", "--left", folder_ / "sub/left", "--right", right_, "-o", out_,
-                         "--disparities=0:9", "--resume"})
+                         "--disparities=0:9", "--method", "ssd", "--resume"})
                 .exit_code,
             0);
   expect_all_done(kFrames);

@@ -199,9 +199,10 @@ TEST_F(RunSources, TheFirstFramesBad) {
 TEST_F(RunSources, AMissingNumberOfAPattern) {
   const FolderContent expected = undisturbed({});
   const auto with_patterns = [&](const std::vector<std::string>& more) {
-    return run_vantage(joined({"run", "--left", left_ + "/%06d.png", "--right",
-                               right_ + "/%06d.png", "-o", out_, "--disparities=0:9"},
-                              more));
+    return run_vantage(
+        joined({"run", "--left", left_ + "/%06d.png", "--right", right_ + "/%06d.png", "-o", out_,
+                "--disparities=0:9", "--method", "ssd"},
+               more));
   };
   fs::rename(file("right", kBad), folder_ / "kept.png");
   const ProcessResult stopped = with_patterns({"--quiet"});
@@ -278,9 +279,10 @@ class RunVideoSources : public RunSources {
   }
   [[nodiscard]] ProcessResult run_videos(const std::string& extension,
                                          const std::vector<std::string>& more) const {
-    return run_vantage(joined({"run", "--left", folder_ / ("left." + extension), "--right",
-                               folder_ / ("right." + extension), "-o", out_, "--disparities=0:9"},
-                              more));
+    return run_vantage(joined(
+        {"run", "--left", folder_ / ("left." + extension), "--right",
+         folder_ / ("right." + extension), "-o", out_, "--disparities=0:9", "--method", "ssd"},
+        more));
   }
 };
 

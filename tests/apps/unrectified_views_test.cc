@@ -116,7 +116,8 @@ TEST_F(UnrectifiedViews, AreSharperThanThoseOfRectifiedFiles) {
 
 TEST_F(UnrectifiedViews, OfARunAreThoseOfSynth) {
   for (const std::string place : {"0.5", "0.4,0.3"}) {
-    const std::vector<std::string> more = {"--calibration", rig_, "--view", place, "--quiet"};
+    const std::vector<std::string> more = {"--method", "ssd", "--calibration", rig_,
+                                           "--view",   place, "--quiet"};
     const std::string out = folder_ / ("run-" + place);
     const ProcessResult ran = run(out, joined(more, {"--save", "views", "--frames", "0-1"}));
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
