@@ -11,6 +11,7 @@ namespace {
 
 TEST(TuneMachine, FindsSomethingToStoreInLittleTime) {
   TuningRequest request;
+  request.match.method = MatchMethod::kSsd;  // the quickest
   request.match.disparities = {0, 15};
   request.execution.threads = 2;
   request.images = {120, 60, true};
