@@ -192,6 +192,7 @@ TEST_F(RunMemory, FramesAllocateLittle) {
 TEST_F(RunMemory, FramesAllocateFewLargeBlocks) {
   constexpr std::size_t kLarge = std::size_t{64} << 10;
   EXPECT_LT(allocations_per_frame(large_arguments({"--method", "ssd"}), kLarge), 12);
+  EXPECT_LT(allocations_per_frame(large_arguments({}), kLarge), 16);
   EXPECT_LT(allocations_per_frame(
                 large_arguments({"--save", "disparity,preview,views", "--view", "0.5"}), kLarge),
             30);
