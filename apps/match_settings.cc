@@ -201,6 +201,11 @@ void add_aggregation_settings(Settings& settings, MethodOverrides& parameters) {
                   "bayes with several levels: --sigma-prior of a level over that of the next finer "
                   "one, 1 to 4; " +
                       shared(book.prior_growth));
+  settings.choice<PriorSmoothing>(
+      "prior-smoothing", parameters.prior_smoothing,
+      {{"sum", PriorSmoothing::kSum}, {"maximum", PriorSmoothing::kMaximum}},
+      "bayes: of the disparities near one that a neighbour may have, sum adds up the "
+      "probabilities, maximum takes the largest, which is several times faster; auto: sum");
   settings.number("level-weight", parameters.level_weight, "W",
                   "bayes with several levels: how much of the evidence of four pixels is that of "
                   "one of the next coarser level, above 0 and at most 1; " +

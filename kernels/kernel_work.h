@@ -204,6 +204,22 @@ constexpr KernelWork bayes_general_work(BayesState state, int prior_radius, bool
                 : work;
 }
 
+/// Energies in fixed point, half a value a cell. The least of the column and what lies above it;
+/// of an output that is looked at again two neighbours, their least, the rise and the least so far
+/// for each offset, then the ceiling.
+constexpr KernelWork energy_state_work(int prior_radius, bool smooths) {
+  return {1 + 1 + (smooths ? 3.0 * prior_radius + 1 : 0), kLaneTreeOperations, 0, 0};
+}
+constexpr KernelWork max_product_start_work(int prior_radius) {
+  return energy_state_work(prior_radius, true) + KernelWork{0, 0, 2 * 0.5, 0};
+}
+/// Five weighted cells (a product and a rounding each), their sum, and the source. Weights, where
+/// there are any, are loaded per column.
+constexpr KernelWork max_product_work(int prior_radius, bool smooths, bool weighted) {
+  return energy_state_work(prior_radius, smooths) +
+         KernelWork{5 * 2 + 4 + 1, 0, (kStarValues + 1) * 0.5, weighted ? 4 * 0.5 : 0.0};
+}
+
 // --- levels -----------------------------------------------------------------------------------
 
 /// Of a coarse column: the least likelihood that counts and the product of four, its logarithm and
@@ -220,6 +236,19 @@ inline constexpr KernelWork kCompactProbabilitiesWork = {1 + kLogOperations + 3,
 constexpr KernelWork bayes_start_from_coarser_work(BayesState state, int prior_radius) {
   const KernelWork work = kExpandCompactWork + bayes_state_work(state, prior_radius);
   return {work.operations / 4, work.operations_per_column / 4, 2, 0};
+}
+
+/// A product and a rounding.
+inline constexpr KernelWork kFixedEnergiesOfBytesWork = {2, 0, 0.25 + 0.5, 0};
+/// The least likelihood that counts, the logarithm in steps, not below 0.
+inline constexpr KernelWork kFixedEnergiesOfLikelihoodsWork = {1 + kLogOperations + 2, 0, 1 + 0.5,
+                                                               0};
+/// As of bytes; these saturate by themselves.
+inline constexpr KernelWork kBytesOfFixedEnergiesWork = {2, 0, 0.5 + 0.25, 0};
+/// As bayes_start_from_coarser_work().
+constexpr KernelWork max_product_start_from_coarser_work(int prior_radius) {
+  const KernelWork work = kFixedEnergiesOfBytesWork + energy_state_work(prior_radius, true);
+  return {work.operations / 4, work.operations_per_column / 4, 2 * 0.5, 0};
 }
 
 /// Rounding a magnitude to a half float: the largest one, the exponent, two additions.
@@ -252,6 +281,16 @@ inline constexpr KernelWork kIntegerDisparityWork = {0, 1, 0, 2};
 constexpr KernelWork parabola_work(bool of_probabilities) {
   return {0, 14 + (of_probabilities ? 3 * (kDoubleLogOperations + 1) : 0), 0, 5};
 }
+/// The least of a column of energies in fixed point, then the first place where it is, places being
+/// counted on the way.
+constexpr KernelWork energy_winner_work() {
+  return {1 + 3, 2 * kLaneTreeOperations, 2 * 0.5, 1 + 0.5};
+}
+/// From three cells of each column, if the winner has neighbours.
+inline constexpr KernelWork kEnergyDisparityWork = {0, 3 + 9, 0, 2 + 3 * 0.5};
+/// Likelihoods of the column, their sum, and the winner's share.
+inline constexpr KernelWork kEnergyProbabilityWork = {
+    1 + kExp2Operations + 1, kLaneTreeOperations + kExp2Operations + 2, 0.5, 1 + 0.5};
 inline constexpr KernelWork kProbabilityEnergyWork = {0, kDoubleLogOperations + 1, 0, 2};
 
 }  // namespace vantage::kernels

@@ -91,7 +91,8 @@ class RowStage {
   /// Size of the grid of cells this stage makes.
   [[nodiscard]] Extent extent() const { return extent_; }
 
-  /// Bytes of one cell column (all its disparities) of an output row: a multiple of 64, or 0.
+  /// Bytes of one cell column (all its disparities) of an output row, or 0. Rows begin at multiples
+  /// of 64 bytes, columns lie one behind the other.
   [[nodiscard]] virtual std::size_t bytes_per_column() const = 0;
 
   /// Rows of the input needed to make row y, cut to the input's extent. Both ends must not

@@ -2,19 +2,23 @@
 
 #include <algorithm>
 
+#include "kernels/cells/fixed_energy.h"
+
 namespace vantage {
 
-kernels::StarRow BlockStars::star(const scheduler::RowTask& task, const CandidateBlocks::Run& run,
-                                  const float* neutral, float* work) const {
+template <typename Cell>
+kernels::CellStarRow<Cell> BlockStars<Cell>::star(const scheduler::RowTask& task,
+                                                  const CandidateBlocks::Run& run,
+                                                  const Cell* neutral, Cell* work) const {
   const scheduler::InputRows& input = task.input;
   const auto lanes = static_cast<std::ptrdiff_t>(run.blocks.size()) * kernels::kLaneMultiple;
-  kernels::StarRow star;
+  kernels::CellStarRow<Cell> star;
   star.lanes = static_cast<int>(lanes);
   star.columns = run.columns.size();
   star.pitch = blocks_.lanes();
   star.centre = column(input, run.columns.begin, task.y);
   star.source = column(task.source, run.columns.begin, task.y);
-  const auto neighbour_row = [&](int y, const float*& cells, std::ptrdiff_t& pitch) {
+  const auto neighbour_row = [&](int y, const Cell*& cells, std::ptrdiff_t& pitch) {
     if (y < input.rows().begin || y >= input.rows().end) {
       cells = neutral;
       pitch = 0;
@@ -40,9 +44,10 @@ kernels::StarRow BlockStars::star(const scheduler::RowTask& task, const Candidat
 }
 
 /// Column x of the row, for a run beside it.
-const float* BlockStars::beside(const scheduler::RowTask& task, const CandidateBlocks::Run& run,
-                                int x, float* work) const {
-  const float* const cells = column(task.input, x, task.y);
+template <typename Cell>
+const Cell* BlockStars<Cell>::beside(const scheduler::RowTask& task,
+                                     const CandidateBlocks::Run& run, int x, Cell* work) const {
+  const Cell* const cells = column(task.input, x, task.y);
   const BlockList own = blocks_.at(x, task.y);
   if (std::ranges::equal(own, run.blocks)) {
     return cells;
@@ -50,5 +55,8 @@ const float* BlockStars::beside(const scheduler::RowTask& task, const CandidateB
   copy_blocks(cells, own, run.blocks, absent_, work);
   return work;
 }
+
+template class BlockStars<float>;
+template class BlockStars<kernels::FixedEnergy>;
 
 }  // namespace vantage

@@ -71,8 +71,8 @@ class LevelReductionStage : public scheduler::RowStage {
   LevelVolume& coarser_;
 };
 
-/// Last stage that keeps the float cells of a level in a volume, columns one behind the other, of
-/// as many lanes.
+/// Last stage that keeps the cells of a level in a volume, columns one behind the other, of as many
+/// lanes.
 class LevelStoreStage : public scheduler::RowStage {
  public:
   LevelStoreStage(const kernels::CandidateGeometry& geometry, LevelVolume& volume)
@@ -87,9 +87,11 @@ class LevelStoreStage : public scheduler::RowStage {
  protected:
   [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] LevelVolume& volume() const { return volume_; }
-  [[nodiscard]] const float* cells(const scheduler::RowTask& task) const {
-    return task.input.row<float>(task.y) +
-           static_cast<std::ptrdiff_t>(task.columns.begin - task.input.columns().begin) * lanes_;
+  /// From column x on.
+  template <typename Cell>
+  [[nodiscard]] const Cell* cells(const scheduler::RowTask& task, int x) const {
+    return task.input.row<Cell>(task.y) +
+           static_cast<std::ptrdiff_t>(x - task.input.columns().begin) * lanes_;
   }
   [[nodiscard]] int cell_count(const scheduler::RowTask& task) const {
     return task.columns.size() * lanes_;
@@ -101,7 +103,7 @@ class LevelStoreStage : public scheduler::RowStage {
   LevelVolume& volume_;
 };
 
-/// Source stage that makes float cells of a volume.
+/// Source stage that makes cells of a volume, float where nothing else is said.
 class LevelSourceStage : public scheduler::RowStage {
  public:
   LevelSourceStage(const kernels::CandidateGeometry& geometry, const LevelVolume& volume)

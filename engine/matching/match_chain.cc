@@ -11,6 +11,7 @@
 
 #include "engine/error.h"
 #include "engine/matching/cost_bounds.h"
+#include "engine/matching/energy_format.h"
 #include "engine/matching/small_census_tables.h"
 #include "engine/matching/stage_bayes.h"
 #include "engine/matching/stage_block_selection.h"
@@ -20,8 +21,11 @@
 #include "engine/matching/stage_column_sum.h"
 #include "engine/matching/stage_diffusion.h"
 #include "engine/matching/stage_disparity_prior.h"
+#include "engine/matching/stage_energy_selection.h"
+#include "engine/matching/stage_fixed_energies.h"
 #include "engine/matching/stage_level_energies.h"
 #include "engine/matching/stage_level_likelihoods.h"
+#include "engine/matching/stage_max_product.h"
 #include "engine/matching/stage_small_census_energy.h"
 #include "engine/matching/stage_smoothing.h"
 #include "engine/matching/stage_window_selection.h"
@@ -186,7 +190,9 @@ void MatchChain::add_reduction(const MethodParameters& parameters, const ChainIn
                                          *level.reduced));
     return;
   }
-  add_costs(parameters, input, level);
+  MethodParameters of_costs = parameters;
+  of_costs.prior_smoothing = PriorSmoothing::kSum;  // likelihoods: before any smoothing
+  add_costs(of_costs, input, level);
   add(parameters.aggregation == Aggregation::kBayes
           ? make_likelihood_reduction_stage(geometry_, weight, *level.reduced)
           : make_energy_reduction_stage(geometry_, half_scale_, *level.reduced));
@@ -195,35 +201,62 @@ void MatchChain::add_reduction(const MethodParameters& parameters, const ChainIn
 /// What the level starts from: costs of the images, or of the level as they were stored.
 void MatchChain::add_costs(const MethodParameters& parameters, const ChainInput& input,
                            const ChainLevel& level) {
-  const bool is_bayes = parameters.aggregation == Aggregation::kBayes;
   if (level.costs != nullptr) {
-    add(is_bayes ? make_level_likelihood_stage(geometry_, *level.costs, level.blocks)
-                 : make_level_energy_stage(geometry_, half_scale_, *level.costs));
+    add(level_costs(parameters, level));
     return;
   }
-  const CellMeaning meaning = is_bayes ? CellMeaning::kLikelihood : CellMeaning::kEnergy;
-  const auto costs_of = [&](int first_candidate, int count) {
-    kernels::CandidateGeometry candidates = geometry_;
-    candidates.disparity_min += first_candidate;
-    candidates.count = count;
-    auto costs =
-        make_cost_stage(parameters, candidates, *input.reference, input.partners, meaning, height_);
-    if (!input.prior_px.empty()) {
-      costs = make_disparity_prior_stage(std::move(costs), geometry_, meaning, input.prior_px,
-                                         static_cast<float>(input.prior_weight),
-                                         most_contrast(parameters), first_candidate);
-    }
-    return costs;
-  };
   if (level.blocks == nullptr) {
-    add(costs_of(0, geometry_.count));
+    add(costs_of(parameters, input, 0, geometry_.count));
     return;
   }
   std::vector<std::unique_ptr<scheduler::RowStage>> of_blocks;
   for (int first = 0; first < geometry_.count; first += kernels::kLaneMultiple) {
-    of_blocks.push_back(costs_of(first, std::min(kernels::kLaneMultiple, geometry_.count - first)));
+    of_blocks.push_back(costs_of(parameters, input, first,
+                                 std::min(kernels::kLaneMultiple, geometry_.count - first)));
   }
   add(make_block_source_stage(std::move(of_blocks), *level.blocks));
+}
+
+std::unique_ptr<scheduler::RowStage> MatchChain::level_costs(const MethodParameters& parameters,
+                                                             const ChainLevel& level) const {
+  if (parameters.aggregation != Aggregation::kBayes) {
+    return make_level_energy_stage(geometry_, half_scale_, *level.costs);
+  }
+  if (uses_fixed_energies(parameters)) {
+    return make_level_fixed_energy_stage(geometry_, *level.costs, EnergyFormat(parameters),
+                                         level.blocks);
+  }
+  return make_level_likelihood_stage(geometry_, *level.costs, level.blocks);
+}
+
+/// Of the images, for some of the candidates.
+std::unique_ptr<scheduler::RowStage> MatchChain::costs_of(const MethodParameters& parameters,
+                                                          const ChainInput& input,
+                                                          int first_candidate, int count) const {
+  kernels::CandidateGeometry candidates = geometry_;
+  candidates.disparity_min += first_candidate;
+  candidates.count = count;
+  const bool is_fixed = uses_fixed_energies(parameters);
+  if (is_fixed && has_byte_energies(parameters, input)) {
+    return make_fixed_energy_stage(
+        make_small_census_energy_stage(parameters, candidates, *input.reference,
+                                       input.partners.front(), height_),
+        EnergySource::kBytes, count, EnergyFormat(parameters),
+        small_census_energies(parameters).step);
+  }
+  const CellMeaning meaning = parameters.aggregation == Aggregation::kBayes
+                                  ? CellMeaning::kLikelihood
+                                  : CellMeaning::kEnergy;
+  auto costs =
+      make_cost_stage(parameters, candidates, *input.reference, input.partners, meaning, height_);
+  if (!input.prior_px.empty()) {
+    costs = make_disparity_prior_stage(std::move(costs), geometry_, meaning, input.prior_px,
+                                       static_cast<float>(input.prior_weight),
+                                       most_contrast(parameters), first_candidate);
+  }
+  return is_fixed ? make_fixed_energy_stage(std::move(costs), EnergySource::kLikelihoods, count,
+                                            EnergyFormat(parameters))
+                  : std::move(costs);
 }
 
 void MatchChain::add_column_ssd(const MethodParameters& parameters, const PreparedPair& pair) {
@@ -289,24 +322,38 @@ void MatchChain::add_aggregation(const MethodParameters& parameters, const Chain
                                       {.is_first = i == 0, .is_last = i + 1 == iterations_}));
       }
       break;
-    case Aggregation::kBayes:
+    case Aggregation::kBayes: {
       iterations_ = parameters.iterations;
-      add_all(make_bayes_stages(parameters, geometry_, height_,
-                                {.volume = level.coarser, .blocks = level.coarser_blocks}, edges,
-                                level.blocks));
+      const CoarserResult coarser{.volume = level.coarser, .blocks = level.coarser_blocks};
+      add_all(
+          uses_fixed_energies(parameters)
+              ? make_max_product_stages(parameters, geometry_, height_, coarser, edges,
+                                        level.blocks)
+              : make_bayes_stages(parameters, geometry_, height_, coarser, edges, level.blocks));
       ++first_iteration_;  // behind the start
       break;
+    }
   }
 }
 
 void MatchChain::add_result(const MethodParameters& parameters, const ChainLevel& level) {
-  add(parameters.aggregation == Aggregation::kBayes
-          ? make_level_probability_stage(
-                geometry_, {.probabilities = level.result, .winners = level.winners}, level.blocks)
-          : make_energy_store_stage(geometry_, half_scale_, *level.result));
+  const LevelResult result{.cells = level.result, .winners = level.winners};
+  if (parameters.aggregation != Aggregation::kBayes) {
+    add(make_energy_store_stage(geometry_, half_scale_, *level.result));
+  } else if (uses_fixed_energies(parameters)) {
+    add(make_level_energy_result_stage(geometry_, result, EnergyFormat(parameters), level.blocks));
+  } else {
+    add(make_level_probability_stage(geometry_, result, level.blocks));
+  }
 }
 
 void MatchChain::add_selection(const MethodParameters& parameters, const ChainLevel& level) {
+  if (uses_fixed_energies(parameters)) {
+    add(make_energy_selection_stage(geometry_, parameters.subpixel,
+                                    EnergyFormat(parameters).steps_per_nat(), outputs_,
+                                    level.blocks));
+    return;
+  }
   if (level.blocks != nullptr) {
     add(make_block_selection_stage(geometry_, parameters.subpixel, outputs_, *level.blocks));
     return;

@@ -80,6 +80,11 @@ class MatchChain {
                      const ChainLevel& level);
   void add_costs(const MethodParameters& parameters, const ChainInput& input,
                  const ChainLevel& level);
+  [[nodiscard]] std::unique_ptr<scheduler::RowStage> level_costs(const MethodParameters& parameters,
+                                                                 const ChainLevel& level) const;
+  [[nodiscard]] std::unique_ptr<scheduler::RowStage> costs_of(const MethodParameters& parameters,
+                                                              const ChainInput& input,
+                                                              int first_candidate, int count) const;
   void add_column_ssd(const MethodParameters& parameters, const PreparedPair& pair);
   void add_box(const MethodParameters& parameters, const ChainInput& input);
   void add_aggregation(const MethodParameters& parameters, const ChainInput& input,

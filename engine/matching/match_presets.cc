@@ -8,12 +8,13 @@ namespace {
 MethodOverrides coarse_to_fine() {
   MethodOverrides parameters;
   parameters.cost = MatchCost::kSmallCensus;
-  parameters.sigma_measurement = 4.8;  // a fifth of the bits
+  parameters.sigma_measurement = 4.2;  // of 24 bits
+  parameters.epsilon_measurement = 0.2;
   parameters.levels = 7;
   parameters.level_weight = 0.6;
-  parameters.mu = 0.4;
   parameters.epsilon_prior = 5e-6;
   parameters.prior_growth = 1.2;
+  parameters.prior_smoothing = PriorSmoothing::kMaximum;
   parameters.edge_weight = 0.2;
   parameters.candidate_blocks = 3;
   return parameters;
@@ -35,6 +36,7 @@ PresetSettings preset_settings(MatchPreset preset) {
     case MatchPreset::kBalanced:
       settings.method = MatchMethod::kBayes;
       settings.parameters = coarse_to_fine();
+      settings.parameters.mu = 0.28;
       settings.parameters.iterations = 3;
       settings.parameters.final_iterations = 1;
       settings.refinement.fill = Fill::kMedian;
@@ -42,6 +44,7 @@ PresetSettings preset_settings(MatchPreset preset) {
     case MatchPreset::kQuality:
       settings.method = MatchMethod::kBayes;
       settings.parameters = coarse_to_fine();
+      settings.parameters.mu = 0.33;
       settings.parameters.iterations = 10;
       settings.parameters.final_iterations = 5;
       settings.refinement.fill = Fill::kMedian;

@@ -48,6 +48,7 @@ constexpr MethodParameters kCommon{
     .sigma_census = 0.2,
     .sigma_gradient = 0,
     .prior_growth = 1,
+    .prior_smoothing = PriorSmoothing::kSum,
     .level_weight = 1,
     .edge_weight = 1,
     .edge_contrast = 8,
@@ -96,6 +97,7 @@ void take_over(const MethodParametersOf<From>& overrides, MethodParametersOf<To>
   take(overrides.sigma_prior, target.sigma_prior);
   take(overrides.epsilon_prior, target.epsilon_prior);
   take(overrides.prior_growth, target.prior_growth);
+  take(overrides.prior_smoothing, target.prior_smoothing);
   take(overrides.level_weight, target.level_weight);
   take(overrides.edge_weight, target.edge_weight);
   take(overrides.edge_contrast, target.edge_contrast);

@@ -44,6 +44,11 @@ enum class Certainty {
   kMargin,   ///< winner margin (6.13)
   kEntropy,  ///< negative entropy (6.15)
 };
+/// Bayes: what the prior makes of what a neighbour says of disparities beside each other (6.35).
+enum class PriorSmoothing {
+  kSum,      ///< their probabilities, weighed and added up
+  kMaximum,  ///< the largest of them: energies that are added and compared, in a third of the time
+};
 enum class GradientFilter { kCentral, kSobel, kSimoncelli3, kSimoncelli5 };
 enum class GradientNorm { kL2, kOctagon };
 
@@ -85,6 +90,7 @@ struct MethodParametersOf {
   Field<double> sigma_census;  ///< combined cost: σ of the share of census bits, 0..1; 0: no term
   Field<double> sigma_gradient;  ///< combined cost: σ in grey levels per pixel, ≥ 0; 0: no term
   Field<double> prior_growth;    ///< Bayes: σP of a level ÷ that of the next finer one, 1..4
+  Field<PriorSmoothing> prior_smoothing;  ///< Bayes
   /// Bayes: energies of a coarse level are this share of the sum of those of 2×2 pixels, which are
   /// not independent of each other; 0 < w ≤ 1.
   Field<double> level_weight;

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <numeric>
 #include <optional>
+#include <span>
 
 #include "engine/image/image.h"
 #include "engine/matching/block_star.h"
@@ -41,16 +39,6 @@ std::vector<float> prior_taps(const MethodParameters& parameters, int count) {
 }
 
 enum class Form { kStart, kHalf, kGeneral };
-
-/// As many candidates as columns of cells have room for.
-kernels::CandidateGeometry cell_geometry(const kernels::CandidateGeometry& geometry,
-                                         const CandidateBlocks* blocks) {
-  kernels::CandidateGeometry cells = geometry;
-  if (blocks != nullptr) {
-    cells.count = blocks->lanes();
-  }
-  return cells;
-}
 
 /// Working memory of a kernel on columns of so many lanes, of blocks that need not be neighbours.
 std::size_t work_floats(int lanes, int radius, const CandidateBlocks* blocks) {
@@ -101,7 +89,7 @@ class BayesStage final : public StarStage {
   [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
                                         scheduler::Extent /*input*/) const override {
     return sizeof(float) *
-           (work_floats(lanes(), radius(), blocks_) + (stars_ ? stars_->work_floats() : 0));
+           (work_floats(lanes(), radius(), blocks_) + (stars_ ? stars_->work_cells() : 0));
   }
 
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
@@ -183,141 +171,69 @@ class BayesStage final : public StarStage {
   const EdgeWeights* edges_;
   Image<float> neutral_;  ///< stands for the neighbours outside the image
   const CandidateBlocks* blocks_;
-  std::optional<BlockStars> stars_;  ///< where there are blocks
+  std::optional<BlockStars<float>> stars_;  ///< where there are blocks
 };
 
 /// The state before the first iteration of a level, from the probabilities that the next coarser
-/// one ended with: column x of row y lies in column x/2 of row y/2 there. Takes part in the chain
-/// like the start from likelihoods, so that iterations find their source, but looks at no input.
-class BayesFromCoarserStage final : public scheduler::RowStage {
+/// one ended with.
+class BayesFromCoarserStage final : public FromCoarserStage<float> {
  public:
   BayesFromCoarserStage(const MethodParameters& parameters,
                         const kernels::CandidateGeometry& geometry, int height, BayesState state,
-                        const CoarserProbabilities& coarser, const CandidateBlocks* blocks)
-      : RowStage({geometry.width, height}),
-        lanes_(cell_geometry(geometry, blocks).lanes()),
-        count_(geometry.count),
+                        const CoarserResult& coarser, const CandidateBlocks* blocks)
+      : FromCoarserStage(geometry, height, coarser, blocks),
         state_(state),
         mu_(static_cast<float>(parameters.mu)),
         taps_(prior_taps(parameters, geometry.count)),
-        floor_(static_cast<float>(parameters.epsilon_prior)),
-        coarser_(coarser),
-        blocks_(blocks),
-        all_blocks_(static_cast<std::size_t>(geometry.lanes() / kernels::kLaneMultiple)) {
-    std::iota(all_blocks_.begin(), all_blocks_.end(), std::uint16_t{0});
-  }
+        floor_(static_cast<float>(parameters.epsilon_prior)) {}
 
   [[nodiscard]] std::string_view name() const override { return "Bayes start from coarser"; }
-  [[nodiscard]] std::size_t bytes_per_column() const override { return sizeof(float) * lanes(); }
-  /// Of a few coarser columns: probabilities as floats and as bytes, states, and what smoothing
-  /// needs.
-  [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
-                                        scheduler::Extent /*input*/) const override {
-    return sizeof(float) *
-               (2 * kCoarserColumns * lanes() + work_floats(lanes_, radius(), blocks_)) +
-           kCoarserColumns * lanes();
-  }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     return vantage::column_work(kernels::bayes_start_from_coarser_work(state_, radius()),
-                                candidates_in(blocks_, count_));
+                                candidates());
   }
 
-  void make_row(const scheduler::RowTask& task) const override {
-    if (task.y % 2 == 1 && task.previous != nullptr) {
-      // Both rows are the same one of the coarser level.
-      if (task.previous != task.output) {
-        std::memcpy(task.output, task.previous,
-                    bytes_per_column() * static_cast<std::size_t>(task.columns.size()));
-      }
-      return;
-    }
-    if (blocks_ == nullptr) {
-      make_columns(task, {task.columns, all_blocks_}, count_);
-      return;
-    }
-    for (int x = task.columns.begin; x < task.columns.end;) {
-      const CandidateBlocks::Run run = blocks_->run_at(x, task.y, task.columns.end);
-      make_columns(task, run, blocks_->count(run.blocks));
-      x = run.columns.end;
-    }
+ protected:
+  /// Probabilities, and what smoothing needs.
+  [[nodiscard]] std::size_t work_cells() const override {
+    return kCoarserColumns * static_cast<std::size_t>(lanes()) +
+           work_floats(lanes(), radius(), blocks());
   }
 
- private:
-  static constexpr int kCoarserColumns = 8;
-
-  [[nodiscard]] std::size_t lanes() const { return static_cast<std::size_t>(lanes_); }
-  [[nodiscard]] int radius() const { return static_cast<int>(taps_.size()) - 1; }
-
-  /// count: candidates in the lanes of the run.
-  void make_columns(const scheduler::RowTask& task, const CandidateBlocks::Run& run,
-                    int count) const {
-    const std::size_t run_lanes = run.blocks.size() * kernels::kLaneMultiple;
-    auto* const output = reinterpret_cast<float*>(task.output);
-    const float* const states = reinterpret_cast<const float*>(task.state);
-    const int end = (run.columns.end + 1) / 2;
-    for (int first = run.columns.begin / 2; first < end; first += kCoarserColumns) {
-      const int columns = std::min(kCoarserColumns, end - first);
-      make_states(task, run.blocks, count, first, columns);
-      for (int x = std::max(2 * first, run.columns.begin);
-           x < std::min(2 * (first + columns), run.columns.end); ++x) {
-        std::copy_n(states + run_lanes * static_cast<std::size_t>(x / 2 - first), run_lanes,
-                    output + lanes() * static_cast<std::size_t>(x - task.columns.begin));
-      }
-    }
-  }
-
-  /// Of columns of the coarser level, at the beginning of the state.
-  void make_states(const scheduler::RowTask& task, BlockList blocks, int count, int first,
-                   int columns) const {
-    const int run_lanes = static_cast<int>(blocks.size()) * kernels::kLaneMultiple;
-    auto* const states = reinterpret_cast<float*>(task.state);
-    float* const probabilities = states + kCoarserColumns * lanes();
-    float* const work = probabilities + kCoarserColumns * lanes();
-    auto* const bytes =
-        reinterpret_cast<std::uint8_t*>(work + work_floats(lanes_, radius(), blocks_));
-    for (int j = 0; j < columns; ++j) {
-      const int x = first + j;
-      const BlockList own =
-          coarser_.blocks == nullptr ? all_blocks_ : coarser_.blocks->at(x, task.y / 2);
-      copy_blocks<std::uint8_t>(coarser_.volume->column<std::uint8_t>(x, task.y / 2), own, blocks,
-                                kernels::kMostCompact,
-                                bytes + static_cast<std::ptrdiff_t>(j) * run_lanes);
-    }
-    kernels::probabilities_of_compact_row(
-        {.cells = bytes, .columns = columns, .lanes = run_lanes, .count = count}, probabilities);
-    const BlockSegments segments(blocks);
+  void make_states(const kernels::CompactRow& coarser, std::span<const int> segment_ends,
+                   float* states, float* work) const override {
+    float* const probabilities = work;
+    kernels::probabilities_of_compact_row(coarser, probabilities);
     kernels::BayesRow row;
     row.star.centre = row.star.up = row.star.down = row.star.source = probabilities;
     row.star.left_of_first = row.star.right_of_last = probabilities;
-    row.star.columns = columns;
-    row.star.lanes = run_lanes;
+    row.star.columns = coarser.columns;
+    row.star.lanes = coarser.lanes;
     row.prior = {taps_.data(), radius(), floor_};
     row.state = state_;
     row.mu = mu_;
-    row.count = count;
+    row.count = coarser.count;
     row.output = states;
-    row.source_pitch = row.output_pitch = run_lanes;
-    row.segment_ends = segments.ends();
-    row.work = work;
+    row.source_pitch = row.output_pitch = coarser.lanes;
+    row.segment_ends = segment_ends;
+    row.work = work + kCoarserColumns * static_cast<std::size_t>(lanes());
     kernels::bayes_start_row(row);
   }
 
-  int lanes_;
-  int count_;
+ private:
+  [[nodiscard]] int radius() const { return static_cast<int>(taps_.size()) - 1; }
+
   BayesState state_;
   float mu_;
   std::vector<float> taps_;
   float floor_;
-  CoarserProbabilities coarser_;
-  const CandidateBlocks* blocks_;
-  std::vector<std::uint16_t> all_blocks_;
 };
 
 }  // namespace
 
 std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const CoarserProbabilities& coarser, const EdgeWeights* edges, const CandidateBlocks* blocks) {
+    const CoarserResult& coarser, const EdgeWeights* edges, const CandidateBlocks* blocks) {
   const bool half = parameters.mu == 0.5 && edges == nullptr &&
                     parameters.epsilon_prior >= kLeastEpsilonOfProductForm;
   const BayesState between = half ? BayesState::kSmoothed : BayesState::kLogSmoothed;

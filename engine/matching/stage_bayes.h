@@ -5,26 +5,20 @@
 
 #include "engine/matching/candidate_blocks.h"
 #include "engine/matching/edge_weights.h"
-#include "engine/matching/level_volume.h"
 #include "engine/matching/method_parameters.h"
+#include "engine/matching/stage_from_coarser.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
 
 namespace vantage {
-
-/// The probabilities that the next coarser level ended with (stage_level_likelihoods).
-struct CoarserProbabilities {
-  const LevelVolume* volume = nullptr;  ///< null: there is no coarser level
-  /// The candidates that were looked at there, in whose lanes they lie; null: all.
-  const CandidateBlocks* blocks = nullptr;
-};
 
 /// The stages of Bayesian diffusion (6.25)–(6.37) after the chain's first stage, which must be the
 /// cost stage with likelihoods (CellMeaning::kLikelihood): a start, then one stage an iteration.
 /// The last one's cells are probabilities, float, geometry.lanes() a column, that sum to 1; lanes
 /// that are no candidates hold 0.
 ///
-/// `coarser` must outlive the stages; the start is made of it instead of the likelihoods, which
+/// `coarser`, the probabilities that the next coarser level ended with (stage_level_likelihoods),
+/// must outlive the stages; the start is made of it instead of the likelihoods, which
 /// then only the iterations look at.
 ///
 /// `blocks`: the candidates that are looked at, in whose lanes the cells of all stages lie; all
@@ -39,7 +33,7 @@ struct CoarserProbabilities {
 /// of normal floats.
 std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const CoarserProbabilities& coarser = {}, const EdgeWeights* edges = nullptr,
+    const CoarserResult& coarser = {}, const EdgeWeights* edges = nullptr,
     const CandidateBlocks* blocks = nullptr);
 
 }  // namespace vantage

@@ -61,7 +61,7 @@ class EnergyStoreStage final : public LevelStoreStage {
   }
 
   void make_row(const scheduler::RowTask& task) const override {
-    kernels::half_energies_row(cells(task), cell_count(task), scale_,
+    kernels::half_energies_row(cells<float>(task, task.columns.begin), cell_count(task), scale_,
                                volume().column<std::uint16_t>(task.columns.begin, task.y));
   }
 

@@ -124,9 +124,7 @@ class LevelProbabilityStage final : public LevelStoreStage {
  public:
   LevelProbabilityStage(const kernels::CandidateGeometry& geometry, const LevelResult& result,
                         const CandidateBlocks* blocks)
-      : LevelStoreStage(geometry, *result.probabilities),
-        winners_(result.winners),
-        blocks_(blocks) {}
+      : LevelStoreStage(geometry, *result.cells), winners_(result.winners), blocks_(blocks) {}
 
   /// The cells of one run, one column behind the other.
   [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
@@ -153,10 +151,10 @@ class LevelProbabilityStage final : public LevelStoreStage {
       return;
     }
     const int x = task.columns.begin;
-    kernels::compact_probabilities_row(cells(task), cell_count(task),
+    kernels::compact_probabilities_row(cells<float>(task, x), cell_count(task),
                                        volume().column<std::uint8_t>(x, task.y));
     if (winners_ != nullptr) {
-      write_winners(cells(task), task.columns.size(), count(), winners_->row(task.y) + x);
+      write_winners(cells<float>(task, x), task.columns.size(), count(), winners_->row(task.y) + x);
     }
   }
 
@@ -164,9 +162,7 @@ class LevelProbabilityStage final : public LevelStoreStage {
   void store_run(const scheduler::RowTask& task, const CandidateBlocks::Run& run) const {
     const int lanes = static_cast<int>(run.blocks.size()) * kernels::kLaneMultiple;
     auto* const packed = reinterpret_cast<float*>(task.state);
-    const float* column =
-        cells(task) +
-        static_cast<std::ptrdiff_t>(run.columns.begin - task.columns.begin) * blocks_->lanes();
+    const float* column = cells<float>(task, run.columns.begin);
     for (int j = 0; j < run.columns.size(); ++j, column += blocks_->lanes()) {
       std::copy_n(column, lanes, packed + static_cast<std::ptrdiff_t>(j) * lanes);
       kernels::compact_probabilities_row(

@@ -33,9 +33,9 @@ std::unique_ptr<scheduler::RowStage> make_level_likelihood_stage(
     const kernels::CandidateGeometry& geometry, const LevelVolume& energies,
     const CandidateBlocks* blocks = nullptr);
 
-/// What becomes of the probabilities that a level ends with.
+/// What becomes of the probabilities, or energies, that a level ends with.
 struct LevelResult {
-  LevelVolume* probabilities = nullptr;
+  LevelVolume* cells = nullptr;
   /// The most probable candidates, the smallest of equals; of the level's size. Null: not wanted.
   Image<std::int32_t>* winners = nullptr;
 };

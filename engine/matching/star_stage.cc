@@ -1,20 +1,23 @@
 #include "engine/matching/star_stage.h"
 
+#include "kernels/cells/fixed_energy.h"
+
 namespace vantage {
 
-kernels::StarRow StarStage::star(const scheduler::RowTask& task, int pitch,
-                                 const float* neutral) const {
-  const auto offset = [&task](const scheduler::InputRows& rows, int column_floats) {
-    return static_cast<std::ptrdiff_t>(task.columns.begin - rows.columns().begin) * column_floats;
+template <typename Cell>
+kernels::CellStarRow<Cell> CellStarStage<Cell>::star(const scheduler::RowTask& task, int pitch,
+                                                     const Cell* neutral) const {
+  const auto offset = [&task](const scheduler::InputRows& rows, int column_cells) {
+    return static_cast<std::ptrdiff_t>(task.columns.begin - rows.columns().begin) * column_cells;
   };
-  kernels::StarRow star;
+  kernels::CellStarRow<Cell> star;
   star.lanes = lanes_;
   star.columns = task.columns.size();
   star.pitch = pitch;
-  star.centre = task.input.row<float>(task.y) + offset(task.input, pitch);
-  const auto neighbour_row = [&](int y, const float*& cells, std::ptrdiff_t& cells_pitch) {
+  star.centre = task.input.row<Cell>(task.y) + offset(task.input, pitch);
+  const auto neighbour_row = [&](int y, const Cell*& cells, std::ptrdiff_t& cells_pitch) {
     if (y >= task.input.rows().begin && y < task.input.rows().end) {
-      cells = task.input.row<float>(y) + offset(task.input, pitch);
+      cells = task.input.row<Cell>(y) + offset(task.input, pitch);
       cells_pitch = pitch;
     } else {
       cells = neutral != nullptr ? neutral : star.centre;
@@ -23,15 +26,18 @@ kernels::StarRow StarStage::star(const scheduler::RowTask& task, int pitch,
   };
   neighbour_row(task.y - 1, star.up, star.up_pitch);
   neighbour_row(task.y + 1, star.down, star.down_pitch);
-  const float* const last = star.centre + static_cast<std::ptrdiff_t>(star.columns - 1) * pitch;
-  const auto outside = [neutral](const float* own) { return neutral != nullptr ? neutral : own; };
+  const Cell* const last = star.centre + static_cast<std::ptrdiff_t>(star.columns - 1) * pitch;
+  const auto outside = [neutral](const Cell* own) { return neutral != nullptr ? neutral : own; };
   star.left_of_first =
       task.columns.begin > task.input.columns().begin ? star.centre - pitch : outside(star.centre);
   star.right_of_last = task.columns.end < task.input.columns().end ? last + pitch : outside(last);
   if (reads_source()) {
-    star.source = task.source.row<float>(task.y) + offset(task.source, lanes_);
+    star.source = task.source.row<Cell>(task.y) + offset(task.source, lanes_);
   }
   return star;
 }
+
+template class CellStarStage<float>;
+template class CellStarStage<kernels::FixedEnergy>;
 
 }  // namespace vantage

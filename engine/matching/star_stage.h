@@ -9,14 +9,16 @@
 namespace vantage {
 
 /// What all iterations on a disparity space have in common: a cell depends on itself, its four
-/// neighbours of equal disparity and perhaps on the chain's first stage. Cells are float.
-class StarStage : public scheduler::RowStage {
+/// neighbours of equal disparity and perhaps on the chain's first stage. Cell: float or
+/// kernels::FixedEnergy.
+template <typename Cell>
+class CellStarStage : public scheduler::RowStage {
  public:
-  StarStage(const kernels::CandidateGeometry& geometry, int height)
+  CellStarStage(const kernels::CandidateGeometry& geometry, int height)
       : RowStage({geometry.width, height}), lanes_(geometry.lanes()), count_(geometry.count) {}
 
   [[nodiscard]] std::size_t bytes_per_column() const override {
-    return sizeof(float) * static_cast<std::size_t>(lanes_);
+    return sizeof(Cell) * static_cast<std::size_t>(lanes_);
   }
   [[nodiscard]] scheduler::Range input_rows(int y, scheduler::Extent input) const override {
     return scheduler::Range{y, y + 1}.widened(1, input.all_rows());
@@ -31,14 +33,16 @@ class StarStage : public scheduler::RowStage {
   [[nodiscard]] int lanes() const { return lanes_; }
   [[nodiscard]] int count() const { return count_; }
 
-  /// The star of a task whose input columns are `pitch` floats apart. `neutral` is the column that
+  /// The star of a task whose input columns are `pitch` cells apart. `neutral` is the column that
   /// stands for neighbours outside the image; null: the centre itself does.
-  [[nodiscard]] kernels::StarRow star(const scheduler::RowTask& task, int pitch,
-                                      const float* neutral) const;
+  [[nodiscard]] kernels::CellStarRow<Cell> star(const scheduler::RowTask& task, int pitch,
+                                                const Cell* neutral) const;
 
  private:
   int lanes_;
   int count_;
 };
+
+using StarStage = CellStarStage<float>;
 
 }  // namespace vantage

@@ -13,42 +13,14 @@
 #include "kernels/bayes_step/powers-inl.h"
 #include "kernels/candidates.h"
 #include "kernels/cells/lane_sums-inl.h"
+#include "kernels/cells/star_columns-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The columns of a star.
-struct StarColumns {
-  const float* centre;
-  const float* left;
-  const float* right;
-  const float* up;
-  const float* down;
-  const float* source;
-  int x;
-};
-
-// Calls column(columns, output) for each column of the row, left to right.
-template <class Column>
-HWY_INLINE void each_column(const BayesRow& row, Column column) {
-  const StarRow& star = row.star;
-  StarColumns at{star.centre, star.left_of_first, nullptr, star.up, star.down, star.source, 0};
-  float* output = row.output;
-  for (; at.x < star.columns; ++at.x) {
-    at.right = at.x + 1 < star.columns ? at.centre + star.pitch : star.right_of_last;
-    column(at, output);
-    at.left = at.centre;
-    at.centre += star.pitch;
-    at.up += star.up_pitch;
-    at.down += star.down_pitch;
-    at.source += row.source_pitch;
-    output += row.output_pitch;
-  }
-}
-
 // p0 · sqrt(product of the star), times a factor that is the same for all lanes.
-HWY_INLINE FloatVec half_weight(const StarColumns& at, int lane) {
+HWY_INLINE FloatVec half_weight(const StarColumns<float>& at, int lane) {
   const FloatTag df;
   const auto load = [&](const float* cells) HWY_ATTR { return hn::Load(df, cells + lane); };
   const FloatVec product =
@@ -68,7 +40,7 @@ HWY_INLINE FloatVec half_weight(const StarColumns& at, int lane) {
 
 // Columns of kBlocks · 16 lanes whose prior has no neighbours: all in registers.
 template <int kBlocks>
-HWY_INLINE void half_column_in_registers(const StarColumns& at, float scale, float floor,
+HWY_INLINE void half_column_in_registers(const StarColumns<float>& at, float scale, float floor,
                                          float* output) {
   const FloatTag df;
   constexpr int kVectors = kBlocks * kParts;
@@ -92,7 +64,7 @@ HWY_INLINE void half_row_in_registers(const BayesRow& row) {
   const bool smooth = row.state != BayesState::kProbability;
   const float scale = smooth ? row.prior.taps[0] : 1.0F;
   const float floor = smooth ? row.prior.floor : 0.0F;
-  each_column(row, [&](const StarColumns& at, float* output)
+  each_column(row, [&](const StarColumns<float>& at, float* output)
                        HWY_ATTR { half_column_in_registers<kBlocks>(at, scale, floor, output); });
 }
 
@@ -130,7 +102,7 @@ class WorkColumns {
     FloatVec normalise[kMostColumns];
     float* block_output = row_.output;
     int filled = 0;
-    each_column(row_, [&](const StarColumns& at, float* output) HWY_ATTR {
+    each_column(row_, [&](const StarColumns<float>& at, float* output) HWY_ATTR {
       normalise[filled] = make(at, weight, p(filled));
       ++filled;
       if (filled == columns_ || output == last_output()) {
@@ -175,7 +147,7 @@ class WorkColumns {
 
   // Returns the factor that normalises the column.
   template <class Weight>
-  HWY_INLINE FloatVec make(const StarColumns& at, Weight weight, float* p) const {
+  HWY_INLINE FloatVec make(const StarColumns<float>& at, Weight weight, float* p) const {
     const FloatTag df;
     const auto weight_of_lanes = weight(at);
     LaneBlock16 sums;
@@ -275,7 +247,7 @@ HWY_INLINE void run_columns(const BayesRow& row, Weight weight) {
 }
 
 void bayes_start_row_simd(const BayesRow& row) {
-  run_columns(row, [](const StarColumns& at) HWY_ATTR {
+  run_columns(row, [](const StarColumns<float>& at) HWY_ATTR {
     return [&at](int lane) HWY_ATTR { return hn::Load(FloatTag(), at.source + lane); };
   });
 }
@@ -303,14 +275,14 @@ void bayes_half_row_simd(const BayesRow& row) {
         break;
     }
   }
-  run_columns(row, [](const StarColumns& at) HWY_ATTR {
+  run_columns(row, [](const StarColumns<float>& at) HWY_ATTR {
     return [&at](int lane) HWY_ATTR { return half_weight(at, lane); };
   });
 }
 
 // The sum of a star's states.
 struct StarSum {
-  StarSum(const BayesRow& /*row*/, const StarColumns& columns) : at(columns) {}
+  StarSum(const BayesRow& /*row*/, const StarColumns<float>& columns) : at(columns) {}
   HWY_INLINE FloatVec of(int lane) const {
     const FloatTag df;
     const auto load = [&](const float* cells) HWY_ATTR { return hn::Load(df, cells + lane); };
@@ -318,12 +290,12 @@ struct StarSum {
         hn::Add(hn::Add(load(at.up), load(at.down)), hn::Add(load(at.left), load(at.right))),
         load(at.centre));
   }
-  const StarColumns& at;
+  const StarColumns<float>& at;
 };
 
 // The same with a weight for each of the neighbours.
 struct WeightedStarSum {
-  WeightedStarSum(const BayesRow& row, const StarColumns& columns)
+  WeightedStarSum(const BayesRow& row, const StarColumns<float>& columns)
       : at(columns),
         left(row.weights.beside[columns.x]),
         right(row.weights.beside[columns.x + 1]),
@@ -337,7 +309,7 @@ struct WeightedStarSum {
     const FloatVec horizontal = hn::MulAdd(hn::Set(df, left), load(at.left), load(at.centre));
     return hn::Add(vertical, hn::MulAdd(hn::Set(df, right), load(at.right), horizontal));
   }
-  const StarColumns& at;
+  const StarColumns<float>& at;
   float left;
   float right;
   float up;
@@ -362,7 +334,7 @@ HWY_INLINE FloatVec largest_sum(const Sum& star, int lanes) {
 // kScaled: the largest sum becomes 0, so that some lane stays above the underflow.
 template <class Sum, bool kScaled>
 HWY_INLINE void general_columns(const BayesRow& row) {
-  run_columns(row, [&row](const StarColumns& at) HWY_ATTR {
+  run_columns(row, [&row](const StarColumns<float>& at) HWY_ATTR {
     // Made where they stay: copies would go through memory, in pieces of another size than they are
     // loaded in.
     return [star = Sum(row, at), largest = kScaled ? largest_sum(Sum(row, at), row.star.lanes)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "kernels/cells/fixed_energy.h"
+
 namespace vantage::kernels {
 
 /// How much two neighbouring pixels count for each other, given their grey levels: where these
@@ -15,5 +17,10 @@ void edge_weights_row(const float* first, const float* second, int count, const 
                       float* weights);
 void edge_weights_row_ref(const float* first, const float* second, int count,
                           const EdgeModel& model, float* weights);
+
+/// fixed[x] = factor · weights[x] in fixed point, x in [0, count); weights and factor in [0, 1].
+/// Unaligned rows. Equal to the reference on every instruction set.
+void fixed_weights_row(const float* weights, int count, float factor, FixedWeight* fixed);
+void fixed_weights_row_ref(const float* weights, int count, float factor, FixedWeight* fixed);
 
 }  // namespace vantage::kernels

@@ -15,4 +15,10 @@ void edge_weights_row_ref(const float* first, const float* second, int count,
   }
 }
 
+void fixed_weights_row_ref(const float* weights, int count, float factor, FixedWeight* fixed) {
+  for (int x = 0; x < count; ++x) {
+    fixed[x] = fixed_weight(weights[x] * factor);
+  }
+}
+
 }  // namespace vantage::kernels

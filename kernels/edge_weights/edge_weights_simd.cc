@@ -27,16 +27,33 @@ void edge_weights(const float* first, const float* second, int count, const Edge
   edge_weights_row_ref(first + x, second + x, count - x, model, weights + x);
 }
 
+void fixed_weights(const float* weights, int count, float factor, FixedWeight* fixed) {
+  const hn::ScalableTag<float> df;
+  const hn::Rebind<FixedWeight, decltype(df)> d16;
+  const int step = static_cast<int>(hn::Lanes(df));
+  const auto scale = hn::Set(df, factor * kFixedWeightUnits);
+  int x = 0;
+  for (; x + step <= count; x += step) {
+    const auto units = hn::NearestInt(hn::Mul(hn::LoadU(df, weights + x), scale));
+    hn::StoreU(hn::DemoteTo(d16, units), d16, fixed + x);  // saturates
+  }
+  fixed_weights_row_ref(weights + x, count - x, factor, fixed + x);
+}
+
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace vantage::kernels {
 HWY_EXPORT(edge_weights);
+HWY_EXPORT(fixed_weights);
 
 void edge_weights_row(const float* first, const float* second, int count, const EdgeModel& model,
                       float* weights) {
   HWY_DYNAMIC_DISPATCH(edge_weights)(first, second, count, model, weights);
+}
+void fixed_weights_row(const float* weights, int count, float factor, FixedWeight* fixed) {
+  HWY_DYNAMIC_DISPATCH(fixed_weights)(weights, count, factor, fixed);
 }
 
 }  // namespace vantage::kernels

@@ -123,17 +123,21 @@ TEST(CoarseToFineOfEdges, EqualsTheOracle) {
         Shape{61, 43, {0, 16}, PixelKind::kGrey8}}) {
     const auto pair = textured_pair(shape.width, shape.height, shape.range, shape.pixels, 3);
     for (const int levels : {1, 2, 5}) {
-      const MatchCost cost = levels == 5 ? MatchCost::kCensus : MatchCost::kSmallCensus;
-      MatchOptions options = options_of(Aggregation::kBayes, cost, levels, shape.range);
-      options.parameters.sigma_measurement = levels == 5 ? 12.4 : 4.8;
-      options.parameters.epsilon_prior = 5e-6;
-      options.parameters.final_iterations = 2;
-      options.parameters.prior_growth = 1.2;
-      options.parameters.level_weight = 0.6;
-      options.parameters.edge_weight = 0.2;
-      expect_equals_oracle(pair, options, execution, tolerance_with_levels(options.resolved()),
-                           std::to_string(shape.width) + "x" + std::to_string(shape.height) + ", " +
-                               std::to_string(levels) + " levels");
+      for (const PriorSmoothing smoothing : {PriorSmoothing::kSum, PriorSmoothing::kMaximum}) {
+        const MatchCost cost = levels == 5 ? MatchCost::kCensus : MatchCost::kSmallCensus;
+        MatchOptions options = options_of(Aggregation::kBayes, cost, levels, shape.range);
+        options.parameters.sigma_measurement = levels == 5 ? 12.4 : 4.8;
+        options.parameters.epsilon_prior = 5e-6;
+        options.parameters.final_iterations = 2;
+        options.parameters.prior_growth = 1.2;
+        options.parameters.level_weight = 0.6;
+        options.parameters.edge_weight = 0.2;
+        options.parameters.prior_smoothing = smoothing;
+        expect_equals_oracle(pair, options, execution, tolerance_with_levels(options.resolved()),
+                             std::to_string(shape.width) + "x" + std::to_string(shape.height) +
+                                 ", " + std::to_string(levels) + " levels, " +
+                                 (smoothing == PriorSmoothing::kSum ? "sum" : "maximum"));
+      }
     }
   }
 }

@@ -15,11 +15,12 @@ struct MethodCase {
 };
 
 /// Whether cells are rounded to steps on the way, so that they stay within other bounds of the
-/// plain transcription than floats: combined costs (stage_cost_test), stored levels
-/// (coarse_to_fine_test).
+/// plain transcription than floats: combined costs (stage_cost_test), stored levels and energies in
+/// fixed point (coarse_to_fine_test).
 inline bool is_stepped(const MethodCase& method) {
   const MethodParameters parameters = method.options.resolved();
-  return parameters.cost == MatchCost::kCombined || parameters.levels > 1;
+  return parameters.cost == MatchCost::kCombined || parameters.levels > 1 ||
+         parameters.prior_smoothing == PriorSmoothing::kMaximum;
 }
 
 /// What test runners print of a case instead of its bytes.
@@ -89,6 +90,21 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
   add("bayes_edges", MatchMethod::kBayes, [](MethodOverrides& p) {
     p.edge_weight = 0.2;
     p.sigma_prior = 0.4;
+  });
+  add("bayes_maximum", MatchMethod::kBayes, [](MethodOverrides& p) {
+    p.prior_smoothing = PriorSmoothing::kMaximum;
+    p.sigma_prior = 0.8;
+  });
+  add("bayes_maximum_levels", MatchMethod::kBayes, [](MethodOverrides& p) {
+    p.prior_smoothing = PriorSmoothing::kMaximum;
+    p.cost = MatchCost::kSmallCensus;
+    p.levels = 4;
+    p.iterations = 3;
+    p.final_iterations = 1;
+    p.edge_weight = 0.2;
+    p.prior_growth = 1.2;
+    p.level_weight = 0.6;
+    p.epsilon_prior = 5e-6;
   });
   add("bayes_edges_levels", MatchMethod::kBayes, [](MethodOverrides& p) {
     p.levels = 4;

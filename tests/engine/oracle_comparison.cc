@@ -272,6 +272,13 @@ Tolerance tolerance_of(const MethodParameters& parameters) {
         tolerance.confidence = 3e-2;
         tolerance.subpixel_px = 3e-2;
       }
+      if (parameters.prior_smoothing == PriorSmoothing::kMaximum) {
+        // Sums of numbers in steps of 1/256 nat, each rounded, in each iteration.
+        tolerance.tie = 5e-2;
+        tolerance.energy = 5e-2;
+        tolerance.confidence = 0.1;
+        tolerance.subpixel_px = 5e-2;
+      }
       break;
     case Aggregation::kGaussian:
     case Aggregation::kBoxCascade:

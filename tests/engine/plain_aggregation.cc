@@ -75,6 +75,25 @@ Volume smoothed(const Volume& probabilities, const std::vector<double>& kernel) 
   return result;
 }
 
+/// −log of the largest term in place of the sum (6.33), and above the least of each column: the
+/// prior's contamination is what all offsets share.
+Volume largest_terms(const Volume& probabilities, double sigma_prior, double epsilon_prior) {
+  const double ceiling = std::max(1.0, std::log((1 - epsilon_prior) / epsilon_prior));
+  Volume result = Volume::like(probabilities);
+  for_each_cell(probabilities, [&](int x, int y, int i) {
+    const std::vector<double> column = column_of(probabilities, x, y);
+    const double most = *std::max_element(column.begin(), column.end());
+    double energy = ceiling;
+    for (int j = 0; j < probabilities.count(); ++j) {
+      const double offset = (j - i) / sigma_prior;
+      energy = std::min(energy,
+                        offset * offset / 2 - std::log(column[static_cast<std::size_t>(j)] / most));
+    }
+    result.at(x, y, i) = energy;
+  });
+  return result;
+}
+
 }  // namespace
 
 Volume plain_box_mean(const Volume& costs, int window_px, Border border) {
@@ -267,9 +286,15 @@ Volume plain_bayes(const Volume& energies, const MethodParameters& parameters, c
   };
   Volume probabilities = start != nullptr ? *start : probabilities_of(energies);
   for (int n = 0; n < parameters.iterations; ++n) {
-    Volume smooth_energies = smoothed(probabilities, kernel);
-    for (double& cell : smooth_energies.cells) {
-      cell = -std::log(cell);  // (6.34)
+    Volume smooth_energies;
+    if (parameters.prior_smoothing == PriorSmoothing::kMaximum) {
+      smooth_energies =
+          largest_terms(probabilities, parameters.sigma_prior, parameters.epsilon_prior);
+    } else {
+      smooth_energies = smoothed(probabilities, kernel);
+      for (double& cell : smooth_energies.cells) {
+        cell = -std::log(cell);  // (6.34)
+      }
     }
     Volume next = energies;  // (6.37)
     for_each_cell(energies, [&](int x, int y, int i) {

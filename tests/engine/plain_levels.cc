@@ -118,13 +118,35 @@ Volume reduced(const Volume& finer, const MethodParameters& parameters, StoredCe
   return coarser;
 }
 
+/// Energies as bytes keep them: above the least of their column, up to where the prior's ceiling
+/// lies.
+Volume in_bytes_to_ceiling(Volume energies, double epsilon_prior) {
+  const double ceiling = std::max(1.0, std::log((1 - epsilon_prior) / epsilon_prior));
+  for_each_column(energies, [&](int x, int y) {
+    double least = energies.at(x, y, 0);
+    for (int i = 0; i < energies.count(); ++i) {
+      least = std::min(least, energies.at(x, y, i));
+    }
+    for (int i = 0; i < energies.count(); ++i) {
+      const double share = (energies.at(x, y, i) - least) / ceiling;
+      energies.at(x, y, i) = std::min(std::floor(255 * share + 0.5), 255.0) / 255 * ceiling;
+    }
+  });
+  return energies;
+}
+
 /// The result of a coarse level on the grid of the next finer one.
 Volume expanded(const Volume& coarser, const Volume& finer, const MethodParameters& parameters,
                 StoredCells stored) {
+  const bool is_maximum = parameters.aggregation == Aggregation::kBayes &&
+                          parameters.prior_smoothing == PriorSmoothing::kMaximum;
+  const Volume stepped = is_maximum && stored == StoredCells::kCompact
+                             ? in_bytes_to_ceiling(coarser, parameters.epsilon_prior)
+                             : coarser;
   Volume result = finer;
   for_each_cell(result, [&](int x, int y, int i) {
-    double energy = coarser.at(x / 2, y / 2, i);
-    if (stored == StoredCells::kCompact) {
+    double energy = stepped.at(x / 2, y / 2, i);
+    if (stored == StoredCells::kCompact && !is_maximum) {
       if (parameters.aggregation == Aggregation::kBayes) {
         energy = std::min(std::nearbyint(8 * energy / std::log(2.0)), 255.0) / 8 * std::log(2.0);
       } else {

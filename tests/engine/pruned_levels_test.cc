@@ -17,7 +17,9 @@
 #include "engine/matching/stage_bayes.h"
 #include "engine/matching/stage_block_selection.h"
 #include "engine/matching/stage_block_source.h"
+#include "engine/matching/stage_fixed_energies.h"
 #include "engine/matching/stage_level_likelihoods.h"
+#include "engine/matching/stage_max_product.h"
 #include "engine/matching/stereo_matcher.h"
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
 #include "tests/engine/cell_stages.h"
@@ -72,7 +74,8 @@ struct Level {
     blocks.choose(winners.view(), std::nullopt, execution);
   }
 
-  /// Takes what the coarser level says of candidates that are not looked at for impossible.
+  /// Takes what the coarser level says of candidates that are not looked at for impossible; one
+  /// that is looked at was its winner.
   void mask_coarser() {
     for (int y = 0; y < coarser.extent().rows; ++y) {
       for (int x = 0; x < coarser.extent().columns; ++x) {
@@ -82,6 +85,7 @@ struct Level {
             coarser.column<std::uint8_t>(x, y)[lane] = kernels::kMostCompact;
           }
         }
+        coarser.column<std::uint8_t>(x, y)[candidate_of(list, 1)] = 0;
       }
     }
   }
@@ -110,17 +114,18 @@ EdgeWeights random_edges() {
   return edges;
 }
 
-/// Keeps the probabilities of the last stage as floats, in all lanes that `blocks` has.
-class ProbabilitySink final : public scheduler::RowStage {
+/// Keeps the cells of the last stage, in all lanes that `blocks` has.
+template <typename Cell>
+class BlockSink final : public scheduler::RowStage {
  public:
-  ProbabilitySink(CellVolume<float>& volume, const CandidateBlocks* blocks, int lanes)
+  BlockSink(CellVolume<Cell>& volume, const CandidateBlocks* blocks, int lanes)
       : RowStage(volume.extent), volume_(volume), blocks_(blocks), lanes_(lanes) {}
-  [[nodiscard]] std::string_view name() const override { return "probability sink"; }
+  [[nodiscard]] std::string_view name() const override { return "block sink"; }
   [[nodiscard]] std::size_t bytes_per_column() const override { return 0; }
   void make_row(const scheduler::RowTask& task) const override {
     for (int x = task.columns.begin; x < task.columns.end; ++x) {
-      const float* cells = task.input.row<float>(task.y) +
-                           static_cast<std::ptrdiff_t>(x - task.input.columns().begin) * lanes_;
+      const Cell* cells = task.input.row<Cell>(task.y) +
+                          static_cast<std::ptrdiff_t>(x - task.input.columns().begin) * lanes_;
       for (int lane = 0; lane < volume_.lanes; ++lane) {
         if (blocks_ == nullptr) {
           volume_.at(x, task.y, lane) = cells[lane];
@@ -136,26 +141,32 @@ class ProbabilitySink final : public scheduler::RowStage {
   }
 
  private:
-  CellVolume<float>& volume_;
+  CellVolume<Cell>& volume_;
   const CandidateBlocks* blocks_;
   int lanes_;
 };
 
-/// Makes the likelihoods of candidates that are not looked at impossible.
+/// Makes candidates that are not looked at impossible.
+template <typename Cell>
 class MaskedSource final : public scheduler::RowStage {
  public:
-  MaskedSource(std::unique_ptr<scheduler::RowStage> inner, const CandidateBlocks& blocks, int lanes)
-      : RowStage(inner->extent()), inner_(std::move(inner)), blocks_(blocks), lanes_(lanes) {}
+  MaskedSource(std::unique_ptr<scheduler::RowStage> inner, const CandidateBlocks& blocks, int lanes,
+               Cell impossible)
+      : RowStage(inner->extent()),
+        inner_(std::move(inner)),
+        blocks_(blocks),
+        lanes_(lanes),
+        impossible_(impossible) {}
   [[nodiscard]] std::string_view name() const override { return "masked source"; }
   [[nodiscard]] std::size_t bytes_per_column() const override { return inner_->bytes_per_column(); }
   void make_row(const scheduler::RowTask& task) const override {
     inner_->make_row(task);
-    auto* cells = reinterpret_cast<float*>(task.output);
+    auto* cells = reinterpret_cast<Cell*>(task.output);
     for (int x = task.columns.begin; x < task.columns.end; ++x, cells += lanes_) {
       const BlockList list = blocks_.at(x, task.y);
       for (int lane = 0; lane < lanes_; ++lane) {
         if (std::ranges::find(list, lane / 16) == list.end()) {
-          cells[lane] = 0;
+          cells[lane] = impossible_;
         }
       }
     }
@@ -165,70 +176,123 @@ class MaskedSource final : public scheduler::RowStage {
   std::unique_ptr<scheduler::RowStage> inner_;
   const CandidateBlocks& blocks_;
   int lanes_;
+  Cell impossible_;
 };
 
-/// The final probabilities of a level, all candidates of it; pruned, or as if all were looked at
-/// but those not in blocks were impossible.
-CellVolume<float> probabilities_of(const Level& level, const MethodParameters& parameters,
+/// What differs between sums, whose cells are likelihoods, and maxima, whose cells are energies.
+template <typename Cell>
+struct Smoothing;
+
+template <>
+struct Smoothing<float> {
+  static constexpr PriorSmoothing kKind = PriorSmoothing::kSum;
+  static constexpr float kImpossible = 0;
+  static constexpr float kBound = 2e-5F;  ///< of differences by rounding
+  static auto source(const Level& level, const MethodParameters& /*parameters*/,
+                     const CandidateBlocks* blocks) {
+    return make_level_likelihood_stage(level.geometry, level.energies, blocks);
+  }
+  static constexpr auto kIterations = make_bayes_stages;
+};
+
+template <>
+struct Smoothing<kernels::FixedEnergy> {
+  static constexpr PriorSmoothing kKind = PriorSmoothing::kMaximum;
+  static constexpr kernels::FixedEnergy kImpossible = kernels::kMostEnergy;
+  static constexpr kernels::FixedEnergy kBound = 0;
+  static auto source(const Level& level, const MethodParameters& parameters,
+                     const CandidateBlocks* blocks) {
+    return make_level_fixed_energy_stage(level.geometry, level.energies, EnergyFormat(parameters),
+                                         blocks);
+  }
+  static constexpr auto kIterations = make_max_product_stages;
+};
+
+template <typename Cell>
+class PrunedLevel : public ::testing::Test {
+ protected:
+  static MethodParameters parameters(double sigma_prior, double mu) {
+    MethodParameters parameters = bayes_parameters(sigma_prior, mu);
+    parameters.prior_smoothing = Smoothing<Cell>::kKind;
+    return parameters;
+  }
+
+  /// What a level ends with, all candidates of it; pruned, or as if all were looked at but those
+  /// not in blocks were impossible. Where nothing is looked at, pruned cells are impossible.
+  static CellVolume<Cell> cells_of(const Level& level, const MethodParameters& parameters,
                                    bool pruned, const EdgeWeights* edges = nullptr,
                                    bool every_way = false) {
-  CellVolume<float> result(kExtent, level.geometry.lanes());
-  const CandidateBlocks* const blocks = pruned ? &level.blocks : nullptr;
-  std::vector<std::unique_ptr<scheduler::RowStage>> stages;
-  stages.push_back(make_level_likelihood_stage(level.geometry, level.energies, blocks));
-  if (!pruned) {
-    stages.back() = std::make_unique<MaskedSource>(std::move(stages.back()), level.blocks,
-                                                   level.geometry.lanes());
+    CellVolume<Cell> result(kExtent, level.geometry.lanes());
+    std::ranges::fill(result.cells, Smoothing<Cell>::kImpossible);
+    const CandidateBlocks* const blocks = pruned ? &level.blocks : nullptr;
+    std::vector<std::unique_ptr<scheduler::RowStage>> stages;
+    stages.push_back(Smoothing<Cell>::source(level, parameters, blocks));
+    if (!pruned) {
+      stages.back() = std::make_unique<MaskedSource<Cell>>(std::move(stages.back()), level.blocks,
+                                                           level.geometry.lanes(),
+                                                           Smoothing<Cell>::kImpossible);
+    }
+    for (auto& stage : Smoothing<Cell>::kIterations(parameters, level.geometry, kExtent.rows,
+                                                    {.volume = &level.coarser}, edges, blocks)) {
+      stages.push_back(std::move(stage));
+    }
+    stages.push_back(std::make_unique<BlockSink<Cell>>(
+        result, blocks, pruned ? level.blocks.lanes() : level.geometry.lanes()));
+    std::vector<const scheduler::RowStage*> chain;
+    for (const auto& stage : stages) {
+      chain.push_back(stage.get());
+    }
+    scheduler::run_whole_image(chain);
+    if (every_way) {
+      const CellVolume<Cell> expected = result;
+      testing::run_in_strips(chain, [&] { ASSERT_EQ(result.cells, expected.cells); });
+    }
+    return result;
   }
-  for (auto& stage : make_bayes_stages(parameters, level.geometry, kExtent.rows,
-                                       {.volume = &level.coarser}, edges, blocks)) {
-    stages.push_back(std::move(stage));
-  }
-  stages.push_back(std::make_unique<ProbabilitySink>(
-      result, blocks, pruned ? level.blocks.lanes() : level.geometry.lanes()));
-  std::vector<const scheduler::RowStage*> chain;
-  for (const auto& stage : stages) {
-    chain.push_back(stage.get());
-  }
-  scheduler::run_whole_image(chain);
-  if (every_way) {
-    const CellVolume<float> expected = result;
-    testing::run_in_strips(chain, [&] { ASSERT_EQ(result.cells, expected.cells); });
-  }
-  return result;
-}
+};
+
+using CellTypes = ::testing::Types<float, kernels::FixedEnergy>;
+TYPED_TEST_SUITE(PrunedLevel, CellTypes);
 
 /// With a prior that does not reach from one candidate to the next, what is not looked at is the
 /// same as what is impossible.
-TEST(PrunedLevel, EqualsALevelWhereTheOthersAreImpossible) {
+TYPED_TEST(PrunedLevel, EqualsALevelWhereTheOthersAreImpossible) {
   const EdgeWeights edges = random_edges();
   for (const int candidates : {5, 40, 100, 200}) {
     for (const double mu : {0.5, 0.7}) {
       Level level(candidates, 3, false);
       level.mask_coarser();
-      const MethodParameters parameters = bayes_parameters(0.1, mu);
+      const MethodParameters parameters = this->parameters(0.1, mu);
       for (const EdgeWeights* const weights : {kNoEdges, &edges}) {
-        const CellVolume<float> pruned = probabilities_of(level, parameters, true, weights);
-        const CellVolume<float> masked = probabilities_of(level, parameters, false, weights);
-        for (std::size_t k = 0; k < pruned.cells.size(); ++k) {
-          ASSERT_NEAR(pruned.cells[k], masked.cells[k], 2e-5)
-              << candidates << " candidates, mu " << mu << ", cell " << k;
+        const auto pruned = this->cells_of(level, parameters, true, weights);
+        const auto masked = this->cells_of(level, parameters, false, weights);
+        for (int y = 0; y < kExtent.rows; ++y) {
+          for (int x = 0; x < kExtent.columns; ++x) {
+            const BlockList list = level.blocks.at(x, y);
+            for (int lane = 0; lane < level.blocks.count(list); ++lane) {
+              const int candidate = candidate_of(list, lane);
+              ASSERT_NEAR(pruned.at(x, y, candidate), masked.at(x, y, candidate),
+                          Smoothing<TypeParam>::kBound)
+                  << candidates << " candidates, mu " << mu << ", " << candidate << " of " << x
+                  << ", " << y;
+            }
+          }
         }
       }
     }
   }
 }
 
-TEST(PrunedLevel, DoesNotDependOnHowItIsCut) {
+TYPED_TEST(PrunedLevel, DoesNotDependOnHowItIsCut) {
   const Level level(100, 3, false);
   const EdgeWeights edges = random_edges();
   for (const EdgeWeights* const weights : {kNoEdges, &edges}) {
-    probabilities_of(level, bayes_parameters(0.4, 0.5), true, weights, true);
+    this->cells_of(level, this->parameters(0.4, 0.5), true, weights, true);
   }
 }
 
 /// Where all blocks are looked at, bit for bit the same.
-TEST(PrunedLevel, WithAllCandidatesIsTheFullLevel) {
+TYPED_TEST(PrunedLevel, WithAllCandidatesIsTheFullLevel) {
   const EdgeWeights edges = random_edges();
   for (const int candidates : {3, 16, 30, 61}) {
     const Level level(candidates, 8, true);
@@ -236,10 +300,10 @@ TEST(PrunedLevel, WithAllCandidatesIsTheFullLevel) {
               static_cast<double>(kExtent.columns) * kExtent.rows * candidates);
     for (const double sigma_prior : {0.1, 0.4, 2.0}) {
       for (const double mu : {0.5, 0.7}) {
-        const MethodParameters parameters = bayes_parameters(sigma_prior, mu);
+        const MethodParameters parameters = this->parameters(sigma_prior, mu);
         for (const EdgeWeights* const weights : {kNoEdges, &edges}) {
-          EXPECT_EQ(probabilities_of(level, parameters, true, weights).cells,
-                    probabilities_of(level, parameters, false, weights).cells)
+          EXPECT_EQ(this->cells_of(level, parameters, true, weights).cells,
+                    this->cells_of(level, parameters, false, weights).cells)
               << candidates << " candidates";
         }
       }
@@ -247,7 +311,8 @@ TEST(PrunedLevel, WithAllCandidatesIsTheFullLevel) {
   }
 }
 
-MatchOptions pruned_options(DisparityRange range, int blocks) {
+MatchOptions pruned_options(DisparityRange range, int blocks,
+                            PriorSmoothing smoothing = PriorSmoothing::kSum) {
   MatchOptions options;
   options.method = MatchMethod::kBayes;
   options.disparities = range;
@@ -258,6 +323,7 @@ MatchOptions pruned_options(DisparityRange range, int blocks) {
   options.parameters.iterations = 3;
   options.parameters.levels = 4;
   options.parameters.candidate_blocks = blocks;
+  options.parameters.prior_smoothing = smoothing;
   options.raw = true;
   return options;
 }

@@ -439,6 +439,64 @@ TEST(KernelWork, OfBayesianDiffusion) {
   }
 }
 
+/// Of fixed-point numbers, with its rounding.
+Counted rounded_product(Counted a, Counted b) { return a * b + 0; }
+
+/// What becomes of energies of a column.
+void energy_state_of(const Cells& energies, bool smooths, int prior_radius) {
+  const Counted lowest = least_of(energies);
+  for (const Counted& energy : energies) {
+    Counted result = energy;
+    for (int k = 1; smooths && k <= prior_radius; ++k) {
+      result = least(result, least(energies.front(), energies.back()) + 10);
+    }
+    result = result - lowest;
+    if (smooths) {
+      least(result, 100);
+    }
+  }
+}
+
+TEST(KernelWork, OfMaxProductDiffusion) {
+  const Star star;
+  for (const int radius : {0, 1, 3}) {
+    expect_work(max_product_start_work(radius),
+                [&] { energy_state_of(star.source, true, radius); });
+    for (const bool smooths : {false, true}) {
+      for (const bool weighted : {false, true}) {
+        // Without weights of their own all neighbours have μ.
+        expect_work(max_product_work(radius, smooths, weighted), [&] {
+          Cells energies;
+          for (std::size_t i = 0; i < kCount; ++i) {
+            const auto part = [i](const Cells& cells) { return rounded_product(cells[i], 0.5); };
+            energies.push_back((part(star.up) + part(star.down)) +
+                               (part(star.left) + part(star.right)) + part(star.centre) +
+                               star.source[i]);
+          }
+          energy_state_of(energies, smooths, radius);
+        });
+      }
+    }
+    // One column is made for four.
+    const KernelWork shared = max_product_start_from_coarser_work(radius);
+    const KernelWork own{4 * shared.operations, 4 * shared.operations_per_column};
+    expect_work(own, [&] {
+      Cells energies;
+      for (std::size_t i = 0; i < kCount; ++i) {
+        energies.push_back(rounded_product(7, 0.5));
+      }
+      energy_state_of(energies, true, radius);
+    });
+  }
+}
+
+TEST(KernelWork, OfFixedEnergies) {
+  expect_cell_work(kFixedEnergiesOfBytesWork, [] { rounded_product(7, 0.5); });
+  expect_cell_work(kBytesOfFixedEnergiesWork, [] { rounded_product(7, 0.5); });
+  expect_cell_work(kFixedEnergiesOfLikelihoodsWork,
+                   [] { most(logarithm(most(Counted(0.2), 1e-14)) * Counted(-256), 0); });
+}
+
 TEST(KernelWork, OfLikelihoodsOfLevels) {
   const Star star;
   expect_work(kReduceLikelihoodsWork, [&] {
@@ -496,6 +554,26 @@ TEST(KernelWork, OfSelections) {
   };
   expect_work(cell_winner_work(false, false), [&] { least_of(cells); });
   expect_work(cell_winner_work(true, false), [&] { place(least_of(cells)); });
+  expect_work(energy_winner_work(), [&] {
+    const Counted best = least_of(cells);
+    Lanes places;
+    places.fill(1e9);
+    Counted number = 0;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      Counted& place = places[i % kLaneMultiple];
+      place = least(place, cells[i] == best ? number : Counted(1e9));
+      number = number + 1;
+    }
+    joined_lanes(places, least_of_two);
+  });
+  expect_work(kEnergyProbabilityWork, [&] {
+    const auto likelihood = [](Counted energy) { return power_of_two(energy * Counted(-0.01)); };
+    Cells likelihoods;
+    for (const Counted& energy : cells) {
+      likelihoods.push_back(likelihood(energy));
+    }
+    likelihood(3) / sum_of(likelihoods);
+  });
   // The entropy is told the least cell.
   expect_work(cell_winner_work(false, false) + kCellEntropyWork, [&] { entropy_of(cells); });
 }

@@ -11,17 +11,20 @@
 namespace vantage::kernels {
 
 /// Three rows of random cells with a column beyond either end, and a source row, for tests of
-/// iterations: 64-byte aligned as kernels expect them.
-class StarRows {
+/// iterations: aligned as kernels expect them. Whole numbers are what is left of floats in
+/// [low, high).
+template <typename Cell>
+class CellStarRows {
  public:
-  StarRows(int columns, int lanes, int pitch, float low, float high, unsigned seed)
+  CellStarRows(int columns, int lanes, int pitch, float low, float high, unsigned seed)
       : cells_(pitch * (columns + 2), 3), source_(lanes * columns, 1), neutral_(lanes, 1) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> value(low, high);
+    const auto cell = [&] { return static_cast<Cell>(value(random)); };
     for (int y = 0; y < 3; ++y) {
-      std::generate_n(cells_.row(y), cells_.width(), [&] { return value(random); });
+      std::generate_n(cells_.row(y), cells_.width(), cell);
     }
-    std::generate_n(source_.row(0), source_.width(), [&] { return value(random); });
+    std::generate_n(source_.row(0), source_.width(), cell);
     star_.columns = columns;
     star_.lanes = lanes;
     star_.pitch = star_.up_pitch = star_.down_pitch = pitch;
@@ -33,22 +36,24 @@ class StarRows {
     star_.source = source_.row(0);
   }
 
-  [[nodiscard]] const StarRow& star() const { return star_; }
-  [[nodiscard]] float* source() { return source_.row(0); }
-  [[nodiscard]] float* centre(int column) { return cells_.row(1) + star_.pitch * (column + 1); }
+  [[nodiscard]] const CellStarRow<Cell>& star() const { return star_; }
+  [[nodiscard]] Cell* source() { return source_.row(0); }
+  [[nodiscard]] Cell* centre(int column) { return cells_.row(1) + star_.pitch * (column + 1); }
 
   /// The row above is missing: a column of `neutral` stands for it.
-  void remove_up(float neutral) {
+  void remove_up(Cell neutral) {
     neutral_.fill(neutral);
     star_.up = neutral_.row(0);
     star_.up_pitch = 0;
   }
 
  private:
-  Image<float> cells_;
-  Image<float> source_;
-  Image<float> neutral_;
-  StarRow star_;
+  Image<Cell> cells_;
+  Image<Cell> source_;
+  Image<Cell> neutral_;
+  CellStarRow<Cell> star_;
 };
+
+using StarRows = CellStarRows<float>;
 
 }  // namespace vantage::kernels

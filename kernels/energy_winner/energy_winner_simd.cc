@@ -1,0 +1,129 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/energy_winner/energy_winner_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "kernels/cells/energy_vectors-inl.h"
+#include "kernels/cells/exp_log-inl.h"
+#include "kernels/cells/lane_sums-inl.h"
+#include "kernels/energy_winner/energy_winner.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SCALAR
+void winners(const EnergyRow& row, std::int32_t* indices, FixedEnergy* least) {
+  select_energy_winners_row_ref(row, indices, least);
+}
+#else
+
+// 0, 1, … per lane.
+HWY_INLINE EnergyVec lane_numbers() {
+  alignas(32) static constexpr FixedEnergy numbers[kLaneMultiple] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                                     8, 9, 10, 11, 12, 13, 14, 15};
+  return hn::Load(EnergyTag(), numbers);
+}
+
+// The least energy among the candidates of one column and the first place of it. kAll: every
+// candidate counts, and no other lane is below them.
+template <bool kAll>
+HWY_INLINE void select(const FixedEnergy* cells, int lanes, CandidateRange candidates,
+                       std::int32_t& winner, FixedEnergy& least) {
+  const EnergyTag d;
+  const EnergyVec most = hn::Set(d, kMostEnergy);
+  const EnergyVec before = hn::Set(d, static_cast<FixedEnergy>(candidates.begin - 1));
+  const EnergyVec end = hn::Set(d, static_cast<FixedEnergy>(candidates.end));
+  const auto load = [&](int lane) HWY_ATTR {
+    const EnergyVec energies = hn::Load(d, cells + lane);
+    if constexpr (kAll) {
+      return energies;
+    } else {
+      const EnergyVec number = hn::Add(lane_numbers(), hn::Set(d, static_cast<FixedEnergy>(lane)));
+      const auto counts = hn::And(hn::Gt(number, before), hn::Lt(number, end));
+      return hn::IfThenElse(counts, energies, most);
+    }
+  };
+  EnergyVec lowest = most;
+  for (int lane = 0; lane < lanes; lane += kEnergyLanes) {
+    lowest = hn::Min(lowest, load(lane));
+  }
+  lowest = least_of_lanes(lowest);
+  // Looks at all: where the winner is, is as good as random, and a wrongly predicted branch costs
+  // more than the vectors.
+  EnergyVec place = most;
+  EnergyVec number = lane_numbers();
+  for (int lane = 0; lane < lanes; lane += kEnergyLanes) {
+    place = hn::Min(place, hn::IfThenElse(hn::Eq(load(lane), lowest), number, most));
+    number = hn::Add(number, hn::Set(d, kEnergyLanes));
+  }
+  // Where the least is kMostEnergy, lanes that do not count hold it too.
+  winner = std::max<std::int32_t>(hn::GetLane(least_of_lanes(place)), candidates.begin);
+  least = hn::GetLane(lowest);
+}
+
+void winners(const EnergyRow& row, std::int32_t* indices, FixedEnergy* least) {
+  const CandidateRange plain = row.plain_columns();
+  const int lanes = row.geometry.lanes();
+  for (int j = 0; j < row.columns; ++j) {
+    const int x = row.first_column + j;
+    const FixedEnergy* const cells = row.cells + j * row.pitch;
+    if (x >= plain.begin && x < plain.end) {
+      select<true>(cells, lanes, {0, row.geometry.count}, indices[j], least[j]);
+    } else if (const CandidateRange candidates = row.candidates(x); !candidates.empty()) {
+      select<false>(cells, lanes, candidates, indices[j], least[j]);
+    } else {
+      indices[j] = kNoWinner;
+      least[j] = kMostEnergy;
+    }
+  }
+}
+#endif
+
+void probabilities(const EnergyColumnsRow& row, const FixedEnergy* least, float steps_per_nat,
+                   float* probability) {
+  const FloatTag df;
+  const hn::Rebind<FixedEnergy, FloatTag> d16;
+  const hn::RebindToSigned<FloatTag> d32;
+  const FloatVec exponent_of_step = hn::Set(df, -kLog2E / steps_per_nat);
+  for (int j = 0; j < row.columns; ++j) {
+    const FixedEnergy* const cells = row.cells + j * row.pitch;
+    LaneBlock16 sums;
+    sums.fill(hn::Zero(df));
+    for (int lane = 0; lane < row.lanes; lane += kLaneMultiple) {
+      for (int part = 0; part < kParts; ++part) {
+        const auto energies = hn::PromoteTo(d32, hn::LoadU(d16, cells + lane + part * kFloatLanes));
+        const FloatVec exponent = hn::Mul(hn::ConvertTo(df, energies), exponent_of_step);
+        sums.part[part] = hn::Add(sums.part[part], exp2_of_negative(exponent));
+      }
+    }
+    const FloatVec winner =
+        exp2_of_negative(hn::Mul(hn::Set(df, static_cast<float>(least[j])), exponent_of_step));
+    probability[j] = least[j] == kMostEnergy ? std::numeric_limits<float>::quiet_NaN()
+                                             : hn::GetLane(hn::Div(winner, sum_lanes(sums)));
+  }
+}
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(winners);
+HWY_EXPORT(probabilities);
+
+void select_energy_winners_row(const EnergyRow& row, std::int32_t* indices, FixedEnergy* least) {
+  HWY_DYNAMIC_DISPATCH(winners)(row, indices, least);
+}
+void energy_probability_row(const EnergyColumnsRow& row, const FixedEnergy* least,
+                            float steps_per_nat, float* probability) {
+  HWY_DYNAMIC_DISPATCH(probabilities)(row, least, steps_per_nat, probability);
+}
+
+}  // namespace vantage::kernels
+#endif

@@ -1,0 +1,304 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/max_product_step/max_product_step_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "kernels/candidates.h"
+#include "kernels/cells/energy_vectors-inl.h"
+#include "kernels/cells/star_columns-inl.h"
+#include "kernels/max_product_step/max_product_step.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SCALAR
+void start(const MaxProductRow& row) { max_product_start_row_ref(row); }
+void step(const MaxProductRow& row) { max_product_row_ref(row); }
+#else
+
+using EnergyColumns = StarColumns<FixedEnergy>;
+
+// E0.
+class SourceEnergies {
+ public:
+  SourceEnergies(const MaxProductRow& /*row*/, const EnergyColumns& at) : source_(at.source) {}
+  [[nodiscard]] HWY_INLINE EnergyVec of(int lane) const {
+    return hn::Load(EnergyTag(), source_ + lane);
+  }
+
+ private:
+  const FixedEnergy* source_;
+};
+
+// E0 and what the star says.
+template <bool kWeighted>
+class StarEnergies {
+ public:
+  StarEnergies(const MaxProductRow& row, const EnergyColumns& at)
+      : at_(at),
+        mu_(hn::Set(EnergyTag(), row.mu)),
+        left_(kWeighted ? hn::Set(EnergyTag(), row.weights.beside[at.x]) : mu_),
+        right_(kWeighted ? hn::Set(EnergyTag(), row.weights.beside[at.x + 1]) : mu_),
+        up_(kWeighted ? hn::Set(EnergyTag(), row.weights.above[at.x]) : mu_),
+        down_(kWeighted ? hn::Set(EnergyTag(), row.weights.below[at.x]) : mu_) {}
+
+  [[nodiscard]] HWY_INLINE EnergyVec of(int lane) const {
+    const EnergyTag d;
+    const auto part = [lane](const FixedEnergy* cells, EnergyVec weight) HWY_ATTR {
+      return hn::MulFixedPoint15(hn::Load(EnergyTag(), cells + lane), weight);
+    };
+    const EnergyVec vertical = hn::Add(part(at_.up, up_), part(at_.down, down_));
+    const EnergyVec horizontal = hn::Add(part(at_.left, left_), part(at_.right, right_));
+    const EnergyVec star = hn::Add(hn::Add(vertical, horizontal), part(at_.centre, mu_));
+    return hn::SaturatedAdd(star, hn::Load(d, at_.source + lane));
+  }
+
+ private:
+  EnergyColumns at_;
+  EnergyVec mu_;
+  EnergyVec left_;
+  EnergyVec right_;
+  EnergyVec up_;
+  EnergyVec down_;
+};
+
+// The least of what lies kOffset lanes before and behind those of vector v.
+template <int kOffset, int kVectors>
+HWY_INLINE EnergyVec least_beside(const EnergyVec (&energies)[kVectors], int v) {
+  const EnergyTag d;
+  const EnergyVec most = hn::Set(d, kMostEnergy);
+  const EnergyVec here = energies[v];
+  EnergyVec before = v > 0 ? energies[v - 1] : most;
+  EnergyVec behind = v + 1 < kVectors ? energies[v + 1] : most;
+  if constexpr (kEnergyLanes > 8) {
+    // Bytes are shifted within blocks of 16: first what lies a block away.
+    before = hn::ConcatLowerUpper(d, here, before);
+    behind = hn::ConcatLowerUpper(d, behind, here);
+  }
+  constexpr int kBytes = kOffset * static_cast<int>(sizeof(FixedEnergy));
+  return hn::Min(hn::CombineShiftRightBytes<16 - kBytes>(d, here, before),
+                 hn::CombineShiftRightBytes<kBytes>(d, behind, here));
+}
+
+// ES of columns of kVectors vectors that are one segment, all in registers: three quarters of the
+// time they take in memory. kRadius: of the prior, 1 or 2.
+template <class Energies, int kVectors, int kRadius>
+HWY_INLINE void run_in_registers(const MaxProductRow& given) {
+  const EnergyTag d;
+  const MaxProductRow row = given;  // which no store can change
+  const EnergyVec ceiling = hn::Set(d, row.prior.ceiling);
+  const EnergyVec first_rise = hn::Set(d, row.prior.rises[0]);
+  const EnergyVec second_rise = kRadius >= 2 ? hn::Set(d, row.prior.rises[1]) : ceiling;
+  const auto column = [&](const EnergyColumns& at, FixedEnergy* output) HWY_ATTR
+      __attribute__((always_inline)) {
+    const Energies of_lanes(row, at);
+    EnergyVec energies[kVectors];
+    EnergyVec least = hn::Set(d, kMostEnergy);
+#pragma GCC unroll 16
+    for (int v = 0; v < kVectors; ++v) {
+      energies[v] = of_lanes.of(v * kEnergyLanes);
+      least = hn::Min(least, energies[v]);
+    }
+    least = least_of_lanes(least);
+#pragma GCC unroll 16
+    for (int v = 0; v < kVectors; ++v) {
+      EnergyVec smoothed =
+          hn::Min(energies[v], hn::SaturatedAdd(least_beside<1>(energies, v), first_rise));
+      if constexpr (kRadius >= 2) {
+        smoothed = hn::Min(smoothed, hn::SaturatedAdd(least_beside<2>(energies, v), second_rise));
+      }
+      // Sums with rises that were cut do not count: the lane's own energy is not above them.
+      hn::Store(hn::Min(hn::Sub(smoothed, least), ceiling), d, output + v * kEnergyLanes);
+    }
+  };
+  each_column(row, column);
+}
+
+// Energies of a few columns in memory, with unreachable cells on both sides of each segment of
+// lanes. First all of them are made, then all are smoothed: one column after the other would wait
+// for the least of its lanes each time, and for cells that are loaded from between two stored
+// vectors.
+class EnergyWork {
+ public:
+  explicit EnergyWork(const MaxProductRow& row)
+      : row_(row),
+        columns_(max_product_work_columns(row.star.lanes)),
+        margin_(max_product_work_margin(row.prior.radius)),
+        segment_ends_(row.segment_ends.empty() ? std::span<const int>(&row.star.lanes, 1)
+                                               : row.segment_ends),
+        pitch_(row.star.lanes + (static_cast<int>(segment_ends_.size()) + 1) * margin_) {
+    for (int j = 0; j < std::min(columns_, row.star.columns); ++j) {
+      clear_margin(energies(j) - margin_);
+      FixedEnergy* behind = energies(j);
+      for (const int end : segment_ends_) {
+        clear_margin(behind + end);
+        behind += margin_;
+      }
+    }
+  }
+
+  template <class Energies>
+  HWY_INLINE void run() const {
+    EnergyVec least[kMostColumns];
+    FixedEnergy* block_output = row_.output;
+    int filled = 0;
+    const auto column = [&](const EnergyColumns& at, FixedEnergy* /*output*/) HWY_ATTR
+        __attribute__((always_inline)) {
+      least[filled] = make(Energies(row_, at), energies(filled));
+      ++filled;
+      if (filled == columns_ || at.x + 1 == row_.star.columns) {
+        finish(least, filled, block_output);
+        block_output += filled * row_.output_pitch;
+        filled = 0;
+      }
+    };
+    each_column(row_, column);
+  }
+
+ private:
+  static constexpr int kMostColumns = 16;  // of max_product_work_columns()
+
+  void clear_margin(FixedEnergy* margin) const {
+    for (int lane = 0; lane < margin_; lane += kEnergyLanes) {
+      hn::Store(hn::Set(EnergyTag(), kMostEnergy), EnergyTag(), margin + lane);
+    }
+  }
+  [[nodiscard]] FixedEnergy* energies(int column) const {
+    return row_.work + column * pitch_ + margin_;
+  }
+
+  // Returns the least of the column, in every lane.
+  template <class Energies>
+  HWY_INLINE EnergyVec make(const Energies& of_lanes, FixedEnergy* energies) const {
+    const EnergyTag d;
+    EnergyVec least = hn::Set(d, kMostEnergy);
+    int lane = 0;
+    for (const int end : segment_ends_) {
+#pragma GCC unroll 4
+      for (; lane < end; lane += kEnergyLanes) {
+        const EnergyVec value = of_lanes.of(lane);
+        hn::Store(value, d, energies + lane);
+        least = hn::Min(least, value);
+      }
+      energies += margin_;
+    }
+    return least_of_lanes(least);
+  }
+
+  // Leaves the row's kind of result of the first so many columns in work memory.
+  HWY_NOINLINE void finish(const EnergyVec* least, int columns, FixedEnergy* output) const {
+    if (!row_.smooths) {
+      return finish_columns<false, 0>(least, columns, output);
+    }
+    switch (row_.prior.radius) {
+      case 1:
+        return finish_columns<true, 1>(least, columns, output);
+      case 2:
+        return finish_columns<true, 2>(least, columns, output);
+      default:
+        return finish_columns<true, -1>(least, columns, output);
+    }
+  }
+
+  // kRadius: of the prior, −1: any.
+  template <bool kSmooths, int kRadius>
+  HWY_INLINE void finish_columns(const EnergyVec* least, int columns, FixedEnergy* output) const {
+    const EnergyTag d;
+    const MaxProductRow row = row_;  // which no store can change
+    const int radius = kRadius >= 0 ? kRadius : row.prior.radius;
+    const EnergyVec ceiling = hn::Set(d, row.prior.ceiling);
+    const EnergyVec first_rise = radius >= 1 ? hn::Set(d, row.prior.rises[0]) : ceiling;
+    for (int j = 0; j < columns; ++j, output += row.output_pitch) {
+      const FixedEnergy* column = energies(j);
+      int lane = 0;
+      for (const int end : segment_ends_) {
+#pragma GCC unroll 4
+        for (; lane < end; lane += kEnergyLanes) {
+          const FixedEnergy* const at = column + lane;
+          EnergyVec result = hn::Load(d, at);
+          for (int k = 1; k <= radius; ++k) {
+            const EnergyVec beside = hn::Min(hn::LoadU(d, at - k), hn::LoadU(d, at + k));
+            const EnergyVec rise = k == 1 ? first_rise : hn::Set(d, row.prior.rises[k - 1]);
+            result = hn::Min(result, hn::SaturatedAdd(beside, rise));
+          }
+          result = hn::Sub(result, least[j]);
+          hn::Store(kSmooths ? hn::Min(result, ceiling) : result, d, output + lane);
+        }
+        column += margin_;
+      }
+    }
+  }
+
+  const MaxProductRow& row_;
+  int columns_;
+  int margin_;
+  std::span<const int> segment_ends_;
+  int pitch_;
+};
+
+// Returns false for columns that do not fit.
+template <class Energies, int kRadius>
+HWY_INLINE bool run_if_short(const MaxProductRow& row) {
+  constexpr int kVectorsOfBlock = kLaneMultiple / kEnergyLanes;
+  switch (row.star.lanes / kLaneMultiple) {
+    case 1:
+      run_in_registers<Energies, kVectorsOfBlock, kRadius>(row);
+      return true;
+    case 2:
+      run_in_registers<Energies, 2 * kVectorsOfBlock, kRadius>(row);
+      return true;
+    case 3:
+      run_in_registers<Energies, 3 * kVectorsOfBlock, kRadius>(row);
+      return true;
+    case 4:
+      run_in_registers<Energies, 4 * kVectorsOfBlock, kRadius>(row);
+      return true;
+    case 8:
+      run_in_registers<Energies, 8 * kVectorsOfBlock, kRadius>(row);
+      return true;
+    default:
+      return false;
+  }
+}
+
+template <class Energies>
+HWY_INLINE void run_columns(const MaxProductRow& row) {
+  const int radius = row.smooths && row.segment_ends.size() <= 1 ? row.prior.radius : 0;
+  if ((radius == 1 && run_if_short<Energies, 1>(row)) ||
+      (radius == 2 && run_if_short<Energies, 2>(row))) {
+    return;
+  }
+  EnergyWork(row).run<Energies>();
+}
+
+void start(const MaxProductRow& row) { run_columns<SourceEnergies>(row); }
+
+void step(const MaxProductRow& row) {
+  if (row.weights.are_given()) {
+    run_columns<StarEnergies<true> >(row);
+  } else {
+    run_columns<StarEnergies<false> >(row);
+  }
+}
+#endif
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(start);
+HWY_EXPORT(step);
+
+void max_product_start_row(const MaxProductRow& row) { HWY_DYNAMIC_DISPATCH(start)(row); }
+void max_product_row(const MaxProductRow& row) { HWY_DYNAMIC_DISPATCH(step)(row); }
+
+}  // namespace vantage::kernels
+#endif

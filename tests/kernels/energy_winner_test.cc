@@ -1,0 +1,342 @@
+#include "kernels/energy_winner/energy_winner.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "engine/image/image.h"
+#include "tests/kernels/kernel_test_utils.h"
+#include "tests/kernels/winner_rows.h"
+
+namespace vantage::kernels {
+namespace {
+
+constexpr std::int32_t kSentinel = -0x5A5A5A5B;
+constexpr FixedEnergy kEnergySentinel = -77;
+constexpr float kFloatSentinel = -12345.5F;
+
+/// What the energies of a row are like.
+enum class EnergyKind {
+  kConstant,
+  kFewLevels,   ///< many ties
+  kWide,        ///< all that there are
+  kMostOrLess,  ///< most of them kMostEnergy
+  kMostOfThem,  ///< all of them kMostEnergy
+};
+constexpr EnergyKind kKinds[] = {EnergyKind::kConstant, EnergyKind::kFewLevels, EnergyKind::kWide,
+                                 EnergyKind::kMostOrLess, EnergyKind::kMostOfThem};
+
+FixedEnergy random_energy(std::mt19937& random, EnergyKind kind) {
+  switch (kind) {
+    case EnergyKind::kConstant:
+      return 725;
+    case EnergyKind::kFewLevels:
+      return static_cast<FixedEnergy>(random_int(random, 3, 6));
+    case EnergyKind::kWide:
+      return static_cast<FixedEnergy>(random_int(random, 0, kMostEnergy));
+    case EnergyKind::kMostOrLess:
+      return static_cast<FixedEnergy>(kMostEnergy - (random() % 20 == 0 ? random() % 3 : 0));
+    case EnergyKind::kMostOfThem:
+      break;
+  }
+  return kMostEnergy;
+}
+
+/// Random energies of a row. Candidates without partners would win if anyone looked at them, and so
+/// would what lies between columns.
+struct EnergyCells {
+  int pitch;
+  Image<FixedEnergy> cells;
+
+  EnergyCells(std::mt19937& random, const WinnerCase& c, EnergyKind kind)
+      : pitch(c.lanes() + random_int(random, 0, 2) * kLaneMultiple), cells(pitch * c.width, 1) {
+    for (int x = 0; x < c.width; ++x) {
+      for (int i = 0; i < pitch; ++i) {
+        const bool is_lane_only = i >= c.count && i < c.lanes();
+        at(x, i) = c.counts(x, i) ? random_energy(random, kind)
+                   : is_lane_only ? kMostEnergy
+                                  : static_cast<FixedEnergy>(random_int(random, 0, 3));
+      }
+    }
+  }
+  [[nodiscard]] FixedEnergy& at(int x, int i) { return cells.row(0)[x * pitch + i]; }
+  [[nodiscard]] FixedEnergy at(int x, int i) const { return cells.row(0)[x * pitch + i]; }
+  /// Columns [begin, end).
+  [[nodiscard]] EnergyRow row(const WinnerCase& c, int begin, int end) const {
+    EnergyRow row;
+    row.cells = cells.row(0) + static_cast<std::ptrdiff_t>(begin) * pitch;
+    row.pitch = pitch;
+    row.geometry = {c.width, c.disparity_min, c.count, c.direction};
+    row.first_column = begin;
+    row.columns = end - begin;
+    return row;
+  }
+};
+
+/// One column: the definitions, one after the other.
+struct Column {
+  std::int32_t winner = kNoWinner;
+  FixedEnergy least = kMostEnergy;
+  /// By the parabola, in double.
+  double disparity_px = 0;
+
+  Column(const WinnerCase& c, const EnergyCells& cells, int x) {
+    for (int i = 0; i < c.count; ++i) {
+      if (c.counts(x, i) && (winner == kNoWinner || cells.at(x, i) < least)) {
+        winner = i;
+        least = cells.at(x, i);
+      }
+    }
+    disparity_px = c.disparity_min + winner;
+    if (c.counts(x, winner - 1) && c.counts(x, winner + 1)) {
+      const double before = cells.at(x, winner - 1);
+      const double after = cells.at(x, winner + 1);
+      const double curvature = before - 2.0 * least + after;
+      disparity_px += curvature > 0 ? (before - after) / (2 * curvature) : 0;
+    }
+  }
+};
+
+/// Calls body(random, case, cells, begin, end) for every kind of energies in every geometry of a
+/// small world, in wide rows and with many candidates: the whole row and a part of it.
+template <typename Body>
+void for_each_row(const Body& body) {
+  std::mt19937 random(61);
+  const auto visit = [&](const WinnerCase& c, EnergyKind kind) {
+    if (testing::Test::HasFatalFailure()) {
+      return;
+    }
+    const EnergyCells cells(random, c, kind);
+    const int begin = random_int(random, 0, c.width - 1);
+    body(random, c, cells, 0, c.width);
+    body(random, c, cells, begin, random_int(random, begin + 1, c.width));
+  };
+  for_each_winner_case([&](const WinnerCase& c) {
+    if (c.radius == 0 && c.index_bits == 0 && !c.whole_windows_only) {
+      visit(c, kKinds[random() % std::size(kKinds)]);
+    }
+  });
+  for (const int count : {1, 3, 16, 17, 33, 48, 64, 113, 128, 300}) {
+    for (const int direction : {-1, 1}) {
+      for (const EnergyKind kind : kKinds) {
+        WinnerCase c;
+        c.width = count + 20;
+        c.count = count;
+        c.disparity_min = random_int(random, -count, 5);
+        c.direction = direction;
+        visit(c, kind);
+      }
+    }
+  }
+}
+
+using Select = void (*)(const EnergyRow&, std::int32_t*, FixedEnergy*);
+
+void sweep(Select select) {
+  int columns_with_none = 0;
+  int columns_with_all = 0;
+  for_each_row(
+      [&](std::mt19937& random, const WinnerCase& c, const EnergyCells& cells, int begin, int end) {
+        const EnergyRow row = cells.row(c, begin, end);
+        const auto columns = static_cast<std::size_t>(row.columns);
+        GuardedRow<std::int32_t> winners(columns, random() % 5, kSentinel);
+        GuardedRow<FixedEnergy> least(columns, random() % 5, kEnergySentinel);
+        select(row, winners.data(), least.data());
+        ASSERT_TRUE(winners.intact() && least.intact()) << c;
+        for (std::size_t j = 0; j < columns; ++j) {
+          const int x = begin + static_cast<int>(j);
+          const Column column(c, cells, x);
+          ASSERT_EQ(winners.values()[j], column.winner) << c << ", column " << x;
+          ASSERT_EQ(least.values()[j], column.least) << c << ", column " << x;
+          columns_with_none += column.winner == kNoWinner ? 1 : 0;
+          columns_with_all += c.counts(x, 0) && c.counts(x, c.count - 1) ? 1 : 0;
+        }
+      });
+  EXPECT_GT(columns_with_none, 1000);
+  EXPECT_GT(columns_with_all, 1000);
+}
+
+class EnergyWinner : public EveryTarget {};
+
+TEST_P(EnergyWinner, IsTheFirstOfTheLeastWithAPartner) { sweep(select_energy_winners_row); }
+TEST(EnergyWinnerReference, IsTheFirstOfTheLeastWithAPartner) {
+  sweep(select_energy_winners_row_ref);
+}
+
+TEST_P(EnergyWinner, TiesGoToTheSmallestDisparity) {
+  std::mt19937 random(62);
+  for (int count = 1; count <= 70; ++count) {
+    for (int first = 0; first < count; ++first) {
+      WinnerCase c;
+      c.width = 80;
+      c.count = count;
+      EnergyCells cells(random, c, EnergyKind::kConstant);
+      // Column 75 has all partners: all candidates from `first` on are equal, those before worse.
+      for (int i = 0; i < count; ++i) {
+        cells.at(75, i) = i < first ? 51 : 50;
+      }
+      std::int32_t winner = kSentinel;
+      FixedEnergy least = kEnergySentinel;
+      select_energy_winners_row(cells.row(c, 75, 76), &winner, &least);
+      ASSERT_EQ(winner, first) << count << " candidates";
+      ASSERT_EQ(least, 50);
+    }
+  }
+}
+
+TEST_P(EnergyWinner, TheLastOfManyCandidatesMayWin) {
+  constexpr int kCount = 32752;
+  Image<FixedEnergy> cells(kCount, 1);
+  cells.fill(50);
+  cells.at(kCount - 1, 0) = 49;
+  EnergyRow row;
+  row.cells = cells.row(0);
+  row.pitch = kCount;
+  row.columns = 1;
+  // At column 36000 all have a partner, at column 1 of two the last two have.
+  for (const bool all : {true, false}) {
+    row.geometry =
+        all ? CandidateGeometry{40000, 0, kCount, -1} : CandidateGeometry{2, 1 - kCount, kCount, 1};
+    row.first_column = all ? 36000 : 1;
+    std::int32_t winner = kSentinel;
+    FixedEnergy least = kEnergySentinel;
+    select_energy_winners_row(row, &winner, &least);
+    EXPECT_EQ(winner, kCount - 1) << all;
+    EXPECT_EQ(least, 49) << all;
+  }
+}
+
+TEST(EnergyDisparity, IsThatOfTheParabolaThroughWinnerAndNeighbours) {
+  int moved = 0;
+  for_each_row(
+      [&](std::mt19937& random, const WinnerCase& c, const EnergyCells& cells, int begin, int end) {
+        const EnergyRow row = cells.row(c, begin, end);
+        const auto columns = static_cast<std::size_t>(row.columns);
+        std::vector<std::int32_t> winners(columns);
+        std::vector<FixedEnergy> least(columns);
+        select_energy_winners_row_ref(row, winners.data(), least.data());
+        for (const bool refined : {false, true}) {
+          GuardedRow<float> disparity_px(columns, random() % 5, kFloatSentinel);
+          energy_disparity_row(row, winners.data(), refined, disparity_px.data());
+          ASSERT_TRUE(disparity_px.intact()) << c;
+          for (std::size_t j = 0; j < columns; ++j) {
+            const int x = begin + static_cast<int>(j);
+            const Column column(c, cells, x);
+            const float actual_px = disparity_px.values()[j];
+            ASSERT_EQ(std::isnan(actual_px), column.winner == kNoWinner) << c << ", column " << x;
+            if (column.winner == kNoWinner) {
+              continue;
+            }
+            const double whole_px = c.disparity_min + column.winner;
+            if (refined) {
+              ASSERT_NEAR(actual_px, column.disparity_px, 1e-6 * (1 + std::abs(whole_px)))
+                  << c << ", column " << x;
+              ASSERT_LE(std::abs(actual_px - whole_px), 0.5);
+              moved += column.disparity_px != whole_px ? 1 : 0;
+            } else {
+              ASSERT_EQ(actual_px, whole_px) << c << ", column " << x;
+            }
+          }
+        }
+      });
+  EXPECT_GT(moved, 1000);
+}
+
+TEST(EnergyDisparity, OfAParabolaIsItsLowestPoint) {
+  std::mt19937 random(64);
+  WinnerCase c;
+  c.width = 60;
+  c.disparity_min = 3;
+  c.count = 20;
+  EnergyCells cells(random, c, EnergyKind::kConstant);
+  for (int i = 0; i < c.count; ++i) {  // 4 (i − 7¼)², less a constant
+    cells.at(40, i) = static_cast<FixedEnergy>(4 * i * i - 58 * i + 300);
+  }
+  const std::int32_t winner = 7;
+  float disparity_px = kFloatSentinel;
+  energy_disparity_row(cells.row(c, 40, 41), &winner, true, &disparity_px);
+  EXPECT_EQ(disparity_px, 10.25F);
+}
+
+class EnergyProbability : public EveryTarget {};
+
+TEST_P(EnergyProbability, IsTheShareOfTheWinnersLikelihood) {
+  std::mt19937 random(65);
+  for (const int lanes : kLaneCounts) {
+    for (const float steps_per_nat : {3.0F, 64.0F, 256.0F, 1024.0F}) {
+      EnergyColumnsRow row;
+      row.columns = random_int(random, 1, 9);
+      row.lanes = lanes;
+      row.pitch = lanes + random_int(random, 0, 2) * kLaneMultiple;
+      Image<FixedEnergy> cells(static_cast<int>(row.pitch) * row.columns, 1);
+      cells.fill(0);  // what lies between columns would be as probable as any
+      row.cells = cells.row(0);
+      std::vector<FixedEnergy> least;
+      for (int j = 0; j < row.columns; ++j) {
+        FixedEnergy* const column = cells.row(0) + j * row.pitch;
+        // From columns of one candidate to those of equal ones.
+        const int most = random_int(random, 0, 3) * static_cast<int>(4 * steps_per_nat);
+        for (int i = 0; i < lanes; ++i) {
+          column[i] = random() % 4 == 0 ? kMostEnergy
+                                        : static_cast<FixedEnergy>(random_int(random, 0, most));
+        }
+        column[random() % static_cast<unsigned>(lanes)] = 0;
+        // The winner may be another than the least of all, which has no partner.
+        least.push_back(
+            static_cast<FixedEnergy>(random_int(random, 0, 1) * random_int(random, 0, most)));
+      }
+      least.back() = row.columns > 1 ? kMostEnergy : 0;
+      GuardedRow<float> probability(least.size(), random() % 5, kFloatSentinel);
+      energy_probability_row(row, least.data(), steps_per_nat, probability.data());
+      ASSERT_TRUE(probability.intact());
+      std::vector<float> reference(least.size());
+      energy_probability_row_ref(row, least.data(), steps_per_nat, reference.data());
+      for (int j = 0; j < row.columns; ++j) {
+        const auto at = static_cast<std::size_t>(j);
+        const float actual = probability.values()[at];
+        ASSERT_EQ(std::isnan(actual), least[at] == kMostEnergy);
+        ASSERT_EQ(std::isnan(reference[at]), least[at] == kMostEnergy);
+        if (least[at] == kMostEnergy) {
+          continue;
+        }
+        double sum = 0;
+        for (int i = 0; i < lanes; ++i) {
+          sum += std::exp((least[at] - row.cells[j * row.pitch + i]) / double{steps_per_nat});
+        }
+        ASSERT_NEAR(actual, 1 / sum, 1e-5 / sum) << lanes << " lanes, " << steps_per_nat;
+        ASSERT_NEAR(reference[at], 1 / sum, 1e-7 / sum) << lanes << " lanes, " << steps_per_nat;
+      }
+    }
+  }
+}
+
+TEST(EnergyProbabilityOnAllTargets, IsIdentical) {
+  std::mt19937 random(66);
+  EnergyColumnsRow row{nullptr, 80, 30, 80};
+  Image<FixedEnergy> cells(80 * 30, 1);
+  std::generate_n(cells.row(0), 80 * 30, [&] { return static_cast<FixedEnergy>(random() % 2000); });
+  row.cells = cells.row(0);
+  const std::vector<FixedEnergy> least(30, 1);
+  std::vector<float> first;
+  for (const long long target : each_target()) {
+    force_target(target);
+    std::vector<float> probability(least.size());
+    energy_probability_row(row, least.data(), 200, probability.data());
+    if (first.empty()) {
+      first = probability;
+    }
+    EXPECT_EQ(probability, first) << target_name(target);
+  }
+  force_target(0);
+}
+
+VANTAGE_ON_EVERY_TARGET(EnergyWinner);
+VANTAGE_ON_EVERY_TARGET(EnergyProbability);
+
+}  // namespace
+}  // namespace vantage::kernels
