@@ -31,13 +31,19 @@ void fixed_weights(const float* weights, int count, float factor, FixedWeight* f
   const hn::ScalableTag<float> df;
   const hn::Rebind<FixedWeight, decltype(df)> d16;
   const int step = static_cast<int>(hn::Lanes(df));
+  if (count < step) {
+    fixed_weights_row_ref(weights, count, factor, fixed);
+    return;
+  }
   const auto scale = hn::Set(df, factor * kFixedWeightUnits);
-  int x = 0;
-  for (; x + step <= count; x += step) {
+  const auto make = [&](int x) HWY_ATTR {
     const auto units = hn::NearestInt(hn::Mul(hn::LoadU(df, weights + x), scale));
     hn::StoreU(hn::DemoteTo(d16, units), d16, fixed + x);  // saturates
+  };
+  for (int x = 0; x + step <= count; x += step) {
+    make(x);
   }
-  fixed_weights_row_ref(weights + x, count - x, factor, fixed + x);
+  make(count - step);  // what is left, and some once more
 }
 
 }  // namespace vantage::kernels::HWY_NAMESPACE

@@ -1,10 +1,12 @@
 // One row of each iteration on a disparity space, again and again.
 
+#include <string>
 #include <utility>
 
 #include "kernels/bayes_step/bayes_step.h"
 #include "kernels/diffusion_step/diffusion_step.h"
 #include "kernels/local_stopping_step/local_stopping_step.h"
+#include "kernels/max_product_step/max_product_step.h"
 #include "perf/kernels_benchmark/kernel_benchmark.h"
 #include "tests/kernels/star_rows.h"
 
@@ -13,7 +15,10 @@ namespace {
 
 using kernels::BayesRow;
 using kernels::BayesState;
+using kernels::CellStarRows;
 using kernels::CertaintyMeasure;
+using kernels::FixedEnergy;
+using kernels::MaxProductRow;
 using kernels::StarRows;
 
 // Three rows with a column beyond either end, the source and the output: 22 KiB.
@@ -83,8 +88,52 @@ class Rows {
   Image<float> work_{kernels::bayes_work_floats(kLanes, 1), 1};
 };
 
+// The same in energies in fixed point.
+template <int kEnergyLanes>
+class EnergyRows {
+ public:
+  void start() { kernels::max_product_start_row(row()); }
+  void step() { kernels::max_product_row(row()); }
+  void weighted_step() {
+    MaxProductRow weighted = row();
+    weighted.weights = {weights_.row(0), weights_.row(1), weights_.row(2)};
+    kernels::max_product_row(weighted);
+  }
+
+ private:
+  static Image<kernels::FixedWeight> made_weights() {
+    Image<kernels::FixedWeight> weights(kColumns + 1, 3);
+    weights.fill(kernels::fixed_weight(0.7F * kMu));
+    return weights;
+  }
+  MaxProductRow row() {
+    MaxProductRow row;
+    row.star = energies_.star();
+    row.prior = {&rise_, 1, 1000};
+    row.mu = kernels::fixed_weight(kMu);
+    row.output = output_.row(0);
+    row.source_pitch = row.output_pitch = kEnergyLanes;
+    row.work = work_.row(0);
+    return row;
+  }
+
+  CellStarRows<FixedEnergy> energies_{kColumns, kEnergyLanes, kEnergyLanes, 0, 1000, 1};
+  Image<kernels::FixedWeight> weights_ = made_weights();
+  FixedEnergy rise_ = 50;
+  Image<FixedEnergy> output_{kColumns * kEnergyLanes, 1};
+  Image<FixedEnergy> work_{kernels::max_product_work_cells(kEnergyLanes, 1), 1};
+};
+
 KernelBenchmark row(std::string name, const kernels::KernelWork& work, void (*call)(Rows&)) {
   return on_own_data<Rows>(std::move(name), "cell", kCells, per_cell(work, kLanes), call);
+}
+
+template <int kEnergyLanes>
+KernelBenchmark energy_row(std::string name, const kernels::KernelWork& work,
+                           void (*call)(EnergyRows<kEnergyLanes>&)) {
+  name += "/" + std::to_string(kEnergyLanes) + " candidates";
+  return on_own_data<EnergyRows<kEnergyLanes>>(
+      std::move(name), "cell", double{kColumns} * kEnergyLanes, per_cell(work, kEnergyLanes), call);
 }
 
 }  // namespace
@@ -107,6 +156,14 @@ KernelBenchmarks iteration_kernels() {
           [](Rows& d) { d.bayes_general(1); }),
       row("bayes_general_row/three taps, weighted", general_work(1, true),
           [](Rows& d) { d.bayes_weighted(); }),
+      energy_row<48>("max_product_start_row", kernels::max_product_start_work(1),
+                     [](EnergyRows<48>& d) { d.start(); }),
+      energy_row<48>("max_product_row", kernels::max_product_work(1, true, false),
+                     [](EnergyRows<48>& d) { d.step(); }),
+      energy_row<48>("max_product_row/weighted", kernels::max_product_work(1, true, true),
+                     [](EnergyRows<48>& d) { d.weighted_step(); }),
+      energy_row<128>("max_product_row/weighted", kernels::max_product_work(1, true, true),
+                      [](EnergyRows<128>& d) { d.weighted_step(); }),
       row("diffusion_row", kernels::kDiffusionWork, [](Rows& d) { d.diffusion(0); }),
       row("diffusion_row/membrane", kernels::kMembraneWork, [](Rows& d) { d.diffusion(0.075F); }),
       row("local_stopping_row/margin",

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
+#include "kernels/fixed_energies/fixed_energies.h"
 #include "kernels/half_energies/half_energies.h"
 #include "perf/kernels_benchmark/kernel_benchmark.h"
 
@@ -30,6 +31,18 @@ class Rows {
   void compact_probabilities() {
     kernels::compact_probabilities_row(upper_.data(), kFineCells, bytes_.data());
   }
+  void fixed_energies_of_bytes() {
+    kernels::fixed_energies_of_bytes_row({compact_.data(), kColumns, kLanes, kLanes},
+                                         kernels::ByteSteps(32), fixed_.data());
+  }
+  void fixed_energies_of_likelihoods() {
+    kernels::fixed_energies_of_likelihoods_row({upper_.data(), kColumns, kLanes, kLanes}, 256,
+                                               fixed_.data());
+  }
+  void bytes_of_fixed_energies() {
+    kernels::bytes_of_fixed_energies_row(stored_fixed_.data(), kFineCells,
+                                         kernels::fixed_weight(1.0F / 32), bytes_.data());
+  }
   void reduce_energies() {
     kernels::reduce_energies_row({upper_.data(), lower_.data(), kColumns, kLanes}, 1,
                                  halves_.data());
@@ -48,10 +61,12 @@ class Rows {
   AlignedValues<float> lower_{kFineCells, 1000, 0.001F, 2};
   AlignedValues<std::uint8_t> compact_{kFineCells, 256, 1, 3};
   AlignedValues<std::uint16_t> stored_{kCoarseCells, 15360, 1, 4};
+  AlignedValues<kernels::FixedEnergy> stored_fixed_{kFineCells, 10000, 1, 5};
   AlignedValues<float> work_{kLanes};
   AlignedValues<float> output_{kFineCells};
   AlignedValues<std::uint8_t> bytes_{kFineCells};
   AlignedValues<std::uint16_t> halves_{kFineCells};
+  AlignedValues<kernels::FixedEnergy> fixed_{kFineCells};
 };
 
 KernelBenchmark row(std::string name, double cells, const kernels::KernelWork& work,
@@ -72,6 +87,12 @@ KernelBenchmarks level_kernels() {
           [](Rows& d) { d.likelihoods_of_compact(); }),
       row("compact_probabilities_row", kFineCells, kernels::kCompactProbabilitiesWork,
           [](Rows& d) { d.compact_probabilities(); }),
+      row("fixed_energies_of_bytes_row", kFineCells, kernels::kFixedEnergiesOfBytesWork,
+          [](Rows& d) { d.fixed_energies_of_bytes(); }),
+      row("fixed_energies_of_likelihoods_row", kFineCells, kernels::kFixedEnergiesOfLikelihoodsWork,
+          [](Rows& d) { d.fixed_energies_of_likelihoods(); }),
+      row("bytes_of_fixed_energies_row", kFineCells, kernels::kBytesOfFixedEnergiesWork,
+          [](Rows& d) { d.bytes_of_fixed_energies(); }),
       row("half_energies_row", kFineCells, kernels::kHalfEnergiesWork,
           [](Rows& d) { d.half_energies(); }),
       row("energies_from_coarser_row", kFineCells, kernels::kExpandHalfWork,

@@ -5,6 +5,7 @@
 
 #include "kernels/candidates.h"
 #include "kernels/cell_winner/cell_winner.h"
+#include "kernels/energy_winner/energy_winner.h"
 #include "kernels/mean_energy/mean_energy.h"
 #include "kernels/parabola/parabola.h"
 #include "kernels/winner/winner.h"
@@ -27,6 +28,9 @@ struct Rows {
   AlignedValues<std::int32_t> least{kColumns};
   AlignedValues<std::int32_t> winners{kColumns};
   AlignedValues<float> cells{kCellCount, 65536, 1.0F / 65536, 2};
+  AlignedValues<kernels::FixedEnergy> fixed{kCellCount, 30000, 1, 3};
+  AlignedValues<kernels::FixedEnergy> least_fixed{kColumns};
+  AlignedValues<std::int32_t> fixed_winners{kColumns};
   AlignedValues<float> energies{kCellCount};
   AlignedValues<float> best{kColumns};
   AlignedValues<float> confidence{kColumns};
@@ -38,6 +42,7 @@ struct Rows {
       least.data()[x] = *std::min_element(column, column + kLanes);
     }
     locate();
+    select_energies(kInside);
     select_cells(kInside, false, false);
   }
   [[nodiscard]] kernels::WinnerRow winner_row(int index_bits, int first_column) {
@@ -63,6 +68,21 @@ struct Rows {
     kernels::select_cell_winners_row(
         cell_row(first_column, probabilities),
         {winners.data(), best.data(), margin ? confidence.data() : nullptr});
+  }
+  [[nodiscard]] kernels::EnergyRow energy_row(int first_column) {
+    return {fixed.data(), kLanes, {1000, 0, kLanes, -1}, first_column, kColumns};
+  }
+  void select_energies(int first_column) {
+    kernels::select_energy_winners_row(energy_row(first_column), fixed_winners.data(),
+                                       least_fixed.data());
+  }
+  void parabola_of_energies() {
+    kernels::energy_disparity_row(energy_row(kInside), fixed_winners.data(), true,
+                                  disparity_px.data());
+  }
+  void probability_of_energies() {
+    kernels::energy_probability_row({fixed.data(), kLanes, kColumns, kLanes}, least_fixed.data(),
+                                    256, confidence.data());
   }
   void entropy() {
     kernels::cell_entropy_row(cell_row(kInside, false), best.data(), 9.0F, confidence.data());
@@ -92,6 +112,14 @@ KernelBenchmark parabola(std::string name, bool of_probabilities, void (*call)(R
                            per_column(kernels::parabola_work(of_probabilities)), call);
 }
 
+KernelBenchmark parabola_of_energies() {
+  KernelBenchmark kernel = on_own_data<Rows>("energy_disparity_row", "pixel", kColumns,
+                                             per_column(kernels::kEnergyDisparityWork),
+                                             [](Rows& d) { d.parabola_of_energies(); });
+  kernel.has_vectors = false;
+  return kernel;
+}
+
 }  // namespace
 
 KernelBenchmarks selection_kernels() {
@@ -110,12 +138,19 @@ KernelBenchmarks selection_kernels() {
                [](Rows& d) { d.select_cells(kAtBorder, false, false); }),
       of_cells("select_cell_winners_row/margin", kernels::cell_winner_work(true, true),
                [](Rows& d) { d.select_cells(kInside, false, true); }),
+      of_cells("select_energy_winners_row", kernels::energy_winner_work(),
+               [](Rows& d) { d.select_energies(kInside); }),
+      of_cells("select_energy_winners_row/border", kernels::energy_winner_work(),
+               [](Rows& d) { d.select_energies(kAtBorder); }),
+      of_cells("energy_probability_row", kernels::kEnergyProbabilityWork,
+               [](Rows& d) { d.probability_of_energies(); }),
       of_cells("cell_entropy_row", kernels::kCellEntropyWork, [](Rows& d) { d.entropy(); }),
       parabola("parabola_disparity_row/sums", false, [](Rows& d) { d.parabola_of_sums(); }),
       parabola("parabola_disparity_row/energies", false,
                [](Rows& d) { d.parabola_of_cells(false); }),
       parabola("parabola_disparity_row/probabilities", true,
                [](Rows& d) { d.parabola_of_cells(true); }),
+      parabola_of_energies(),
   };
 }
 

@@ -337,20 +337,27 @@ DisparityMaps maps_of(const testing::PhotographPair& pair, const MatchOptions& o
   return maps;
 }
 
-TEST(PrunedMatching, OfSixteenCandidatesIsFullMatching) {
+class PrunedMatchingOf : public ::testing::TestWithParam<PriorSmoothing> {};
+INSTANTIATE_TEST_SUITE_P(Smoothing, PrunedMatchingOf,
+                         ::testing::Values(PriorSmoothing::kSum, PriorSmoothing::kMaximum),
+                         [](const auto& instance) {
+                           return instance.param == PriorSmoothing::kSum ? "sum" : "maximum";
+                         });
+
+TEST_P(PrunedMatchingOf, SixteenCandidatesIsFullMatching) {
   for (const Extent extent : {Extent{1, 1}, Extent{1, 7}, Extent{13, 11}, Extent{70, 37}}) {
     const DisparityRange range{0, std::min(15, extent.columns - 1)};
     const auto pair =
         testing::textured_pair(extent.columns, extent.rows, range, testing::PixelKind::kGrey8, 3);
-    EXPECT_TRUE(identical(maps_of(pair, pruned_options(range, 1)),
-                          maps_of(pair, pruned_options(range, 0))));
+    EXPECT_TRUE(identical(maps_of(pair, pruned_options(range, 1, GetParam())),
+                          maps_of(pair, pruned_options(range, 0, GetParam()))));
   }
 }
 
-TEST(PrunedMatching, DoesNotDependOnExecution) {
+TEST_P(PrunedMatchingOf, ManyCandidatesDoesNotDependOnExecution) {
   const DisparityRange range{-3, 60};
   const auto pair = testing::textured_pair(83, 45, range, testing::PixelKind::kGrey8, 3);
-  const MatchOptions options = pruned_options(range, 2);
+  const MatchOptions options = pruned_options(range, 2, GetParam());
   const DisparityMaps expected =
       maps_of(pair, options, {.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   for (const int threads : {2, 3}) {
@@ -372,11 +379,11 @@ TEST(PrunedMatching, DoesNotDependOnExecution) {
   }
 }
 
-TEST(PrunedMatching, WiderRangesThanImagesHaveADisparityEverywhere) {
+TEST_P(PrunedMatchingOf, WiderRangesThanImagesHasADisparityEverywhere) {
   for (const Extent extent : {Extent{1, 1}, Extent{5, 3}, Extent{33, 17}}) {
     const auto pair =
         testing::textured_pair(extent.columns, extent.rows, {0, 3}, testing::PixelKind::kGrey8, 3);
-    const DisparityMaps maps = maps_of(pair, pruned_options({-90, 120}, 1));
+    const DisparityMaps maps = maps_of(pair, pruned_options({-90, 120}, 1, GetParam()));
     for (int y = 0; y < extent.rows; ++y) {
       for (int x = 0; x < extent.columns; ++x) {
         EXPECT_FALSE(std::isnan(maps.left.at(x, y)));

@@ -63,7 +63,7 @@ class SceneBuilderTest : public ::testing::Test {
   SceneBuilder builder(const std::vector<SceneImage>& images, const std::string& settings = "{}",
                        bool copy_images = false) const {
     SceneBuildOptions options{.match = {}, .settings = settings, .copy_images = copy_images};
-    options.match.preset = MatchPreset::kBalanced;
+    options.match.preset = MatchPreset::kQuality;  // these tests are about views, not maps
     options.match.disparities = {0, 8};
     return {place_, images, options, threads()};
   }

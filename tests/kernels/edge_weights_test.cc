@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <random>
@@ -39,6 +40,33 @@ TEST_P(EdgeWeightsRow, FallWithTheDifferenceOfGreyLevels) {
                     1e-5);
         ASSERT_GE(reference[x], model.least);
         ASSERT_LE(reference[x], 1);
+      }
+    }
+  }
+}
+
+TEST_P(EdgeWeightsRow, FixedWeightsAreTheNearestOnes) {
+  std::mt19937 random(5);
+  for (const int count : {0, 1, 2, 3, 7, 8, 15, 16, 17, 31, 64, 101}) {
+    for (const float factor : {0.28F, 0.5F, 1.0F}) {
+      const auto size = static_cast<std::size_t>(count);
+      UnalignedRow<float> weights(size, random() % 5);
+      for (std::size_t x = 0; x < size; ++x) {
+        weights[x] = static_cast<float>(random_int(random, 0, 1 << 20)) / (1 << 20);
+      }
+      if (count > 2) {
+        weights[0] = 1;  // which has no number of its own
+        weights[2] = 0;
+      }
+      GuardedRow<FixedWeight> fixed(size, random() % 5, -7);
+      fixed_weights_row(weights.data(), count, factor, fixed.data());
+      EXPECT_TRUE(fixed.intact());
+      std::vector<FixedWeight> reference(size);
+      fixed_weights_row_ref(weights.data(), count, factor, reference.data());
+      ASSERT_EQ(fixed.values(), reference) << count;
+      for (std::size_t x = 0; x < size; ++x) {
+        const double units = 32768.0 * static_cast<double>(factor) * weights[x];
+        ASSERT_NEAR(reference[x], std::min(units, 32767.0), 0.51);
       }
     }
   }

@@ -560,8 +560,8 @@ TEST(KernelWork, OfSelections) {
     places.fill(1e9);
     Counted number = 0;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      Counted& place = places[i % kLaneMultiple];
-      place = least(place, cells[i] == best ? number : Counted(1e9));
+      Counted& first = places[i % kLaneMultiple];
+      first = least(first, cells[i] == best ? number : Counted(1e9));
       number = number + 1;
     }
     joined_lanes(places, least_of_two);
