@@ -94,8 +94,8 @@ struct MatchReport {
 /// Thread rule: match() may be called concurrently for different results. Results are identical for
 /// any ExecutionOptions, and on any instruction set but for Bayesian diffusion with
 /// PriorSmoothing::kSum, whose probabilities agree to 1e-5 between instruction sets and between
-/// processors of different makers (with several levels: where the rounding of what is stored between
-/// them does).
+/// processors of different makers (with several levels: where the rounding of what is stored
+/// between them does).
 class StereoMatcher {
  public:
   /// Throws UsageError for invalid options. `execution` must outlive the matcher.
