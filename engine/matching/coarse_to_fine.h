@@ -73,13 +73,12 @@ std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Ex
 
 /// Computes one map coarse to fine (6.7): costs are reduced level by level, energies −ln p0 being
 /// added up over blocks of 2×2 columns for Bayesian diffusion (times level_weight) and averaged for
-/// other methods. Then
-/// each level is aggregated, the coarsest first, starting from what the coarser one ended with:
-/// Bayesian diffusion with its probabilities as the first state and its own likelihoods, the
-/// membrane with its energies and the pull of its own costs, all others with the mean of their own
-/// costs and its energies. Disparities keep their number and unit on all levels. The finest level's
-/// costs come from the images, twice, and are never stored. Iterations and σP differ from level to
-/// level (at_level).
+/// other methods. Then each level is aggregated, the coarsest first, starting from what the coarser
+/// one ended with: Bayesian diffusion with its probabilities (or their energies) as the first state
+/// and its own likelihoods, the membrane with its energies and the pull of its own costs, all
+/// others with the mean of their own costs and its energies. Disparities keep their number and unit
+/// on all levels. The finest level's costs come from the images, twice, and are never stored.
+/// Iterations and σP differ from level to level (at_level).
 ///
 /// `run` is called with one chain after the other: the first reduces the image's costs, the last
 /// selects winners into `outputs`. parameters.levels > 1; geometry and outputs are the image's;

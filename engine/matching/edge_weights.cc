@@ -5,7 +5,9 @@
 
 #include "engine/image/grey_levels.h"
 #include "engine/matching/coarse_to_fine.h"
+#include "engine/matching/energy_format.h"
 #include "engine/memory_use.h"
+#include "kernels/edge_weights/edge_weights.h"
 
 namespace vantage {
 namespace {
@@ -26,29 +28,60 @@ void halve(ImageView<const float> finer, ImageView<float> coarser, Execution& ex
 
 }  // namespace
 
-void EdgeWeights::prepare(ImageView<const float> grey, const kernels::EdgeModel& model,
-                          Execution& execution) {
+template <typename Weight, typename Store>
+void EdgeWeights::make(ImageView<const float> grey, const MethodParameters& parameters,
+                       Execution& execution, const Store& store, Planes<Weight>& planes) {
+  const kernels::EdgeModel model{.least = static_cast<float>(parameters.edge_weight),
+                                 .contrast = static_cast<float>(parameters.edge_contrast)};
   const int width = grey.width();
   const int height = grey.height();
-  beside_.resize(width + 1, height);
-  above_.resize(width, height + 1);
-  std::fill_n(above_.row(0), width, 1.0F);
-  std::fill_n(above_.row(height), width, 1.0F);
+  planes.beside.resize(width + 1, height);
+  planes.above.resize(width, height + 1);
   execution.for_each_band(height, [&](int first_row, int end_row) {
+    const auto work =
+        execution.scratch().lease(sizeof(float) * (static_cast<std::size_t>(width) + 1));
+    auto* const weights = reinterpret_cast<float*>(work.data());
     for (int y = first_row; y < end_row; ++y) {
       const float* pixels = grey.row(y);
-      float* beside = beside_.row(y);
-      beside[0] = beside[width] = 1;
-      kernels::edge_weights_row(pixels, pixels + 1, width - 1, model, beside + 1);
+      weights[0] = weights[width] = 1;
+      kernels::edge_weights_row(pixels, pixels + 1, width - 1, model, weights + 1);
+      store(weights, width + 1, planes.beside.row(y));
       if (y > 0) {
-        kernels::edge_weights_row(grey.row(y - 1), pixels, width, model, above_.row(y));
+        kernels::edge_weights_row(grey.row(y - 1), pixels, width, model, weights);
+        store(weights, width, planes.above.row(y));
       }
+    }
+    std::fill_n(weights, width, 1.0F);
+    if (first_row == 0) {
+      store(weights, width, planes.above.row(0));
+    }
+    if (end_row == height) {
+      store(weights, width, planes.above.row(height));
     }
   });
 }
 
+void EdgeWeights::prepare(ImageView<const float> grey, const MethodParameters& parameters,
+                          Execution& execution) {
+  if (uses_fixed_energies(parameters)) {
+    const auto mu = static_cast<float>(parameters.mu);
+    make(
+        grey, parameters, execution,
+        [mu](const float* weights, int count, kernels::FixedWeight* row) {
+          kernels::fixed_weights_row(weights, count, mu, row);
+        },
+        fixed_);
+    return;
+  }
+  make(
+      grey, parameters, execution,
+      [](const float* weights, int count, float* row) { std::copy_n(weights, count, row); },
+      floats_);
+}
+
 std::size_t EdgeWeights::held_bytes() const {
-  return vantage::held_bytes(beside_) + vantage::held_bytes(above_);
+  return vantage::held_bytes(floats_.beside) + vantage::held_bytes(floats_.above) +
+         vantage::held_bytes(fixed_.beside) + vantage::held_bytes(fixed_.above);
 }
 
 bool uses_edge_weights(const MethodParameters& parameters) {
@@ -62,8 +95,6 @@ std::span<const EdgeWeights> EdgeWeightLevels::prepare(const Photograph& referen
     return {};
   }
   const auto extents = level_extents({reference.width(), reference.height()}, parameters.levels);
-  const kernels::EdgeModel model{.least = static_cast<float>(parameters.edge_weight),
-                                 .contrast = static_cast<float>(parameters.edge_contrast)};
   grey_.resize(extents.size());
   levels_.resize(extents.size());
   for (std::size_t level = 0; level < extents.size(); ++level) {
@@ -78,7 +109,7 @@ std::span<const EdgeWeights> EdgeWeightLevels::prepare(const Photograph& referen
     } else {
       halve(std::as_const(grey_[level - 1]).view(), grey.view(), execution);
     }
-    levels_[level].prepare(grey.view(), model, execution);
+    levels_[level].prepare(grey.view(), parameters, execution);
   }
   return levels_;
 }
@@ -95,9 +126,13 @@ std::size_t EdgeWeightLevels::held_bytes() const {
 }
 
 std::size_t edge_weight_bytes(const MethodParameters& parameters, std::size_t pixels) {
+  if (!uses_edge_weights(parameters)) {
+    return 0;
+  }
   // Two weights and a grey level a pixel, of all levels.
-  constexpr std::size_t kPlanes = 3;
-  return uses_edge_weights(parameters) ? kPlanes * sizeof(float) * (pixels + pixels / 3) : 0;
+  const std::size_t weight =
+      uses_fixed_energies(parameters) ? sizeof(kernels::FixedWeight) : sizeof(float);
+  return (2 * weight + sizeof(float)) * (pixels + pixels / 3);
 }
 
 }  // namespace vantage

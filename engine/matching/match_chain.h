@@ -42,8 +42,9 @@ struct ChainInput {
 };
 
 /// Where a chain stands in matching from coarse to fine. Volumes are of the format of the method
-/// (stage_level_likelihoods for Bayesian diffusion, stage_level_energies for others), of their
-/// level's size, and outlive the chain. As it is: the only level.
+/// (stage_level_likelihoods for Bayesian diffusion, whose results with the prior's largest term are
+/// those of stage_fixed_energies; stage_level_energies for others), of their level's size, and
+/// outlive the chain. As it is: the only level.
 struct ChainLevel {
   int number = 0;  ///< 0: the image's own
   /// What levels above the image's own start from, in place of costs; null: costs of the input.

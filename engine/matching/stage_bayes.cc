@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <span>
 
-#include "engine/image/image.h"
-#include "engine/matching/block_star.h"
+#include "engine/matching/bayes_step_stage.h"
 #include "engine/matching/column_work.h"
-#include "engine/matching/star_stage.h"
 #include "kernels/bayes_step/bayes_step.h"
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
 
@@ -40,96 +37,52 @@ std::vector<float> prior_taps(const MethodParameters& parameters, int count) {
 
 enum class Form { kStart, kHalf, kGeneral };
 
-/// Working memory of a kernel on columns of so many lanes, of blocks that need not be neighbours.
-std::size_t work_floats(int lanes, int radius, const CandidateBlocks* blocks) {
-  const int segments = blocks == nullptr ? 1 : lanes / kernels::kLaneMultiple;
-  return static_cast<std::size_t>(kernels::bayes_work_floats(lanes, radius, segments));
-}
+/// What stands for neighbours outside the image: factors of 1, or logarithms of those.
+float neutral_state(Form form) { return form == Form::kHalf ? 1 : 0; }
 
 /// What neighbours have in place of candidates that were not looked at: the state of p = 0.
-float absent_state(BayesState state, float mu, float floor) {
-  return state == BayesState::kLogSmoothed ? mu * std::log2(floor) : floor;
+float absent_state(const MethodParameters& parameters, Form form) {
+  const auto floor = static_cast<float>(parameters.epsilon_prior);
+  return form == Form::kHalf ? floor : static_cast<float>(parameters.mu) * std::log2(floor);
 }
 
-class BayesStage final : public StarStage {
+class BayesStage final : public BayesStepStage<float> {
  public:
   BayesStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
              int height, Form form, BayesState state, const EdgeWeights* edges,
              const CandidateBlocks* blocks)
-      : StarStage(cell_geometry(geometry, blocks), height),
+      : BayesStepStage(geometry, height, form == Form::kStart, neutral_state(form),
+                       absent_state(parameters, form), blocks),
         form_(form),
         state_(state),
         mu_(static_cast<float>(parameters.mu)),
         taps_(prior_taps(parameters, geometry.count)),
         floor_(static_cast<float>(parameters.epsilon_prior)),
-        edges_(edges),
-        neutral_(lanes(), 1),
-        blocks_(blocks) {
-    neutral_.fill(form == Form::kHalf ? 1.0F : 0.0F);
-    if (blocks != nullptr) {
-      const BayesState of_input =
-          form == Form::kHalf ? BayesState::kSmoothed : BayesState::kLogSmoothed;
-      stars_.emplace(*blocks, absent_state(of_input, mu_, floor_));
-    }
-  }
-
-  [[nodiscard]] std::string_view name() const override {
-    return form_ == Form::kStart ? "Bayes start" : "Bayes iteration";
-  }
-  [[nodiscard]] bool reads_source() const override { return form_ != Form::kStart; }
-  [[nodiscard]] scheduler::Range input_rows(int y, scheduler::Extent input) const override {
-    return form_ == Form::kStart ? RowStage::input_rows(y, input) : StarStage::input_rows(y, input);
-  }
-  [[nodiscard]] scheduler::Range input_columns(scheduler::Range columns,
-                                               scheduler::Extent input) const override {
-    return form_ == Form::kStart ? RowStage::input_columns(columns, input)
-                                 : StarStage::input_columns(columns, input);
-  }
-  [[nodiscard]] int window_rows() const override { return form_ == Form::kStart ? 1 : 3; }
-  [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
-                                        scheduler::Extent /*input*/) const override {
-    return sizeof(float) *
-           (work_floats(lanes(), radius(), blocks_) + (stars_ ? stars_->work_cells() : 0));
-  }
+        edges_(edges) {}
 
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
-    return vantage::column_work(kernel_work(), candidates_in(blocks_, count()));
+    return vantage::column_work(kernel_work(), candidates());
   }
 
-  void make_row(const scheduler::RowTask& task) const override {
+ protected:
+  [[nodiscard]] std::size_t work_cells() const override {
+    return static_cast<std::size_t>(kernels::bayes_work_floats(lanes(), radius(), most_segments()));
+  }
+
+  void make_columns(const Columns& columns) const override {
     kernels::BayesRow row;
+    row.star = columns.star;
     row.prior = {taps_.data(), radius(), floor_};
     row.state = state_;
     row.mu = mu_;
-    row.output = reinterpret_cast<float*>(task.output);
+    row.weights = weights(columns.x, columns.y);
+    row.count = columns.candidates;
+    row.segment_ends = columns.segment_ends;
+    row.output = columns.output;
     row.source_pitch = row.output_pitch = lanes();
-    row.work = reinterpret_cast<float*>(task.state);
-    if (blocks_ == nullptr) {
-      row.star = star(task, lanes(), neutral_.row(0));
-      row.weights = weights(task.columns.begin, task.y);
-      row.count = count();
-      make_columns(row);
-      return;
-    }
-    float* const star_work = row.work + work_floats(lanes(), radius(), blocks_);
-    for (int x = task.columns.begin; x < task.columns.end;) {
-      const CandidateBlocks::Run run = blocks_->run_at(x, task.y, task.columns.end);
-      const BlockSegments segments(run.blocks);
-      row.star = stars_->star(task, run, neutral_.row(0), star_work);
-      row.weights = weights(x, task.y);
-      row.count = blocks_->count(run.blocks);
-      row.segment_ends = segments.ends();
-      make_columns(row);
-      row.output += run.columns.size() * row.output_pitch;
-      x = run.columns.end;
-    }
-  }
-
- private:
-  void make_columns(kernels::BayesRow& row) const {
+    row.work = columns.work;
     switch (form_) {
       case Form::kStart:
-        row.star.source = row.star.centre;
         kernels::bayes_start_row(row);
         break;
       case Form::kHalf:
@@ -140,6 +93,8 @@ class BayesStage final : public StarStage {
         break;
     }
   }
+
+ private:
   [[nodiscard]] int radius() const { return static_cast<int>(taps_.size()) - 1; }
   /// From column x on.
   [[nodiscard]] kernels::StarWeights weights(int x, int y) const {
@@ -169,9 +124,6 @@ class BayesStage final : public StarStage {
   std::vector<float> taps_;
   float floor_;
   const EdgeWeights* edges_;
-  Image<float> neutral_;  ///< stands for the neighbours outside the image
-  const CandidateBlocks* blocks_;
-  std::optional<BlockStars<float>> stars_;  ///< where there are blocks
 };
 
 /// The state before the first iteration of a level, from the probabilities that the next coarser
@@ -197,7 +149,8 @@ class BayesFromCoarserStage final : public FromCoarserStage<float> {
   /// Probabilities, and what smoothing needs.
   [[nodiscard]] std::size_t work_cells() const override {
     return kCoarserColumns * static_cast<std::size_t>(lanes()) +
-           work_floats(lanes(), radius(), blocks());
+           static_cast<std::size_t>(
+               kernels::bayes_work_floats(lanes(), radius(), most_segments(lanes(), blocks())));
   }
 
   void make_states(const kernels::CompactRow& coarser, std::span<const int> segment_ends,

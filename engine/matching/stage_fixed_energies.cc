@@ -54,7 +54,7 @@ class FixedEnergyStage final : public scheduler::RowStage {
     part.state = task.state + cost_bytes();
     auto* energies = reinterpret_cast<FixedEnergy*>(task.output);
     for (int x = task.columns.begin; x < task.columns.end; x = part.columns.end) {
-      part.columns = {x, std::min(x + kPartColumns, task.columns.end)};
+      part.columns = {x, std::min(x + part_columns(), task.columns.end)};
       costs_->make_row(part);
       convert(part, energies);
       energies += static_cast<std::ptrdiff_t>(part.columns.size()) * lanes_;
@@ -63,11 +63,15 @@ class FixedEnergyStage final : public scheduler::RowStage {
 
  private:
   /// Columns that are still in the level-1 cache when they are looked at again.
-  static constexpr int kPartColumns = 32;
-
+  [[nodiscard]] int part_columns() const {
+    constexpr std::size_t kPartBytes = 16384;
+    constexpr std::size_t kMostColumns = 32;
+    return static_cast<int>(
+        std::clamp<std::size_t>(kPartBytes / costs_->bytes_per_column(), 1, kMostColumns));
+  }
   [[nodiscard]] std::size_t cost_bytes() const {
     constexpr std::size_t kAlignment = 64;
-    const std::size_t bytes = costs_->bytes_per_column() * kPartColumns;
+    const std::size_t bytes = costs_->bytes_per_column() * static_cast<std::size_t>(part_columns());
     return (bytes + kAlignment - 1) / kAlignment * kAlignment;
   }
   void convert(const scheduler::RowTask& part, FixedEnergy* energies) const {

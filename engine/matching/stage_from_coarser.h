@@ -33,6 +33,11 @@ inline kernels::CandidateGeometry cell_geometry(const kernels::CandidateGeometry
   return cells;
 }
 
+/// Runs of neighbouring candidates that columns of so many lanes can consist of.
+inline int most_segments(int lanes, const CandidateBlocks* blocks) {
+  return blocks == nullptr ? 1 : lanes / kernels::kLaneMultiple;
+}
+
 /// The state before the first iteration of a level, from what the next coarser one ended with:
 /// column x of row y lies in column x/2 of row y/2 there. Takes part in the chain like the start
 /// from likelihoods, so that iterations find their source, but looks at no input. `blocks`: the

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "engine/build_info.h"
+#include "engine/matching/energy_format.h"
 #include "engine/matching/match_chain.h"
 #include "engine/simd.h"
 #include "engine/thread_placement.h"
@@ -99,6 +100,9 @@ std::string method_text(const MatchOptions& match, const TunedImages& images) {
   const MethodParameters parameters = match.resolved();
   std::string text = fmt::format("{} {}{}", name_of(parameters.cost),
                                  name_of(parameters.aggregation), reach_of(parameters));
+  if (uses_fixed_energies(parameters)) {
+    text += ", largest term";  // cells are half as large, and take less time
+  }
   if (parameters.levels > 1) {
     text += fmt::format(", {} levels", parameters.levels);
     if (parameters.candidate_blocks > 0) {

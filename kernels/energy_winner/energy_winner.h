@@ -54,7 +54,7 @@ struct EnergyColumnsRow {
 
 /// probability[j] = exp(−least[j]/s) / Σ exp(−E/s) over the column, s steps a nat; NaN where
 /// least[j] is kMostEnergy. The sum is of floats, as sixteen partial ones of every sixteenth lane,
-/// then pairwise. To 1e-5.
+/// then pairwise. To 1e-5, down to 2^−125, which stands for all below.
 void energy_probability_row(const EnergyColumnsRow& row, const FixedEnergy* least,
                             float steps_per_nat, float* probability);
 void energy_probability_row_ref(const EnergyColumnsRow& row, const FixedEnergy* least,

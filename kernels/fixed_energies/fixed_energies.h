@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "kernels/cells/fixed_energy.h"
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
@@ -12,8 +13,9 @@ namespace vantage::kernels {
 // Energies in fixed point from bytes and likelihoods, and back to bytes. All identical on every
 // instruction set.
 
-/// Likelihoods below this, e^−31.9, count as this: as compact energies do.
-inline constexpr float kLeastFixedLikelihood = 1.4e-14F;
+/// Likelihoods below this, e^−87.3, the least of normal floats, count as this: products over
+/// several images get that small.
+inline constexpr float kLeastFixedLikelihood = std::numeric_limits<float>::min();
 
 /// Steps of an energy that one of a byte stands for, above 0 and below 128, in steps of 1/256.
 class ByteSteps {
@@ -45,7 +47,7 @@ struct LikelihoodRow {
 };
 
 /// −ln p · steps_per_nat, rounded, of candidates; kMostEnergy in the other lanes. steps_per_nat:
-/// above 0, at most 1024.
+/// above 0, at most 374.
 void fixed_energies_of_likelihoods_row(const LikelihoodRow& row, float steps_per_nat,
                                        FixedEnergy* energies);
 void fixed_energies_of_likelihoods_row_ref(const LikelihoodRow& row, float steps_per_nat,

@@ -16,8 +16,8 @@ namespace vantage::kernels {
 // every instruction set.
 
 /// The prior: what a neighbour that has the disparity i + k says of disparity i,
-/// ES(i) = min(E(i), E(i ± k) + rises[k − 1], ceiling). The ceiling, −ln εP, stands for the
-/// contamination, which all offsets share.
+/// ES(i) = min(E(i), E(i ± k) + rises[k − 1], ceiling). The ceiling, ln((1 − εP)/εP), stands for
+/// the contamination, which all offsets share.
 struct EnergyPrior {
   const FixedEnergy* rises = nullptr;  ///< k²/2σP² for k = 1 … radius, each below the ceiling
   int radius = 0;

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <utility>
 #include <vector>
+
+#include "engine/matching/coarse_to_fine.h"
 
 namespace vantage {
 namespace {
@@ -104,6 +107,38 @@ TEST(EdgeWeightLevels, AreThoseOfNeighboursOnEachLevel) {
   }
 }
 
+TEST(EdgeWeightLevels, AreTheSameInFixedPointWithTheWeightOfNeighbours) {
+  Execution execution({.threads = 2});
+  MethodParameters parameters = parameters_with(0.2, 4);
+  parameters.mu = 0.3;
+  for (const auto& [width, height] : {std::pair(37, 29), std::pair(1, 1), std::pair(3, 40)}) {
+    const Photograph photograph = random_photograph(width, height, 1);
+    EdgeWeightLevels in_floats;
+    EdgeWeightLevels in_fixed_point;
+    parameters.prior_smoothing = PriorSmoothing::kSum;
+    const auto floats = in_floats.prepare(photograph, parameters, execution);
+    parameters.prior_smoothing = PriorSmoothing::kMaximum;
+    const auto fixed = in_fixed_point.prepare(photograph, parameters, execution);
+    ASSERT_EQ(floats.size(), fixed.size());
+    const auto extents = level_extents({width, height}, 4);
+    for (std::size_t level = 0; level < fixed.size(); ++level) {
+      const auto [columns, rows] = extents[level];
+      for (int y = 0; y <= rows; ++y) {
+        for (int x = 0; x <= columns; ++x) {
+          if (y < rows) {
+            ASSERT_EQ(fixed[level].fixed_beside(y)[x],
+                      kernels::fixed_weight(0.3F * floats[level].beside(y)[x]));
+          }
+          if (x < columns) {
+            ASSERT_EQ(fixed[level].fixed_above(y)[x],
+                      kernels::fixed_weight(0.3F * floats[level].above(y)[x]));
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST(EdgeWeightLevels, AsManyAsTheImageHas) {
   Execution execution({.threads = 1});
   EdgeWeightLevels levels;
@@ -118,14 +153,17 @@ TEST(EdgeWeightLevels, AsManyAsTheImageHas) {
 
 TEST(EdgeWeightLevels, TakeWhatIsPlanned) {
   Execution execution({.threads = 1});
-  EdgeWeightLevels levels;
   const Photograph photograph = random_photograph(320, 240, 1);
-  const MethodParameters parameters = parameters_with(0.2, 5);
-  levels.prepare(photograph, parameters, execution);
-  const auto held = static_cast<double>(levels.held_bytes());
-  const auto planned = static_cast<double>(edge_weight_bytes(parameters, 320 * 240));
-  EXPECT_LE(held, 1.1 * planned);  // rows are padded
-  EXPECT_GE(held, 0.8 * planned);
+  MethodParameters parameters = parameters_with(0.2, 5);
+  for (const PriorSmoothing smoothing : {PriorSmoothing::kSum, PriorSmoothing::kMaximum}) {
+    parameters.prior_smoothing = smoothing;
+    EdgeWeightLevels levels;
+    levels.prepare(photograph, parameters, execution);
+    const auto held = static_cast<double>(levels.held_bytes());
+    const auto planned = static_cast<double>(edge_weight_bytes(parameters, 320 * 240));
+    EXPECT_LE(held, 1.1 * planned);  // rows are padded
+    EXPECT_GE(held, 0.8 * planned);
+  }
   EXPECT_EQ(edge_weight_bytes(parameters_with(1, 5), 320 * 240), 0U);
 }
 

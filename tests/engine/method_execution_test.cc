@@ -103,14 +103,15 @@ TEST_P(MethodExecution, PlansAndExecutorsGiveIdenticalResults) {
   }
 }
 
-/// Each instruction set against the first. Bayesian diffusion and entropies use fused operations
-/// where there are some: winners, and confidences where winners are equal.
+/// Each instruction set against the first. Bayesian diffusion with sums and entropies use fused
+/// operations where there are some: winners, and confidences where winners are equal.
 TEST_P(MethodExecution, InstructionSetsAgree) {
   const auto pair = textured_pair(59, 41, {-3, 28}, PixelKind::kGrey8, 8);
   MatchOptions options = GetParam().options;
   options.disparities = {-3, 28};
   const MethodParameters parameters = options.resolved();
-  const bool is_fused = parameters.aggregation == Aggregation::kBayes ||
+  const bool is_fused = (parameters.aggregation == Aggregation::kBayes &&
+                         parameters.prior_smoothing == PriorSmoothing::kSum) ||
                         (parameters.aggregation == Aggregation::kLocalStopping &&
                          parameters.certainty == Certainty::kEntropy);
   const ExecutionOptions execution{.threads = 1};

@@ -78,7 +78,7 @@ Volume smoothed(const Volume& probabilities, const std::vector<double>& kernel) 
 /// −log of the largest term in place of the sum (6.33), and above the least of each column: the
 /// prior's contamination is what all offsets share.
 Volume largest_terms(const Volume& probabilities, double sigma_prior, double epsilon_prior) {
-  const double ceiling = std::max(1.0, std::log((1 - epsilon_prior) / epsilon_prior));
+  const double ceiling = std::max(0.0, std::log((1 - epsilon_prior) / epsilon_prior));
   Volume result = Volume::like(probabilities);
   for_each_cell(probabilities, [&](int x, int y, int i) {
     const std::vector<double> column = column_of(probabilities, x, y);

@@ -119,17 +119,19 @@ Volume reduced(const Volume& finer, const MethodParameters& parameters, StoredCe
 }
 
 /// Energies as bytes keep them: above the least of their column, up to where the prior's ceiling
-/// lies.
-Volume in_bytes_to_ceiling(Volume energies, double epsilon_prior) {
-  const double ceiling = std::max(1.0, std::log((1 - epsilon_prior) / epsilon_prior));
+/// lies, at least a nat; as far as bytes of probabilities reach where no iteration follows.
+Volume in_bytes_to_ceiling(Volume energies, const MethodParameters& parameters) {
+  const double epsilon = parameters.epsilon_prior;
+  const double range = std::max(
+      {std::log((1 - epsilon) / epsilon), 1.0, parameters.final_iterations == 0 ? 22.0 : 0.0});
   for_each_column(energies, [&](int x, int y) {
     double least = energies.at(x, y, 0);
     for (int i = 0; i < energies.count(); ++i) {
       least = std::min(least, energies.at(x, y, i));
     }
     for (int i = 0; i < energies.count(); ++i) {
-      const double share = (energies.at(x, y, i) - least) / ceiling;
-      energies.at(x, y, i) = std::min(std::floor(255 * share + 0.5), 255.0) / 255 * ceiling;
+      const double share = (energies.at(x, y, i) - least) / range;
+      energies.at(x, y, i) = std::min(std::floor(255 * share + 0.5), 255.0) / 255 * range;
     }
   });
   return energies;
@@ -141,7 +143,7 @@ Volume expanded(const Volume& coarser, const Volume& finer, const MethodParamete
   const bool is_maximum = parameters.aggregation == Aggregation::kBayes &&
                           parameters.prior_smoothing == PriorSmoothing::kMaximum;
   const Volume stepped = is_maximum && stored == StoredCells::kCompact
-                             ? in_bytes_to_ceiling(coarser, parameters.epsilon_prior)
+                             ? in_bytes_to_ceiling(coarser, parameters)
                              : coarser;
   Volume result = finer;
   for_each_cell(result, [&](int x, int y, int i) {

@@ -96,12 +96,13 @@ MethodParameters bayes_parameters(double sigma_prior, double mu) {
   overrides.iterations = 3;
   overrides.sigma_prior = sigma_prior;
   overrides.mu = mu;
+  overrides.edge_weight = 0.2;
   return resolve(MatchMethod::kBayes, overrides);
 }
 
 constexpr const EdgeWeights* kNoEdges = nullptr;
 
-EdgeWeights random_edges() {
+EdgeWeights random_edges(const MethodParameters& parameters) {
   std::mt19937 random(3);
   Image<float> grey(kExtent.columns, kExtent.rows);
   for (int y = 0; y < kExtent.rows; ++y) {
@@ -110,7 +111,7 @@ EdgeWeights random_edges() {
   }
   Execution execution({.threads = 1});
   EdgeWeights edges;
-  edges.prepare(grey.view(), {.least = 0.2F, .contrast = 8}, execution);
+  edges.prepare(grey.view(), parameters, execution);
   return edges;
 }
 
@@ -257,12 +258,12 @@ TYPED_TEST_SUITE(PrunedLevel, CellTypes);
 /// With a prior that does not reach from one candidate to the next, what is not looked at is the
 /// same as what is impossible.
 TYPED_TEST(PrunedLevel, EqualsALevelWhereTheOthersAreImpossible) {
-  const EdgeWeights edges = random_edges();
   for (const int candidates : {5, 40, 100, 200}) {
     for (const double mu : {0.5, 0.7}) {
       Level level(candidates, 3, false);
       level.mask_coarser();
       const MethodParameters parameters = this->parameters(0.1, mu);
+      const EdgeWeights edges = random_edges(parameters);
       for (const EdgeWeights* const weights : {kNoEdges, &edges}) {
         const auto pruned = this->cells_of(level, parameters, true, weights);
         const auto masked = this->cells_of(level, parameters, false, weights);
@@ -285,15 +286,15 @@ TYPED_TEST(PrunedLevel, EqualsALevelWhereTheOthersAreImpossible) {
 
 TYPED_TEST(PrunedLevel, DoesNotDependOnHowItIsCut) {
   const Level level(100, 3, false);
-  const EdgeWeights edges = random_edges();
+  const MethodParameters parameters = this->parameters(0.4, 0.5);
+  const EdgeWeights edges = random_edges(parameters);
   for (const EdgeWeights* const weights : {kNoEdges, &edges}) {
-    this->cells_of(level, this->parameters(0.4, 0.5), true, weights, true);
+    this->cells_of(level, parameters, true, weights, true);
   }
 }
 
 /// Where all blocks are looked at, bit for bit the same.
 TYPED_TEST(PrunedLevel, WithAllCandidatesIsTheFullLevel) {
-  const EdgeWeights edges = random_edges();
   for (const int candidates : {3, 16, 30, 61}) {
     const Level level(candidates, 8, true);
     ASSERT_EQ(level.blocks.cells(),
@@ -301,6 +302,7 @@ TYPED_TEST(PrunedLevel, WithAllCandidatesIsTheFullLevel) {
     for (const double sigma_prior : {0.1, 0.4, 2.0}) {
       for (const double mu : {0.5, 0.7}) {
         const MethodParameters parameters = this->parameters(sigma_prior, mu);
+        const EdgeWeights edges = random_edges(parameters);
         for (const EdgeWeights* const weights : {kNoEdges, &edges}) {
           EXPECT_EQ(this->cells_of(level, parameters, true, weights).cells,
                     this->cells_of(level, parameters, false, weights).cells)
@@ -394,7 +396,7 @@ TEST_P(PrunedMatchingOf, WiderRangesThanImagesHasADisparityEverywhere) {
 }
 
 /// A bar 3 pixels wide far in front of a background.
-TEST(PrunedMatching, ThinObjectsSurvive) {
+TEST_P(PrunedMatchingOf, ThinObjectsStayFound) {
   constexpr int kWidth = 220;
   constexpr int kHeight = 60;
   constexpr int kBar = 71;
@@ -417,7 +419,7 @@ TEST(PrunedMatching, ThinObjectsSurvive) {
   const testing::PhotographPair pair{Photograph{std::move(left)}, Photograph{std::move(right)}};
   MatchReport full_report;
   MatchReport pruned_report;
-  MatchOptions options = pruned_options({0, 127}, 0);
+  MatchOptions options = pruned_options({0, 127}, 0, GetParam());
   options.parameters.cost = MatchCost::kContaminated;
   options.parameters.sigma_measurement = 5;
   options.parameters.epsilon_measurement = 1e-3;

@@ -75,6 +75,8 @@ TEST_F(TuningKeyTest, DifferentWorkHasDifferentKeys) {
   add(key());
   match_.parameters.iterations = 50;
   add(key());
+  match_.parameters.prior_smoothing = PriorSmoothing::kMaximum;
+  add(key());
   match_.parameters.levels = 4;
   add(key());
   match_.parameters.candidate_blocks = 2;

@@ -146,11 +146,11 @@ TEST_P(FixedEnergies, ToBytesAreTheRoundedProductCut) {
 TEST_P(FixedEnergies, OfLikelihoodsAreTheirNegativeLogarithms) {
   std::mt19937 random(4);
   for (const Shape& shape : kShapes) {
-    for (const float steps_per_nat : {0.7F, 8.0F, 256.0F, 1024.0F}) {
+    for (const float steps_per_nat : {0.7F, 8.0F, 256.0F, 374.0F}) {
       const int lanes = lanes_of(shape);
       UnalignedRow<float> cells(static_cast<std::size_t>(shape.columns * lanes), random() % 4);
       for (std::size_t k = 0; k < cells.size(); ++k) {
-        cells[k] = static_cast<float>(std::exp2(-random_int(random, 0, 50000) / 1000.0));
+        cells[k] = static_cast<float>(std::exp2(-random_int(random, 0, 130000) / 1000.0));
       }
       const LikelihoodRow row{cells.data(), shape.columns, lanes, shape.count};
       GuardedRow<FixedEnergy> actual(cells.size(), 3, kSentinel);
@@ -178,16 +178,17 @@ TEST_P(FixedEnergies, OfVanishingLikelihoodsAreThatOfTheLeast) {
   cells[2] = kLeastFixedLikelihood;
   cells[3] = 0;
   cells[4] = std::numeric_limits<float>::denorm_min();
-  cells[5] = 1e-30F;
-  cells[6] = 1.3e-14F;
+  cells[5] = std::nextafter(kLeastFixedLikelihood, 0.0F);
+  cells[6] = 1e-30F;
   cells[7] = 0.5F;
   std::vector<FixedEnergy> energies(16);
-  fixed_energies_of_likelihoods_row({cells.data(), 1, 16, 16}, 1024, energies.data());
+  fixed_energies_of_likelihoods_row({cells.data(), 1, 16, 16}, 374, energies.data());
   EXPECT_EQ(energies[0], 0);
   EXPECT_EQ(energies[1], 0);
-  EXPECT_EQ(energies[7], 710);    // 1024 ln 2
-  EXPECT_EQ(energies[2], 32665);  // 1024 · 31.9
-  for (const std::size_t k : {3U, 4U, 5U, 6U}) {
+  EXPECT_EQ(energies[7], 259);    // 374 ln 2
+  EXPECT_EQ(energies[6], 25835);  // 374 · 30 ln 10
+  EXPECT_EQ(energies[2], 32664);  // 374 · 126 ln 2
+  for (const std::size_t k : {3U, 4U, 5U}) {
     EXPECT_EQ(energies[k], energies[2]) << k;
   }
   EXPECT_LT(energies[2], kMostEnergy);
