@@ -5,7 +5,9 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -44,6 +46,16 @@ class TbbNodeExecutor final : public Executor {
           std::make_unique<NodeArena>(node, places, node == 0 && callers_work_ ? 1 : 0));
     }
   }
+
+  /// Tasks that came too late for their loops are waited for: what they hold would otherwise still
+  /// be there when the program ends.
+  ~TbbNodeExecutor() override {
+    for (int left = left_tasks_->load(); left != 0; left = left_tasks_->load()) {
+      left_tasks_->wait(left);
+    }
+  }
+  TbbNodeExecutor(const TbbNodeExecutor&) = delete;
+  TbbNodeExecutor& operator=(const TbbNodeExecutor&) = delete;
 
   [[nodiscard]] std::string_view name() const override { return "tbb"; }
   [[nodiscard]] int thread_count() const override { return thread_count_; }
@@ -88,8 +100,12 @@ class TbbNodeExecutor final : public Executor {
       for_each_index(std::min(threads, task_count), [&](int) { help(*loop, node, index); });
     };
     const auto leave_to = [&](NodeArena& node) {
-      node.arena().enqueue([work_on, &node, index = node.node(), threads = node.thread_count()] {
-        work_on(node, index, threads);
+      left_tasks_->fetch_add(1);
+      // The counter outlives the executor, which may go as soon as it is 0.
+      node.arena().enqueue([work_on, &node, left_tasks = left_tasks_] {
+        work_on(node, node.node(), node.thread_count());
+        left_tasks->fetch_sub(1);
+        left_tasks->notify_all();
       });
     };
     for (const std::unique_ptr<NodeArena>& node : nodes_) {
@@ -107,8 +123,7 @@ class TbbNodeExecutor final : public Executor {
     loop->wait();
   }
 
-  /// Runs tasks of `loop` while there are any. May be called when the loop has ended, and `node`
-  /// with it: a task in hand says that both are still there.
+  /// Runs tasks of `loop` while there are any. May be called when the loop has ended.
   static void help(SharedLoop& loop, const NodeArena& node, int index) {
     std::optional<int> task = loop.take(index);
     if (!task) {
@@ -127,6 +142,8 @@ class TbbNodeExecutor final : public Executor {
   bool callers_work_;
   std::optional<tbb::global_control> limit_;
   std::vector<std::unique_ptr<NodeArena>> nodes_;
+  /// That were left in arenas and have not ended.
+  std::shared_ptr<std::atomic<int>> left_tasks_ = std::make_shared<std::atomic<int>>(0);
 };
 
 }  // namespace
