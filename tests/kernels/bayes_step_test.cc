@@ -24,20 +24,6 @@ struct Shape {
 constexpr Shape kShapes[] = {{1, 1},  {2, 3},  {3, 16},  {5, 17},  {1, 33}, {4, 64},
                              {3, 80}, {2, 96}, {2, 113}, {2, 128}, {1, 300}};
 
-/// Runs of lanes: one, every kLaneMultiple lanes one, or a cut behind the first ones.
-std::vector<int> segment_ends(int lanes, int kind) {
-  std::vector<int> ends;
-  for (int end = kLaneMultiple; kind > 0 && end < lanes; end += kLaneMultiple) {
-    if (kind == 1 || ends.empty()) {
-      ends.push_back(end);
-    }
-  }
-  if (kind > 0) {
-    ends.push_back(lanes);
-  }
-  return ends;
-}
-
 class BayesStep : public EveryTarget {
  protected:
   /// Compares a kernel with its reference on random rows; `low`, `high` bound the cells.

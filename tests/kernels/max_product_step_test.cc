@@ -94,20 +94,6 @@ int one_of(std::mt19937& random, const int (&choices)[kChoices]) {
   return choices[random() % kChoices];
 }
 
-/// Runs of lanes: one, every kLaneMultiple lanes one, or a cut behind the first ones.
-std::vector<int> segment_ends(int lanes, int kind) {
-  std::vector<int> ends;
-  for (int end = kLaneMultiple; kind > 0 && end < lanes; end += kLaneMultiple) {
-    if (kind == 1 || ends.empty()) {
-      ends.push_back(end);
-    }
-  }
-  if (kind > 0) {
-    ends.push_back(lanes);
-  }
-  return ends;
-}
-
 /// A row of random energies and whatever else it points at. What the star has in lanes that are no
 /// candidates is as random as the rest.
 class MadeUpRow {

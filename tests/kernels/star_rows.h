@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/image/image.h"
+#include "kernels/candidates.h"
 #include "kernels/star_row.h"
 
 namespace vantage::kernels {
@@ -55,5 +56,19 @@ class CellStarRows {
 };
 
 using StarRows = CellStarRows<float>;
+
+/// Runs of lanes: one, every kLaneMultiple lanes one, or a cut behind the first ones.
+inline std::vector<int> segment_ends(int lanes, int kind) {
+  std::vector<int> ends;
+  for (int end = kLaneMultiple; kind > 0 && end < lanes; end += kLaneMultiple) {
+    if (kind == 1 || ends.empty()) {
+      ends.push_back(end);
+    }
+  }
+  if (kind > 0) {
+    ends.push_back(lanes);
+  }
+  return ends;
+}
 
 }  // namespace vantage::kernels
