@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "kernels/candidates.h"
 #include "kernels/cells/byte_cells-inl.h"
 #include "kernels/small_census/small_census.h"
 
@@ -151,11 +152,44 @@ void likelihoods(const SmallCensusPairs& row, const LikelihoodByDistance& table,
   }
 }
 
+// Energies of two columns of kLaneMultiple lanes, each in one half of a vector, which single ones
+// would leave empty. Returns the first column that is left.
+HWY_INLINE int energies_of_pairs(const SmallCensusPairs& row, const EnergyByDistance& table,
+                                 std::uint8_t* cells) {
+  if constexpr (hn::MaxLanes(hn::ScalableTag<std::uint8_t>()) < 2 * kLaneMultiple) {
+    return 0;
+  } else {
+    const hn::CappedTag<std::uint8_t, 2 * kLaneMultiple> d;
+    const hn::Half<decltype(d)> half;
+    const auto& [reference, partner] = row.channel[0];
+    const int end = row.columns - row.columns % 2;
+    for (int j = 0; j < end; j += 2) {
+      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(j) * row.partner_step;
+      auto distance = hn::Zero(d);
+#pragma GCC unroll 3
+      for (std::size_t p = 0; p < kSmallCensusBytes; ++p) {
+        const auto own =
+            hn::Combine(d, hn::Set(half, reference[p][j + 1]), hn::Set(half, reference[p][j]));
+        const auto other = hn::Combine(d, hn::LoadU(half, partner[p] + at + row.partner_step),
+                                       hn::LoadU(half, partner[p] + at));
+        distance = hn::Add(distance, bits_of_bytes(d, hn::Xor(own, other)));
+      }
+      hn::StoreU(looked_up(d, table.steps.data(), distance), d,
+                 cells + static_cast<std::ptrdiff_t>(j) * kLaneMultiple);
+    }
+    return end;
+  }
+}
+
 void energies(const SmallCensusPairs& row, const EnergyByDistance& table, std::uint8_t* cells) {
-  for (int j = 0; j < row.columns; ++j, cells += row.lanes) {
+  const int first = row.lanes == kLaneMultiple ? energies_of_pairs(row, table, cells) : 0;
+  for (int j = first; j < row.columns; ++j) {
+    std::uint8_t* const column = cells + static_cast<std::ptrdiff_t>(j) * row.lanes;
     each_lane<1>(row, j, [&](auto d, auto distance, int lane) HWY_ATTR {
-      hn::StoreU(looked_up(d, table.steps.data(), distance), d, cells + lane);
+      hn::StoreU(looked_up(d, table.steps.data(), distance), d, column + lane);
     });
+  }
+  for (int j = 0; row.count < row.lanes && j < row.columns; ++j, cells += row.lanes) {
     std::fill(cells + row.count, cells + row.lanes, std::numeric_limits<std::uint8_t>::max());
   }
 }
