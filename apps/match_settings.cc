@@ -302,6 +302,10 @@ void add_refinement_settings(Settings& settings, MatchOptions& options) {
   settings.flag("raw", options.raw, "Winner-take-all only: nothing of this group");
   add_edge_snapping_setting(settings, options.refinement);
   add_cross_check_setting(settings, options.refinement);
+  settings.integer("cross-check-level", options.refinement.cross_check_level, "N",
+                   "bayes with levels: the level of the other image's map that pixels are checked "
+                   "against, 1 to 9; a map that is not asked for is not made any finer; 0: the "
+                   "map itself; auto: 0");
   add_confidence_setting(settings, options.refinement);
   settings.integer("speckle-size", options.refinement.speckle_size_px, "PX",
                    "Matched regions of fewer pixels count as unmatched; auto: 0, which keeps them");

@@ -70,9 +70,22 @@ inline DisparityMap to_map(const cv::Mat& sixteenths, int min_disparity) {
   return map;
 }
 
-/// A matcher's left and right maps in 16ths of pixels, the right one from the mirrored, exchanged
-/// images. The images are padded as far as the range reaches, because it leaves the columns out
-/// that lack a candidate.
+/// A matcher's left map in 16ths of pixels. The images are padded as far as the range reaches,
+/// because it leaves the columns out that lack a candidate.
+inline cv::Mat left_disparities(cv::StereoMatcher& matcher, const cv::Mat& left,
+                                const cv::Mat& right, DisparityRange range) {
+  const int pad_left = std::max(0, range.min + opencv_candidates(range));
+  const int pad_right = std::max(0, -range.min);
+  cv::Mat padded_left;
+  cv::Mat padded_right;
+  cv::Mat disparity;
+  cv::copyMakeBorder(left, padded_left, 0, 0, pad_left, pad_right, cv::BORDER_REPLICATE);
+  cv::copyMakeBorder(right, padded_right, 0, 0, pad_left, pad_right, cv::BORDER_REPLICATE);
+  matcher.compute(padded_left, padded_right, disparity);
+  return {disparity.colRange(pad_left, pad_left + left.cols)};
+}
+
+/// The same of both, the right one from the mirrored, exchanged images.
 struct PeerDisparities {
   cv::Mat left;
   cv::Mat right;
@@ -80,25 +93,13 @@ struct PeerDisparities {
 
 inline PeerDisparities both_disparities(cv::StereoMatcher& matcher, const cv::Mat& left,
                                         const cv::Mat& right, DisparityRange range) {
-  const int pad_left = std::max(0, range.min + opencv_candidates(range));
-  const int pad_right = std::max(0, -range.min);
-  const auto one_map = [&](const cv::Mat& reference, const cv::Mat& other) {
-    cv::Mat padded_reference;
-    cv::Mat padded_other;
-    cv::Mat disparity;
-    cv::copyMakeBorder(reference, padded_reference, 0, 0, pad_left, pad_right,
-                       cv::BORDER_REPLICATE);
-    cv::copyMakeBorder(other, padded_other, 0, 0, pad_left, pad_right, cv::BORDER_REPLICATE);
-    matcher.compute(padded_reference, padded_other, disparity);
-    return cv::Mat(disparity.colRange(pad_left, pad_left + reference.cols));
-  };
   cv::Mat left_flipped;
   cv::Mat right_flipped;
   cv::flip(left, left_flipped, 1);
   cv::flip(right, right_flipped, 1);
   PeerDisparities disparities;
-  disparities.left = one_map(left, right);
-  cv::flip(one_map(right_flipped, left_flipped), disparities.right, 1);
+  disparities.left = left_disparities(matcher, left, right, range);
+  cv::flip(left_disparities(matcher, right_flipped, left_flipped, range), disparities.right, 1);
   return disparities;
 }
 

@@ -74,7 +74,8 @@ DisparityMaps opencv_maps(const LoadedPair& pair, Execution& execution) {
   maps.right = std::move(sgbm.right);
   Mask left;
   Mask right;
-  cross_check(maps.left.view(), maps.right.view(), 1, execution, left, right);
+  cross_check(maps.left.view(), maps.right.view(), MapSide::kLeft, 1, execution, left);
+  cross_check(maps.right.view(), maps.left.view(), MapSide::kRight, 1, execution, right);
   fill_unmatched(left, MapSide::kLeft, Fill::kConstant, execution, maps.left);
   fill_unmatched(right, MapSide::kRight, Fill::kConstant, execution, maps.right);
   return maps;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "engine/matching/level_stages.h"
 #include "engine/matching/stage_level_energies.h"
@@ -40,6 +41,20 @@ void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
         reduce_energy_row(finer, y, weight, coarser);
       } else {
         reduce_half_energy_row(finer, y, coarser);
+      }
+    }
+  });
+}
+
+/// The disparities of a level's winners, each repeated over the pixels of the image.
+void expand_winners(ImageView<const std::int32_t> winners, int level, int disparity_min,
+                    ImageView<float> disparity_px, Execution& execution) {
+  execution.for_each_band(disparity_px.height(), [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      const std::int32_t* const of_row = winners.row(y >> level);
+      float* const row = disparity_px.row(y);
+      for (int x = 0; x < disparity_px.width(); ++x) {
+        row[x] = static_cast<float>(of_row[x >> level] + disparity_min);
       }
     }
   });
@@ -88,13 +103,10 @@ void CoarseLevels::choose_blocks(int level, const kernels::CandidateGeometry& ge
       winners_.view(), level == 0 ? std::optional(geometry) : std::nullopt, execution);
 }
 
-Image<std::int32_t>* CoarseLevels::begin_winners(int level) {
-  if (level == 0 || level > pruned_levels()) {
-    return nullptr;
-  }
+Image<std::int32_t>& CoarseLevels::begin_winners(int level) {
   const scheduler::Extent extent = costs(level).extent();
   winners_.resize(extent.columns, extent.rows);
-  return &winners_;
+  return winners_;
 }
 
 std::size_t CoarseLevels::held_bytes() const {
@@ -130,7 +142,8 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
                                 const kernels::CandidateGeometry& geometry, const ChainInput& input,
                                 const MapOutputs& outputs, CoarseLevels& levels,
                                 Execution& execution,
-                                const std::function<void(const MatchChain&)>& run) {
+                                const std::function<void(const MatchChain&)>& run,
+                                const CoarseMap& coarse_map) {
   const auto extents =
       level_extents({geometry.width, outputs.disparity_px.height()}, parameters.levels);
   const int coarsest = static_cast<int>(extents.size()) - 1;
@@ -143,7 +156,8 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
     }
   }
   LevelCells cells;
-  for (int level = coarsest; level >= 0; --level) {
+  const int finest = coarse_map.is_all ? coarse_map.level : 0;
+  for (int level = coarsest; level >= finest; --level) {
     const scheduler::Span span(kLevelNames[static_cast<std::size_t>(level)]);
     const scheduler::Extent extent = extents[static_cast<std::size_t>(level)];
     kernels::CandidateGeometry of_level = geometry;
@@ -155,7 +169,10 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
       place.blocks = levels.blocks(level);
       place.coarser_blocks = levels.blocks(level + 1);
     }
-    place.winners = levels.begin_winners(level);
+    const bool is_mapped = level > 0 && level == coarse_map.level;
+    if (is_mapped || levels.needs_winners(level)) {
+      place.winners = &levels.begin_winners(level);
+    }
     if (level > 0) {
       place.costs = &levels.costs(level);
       place.result = &levels.begin_result(level);
@@ -165,6 +182,10 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
                              ? place.blocks->cells()
                              : static_cast<double>(extent.columns) * extent.rows * geometry.count;
     cells.all_levels += cells.finest_level;
+    if (is_mapped) {
+      expand_winners(std::as_const(*place.winners).view(), level, geometry.disparity_min,
+                     coarse_map.disparity_px, execution);
+    }
   }
   return cells;
 }

@@ -47,8 +47,12 @@ class CoarseLevels {
   /// Chooses those of a pruned level from the winners of the next coarser one. `geometry`: the
   /// image's.
   void choose_blocks(int level, const kernels::CandidateGeometry& geometry, Execution& execution);
-  /// Where the winners of `level` go; null where no level needs them.
-  [[nodiscard]] Image<std::int32_t>* begin_winners(int level);
+  /// Whether a finer level chooses its candidates from the winners of `level`.
+  [[nodiscard]] bool needs_winners(int level) const {
+    return level > 0 && level <= pruned_levels();
+  }
+  /// Where the winners of `level` ≥ 1 go, of its size.
+  Image<std::int32_t>& begin_winners(int level);
 
   [[nodiscard]] std::size_t held_bytes() const;
 
@@ -71,6 +75,16 @@ struct LevelCells {
 std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
                                int candidates);
 
+/// The map of a coarse level, beside the image's own or in its place.
+struct CoarseMap {
+  int level = 0;  ///< 1 to the coarsest there is; 0: none is wanted
+  /// Of the image's size: each winner for all the pixels that its own covers, in whole disparities,
+  /// those without a partner not left out.
+  ImageView<float> disparity_px = {};
+  /// Nothing finer is made: of the outputs, only the size counts.
+  bool is_all = false;
+};
+
 /// Computes one map coarse to fine (6.7): costs are reduced level by level, energies −ln p0 being
 /// added up over blocks of 2×2 columns for Bayesian diffusion (times level_weight) and averaged for
 /// other methods. Then each level is aggregated, the coarsest first, starting from what the coarser
@@ -87,10 +101,13 @@ std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Ex
 /// With parameters.candidate_blocks > 0 the finest `pruned_levels` levels, all but the coarsest at
 /// most, look at few candidates of each tile only (CandidateBlocks): those near the winners of the
 /// next coarser level. Costs are reduced from all candidates all the same.
+///
+/// `coarse_map`, of Bayesian diffusion only, is the same whether finer levels are made or not.
 LevelCells match_coarse_to_fine(const MethodParameters& parameters,
                                 const kernels::CandidateGeometry& geometry, const ChainInput& input,
                                 const MapOutputs& outputs, CoarseLevels& levels,
                                 Execution& execution,
-                                const std::function<void(const MatchChain&)>& run);
+                                const std::function<void(const MatchChain&)>& run,
+                                const CoarseMap& coarse_map = {});
 
 }  // namespace vantage

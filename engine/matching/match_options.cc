@@ -17,6 +17,7 @@ namespace {
 constexpr int kMaxCandidates = 4096;
 constexpr int kMaxDisparity = 65535;
 constexpr int kMaxEdgeSnapping = 16;
+constexpr int kMaxCheckLevel = 9;
 constexpr double kNoThreshold = -std::numeric_limits<double>::infinity();
 
 PresetSettings settings_of(const std::optional<MatchPreset>& preset) {
@@ -33,6 +34,7 @@ void take_over(const RefinementOverrides& overrides, RefinementOptions& target) 
   take(overrides.edge_snapping_px, target.edge_snapping_px);
   take(overrides.cross_check, target.cross_check);
   take(overrides.cross_check_px, target.cross_check_px);
+  take(overrides.cross_check_level, target.cross_check_level);
   take(overrides.confidence_threshold, target.confidence_threshold);
   take(overrides.speckle_size_px, target.speckle_size_px);
   take(overrides.surface_fit_px, target.surface_fit_px);
@@ -83,6 +85,10 @@ void validate_refinement(const RefinementOptions& refinement, bool is_two_dimens
     throw UsageError(fmt::format("cross-check is {}, expected a number of at least 1",
                                  refinement.cross_check_px));
   }
+  if (refinement.cross_check_level < 0 || refinement.cross_check_level > kMaxCheckLevel) {
+    throw UsageError(fmt::format("cross-check-level is {}, expected a level from 0 to {}",
+                                 refinement.cross_check_level, kMaxCheckLevel));
+  }
   if (!(refinement.confidence_threshold < std::numeric_limits<double>::infinity())) {
     throw UsageError(fmt::format("confidence-threshold is {}, expected a finite number",
                                  refinement.confidence_threshold));
@@ -103,6 +109,10 @@ bool uses_confidence(const RefinementOptions& refinement) {
   return refinement.confidence_threshold > kNoThreshold;
 }
 
+bool can_check_levels(const MethodParameters& parameters) {
+  return parameters.levels > 1 && parameters.aggregation == Aggregation::kBayes;
+}
+
 void MatchOptions::validate() const {
   if (method && preset) {
     throw UsageError("method and preset are both set, expected one of them: a preset has a method");
@@ -120,7 +130,14 @@ void MatchOptions::validate() const {
         "levels is {}, expected 1 with disparities-y: coarse to fine searches along rows only",
         in_force.levels));
   }
-  validate_refinement(resolved_refinement(), disparities_y.has_value());
+  const RefinementOptions of_maps = resolved_refinement();
+  validate_refinement(of_maps, disparities_y.has_value());
+  if (of_maps.cross_check_level > 0 && !can_check_levels(in_force)) {
+    throw UsageError(fmt::format(
+        "cross-check-level is {}, expected 0: only aggregation bayes with levels above 1 has maps "
+        "of coarse levels",
+        of_maps.cross_check_level));
+  }
 }
 
 std::optional<MatchPreset> MatchOptions::preset_in_force() const {
@@ -149,6 +166,7 @@ RefinementOptions MatchOptions::resolved_refinement() const {
       .edge_snapping_px = 0,
       .cross_check = true,
       .cross_check_px = std::max(1.0, disparities.count() / 15.0),
+      .cross_check_level = 0,
       .confidence_threshold = is_evidence(resolved()) ? 0 : kNoThreshold,
       .speckle_size_px = 0,
       .surface_fit_px = 0,
@@ -156,6 +174,10 @@ RefinementOptions MatchOptions::resolved_refinement() const {
   };
   take_over(settings_of(preset_in_force()).refinement, result);
   take_over(refinement, result);
+  // As with pruning: a preset's level holds where there can be one.
+  if (!refinement.cross_check_level && !can_check_levels(resolved())) {
+    result.cross_check_level = 0;
+  }
   return result;
 }
 
@@ -169,6 +191,7 @@ MatchOptions MatchOptions::spelled_out() const {
       .edge_snapping_px = in_force.edge_snapping_px,
       .cross_check = in_force.cross_check,
       .cross_check_px = in_force.cross_check_px,
+      .cross_check_level = in_force.cross_check_level,
       .confidence_threshold = in_force.confidence_threshold,
       .speckle_size_px = in_force.speckle_size_px,
       .surface_fit_px = in_force.surface_fit_px,

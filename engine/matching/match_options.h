@@ -34,6 +34,11 @@ struct RefinementOptionsOf {
   Field<bool> cross_check;
   /// Left and right disparities agree if they differ by less, ≥ 1 (5.13).
   Field<double> cross_check_px;
+  /// The level of the other image's map (coarse to fine, Bayesian diffusion) that a map is checked
+  /// against: its winners, each standing for all the pixels of the image that it covers. 0: the
+  /// map itself. Of fewer levels the coarsest; 0..9. A map that is not asked for is not made any
+  /// finer than this.
+  Field<int> cross_check_level;
   /// Pixels with a confidence of at most this are unmatched (5.14), in the unit of the method's
   /// confidence; −infinity: none are.
   Field<double> confidence_threshold;
@@ -53,6 +58,9 @@ using RefinementOptions = RefinementOptionsOf<std::type_identity_t>;
 
 /// Whether refinement looks at the confidence of the maps.
 bool uses_confidence(const RefinementOptions& refinement);
+
+/// Whether maps of these parameters have levels whose winners a cross-check can look at.
+bool can_check_levels(const MethodParameters& parameters);
 
 /// Everything that decides what a pair's disparity maps are. Defaults are the command line's.
 struct MatchOptions {
@@ -79,9 +87,9 @@ struct MatchOptions {
   /// What is in force: the fields of `parameters`, else the preset's, else the method's.
   [[nodiscard]] MethodParameters resolved() const;
   /// What is in force unless `raw`: the fields of `refinement`, else the preset's, else: no
-  /// snapping, a cross-check within max(1, D/15) px, a confidence above 0 for gradient evidence
-  /// and any for the others, speckles kept, no surface fit,
-  /// fill at constant depth.
+  /// snapping, a cross-check of whole maps within max(1, D/15) px, a confidence above 0 for
+  /// gradient evidence and any for the others, speckles kept, no surface fit, fill at constant
+  /// depth.
   [[nodiscard]] RefinementOptions resolved_refinement() const;
   /// The same options with every field set to what is in force, without the preset.
   [[nodiscard]] MatchOptions spelled_out() const;

@@ -29,9 +29,12 @@ PresetSettings preset_settings(MatchPreset preset) {
   settings.refinement.surface_fit_px = 10;
   switch (preset) {
     case MatchPreset::kFast:
-      settings.method = MatchMethod::kSsd;
-      settings.parameters.cost = MatchCost::kCensus;
-      settings.parameters.window_px = 7;
+      settings.method = MatchMethod::kBayes;
+      settings.parameters = coarse_to_fine();
+      settings.parameters.mu = 0.28;
+      settings.parameters.iterations = 2;
+      settings.parameters.final_iterations = 0;
+      settings.refinement.cross_check_level = 1;
       break;
     case MatchPreset::kBalanced:
       settings.method = MatchMethod::kBayes;

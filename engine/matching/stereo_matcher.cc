@@ -7,8 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "engine/error.h"
+#include "engine/matching/winner_merge.h"
 #include "scheduler/strip_pipeline.h"
 #include "scheduler/trace.h"
 
@@ -101,34 +103,6 @@ void require_usable(const DisparityPrior& prior, const Photograph& image) {
   }
 }
 
-/// Keeps for each pixel the better of the winners found so far and those of one more vertical
-/// disparity; the earlier of equals.
-struct WinnerMerge {
-  ImageView<const float> candidate_disparity_px;
-  ImageView<const float> candidate_confidence = {};  ///< empty: not wanted
-  ImageView<const float> candidate_energy;
-  int disparity_y_px = 0;
-  ImageView<float> disparity_px;
-  ImageView<float> disparity_y;
-  ImageView<float> confidence = {};
-  ImageView<float> energy;
-
-  void merge_row(int y) const {
-    for (int x = 0; x < energy.width(); ++x) {
-      // NaN where the row has no candidate: not less than anything.
-      if (!(candidate_energy.at(x, y) < energy.at(x, y))) {
-        continue;
-      }
-      energy.at(x, y) = candidate_energy.at(x, y);
-      disparity_px.at(x, y) = candidate_disparity_px.at(x, y);
-      disparity_y.at(x, y) = static_cast<float>(disparity_y_px);
-      if (!confidence.empty()) {
-        confidence.at(x, y) = candidate_confidence.at(x, y);
-      }
-    }
-  }
-};
-
 }  // namespace
 
 std::size_t held_bytes(const DisparityMaps& maps) {
@@ -151,6 +125,11 @@ StereoMatcher::StereoMatcher(const MatchOptions& options, Execution& execution)
   if (uses_pair_levels(parameters_)) {
     levels_ = std::make_unique<PairLevelsEstimator>(options_.disparities, execution_);
   }
+}
+
+int StereoMatcher::check_level(const RefinementOptions& refinement, scheduler::Extent image) const {
+  const auto coarsest = static_cast<int>(level_extents(image, parameters_.levels).size()) - 1;
+  return std::min(refinement.cross_check_level, coarsest);
 }
 
 bool StereoMatcher::wants_confidence(const MatchRequest& request) const {
@@ -274,8 +253,15 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   times = {};
   StageClock clock(times);
   clock.begin("prepare");
-  const bool needs_left = request.left || !options_.raw;
-  const bool needs_right = request.right || !options_.raw;
+  const RefinementOptions refinement = options_.resolved_refinement();
+  const int check_level = this->check_level(refinement, {left.width(), left.height()});
+  const auto need = [&](bool is_wanted, bool is_other_wanted) -> MapNeed {
+    const bool is_checked = !options_.raw && refinement.cross_check;
+    return {.whole = is_wanted || (is_checked && check_level == 0),
+            .coarse = is_checked && check_level > 0 && is_other_wanted};
+  };
+  const MapNeed needs_left = need(request.left, request.right);
+  const MapNeed needs_right = need(request.right, request.left);
   const auto prepared = prepared_.borrow();
   prepared->parameters = parameters_;
   prepared->of_right = {};
@@ -285,7 +271,7 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     clock.begin("prepare");
   }
   auto [left_input, right_input] =
-      prepare_inputs(left, right, needs_left, needs_right, uses_prior, *prepared);
+      prepare_inputs(left, right, needs_left.any(), needs_right.any(), uses_prior, *prepared);
   if (uses_prior) {
     left_input.prior_px = request.prior.left_px;
     right_input.prior_px = request.prior.right_px;
@@ -293,27 +279,36 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   }
 
   const bool confidence = wants_confidence(request);
-  const auto compute = [&](bool needed, Reference reference, const Photograph& photograph,
+  const auto compute = [&](MapNeed needed, Reference reference, const Photograph& photograph,
                            ChainInput& input, DisparityMap& map, Image<float>& map_confidence,
-                           DisparityMap& map_y, std::string_view name) {
+                           DisparityMap& map_y, DisparityMap& coarse, std::string_view name) {
     const bool two_dimensional = options_.disparities_y.has_value();
-    const int width = needed ? left.width() : 0;
-    const int height = needed ? left.height() : 0;
-    map.resize(width, height);
-    map_confidence.resize(confidence ? width : 0, confidence ? height : 0);
-    map_y.resize(two_dimensional ? width : 0, two_dimensional ? height : 0);
-    if (needed) {
+    const auto resize = [&](Image<float>& image, bool is_wanted) {
+      image.resize(is_wanted ? left.width() : 0, is_wanted ? left.height() : 0);
+    };
+    resize(map, needed.whole);
+    resize(map_confidence, needed.whole && confidence);
+    resize(map_y, needed.whole && two_dimensional);
+    resize(coarse, needed.coarse);
+    if (needed.any()) {
       clock.begin(name);
       input.edges = prepared->edges.prepare(photograph, parameters_, execution_);
-      compute_map(reference, input, *prepared,
-                  {map, confidence ? &map_confidence : nullptr, two_dimensional ? &map_y : nullptr},
-                  times);
+      Result result{needed.whole ? map : coarse, nullptr, nullptr};
+      if (needed.whole) {
+        result.confidence = confidence ? &map_confidence : nullptr;
+        result.disparity_y_px = two_dimensional ? &map_y : nullptr;
+      }
+      if (needed.coarse) {
+        result.coarse = {
+            .level = check_level, .disparity_px = coarse.view(), .is_all = !needed.whole};
+      }
+      compute_map(reference, input, *prepared, result, times);
     }
   };
   compute(needs_left, Reference::kLeft, left, left_input, maps.left, maps.left_confidence,
-          maps.left_disparity_y, "match left");
+          maps.left_disparity_y, prepared->coarse_px[0], "match left");
   compute(needs_right, Reference::kRight, right, right_input, maps.right, maps.right_confidence,
-          maps.right_disparity_y, "match right");
+          maps.right_disparity_y, prepared->coarse_px[1], "match right");
 
   if (options_.raw) {
     if (request.unmatched) {
@@ -326,20 +321,22 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   const MapToRefine left_map{
       .side = MapSide::kLeft,
       .image = &left,
-      .disparity_px = &maps.left,
+      .disparity_px = needs_left.whole ? &maps.left : nullptr,
       .disparity_y_px = options_.disparities_y ? &maps.left_disparity_y : nullptr,
       .confidence = &maps.left_confidence,
       .unmatched = &maps.left_unmatched,
+      .check_px = std::as_const(prepared->coarse_px[0]).view(),
       .is_result = request.left};
   const MapToRefine right_map{
       .side = MapSide::kRight,
       .image = &right,
-      .disparity_px = &maps.right,
+      .disparity_px = needs_right.whole ? &maps.right : nullptr,
       .disparity_y_px = options_.disparities_y ? &maps.right_disparity_y : nullptr,
       .confidence = &maps.right_confidence,
       .unmatched = &maps.right_unmatched,
+      .check_px = std::as_const(prepared->coarse_px[1]).view(),
       .is_result = request.right};
-  refine_maps(options_.resolved_refinement(), left_map, &right_map, execution_, *work,
+  refine_maps(refinement, left_map, &right_map, execution_, *work,
               [&](std::string_view step) { clock.begin(step); });
 }
 
@@ -424,8 +421,9 @@ void StereoMatcher::add_memory_use(MemoryUse& use) const {
     for (const CostImage& image : prepared.images) {
       bytes += image.held_bytes();
     }
-    for (const Image<float>* image : {&prepared.candidate_disparity_px, &prepared.energy,
-                                      &prepared.candidate_confidence, &prepared.candidate_energy}) {
+    for (const Image<float>* image :
+         {&prepared.candidate_disparity_px, &prepared.energy, &prepared.candidate_confidence,
+          &prepared.candidate_energy, &prepared.coarse_px[0], &prepared.coarse_px[1]}) {
       bytes += held_bytes(*image);
     }
     use.add("prepared images", bytes);
@@ -447,7 +445,7 @@ void StereoMatcher::compute_map(Reference reference, const ChainInput& input, Pr
   if (result.confidence != nullptr) {
     outputs.confidence = result.confidence->view();
   }
-  run_levels(geometry, input, outputs, prepared, report);
+  run_levels(geometry, input, outputs, result.coarse, prepared, report);
 }
 
 /// Vertical disparities one after the other, each like a search along rows between shifted images;
@@ -483,7 +481,7 @@ void StereoMatcher::search_rows(const kernels::CandidateGeometry& geometry, cons
     for (CostPartner& partner : shifted.partners) {
       partner.disparity_y_px = d;
     }
-    run_levels(geometry, shifted, outputs, prepared, report);
+    run_levels(geometry, shifted, outputs, {}, prepared, report);
     merge.disparity_y_px = d;
     execution_.for_each_band(height, [&](int first_row, int end_row) {
       for (int y = first_row; y < end_row; ++y) {
@@ -511,22 +509,28 @@ scheduler::ChainPlan StereoMatcher::plan_of(const MatchChain& chain,
 
 /// One map along rows: flat or coarse to fine.
 void StereoMatcher::run_levels(const kernels::CandidateGeometry& geometry, const ChainInput& input,
-                               const MapOutputs& outputs, Prepared& prepared,
-                               MatchReport& report) const {
+                               const MapOutputs& outputs, const CoarseMap& coarse_map,
+                               Prepared& prepared, MatchReport& report) const {
   const MethodParameters& parameters = prepared.parameters;
   const double pixels = static_cast<double>(geometry.width) * outputs.disparity_px.height();
-  report.finest_pixels += pixels;
   if (parameters.levels == 1) {
     run_chain(MatchChain(parameters, geometry, input, outputs), report);
+    report.finest_pixels += pixels;
     report.cells += pixels * options_.disparities.count();
     report.finest_cells += pixels * options_.disparities.count();
     return;
   }
-  const LevelCells cells =
-      match_coarse_to_fine(parameters, geometry, input, outputs, prepared.levels, execution_,
-                           [&](const MatchChain& chain) { run_chain(chain, report); });
+  scheduler::ChainPlan plan_before = report.plan;
+  const LevelCells cells = match_coarse_to_fine(
+      parameters, geometry, input, outputs, prepared.levels, execution_,
+      [&](const MatchChain& chain) { run_chain(chain, report); }, coarse_map);
   report.cells += cells.all_levels;
+  if (coarse_map.is_all) {
+    report.plan = std::move(plan_before);
+    return;
+  }
   report.finest_cells += cells.finest_level;
+  report.finest_pixels += pixels;
 }
 
 void StereoMatcher::run_chain(const MatchChain& chain, MatchReport& report) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -52,8 +53,8 @@ struct DisparityPrior {
 /// What the maps take that are there.
 std::size_t held_bytes(const DisparityMaps& maps);
 
-/// What the caller wants. With refinement (options.raw == false) both maps are matched for the
-/// cross-check, and one that is not wanted is then left unfinished: its contents mean nothing.
+/// What the caller wants. A map that is not wanted may be there all the same, for the cross-check
+/// of the other one: its contents mean nothing. Maps do not depend on whether the other is wanted.
 struct MatchRequest {
   bool left = true;
   bool right = true;
@@ -78,13 +79,13 @@ struct StageTime {
 struct MatchReport {
   std::vector<StageTime> stages;
   /// Of one map; both maps use the same. With several levels the image's own: the others', which
-  /// are a third of the work, are made the same way.
+  /// are a third of the work, are made the same way, as is a map of coarse levels only.
   scheduler::ChainPlan plan;
   /// Width × height × disparities × maps computed, of all levels; of levels that look at few
   /// candidates those.
   double cells = 0;
   double finest_cells = 0;   ///< of these, the finest level's
-  double finest_pixels = 0;  ///< width × height × maps computed
+  double finest_pixels = 0;  ///< width × height × maps computed to the finest level
   /// What was estimated from the images where parameters ask for it; of several, of the first.
   std::optional<PairLevels> levels;
 };
@@ -145,14 +146,26 @@ class StereoMatcher {
     Image<float> energy;
     CoarseLevels levels;
     EdgeWeightLevels edges;  ///< of the map that is being computed
+    /// Of the left and the right image: what maps are checked against; empty: maps themselves.
+    std::array<DisparityMap, 2> coarse_px;
+  };
+  /// What is made of an image's map: all of it, and, or, the level that the other is checked
+  /// against.
+  struct MapNeed {
+    bool whole = false;
+    bool coarse = false;
+    [[nodiscard]] bool any() const { return whole || coarse; }
   };
   /// One map and what goes with it; confidence and disparity_y_px null where not wanted.
   struct Result {
-    DisparityMap& disparity_px;
+    DisparityMap& disparity_px;  ///< of which only the size counts where the coarse map is all
     Image<float>* confidence;
     DisparityMap* disparity_y_px;
+    CoarseMap coarse = {};
   };
 
+  /// The level that maps are checked against, 0: maps themselves.
+  [[nodiscard]] int check_level(const RefinementOptions& refinement, scheduler::Extent image) const;
   [[nodiscard]] bool wants_confidence(const MatchRequest& request) const;
   [[nodiscard]] std::pair<ChainInput, ChainInput> prepare_inputs(const Photograph& left,
                                                                  const Photograph& right,
@@ -172,7 +185,8 @@ class StereoMatcher {
   void search_rows(const kernels::CandidateGeometry& geometry, const ChainInput& input,
                    Prepared& prepared, const Result& result, MatchReport& report) const;
   void run_levels(const kernels::CandidateGeometry& geometry, const ChainInput& input,
-                  const MapOutputs& outputs, Prepared& prepared, MatchReport& report) const;
+                  const MapOutputs& outputs, const CoarseMap& coarse_map, Prepared& prepared,
+                  MatchReport& report) const;
   void run_chain(const MatchChain& chain, MatchReport& report) const;
 
   MatchOptions options_;

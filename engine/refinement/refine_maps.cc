@@ -5,16 +5,17 @@
 namespace vantage {
 namespace {
 
-void check_against(const MapToRefine& left, const MapToRefine& right, double tolerance_px,
+void check_against(const MapToRefine& map, const MapToRefine& other, double tolerance_px,
                    Execution& execution) {
-  if (left.disparity_y_px == nullptr) {
-    cross_check(left.disparity_px->view(), right.disparity_px->view(), tolerance_px, execution,
-                *left.unmatched, *right.unmatched);
+  if (map.disparity_y_px == nullptr) {
+    cross_check(map.disparity_px->view(),
+                other.check_px.empty() ? other.disparity_px->view() : other.check_px, map.side,
+                tolerance_px, execution, *map.unmatched);
     return;
   }
-  cross_check({left.disparity_px->view(), left.disparity_y_px->view()},
-              {right.disparity_px->view(), right.disparity_y_px->view()}, tolerance_px, execution,
-              *left.unmatched, *right.unmatched);
+  cross_check({map.disparity_px->view(), map.disparity_y_px->view()},
+              {other.disparity_px->view(), other.disparity_y_px->view()}, map.side, tolerance_px,
+              execution, *map.unmatched);
 }
 
 ImageView<const float> second_component(const MapToRefine& map) {
@@ -32,23 +33,32 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
   if (options.edge_snapping_px > 0) {
     begin_step("edge snapping");
     for (const MapToRefine* one : maps) {
+      if (one->disparity_px == nullptr) {
+        continue;
+      }
       find_edges(*one->image, execution, work.edge_snapping);
       snap_discontinuities(work.edge_snapping.edges, options.edge_snapping_px, execution,
                            *one->disparity_px);
     }
   }
-  if (options.cross_check && other != nullptr) {
+  // Both are checked before either is changed.
+  const bool is_checked = options.cross_check && other != nullptr;
+  if (is_checked) {
     begin_step("cross-check");
-    const bool is_left = map.side == MapSide::kLeft;
-    check_against(is_left ? map : *other, is_left ? *other : map, options.cross_check_px,
-                  execution);
-  } else {
-    for (const MapToRefine* one : maps) {
-      mark_unknown(one->disparity_px->view(), execution, *one->unmatched);
+    if (map.is_result) {
+      check_against(map, *other, options.cross_check_px, execution);
+    }
+    if (other->is_result) {
+      check_against(*other, map, options.cross_check_px, execution);
     }
   }
   if (other != nullptr && !(map.is_result && other->is_result)) {
-    maps = maps.subspan(map.is_result ? 0 : 1, 1);
+    maps = maps.subspan(map.is_result ? 0 : 1, map.is_result || other->is_result ? 1 : 0);
+  }
+  if (!is_checked) {
+    for (const MapToRefine* one : maps) {
+      mark_unknown(one->disparity_px->view(), execution, *one->unmatched);
+    }
   }
   if (uses_confidence(options)) {
     begin_step("confidence");

@@ -19,12 +19,16 @@ namespace vantage {
 /// One map on its way through refinement; all images have one size.
 struct MapToRefine {
   MapSide side = MapSide::kLeft;
-  const Photograph* image = nullptr;         ///< the map's own; for edge snapping and medians
-  DisparityMap* disparity_px = nullptr;      ///< winners, NaN = unknown
+  const Photograph* image = nullptr;  ///< the map's own; for edge snapping and medians
+  /// Winners, NaN = unknown; null: there is none to be made, only the other map to be checked.
+  DisparityMap* disparity_px = nullptr;
   DisparityMap* disparity_y_px = nullptr;    ///< of a two-dimensional search, else null
   const Image<float>* confidence = nullptr;  ///< where uses_confidence(); else not read
   Mask* unmatched = nullptr;                 ///< result
-  /// false: the map is there for the cross-check of the other one alone and is left as it then is.
+  /// What the other map is checked against in place of this one, of the same size; empty: this one.
+  ImageView<const float> check_px = {};
+  /// false: the map is there for the cross-check of the other one alone; what becomes of it, and
+  /// its `unmatched`, mean nothing.
   bool is_result = true;
 };
 

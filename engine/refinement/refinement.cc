@@ -14,6 +14,9 @@ namespace {
 // Neighbours whose disparities differ by no more are one surface (EQUATIONS §6).
 constexpr float kSurfaceStepPx = 1;
 
+/// To the partners of a map's pixels.
+int direction_of(MapSide side) { return side == MapSide::kLeft ? -1 : +1; }
+
 /// Whether the displacement of (x, y) leads to a pixel of `other` that has nearly the same.
 /// `direction` is −1 from the left map to the right one, +1 from right to left.
 bool agrees(const DisplacementView& own, const DisplacementView& other, int direction,
@@ -47,33 +50,24 @@ void erase_unmatched(const Mask& unmatched, Execution& execution, DisparityMap& 
 
 }  // namespace
 
-void cross_check(ImageView<const float> left_px, ImageView<const float> right_px,
-                 double tolerance_px, Execution& execution, Mask& left_unmatched,
-                 Mask& right_unmatched) {
-  const int width = left_px.width();
-  left_unmatched.resize(width, left_px.height());
-  right_unmatched.resize(width, left_px.height());
-  execution.for_each_band(left_px.height(), [&](int first_row, int end_row) {
+void cross_check(ImageView<const float> map_px, ImageView<const float> other_px, MapSide side,
+                 double tolerance_px, Execution& execution, Mask& unmatched) {
+  unmatched.resize(map_px.width(), map_px.height());
+  execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
-      kernels::cross_check_row(left_px.row(y), right_px.row(y), -1, tolerance_px, width,
-                               left_unmatched.row(y));
-      kernels::cross_check_row(right_px.row(y), left_px.row(y), +1, tolerance_px, width,
-                               right_unmatched.row(y));
+      kernels::cross_check_row(map_px.row(y), other_px.row(y), direction_of(side), tolerance_px,
+                               map_px.width(), unmatched.row(y));
     }
   });
 }
 
-void cross_check(const DisplacementView& left, const DisplacementView& right, double tolerance_px,
-                 Execution& execution, Mask& left_unmatched, Mask& right_unmatched) {
-  const int width = left.x_px.width();
-  const int height = left.x_px.height();
-  left_unmatched.resize(width, height);
-  right_unmatched.resize(width, height);
-  execution.for_each_band(height, [&](int first_row, int end_row) {
+void cross_check(const DisplacementView& map, const DisplacementView& other, MapSide side,
+                 double tolerance_px, Execution& execution, Mask& unmatched) {
+  unmatched.resize(map.x_px.width(), map.x_px.height());
+  execution.for_each_band(map.x_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
-      for (int x = 0; x < width; ++x) {
-        left_unmatched.at(x, y) = agrees(left, right, -1, tolerance_px, x, y) ? 0 : 255;
-        right_unmatched.at(x, y) = agrees(right, left, +1, tolerance_px, x, y) ? 0 : 255;
+      for (int x = 0; x < map.x_px.width(); ++x) {
+        unmatched.at(x, y) = agrees(map, other, direction_of(side), tolerance_px, x, y) ? 0 : 255;
       }
     }
   });

@@ -6,11 +6,14 @@
 
 namespace vantage {
 
-/// Marks the unmatched pixels of both maps (EQUATIONS §5.2, (5.13)). Maps of equal size, NaN =
-/// unknown; tolerance_px ≥ 1. Masks are resized to the maps. Identical for any `execution`.
-void cross_check(ImageView<const float> left_px, ImageView<const float> right_px,
-                 double tolerance_px, Execution& execution, Mask& left_unmatched,
-                 Mask& right_unmatched);
+/// Which camera a map belongs to: the side of an occlusion on which the background lies.
+enum class MapSide { kLeft, kRight };
+
+/// Marks the pixels of one map that the other image's map contradicts (EQUATIONS §5.2, (5.13)).
+/// Maps of equal size, NaN = unknown; tolerance_px ≥ 1. The mask is resized to the map. Identical
+/// for any `execution`.
+void cross_check(ImageView<const float> map_px, ImageView<const float> other_px, MapSide side,
+                 double tolerance_px, Execution& execution, Mask& unmatched);
 
 /// Both components of the displacements of a two-dimensional search, on one image's grid.
 struct DisplacementView {
@@ -20,8 +23,8 @@ struct DisplacementView {
 
 /// The same for two components: a pixel is matched if its partner in both directions (rounded) is
 /// inside, known, and both components agree.
-void cross_check(const DisplacementView& left, const DisplacementView& right, double tolerance_px,
-                 Execution& execution, Mask& left_unmatched, Mask& right_unmatched);
+void cross_check(const DisplacementView& map, const DisplacementView& other, MapSide side,
+                 double tolerance_px, Execution& execution, Mask& unmatched);
 
 /// Marks the pixels without a disparity.
 void mark_unknown(ImageView<const float> map_px, Execution& execution, Mask& unknown);
@@ -30,9 +33,6 @@ void mark_unknown(ImageView<const float> map_px, Execution& execution, Mask& unk
 /// `threshold` or unknown (5.14). Views of equal size. Identical for any `execution`.
 void mark_unsure(ImageView<const float> confidence, double threshold, Execution& execution,
                  Mask& unmatched);
-
-/// Which camera a map belongs to: the side of an occlusion on which the background lies.
-enum class MapSide { kLeft, kRight };
 
 /// Fills unmatched pixels (EQUATIONS §5.4): at constant depth, with Fill::kLinear along a line
 /// where the disparities at both ends of a run differ by at most 1 px, with Fill::kNone as unknown

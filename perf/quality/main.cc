@@ -30,8 +30,8 @@ namespace {
 
 constexpr const char* kUsage =
     "quality [--data FOLDER] [--experiments FILE.toml] [--only NAME,…|none] [--peers NAME,…|none] "
-    "[--scenes NAME|GROUP,…] [--tuning] [--held-out] [--no-time] [--rounds N] [--threads N] "
-    "[--csv FILE] [--sub-pixel] [--views] [--search-peers]";
+    "[--scenes NAME|GROUP,…] [--tuning] [--held-out] [--no-time] [--left-only] [--rounds N] "
+    "[--threads N] [--csv FILE] [--sub-pixel] [--views] [--search-peers]";
 
 /// Those of `all` that a list names, in the order of `all`; all without a list. `names_of` gives
 /// the names that one goes by.
@@ -106,14 +106,15 @@ std::vector<MapContender> chosen_contenders(CommandLine& line,
   return contenders;
 }
 
-/// Medians of `rounds` rounds, everybody in turn, after one that warms up; none without rounds.
+/// Medians of `rounds` rounds, everybody in turn, after one that warms up and makes both maps; none
+/// without rounds.
 std::vector<std::optional<FrameTime>> time_in_turn(
-    const std::vector<std::unique_ptr<MapMaker>>& makers, int rounds) {
+    const std::vector<std::unique_ptr<MapMaker>>& makers, int rounds, TimedMaps timed) {
   std::vector<std::vector<FrameTime>> times(makers.size());
   for (int round = 0; round <= rounds; ++round) {
     for (std::size_t i = 0; i < makers.size(); ++i) {
       const Stopwatch watch;
-      makers[i]->match();
+      makers[i]->match(round > 0 ? timed : TimedMaps::kBoth);
       if (round > 0) {
         times[i].push_back(watch.per_frame(1));
       }
@@ -128,14 +129,14 @@ std::vector<std::optional<FrameTime>> time_in_turn(
 }
 
 /// Adds the outcome of every contender. Without rounds nothing is timed.
-void judge(const TrueScene& scene, const std::filesystem::path& data, int rounds,
+void judge(const TrueScene& scene, const std::filesystem::path& data, int rounds, TimedMaps timed,
            Execution& execution, Results& results) {
   const LoadedScene loaded = load_scene(scene, data);
   std::vector<std::unique_ptr<MapMaker>> makers;
   for (const MapContender& contender : results.contenders) {
     makers.push_back(contender.prepare(loaded.pair, execution));
   }
-  const std::vector<std::optional<FrameTime>> times = time_in_turn(makers, rounds);
+  const std::vector<std::optional<FrameTime>> times = time_in_turn(makers, rounds, timed);
   for (std::size_t i = 0; i < makers.size(); ++i) {
     const DisparityMap& map = makers[i]->maps().left;
     results.outcomes[i].push_back(
@@ -156,6 +157,7 @@ void run(CommandLine& line) {
   Execution execution({.threads = line.number("--threads", usual_threads)});
   const int wanted_rounds = line.number("--rounds", kUsualRounds);
   const int rounds = line.flag("--no-time") ? 0 : wanted_rounds;
+  const TimedMaps timed = line.flag("--left-only") ? TimedMaps::kLeft : TimedMaps::kBoth;
   const std::optional<std::string> csv = line.text("--csv");
   const bool wants_sub_pixel = line.flag("--sub-pixel");
   const bool wants_views = line.flag("--views");
@@ -176,7 +178,7 @@ void run(CommandLine& line) {
   results.outcomes.resize(results.contenders.size());
   for (const TrueScene* scene : results.scenes) {
     fmt::print(stderr, "{}\n", scene->name);
-    judge(*scene, data, rounds, execution, results);
+    judge(*scene, data, rounds, timed, execution, results);
   }
   print_tables(results);
   if (wants_sub_pixel) {

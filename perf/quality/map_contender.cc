@@ -16,7 +16,11 @@ class OurMaps : public MapMaker {
  public:
   OurMaps(const MatchOptions& options, const ScenePair& pair, Execution& execution)
       : pair_(pair), matcher_(in_range(options, pair.range), execution) {}
-  void match() override { matcher_.match(pair_.left, pair_.right, {}, maps_); }
+  void match(TimedMaps which) override {
+    const bool both = which == TimedMaps::kBoth;
+    matcher_.match(pair_.left, pair_.right, {.left = true, .right = both},
+                   both ? maps_ : left_only_);
+  }
   const DisparityMaps& maps() override { return maps_; }
 
  private:
@@ -28,6 +32,7 @@ class OurMaps : public MapMaker {
   const ScenePair& pair_;
   StereoMatcher matcher_;
   DisparityMaps maps_;
+  DisparityMaps left_only_;
 };
 
 class SgbmMaps : public MapMaker {
@@ -37,10 +42,18 @@ class SgbmMaps : public MapMaker {
         pair_(pair),
         execution_(execution),
         matcher_(make_sgbm_matcher(setting, pair)) {}
-  void match() override {
+  void match(TimedMaps which) override {
     cv::setNumThreads(execution_.executor().thread_count());
-    disparities_ = both_disparities(*matcher_, pair_.left_opencv, pair_.right_opencv, pair_.range);
-    filter_opencv_speckles(setting_.post_processing, pair_.range, disparities_);
+    const cv::Mat& left = pair_.left_opencv;
+    const cv::Mat& right = pair_.right_opencv;
+    if (which == TimedMaps::kBoth) {
+      disparities_ = both_disparities(*matcher_, left, right, pair_.range);
+      filter_opencv_speckles(setting_.post_processing, pair_.range, disparities_.left);
+      filter_opencv_speckles(setting_.post_processing, pair_.range, disparities_.right);
+    } else {
+      cv::Mat disparities = left_disparities(*matcher_, left, right, pair_.range);
+      filter_opencv_speckles(setting_.post_processing, pair_.range, disparities);
+    }
     cv::setNumThreads(1);
   }
   const DisparityMaps& maps() override {

@@ -13,14 +13,17 @@
 
 namespace vantage::perf {
 
+/// What is timed.
+enum class TimedMaps { kBoth, kLeft };
+
 /// A contender at one pair, which outlives it.
 class MapMaker {
  public:
   virtual ~MapMaker() = default;
-  /// What is timed. Ours: both refined maps. OpenCV's: both maps as its matcher leaves them, so
-  /// that nothing of ours counts against it.
-  virtual void match() = 0;
-  /// Both dense maps of the last match().
+  /// What is timed. Ours: refined maps. OpenCV's: maps as its matcher leaves them, so that nothing
+  /// of ours counts against it.
+  virtual void match(TimedMaps which) = 0;
+  /// Both dense maps of the last match() of both.
   virtual const DisparityMaps& maps() = 0;
 };
 

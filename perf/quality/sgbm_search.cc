@@ -58,7 +58,8 @@ void try_uniqueness(SgbmSetting setting, const LoadedScene& scene, Execution& ex
   DisparityMaps maps;
   for (Tried& one : tried) {
     PeerDisparities filtered = copy(winners);
-    filter_opencv_speckles(one.post_processing, scene.pair.range, filtered);
+    filter_opencv_speckles(one.post_processing, scene.pair.range, filtered.left);
+    filter_opencv_speckles(one.post_processing, scene.pair.range, filtered.right);
     refine_peer_maps(one.post_processing, scene.pair, filtered, execution, maps);
     one.of_scenes.push_back(bad_pixels(maps.left, scene));
   }

@@ -36,15 +36,13 @@ cv::Ptr<cv::StereoSGBM> make_sgbm_matcher(const SgbmSetting& setting, const Scen
 }
 
 void filter_opencv_speckles(const SgbmPostProcessing& post, DisparityRange range,
-                            PeerDisparities& disparities) {
+                            cv::Mat& disparities) {
   constexpr int kUnitsPerPixel = cv::StereoMatcher::DISP_SCALE;
   if (post.opencv_speckle_px == 0) {
     return;
   }
-  for (cv::Mat* map : {&disparities.left, &disparities.right}) {
-    cv::filterSpeckles(*map, (range.min - 1) * kUnitsPerPixel, post.opencv_speckle_px,
-                       post.opencv_speckle_range_px * kUnitsPerPixel);
-  }
+  cv::filterSpeckles(disparities, (range.min - 1) * kUnitsPerPixel, post.opencv_speckle_px,
+                     post.opencv_speckle_range_px * kUnitsPerPixel);
 }
 
 void refine_peer_maps(const SgbmPostProcessing& post, const ScenePair& pair,

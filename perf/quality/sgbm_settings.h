@@ -38,7 +38,7 @@ const std::vector<SgbmSetting>& sgbm_settings();
 cv::Ptr<cv::StereoSGBM> make_sgbm_matcher(const SgbmSetting& setting, const ScenePair& pair);
 
 void filter_opencv_speckles(const SgbmPostProcessing& post_processing, DisparityRange range,
-                            PeerDisparities& disparities);
+                            cv::Mat& disparities);
 /// Makes dense maps of what OpenCV's filter has left.
 void refine_peer_maps(const SgbmPostProcessing& post_processing, const ScenePair& pair,
                       const PeerDisparities& disparities, Execution& execution,

@@ -119,7 +119,7 @@ void print_view_tables(const std::vector<MapContender>& contenders,
         view_figures(*views, folder, pair, true_maps(*views, folder, execution), execution));
     for (std::size_t i = 0; i < contenders.size(); ++i) {
       const std::unique_ptr<MapMaker> maker = contenders[i].prepare(pair, execution);
-      maker->match();
+      maker->match(TimedMaps::kBoth);
       lines[i + 1].of_scenes.push_back(
           view_figures(*views, folder, pair, maker->maps(), execution));
     }

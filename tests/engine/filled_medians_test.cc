@@ -161,6 +161,7 @@ TEST(FilledMedians, RefinementTakesThemOfBothComponents) {
     refine_maps({.edge_snapping_px = 0,
                  .cross_check = false,
                  .cross_check_px = 1,
+                 .cross_check_level = 0,
                  .confidence_threshold = -std::numeric_limits<double>::infinity(),
                  .speckle_size_px = 0,
                  .surface_fit_px = 0,

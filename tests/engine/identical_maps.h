@@ -8,12 +8,13 @@
 namespace vantage::testing {
 
 /// Whether both hold the same bits, unknown pixels included.
-inline bool identical(const Image<float>& a, const Image<float>& b) {
+template <typename T>
+bool identical(const Image<T>& a, const Image<T>& b) {
   if (a.width() != b.width() || a.height() != b.height()) {
     return false;
   }
   for (int y = 0; y < a.height(); ++y) {
-    if (std::memcmp(a.row(y), b.row(y), sizeof(float) * static_cast<std::size_t>(a.width())) != 0) {
+    if (std::memcmp(a.row(y), b.row(y), sizeof(T) * static_cast<std::size_t>(a.width())) != 0) {
       return false;
     }
   }

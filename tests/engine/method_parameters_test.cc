@@ -334,6 +334,7 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
        {1, 100},
        {0.99, 0, kNan, kInfinity},
        "at least 1"},
+      {"cross-check-level", refinement(&R::cross_check_level), {0}, {-1, 10}, "from 0 to 9"},
       {"confidence-threshold",
        refinement(&R::confidence_threshold),
        {-5, 0, 5, -kInfinity},

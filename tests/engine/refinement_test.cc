@@ -111,8 +111,10 @@ TEST(CrossCheckOfTwoComponents, EqualsPlainTranscription) {
       Mask left;
       Mask right;
       Execution execution({.threads = 2});
-      cross_check({left_x.view(), left_y.view()}, {right_x.view(), right_y.view()}, tolerance_px,
-                  execution, left, right);
+      const DisplacementView of_left{left_x.view(), left_y.view()};
+      const DisplacementView of_right{right_x.view(), right_y.view()};
+      cross_check(of_left, of_right, MapSide::kLeft, tolerance_px, execution, left);
+      cross_check(of_right, of_left, MapSide::kRight, tolerance_px, execution, right);
       const auto agrees = [&, w = width, h = height](int x, int y, bool is_left) {
         const double dx = (is_left ? left_x : right_x).at(x, y);
         const double dy = (is_left ? left_y : right_y).at(x, y);
@@ -144,6 +146,7 @@ struct RefinementCase {
   RefinementOptions options{.edge_snapping_px = 0,
                             .cross_check = true,
                             .cross_check_px = 1,
+                            .cross_check_level = 0,
                             .confidence_threshold = kNoThreshold,
                             .speckle_size_px = 0,
                             .surface_fit_px = 0,

@@ -1,0 +1,256 @@
+// Maps that are checked against a coarse level of the other image's.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/matching/coarse_to_fine.h"
+#include "engine/matching/stereo_matcher.h"
+#include "engine/refinement/refinement.h"
+#include "scheduler/whole_image_pipeline.h"
+#include "tests/engine/identical_maps.h"
+#include "tests/engine/oracle_comparison.h"
+
+namespace vantage {
+namespace {
+
+using testing::identical;
+using testing::PixelKind;
+using testing::textured_pair;
+
+constexpr DisparityRange kRange{-3, 37};  // three blocks of candidates
+
+MatchOptions options_of(PriorSmoothing smoothing, int blocks, int levels = 4) {
+  MatchOptions options;
+  options.method = MatchMethod::kBayes;
+  options.disparities = kRange;
+  options.parameters.cost = MatchCost::kSmallCensus;
+  options.parameters.sigma_measurement = 4;
+  options.parameters.levels = levels;
+  options.parameters.iterations = 2;
+  options.parameters.prior_smoothing = smoothing;
+  options.parameters.candidate_blocks = blocks;
+  options.refinement.cross_check_px = 1;
+  options.refinement.fill = Fill::kNone;
+  return options;
+}
+
+/// The coarse map of one image, and its own unless the coarse one is all.
+struct BothMaps {
+  DisparityMap whole;
+  DisparityMap coarse;
+};
+
+BothMaps maps_of(const testing::PhotographPair& pair, const MatchOptions& options,
+                 Reference reference, int level, bool is_all) {
+  const MethodParameters parameters = options.resolved();
+  Execution execution({.threads = 2});
+  const bool is_left = reference == Reference::kLeft;
+  const Photograph& own = is_left ? pair.left : pair.right;
+  const auto geometry = candidate_geometry(options, reference, own.width(), own.height());
+  CostImage left;
+  CostImage right;
+  left.prepare(pair.left, parameters, geometry, {is_left, false, !is_left}, execution);
+  right.prepare(pair.right, parameters, geometry, {!is_left, is_left, false}, execution);
+  BothMaps maps{DisparityMap(own.width(), own.height()), DisparityMap(own.width(), own.height())};
+  maps.whole.fill(-99);
+  EdgeWeightLevels edges;
+  CoarseLevels levels;
+  const ChainInput input{nullptr,
+                         is_left ? &left : &right,
+                         {CostPartner{is_left ? &right : &left}},
+                         {},
+                         0,
+                         edges.prepare(own, parameters, execution)};
+  match_coarse_to_fine(parameters, geometry, input, {.disparity_px = maps.whole.view()}, levels,
+                       execution,
+                       [](const MatchChain& chain) { scheduler::run_whole_image(chain.stages()); },
+                       {.level = level, .disparity_px = maps.coarse.view(), .is_all = is_all});
+  return maps;
+}
+
+DisparityMaps matched(const testing::PhotographPair& pair, const MatchOptions& options,
+                      const MatchRequest& request = {}, int threads = 2,
+                      MatchReport* report = nullptr) {
+  Execution execution({.threads = threads});
+  DisparityMaps maps;
+  StereoMatcher(options, execution).match(pair.left, pair.right, request, maps, report);
+  return maps;
+}
+
+using Kind = std::pair<PriorSmoothing, int>;
+
+std::string name_of(const Kind& kind) {
+  return std::string(kind.first == PriorSmoothing::kSum ? "Sum" : "Maximum") +
+         (kind.second > 0 ? "Pruned" : "");
+}
+
+class CrossCheckLevel : public ::testing::TestWithParam<Kind> {
+ protected:
+  static MatchOptions options(int levels = 4) {
+    return options_of(GetParam().first, GetParam().second, levels);
+  }
+};
+
+TEST_P(CrossCheckLevel, CoarseMapsDoNotDependOnFinerLevels) {
+  const auto pair = textured_pair(61, 47, kRange, PixelKind::kColour8, 3);
+  for (const Reference reference : {Reference::kLeft, Reference::kRight}) {
+    const DisparityMap whole = maps_of(pair, options(), reference, 0, false).whole;
+    for (const int level : {1, 2, 3}) {
+      const BothMaps both = maps_of(pair, options(), reference, level, false);
+      EXPECT_TRUE(identical(both.whole, whole)) << level;
+      const BothMaps alone = maps_of(pair, options(), reference, level, true);
+      EXPECT_TRUE(identical(alone.coarse, both.coarse)) << level;
+      EXPECT_EQ(alone.whole.at(60, 46), -99) << level << ": finer levels were made";
+      for (int y = 0; y < 47; ++y) {
+        for (int x = 0; x < 61; ++x) {
+          const float of_block = both.coarse.at(x >> level << level, y >> level << level);
+          ASSERT_EQ(both.coarse.at(x, y), of_block) << x << ", " << y << ", level " << level;
+        }
+      }
+    }
+  }
+}
+
+TEST_P(CrossCheckLevel, CoarseMapsShowTheScene) {
+  Image<std::uint8_t> left(97, 64);
+  Image<std::uint8_t> right(97, 64);
+  constexpr int kDisparity = 11;
+  const auto world = textured_pair(97 + kDisparity, 64, {0, 1}, PixelKind::kGrey8, 5);
+  const auto& texture = std::get<Image<std::uint8_t>>(world.left.pixels);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 97; ++x) {
+      left.at(x, y) = texture.at(x, y);
+      right.at(x, y) = texture.at(x + kDisparity, y);
+    }
+  }
+  const testing::PhotographPair pair{Photograph{std::move(left)}, Photograph{std::move(right)}};
+  for (const int level : {1, 2}) {
+    const DisparityMap map = maps_of(pair, options(), Reference::kRight, level, true).coarse;
+    int wrong = 0;
+    for (int y = 0; y < 64; ++y) {
+      for (int x = 0; x < 97 - kDisparity; ++x) {
+        wrong += map.at(x, y) != kDisparity ? 1 : 0;
+      }
+    }
+    EXPECT_LT(wrong, 64 * 86 / 50) << level;
+  }
+}
+
+/// Against the plain check of raw maps.
+TEST_P(CrossCheckLevel, MapsAreCheckedAgainstIt) {
+  const auto pair = textured_pair(61, 47, kRange, PixelKind::kGrey8, 3);
+  for (const int level : {1, 3}) {
+    MatchOptions checked = options();
+    checked.refinement.cross_check_level = level;
+    MatchOptions raw = options();
+    raw.raw = true;
+    const DisparityMaps winners = matched(pair, raw);
+    const DisparityMaps maps = matched(pair, checked);
+    Execution execution({.threads = 1});
+    Mask left;
+    Mask right;
+    cross_check(winners.left.view(),
+                maps_of(pair, raw, Reference::kRight, level, true).coarse.view(), MapSide::kLeft, 1,
+                execution, left);
+    cross_check(winners.right.view(),
+                maps_of(pair, raw, Reference::kLeft, level, true).coarse.view(), MapSide::kRight, 1,
+                execution, right);
+    EXPECT_TRUE(identical(maps.left_unmatched, left)) << level;
+    EXPECT_TRUE(identical(maps.right_unmatched, right)) << level;
+    MatchOptions whole = options();
+    EXPECT_FALSE(identical(maps.left_unmatched, matched(pair, whole).left_unmatched)) << level;
+  }
+}
+
+TEST_P(CrossCheckLevel, MapsDoNotDependOnWhichAreWanted) {
+  const auto pair = textured_pair(61, 47, kRange, PixelKind::kColour8, 7);
+  MatchOptions options = this->options();
+  options.refinement.cross_check_level = 1;
+  options.refinement.surface_fit_px = 4;
+  options.refinement.edge_snapping_px = 2;
+  options.refinement.fill = Fill::kMedian;
+  const DisparityMaps both = matched(pair, options, {.confidence = true}, 1);
+  for (const int threads : {1, 3}) {
+    const DisparityMaps left =
+        matched(pair, options, {.left = true, .right = false, .confidence = true}, threads);
+    EXPECT_TRUE(identical(left.left, both.left));
+    EXPECT_TRUE(identical(left.left_unmatched, both.left_unmatched));
+    EXPECT_TRUE(identical(left.left_confidence, both.left_confidence));
+    EXPECT_TRUE(left.right.width() == 0);
+    const DisparityMaps right =
+        matched(pair, options, {.left = false, .right = true, .confidence = true}, threads);
+    EXPECT_TRUE(identical(right.right, both.right));
+    EXPECT_TRUE(identical(right.right_unmatched, both.right_unmatched));
+    EXPECT_TRUE(identical(right.right_confidence, both.right_confidence));
+    EXPECT_TRUE(right.left.width() == 0);
+  }
+}
+
+TEST_P(CrossCheckLevel, OfTooFewLevelsItIsTheCoarsest) {
+  const auto pair = textured_pair(13, 5, {0, 4}, PixelKind::kGrey8, 3);
+  MatchOptions options = this->options(2);
+  options.disparities = {0, 4};
+  options.refinement.cross_check_level = 1;
+  const DisparityMaps maps = matched(pair, options);
+  options.refinement.cross_check_level = 9;
+  EXPECT_TRUE(identical(matched(pair, options), maps));
+  // A single level: the maps themselves.
+  const auto pixel = textured_pair(1, 1, {0, 0}, PixelKind::kGrey8, 3);
+  options.disparities = {0, 0};
+  EXPECT_EQ(matched(pixel, options, {.left = true, .right = false}).left_unmatched.at(0, 0), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, CrossCheckLevel,
+                         ::testing::Values(Kind{PriorSmoothing::kSum, 0},
+                                           Kind{PriorSmoothing::kSum, 2},
+                                           Kind{PriorSmoothing::kMaximum, 0},
+                                           Kind{PriorSmoothing::kMaximum, 2}),
+                         [](const auto& instance) { return name_of(instance.param); });
+
+TEST(CrossCheckLevelOption, IsForLevelsOfBayesianDiffusion) {
+  MatchOptions options;
+  options.preset = MatchPreset::kFast;
+  EXPECT_EQ(options.resolved_refinement().cross_check_level, 1);
+  options.parameters.levels = 1;
+  EXPECT_EQ(options.resolved_refinement().cross_check_level, 0);
+  options.validate();
+  options.refinement.cross_check_level = 2;
+  try {
+    options.validate();
+    FAIL() << "no error";
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(),
+                 "cross-check-level is 2, expected 0: only aggregation bayes with levels above 1 "
+                 "has maps of coarse levels");
+  }
+}
+
+TEST(CrossCheckLevelOption, SavesTheOtherMapsFinestLevel) {
+  const auto pair = textured_pair(64, 48, kRange, PixelKind::kGrey8, 3);
+  MatchOptions options = options_of(PriorSmoothing::kMaximum, 0);
+  const MatchRequest left_only{.left = true, .right = false};
+  MatchReport whole;
+  matched(pair, options, left_only, 2, &whole);
+  options.refinement.cross_check_level = 1;
+  MatchReport coarse;
+  matched(pair, options, left_only, 2, &coarse);
+  EXPECT_EQ(whole.finest_pixels, 2 * 64 * 48);
+  EXPECT_EQ(coarse.finest_pixels, 64 * 48);
+  EXPECT_EQ(coarse.finest_cells, 64 * 48 * kRange.count());
+  EXPECT_EQ(whole.cells - coarse.cells, 64 * 48 * kRange.count());
+  EXPECT_EQ(coarse.plan.passes.size(), whole.plan.passes.size());
+  EXPECT_EQ(coarse.plan.step_rows, whole.plan.step_rows);
+  // Nor is a map made for a check that is not wanted.
+  options.refinement.cross_check_level = 0;
+  options.refinement.cross_check = false;
+  MatchReport unchecked;
+  matched(pair, options, left_only, 2, &unchecked);
+  EXPECT_EQ(unchecked.cells * 2, whole.cells);
+}
+
+}  // namespace
+}  // namespace vantage
