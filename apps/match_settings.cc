@@ -98,7 +98,8 @@ void add_sigma_measurement_setting(Settings& settings, MethodOverrides& paramete
       settings.add("sigma-measurement", "S|estimated",
                    "Cost contaminated or combined, aggregation bayes, certainty entropy: the noise "
                    "in grey levels, above 0; estimated: from each pair; " +
-                       shared(book_parameters(MatchMethod::kSsd).sigma_measurement));
+                       shared(book_parameters(MatchMethod::kSsd).sigma_measurement) +
+                       "; estimated for cost combined");
   setting.set = [&parameters](const SettingValue& value) {
     const bool is_estimated = is_word(value, "estimated");
     const bool is_number = !is_estimated && !is_word(value, "auto");

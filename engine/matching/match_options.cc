@@ -148,7 +148,10 @@ std::optional<MatchPreset> MatchOptions::preset_in_force() const {
 }
 
 MethodParameters MatchOptions::resolved() const {
-  const PresetSettings settings = settings_of(preset_in_force());
+  PresetSettings settings = settings_of(preset_in_force());
+  if (parameters.cost && parameters.cost != settings.parameters.cost) {
+    settings.parameters.sigma_measurement.reset();  // it is in units of the preset's cost
+  }
   MethodParameters result =
       resolve(method.value_or(settings.method), merge(settings.parameters, parameters));
   // A preset's levels and pruning hold where they can: what else the user chose goes before them.

@@ -255,6 +255,10 @@ MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides) {
   if (!overrides.final_iterations) {
     result.final_iterations = result.iterations;
   }
+  // Combined costs are made for photographs, whose noise differs from pair to pair.
+  if (!overrides.sigma_measurement && !overrides.estimate_sigma_measurement) {
+    result.estimate_sigma_measurement = result.cost == MatchCost::kCombined;
+  }
   return result;
 }
 

@@ -84,7 +84,8 @@ struct MethodParametersOf {
   Field<double> epsilon_prior;  ///< Bayes: εP, inside (0, 1)
   /// σM in grey levels, > 0: contaminated and combined cost, Bayes, entropy.
   Field<double> sigma_measurement;
-  /// σM follows from each pair (pair_levels); where it does not, it is sigma_measurement.
+  /// σM follows from each pair (pair_levels); where it does not, it is sigma_measurement. Of the
+  /// combined cost unless either is set.
   Field<bool> estimate_sigma_measurement;
   Field<double> epsilon_measurement;  ///< εM, inside (0, 1): the same
   Field<double> sigma_census;  ///< combined cost: σ of the share of census bits, 0..1; 0: no term

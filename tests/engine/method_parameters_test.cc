@@ -96,6 +96,33 @@ TEST(MethodParameters, CostFollowsTheAggregationUnlessItIsSet) {
   EXPECT_EQ(options.resolved().cost, MatchCost::kGradient);
 }
 
+TEST(MethodParameters, NoiseOfCombinedCostsIsEstimatedUnlessItIsSet) {
+  MatchOptions options;
+  options.method = MatchMethod::kBayes;
+  EXPECT_FALSE(options.resolved().estimate_sigma_measurement);
+  options.parameters.cost = MatchCost::kCombined;
+  EXPECT_TRUE(options.resolved().estimate_sigma_measurement);
+  EXPECT_TRUE(options.spelled_out().resolved().estimate_sigma_measurement);
+  options.parameters.sigma_measurement = 7;
+  EXPECT_FALSE(options.resolved().estimate_sigma_measurement);
+  EXPECT_EQ(options.resolved().sigma_measurement, 7);
+  options.parameters.sigma_measurement.reset();
+  options.parameters.estimate_sigma_measurement = false;
+  EXPECT_FALSE(options.resolved().estimate_sigma_measurement);
+}
+
+TEST(MethodParameters, APresetsNoiseIsOfItsOwnCost) {
+  const double of_the_book = book_parameters(MatchMethod::kBayes).sigma_measurement;
+  MatchOptions options;
+  options.preset = MatchPreset::kBalanced;
+  options.parameters.cost = MatchCost::kSmallCensus;
+  EXPECT_NE(options.resolved().sigma_measurement, of_the_book);
+  options.parameters.cost = MatchCost::kContaminated;
+  EXPECT_EQ(options.resolved().sigma_measurement, of_the_book);
+  options.parameters.cost = MatchCost::kCombined;
+  EXPECT_TRUE(options.resolved().estimate_sigma_measurement);
+}
+
 TEST(MethodParameters, WithoutAnyChoiceTheyAreThoseOfBalanced) {
   MatchOptions balanced;
   balanced.preset = MatchPreset::kBalanced;

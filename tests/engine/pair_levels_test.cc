@@ -243,6 +243,7 @@ TEST(PairLevels, MatchersSeeThroughExposure) {
   for (const MatchCost cost : {MatchCost::kSquared, MatchCost::kAbsolute, MatchCost::kCombined}) {
     MatchOptions options = exposure_options(Reference::kLeft, cost);
     options.parameters.sigma_census = 0;
+    options.parameters.estimate_sigma_measurement = false;
     DisparityMaps maps;
     MatchReport report;
     StereoMatcher(options, execution).match(scene.left, scene.right, {}, maps, &report);
