@@ -1,12 +1,12 @@
 #include "engine/image/grey_levels.h"
 
+#include <cstdint>
+#include <type_traits>
+
+#include "kernels/luma_levels/luma_levels.h"
+
 namespace vantage {
 namespace {
-
-// Rec. 601.
-constexpr float kRed = 0.299F;
-constexpr float kGreen = 0.587F;
-constexpr float kBlue = 0.114F;
 
 template <typename T>
 void grey_levels(const T* pixels, int channels, int width, float* grey) {
@@ -17,11 +17,16 @@ void grey_levels(const T* pixels, int channels, int width, float* grey) {
     }
     return;
   }
-  for (int x = 0; x < width; ++x) {
-    const T* pixel = pixels + x * channels;
-    grey[x] = (kRed * static_cast<float>(pixel[0]) + kGreen * static_cast<float>(pixel[1]) +
-               kBlue * static_cast<float>(pixel[2])) *
-              unit;
+  if constexpr (std::is_same_v<T, std::uint8_t>) {
+    kernels::luma_row(pixels, width, channels, grey);
+  } else {
+    for (int x = 0; x < width; ++x) {
+      const T* pixel = pixels + x * channels;
+      grey[x] = (kernels::kLumaRed * static_cast<float>(pixel[0]) +
+                 kernels::kLumaGreen * static_cast<float>(pixel[1]) +
+                 kernels::kLumaBlue * static_cast<float>(pixel[2])) *
+                unit;
+    }
   }
 }
 

@@ -36,9 +36,10 @@ void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
   const bool is_bayes = parameters.aggregation == Aggregation::kBayes;
   const auto weight = static_cast<float>(parameters.level_weight);
   execution.for_each_band(coarser.extent().rows, [&](int first_row, int end_row) {
+    std::vector<std::uint16_t> work(is_bayes ? static_cast<std::size_t>(finer.lanes()) : 0);
     for (int y = first_row; y < end_row; ++y) {
       if (is_bayes) {
-        reduce_energy_row(finer, y, weight, coarser);
+        reduce_energy_row(finer, y, weight, work.data(), coarser);
       } else {
         reduce_half_energy_row(finer, y, coarser);
       }

@@ -44,13 +44,18 @@ class ByteEnergyReductionStage final : public LevelReductionStage {
                            LevelVolume& coarser)
       : LevelReductionStage(geometry, coarser), weight_(weight * (step / kernels::kEnergyStep)) {}
 
+  /// Of one block.
+  [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
+                                        scheduler::Extent /*input*/) const override {
+    return sizeof(std::uint16_t) * static_cast<std::size_t>(lanes());
+  }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     return vantage::column_work(kernels::kReduceCompactEnergiesWork, count());
   }
 
   void make_row(const scheduler::RowTask& task) const override {
     kernels::reduce_compact_energies_row(
-        blocks<std::uint8_t>(task), weight_,
+        blocks<std::uint8_t>(task), weight_, reinterpret_cast<std::uint16_t*>(task.state),
         coarser().column<std::uint8_t>(task.columns.begin, task.y));
   }
 
@@ -193,8 +198,9 @@ std::unique_ptr<scheduler::RowStage> make_byte_energy_reduction_stage(
   return std::make_unique<ByteEnergyReductionStage>(geometry, step, weight, coarser);
 }
 
-void reduce_energy_row(const LevelVolume& finer, int y, float weight, LevelVolume& coarser) {
-  kernels::reduce_compact_energies_row(block_row<std::uint8_t>(finer, y), weight,
+void reduce_energy_row(const LevelVolume& finer, int y, float weight, std::uint16_t* work,
+                       LevelVolume& coarser) {
+  kernels::reduce_compact_energies_row(block_row<std::uint8_t>(finer, y), weight, work,
                                        coarser.column<std::uint8_t>(0, y));
 }
 

@@ -24,8 +24,9 @@ std::unique_ptr<scheduler::RowStage> make_likelihood_reduction_stage(
 /// that are no candidates hold nothing less than any candidate does.
 std::unique_ptr<scheduler::RowStage> make_byte_energy_reduction_stage(
     const kernels::CandidateGeometry& geometry, float step, float weight, LevelVolume& coarser);
-/// Row y of `coarser` from the energies of a coarse level.
-void reduce_energy_row(const LevelVolume& finer, int y, float weight, LevelVolume& coarser);
+/// Row y of `coarser` from the energies of a coarse level. `work`: one number a lane.
+void reduce_energy_row(const LevelVolume& finer, int y, float weight, std::uint16_t* work,
+                       LevelVolume& coarser);
 
 /// Source stage: the likelihoods of a coarse level, from its energies. `blocks`: the candidates
 /// that are looked at, in whose lanes the cells then lie; null: all. Must outlive the stage.

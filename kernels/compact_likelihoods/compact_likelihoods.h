@@ -32,10 +32,10 @@ void reduce_likelihoods_row_ref(const BlockRow<float>& row, float weight, std::u
 /// Weights of compact energies are multiples of 1/this.
 inline constexpr int kCompactWeightUnits = 16384;
 
-/// The same of compact energies, halves of a step being rounded up. Lanes that are no candidates as
-/// above.
+/// The same of compact energies, halves of a step being rounded up. `work`: row.lanes numbers.
+/// Lanes that are no candidates as above.
 void reduce_compact_energies_row(const BlockRow<std::uint8_t>& row, float weight,
-                                 std::uint8_t* energies);
+                                 std::uint16_t* work, std::uint8_t* energies);
 void reduce_compact_energies_row_ref(const BlockRow<std::uint8_t>& row, float weight,
                                      std::uint8_t* energies);
 

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "kernels/cells/byte_cells-inl.h"
 #include "kernels/cells/exp_log-inl.h"
 #include "kernels/cells/lane_sums-inl.h"
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
@@ -60,36 +61,112 @@ void reduce_likelihoods(const BlockRow<float>& row, float weight, float* work,
   }
 }
 
+#if HWY_TARGET == HWY_SCALAR
 void reduce_compact_energies(const BlockRow<std::uint8_t>& row, float weight,
-                             std::uint8_t* energies) {
-  const hn::CappedTag<std::uint16_t, kLaneMultiple> d16;
-  const hn::RebindToSigned<decltype(d16)> di16;
-  const hn::Rebind<std::uint8_t, decltype(d16)> d8;
-  const int step = static_cast<int>(hn::Lanes(d16));
-  const auto units =
-      hn::Set(di16, static_cast<std::int16_t>(std::lround(weight * kCompactWeightUnits)));
-  for (int b = 0; b < row.blocks(); ++b, energies += row.lanes) {
-    const auto sum = [&](int lane) HWY_ATTR {
-      const auto load = [&](const std::uint8_t* cells, std::ptrdiff_t column) HWY_ATTR {
-        return hn::PromoteTo(d16, hn::LoadU(d8, cells + column + lane));
-      };
-      return hn::Add(hn::Add(load(row.upper, row.left(b)), load(row.upper, row.right(b))),
-                     hn::Add(load(row.lower, row.left(b)), load(row.lower, row.right(b))));
-    };
-    auto least = hn::Set(d16, std::numeric_limits<std::uint16_t>::max());
-    for (int lane = 0; lane < row.lanes; lane += step) {
-      least = hn::Min(least, sum(lane));
-    }
-    HWY_ALIGN std::uint16_t of_lane[kLaneMultiple];
-    hn::Store(least, d16, of_lane);
-    const auto bottom = hn::Set(d16, *std::min_element(of_lane, of_lane + step));
-    for (int lane = 0; lane < row.lanes; lane += step) {
-      // At most 4 · 255, doubled: the product's fixed point is at 2^15. Bytes saturate.
-      const auto above = hn::BitCast(di16, hn::ShiftLeft<1>(hn::Sub(sum(lane), bottom)));
-      hn::StoreU(hn::DemoteTo(d8, hn::MulFixedPoint15(above, units)), d8, energies + lane);
-    }
+                             std::uint16_t* /*work*/, std::uint8_t* energies) {
+  reduce_compact_energies_row_ref(row, weight, energies);
+}
+#else
+using SumTag = hn::CappedTag<std::uint16_t, 8>;
+
+// Cells of bytes as sums of 16 bits: those in even lanes, and those in odd ones. Neither needs to
+// leave its 128-bit block.
+template <class D8>
+struct BlockSums {
+  VecOf<Tag16<D8> > even;
+  VecOf<Tag16<D8> > odd;
+};
+
+template <class D8>
+HWY_INLINE BlockSums<D8> block_sums(D8 d, const BlockRow<std::uint8_t>& row, int block, int lane) {
+  const Tag16<D8> d16;
+  const auto even_lanes = hn::Set(d16, 0xFF);
+  const auto load = [&](const std::uint8_t* cells, std::ptrdiff_t column)
+                        HWY_ATTR { return hn::BitCast(d16, hn::LoadU(d, cells + column + lane)); };
+  const auto a = load(row.upper, row.left(block));
+  const auto b = load(row.upper, row.right(block));
+  const auto c = load(row.lower, row.left(block));
+  const auto e = load(row.lower, row.right(block));
+  return {hn::Add(hn::Add(hn::And(a, even_lanes), hn::And(b, even_lanes)),
+                  hn::Add(hn::And(c, even_lanes), hn::And(e, even_lanes))),
+          hn::Add(hn::Add(hn::ShiftRight<8>(a), hn::ShiftRight<8>(b)),
+                  hn::Add(hn::ShiftRight<8>(c), hn::ShiftRight<8>(e)))};
+}
+
+// The least of each lane of 128-bit blocks.
+template <class D16>
+HWY_INLINE VecOf<SumTag> fold_least(D16 d16, VecOf<D16> sums) {
+  if constexpr (hn::MaxLanes(D16()) == hn::MaxLanes(SumTag())) {
+    return sums;
+  } else {
+    const hn::Half<D16> half;
+    return fold_least(half, hn::Min(hn::LowerHalf(half, sums), hn::UpperHalf(half, sums)));
   }
 }
+
+// Sums of one block, to `work`, in vectors of D8's size as long as whole ones fit; `lane` becomes
+// the first that is left, `least` that of each lane.
+template <class D8>
+HWY_INLINE void sum_block(D8 d, const BlockRow<std::uint8_t>& row, int block, std::uint16_t* work,
+                          int& lane, VecOf<SumTag>& least) {
+  const Tag16<D8> d16;
+  const int step = static_cast<int>(hn::Lanes(d));
+  if (lane + step > row.lanes) {
+    return;
+  }
+  auto of_lanes = hn::Set(d16, std::numeric_limits<std::uint16_t>::max());
+  for (; lane + step <= row.lanes; lane += step) {
+    const BlockSums<D8> sums = block_sums(d, row, block, lane);
+    hn::StoreU(sums.even, d16, work + lane);
+    hn::StoreU(sums.odd, d16, work + lane + step / 2);
+    of_lanes = hn::Min(of_lanes, hn::Min(sums.even, sums.odd));
+  }
+  least = hn::Min(least, fold_least(d16, of_lanes));
+}
+
+// What the sums of `work` are above `bottom`, times units / kCompactWeightUnits.
+template <class D8>
+HWY_INLINE void weigh_block(D8 d, const std::uint16_t* work, int lanes, std::uint16_t bottom,
+                            std::int16_t units, int& lane, std::uint8_t* energies) {
+  const Tag16<D8> d16;
+  const hn::RebindToSigned<Tag16<D8> > di16;
+  const int step = static_cast<int>(hn::Lanes(d));
+  const auto of_bottom = hn::Set(d16, bottom);
+  const auto factor = hn::Set(di16, units);
+  const auto most = hn::Set(d16, static_cast<std::uint16_t>(kMostCompact));
+  // At most 4 · 255, doubled: the product's fixed point is at 2^15.
+  const auto energy = [&](const std::uint16_t* sums) HWY_ATTR {
+    const auto above = hn::ShiftLeft<1>(hn::Sub(hn::LoadU(d16, sums), of_bottom));
+    const auto product = hn::MulFixedPoint15(hn::BitCast(di16, above), factor);
+    return hn::Min(hn::BitCast(d16, product), most);
+  };
+  for (; lane + step <= lanes; lane += step) {
+    const auto even = energy(work + lane);
+    const auto odd = energy(work + lane + step / 2);
+    hn::StoreU(hn::BitCast(d, hn::Or(even, hn::ShiftLeft<8>(odd))), d, energies + lane);
+  }
+}
+
+void reduce_compact_energies(const BlockRow<std::uint8_t>& row, float weight, std::uint16_t* work,
+                             std::uint8_t* energies) {
+  const hn::ScalableTag<std::uint8_t> widest;
+  const hn::CappedTag<std::uint8_t, 32> middle;
+  const hn::CappedTag<std::uint8_t, kLaneMultiple> narrow;
+  const auto units = static_cast<std::int16_t>(std::lround(weight * kCompactWeightUnits));
+  for (int b = 0; b < row.blocks(); ++b, energies += row.lanes) {
+    auto least = hn::Set(SumTag(), std::numeric_limits<std::uint16_t>::max());
+    int lane = 0;
+    sum_block(widest, row, b, work, lane, least);
+    sum_block(middle, row, b, work, lane, least);
+    sum_block(narrow, row, b, work, lane, least);
+    const std::uint16_t bottom = hn::GetLane(hn::MinOfLanes(SumTag(), least));
+    lane = 0;
+    weigh_block(widest, work, row.lanes, bottom, units, lane, energies);
+    weigh_block(middle, work, row.lanes, bottom, units, lane, energies);
+    weigh_block(narrow, work, row.lanes, bottom, units, lane, energies);
+  }
+}
+#endif
 
 // 2^(step · exponent_of_step) of the candidates of each column, 0 in the other lanes.
 HWY_INLINE void powers(const CompactRow& row, float exponent_of_step, float* output) {
@@ -144,8 +221,8 @@ void reduce_likelihoods_row(const BlockRow<float>& row, float weight, float* wor
   HWY_DYNAMIC_DISPATCH(reduce_likelihoods)(row, weight, work, energies);
 }
 void reduce_compact_energies_row(const BlockRow<std::uint8_t>& row, float weight,
-                                 std::uint8_t* energies) {
-  HWY_DYNAMIC_DISPATCH(reduce_compact_energies)(row, weight, energies);
+                                 std::uint16_t* work, std::uint8_t* energies) {
+  HWY_DYNAMIC_DISPATCH(reduce_compact_energies)(row, weight, work, energies);
 }
 void likelihoods_of_compact_row(const CompactRow& row, float* output) {
   HWY_DYNAMIC_DISPATCH(likelihoods)(row, output);

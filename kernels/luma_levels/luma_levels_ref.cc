@@ -12,4 +12,12 @@ void luma_levels_row_ref(const std::uint8_t* pixels, int width, int channels,
   }
 }
 
+void luma_row_ref(const std::uint8_t* pixels, int width, int channels, float* luma) {
+  for (int x = 0; x < width; ++x, pixels += channels) {
+    luma[x] = kLumaRed * static_cast<float>(pixels[0]) +
+              kLumaGreen * static_cast<float>(pixels[1]) +
+              kLumaBlue * static_cast<float>(pixels[2]);
+  }
+}
+
 }  // namespace vantage::kernels

@@ -47,15 +47,57 @@ void luma_levels(const std::uint8_t* HWY_RESTRICT pixels, int width, int channel
                       levels + x);
 }
 
+void luma(const std::uint8_t* HWY_RESTRICT pixels, int width, int channels,
+          float* HWY_RESTRICT output) {
+  const hn::CappedTag<std::uint8_t, 16> d8;
+  const hn::CappedTag<float, 16> df;
+  const hn::Rebind<std::int32_t, decltype(df)> d32;
+  const hn::Rebind<std::uint8_t, decltype(df)> part8;
+  const auto step = static_cast<int>(hn::Lanes(d8));
+  const auto part = static_cast<int>(hn::Lanes(df));
+  HWY_ALIGN std::uint8_t of_channel[3][16];
+  int x = 0;
+  for (; x + step <= width; x += step) {
+    const std::uint8_t* at = pixels + static_cast<std::ptrdiff_t>(x) * channels;
+    auto red = hn::Undefined(d8);
+    auto green = hn::Undefined(d8);
+    auto blue = hn::Undefined(d8);
+    if (channels == 3) {
+      hn::LoadInterleaved3(d8, at, red, green, blue);
+    } else {
+      auto alpha = hn::Undefined(d8);
+      hn::LoadInterleaved4(d8, at, red, green, blue, alpha);
+    }
+    hn::Store(red, d8, of_channel[0]);
+    hn::Store(green, d8, of_channel[1]);
+    hn::Store(blue, d8, of_channel[2]);
+    for (int k = 0; k < step; k += part) {
+      const auto weighted = [&](const std::uint8_t* bytes, float weight) HWY_ATTR {
+        const auto whole = hn::PromoteTo(d32, hn::Load(part8, bytes + k));
+        return hn::Mul(hn::ConvertTo(df, whole), hn::Set(df, weight));
+      };
+      const auto sum =
+          hn::Add(hn::Add(weighted(of_channel[0], kLumaRed), weighted(of_channel[1], kLumaGreen)),
+                  weighted(of_channel[2], kLumaBlue));
+      hn::StoreU(sum, df, output + x + k);
+    }
+  }
+  luma_row_ref(pixels + static_cast<std::ptrdiff_t>(x) * channels, width - x, channels, output + x);
+}
+
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace vantage::kernels {
 HWY_EXPORT(luma_levels);
+HWY_EXPORT(luma);
 
 void luma_levels_row(const std::uint8_t* pixels, int width, int channels, std::uint8_t* levels) {
   HWY_DYNAMIC_DISPATCH(luma_levels)(pixels, width, channels, levels);
+}
+void luma_row(const std::uint8_t* pixels, int width, int channels, float* output) {
+  HWY_DYNAMIC_DISPATCH(luma)(pixels, width, channels, output);
 }
 
 }  // namespace vantage::kernels

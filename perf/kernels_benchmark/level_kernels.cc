@@ -24,6 +24,10 @@ class Rows {
     kernels::reduce_likelihoods_row({upper_.data(), lower_.data(), kColumns, kLanes}, 1,
                                     work_.data(), bytes_.data());
   }
+  void reduce_compact_energies() {
+    kernels::reduce_compact_energies_row({compact_.data(), lower_compact_.data(), kColumns, kLanes},
+                                         0.6F, sums_.data(), bytes_.data());
+  }
   void likelihoods_of_compact() {
     kernels::likelihoods_of_compact_row({compact_.data(), kColumns, kLanes, kLanes},
                                         output_.data());
@@ -60,6 +64,8 @@ class Rows {
   AlignedValues<float> upper_{kFineCells, 1000, 0.001F, 1};
   AlignedValues<float> lower_{kFineCells, 1000, 0.001F, 2};
   AlignedValues<std::uint8_t> compact_{kFineCells, 256, 1, 3};
+  AlignedValues<std::uint8_t> lower_compact_{kFineCells, 256, 1, 6};
+  AlignedValues<std::uint16_t> sums_{kLanes};
   AlignedValues<std::uint16_t> stored_{kCoarseCells, 15360, 1, 4};
   AlignedValues<kernels::FixedEnergy> stored_fixed_{kFineCells, 10000, 1, 5};
   AlignedValues<float> work_{kLanes};
@@ -81,6 +87,8 @@ KernelBenchmarks level_kernels() {
       // Cells of the coarser row.
       row("reduce_likelihoods_row", kCoarseCells, kernels::kReduceLikelihoodsWork,
           [](Rows& d) { d.reduce_likelihoods(); }),
+      row("reduce_compact_energies_row", kCoarseCells, kernels::kReduceCompactEnergiesWork,
+          [](Rows& d) { d.reduce_compact_energies(); }),
       row("reduce_energies_row", kCoarseCells, kernels::kReduceEnergiesWork,
           [](Rows& d) { d.reduce_energies(); }),
       row("likelihoods_of_compact_row", kFineCells, kernels::kExpandCompactWork,

@@ -129,7 +129,9 @@ TEST_P(CompactLikelihoods, CompactEnergiesOfBlocksAreWeightedSums) {
       const BlockRow<std::uint8_t> row{rows[0].data(), rows[lower].data(), shape.columns, lanes};
       const auto cells = static_cast<std::size_t>(row.blocks() * lanes);
       GuardedRow<std::uint8_t> actual(cells, 5, 77);
-      reduce_compact_energies_row(row, weight, actual.data());
+      GuardedRow<std::uint16_t> work(static_cast<std::size_t>(lanes), 3, 7777);
+      reduce_compact_energies_row(row, weight, work.data(), actual.data());
+      EXPECT_TRUE(work.intact());
       EXPECT_TRUE(actual.intact());
       std::vector<std::uint8_t> reference(cells);
       reduce_compact_energies_row_ref(row, weight, reference.data());

@@ -42,6 +42,29 @@ TEST_P(LumaLevels, AreTheRoundedLuma) {
   }
 }
 
+TEST_P(LumaLevels, LumaIsNotRounded) {
+  std::mt19937 random(73);
+  for (const int channels : {3, 4}) {
+    for (const int width : {1, 2, 15, 16, 17, 31, 64, 65, 301}) {
+      UnalignedRow<std::uint8_t> pixels(static_cast<std::size_t>(width * channels), random() % 5);
+      for (std::size_t k = 0; k < pixels.size(); ++k) {
+        pixels[k] = random() % 4 == 0 ? 255 : static_cast<std::uint8_t>(random());
+      }
+      GuardedRow<float> luma(static_cast<std::size_t>(width), random() % 5, -7);
+      luma_row(pixels.data(), width, channels, luma.data());
+      ASSERT_TRUE(luma.intact());
+      std::vector<float> reference(static_cast<std::size_t>(width));
+      luma_row_ref(pixels.data(), width, channels, reference.data());
+      ASSERT_EQ(luma.values(), reference);
+      for (int x = 0; x < width; ++x) {
+        const std::uint8_t* pixel = pixels.data() + static_cast<std::ptrdiff_t>(x) * channels;
+        ASSERT_NEAR(reference[static_cast<std::size_t>(x)],
+                    0.299 * pixel[0] + 0.587 * pixel[1] + 0.114 * pixel[2], 1e-4);
+      }
+    }
+  }
+}
+
 TEST_P(LumaLevels, BlackAndWhiteStayThemselves) {
   const std::uint8_t black[4 * 64] = {};
   std::uint8_t pixels[4 * 64];
