@@ -122,7 +122,7 @@ std::size_t CoarseLevels::held_bytes() const {
 }
 
 std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
-                               int candidates) {
+                               int candidates, bool has_coarse_map) {
   const auto extents = level_extents(extent, parameters.levels);
   const int lanes = kernels::CandidateGeometry{.count = candidates}.lanes();
   std::size_t bytes = 0;
@@ -132,9 +132,10 @@ std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Ex
                                  static_cast<std::size_t>(lanes * cell_bytes(parameters));
     bytes += (level <= 2 ? 2 : 1) * of_level;
   }
-  if (pruned_level_count(parameters, extents.size()) > 0) {
+  const bool has_winners = has_coarse_map || pruned_level_count(parameters, extents.size()) > 0;
+  if (has_winners && extents.size() > 1) {
     bytes += static_cast<std::size_t>(extents[1].columns) *
-             static_cast<std::size_t>(extents[1].rows) * sizeof(std::int32_t);  // winners
+             static_cast<std::size_t>(extents[1].rows) * sizeof(std::int32_t);
   }
   return bytes;
 }

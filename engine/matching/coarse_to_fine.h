@@ -71,9 +71,10 @@ struct LevelCells {
   double finest_level = 0;
 };
 
-/// What CoarseLevels takes for images of `extent` and `candidates` disparities; 0 for one level.
+/// What CoarseLevels takes for images of `extent` and `candidates` disparities, with a CoarseMap or
+/// without; 0 for one level.
 std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
-                               int candidates);
+                               int candidates, bool has_coarse_map);
 
 /// The map of a coarse level, beside the image's own or in its place.
 struct CoarseMap {

@@ -190,9 +190,7 @@ void MatchChain::add_reduction(const MethodParameters& parameters, const ChainIn
                                          *level.reduced));
     return;
   }
-  MethodParameters of_costs = parameters;
-  of_costs.prior_smoothing = PriorSmoothing::kSum;  // likelihoods: before any smoothing
-  add_costs(of_costs, input, level);
+  add(plain_costs(parameters, input, 0, geometry_.count));
   add(parameters.aggregation == Aggregation::kBayes
           ? make_likelihood_reduction_stage(geometry_, weight, *level.reduced)
           : make_energy_reduction_stage(geometry_, half_scale_, *level.reduced));
@@ -229,34 +227,46 @@ std::unique_ptr<scheduler::RowStage> MatchChain::level_costs(const MethodParamet
   return make_level_likelihood_stage(geometry_, *level.costs, level.blocks);
 }
 
-/// Of the images, for some of the candidates.
-std::unique_ptr<scheduler::RowStage> MatchChain::costs_of(const MethodParameters& parameters,
-                                                          const ChainInput& input,
-                                                          int first_candidate, int count) const {
-  kernels::CandidateGeometry candidates = geometry_;
-  candidates.disparity_min += first_candidate;
-  candidates.count = count;
-  const bool is_fixed = uses_fixed_energies(parameters);
-  if (is_fixed && has_byte_energies(parameters, input)) {
-    return make_fixed_energy_stage(
-        make_small_census_energy_stage(parameters, candidates, *input.reference,
-                                       input.partners.front(), height_),
-        EnergySource::kBytes, count, EnergyFormat(parameters),
-        small_census_energies(parameters).step);
-  }
+/// Of the images, for some of the candidates: energies, for Bayesian diffusion likelihoods.
+std::unique_ptr<scheduler::RowStage> MatchChain::plain_costs(const MethodParameters& parameters,
+                                                             const ChainInput& input,
+                                                             int first_candidate, int count) const {
   const CellMeaning meaning = parameters.aggregation == Aggregation::kBayes
                                   ? CellMeaning::kLikelihood
                                   : CellMeaning::kEnergy;
-  auto costs =
-      make_cost_stage(parameters, candidates, *input.reference, input.partners, meaning, height_);
+  auto costs = make_cost_stage(parameters, of_candidates(first_candidate, count), *input.reference,
+                               input.partners, meaning, height_);
   if (!input.prior_px.empty()) {
     costs = make_disparity_prior_stage(std::move(costs), geometry_, meaning, input.prior_px,
                                        static_cast<float>(input.prior_weight),
                                        most_contrast(parameters), first_candidate);
   }
-  return is_fixed ? make_fixed_energy_stage(std::move(costs), EnergySource::kLikelihoods, count,
-                                            EnergyFormat(parameters))
-                  : std::move(costs);
+  return costs;
+}
+
+/// The same in the cells that the method aggregates.
+std::unique_ptr<scheduler::RowStage> MatchChain::costs_of(const MethodParameters& parameters,
+                                                          const ChainInput& input,
+                                                          int first_candidate, int count) const {
+  if (!uses_fixed_energies(parameters)) {
+    return plain_costs(parameters, input, first_candidate, count);
+  }
+  if (has_byte_energies(parameters, input)) {
+    return make_fixed_energy_stage(
+        make_small_census_energy_stage(parameters, of_candidates(first_candidate, count),
+                                       *input.reference, input.partners.front(), height_),
+        EnergySource::kBytes, count, EnergyFormat(parameters),
+        small_census_energies(parameters).step);
+  }
+  return make_fixed_energy_stage(plain_costs(parameters, input, first_candidate, count),
+                                 EnergySource::kLikelihoods, count, EnergyFormat(parameters));
+}
+
+kernels::CandidateGeometry MatchChain::of_candidates(int first_candidate, int count) const {
+  kernels::CandidateGeometry candidates = geometry_;
+  candidates.disparity_min += first_candidate;
+  candidates.count = count;
+  return candidates;
 }
 
 void MatchChain::add_column_ssd(const MethodParameters& parameters, const PreparedPair& pair) {

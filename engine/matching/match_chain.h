@@ -83,6 +83,11 @@ class MatchChain {
                  const ChainLevel& level);
   [[nodiscard]] std::unique_ptr<scheduler::RowStage> level_costs(const MethodParameters& parameters,
                                                                  const ChainLevel& level) const;
+  [[nodiscard]] kernels::CandidateGeometry of_candidates(int first_candidate, int count) const;
+  [[nodiscard]] std::unique_ptr<scheduler::RowStage> plain_costs(const MethodParameters& parameters,
+                                                                 const ChainInput& input,
+                                                                 int first_candidate,
+                                                                 int count) const;
   [[nodiscard]] std::unique_ptr<scheduler::RowStage> costs_of(const MethodParameters& parameters,
                                                               const ChainInput& input,
                                                               int first_candidate, int count) const;

@@ -1,19 +1,19 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/coarse_to_fine.h"
-#include "engine/matching/match_chain.h"
+#include "engine/matching/map_search.h"
+#include "engine/matching/match_inputs.h"
 #include "engine/matching/match_options.h"
+#include "engine/matching/match_report.h"
 #include "engine/matching/pair_levels.h"
 #include "engine/memory_use.h"
 #include "engine/object_pool.h"
@@ -37,19 +37,6 @@ struct DisparityMaps {
   DisparityMap right_disparity_y;
 };
 
-/// Disparities that pixels are drawn towards, such as those of the frame before where the image has
-/// not changed: the first stage of matching favours candidates near them (kernels/disparity_prior).
-/// Such a pixel keeps its disparity unless its own costs and its neighbours' speak against it.
-struct DisparityPrior {
-  /// Size of the images; NaN, or a value outside the range, where a pixel has none. Empty: no pixel
-  /// of that map has one. Not owned.
-  ImageView<const float> left_px = {};
-  ImageView<const float> right_px = {};
-  double weight = 1;  ///< 0..100; 1 counts about as much as what a pixel's own costs say
-
-  [[nodiscard]] bool empty() const { return left_px.empty() && right_px.empty(); }
-};
-
 /// What the maps take that are there.
 std::size_t held_bytes(const DisparityMaps& maps);
 
@@ -61,33 +48,6 @@ struct MatchRequest {
   bool unmatched = true;      ///< the masks of the maps
   bool confidence = false;    ///< the confidence of the maps
   DisparityPrior prior = {};  ///< for match() without a vertical search only
-};
-
-/// One more image of a camera on the baseline of the reference (6.6).
-struct OtherView {
-  const Photograph* photograph = nullptr;
-  /// Where its camera stands, from the reference's, to the right positive; in any unit, not 0.
-  double baseline = 1;
-};
-
-/// Seconds spent per part, in the order they ran.
-struct StageTime {
-  std::string_view name;  ///< static storage
-  double seconds = 0;
-};
-
-struct MatchReport {
-  std::vector<StageTime> stages;
-  /// Of one map; both maps use the same. With several levels the image's own: the others', which
-  /// are a third of the work, are made the same way, as is a map of coarse levels only.
-  scheduler::ChainPlan plan;
-  /// Width × height × disparities × maps computed, of all levels; of levels that look at few
-  /// candidates those.
-  double cells = 0;
-  double finest_cells = 0;   ///< of these, the finest level's
-  double finest_pixels = 0;  ///< width × height × maps computed to the finest level
-  /// What was estimated from the images where parameters ask for it; of several, of the first.
-  std::optional<PairLevels> levels;
 };
 
 /// Computes disparity maps of rectified pairs (EQUATIONS §1, §3, §5).
@@ -134,18 +94,14 @@ class StereoMatcher {
   [[nodiscard]] const MatchOptions& options() const { return options_; }
 
  private:
-  /// What a pair or several images become before they are matched.
+  /// What a pair or several images become before they are matched, and what matching works in.
   struct Prepared {
     PreparedPair pair;
     std::vector<CostImage> images;
     MethodParameters parameters;  ///< with what was estimated from the images
     LevelChanges of_right;
-    DisparityMap candidate_disparity_px;  ///< of one vertical disparity
-    Image<float> candidate_confidence;
-    Image<float> candidate_energy;
-    Image<float> energy;
-    CoarseLevels levels;
     EdgeWeightLevels edges;  ///< of the map that is being computed
+    MapSearchWork search;
     /// Of the left and the right image: what maps are checked against; empty: maps themselves.
     std::array<DisparityMap, 2> coarse_px;
   };
@@ -154,40 +110,38 @@ class StereoMatcher {
   struct MapNeed {
     bool whole = false;
     bool coarse = false;
-    [[nodiscard]] bool any() const { return whole || coarse; }
   };
-  /// One map and what goes with it; confidence and disparity_y_px null where not wanted.
-  struct Result {
-    DisparityMap& disparity_px;  ///< of which only the size counts where the coarse map is all
+  /// One image on the way to its map.
+  struct Side {
+    Reference reference;
+    const Photograph* image;
+    MapNeed need = {};
+    ChainInput input = {};
+    DisparityMap* px;
     Image<float>* confidence;
-    DisparityMap* disparity_y_px;
-    CoarseMap coarse = {};
+    DisparityMap* disparity_y;
+    Mask* unmatched;
+    ImageView<const float> check_px = {};  ///< of the coarse level; empty: not needed
   };
 
+  [[nodiscard]] static Side left_side(const Photograph& image, DisparityMaps& maps);
+  [[nodiscard]] static Side right_side(const Photograph& image, DisparityMaps& maps);
   /// The level that maps are checked against, 0: maps themselves.
   [[nodiscard]] int check_level(const RefinementOptions& refinement, scheduler::Extent image) const;
+  [[nodiscard]] std::pair<MapNeed, MapNeed> needs(const MatchRequest& request,
+                                                  const RefinementOptions& refinement,
+                                                  int check_level) const;
   [[nodiscard]] bool wants_confidence(const MatchRequest& request) const;
-  [[nodiscard]] std::pair<ChainInput, ChainInput> prepare_inputs(const Photograph& left,
-                                                                 const Photograph& right,
-                                                                 bool needs_left, bool needs_right,
-                                                                 bool uses_prior,
-                                                                 Prepared& prepared) const;
+  void prepare_inputs(Side& left, Side& right, bool uses_prior, Prepared& prepared) const;
   void settle_levels(const Photograph& left, const Photograph& right, Prepared& prepared,
                      MatchReport& report) const;
   [[nodiscard]] std::vector<LevelChanges> settle_levels(const Photograph& reference,
                                                         std::span<const OtherView> others,
                                                         Prepared& prepared,
                                                         MatchReport& report) const;
-  [[nodiscard]] scheduler::ChainPlan plan_of(const MatchChain& chain,
-                                             const ExecutionOptions& execution, int threads) const;
-  void compute_map(Reference reference, const ChainInput& input, Prepared& prepared,
-                   const Result& result, MatchReport& report) const;
-  void search_rows(const kernels::CandidateGeometry& geometry, const ChainInput& input,
-                   Prepared& prepared, const Result& result, MatchReport& report) const;
-  void run_levels(const kernels::CandidateGeometry& geometry, const ChainInput& input,
-                  const MapOutputs& outputs, const CoarseMap& coarse_map, Prepared& prepared,
-                  MatchReport& report) const;
-  void run_chain(const MatchChain& chain, MatchReport& report) const;
+  void compute(Side& side, bool wants_confidence, int check_level, Prepared& prepared,
+               MatchReport& report, const std::function<void()>& begin) const;
+  [[nodiscard]] MapToRefine to_refine(const Side& side, bool is_result) const;
 
   MatchOptions options_;
   MethodParameters parameters_;

@@ -94,13 +94,13 @@ std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) 
   // Levels with lower and upper bounds or gradients, of both images, and mirrored copies.
   constexpr std::size_t kPlanes = 4 * 2;
   constexpr std::size_t kCheckedMaps = 2;  // of coarse levels
+  const bool checks_coarse_maps = options.match.resolved_refinement().cross_check_level > 0;
   return pixels * channels * kPlanes * sizeof(float) +
-         (options.match.resolved_refinement().cross_check_level > 0 ? kCheckedMaps : 0) * pixels *
-             sizeof(float) +
+         (checks_coarse_maps ? kCheckedMaps : 0) * pixels * sizeof(float) +
          edge_weight_bytes(options.match.resolved(), pixels) +
          coarse_level_bytes(options.match.resolved(),
                             {shape.source.width_px, shape.source.height_px},
-                            options.match.disparities.count());
+                            options.match.disparities.count(), checks_coarse_maps);
 }
 
 bool is_on_baseline(const SequenceOptions& options, const ViewPath& view) {

@@ -36,7 +36,7 @@ void expect_images_of(std::size_t bytes, std::size_t pixel_bytes, int images) {
 /// What a match of a pair took.
 MemoryUse use_of(MatchOptions options, const ExecutionOptions& execution_options,
                  PixelKind pixels = PixelKind::kGrey8) {
-  options.raw = true;
+  options.raw = !options.refinement.cross_check_level;
   const auto [left, right] = textured_pair(kWidth, kHeight, options.disparities, pixels, 2);
   Execution execution(execution_options);
   const StereoMatcher matcher(options, execution);
@@ -124,9 +124,17 @@ TEST(MemoryUse, OfCoarseLevelsIsThatOfTheirCells) {
   // Costs of all, and results of two.
   expect_images_of(levels(2), 2 * first, 2);
   expect_images_of(levels(4), 2 * (first + second) + third, 5);
-  const std::size_t planned =
-      coarse_level_bytes(options.resolved(), {kWidth, kHeight}, options.disparities.count());
-  EXPECT_EQ(planned, 2 * (first + second) + third);
+  const auto planned = [&](bool has_coarse_map) {
+    return coarse_level_bytes(options.resolved(), {kWidth, kHeight}, options.disparities.count(),
+                              has_coarse_map);
+  };
+  EXPECT_EQ(planned(false), 2 * (first + second) + third);
+  // What the other map is checked against: winners of the first coarse level, four bytes each.
+  const std::size_t winners = std::size_t{306} * 42 * 4;
+  EXPECT_EQ(planned(true), 2 * (first + second) + third + winners);
+  options.refinement.cross_check_level = 1;
+  expect_images_of(levels(4), 2 * (first + second) + third + winners, 6);
+  options.refinement.cross_check_level = {};
   options.method = MatchMethod::kMembrane;
   expect_images_of(levels(2), 2 * 2 * first, 2);
 }

@@ -1,0 +1,65 @@
+#pragma once
+
+#include "engine/execution.h"
+#include "engine/image/image.h"
+#include "engine/matching/coarse_to_fine.h"
+#include "engine/matching/match_chain.h"
+#include "engine/matching/match_options.h"
+#include "engine/matching/match_report.h"
+#include "scheduler/strip_plan.h"
+
+namespace vantage {
+
+/// How `execution` works off a chain on so many threads.
+scheduler::ChainPlan chain_plan(const MatchChain& chain, const ExecutionOptions& execution,
+                                int threads, const scheduler::Machine& machine);
+
+/// Working memory of MapSearch, reused from map to map without allocating.
+struct MapSearchWork {
+  CoarseLevels levels;
+  // Of a search in two dimensions: winners of one vertical disparity, and the least energies yet.
+  DisparityMap candidate_disparity_px;
+  Image<float> candidate_confidence;
+  Image<float> candidate_energy;
+  Image<float> energy;
+};
+
+/// One map and what goes with it, all of the image's size. Not owned.
+struct MapResult {
+  DisparityMap* disparity_px;  ///< of which only the size counts where the coarse map is all
+  Image<float>* confidence = nullptr;      ///< null: not wanted
+  DisparityMap* disparity_y_px = nullptr;  ///< of a search in two dimensions, else null
+  CoarseMap coarse = {};
+};
+
+/// Computes single maps: flat or coarse to fine, along rows or in two dimensions (5.5.3).
+class MapSearch {
+ public:
+  /// `parameters`: those of `options`, with what was estimated from the images. All must outlive
+  /// the search. `report` gets plan and cells.
+  MapSearch(const MatchOptions& options, const MethodParameters& parameters, Execution& execution,
+            MapSearchWork& work, MatchReport& report)
+      : options_(options),
+        parameters_(parameters),
+        execution_(execution),
+        work_(work),
+        report_(report) {}
+
+  /// Throws Error when no pixel has a candidate.
+  void compute(Reference reference, const ChainInput& input, const MapResult& result);
+
+ private:
+  void search_rows(const kernels::CandidateGeometry& geometry, const ChainInput& input,
+                   const MapResult& result);
+  void run_levels(const kernels::CandidateGeometry& geometry, const ChainInput& input,
+                  const MapOutputs& outputs, const CoarseMap& coarse_map);
+  void run_chain(const MatchChain& chain);
+
+  const MatchOptions& options_;
+  const MethodParameters& parameters_;
+  Execution& execution_;
+  MapSearchWork& work_;
+  MatchReport& report_;
+};
+
+}  // namespace vantage
