@@ -53,6 +53,10 @@ HWY_INLINE VecOf<D8> grouped(D8 d, VecOf<D8> bytes) {
 template <class D8>
 HWY_INLINE VecOf<D8> bits_of_bytes(D8 d, VecOf<D8> bytes) {
   namespace hn = hwy::HWY_NAMESPACE;
+#if HWY_TARGET == HWY_AVX3_DL
+  (void)d;
+  return hn::PopulationCount(bytes);
+#else
   alignas(16) static constexpr std::uint8_t kBits[16] = {0, 1, 1, 2, 1, 2, 2, 3,
                                                          1, 2, 2, 3, 2, 3, 3, 4};
   const Tag16<D8> d16;
@@ -61,6 +65,7 @@ HWY_INLINE VecOf<D8> bits_of_bytes(D8 d, VecOf<D8> bytes) {
   const auto upper = hn::BitCast(d, hn::ShiftRight<4>(hn::BitCast(d16, bytes)));
   return hn::Add(hn::TableLookupBytes(table, hn::And(bytes, nibble)),
                  hn::TableLookupBytes(table, hn::And(upper, nibble)));
+#endif
 }
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
