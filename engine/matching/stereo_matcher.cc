@@ -198,8 +198,9 @@ StereoMatcher::Side StereoMatcher::right_side(const Photograph& image, Disparity
 }
 
 /// Gives the side's images their sizes and computes what it needs of its map.
-void StereoMatcher::compute(Side& side, bool wants_confidence, int check_level, Prepared& prepared,
-                            MatchReport& report, const std::function<void()>& begin) const {
+void StereoMatcher::compute(Side& side, std::string_view name, bool wants_confidence,
+                            int check_level, Prepared& prepared, StageClock& clock,
+                            MatchReport& report) const {
   const auto resize = [&](Image<float>& image, bool is_wanted) {
     image.resize(is_wanted ? side.image->width() : 0, is_wanted ? side.image->height() : 0);
   };
@@ -214,7 +215,7 @@ void StereoMatcher::compute(Side& side, bool wants_confidence, int check_level, 
   if (!side.need.whole && !side.need.coarse) {
     return;
   }
-  begin();
+  clock.begin(name);
   side.input.edges = prepared.edges.prepare(*side.image, parameters_, execution_);
   MapResult result{.disparity_px = side.need.whole ? side.px : &coarse_px,
                    .confidence = has_confidence ? side.confidence : nullptr,
@@ -272,8 +273,8 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     of_left.input.prior_weight = of_right.input.prior_weight = request.prior.weight;
   }
   const bool confidence = wants_confidence(request);
-  compute(of_left, confidence, check_level, *prepared, times, [&] { clock.begin("match left"); });
-  compute(of_right, confidence, check_level, *prepared, times, [&] { clock.begin("match right"); });
+  compute(of_left, "match left", confidence, check_level, *prepared, clock, times);
+  compute(of_right, "match right", confidence, check_level, *prepared, clock, times);
 
   if (options_.raw) {
     if (request.unmatched) {
@@ -327,7 +328,7 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
                   {false, true, true, changes[k]}, execution_);
     side.input.partners.push_back({&image, ratio});
   }
-  compute(side, wants_confidence(request), 0, *prepared, times, [&] { clock.begin("match"); });
+  compute(side, "match", wants_confidence(request), 0, *prepared, clock, times);
 
   if (options_.raw) {
     if (request.unmatched) {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,6 +21,8 @@
 #include "scheduler/strip_plan.h"
 
 namespace vantage {
+
+class StageClock;
 
 /// Results of one pair, on the grid of the images. Reused from call to call without allocating.
 /// Each member is filled only when MatchRequest asked for it (or the work needed it anyway).
@@ -139,8 +141,8 @@ class StereoMatcher {
                                                         std::span<const OtherView> others,
                                                         Prepared& prepared,
                                                         MatchReport& report) const;
-  void compute(Side& side, bool wants_confidence, int check_level, Prepared& prepared,
-               MatchReport& report, const std::function<void()>& begin) const;
+  void compute(Side& side, std::string_view name, bool wants_confidence, int check_level,
+               Prepared& prepared, StageClock& clock, MatchReport& report) const;
   [[nodiscard]] MapToRefine to_refine(const Side& side, bool is_result) const;
 
   MatchOptions options_;
