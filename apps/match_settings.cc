@@ -37,7 +37,7 @@ const Names<MatchCost>& cost_names() {
       {"squared", MatchCost::kSquared},     {"absolute", MatchCost::kAbsolute},
       {"truncated", MatchCost::kTruncated}, {"birchfield-tomasi", MatchCost::kBirchfieldTomasi},
       {"gradient", MatchCost::kGradient},   {"contaminated", MatchCost::kContaminated},
-      {"census", MatchCost::kCensus},       {"census-5x5", MatchCost::kSmallCensus},
+      {"census", MatchCost::kCensus},       {"census-rays", MatchCost::kRayCensus},
       {"combined", MatchCost::kCombined}};
   return names;
 }
@@ -135,6 +135,11 @@ void add_cost_settings(Settings& settings, MethodOverrides& parameters) {
       "Cost contaminated or combined, aggregation bayes: the share of outliers, between "
       "0 and 1; " +
           shared(book.epsilon_measurement));
+  settings.integer("census-thresholds", parameters.census_thresholds, "N",
+                   "Cost census-rays: how many grey levels each neighbour is compared with, 1 (the "
+                   "pixel's) or 3 (one less and one more, too: better where noise is as large as "
+                   "texture, in more time); " +
+                       shared(book.census_thresholds));
   settings.number("sigma-census", parameters.sigma_census, "S",
                   "Cost combined: how many census bits differ by noise, as a share of all, at most "
                   "1; 0 leaves them out; " +

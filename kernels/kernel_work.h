@@ -3,6 +3,7 @@
 #include "kernels/bayes_step/bayes_step.h"
 #include "kernels/candidates.h"
 #include "kernels/cell_smoothing/cell_smoothing.h"
+#include "kernels/census/census.h"
 #include "kernels/local_stopping_step/local_stopping_step.h"
 
 namespace vantage::kernels {
@@ -73,14 +74,28 @@ constexpr KernelWork negated_evidence_work(bool octagon, int channels) {
 }
 /// Twice exclusive or and counting the bits of bytes, and three additions of those counts.
 constexpr KernelWork hamming_work(int channels) { return compare_work(7, 2, channels); }
-/// The same of three bytes, a quarter of a value each, and their sum.
-constexpr KernelWork small_hamming_work(int channels) {
-  const double mean = channels == 1 ? 0 : 1;
-  return {8.0 * channels + mean, 0, 0.75 * channels + 1, 0.75 * channels};
+/// The same of bytes, a quarter of a value each: those of a channel, and of three channels the
+/// mean. With three thresholds there are two numbers to count bits of, and one counts twice.
+constexpr KernelWork ray_hamming_work(int channels, int thresholds) {
+  const double bytes = static_cast<double>(channels) * ray_census_bytes(thresholds);
+  const double sums = bytes - (thresholds == 1 ? 1 : 0);
+  const double mean = channels * thresholds == 1 ? 0 : 1;
+  return {2 * bytes + sums + mean, 0, bytes / 4 + 1, bytes / 4};
 }
-/// With one channel, and a value looked up by distance.
-inline constexpr KernelWork kSmallCensusLikelihoodWork = small_hamming_work(1);
-inline constexpr KernelWork kSmallCensusEnergyWork = {3.0 * 2 + 2, 0, 0.75 + 0.25, 0.75};
+/// With one channel, and a value looked up by distance in a table of two or five parts, which are
+/// chosen by their first distances.
+constexpr KernelWork ray_census_look_up_work(int thresholds, double values_per_cell) {
+  const double bytes = ray_census_bytes(thresholds);
+  const double choices = thresholds == 1 ? 1 : 4;
+  return {2 * bytes + bytes - (thresholds == 1 ? 1 : 0) + choices, 0, bytes / 4 + values_per_cell,
+          bytes / 4};
+}
+constexpr KernelWork ray_census_likelihood_work(int thresholds) {
+  return ray_census_look_up_work(thresholds, 1);
+}
+constexpr KernelWork ray_census_energy_work(int thresholds) {
+  return ray_census_look_up_work(thresholds, 0.25);
+}
 
 /// Of grey levels two distances of three operations and the least of them; of gradients two
 /// differences of two joined by or, and their sum; both scaled and cut off to steps. Then the sum

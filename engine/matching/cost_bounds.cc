@@ -40,8 +40,8 @@ CostBounds bounds_of_one(const MethodParameters& parameters) {
       return {0, static_cast<float>(-std::log(parameters.epsilon_measurement))};
     case MatchCost::kCensus:
       return {0, static_cast<float>(kernels::kCensusBits)};
-    case MatchCost::kSmallCensus:
-      return {0, static_cast<float>(kernels::kSmallCensusBits)};
+    case MatchCost::kRayCensus:
+      return {0, static_cast<float>(kernels::kRayCensusNeighbours)};
     case MatchCost::kCombined:
       // Each of three terms is rounded to whole units.
       return {0, static_cast<float>(largest_combined_energy(parameters) +

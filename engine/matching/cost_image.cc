@@ -235,23 +235,28 @@ void prepare_combined(const Photograph& photograph, const MethodParameters& para
   });
 }
 
-void prepare_small_census(Margins margins, Execution& execution, CostImage::Planes& planes) {
+void prepare_ray_census(Margins margins, Execution& execution, CostImage::Planes& planes) {
+  const int bytes = kernels::ray_census_bytes(planes.census_thresholds);
   for_each_channel(planes, [&](std::size_t c) {
-    for (FeaturePlane<std::uint8_t>& bytes : planes.small_codes[c]) {
-      resize(bytes, planes, margins);
+    for (int p = 0; p < bytes; ++p) {
+      resize(planes.ray_codes[c][static_cast<std::size_t>(p)], planes, margins);
     }
   });
   for_each_row(planes, execution, [&](std::size_t c, int y) {
-    kernels::SmallCensusRows rows{};
-    for (int v = -kernels::kSmallCensusRadius; v <= kernels::kSmallCensusRadius; ++v) {
-      rows[static_cast<std::size_t>(v + kernels::kSmallCensusRadius)] =
+    kernels::RayCensusRows rows{};
+    for (int v = -kernels::kRayCensusRadius; v <= kernels::kRayCensusRadius; ++v) {
+      rows[static_cast<std::size_t>(v + kernels::kRayCensusRadius)] =
           planes.levels[c].row(std::clamp(y + v, 0, planes.height - 1));
     }
-    auto& [first, second, third] = planes.small_codes[c];
-    kernels::small_census_code_row(rows, planes.width,
-                                   {first.plain.row(y), second.plain.row(y), third.plain.row(y)});
-    for (FeaturePlane<std::uint8_t>& bytes : planes.small_codes[c]) {
-      bytes.finish_row(planes.width, y, planes.has_mirrored);
+    kernels::RayCensusCodes codes{};
+    for (int p = 0; p < bytes; ++p) {
+      const auto k = static_cast<std::size_t>(p);
+      codes[k] = planes.ray_codes[c][k].plain.row(y);
+    }
+    kernels::ray_census_code_row(rows, planes.width, planes.census_thresholds, codes);
+    for (int p = 0; p < bytes; ++p) {
+      planes.ray_codes[c][static_cast<std::size_t>(p)].finish_row(planes.width, y,
+                                                                  planes.has_mirrored);
     }
   });
 }
@@ -292,9 +297,10 @@ void CostImage::prepare(const Photograph& photograph, const MethodParameters& pa
       prepare_levels(photograph, execution, planes);
       prepare_census(margins, execution, planes);
       break;
-    case MatchCost::kSmallCensus:
+    case MatchCost::kRayCensus:
+      planes.census_thresholds = parameters.census_thresholds;
       prepare_levels(photograph, execution, planes);
-      prepare_small_census(margins, execution, planes);
+      prepare_ray_census(margins, execution, planes);
       break;
     case MatchCost::kCombined:
       prepare_levels(photograph, execution, planes);
@@ -313,7 +319,7 @@ std::size_t CostImage::held_bytes() const {
   for (std::size_t c = 0; c < planes_->features.size(); ++c) {
     add(planes_->features[c]);
     add(planes_->codes[c]);
-    add(planes_->small_codes[c]);
+    add(planes_->ray_codes[c]);
     add(planes_->fixed_levels[c]);
   }
   add(planes_->fixed_gradients);

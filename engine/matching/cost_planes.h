@@ -32,7 +32,8 @@ struct FeaturePlane {
 ///   squared, absolute, truncated, contaminated:  grey levels
 ///   Birchfield–Tomasi:  grey levels, their least and largest values within half a pixel
 ///   gradient:           α·gx, α·gy, |g|/2
-/// `codes[channel]` the two halves of census codes, `small_codes` the bytes of small ones.
+/// `codes[channel]` the two halves of census codes, `ray_codes` the bytes of ray census
+/// codes.
 /// Combined: `fixed_levels[channel]` holds 16-bit grey levels and their bounds, `codes[0]` the
 /// luma's codes, `fixed_gradients` its gradient.
 struct CostImage::Planes {
@@ -43,7 +44,8 @@ struct CostImage::Planes {
   LevelChanges level_changes;
   std::array<std::array<FeaturePlane<float>, 3>, 3> features;
   std::array<std::array<FeaturePlane<std::uint32_t>, 2>, 3> codes;
-  std::array<std::array<FeaturePlane<std::uint8_t>, kernels::kSmallCensusBytes>, 3> small_codes;
+  int census_thresholds = 1;  ///< of ray census codes
+  std::array<std::array<FeaturePlane<std::uint8_t>, kernels::kMostRayCensusBytes>, 3> ray_codes;
   std::array<std::array<FeaturePlane<std::uint16_t>, 3>, 3> fixed_levels;
   std::array<FeaturePlane<std::uint16_t>, 2> fixed_gradients;
   /// What features are made of where they are not the grey levels themselves.

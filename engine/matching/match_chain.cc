@@ -12,7 +12,7 @@
 #include "engine/error.h"
 #include "engine/matching/cost_bounds.h"
 #include "engine/matching/energy_format.h"
-#include "engine/matching/small_census_tables.h"
+#include "engine/matching/ray_census_tables.h"
 #include "engine/matching/stage_bayes.h"
 #include "engine/matching/stage_block_selection.h"
 #include "engine/matching/stage_block_source.h"
@@ -26,7 +26,7 @@
 #include "engine/matching/stage_level_energies.h"
 #include "engine/matching/stage_level_likelihoods.h"
 #include "engine/matching/stage_max_product.h"
-#include "engine/matching/stage_small_census_energy.h"
+#include "engine/matching/stage_ray_census_energy.h"
 #include "engine/matching/stage_smoothing.h"
 #include "engine/matching/stage_window_selection.h"
 
@@ -109,7 +109,7 @@ CostBounds bounds_of(const MethodParameters& parameters, const ChainInput& input
 /// costs that are few whole numbers.
 bool has_byte_energies(const MethodParameters& parameters, const ChainInput& input) {
   return parameters.aggregation == Aggregation::kBayes &&
-         parameters.cost == MatchCost::kSmallCensus && parameters.colour == ColourUse::kLuma &&
+         parameters.cost == MatchCost::kRayCensus && parameters.colour == ColourUse::kLuma &&
          input.partners.size() == 1 && input.prior_px.empty();
 }
 
@@ -184,9 +184,9 @@ void MatchChain::add_reduction(const MethodParameters& parameters, const ChainIn
                                const ChainLevel& level) {
   const auto weight = static_cast<float>(parameters.level_weight);
   if (has_byte_energies(parameters, input)) {
-    add(make_small_census_energy_stage(parameters, geometry_, *input.reference,
-                                       input.partners.front(), height_));
-    add(make_byte_energy_reduction_stage(geometry_, small_census_energies(parameters).step, weight,
+    add(make_ray_census_energy_stage(parameters, geometry_, *input.reference,
+                                     input.partners.front(), height_));
+    add(make_byte_energy_reduction_stage(geometry_, ray_census_energies(parameters).step, weight,
                                          *level.reduced));
     return;
   }
@@ -253,10 +253,10 @@ std::unique_ptr<scheduler::RowStage> MatchChain::costs_of(const MethodParameters
   }
   if (has_byte_energies(parameters, input)) {
     return make_fixed_energy_stage(
-        make_small_census_energy_stage(parameters, of_candidates(first_candidate, count),
-                                       *input.reference, input.partners.front(), height_),
+        make_ray_census_energy_stage(parameters, of_candidates(first_candidate, count),
+                                     *input.reference, input.partners.front(), height_),
         EnergySource::kBytes, count, EnergyFormat(parameters),
-        small_census_energies(parameters).step);
+        ray_census_energies(parameters).step);
   }
   return make_fixed_energy_stage(plain_costs(parameters, input, first_candidate, count),
                                  EnergySource::kLikelihoods, count, EnergyFormat(parameters));

@@ -7,8 +7,8 @@ namespace {
 /// weights from intensity edges, candidates around what coarser levels found.
 MethodOverrides coarse_to_fine() {
   MethodOverrides parameters;
-  parameters.cost = MatchCost::kSmallCensus;
-  parameters.sigma_measurement = 4.2;  // of 24 bits
+  parameters.cost = MatchCost::kRayCensus;
+  parameters.sigma_measurement = 3;  // of 24 neighbours
   parameters.epsilon_measurement = 0.2;
   parameters.levels = 7;
   parameters.level_weight = 0.6;
@@ -39,6 +39,7 @@ PresetSettings preset_settings(MatchPreset preset) {
     case MatchPreset::kBalanced:
       settings.method = MatchMethod::kBayes;
       settings.parameters = coarse_to_fine();
+      settings.parameters.census_thresholds = 3;
       settings.parameters.mu = 0.28;
       settings.parameters.iterations = 3;
       settings.parameters.final_iterations = 1;
@@ -47,6 +48,7 @@ PresetSettings preset_settings(MatchPreset preset) {
     case MatchPreset::kQuality:
       settings.method = MatchMethod::kBayes;
       settings.parameters = coarse_to_fine();
+      settings.parameters.census_thresholds = 3;
       settings.parameters.mu = 0.33;
       settings.parameters.iterations = 10;
       settings.parameters.final_iterations = 5;

@@ -7,12 +7,13 @@
 
 #include "engine/error.h"
 #include "engine/matching/candidate_blocks.h"
+#include "kernels/census/census.h"
 
 namespace vantage {
 namespace {
 
 bool is_census(MatchCost cost) {
-  return cost == MatchCost::kCensus || cost == MatchCost::kSmallCensus;
+  return cost == MatchCost::kCensus || cost == MatchCost::kRayCensus;
 }
 
 // 181² · 255² is the largest windowed sum of squares that fits 31 bits.
@@ -45,6 +46,7 @@ constexpr MethodParameters kCommon{
     .sigma_measurement = 5,
     .estimate_sigma_measurement = false,
     .epsilon_measurement = 0.1,
+    .census_thresholds = 1,
     .sigma_census = 0.2,
     .sigma_gradient = 0,
     .prior_growth = 1,
@@ -104,6 +106,7 @@ void take_over(const MethodParametersOf<From>& overrides, MethodParametersOf<To>
   take(overrides.sigma_measurement, target.sigma_measurement);
   take(overrides.estimate_sigma_measurement, target.estimate_sigma_measurement);
   take(overrides.epsilon_measurement, target.epsilon_measurement);
+  take(overrides.census_thresholds, target.census_thresholds);
   take(overrides.sigma_census, target.sigma_census);
   take(overrides.sigma_gradient, target.sigma_gradient);
   take(overrides.truncation, target.truncation);
@@ -201,7 +204,7 @@ void validate_combination(const MethodParameters& parameters) {
       !is_in_grey_levels) {
     throw UsageError(
         "sigma-measurement is estimated, which gives grey levels, but the costs gradient, census "
-        "and census-5x5 are none; expected a number");
+        "and census-rays are none; expected a number");
   }
 }
 
@@ -300,6 +303,9 @@ void validate(const MethodParameters& parameters) {
           parameters.sigma_measurement, "a number of grey levels above 0");
   require(is_probability(parameters.epsilon_measurement), "epsilon-measurement",
           parameters.epsilon_measurement, "a number between 0 and 1, both excluded");
+  require(parameters.census_thresholds == 1 ||
+              parameters.census_thresholds == kernels::kMostRayCensusThresholds,
+          "census-thresholds", parameters.census_thresholds, "1 or 3");
   require(parameters.sigma_census >= 0 && parameters.sigma_census <= 1, "sigma-census",
           parameters.sigma_census, "a share of bits from 0, which leaves the term out, to 1");
   require(parameters.sigma_gradient >= 0 && std::isfinite(parameters.sigma_gradient),

@@ -19,7 +19,7 @@ enum class MatchCost {
   kGradient,          ///< −evidence (5.5)
   kContaminated,  ///< −log[(1−ε) exp(−ΔI²/2σ²) + ε], contaminated Gaussian (6.26 ff.)
   kCensus,        ///< Hamming distance of 9×7 census codes
-  kSmallCensus,   ///< the same of 5×5 ones: sharper, less sure where texture is weak
+  kRayCensus,     ///< the same of codes with 24 neighbours in eight directions, denser inside
   kCombined,      ///< Σ −log of contaminated Gaussians: grey levels, census, gradients
 };
 /// How cells gather support from their neighbours.
@@ -88,6 +88,7 @@ struct MethodParametersOf {
   /// combined cost unless either is set.
   Field<bool> estimate_sigma_measurement;
   Field<double> epsilon_measurement;  ///< εM, inside (0, 1): the same
+  Field<int> census_thresholds;  ///< ray census: grey levels a neighbour is compared with, 1 or 3
   Field<double> sigma_census;  ///< combined cost: σ of the share of census bits, 0..1; 0: no term
   Field<double> sigma_gradient;  ///< combined cost: σ in grey levels per pixel, ≥ 0; 0: no term
   Field<double> prior_growth;    ///< Bayes: σP of a level ÷ that of the next finer one, 1..4

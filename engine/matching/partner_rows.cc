@@ -83,7 +83,8 @@ CandidateRange PartnerRows::columns_with_all_partners() const {
 
 template <typename T, int kPlanes, typename PlanesOfChannel>
 FeaturePairs<T, kPlanes> PartnerRows::pairs(int y, Range columns, int channels,
-                                            const PlanesOfChannel& planes_of_channel) const {
+                                            const PlanesOfChannel& planes_of_channel,
+                                            std::size_t planes) const {
   FeaturePairs<T, kPlanes> row;
   row.channels = channels;
   row.partner_step = step();
@@ -96,7 +97,7 @@ FeaturePairs<T, kPlanes> PartnerRows::pairs(int y, Range columns, int channels,
     const auto& of_reference = planes_of_channel(reference_, std::min(c, reference_.channels - 1));
     const auto& of_partner = planes_of_channel(partner_, std::min(c, partner_.channels - 1));
     auto& channel = row.channel[static_cast<std::size_t>(c)];
-    for (std::size_t p = 0; p < kPlanes; ++p) {
+    for (std::size_t p = 0; p < planes; ++p) {
       channel.reference[p] = of_reference[p].plain.row(y) + columns.begin;
       channel.partner[p] = partner_pixels(of_partner[p], y) + offset;
     }
@@ -121,11 +122,14 @@ kernels::CensusPairs PartnerRows::codes(int y, Range columns) const {
       });
 }
 
-kernels::SmallCensusPairs PartnerRows::small_codes(int y, Range columns) const {
-  return pairs<std::uint8_t, kernels::kSmallCensusBytes>(
-      y, columns, channels(), [](const CostImage::Planes& planes, int channel) -> const auto& {
-        return planes.small_codes[static_cast<std::size_t>(channel)];
-      });
+kernels::RayCensusPairs PartnerRows::ray_codes(int y, Range columns, int thresholds) const {
+  return {
+      pairs<std::uint8_t, kernels::kMostRayCensusBytes>(
+          y, columns, channels(), [](const CostImage::Planes& planes, int channel) -> const auto& {
+            return planes.ray_codes[static_cast<std::size_t>(channel)];
+          },
+          static_cast<std::size_t>(kernels::ray_census_bytes(thresholds))),
+      thresholds};
 }
 
 kernels::CensusPairs PartnerRows::luma_codes(int y, Range columns) const {

@@ -46,7 +46,8 @@ class PartnerRows {
   [[nodiscard]] kernels::FeaturePairs<float, kPlanes> features(int y,
                                                                scheduler::Range columns) const;
   [[nodiscard]] kernels::CensusPairs codes(int y, scheduler::Range columns) const;
-  [[nodiscard]] kernels::SmallCensusPairs small_codes(int y, scheduler::Range columns) const;
+  [[nodiscard]] kernels::RayCensusPairs ray_codes(int y, scheduler::Range columns,
+                                                  int thresholds) const;
   /// The planes of the combined cost; gradients and the codes there are of one channel.
   [[nodiscard]] kernels::FeaturePairs<std::uint16_t, 3> fixed_levels(
       int y, scheduler::Range columns) const;
@@ -58,9 +59,11 @@ class PartnerRows {
                                                             float* work) const;
 
  private:
+  /// `planes`: how many there are, the first ones of kPlanes.
   template <typename T, int kPlanes, typename PlanesOfChannel>
   kernels::FeaturePairs<T, kPlanes> pairs(int y, scheduler::Range columns, int channels,
-                                          const PlanesOfChannel& planes_of_channel) const;
+                                          const PlanesOfChannel& planes_of_channel,
+                                          std::size_t planes = kPlanes) const;
   [[nodiscard]] int partner_row(int y) const;
   /// Where a shift of 0 leads from column x in a row of the partner, mirrored or not.
   [[nodiscard]] int position(int x) const;

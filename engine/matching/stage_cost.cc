@@ -12,12 +12,12 @@
 #include "engine/matching/column_work.h"
 #include "engine/matching/combined_terms.h"
 #include "engine/matching/partner_rows.h"
-#include "engine/matching/small_census_tables.h"
+#include "engine/matching/ray_census_tables.h"
 #include "kernels/census/census.h"
 #include "kernels/combined_cost/combined_cost.h"
 #include "kernels/evidence/evidence.h"
 #include "kernels/pixel_cost/pixel_cost.h"
-#include "kernels/small_census/small_census.h"
+#include "kernels/ray_census/ray_census.h"
 
 namespace vantage {
 namespace {
@@ -42,7 +42,7 @@ class CostStage final : public scheduler::RowStage {
                                                         : kernels::CombinedCells::kLikelihood),
         combined_of_luma_(combined_model(1)),
         combined_of_channels_(combined_model(3)),
-        likelihood_by_distance_(small_census_likelihoods(measurement_)),
+        likelihood_by_distance_(ray_census_likelihoods(measurement_, parameters.census_thresholds)),
         without_partner_(value_without_partner()) {}
 
   [[nodiscard]] std::string_view name() const override { return "cost"; }
@@ -144,8 +144,8 @@ class CostStage final : public scheduler::RowStage {
         return kernels::sampling_insensitive_work(channels);
       case MatchCost::kGradient:
         return kernels::negated_evidence_work(parameters_.norm == GradientNorm::kOctagon, channels);
-      case MatchCost::kSmallCensus:
-        return kernels::small_hamming_work(channels);
+      case MatchCost::kRayCensus:
+        return kernels::ray_hamming_work(channels, parameters_.census_thresholds);
       case MatchCost::kCombined:
         return kernels::combined_work(channels, combined_of_luma_.has_census,
                                       combined_of_luma_.has_gradient);
@@ -165,9 +165,9 @@ class CostStage final : public scheduler::RowStage {
         return energy_work(channels) + kernels::kLikelihoodOfEvidenceWork;
       case MatchCost::kCombined:
         return energy_work(channels);
-      case MatchCost::kSmallCensus:
+      case MatchCost::kRayCensus:
         if (channels == 1) {
-          return kernels::kSmallCensusLikelihoodWork;
+          return kernels::ray_census_likelihood_work(parameters_.census_thresholds);
         }
         [[fallthrough]];
       default:
@@ -219,8 +219,9 @@ class CostStage final : public scheduler::RowStage {
       case MatchCost::kCensus:
         kernels::hamming_row(partner.codes(y, columns), cells);
         break;
-      case MatchCost::kSmallCensus:
-        kernels::small_hamming_row(partner.small_codes(y, columns), cells);
+      case MatchCost::kRayCensus:
+        kernels::ray_hamming_row(partner.ray_codes(y, columns, parameters_.census_thresholds),
+                                 cells);
         break;
       case MatchCost::kCombined:
         combine(partner, y, columns, cells);
@@ -255,10 +256,11 @@ class CostStage final : public scheduler::RowStage {
       case MatchCost::kCombined:
         combine(partner, y, columns, cells);
         break;
-      case MatchCost::kSmallCensus:
+      case MatchCost::kRayCensus:
         if (partner.channels() == 1) {
-          kernels::small_census_likelihood_row(partner.small_codes(y, columns),
-                                               likelihood_by_distance_, cells);
+          kernels::ray_census_likelihood_row(
+              partner.ray_codes(y, columns, parameters_.census_thresholds), likelihood_by_distance_,
+              cells);
           break;
         }
         [[fallthrough]];
@@ -326,8 +328,8 @@ std::string_view cost_of_whole_pixels(MatchCost cost) {
       return "gradient";
     case MatchCost::kCensus:
       return "census";
-    case MatchCost::kSmallCensus:
-      return "census-5x5";
+    case MatchCost::kRayCensus:
+      return "census-rays";
     case MatchCost::kCombined:
       return "combined";
     default:

@@ -30,8 +30,8 @@ std::string_view name_of(MatchCost cost) {
       return "contaminated";
     case MatchCost::kCensus:
       return "census";
-    case MatchCost::kSmallCensus:
-      return "census-5x5";
+    case MatchCost::kRayCensus:
+      return "census-rays";
     case MatchCost::kCombined:
       return "combined";
   }
@@ -100,6 +100,9 @@ std::string method_text(const MatchOptions& match, const TunedImages& images) {
   const MethodParameters parameters = match.resolved();
   std::string text = fmt::format("{} {}{}", name_of(parameters.cost),
                                  name_of(parameters.aggregation), reach_of(parameters));
+  if (parameters.cost == MatchCost::kRayCensus && parameters.census_thresholds > 1) {
+    text += fmt::format(", {} thresholds", parameters.census_thresholds);
+  }
   if (uses_fixed_energies(parameters)) {
     text += ", largest term";  // cells are half as large, and take less time
   }

@@ -22,21 +22,27 @@ void census_code_row_ref(const CensusRows& rows, int width, std::uint32_t* first
   }
 }
 
-void small_census_code_row_ref(const SmallCensusRows& rows, int width,
-                               const SmallCensusCodes& codes) {
+void ray_census_code_row_ref(const RayCensusRows& rows, int width, int thresholds,
+                             const RayCensusCodes& codes) {
   for (int x = 0; x < width; ++x) {
-    const float centre = rows[kSmallCensusRadius][x];
-    std::uint32_t code = 0;
-    for (const float* row : rows) {
-      for (int u = -kSmallCensusRadius; u <= kSmallCensusRadius; ++u) {
-        if (u != 0 || row != rows[kSmallCensusRadius]) {
-          code = 2 * code + (row[x + u] < centre ? 1 : 0);
-        }
+    const float centre = rows[kRayCensusRadius][x];
+    std::uint32_t upper = 0;
+    std::uint32_t lower = 0;
+    for (const PixelOffset& offset : kRayCensusOffsets) {
+      const float level =
+          rows[static_cast<std::size_t>(kRayCensusRadius + offset.rows)][x + offset.columns];
+      const int more_than = (level < centre - kRayCensusMargin ? 1 : 0) + (level < centre ? 1 : 0) +
+                            (level < centre + kRayCensusMargin ? 1 : 0);
+      upper = 2 * upper + (more_than >= 2 ? 1U : 0U);
+      lower = 2 * lower + (more_than % 2 == 1 ? 1U : 0U);
+    }
+    for (std::size_t p = 0; p < kRayCensusBytes; ++p) {
+      const std::size_t shift = 8 * (kRayCensusBytes - 1 - p);
+      codes[p][x] = static_cast<std::uint8_t>(upper >> shift);
+      if (thresholds > 1) {
+        codes[kRayCensusBytes + p][x] = static_cast<std::uint8_t>(lower >> shift);
       }
     }
-    codes[0][x] = static_cast<std::uint8_t>(code >> 16U);
-    codes[1][x] = static_cast<std::uint8_t>(code >> 8U);
-    codes[2][x] = static_cast<std::uint8_t>(code);
   }
 }
 

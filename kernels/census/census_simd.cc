@@ -55,28 +55,52 @@ void census_codes(const CensusRows& rows, int width, std::uint32_t* first_half,
   }
 }
 
-void small_census_codes(const SmallCensusRows& rows, int width, const SmallCensusCodes& codes) {
-  const Tag d;
+// The three bytes of a code's 24 bits.
+HWY_INLINE void store_code(VecCode code, int x, std::uint8_t* const* bytes) {
   const TagCode d32;
   const hn::Rebind<std::uint8_t, TagCode> d8;
   const VecCode least_byte = hn::Set(d32, 0xFF);
+  const auto store = [&](VecCode bits, std::uint8_t* byte) HWY_ATTR {
+    const auto low = hn::BitCast(hn::ScalableTag<std::int32_t>(), hn::And(bits, least_byte));
+    hn::StoreU(hn::DemoteTo(d8, low), d8, byte + x);
+  };
+  store(hn::ShiftRight<16>(code), bytes[0]);
+  store(hn::ShiftRight<8>(code), bytes[1]);
+  store(code, bytes[2]);
+}
+
+HWY_INLINE const float* neighbours(const RayCensusRows& rows, int x, const PixelOffset& offset) {
+  return rows[static_cast<std::size_t>(kRayCensusRadius + offset.rows)] + x + offset.columns;
+}
+
+void ray_census_codes(const RayCensusRows& rows, int width, int thresholds,
+                      const RayCensusCodes& codes) {
+  const Tag d;
+  const TagCode d32;
+  const Vec margin = hn::Set(d, kRayCensusMargin);
   for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(d))) {
-    const Vec centre = hn::LoadU(d, rows[kSmallCensusRadius] + x);
-    VecCode code = hn::Zero(d32);
-    for (int v = 0; v <= 2 * kSmallCensusRadius; ++v) {
-      for (int u = -kSmallCensusRadius; u <= kSmallCensusRadius; ++u) {
-        if (u != 0 || v != kSmallCensusRadius) {
-          append(rows[v] + x + u, centre, code);
-        }
+    const Vec centre = hn::LoadU(d, rows[kRayCensusRadius] + x);
+    VecCode upper = hn::Zero(d32);
+    if (thresholds == 1) {
+      for (const PixelOffset& offset : kRayCensusOffsets) {
+        append(neighbours(rows, x, offset), centre, upper);
       }
+      store_code(upper, x, codes.data());
+      continue;
     }
-    const auto store = [&](VecCode bits, std::uint8_t* bytes) HWY_ATTR {
-      const auto low = hn::BitCast(hn::ScalableTag<std::int32_t>(), hn::And(bits, least_byte));
-      hn::StoreU(hn::DemoteTo(d8, low), d8, bytes + x);
-    };
-    store(hn::ShiftRight<16>(code), codes[0]);
-    store(hn::ShiftRight<8>(code), codes[1]);
-    store(code, codes[2]);
+    const Vec less = hn::Sub(centre, margin);
+    const Vec more = hn::Add(centre, margin);
+    VecCode lower = hn::Zero(d32);
+    for (const PixelOffset& offset : kRayCensusOffsets) {
+      const Vec level = hn::LoadU(d, neighbours(rows, x, offset));
+      const auto is_upper = hn::Lt(level, centre);
+      // Of the two other thresholds, the one on its side of the centre.
+      const auto is_lower = hn::Lt(level, hn::IfThenElse(is_upper, less, more));
+      upper = hn::Sub(hn::Add(upper, upper), hn::BitCast(d32, hn::VecFromMask(d, is_upper)));
+      lower = hn::Sub(hn::Add(lower, lower), hn::BitCast(d32, hn::VecFromMask(d, is_lower)));
+    }
+    store_code(upper, x, codes.data());
+    store_code(lower, x, codes.data() + kRayCensusBytes);
   }
 }
 
@@ -119,7 +143,7 @@ HWY_AFTER_NAMESPACE();
 namespace vantage::kernels {
 HWY_EXPORT(census_codes);
 HWY_EXPORT(hamming);
-HWY_EXPORT(small_census_codes);
+HWY_EXPORT(ray_census_codes);
 
 void census_code_row(const CensusRows& rows, int width, std::uint32_t* first_half,
                      std::uint32_t* second_half) {
@@ -128,8 +152,9 @@ void census_code_row(const CensusRows& rows, int width, std::uint32_t* first_hal
 void hamming_row(const CensusPairs& row, float* cells) {
   HWY_DYNAMIC_DISPATCH(hamming)(row, cells);
 }
-void small_census_code_row(const SmallCensusRows& rows, int width, const SmallCensusCodes& codes) {
-  HWY_DYNAMIC_DISPATCH(small_census_codes)(rows, width, codes);
+void ray_census_code_row(const RayCensusRows& rows, int width, int thresholds,
+                         const RayCensusCodes& codes) {
+  HWY_DYNAMIC_DISPATCH(ray_census_codes)(rows, width, thresholds, codes);
 }
 
 }  // namespace vantage::kernels

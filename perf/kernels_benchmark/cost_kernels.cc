@@ -8,7 +8,7 @@
 #include "kernels/evidence/evidence.h"
 #include "kernels/gradient/gradient.h"
 #include "kernels/pixel_cost/pixel_cost.h"
-#include "kernels/small_census/small_census.h"
+#include "kernels/ray_census/ray_census.h"
 #include "perf/kernels_benchmark/kernel_benchmark.h"
 
 namespace vantage::perf {
@@ -44,7 +44,9 @@ using Gradients = Pairs<float, 3>;
 using Codes = Pairs<std::uint32_t, 2>;
 
 /// Distances, and what tables make of them.
-struct SmallCodes : Pairs<std::uint8_t, kernels::kSmallCensusBytes> {
+template <int kThresholds>
+struct RayCodes : Pairs<std::uint8_t, kernels::kMostRayCensusBytes> {
+  kernels::RayCensusPairs pairs{row, kThresholds};
   AlignedValues<std::uint8_t> bytes{kCellCount};
   kernels::LikelihoodByDistance likelihoods;
   kernels::EnergyByDistance energies;
@@ -71,14 +73,14 @@ struct ImageRows {
   static constexpr int kWidth = 256;
   static constexpr std::size_t kStride = 512;
   static constexpr int kMargin = 16;
-  AlignedValues<float> pixels{7 * kStride, 256, 1.0F};
+  AlignedValues<float> pixels{9 * kStride, 256, 1.0F};
   AlignedValues<float> work{kStride};
   AlignedValues<float> first{kStride, 256, 1.0F};
   AlignedValues<float> second{kStride, 256, 1.0F};
   AlignedValues<float> third{kStride};
   AlignedValues<std::uint32_t> first_code{kStride};
   AlignedValues<std::uint32_t> second_code{kStride};
-  AlignedValues<std::uint8_t> code_bytes{3 * kStride};
+  AlignedValues<std::uint8_t> code_bytes{kernels::kMostRayCensusBytes * kStride};
 
   const float* row(std::size_t y) { return pixels.data() + y * kStride + kMargin; }
 
@@ -103,13 +105,16 @@ struct ImageRows {
     }
     kernels::census_code_row(rows, kWidth, first_code.data(), second_code.data());
   }
-  void small_census() {
-    kernels::SmallCensusRows rows;
+  void ray_census(int thresholds) {
+    kernels::RayCensusRows rows;
     for (std::size_t y = 0; y < rows.size(); ++y) {
       rows[y] = row(y);
     }
-    std::uint8_t* const bytes = code_bytes.data();
-    kernels::small_census_code_row(rows, kWidth, {bytes, bytes + kStride, bytes + 2 * kStride});
+    kernels::RayCensusCodes codes{};
+    for (std::size_t p = 0; p < codes.size(); ++p) {
+      codes[p] = code_bytes.data() + p * kStride;
+    }
+    kernels::ray_census_code_row(rows, kWidth, thresholds, codes);
   }
   void bounds() { kernels::sampling_bounds_row(row(0), kWidth, first.data(), second.data()); }
 };
@@ -160,20 +165,27 @@ KernelBenchmarks cost_kernels() {
           [](Gradients& d) { kernels::negated_evidence_row(d.row, true, d.cells.data()); }),
       on_own_data<Codes>("hamming_row", "cell", kCells, per_cell(kernels::hamming_work(1), kLanes),
                          [](Codes& d) { kernels::hamming_row(d.row, d.cells.data()); }),
-      on_own_data<SmallCodes>(
-          "small_hamming_row", "cell", kCells, per_cell(kernels::small_hamming_work(1), kLanes),
-          [](SmallCodes& d) { kernels::small_hamming_row(d.row, d.cells.data()); }),
-      on_own_data<SmallCodes>("small_census_likelihood_row", "cell", kCells,
-                              per_cell(kernels::kSmallCensusLikelihoodWork, kLanes),
-                              [](SmallCodes& d) {
-                                kernels::small_census_likelihood_row(d.row, d.likelihoods,
+      on_own_data<RayCodes<1> >(
+          "ray_hamming_row", "cell", kCells, per_cell(kernels::ray_hamming_work(1, 1), kLanes),
+          [](RayCodes<1>& d) { kernels::ray_hamming_row(d.pairs, d.cells.data()); }),
+      on_own_data<RayCodes<1> >("ray_census_likelihood_row", "cell", kCells,
+                                per_cell(kernels::ray_census_likelihood_work(1), kLanes),
+                                [](RayCodes<1>& d) {
+                                  kernels::ray_census_likelihood_row(d.pairs, d.likelihoods,
                                                                      d.cells.data());
-                              }),
-      on_own_data<SmallCodes>("small_census_energy_row", "cell", kCells,
-                              per_cell(kernels::kSmallCensusEnergyWork, kLanes),
-                              [](SmallCodes& d) {
-                                kernels::small_census_energy_row(d.row, d.energies, d.bytes.data());
-                              }),
+                                }),
+      on_own_data<RayCodes<1> >("ray_census_energy_row", "cell", kCells,
+                                per_cell(kernels::ray_census_energy_work(1), kLanes),
+                                [](RayCodes<1>& d) {
+                                  kernels::ray_census_energy_row(d.pairs, d.energies,
+                                                                 d.bytes.data());
+                                }),
+      on_own_data<RayCodes<3> >("ray_census_energy_row/3", "cell", kCells,
+                                per_cell(kernels::ray_census_energy_work(3), kLanes),
+                                [](RayCodes<3>& d) {
+                                  kernels::ray_census_energy_row(d.pairs, d.energies,
+                                                                 d.bytes.data());
+                                }),
       on_own_data<Combined>("combined_row/energy", "cell", kCells,
                             per_cell(kernels::combined_work(1, true, false), kLanes),
                             [energies](Combined& d) {
@@ -198,8 +210,10 @@ KernelBenchmarks cost_kernels() {
       pixels("separable_filter_row", {18, 48}, [](ImageRows& d) { d.filter(); }),
       pixels("evidence_planes_row/L2", {7, 20}, [](ImageRows& d) { d.evidence_planes(); }),
       pixels("census_code_row", {62 * 3, 62 * 4 + 4 + 8}, [](ImageRows& d) { d.census(); }),
-      pixels("census_code_row/5x5", {24 * 3, 24 * 4 + 4 + 4},
-             [](ImageRows& d) { d.small_census(); }),
+      pixels("ray_census_code_row", {24 * 3, 24 * 4 + 4 + 3},
+             [](ImageRows& d) { d.ray_census(1); }),
+      pixels("ray_census_code_row/3", {24 * 5, 24 * 4 + 4 + 6},
+             [](ImageRows& d) { d.ray_census(3); }),
       pixels("sampling_bounds_row", {8, 20}, [](ImageRows& d) { d.bounds(); }),
   };
 }

@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Combine(::testing::Values(MatchCost::kSquared, MatchCost::kAbsolute,
                                          MatchCost::kTruncated, MatchCost::kBirchfieldTomasi,
                                          MatchCost::kGradient, MatchCost::kContaminated,
-                                         MatchCost::kCensus, MatchCost::kSmallCensus),
+                                         MatchCost::kCensus, MatchCost::kRayCensus),
                        ::testing::Values(Aggregation::kNone, Aggregation::kBox,
                                          Aggregation::kGaussian, Aggregation::kBoxCascade,
                                          Aggregation::kDiffusion, Aggregation::kMembrane,

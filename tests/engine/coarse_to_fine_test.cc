@@ -129,9 +129,10 @@ TEST(CoarseToFineOfEdges, EqualsTheOracle) {
             std::tuple(PriorSmoothing::kMaximum, 5e-6, 0),
             std::tuple(PriorSmoothing::kMaximum, 0.4, 1),
             std::tuple(PriorSmoothing::kMaximum, 0.7, 1)}) {
-        const MatchCost cost = levels == 5 ? MatchCost::kCensus : MatchCost::kSmallCensus;
+        const MatchCost cost = levels == 5 ? MatchCost::kCensus : MatchCost::kRayCensus;
         MatchOptions options = options_of(Aggregation::kBayes, cost, levels, shape.range);
         options.parameters.sigma_measurement = levels == 5 ? 12.4 : 4.8;
+        options.parameters.census_thresholds = levels == 2 ? 3 : 1;
         options.parameters.epsilon_prior = epsilon_prior;
         options.parameters.final_iterations = final_iterations;
         options.parameters.prior_growth = 1.2;
@@ -202,7 +203,7 @@ INSTANTIATE_TEST_SUITE_P(
     Combinations, CoarseToFine,
     ::testing::Values(Combination{Aggregation::kBayes, MatchCost::kContaminated},
                       Combination{Aggregation::kBayes, MatchCost::kCensus},
-                      Combination{Aggregation::kBayes, MatchCost::kSmallCensus},
+                      Combination{Aggregation::kBayes, MatchCost::kRayCensus},
                       Combination{Aggregation::kBayes, MatchCost::kGradient},
                       Combination{Aggregation::kMembrane, MatchCost::kSquared},
                       Combination{Aggregation::kDiffusion, MatchCost::kBirchfieldTomasi},

@@ -27,7 +27,7 @@ MatchOptions options_of(PriorSmoothing smoothing, int blocks, int levels = 4) {
   MatchOptions options;
   options.method = MatchMethod::kBayes;
   options.disparities = kRange;
-  options.parameters.cost = MatchCost::kSmallCensus;
+  options.parameters.cost = MatchCost::kRayCensus;
   options.parameters.sigma_measurement = 4;
   options.parameters.levels = levels;
   options.parameters.iterations = 2;

@@ -49,8 +49,8 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
     p.cost = MatchCost::kCensus;
     p.window_px = 5;
   });
-  add("small_census_cascade", MatchMethod::kSsd, [](MethodOverrides& p) {
-    p.cost = MatchCost::kSmallCensus;
+  add("ray_census_cascade", MatchMethod::kSsd, [](MethodOverrides& p) {
+    p.cost = MatchCost::kRayCensus;
     p.aggregation = Aggregation::kBoxCascade;
   });
   add("birchfield_tomasi_none", MatchMethod::kSsd, [](MethodOverrides& p) {
@@ -97,7 +97,8 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
   });
   add("bayes_maximum_levels", MatchMethod::kBayes, [](MethodOverrides& p) {
     p.prior_smoothing = PriorSmoothing::kMaximum;
-    p.cost = MatchCost::kSmallCensus;
+    p.cost = MatchCost::kRayCensus;
+    p.census_thresholds = 3;
     p.levels = 4;
     p.iterations = 3;
     p.final_iterations = 1;

@@ -71,7 +71,7 @@ TEST(MethodParameters, OverridesGoBeforePresetsBeforeTheBook) {
   const MethodParameters resolved = options.resolved();
   EXPECT_EQ(resolved.iterations, 77);
   EXPECT_EQ(resolved.aggregation, Aggregation::kMembrane);
-  EXPECT_EQ(resolved.cost, MatchCost::kSmallCensus);  // the preset's goes with a membrane too
+  EXPECT_EQ(resolved.cost, MatchCost::kRayCensus);  // the preset's goes with a membrane too
   EXPECT_EQ(resolved.levels, *preset.parameters.levels);
   EXPECT_EQ(resolved.candidate_blocks, 0);  // which cannot be pruned
   EXPECT_EQ(complaint(options), "");
@@ -115,7 +115,7 @@ TEST(MethodParameters, APresetsNoiseIsOfItsOwnCost) {
   const double of_the_book = book_parameters(MatchMethod::kBayes).sigma_measurement;
   MatchOptions options;
   options.preset = MatchPreset::kBalanced;
-  options.parameters.cost = MatchCost::kSmallCensus;
+  options.parameters.cost = MatchCost::kRayCensus;
   EXPECT_NE(options.resolved().sigma_measurement, of_the_book);
   options.parameters.cost = MatchCost::kContaminated;
   EXPECT_EQ(options.resolved().sigma_measurement, of_the_book);
@@ -283,6 +283,7 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
        MatchMethod::kBayes},
       {"levels", parameter(&P::levels), {1, 10}, {-1, 0, 11}, "from 1 to 10"},
       {"candidate-blocks", parameter(&P::candidate_blocks), {0}, {-1, 9}, "(all candidates) to 8"},
+      {"census-thresholds", parameter(&P::census_thresholds), {1, 3}, {-1, 0, 2, 4}, "1 or 3"},
       {"pruned-levels", parameter(&P::pruned_levels), {1, 10}, {-1, 0, 11}, "from 1 to 10"},
       {"lambda",
        parameter(&P::lambda),
@@ -433,7 +434,7 @@ TEST(MatchOptions, CombinationsThatMakeNoSenseAreRefusedWithTheReason) {
   options.parameters.certainty = Certainty::kEntropy;
   EXPECT_EQ(complaint(options), "");
   options.parameters.estimate_sigma_measurement = true;
-  for (const MatchCost cost : {MatchCost::kGradient, MatchCost::kCensus, MatchCost::kSmallCensus}) {
+  for (const MatchCost cost : {MatchCost::kGradient, MatchCost::kCensus, MatchCost::kRayCensus}) {
     options.parameters.cost = cost;
     options.parameters.certainty = Certainty::kEntropy;
     EXPECT_THAT(complaint(options), HasSubstr("sigma-measurement is estimated"));

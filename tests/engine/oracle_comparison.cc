@@ -305,8 +305,8 @@ std::string name_of(MatchCost cost) {
       return "contaminated";
     case MatchCost::kCensus:
       return "census";
-    case MatchCost::kSmallCensus:
-      return "small_census";
+    case MatchCost::kRayCensus:
+      return "ray_census";
     case MatchCost::kCombined:
       return "combined";
   }

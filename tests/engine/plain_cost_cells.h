@@ -146,12 +146,12 @@ class PlainCostCells {
         parameters_);
   }
 
-  /// Of windows reaching `columns` and `rows` far.
+  /// Of windows of 9×7.
   [[nodiscard]] static double hamming(const Plane& a, int x, int y, const Plane& b, int partner,
-                                      int partner_y, int columns = 4, int rows = 3) {
+                                      int partner_y) {
     int different = 0;
-    for (int v = -rows; v <= rows; ++v) {
-      for (int u = -columns; u <= columns; ++u) {
+    for (int v = -3; v <= 3; ++v) {
+      for (int u = -4; u <= 4; ++u) {
         different += (a.at(x + u, y + v) < a.at(x, y)) !=
                              (b.at(partner + u, partner_y + v) < b.at(partner, partner_y))
                          ? 1
@@ -159,6 +159,32 @@ class PlainCostCells {
       }
     }
     return different;
+  }
+
+  /// Of neighbours on eight rays, the mean of the thresholds.
+  [[nodiscard]] double ray_hamming(const Plane& a, int x, int y, const Plane& b, int partner,
+                                   int partner_y) const {
+    const double margins[] = {0, -1.2505, 1.2505};
+    int different = 0;
+    for (int t = 0; t < parameters_.census_thresholds; ++t) {
+      const auto is_less = [&](const Plane& plane, int column, int row, int u, int v) {
+        return plane.at(column + u, row + v) < plane.at(column, row) + margins[t];
+      };
+      const auto compare = [&](int u, int v) {
+        different += is_less(a, x, y, u, v) != is_less(b, partner, partner_y, u, v) ? 1 : 0;
+      };
+      for (int k = 1; k <= 4; ++k) {
+        compare(k, 0);
+        compare(-k, 0);
+        compare(0, k);
+        compare(0, -k);
+      }
+      for (const int k : {-2, -1, 1, 2}) {
+        compare(k, k);
+        compare(k, -k);
+      }
+    }
+    return static_cast<double>(different) / parameters_.census_thresholds;
   }
 
   [[nodiscard]] double cost(const Channel& a, int x, int y, const Channel& b, double at,
@@ -191,8 +217,8 @@ class PlainCostCells {
       }
       case MatchCost::kCensus:
         return hamming(a.level, x, y, b.level, whole, partner_y);
-      case MatchCost::kSmallCensus:
-        return hamming(a.level, x, y, b.level, whole, partner_y, 2, 2);
+      case MatchCost::kRayCensus:
+        return ray_hamming(a.level, x, y, b.level, whole, partner_y);
     }
     return std::numeric_limits<double>::quiet_NaN();
   }

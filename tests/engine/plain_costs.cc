@@ -82,6 +82,39 @@ std::vector<bool> census_code(const Plane& plane, int x, int y, CensusWindow win
   return code;
 }
 
+/// Which neighbours on rays, up to 4 px along rows and columns and 2 px along diagonals, are less
+/// than the centre + `margin`.
+std::vector<bool> ray_code(const Plane& plane, int x, int y, double margin) {
+  std::vector<bool> code;
+  for (int length = 1; length <= 4; ++length) {
+    for (int v = -1; v <= 1; ++v) {
+      for (int u = -1; u <= 1; ++u) {
+        const bool is_diagonal = u != 0 && v != 0;
+        if ((u != 0 || v != 0) && (!is_diagonal || length <= 2)) {
+          code.push_back(plane.at(x + length * u, y + length * v) < plane.at(x, y) + margin);
+        }
+      }
+    }
+  }
+  return code;
+}
+
+/// Neighbours of 24 that differ, on the average of the thresholds.
+double ray_census_distance(const Channel& channel, int x, int partner, int y, int thresholds) {
+  double different = 0;
+  for (const double margin : {0.0, -1.2505, 1.2505}) {
+    const std::vector<bool> a = ray_code(channel.reference, x, y, margin);
+    const std::vector<bool> b = ray_code(channel.other, partner, y, margin);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      different += a[i] != b[i] ? 1 : 0;
+    }
+    if (thresholds == 1) {
+      return different;
+    }
+  }
+  return different / 3;
+}
+
 double census_distance(const Channel& channel, int x, int partner, int y, CensusWindow window) {
   const std::vector<bool> a = census_code(channel.reference, x, y, window);
   const std::vector<bool> b = census_code(channel.other, partner, y, window);
@@ -158,8 +191,8 @@ double cost_of_channel(const Channel& channel, int x, int partner, int y,
       return contaminated(difference * difference, parameters);
     case MatchCost::kCensus:
       return census_distance(channel, x, partner, y, {.columns = 4, .rows = 3});
-    case MatchCost::kSmallCensus:
-      return census_distance(channel, x, partner, y, {.columns = 2, .rows = 2});
+    case MatchCost::kRayCensus:
+      return ray_census_distance(channel, x, partner, y, parameters.census_thresholds);
     case MatchCost::kCombined:
       break;  // no mean over channels
   }

@@ -67,7 +67,7 @@ int byte_steps(const Volume& costs, const MethodParameters& parameters) {
   if (costs.is_coarse) {
     return 8;
   }
-  if (parameters.cost != MatchCost::kSmallCensus || parameters.colour != ColourUse::kLuma) {
+  if (parameters.cost != MatchCost::kRayCensus || parameters.colour != ColourUse::kLuma) {
     return 0;
   }
   int steps = 128;

@@ -67,8 +67,21 @@ TEST(PlainCosts, ByHand) {
   // on the centre row eight, on the six rows that replicate it eight each. Of 50: the same but 200.
   // Columns of right around 1: 12 12 12 12 | 50 | 25 200 200 200. Three columns differ, seven rows.
   EXPECT_DOUBLE_EQ(cost_at(MatchCost::kCensus, left, right, 2, 1), 21);
-  // Of 10 20 | 60 | 30 30 all are darker, of 12 12 | 50 | 25 200 all but one, on five rows.
-  EXPECT_DOUBLE_EQ(cost_at(MatchCost::kSmallCensus, left, right, 2, 1), 5);
+  // Along the row and the diagonals all are darker than 60. Of 50, three along the row and two at
+  // the end of diagonals are not.
+  EXPECT_DOUBLE_EQ(cost_at(MatchCost::kRayCensus, left, right, 2, 1), 5);
+}
+
+TEST(PlainCosts, RayCensusWithThreeThresholds) {
+  const Photograph left = row_of({100, 101, 100});
+  const Photograph right = row_of({100, 102, 100});
+  EXPECT_DOUBLE_EQ(cost_at(MatchCost::kRayCensus, left, right, 1, 0), 0);
+  // Of the sixteen that are darker on both sides, those on the left are not 1.25 levels darker.
+  MethodParameters parameters = book_parameters(MatchMethod::kSsd);
+  parameters.cost = MatchCost::kRayCensus;
+  parameters.census_thresholds = 3;
+  EXPECT_DOUBLE_EQ(plain_costs(left, right, Reference::kLeft, {0, 0}, parameters).at(1, 0, 0),
+                   16.0 / 3);
 }
 
 TEST(PlainCosts, ColourAndDepths) {

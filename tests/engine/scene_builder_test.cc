@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -121,28 +122,33 @@ TEST_F(SceneBuilderTest, AGridIsMatchedAlongRowsAndColumns) {
   EXPECT_GE(scores.psnr_db, 29);
 }
 
-// In the middle of a triangle, from computed maps, against each of the two edges alone.
+// Within a triangle, from computed maps, against each of the two edges alone.
 TEST_F(SceneBuilderTest, ATriangleIsBetterThanItsEdges) {
-  const ScenePosition middle{0.17, 0.17};
-  const Photograph truth = scene_.render(SceneView{middle.x, middle.y}, 0).image;
   const std::vector<SceneImage> corners = {photograph("a", {0, 0}), photograph("b", {0.5, 0}),
                                            photograph("c", {0, 0.5})};
-  const auto psnr_from = [&](const std::vector<SceneImage>& images, std::size_t vertices) {
+  const auto mean_psnr_from = [&](const std::vector<SceneImage>& images, int vertices) {
+    constexpr ScenePosition kWithin[] = {{0.17, 0.17}, {0.1, 0.3}, {0.3, 0.1}, {0.22, 0.22}};
     fs::remove_all(place_);
     build(images);
     const StoredScene stored = read_scene(place_);
     const SceneLayout layout(stored.positions(), stored.names());
     SceneViewer viewer(
         layout, [&](int vertex) { return load_vertex(place_, stored, vertex); }, {}, threads());
-    SynthesizedView view;
-    EXPECT_EQ(viewer.synthesize(middle, view).count, static_cast<int>(vertices));
-    return evaluate_view(view.image, truth, threads()).psnr_db;
+    double sum = 0;
+    for (const ScenePosition& position : kWithin) {
+      SynthesizedView view;
+      EXPECT_EQ(viewer.synthesize(position, view).count, vertices);
+      const Photograph truth = scene_.render(SceneView{position.x, position.y}, 0).image;
+      sum += evaluate_view(view.image, truth, threads()).psnr_db;
+    }
+    return sum / std::size(kWithin);
   };
-  const double of_triangle = psnr_from(corners, 3);
+  const double of_triangle = mean_psnr_from(corners, 3);
   EXPECT_GE(of_triangle, 30);
-  for (const std::size_t other : {1U, 2U}) {
-    EXPECT_GE(of_triangle, psnr_from({corners[0], corners[other]}, 2) + 1) << other;
-  }
+  const double of_row = mean_psnr_from({corners[0], corners[1]}, 2);
+  const double of_column = mean_psnr_from({corners[0], corners[2]}, 2);
+  EXPECT_GT(of_triangle, std::max(of_row, of_column));
+  EXPECT_GE(of_triangle, std::min(of_row, of_column) + 1);
 }
 
 // A column of cameras is a row turned over.

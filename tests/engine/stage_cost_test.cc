@@ -29,7 +29,7 @@ using testing::PlainPartner;
 constexpr MatchCost kCosts[] = {MatchCost::kSquared,   MatchCost::kAbsolute,
                                 MatchCost::kTruncated, MatchCost::kBirchfieldTomasi,
                                 MatchCost::kGradient,  MatchCost::kContaminated,
-                                MatchCost::kCensus,    MatchCost::kSmallCensus};
+                                MatchCost::kCensus,    MatchCost::kRayCensus};
 constexpr MatchCost kCostsOfGreyLevels[] = {MatchCost::kSquared, MatchCost::kAbsolute,
                                             MatchCost::kTruncated, MatchCost::kContaminated};
 constexpr CellMeaning kMeanings[] = {CellMeaning::kEnergy, CellMeaning::kLikelihood};
@@ -191,7 +191,7 @@ class StageCost : public ::testing::Test {
       case MatchCost::kGradient:
         return 1e-3;
       case MatchCost::kCensus:
-      case MatchCost::kSmallCensus:
+      case MatchCost::kRayCensus:
         return partners * 1e-5;
       default:
         return partners * 1e-4;
@@ -240,6 +240,7 @@ TEST_F(StageCost, EqualsPlainCellsForAllCostsAndImages) {
     for (const Shape& shape : kShapes) {
       for (const int direction : {-1, 1}) {
         CostCase test = pair_case(kind, shape, direction);
+        test.parameters.census_thresholds = direction < 0 ? 3 : 1;
         for (const ColourUse colour : {ColourUse::kLuma, ColourUse::kChannels}) {
           test.parameters.colour = colour;
           for (const MatchCost cost : kCosts) {
@@ -448,7 +449,7 @@ TEST_F(StageCost, RefusesBaselinesItCannotServe) {
   for (const auto& [cost, name] :
        {std::pair{MatchCost::kBirchfieldTomasi, "birchfield-tomasi"},
         std::pair{MatchCost::kGradient, "gradient"}, std::pair{MatchCost::kCensus, "census"},
-        std::pair{MatchCost::kSmallCensus, "census-5x5"},
+        std::pair{MatchCost::kRayCensus, "census-rays"},
         std::pair{MatchCost::kCombined, "combined"}}) {
     test.parameters.cost = cost;
     try {

@@ -83,6 +83,10 @@ TEST_F(TuningKeyTest, DifferentWorkHasDifferentKeys) {
   add(key());
   match_.parameters.pruned_levels = 1;
   add(key());
+  match_.parameters.cost = MatchCost::kRayCensus;
+  add(key());
+  match_.parameters.census_thresholds = 3;
+  add(key());
   match_.parameters.colour = ColourUse::kChannels;
   add(key());
   match_.method = MatchMethod::kMembrane;

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <random>
 #include <vector>
 
@@ -23,7 +25,7 @@ struct Window {
     for (std::size_t v = 0; v < rows.size(); ++v) {
       memory.emplace_back(size, random() % 5);
       for (std::size_t k = 0; k < size; ++k) {
-        memory.back()[k] = static_cast<float>(random() % 4) / 4;
+        memory.back()[k] = static_cast<float>(random() % 8) / 2;
       }
       rows[v] = memory.back().data() + kCensusRadiusX;
     }
@@ -67,39 +69,62 @@ TEST_P(Census, Codes) {
   }
 }
 
-TEST_P(Census, SmallCodes) {
+TEST_P(Census, RayCodes) {
+  // Up, down, left, right and along diagonals, as the header says.
+  const auto is_neighbour = [](int u, int v) {
+    const bool is_straight = (u == 0) != (v == 0);
+    return is_straight || (std::abs(u) == std::abs(v) && (std::abs(u) == 1 || std::abs(u) == 2));
+  };
   for (const int width : {1, 2, 15, 16, 17, 40}) {
     const Window window(width);
-    const SmallCensusRows rows = {window.rows[1], window.rows[2], window.rows[3], window.rows[4],
-                                  window.rows[5]};
-    const auto padded = static_cast<std::size_t>((width + 15) / 16 * 16);
-    std::vector<GuardedRow<std::uint8_t>> codes;
-    std::vector<std::vector<std::uint8_t>> codes_ref(kSmallCensusBytes,
-                                                     std::vector<std::uint8_t>(padded));
-    for (std::size_t p = 0; p < kSmallCensusBytes; ++p) {
-      codes.emplace_back(padded, p, std::uint8_t{0xAB});
-    }
-    small_census_code_row(rows, width, {codes[0].data(), codes[1].data(), codes[2].data()});
-    small_census_code_row_ref(rows, width,
-                              {codes_ref[0].data(), codes_ref[1].data(), codes_ref[2].data()});
-    for (int x = 0; x < width; ++x) {
-      const auto k = static_cast<std::size_t>(x);
-      std::size_t bit = 0;
-      for (const float* row : rows) {
-        for (int u = -2; u <= 2; ++u) {
-          if (row != rows[2] || u != 0) {
-            const unsigned byte = codes_ref[bit / 8][k];
-            ASSERT_EQ((byte >> (7 - bit % 8)) & 1U, row[x + u] < rows[2][x] ? 1U : 0U);
+    const RayCensusRows rows = {window.rows[0], window.rows[1], window.rows[2],
+                                window.rows[3], window.rows[4], window.rows[5],
+                                window.rows[6], window.rows[1], window.rows[3]};
+    for (const int thresholds : {1, 3}) {
+      const std::size_t bytes = thresholds == 1 ? 3 : 6;
+      const auto padded = static_cast<std::size_t>((width + 15) / 16 * 16);
+      std::vector<GuardedRow<std::uint8_t>> codes;
+      std::vector<std::vector<std::uint8_t>> codes_ref(bytes, std::vector<std::uint8_t>(padded));
+      RayCensusCodes out{};
+      RayCensusCodes out_ref{};
+      codes.reserve(bytes);
+      for (std::size_t p = 0; p < bytes; ++p) {
+        codes.emplace_back(padded, p, std::uint8_t{0xAB});
+        out[p] = codes[p].data();
+        out_ref[p] = codes_ref[p].data();
+      }
+      ray_census_code_row(rows, width, thresholds, out);
+      ray_census_code_row_ref(rows, width, thresholds, out_ref);
+      for (int x = 0; x < width; ++x) {
+        const auto k = static_cast<std::size_t>(x);
+        std::size_t bit = 0;
+        for (int v = -4; v <= 4; ++v) {
+          for (int u = -4; u <= 4; ++u) {
+            if (!is_neighbour(u, v)) {
+              continue;
+            }
+            const float more = rows[static_cast<std::size_t>(4 + v)][x + u] - rows[4][x];
+            const auto bit_of = [&](std::size_t first) {
+              return (codes_ref[first + bit / 8][k] >> (7 - bit % 8)) & 1;
+            };
+            SCOPED_TRACE(testing::Message() << "column " << u << ", row " << v);
+            if (thresholds == 1) {
+              ASSERT_EQ(bit_of(0), more < 0 ? 1 : 0);
+            } else {
+              const int expected = more < -1.25F ? 3 : more < 0 ? 2 : more <= 1.25F ? 1 : 0;
+              ASSERT_EQ(2 * bit_of(0) + bit_of(3), expected);
+            }
             ++bit;
           }
         }
+        ASSERT_EQ(bit, 24U);
       }
-    }
-    for (std::size_t p = 0; p < kSmallCensusBytes; ++p) {
-      for (std::size_t k = 0; k < static_cast<std::size_t>(width); ++k) {
-        ASSERT_EQ(codes[p].values()[k], codes_ref[p][k]);
+      for (std::size_t p = 0; p < bytes; ++p) {
+        for (std::size_t k = 0; k < static_cast<std::size_t>(width); ++k) {
+          ASSERT_EQ(codes[p].values()[k], codes_ref[p][k]);
+        }
+        EXPECT_TRUE(codes[p].intact());
       }
-      EXPECT_TRUE(codes[p].intact());
     }
   }
 }

@@ -1,4 +1,4 @@
-#include "engine/matching/stage_small_census_energy.h"
+#include "engine/matching/stage_ray_census_energy.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -8,19 +8,20 @@
 
 #include "engine/matching/column_work.h"
 #include "engine/matching/partner_rows.h"
-#include "engine/matching/small_census_tables.h"
-#include "kernels/small_census/small_census.h"
+#include "engine/matching/ray_census_tables.h"
+#include "kernels/ray_census/ray_census.h"
 
 namespace vantage {
 namespace {
 
-class SmallCensusEnergyStage final : public scheduler::RowStage {
+class RayCensusEnergyStage final : public scheduler::RowStage {
  public:
-  SmallCensusEnergyStage(const MethodParameters& parameters,
-                         const kernels::CandidateGeometry& geometry, const CostImage& reference,
-                         const CostPartner& partner, int height)
+  RayCensusEnergyStage(const MethodParameters& parameters,
+                       const kernels::CandidateGeometry& geometry, const CostImage& reference,
+                       const CostPartner& partner, int height)
       : RowStage({geometry.width, height}),
-        energies_(small_census_energies(parameters)),
+        thresholds_(parameters.census_thresholds),
+        energies_(ray_census_energies(parameters)),
         partner_(reference, partner, geometry),
         lanes_(geometry.lanes()),
         count_(geometry.count) {}
@@ -30,7 +31,7 @@ class SmallCensusEnergyStage final : public scheduler::RowStage {
     return static_cast<std::size_t>(lanes_);
   }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
-    return vantage::column_work(kernels::kSmallCensusEnergyWork, count_);
+    return vantage::column_work(kernels::ray_census_energy_work(thresholds_), count_);
   }
 
   void make_row(const scheduler::RowTask& task) const override {
@@ -43,8 +44,8 @@ class SmallCensusEnergyStage final : public scheduler::RowStage {
       }
       return;
     }
-    kernels::small_census_energy_row(partner_.small_codes(task.y, task.columns),
-                                     energies_.by_distance, cells);
+    kernels::ray_census_energy_row(partner_.ray_codes(task.y, task.columns, thresholds_),
+                                   energies_.by_distance, cells);
     const kernels::CandidateRange inner = partner_.columns_with_all_partners();
     for (int x = task.columns.begin; x < task.columns.end; ++x) {
       if (x < inner.begin || x >= inner.end) {
@@ -63,7 +64,8 @@ class SmallCensusEnergyStage final : public scheduler::RowStage {
     return cells + static_cast<std::ptrdiff_t>(x - task.columns.begin) * lanes_;
   }
 
-  SmallCensusEnergies energies_;
+  int thresholds_;
+  RayCensusEnergies energies_;
   PartnerRows partner_;
   int lanes_;
   int count_;
@@ -71,10 +73,10 @@ class SmallCensusEnergyStage final : public scheduler::RowStage {
 
 }  // namespace
 
-std::unique_ptr<scheduler::RowStage> make_small_census_energy_stage(
+std::unique_ptr<scheduler::RowStage> make_ray_census_energy_stage(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
     const CostImage& reference, const CostPartner& partner, int height) {
-  return std::make_unique<SmallCensusEnergyStage>(parameters, geometry, reference, partner, height);
+  return std::make_unique<RayCensusEnergyStage>(parameters, geometry, reference, partner, height);
 }
 
 }  // namespace vantage

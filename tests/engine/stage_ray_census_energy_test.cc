@@ -1,5 +1,5 @@
 // Bytes of energies against the logarithms of the likelihoods that the same costs give.
-#include "engine/matching/stage_small_census_energy.h"
+#include "engine/matching/stage_ray_census_energy.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/matching/small_census_tables.h"
+#include "engine/matching/ray_census_tables.h"
 #include "engine/matching/stage_cost.h"
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/cell_stages.h"
@@ -32,13 +32,14 @@ constexpr Shape kShapes[] = {{{1, 1}, {0, 0}},
                              {{37, 29}, {-4, 12}, 3},
                              {{53, 7}, {0, 63}, -9}};
 
-TEST(SmallCensusEnergyStage, IsTheLogarithmOfTheLikelihoods) {
+TEST(RayCensusEnergyStage, IsTheLogarithmOfTheLikelihoods) {
   Execution execution({.threads = 2});
   for (const Shape& shape : kShapes) {
     for (const double epsilon : {0.9, 0.1, 1e-6, 1e-20}) {
       for (const int direction : {-1, 1}) {
         MethodParameters parameters = book_parameters(MatchMethod::kBayes);
-        parameters.cost = MatchCost::kSmallCensus;
+        parameters.cost = MatchCost::kRayCensus;
+        parameters.census_thresholds = direction < 0 ? 3 : 1;
         parameters.sigma_measurement = 4.8;
         parameters.epsilon_measurement = epsilon;
         const Extent extent = shape.extent;
@@ -61,12 +62,12 @@ TEST(SmallCensusEnergyStage, IsTheLogarithmOfTheLikelihoods) {
 
         CellVolume<std::uint8_t> energies(extent, geometry.lanes());
         const auto bytes =
-            make_small_census_energy_stage(parameters, geometry, reference, partner, extent.rows);
+            make_ray_census_energy_stage(parameters, geometry, reference, partner, extent.rows);
         const CellSink<std::uint8_t> energy_sink(energies);
         const std::vector<const scheduler::RowStage*> second = {bytes.get(), &energy_sink};
         scheduler::run_whole_image(second);
 
-        const float step = small_census_energies(parameters).step;
+        const float step = ray_census_energies(parameters).step;
         EXPECT_LE(-std::log(epsilon), epsilon < 1e-13 ? 1e9 : 255 * step);
         for (int y = 0; y < extent.rows; ++y) {
           for (int x = 0; x < extent.columns; ++x) {

@@ -1,20 +1,29 @@
 #include <bit>
 #include <cstddef>
+#include <cstdlib>
 #include <limits>
 
-#include "kernels/small_census/small_census.h"
+#include "kernels/ray_census/ray_census.h"
 
 namespace vantage::kernels {
 namespace {
 
 /// Of all channels together.
-int distance(const SmallCensusPairs& row, int column, int lane) {
+int distance(const RayCensusPairs& row, int column, int lane) {
   int different = 0;
   for (int c = 0; c < row.channels; ++c) {
     const auto& [reference, partner] = row.channel[static_cast<std::size_t>(c)];
-    for (std::size_t p = 0; p < kSmallCensusBytes; ++p) {
-      different += std::popcount(static_cast<std::uint8_t>(
-          reference[p][column] ^ partner[p][column * row.partner_step + lane]));
+    const int at = column * row.partner_step + lane;
+    for (std::size_t p = 0; p < kRayCensusBytes; ++p) {
+      for (unsigned bit = 0; bit < 8; ++bit) {
+        // The number that a code has for the neighbour.
+        const auto number = [&](const auto& planes, int k) {
+          const int upper = (planes[p][k] >> bit) & 1;
+          return row.thresholds == 1 ? upper
+                                     : 2 * upper + ((planes[p + kRayCensusBytes][k] >> bit) & 1);
+        };
+        different += std::abs(number(reference, column) - number(partner, at));
+      }
     }
   }
   return different;
@@ -22,7 +31,7 @@ int distance(const SmallCensusPairs& row, int column, int lane) {
 
 /// cell(column, lane) of all cells.
 template <typename Value, typename Cell>
-void each_cell(const SmallCensusPairs& row, Value* cells, const Cell& cell) {
+void each_cell(const RayCensusPairs& row, Value* cells, const Cell& cell) {
   for (int j = 0; j < row.columns; ++j) {
     for (int i = 0; i < row.lanes; ++i) {
       cells[j * row.lanes + i] = cell(j, i);
@@ -33,7 +42,7 @@ void each_cell(const SmallCensusPairs& row, Value* cells, const Cell& cell) {
 }  // namespace
 
 LikelihoodByDistance::LikelihoodByDistance(
-    const std::array<float, kSmallCensusDistances>& likelihoods) {
+    const std::array<float, kMostRayCensusDistances>& likelihoods) {
   for (std::size_t i = 0; i < likelihoods.size(); ++i) {
     const auto bits = std::bit_cast<std::uint32_t>(likelihoods[i]);
     for (std::size_t b = 0; b < bytes_.size(); ++b) {
@@ -50,22 +59,23 @@ float LikelihoodByDistance::at(int distance) const {
   return std::bit_cast<float>(bits);
 }
 
-void small_hamming_row_ref(const SmallCensusPairs& row, float* cells) {
+void ray_hamming_row_ref(const RayCensusPairs& row, float* cells) {
   each_cell(row, cells, [&](int column, int lane) {
     const auto sum = static_cast<float>(distance(row, column, lane));
-    return row.channels > 1 ? sum * (1.0F / 3.0F) : sum;
+    const int codes = row.channels * row.thresholds;
+    return codes > 1 ? sum * (1.0F / static_cast<float>(codes)) : sum;
   });
 }
 
-void small_census_likelihood_row_ref(const SmallCensusPairs& row,
-                                     const LikelihoodByDistance& likelihoods, float* cells) {
+void ray_census_likelihood_row_ref(const RayCensusPairs& row,
+                                   const LikelihoodByDistance& likelihoods, float* cells) {
   each_cell(row, cells, [&](int column, int lane) {
     return lane < row.count ? likelihoods.at(distance(row, column, lane)) : 0.0F;
   });
 }
 
-void small_census_energy_row_ref(const SmallCensusPairs& row, const EnergyByDistance& energies,
-                                 std::uint8_t* cells) {
+void ray_census_energy_row_ref(const RayCensusPairs& row, const EnergyByDistance& energies,
+                               std::uint8_t* cells) {
   each_cell(row, cells, [&](int column, int lane) {
     return lane < row.count ? energies.steps[static_cast<std::size_t>(distance(row, column, lane))]
                             : std::numeric_limits<std::uint8_t>::max();

@@ -1,0 +1,282 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/ray_census/ray_census_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "kernels/candidates.h"
+#include "kernels/cells/byte_cells-inl.h"
+#include "kernels/ray_census/ray_census.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SCALAR
+void hamming(const RayCensusPairs& row, float* cells) { ray_hamming_row_ref(row, cells); }
+void likelihoods(const RayCensusPairs& row, const LikelihoodByDistance& table, float* cells) {
+  ray_census_likelihood_row_ref(row, table, cells);
+}
+void energies(const RayCensusPairs& row, const EnergyByDistance& table, std::uint8_t* cells) {
+  ray_census_energy_row_ref(row, table, cells);
+}
+#else
+
+// One column's codes, in every lane.
+template <int kChannels, int kThresholds, class D8>
+struct ReferenceCodes {
+  VecOf<D8> byte[kChannels][ray_census_bytes(kThresholds)];
+};
+
+// Distances to the codes whose bytes partner(channel, byte) loads, all channels together: at most
+// 216.
+template <int kChannels, int kThresholds, class D8, class Partner>
+HWY_INLINE VecOf<D8> distances(D8 d, const ReferenceCodes<kChannels, kThresholds, D8>& reference,
+                               const Partner& partner) {
+  auto ones = hn::Zero(d);
+  auto twos = hn::Zero(d);
+#pragma GCC unroll 3
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const auto& own = reference.byte[c];
+#pragma GCC unroll 3
+    for (std::size_t p = 0; p < kRayCensusBytes; ++p) {
+      const auto upper = hn::Xor(own[p], partner(c, p));
+      if constexpr (kThresholds == 1) {
+        ones = hn::Add(ones, bits_of_bytes(d, upper));
+      } else {
+        // |a − b| of numbers of two bits: 1 where the lower ones differ, and 2 where the upper ones
+        // do, unless a and b are 1 and 2. Those differ in both, and a's bits from each other.
+        const std::size_t q = p + kRayCensusBytes;
+        const auto lower = hn::Xor(own[q], partner(c, q));
+        const auto is_1_or_2 = hn::Xor(own[p], own[q]);
+        ones = hn::Add(ones, bits_of_bytes(d, lower));
+        twos = hn::Add(twos, bits_of_bytes(d, hn::AndNot(hn::And(lower, is_1_or_2), upper)));
+      }
+    }
+  }
+  return kThresholds == 1 ? ones : hn::Add(ones, hn::Add(twos, twos));
+}
+
+// Calls cell(d, distances, lane) for the vectors of D8's size of one column, as long as whole ones
+// fit; returns the first lane that is left.
+template <int kChannels, int kThresholds, class D8, class Cell>
+HWY_INLINE int each_vector(D8 d, const RayCensusPairs& row, int column, int lane,
+                           const Cell& cell) {
+  const int step = static_cast<int>(hn::Lanes(d));
+  if (lane + step > row.lanes) {
+    return lane;
+  }
+  ReferenceCodes<kChannels, kThresholds, D8> reference;
+#pragma GCC unroll 3
+  for (int c = 0; c < kChannels; ++c) {
+    const auto& planes = row.channel[static_cast<std::size_t>(c)].reference;
+#pragma GCC unroll 6
+    for (std::size_t p = 0; p < ray_census_bytes(kThresholds); ++p) {
+      reference.byte[c][p] = hn::Set(d, planes[p][column]);
+    }
+  }
+  const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(column) * row.partner_step;
+  for (; lane + step <= row.lanes; lane += step) {
+    const std::ptrdiff_t at = first + lane;
+    cell(d,
+         distances(d, reference,
+                   [&](std::size_t c, std::size_t p)
+                       HWY_ATTR { return hn::LoadU(d, row.channel[c].partner[p] + at); }),
+         lane);
+  }
+  return lane;
+}
+
+// The same with all lanes of a column, which are a multiple of 16.
+template <int kChannels, int kThresholds, class Cell>
+HWY_INLINE void each_lane(const RayCensusPairs& row, int column, const Cell& cell) {
+  int lane = 0;
+  lane =
+      each_vector<kChannels, kThresholds>(hn::ScalableTag<std::uint8_t>(), row, column, lane, cell);
+  lane = each_vector<kChannels, kThresholds>(hn::CappedTag<std::uint8_t, 32>(), row, column, lane,
+                                             cell);
+  each_vector<kChannels, kThresholds>(hn::CappedTag<std::uint8_t, 16>(), row, column, lane, cell);
+}
+
+// The four bytes of each cell, least significant first and in grouped order, as floats in order.
+template <class D8>
+HWY_INLINE void store_floats(D8 d, const VecOf<D8> (&bytes)[4], float* cells) {
+  const Tag16<D8> d16;
+  const TagFloat<D8> df;
+  const std::size_t n = hn::Lanes(df);
+  const auto store = [&](VecOf<D8> low, VecOf<D8> high, float* at) HWY_ATTR {
+    const auto lower = hn::BitCast(d16, low);
+    const auto upper = hn::BitCast(d16, high);
+    hn::StoreU(hn::BitCast(df, hn::InterleaveLower(d16, lower, upper)), df, at);
+    hn::StoreU(hn::BitCast(df, hn::InterleaveUpper(d16, lower, upper)), df, at + n);
+  };
+  store(hn::InterleaveLower(d, bytes[0], bytes[1]), hn::InterleaveLower(d, bytes[2], bytes[3]),
+        cells);
+  store(hn::InterleaveUpper(d, bytes[0], bytes[1]), hn::InterleaveUpper(d, bytes[2], bytes[3]),
+        cells + 2 * n);
+}
+
+// table[index] of a table with entries for all distances.
+template <int kThresholds, class D8>
+HWY_INLINE VecOf<D8> looked_up(D8 d, const std::uint8_t* table, VecOf<D8> index) {
+  // Distances are below 128, and comparing signed bytes costs less.
+  const hn::RebindToSigned<D8> d8s;
+  const auto within = hn::And(index, hn::Set(d, 15));
+  auto value = hn::TableLookupBytes(hn::LoadDup128(d, table), within);
+#pragma GCC unroll 4
+  for (int first = 16; first < ray_census_distances(kThresholds); first += 16) {
+    const auto last_before = hn::Set(d8s, static_cast<std::int8_t>(first - 1));
+    value = hn::IfThenElse(hn::RebindMask(d, hn::Gt(hn::BitCast(d8s, index), last_before)),
+                           hn::TableLookupBytes(hn::LoadDup128(d, table + first), within), value);
+  }
+  return value;
+}
+
+template <int kChannels, int kThresholds>
+HWY_INLINE void hamming_columns(const RayCensusPairs& row, float* cells) {
+  constexpr int kCodes = kChannels * kThresholds;
+  for (int j = 0; j < row.columns; ++j, cells += row.lanes) {
+    each_lane<kChannels, kThresholds>(row, j, [&](auto d, auto distance, int lane) HWY_ATTR {
+      using D8 = decltype(d);
+      const TagFloat<D8> df;
+      const hn::RebindToSigned<Tag32<D8> > d32;
+      const auto zero = hn::Zero(d);
+      store_floats(d, {grouped(d, distance), zero, zero, zero}, cells + lane);
+      // What was stored are integers.
+      const auto share = hn::Set(df, 1.0F / kCodes);
+      for (std::size_t k = 0; k < hn::Lanes(d); k += hn::Lanes(df)) {
+        float* const at = cells + lane + k;
+        const auto whole = hn::ConvertTo(df, hn::BitCast(d32, hn::LoadU(df, at)));
+        hn::StoreU(kCodes > 1 ? hn::Mul(whole, share) : whole, df, at);
+      }
+    });
+  }
+}
+
+template <int kThresholds>
+HWY_INLINE void hamming_of_channels(const RayCensusPairs& row, float* cells) {
+  if (row.channels == 1) {
+    hamming_columns<1, kThresholds>(row, cells);
+  } else {
+    hamming_columns<3, kThresholds>(row, cells);
+  }
+}
+
+void hamming(const RayCensusPairs& row, float* cells) {
+  if (row.thresholds == 1) {
+    hamming_of_channels<1>(row, cells);
+  } else {
+    hamming_of_channels<3>(row, cells);
+  }
+}
+
+template <int kThresholds>
+HWY_INLINE void likelihood_columns(const RayCensusPairs& row, const LikelihoodByDistance& table,
+                                   float* cells) {
+  for (int j = 0; j < row.columns; ++j, cells += row.lanes) {
+    each_lane<1, kThresholds>(row, j, [&](auto d, auto distance, int lane) HWY_ATTR {
+      const auto index = grouped(d, distance);
+      store_floats(d,
+                   {looked_up<kThresholds>(d, table.bytes(0), index),
+                    looked_up<kThresholds>(d, table.bytes(1), index),
+                    looked_up<kThresholds>(d, table.bytes(2), index),
+                    looked_up<kThresholds>(d, table.bytes(3), index)},
+                   cells + lane);
+    });
+    std::fill(cells + row.count, cells + row.lanes, 0.0F);
+  }
+}
+
+void likelihoods(const RayCensusPairs& row, const LikelihoodByDistance& table, float* cells) {
+  if (row.thresholds == 1) {
+    likelihood_columns<1>(row, table, cells);
+  } else {
+    likelihood_columns<3>(row, table, cells);
+  }
+}
+
+// Energies of two columns of kLaneMultiple lanes, each in one half of a vector, which single ones
+// would leave empty. Returns the first column that is left.
+template <int kThresholds>
+HWY_INLINE int energies_of_pairs(const RayCensusPairs& row, const EnergyByDistance& table,
+                                 std::uint8_t* cells) {
+  if constexpr (hn::MaxLanes(hn::ScalableTag<std::uint8_t>()) < 2 * kLaneMultiple) {
+    return 0;
+  } else {
+    using D8 = hn::CappedTag<std::uint8_t, 2 * kLaneMultiple>;
+    const D8 d;
+    const hn::Half<D8> half;
+    const auto& [reference, partner] = row.channel[0];
+    const int end = row.columns - row.columns % 2;
+    for (int j = 0; j < end; j += 2) {
+      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(j) * row.partner_step;
+      ReferenceCodes<1, kThresholds, D8> own;
+#pragma GCC unroll 6
+      for (std::size_t p = 0; p < ray_census_bytes(kThresholds); ++p) {
+        own.byte[0][p] =
+            hn::Combine(d, hn::Set(half, reference[p][j + 1]), hn::Set(half, reference[p][j]));
+      }
+      const auto distance = distances(d, own, [&](std::size_t /*channel*/, std::size_t p) HWY_ATTR {
+        return hn::Combine(d, hn::LoadU(half, partner[p] + at + row.partner_step),
+                           hn::LoadU(half, partner[p] + at));
+      });
+      hn::StoreU(looked_up<kThresholds>(d, table.steps.data(), distance), d,
+                 cells + static_cast<std::ptrdiff_t>(j) * kLaneMultiple);
+    }
+    return end;
+  }
+}
+
+template <int kThresholds>
+HWY_INLINE void energy_columns(const RayCensusPairs& row, const EnergyByDistance& table,
+                               std::uint8_t* cells) {
+  const int first =
+      row.lanes == kLaneMultiple ? energies_of_pairs<kThresholds>(row, table, cells) : 0;
+  for (int j = first; j < row.columns; ++j) {
+    std::uint8_t* const column = cells + static_cast<std::ptrdiff_t>(j) * row.lanes;
+    each_lane<1, kThresholds>(row, j, [&](auto d, auto distance, int lane) HWY_ATTR {
+      hn::StoreU(looked_up<kThresholds>(d, table.steps.data(), distance), d, column + lane);
+    });
+  }
+  for (int j = 0; row.count < row.lanes && j < row.columns; ++j, cells += row.lanes) {
+    std::fill(cells + row.count, cells + row.lanes, std::numeric_limits<std::uint8_t>::max());
+  }
+}
+
+void energies(const RayCensusPairs& row, const EnergyByDistance& table, std::uint8_t* cells) {
+  if (row.thresholds == 1) {
+    energy_columns<1>(row, table, cells);
+  } else {
+    energy_columns<3>(row, table, cells);
+  }
+}
+#endif
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(hamming);
+HWY_EXPORT(likelihoods);
+HWY_EXPORT(energies);
+
+void ray_hamming_row(const RayCensusPairs& row, float* cells) {
+  HWY_DYNAMIC_DISPATCH(hamming)(row, cells);
+}
+void ray_census_likelihood_row(const RayCensusPairs& row, const LikelihoodByDistance& table,
+                               float* cells) {
+  HWY_DYNAMIC_DISPATCH(likelihoods)(row, table, cells);
+}
+void ray_census_energy_row(const RayCensusPairs& row, const EnergyByDistance& table,
+                           std::uint8_t* cells) {
+  HWY_DYNAMIC_DISPATCH(energies)(row, table, cells);
+}
+
+}  // namespace vantage::kernels
+#endif

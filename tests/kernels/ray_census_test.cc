@@ -1,0 +1,141 @@
+#include "kernels/ray_census/ray_census.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "tests/kernels/feature_rows.h"
+#include "tests/kernels/kernel_test_utils.h"
+
+namespace vantage::kernels {
+namespace {
+
+class RayCensus : public EveryTarget {};
+VANTAGE_ON_EVERY_TARGET(RayCensus);
+
+std::uint8_t draw(std::mt19937& random) {
+  switch (random() % 6) {
+    case 0:
+      return 0;
+    case 1:
+      return 0xFF;
+    default:
+      return static_cast<std::uint8_t>(random());
+  }
+}
+
+/// Neighbour by neighbour, of all channels together.
+int distance(const RayCensusPairs& row, int column, int lane) {
+  int different = 0;
+  for (int c = 0; c < row.channels; ++c) {
+    const auto& [a, b] = row.channel[static_cast<std::size_t>(c)];
+    const int at = column * row.partner_step + lane;
+    for (std::size_t p = 0; p < 3; ++p) {
+      for (int bit = 0; bit < 8; ++bit) {
+        int of_a = (a[p][column] >> bit) & 1;
+        int of_b = (b[p][at] >> bit) & 1;
+        if (row.thresholds == 3) {
+          of_a = 2 * of_a + ((a[3 + p][column] >> bit) & 1);
+          of_b = 2 * of_b + ((b[3 + p][at] >> bit) & 1);
+        }
+        different += of_a > of_b ? of_a - of_b : of_b - of_a;
+      }
+    }
+  }
+  return different;
+}
+
+/// Calls check(row, column, lane, the cell) for rows of every shape, with one threshold and three.
+template <typename Run, typename Check>
+void for_each_cell(const Run& run, const Check& check) {
+  for_each_feature_rows<std::uint8_t, kMostRayCensusBytes>(draw, [&](const auto& pairs) {
+    for (const int thresholds : {1, 3}) {
+      RayCensusPairs row{pairs, thresholds};
+      for (auto& channel : row.channel) {  // bytes that are not there are not read
+        for (std::size_t p = thresholds == 1 ? 3 : 6; p < kMostRayCensusBytes; ++p) {
+          channel.reference[p] = nullptr;
+          channel.partner[p] = nullptr;
+        }
+      }
+      const auto cells = run(row);
+      for (int j = 0; j < row.columns; ++j) {
+        for (int i = 0; i < row.lanes; ++i) {
+          check(row, j, i, cells[static_cast<std::size_t>(j * row.lanes + i)]);
+        }
+      }
+    }
+  });
+}
+
+/// Every byte of a float differs from entry to entry.
+std::array<float, kMostRayCensusDistances> likelihoods() {
+  std::array<float, kMostRayCensusDistances> values{};
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    values[k] = std::exp(-0.37F * static_cast<float>(k)) / 3;
+  }
+  return values;
+}
+
+TEST_P(RayCensus, HammingDistance) {
+  for_each_cell(
+      [](const RayCensusPairs& row) {
+        return equal_cells(
+            cell_count(row), [&](float* out) { ray_hamming_row(row, out); },
+            [&](float* out) { ray_hamming_row_ref(row, out); });
+      },
+      [](const RayCensusPairs& row, int j, int i, float cell) {
+        ASSERT_FLOAT_EQ(cell, static_cast<float>(distance(row, j, i)) /
+                                  static_cast<float>(row.channels * row.thresholds));
+      });
+}
+
+TEST_P(RayCensus, LikelihoodsAreTheTables) {
+  const auto values = likelihoods();
+  const LikelihoodByDistance table(values);
+  for (int k = 0; k < kMostRayCensusDistances; ++k) {
+    ASSERT_EQ(table.at(k), values[static_cast<std::size_t>(k)]);
+  }
+  for_each_cell(
+      [&](RayCensusPairs row) {
+        row.channels = 1;
+        return equal_cells(
+            cell_count(row), [&](float* out) { ray_census_likelihood_row(row, table, out); },
+            [&](float* out) { ray_census_likelihood_row_ref(row, table, out); });
+      },
+      [&](RayCensusPairs row, int j, int i, float cell) {
+        row.channels = 1;
+        ASSERT_EQ(cell,
+                  i < row.count ? values[static_cast<std::size_t>(distance(row, j, i))] : 0.0F);
+      });
+}
+
+TEST_P(RayCensus, EnergiesAreTheTables) {
+  EnergyByDistance table;
+  for (std::size_t k = 0; k < kMostRayCensusDistances; ++k) {
+    table.steps[k] = static_cast<std::uint8_t>(251 - 3 * k);
+  }
+  for_each_cell(
+      [&](RayCensusPairs row) {
+        row.channels = 1;
+        GuardedRow<std::uint8_t> cells(cell_count(row), 3, 0xCD);
+        GuardedRow<std::uint8_t> expected(cell_count(row), 0, 0xCD);
+        ray_census_energy_row(row, table, cells.data());
+        ray_census_energy_row_ref(row, table, expected.data());
+        EXPECT_TRUE(cells.intact());
+        EXPECT_EQ(cells.values(), expected.values());
+        return cells.values();
+      },
+      [&](RayCensusPairs row, int j, int i, std::uint8_t cell) {
+        row.channels = 1;
+        ASSERT_EQ(int{cell},
+                  i < row.count ? table.steps[static_cast<std::size_t>(distance(row, j, i))] : 255);
+      });
+}
+
+}  // namespace
+}  // namespace vantage::kernels
