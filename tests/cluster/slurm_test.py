@@ -82,14 +82,18 @@ class Run:
         return [process for process in of_task if "--shard" in command_line(process)]
 
     def node(self, task):
+        """Where a task runs; empty while it does not, or the controller is silent."""
         return self.cluster.slurm("squeue", "--noheader", "--format=%N", "--jobs",
-                                  f"{self.jobs()['array_job']}_{task}").strip()
+                                  f"{self.jobs()['array_job']}_{task}", check=False).strip()
 
     def in_queue(self):
-        jobs = self.jobs()
-        ids = f"{jobs['array_job']},{jobs['merge_job']}"
-        return self.cluster.slurm("squeue", "--noheader", "--array", "--format=%i %T %r",
-                                  "--jobs", ids, check=False).splitlines()
+        """What Slurm has left to do; not empty while the controller is silent."""
+        try:
+            # Of all jobs: asked for those that are long done, it answers with an error.
+            return self.cluster.slurm("squeue", "--noheader", "--array",
+                                      "--format=%i %T %r").splitlines()
+        except slurm_cluster.ClusterError as error:
+            return [str(error)]
 
     def job(self, name):
         """The fields that Slurm keeps of a job."""
