@@ -46,6 +46,7 @@ class PartnerRows {
   [[nodiscard]] kernels::FeaturePairs<float, kPlanes> features(int y,
                                                                scheduler::Range columns) const;
   [[nodiscard]] kernels::CensusPairs codes(int y, scheduler::Range columns) const;
+  /// thresholds: those the images were prepared with.
   [[nodiscard]] kernels::RayCensusPairs ray_codes(int y, scheduler::Range columns,
                                                   int thresholds) const;
   /// The planes of the combined cost; gradients and the codes there are of one channel.

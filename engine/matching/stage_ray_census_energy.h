@@ -9,7 +9,7 @@
 
 namespace vantage {
 
-/// Source stage: energies −ln p0 of small census codes in bytes, geometry.lanes() a column, in the
+/// Source stage: energies −ln p0 of ray census codes in bytes, geometry.lanes() a column, in the
 /// steps of ray_census_energies(): what coarse levels are made of, in a tenth of the time that
 /// likelihoods and their logarithms take. Lanes that are no candidates hold 255. Of one channel and
 /// one partner at the map's own baseline; otherwise as make_cost_stage().

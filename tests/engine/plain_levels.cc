@@ -61,7 +61,7 @@ Volume block_means(const Volume& finer) {
   return coarser;
 }
 
-/// Of small census codes in bytes: the finest steps a nat of 8 … 128 that −ln ε fits in; 0: costs
+/// Of ray census codes in bytes: the finest steps a nat of 8 … 128 that −ln ε fits in; 0: costs
 /// are not in bytes.
 int byte_steps(const Volume& costs, const MethodParameters& parameters) {
   if (costs.is_coarse) {
