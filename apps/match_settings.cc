@@ -137,7 +137,7 @@ void add_cost_settings(Settings& settings, MethodOverrides& parameters) {
           shared(book.epsilon_measurement));
   settings.integer("census-thresholds", parameters.census_thresholds, "N",
                    "Cost census-rays: how many grey levels each neighbour is compared with, 1 (the "
-                   "pixel's) or 3 (one less and one more, too: better where noise is as large as "
+                   "pixel's) or 3 (1.25 less and more, too: better where noise is as large as "
                    "texture, in more time); " +
                        shared(book.census_thresholds));
   settings.number("sigma-census", parameters.sigma_census, "S",

@@ -235,8 +235,9 @@ void prepare_combined(const Photograph& photograph, const MethodParameters& para
   });
 }
 
-void prepare_ray_census(Margins margins, Execution& execution, CostImage::Planes& planes) {
-  const int bytes = kernels::ray_census_bytes(planes.census_thresholds);
+void prepare_ray_census(int thresholds, Margins margins, Execution& execution,
+                        CostImage::Planes& planes) {
+  const int bytes = kernels::ray_census_bytes(thresholds);
   for_each_channel(planes, [&](std::size_t c) {
     for (int p = 0; p < bytes; ++p) {
       resize(planes.ray_codes[c][static_cast<std::size_t>(p)], planes, margins);
@@ -253,7 +254,7 @@ void prepare_ray_census(Margins margins, Execution& execution, CostImage::Planes
       const auto k = static_cast<std::size_t>(p);
       codes[k] = planes.ray_codes[c][k].plain.row(y);
     }
-    kernels::ray_census_code_row(rows, planes.width, planes.census_thresholds, codes);
+    kernels::ray_census_code_row(rows, planes.width, thresholds, codes);
     for (int p = 0; p < bytes; ++p) {
       planes.ray_codes[c][static_cast<std::size_t>(p)].finish_row(planes.width, y,
                                                                   planes.has_mirrored);
@@ -298,9 +299,8 @@ void CostImage::prepare(const Photograph& photograph, const MethodParameters& pa
       prepare_census(margins, execution, planes);
       break;
     case MatchCost::kRayCensus:
-      planes.census_thresholds = parameters.census_thresholds;
       prepare_levels(photograph, execution, planes);
-      prepare_ray_census(margins, execution, planes);
+      prepare_ray_census(parameters.census_thresholds, margins, execution, planes);
       break;
     case MatchCost::kCombined:
       prepare_levels(photograph, execution, planes);

@@ -44,7 +44,6 @@ struct CostImage::Planes {
   LevelChanges level_changes;
   std::array<std::array<FeaturePlane<float>, 3>, 3> features;
   std::array<std::array<FeaturePlane<std::uint32_t>, 2>, 3> codes;
-  int census_thresholds = 1;  ///< of ray census codes
   std::array<std::array<FeaturePlane<std::uint8_t>, kernels::kMostRayCensusBytes>, 3> ray_codes;
   std::array<std::array<FeaturePlane<std::uint16_t>, 3>, 3> fixed_levels;
   std::array<FeaturePlane<std::uint16_t>, 2> fixed_gradients;
