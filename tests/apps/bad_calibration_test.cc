@@ -9,7 +9,7 @@
 #include "tests/apps/pair_fixture.h"
 
 namespace vantage {
-namespace {
+namespace bad_calibration_test {
 
 using testing::HasSubstr;
 using testing::Not;
@@ -237,5 +237,5 @@ TEST_F(BadCalibration, ViewsThatSeeNothingAreWarnedOf) {
   EXPECT_THAT(away.err, HasSubstr("everything the pair can show is behind it"));
 }
 
-}  // namespace
+}  // namespace bad_calibration_test
 }  // namespace vantage

@@ -4,7 +4,7 @@
 #include "tests/apps/pair_fixture.h"
 
 namespace vantage {
-namespace {
+namespace bad_input_test {
 
 using testing::HasSubstr;
 
@@ -105,5 +105,5 @@ TEST_F(BadInput, OnePixelPairsWork) {
   EXPECT_EQ(read_disparity(folder_ / "o.pfm").at(0, 0), 0);
 }
 
-}  // namespace
+}  // namespace bad_input_test
 }  // namespace vantage

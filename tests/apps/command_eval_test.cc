@@ -7,7 +7,7 @@
 #include "tests/apps/pair_fixture.h"
 
 namespace vantage {
-namespace {
+namespace command_eval_test {
 
 using testing::HasSubstr;
 
@@ -113,5 +113,5 @@ TEST_F(EvalCommand, BadInputIsOneLine) {
   }
 }
 
-}  // namespace
+}  // namespace command_eval_test
 }  // namespace vantage

@@ -8,7 +8,7 @@
 #include "tests/well_formed_xml.h"
 
 namespace vantage {
-namespace {
+namespace command_experiment_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -88,5 +88,5 @@ TEST(ExperimentCommand, BadInputIsOneLineAndExit2) {
             1);
 }
 
-}  // namespace
+}  // namespace command_experiment_test
 }  // namespace vantage

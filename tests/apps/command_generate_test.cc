@@ -6,7 +6,7 @@
 #include "tests/apps/pair_fixture.h"
 
 namespace vantage {
-namespace {
+namespace command_generate_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -131,5 +131,5 @@ TEST(InfoCommand, TellsTheVersionAndTheInstructionSets) {
   }
 }
 
-}  // namespace
+}  // namespace command_generate_test
 }  // namespace vantage

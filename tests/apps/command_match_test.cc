@@ -7,7 +7,7 @@
 #include "tests/apps/pair_fixture.h"
 
 namespace vantage {
-namespace {
+namespace command_match_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -224,5 +224,5 @@ TEST(Vantage, UnknownCommandsAndHelp) {
   EXPECT_EQ(run_vantage({"--version"}).out.rfind("vantage ", 0), 0U);
 }
 
-}  // namespace
+}  // namespace command_match_test
 }  // namespace vantage

@@ -13,7 +13,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace command_profile_test {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -328,5 +328,5 @@ TEST_F(ProfiledRun, TakesAJobFile) {
   expect_untouched();
 }
 
-}  // namespace
+}  // namespace command_profile_test
 }  // namespace vantage

@@ -15,7 +15,7 @@
 #include "tests/temporary_folder.h"
 
 namespace vantage {
-namespace {
+namespace command_rectify_test {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -293,5 +293,5 @@ TEST(RectifyChessboard, FromFeaturesOfAllPairs) {
   }
 }
 
-}  // namespace
+}  // namespace command_rectify_test
 }  // namespace vantage

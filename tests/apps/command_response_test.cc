@@ -8,7 +8,7 @@
 #include "tests/well_formed_xml.h"
 
 namespace vantage {
-namespace {
+namespace command_response_test {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -197,5 +197,5 @@ TEST_F(AutomaticDisparities, NotForTwoDimensions) {
   EXPECT_THAT(result.err, HasSubstr("disparities is auto"));
 }
 
-}  // namespace
+}  // namespace command_response_test
 }  // namespace vantage

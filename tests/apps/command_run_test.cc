@@ -12,7 +12,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace command_run_test {
 
 using testing::ContainsRegex;
 using testing::ElementsAre;
@@ -457,5 +457,5 @@ TEST_F(RunCommand, MergeChecksAndJoinsWhatPartsHaveMade) {
   EXPECT_THAT(run_vantage({"merge", out}).err, HasSubstr("1 of 6 frames are missing (4)"));
 }
 
-}  // namespace
+}  // namespace command_run_test
 }  // namespace vantage

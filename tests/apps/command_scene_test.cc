@@ -20,7 +20,7 @@
 #include "tests/temporary_folder.h"
 
 namespace vantage {
-namespace {
+namespace command_scene_test {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
@@ -360,5 +360,5 @@ TEST_F(SceneCommand, RefusesWrongUsage) {
           "expected positions at = [X, Y] among the images");
 }
 
-}  // namespace
+}  // namespace command_scene_test
 }  // namespace vantage

@@ -8,7 +8,7 @@
 #include "tests/apps/pair_fixture.h"
 
 namespace vantage {
-namespace {
+namespace command_submit_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -363,5 +363,5 @@ TEST_F(SubmitCommand, ACancelledTaskStaysCancelled) {
   EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("stopped by Slurm"));
 }
 
-}  // namespace
+}  // namespace command_submit_test
 }  // namespace vantage

@@ -9,7 +9,7 @@
 #include "tests/apps/pair_fixture.h"
 
 namespace vantage {
-namespace {
+namespace command_synth_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -296,5 +296,5 @@ TEST_F(SynthCommand, MapsOfAnotherSizeAreAnError) {
   EXPECT_THAT(files_below(outputs_), IsEmpty());
 }
 
-}  // namespace
+}  // namespace command_synth_test
 }  // namespace vantage

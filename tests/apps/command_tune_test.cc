@@ -12,7 +12,7 @@
 #include "tests/apps/pair_fixture.h"
 
 namespace vantage {
-namespace {
+namespace command_tune_test {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -256,5 +256,5 @@ TEST_F(TuneTest, RunUsesItsEntryAndTheFilesAreTheSame) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
 }
 
-}  // namespace
+}  // namespace command_tune_test
 }  // namespace vantage

@@ -11,7 +11,7 @@
 #include "tests/apps/pair_fixture.h"
 
 namespace vantage {
-namespace {
+namespace command_view_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -285,5 +285,5 @@ TEST_F(ViewCommand, InputsThatDoNotFitAreAnErrorAndLeaveNothing) {
   expect_error("left disparity map is 3×3, expected 71×53");
 }
 
-}  // namespace
+}  // namespace command_view_test
 }  // namespace vantage

@@ -6,7 +6,7 @@
 #include "tests/apps/pair_fixture.h"
 
 namespace vantage {
-namespace {
+namespace config_test {
 
 using testing::HasSubstr;
 
@@ -180,5 +180,5 @@ TEST_F(Config, BadFilesAreOneLine) {
   EXPECT_EQ(match(folder_ / "out.pfm", {"--config", folder_ / "empty.toml"}).exit_code, 0);
 }
 
-}  // namespace
+}  // namespace config_test
 }  // namespace vantage

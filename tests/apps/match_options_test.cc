@@ -8,7 +8,7 @@
 #include "tests/apps/pair_fixture.h"
 
 namespace vantage {
-namespace {
+namespace match_options_test {
 
 using testing::HasSubstr;
 
@@ -307,5 +307,5 @@ TEST_F(MatchCommandOptions, RunAndSynthTakeThem) {
   EXPECT_EQ(run_vantage(arguments).exit_code, 2);
 }
 
-}  // namespace
+}  // namespace match_options_test
 }  // namespace vantage

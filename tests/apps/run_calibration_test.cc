@@ -14,7 +14,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace run_calibration_test {
 
 using testing::HasSubstr;
 
@@ -102,5 +102,5 @@ TEST_F(RunCalibration, AnotherOutlineIsAnotherRun) {
   EXPECT_THAT(other.err, HasSubstr("kept-outline"));
 }
 
-}  // namespace
+}  // namespace run_calibration_test
 }  // namespace vantage

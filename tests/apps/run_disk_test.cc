@@ -13,7 +13,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace run_disk_test {
 
 namespace fs = std::filesystem;
 using testing::AnyOf;
@@ -254,5 +254,5 @@ TEST_F(RunDisk, AFolderThatGoesAwayAndComesBack) {
   }
 }
 
-}  // namespace
+}  // namespace run_disk_test
 }  // namespace vantage

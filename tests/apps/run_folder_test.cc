@@ -12,7 +12,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace run_folder_test {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -309,5 +309,5 @@ TEST_F(RunFolder, FilesOfOthersStay) {
   }
 }
 
-}  // namespace
+}  // namespace run_folder_test
 }  // namespace vantage

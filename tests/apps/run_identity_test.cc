@@ -8,7 +8,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace run_identity_test {
 
 namespace fs = std::filesystem;
 
@@ -127,5 +127,5 @@ INSTANTIATE_TEST_SUITE_P(
                                                    "--iterations", "4"})}),
     [](const auto& instance) { return instance.param.name; });
 
-}  // namespace
+}  // namespace run_identity_test
 }  // namespace vantage

@@ -11,7 +11,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace run_interrupt_test {
 
 namespace fs = std::filesystem;
 using testing::ContainsRegex;
@@ -156,5 +156,5 @@ TEST_F(ClockJump, TheClockDoesJump) {
   EXPECT_TRUE(fs::exists(count));
 }
 
-}  // namespace
+}  // namespace run_interrupt_test
 }  // namespace vantage

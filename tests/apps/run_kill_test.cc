@@ -12,7 +12,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace run_kill_test {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
@@ -159,5 +159,5 @@ TEST_F(KilledRun, JoiningOfVideosMayBeCutOffAnywhere) {
   EXPECT_FALSE(fs::exists(out_ + "/.vantage/segments"));
 }
 
-}  // namespace
+}  // namespace run_kill_test
 }  // namespace vantage

@@ -10,7 +10,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace run_memory_test {
 
 namespace fs = std::filesystem;
 
@@ -206,5 +206,5 @@ TEST_F(RunMemory, FramesAllocateFewLargeBlocks) {
             30);
 }
 
-}  // namespace
+}  // namespace run_memory_test
 }  // namespace vantage

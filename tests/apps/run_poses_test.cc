@@ -11,7 +11,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace run_poses_test {
 
 namespace fs = std::filesystem;
 using testing::ElementsAre;
@@ -212,5 +212,5 @@ TEST_F(RunPoses, SettingsInEffectNameTheFile) {
   EXPECT_THAT(planned.out, Not(HasSubstr("path-2")));
 }
 
-}  // namespace
+}  // namespace run_poses_test
 }  // namespace vantage

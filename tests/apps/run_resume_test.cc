@@ -8,7 +8,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace run_resume_test {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -117,5 +117,5 @@ TEST_F(RunResumed, AFolderWithARunIsNotWrittenToByAccident) {
   expect_all_done(kFrames);
 }
 
-}  // namespace
+}  // namespace run_resume_test
 }  // namespace vantage

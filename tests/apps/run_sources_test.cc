@@ -9,7 +9,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace run_sources_test {
 
 namespace fs = std::filesystem;
 using testing::ElementsAre;
@@ -357,5 +357,5 @@ TEST_F(RunVideoSources, ARawVideoThatEndsInTheMiddleOfAFrame) {
   EXPECT_TRUE(same_files(results_in(out_), expected));
 }
 
-}  // namespace
+}  // namespace run_sources_test
 }  // namespace vantage

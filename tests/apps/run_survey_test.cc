@@ -11,7 +11,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace run_survey_test {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -102,5 +102,5 @@ TEST_F(Survey, MayBeInterrupted) {
   EXPECT_TRUE(same_files(results_in(out_), expected));
 }
 
-}  // namespace
+}  // namespace run_survey_test
 }  // namespace vantage

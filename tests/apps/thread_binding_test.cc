@@ -11,7 +11,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace thread_binding_test {
 
 using nlohmann::json;
 using testing::HasSubstr;
@@ -164,5 +164,5 @@ TEST(InfoOnNodes, CountsWhatTheAffinityMaskLeaves) {
   EXPECT_EQ(info.at("hardware_threads"), 1);
 }
 
-}  // namespace
+}  // namespace thread_binding_test
 }  // namespace vantage

@@ -12,7 +12,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace trace_file_test {
 
 using nlohmann::json;
 using testing::HasSubstr;
@@ -169,5 +169,5 @@ TEST_F(TraceFile, MayNotBeAnotherOutputNorInAMissingFolder) {
   EXPECT_FALSE(std::filesystem::exists(map));
 }
 
-}  // namespace
+}  // namespace trace_file_test
 }  // namespace vantage

@@ -11,7 +11,7 @@
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
-namespace {
+namespace unrectified_views_test {
 
 /// Cameras of the size of the frames, turned and distorting.
 constexpr const char* kRig = R"(%YAML:1.0
@@ -154,5 +154,5 @@ TEST_F(UnrectifiedViews, OfAMovieAreThoseOfSingleViews) {
   }
 }
 
-}  // namespace
+}  // namespace unrectified_views_test
 }  // namespace vantage

@@ -7,7 +7,7 @@
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
-namespace {
+namespace all_methods_test {
 
 using testing::expect_equals_oracle;
 using testing::name_of;
@@ -73,5 +73,5 @@ INSTANTIATE_TEST_SUITE_P(
              name_of(std::get<Aggregation>(instance.param));
     });
 
-}  // namespace
+}  // namespace all_methods_test
 }  // namespace vantage

@@ -13,7 +13,7 @@
 #include "kernels/pixel_row/pixel_row.h"
 
 namespace vantage {
-namespace {
+namespace background_inpainting_test {
 
 template <typename T>
 struct Scene {
@@ -130,5 +130,5 @@ TEST(BackgroundInpaintingFloat, KeepsToTheImagesRange) {
   EXPECT_GT(scene.image.at(32, 20), 1.5F);
 }
 
-}  // namespace
+}  // namespace background_inpainting_test
 }  // namespace vantage

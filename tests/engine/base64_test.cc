@@ -10,7 +10,7 @@
 #include "engine/error.h"
 
 namespace vantage {
-namespace {
+namespace base64_test {
 
 std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
@@ -52,5 +52,5 @@ TEST(Base64, RefusesWhatItWouldNotHaveMade) {
   }
 }
 
-}  // namespace
+}  // namespace base64_test
 }  // namespace vantage

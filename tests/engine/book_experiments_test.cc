@@ -9,7 +9,7 @@
 #include "engine/error.h"
 
 namespace vantage {
-namespace {
+namespace book_experiments_test {
 
 BookExperimentOptions small_options(std::vector<std::string> pairs) {
   BookExperimentOptions options;
@@ -131,5 +131,5 @@ TEST(BookExperiments, RefuseBadOptions) {
   EXPECT_THROW(run_noise_experiment(options, execution, {}), UsageError);
 }
 
-}  // namespace
+}  // namespace book_experiments_test
 }  // namespace vantage

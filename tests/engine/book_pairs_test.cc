@@ -10,7 +10,7 @@
 #include "engine/error.h"
 
 namespace vantage {
-namespace {
+namespace book_pairs_test {
 
 const Image<std::uint8_t>& bytes_of(const Photograph& photograph) {
   return std::get<Image<std::uint8_t>>(photograph.pixels);
@@ -225,5 +225,5 @@ TEST(BookPairs, RejectsWrongOptions) {
   EXPECT_THROW((void)make_book_pair(options), UsageError);
 }
 
-}  // namespace
+}  // namespace book_pairs_test
 }  // namespace vantage

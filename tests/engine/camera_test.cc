@@ -8,7 +8,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace camera_test {
 
 TEST(LensModel, IsTheFormulaOfItsCoefficients) {
   std::mt19937 random(1);
@@ -89,5 +89,5 @@ TEST(Camera, RefusesWhatIsNoCamera) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace camera_test
 }  // namespace vantage

@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace vantage {
-namespace {
+namespace candidate_blocks_test {
 
 using kernels::CandidateGeometry;
 using scheduler::Extent;
@@ -186,5 +186,5 @@ TEST(CopyBlocks, FillsWhatIsMissing) {
   }
 }
 
-}  // namespace
+}  // namespace candidate_blocks_test
 }  // namespace vantage

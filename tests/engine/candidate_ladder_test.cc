@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace vantage {
-namespace {
+namespace candidate_ladder_test {
 
 using testing::Each;
 using testing::ElementsAre;
@@ -26,5 +26,5 @@ TEST(FineLadder, IsAroundTheValueWithinTheRange) {
   EXPECT_THAT(fine_ladder(7, 1000), Each(Not(7)));
 }
 
-}  // namespace
+}  // namespace candidate_ladder_test
 }  // namespace vantage

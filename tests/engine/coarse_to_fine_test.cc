@@ -18,7 +18,7 @@
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
-namespace {
+namespace coarse_to_fine_test {
 
 using scheduler::Extent;
 using testing::expect_equals_oracle;
@@ -321,5 +321,5 @@ TEST(CoarseToFineMatcher, VerticalSearchIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace coarse_to_fine_test
 }  // namespace vantage

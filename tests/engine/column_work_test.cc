@@ -13,7 +13,7 @@
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
-namespace {
+namespace column_work_test {
 
 using scheduler::ColumnWork;
 using testing::method_cases;
@@ -192,5 +192,5 @@ TEST(ColumnWork, GrowsWithWhatIsAskedFor) {
   EXPECT_GT(iteration_operations(0.4), iteration_operations(0.1));
 }
 
-}  // namespace
+}  // namespace column_work_test
 }  // namespace vantage

@@ -12,7 +12,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace commit_queue_test {
 
 namespace fs = std::filesystem;
 using test::error_of;
@@ -122,5 +122,5 @@ TEST_F(CommitQueueTest, WhatWasPushedIsDeliveredWhenTheQueueGoes) {
   EXPECT_THAT(journalled(), ElementsAre(3));
 }
 
-}  // namespace
+}  // namespace commit_queue_test
 }  // namespace vantage

@@ -5,7 +5,7 @@
 #include <set>
 
 namespace vantage {
-namespace {
+namespace content_hash_test {
 
 template <typename T>
 Photograph gradient(int width, int height, int channels) {
@@ -76,5 +76,5 @@ TEST(ContentHash, SwappedPixelsAndRowsDiffer) {
   EXPECT_NE(content_hash(picture), before);
 }
 
-}  // namespace
+}  // namespace content_hash_test
 }  // namespace vantage

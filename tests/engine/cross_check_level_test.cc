@@ -15,7 +15,7 @@
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
-namespace {
+namespace cross_check_level_test {
 
 using testing::identical;
 using testing::PixelKind;
@@ -252,5 +252,5 @@ TEST(CrossCheckLevelOption, SavesTheOtherMapsFinestLevel) {
   EXPECT_EQ(unchecked.cells * 2, whole.cells);
 }
 
-}  // namespace
+}  // namespace cross_check_level_test
 }  // namespace vantage

@@ -13,7 +13,7 @@
 #include "tests/engine/plain_costs.h"
 
 namespace vantage {
-namespace {
+namespace cumulative_response_test {
 
 using ::testing::HasSubstr;
 
@@ -268,5 +268,5 @@ TEST(CumulativeResponse, RefusesBadOptionsAndUnequalSizes) {
               HasSubstr("20x10 but right image is 21x10"));
 }
 
-}  // namespace
+}  // namespace cumulative_response_test
 }  // namespace vantage

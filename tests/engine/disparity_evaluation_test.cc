@@ -11,7 +11,7 @@
 #include "engine/error.h"
 
 namespace vantage {
-namespace {
+namespace disparity_evaluation_test {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
@@ -138,5 +138,5 @@ TEST(DisparityEvaluation, RejectsWhatCannotBeCompared) {
                Error);
 }
 
-}  // namespace
+}  // namespace disparity_evaluation_test
 }  // namespace vantage

@@ -13,7 +13,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace disparity_io_test {
 
 using test::bytes_of;
 using test::error_of;
@@ -269,5 +269,5 @@ TEST(DisparityIo, ReadsAllSharedTruths) {
   }
 }
 
-}  // namespace
+}  // namespace disparity_io_test
 }  // namespace vantage

@@ -17,7 +17,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace disparity_range_test {
 
 using testing::HasSubstr;
 
@@ -241,5 +241,5 @@ TEST(DisparityRange, MatchersRefuseWhatIsNotYetChosen) {
   EXPECT_THAT(test::error_of([&] { options.validate(); }), HasSubstr("disparities-y"));
 }
 
-}  // namespace
+}  // namespace disparity_range_test
 }  // namespace vantage

@@ -14,7 +14,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace displacement_io_test {
 
 using test::bytes_of;
 using test::error_of;
@@ -117,5 +117,5 @@ TEST(DisplacementIo, RefusesWhatHoldsOneComponent) {
   EXPECT_EQ(folder.entries(), 0U);
 }
 
-}  // namespace
+}  // namespace displacement_io_test
 }  // namespace vantage

@@ -10,7 +10,7 @@
 #include "engine/execution.h"
 
 namespace vantage {
-namespace {
+namespace edge_snapping_test {
 
 Photograph picture(int width, int height, const std::function<int(int x, int y)>& grey_level) {
   Image<std::uint8_t> image(width, height);
@@ -135,5 +135,5 @@ TEST(SnapDiscontinuities, MovesThemToTheEdgesOfTheImageInEveryRow) {
   }
 }
 
-}  // namespace
+}  // namespace edge_snapping_test
 }  // namespace vantage

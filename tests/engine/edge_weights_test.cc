@@ -12,7 +12,7 @@
 #include "engine/matching/coarse_to_fine.h"
 
 namespace vantage {
-namespace {
+namespace edge_weights_test {
 
 MethodParameters parameters_with(double edge_weight, int levels) {
   MethodParameters parameters = book_parameters(MatchMethod::kBayes);
@@ -167,5 +167,5 @@ TEST(EdgeWeightLevels, TakeWhatIsPlanned) {
   EXPECT_EQ(edge_weight_bytes(parameters_with(1, 5), 320 * 240), 0U);
 }
 
-}  // namespace
+}  // namespace edge_weights_test
 }  // namespace vantage

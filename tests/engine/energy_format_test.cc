@@ -7,7 +7,7 @@
 #include <string>
 
 namespace vantage {
-namespace {
+namespace energy_format_test {
 
 using kernels::FixedEnergy;
 using kernels::kMostEnergy;
@@ -104,5 +104,5 @@ TEST(EnergyFormat, OfThePresetsIsTheFinest) {
   EXPECT_EQ(format.ceiling(), 3125);  // 256 · ln(1/5e-6 − 1)
 }
 
-}  // namespace
+}  // namespace energy_format_test
 }  // namespace vantage

@@ -10,7 +10,7 @@
 #include "tests/engine/unrectified_pair.h"
 
 namespace vantage {
-namespace {
+namespace feature_matches_test {
 
 using test::error_of;
 
@@ -148,5 +148,5 @@ TEST(FeatureMatches, OptionsHaveLimits) {
             "largest-side is 63, expected at least 64");
 }
 
-}  // namespace
+}  // namespace feature_matches_test
 }  // namespace vantage

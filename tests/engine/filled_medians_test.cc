@@ -14,7 +14,7 @@
 #include "tests/engine/identical_maps.h"
 
 namespace vantage {
-namespace {
+namespace filled_medians_test {
 
 constexpr int kWidth = 60;
 constexpr int kHeight = 50;
@@ -175,5 +175,5 @@ TEST(FilledMedians, RefinementTakesThemOfBothComponents) {
   EXPECT_LT(refined(Fill::kMedian), constant / 4);
 }
 
-}  // namespace
+}  // namespace filled_medians_test
 }  // namespace vantage

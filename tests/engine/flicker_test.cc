@@ -12,7 +12,7 @@
 #include "engine/error.h"
 
 namespace vantage {
-namespace {
+namespace flicker_test {
 
 constexpr int kWidth = 61;
 constexpr int kHeight = 37;
@@ -269,5 +269,5 @@ TEST(FlickerSums, AddUpInAnyOrder) {
   EXPECT_THROW(forward.add(two), Error);
 }
 
-}  // namespace
+}  // namespace flicker_test
 }  // namespace vantage

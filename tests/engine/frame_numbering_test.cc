@@ -9,7 +9,7 @@
 #include "engine/io/image_sequence.h"
 
 namespace vantage {
-namespace {
+namespace frame_numbering_test {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
@@ -117,5 +117,5 @@ TEST(FrameNumbering, NumbersThatDifferFromTheStart) {
                           "l/3.png is paired with r/14.png from pair 3 on"));
 }
 
-}  // namespace
+}  // namespace frame_numbering_test
 }  // namespace vantage

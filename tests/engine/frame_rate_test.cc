@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace vantage {
-namespace {
+namespace frame_rate_test {
 
 std::string parsed(const std::string& text) {
   const auto rate = parse_frame_rate(text);
@@ -76,5 +76,5 @@ TEST(FrameRate, RatesPerSecondAndText) {
   }
 }
 
-}  // namespace
+}  // namespace frame_rate_test
 }  // namespace vantage

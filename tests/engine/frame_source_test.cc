@@ -18,7 +18,7 @@
 #include "tests/engine/frame_test_support.h"
 
 namespace vantage {
-namespace {
+namespace frame_source_test {
 
 using test::error_of;
 using test::put_image;
@@ -368,5 +368,5 @@ TEST(NaturalOrder, CountsNumbersAndIsAStrictTotalOrder) {
   }
 }
 
-}  // namespace
+}  // namespace frame_source_test
 }  // namespace vantage

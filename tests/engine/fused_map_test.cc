@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace vantage {
-namespace {
+namespace fused_map_test {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
@@ -105,5 +105,5 @@ TEST(FusedMap, EqualForAnyThreadsAndOrder) {
   EXPECT_EQ(fuse(2), expected);
 }
 
-}  // namespace
+}  // namespace fused_map_test
 }  // namespace vantage

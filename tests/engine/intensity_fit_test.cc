@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace vantage {
-namespace {
+namespace intensity_fit_test {
 
 kernels::IntensitySums sums_of(const std::vector<double>& left, const std::vector<double>& right) {
   kernels::IntensitySums sums;
@@ -65,5 +65,5 @@ TEST(FitChannels, AlphaHasTheIdentity) {
   }
 }
 
-}  // namespace
+}  // namespace intensity_fit_test
 }  // namespace vantage

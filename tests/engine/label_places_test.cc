@@ -7,7 +7,7 @@
 #include <cstddef>
 
 namespace vantage {
-namespace {
+namespace label_places_test {
 
 constexpr ChartArea kArea = {{50, 20}, 480, 340};
 
@@ -75,5 +75,5 @@ TEST(LabelPlaces, KeepClearOfWhatHasNoLabel) {
   expect_clear(discs);
 }
 
-}  // namespace
+}  // namespace label_places_test
 }  // namespace vantage

@@ -12,7 +12,7 @@
 #include "engine/error.h"
 
 namespace vantage {
-namespace {
+namespace layered_scene_test {
 
 constexpr SceneView kLeft{0, 0};
 constexpr SceneView kRight{1, 0};
@@ -440,5 +440,5 @@ TEST(LayeredScene, IsBlackAndUnknownWhereACameraLooksPastIt) {
   EXPECT_EQ(image.at(16, 3, 0), 0);
 }
 
-}  // namespace
+}  // namespace layered_scene_test
 }  // namespace vantage

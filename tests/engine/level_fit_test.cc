@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace vantage {
-namespace {
+namespace level_fit_test {
 
 struct Line {
   double gain;
@@ -77,5 +77,5 @@ TEST(RobustSigma, IsThatOfTheGaussianWhateverTheOutliers) {
   EXPECT_FLOAT_EQ(static_cast<float>(robust_sigma(one)), 3 * 1.4826F);
 }
 
-}  // namespace
+}  // namespace level_fit_test
 }  // namespace vantage

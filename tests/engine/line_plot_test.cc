@@ -13,7 +13,7 @@
 #include "tests/well_formed_xml.h"
 
 namespace vantage {
-namespace {
+namespace line_plot_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -223,5 +223,5 @@ TEST(HeatMap, ConstantAndUnknownValues) {
   }
 }
 
-}  // namespace
+}  // namespace line_plot_test
 }  // namespace vantage

@@ -12,7 +12,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace malformed_input_test {
 
 using test::bytes_of;
 using test::noise;
@@ -142,5 +142,5 @@ TEST(MalformedText, IsAnErrorOrAnImage) {
   }
 }
 
-}  // namespace
+}  // namespace malformed_input_test
 }  // namespace vantage

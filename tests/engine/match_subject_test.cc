@@ -12,7 +12,7 @@
 #include "tests/engine/identical_maps.h"
 
 namespace vantage {
-namespace {
+namespace match_subject_test {
 
 constexpr int kWidth = 211;
 constexpr int kHeight = 97;
@@ -153,5 +153,5 @@ TEST_F(MatchSubjectTest, NoSettingsChangeAResult) {
   }
 }
 
-}  // namespace
+}  // namespace match_subject_test
 }  // namespace vantage

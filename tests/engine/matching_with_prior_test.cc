@@ -13,7 +13,7 @@
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
-namespace {
+namespace matching_with_prior_test {
 
 using testing::identical;
 using testing::method_cases;
@@ -199,5 +199,5 @@ TEST(MatchingWithPriorErrors, OneMapMayHaveNone) {
   EXPECT_TRUE(identical(maps.right, expected.right));
 }
 
-}  // namespace
+}  // namespace matching_with_prior_test
 }  // namespace vantage

@@ -15,7 +15,7 @@
 #include "tests/engine/plain_aggregation.h"
 
 namespace vantage {
-namespace {
+namespace membrane_response_test {
 
 constexpr int kSide = 64;
 constexpr int kCentre = kSide / 2;
@@ -138,5 +138,5 @@ TEST(MembraneResponse, CandidatesDoNotMixAndTheOracleResponds) {
   }
 }
 
-}  // namespace
+}  // namespace membrane_response_test
 }  // namespace vantage

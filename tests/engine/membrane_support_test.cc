@@ -5,7 +5,7 @@
 #include "engine/error.h"
 
 namespace vantage {
-namespace {
+namespace membrane_support_test {
 
 TEST(MembraneSupport, SolvesTheDiscreteEquation) {
   // (6.10): β (δ − f) + Σ over N4 (f_n − f) = 0 at every offset.
@@ -58,5 +58,5 @@ TEST(MembraneSupport, RefusesWhatDoesNotConverge) {
   EXPECT_THROW(membrane_impulse_response(0.5, 0.15, -1, 5), UsageError);
 }
 
-}  // namespace
+}  // namespace membrane_support_test
 }  // namespace vantage

@@ -13,7 +13,7 @@
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
-namespace {
+namespace memory_use_test {
 
 using testing::PixelKind;
 using testing::textured_pair;
@@ -157,5 +157,5 @@ TEST(MemoryUse, OfFramesIsThatOfTheirImages) {
   expect_images_of(held_bytes(slot), kPixels * (3 * (1 + 2) + 4 + 4 + 1 + 3 + 1 + 3) + 1000, 8);
 }
 
-}  // namespace
+}  // namespace memory_use_test
 }  // namespace vantage

@@ -13,7 +13,7 @@
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
-namespace {
+namespace method_chain_test {
 
 using testing::identical;
 using testing::method_cases;
@@ -149,5 +149,5 @@ TEST_P(MethodChain, EveryExecutorEqualsTheWholeImage) {
 INSTANTIATE_TEST_SUITE_P(Methods, MethodChain, ::testing::ValuesIn(method_cases({})),
                          [](const auto& instance) { return instance.param.name; });
 
-}  // namespace
+}  // namespace method_chain_test
 }  // namespace vantage

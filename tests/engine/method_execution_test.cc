@@ -13,7 +13,7 @@
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
-namespace {
+namespace method_execution_test {
 
 using testing::identical;
 using testing::method_cases;
@@ -152,5 +152,5 @@ TEST_P(MethodExecution, InstructionSetsAgree) {
 INSTANTIATE_TEST_SUITE_P(Methods, MethodExecution, ::testing::ValuesIn(method_cases({})),
                          [](const auto& instance) { return instance.param.name; });
 
-}  // namespace
+}  // namespace method_execution_test
 }  // namespace vantage

@@ -14,7 +14,7 @@
 #include "engine/matching/match_presets.h"
 
 namespace vantage {
-namespace {
+namespace method_parameters_test {
 
 using testing::HasSubstr;
 
@@ -447,5 +447,5 @@ TEST(MatchOptions, CombinationsThatMakeNoSenseAreRefusedWithTheReason) {
   EXPECT_EQ(complaint(options), "");
 }
 
-}  // namespace
+}  // namespace method_parameters_test
 }  // namespace vantage

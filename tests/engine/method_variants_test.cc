@@ -11,7 +11,7 @@
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
-namespace {
+namespace method_variants_test {
 
 using testing::expect_equals_oracle;
 using testing::method_cases;
@@ -225,5 +225,5 @@ TEST_P(AwkwardShapes, RangesWithoutAnyCandidateAreRefused) {
 INSTANTIATE_TEST_SUITE_P(Methods, AwkwardShapes, ::testing::ValuesIn(method_cases({})),
                          [](const auto& instance) { return instance.param.name; });
 
-}  // namespace
+}  // namespace method_variants_test
 }  // namespace vantage

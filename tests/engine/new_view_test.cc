@@ -12,7 +12,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace new_view_test {
 
 using test::error_of;
 using test::random_rotation;
@@ -143,5 +143,5 @@ TEST(NewView, RefusesWhatCannotBeSeen) {
   EXPECT_THROW(baseline_view(0, std::nan(""), 4, 4), UsageError);
 }
 
-}  // namespace
+}  // namespace new_view_test
 }  // namespace vantage

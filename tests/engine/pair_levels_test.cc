@@ -16,7 +16,7 @@
 #include "engine/matching/stereo_matcher.h"
 
 namespace vantage {
-namespace {
+namespace pair_levels_test {
 
 constexpr int kWidth = 240;
 constexpr DisparityRange kRange{0, 31};
@@ -292,5 +292,5 @@ TEST(PairLevels, OfAPhotographTakenWithAnotherExposure) {
   EXPECT_LT(*levels.sigma_measurement, 9);
 }
 
-}  // namespace
+}  // namespace pair_levels_test
 }  // namespace vantage

@@ -10,7 +10,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace pair_list_test {
 
 using test::error_of;
 using ::testing::ElementsAre;
@@ -101,5 +101,5 @@ TEST(PairList, FilesAreReadOrNamed) {
               HasSubstr(folder / "list.csv" + " line 1: "));
 }
 
-}  // namespace
+}  // namespace pair_list_test
 }  // namespace vantage

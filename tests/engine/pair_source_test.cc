@@ -12,7 +12,7 @@
 #include "tests/engine/frame_test_support.h"
 
 namespace vantage {
-namespace {
+namespace pair_source_test {
 
 using test::error_of;
 using test::put_image;
@@ -492,5 +492,5 @@ TEST(PairSource, FilesAndAPackedVideoOfOneDrive) {
   EXPECT_EQ(of_video.right.height(), of_files.right.height());
 }
 
-}  // namespace
+}  // namespace pair_source_test
 }  // namespace vantage

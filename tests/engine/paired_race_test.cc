@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace vantage {
-namespace {
+namespace paired_race_test {
 
 TunedSettings strips_of(int width_px) { return {.strip_width_px = width_px}; }
 
@@ -120,5 +120,5 @@ TEST(Median, IsTheMiddle) {
   EXPECT_NEAR(spread({1, 2, 3, 4, 5}), 1.4826, 1e-12);
 }
 
-}  // namespace
+}  // namespace paired_race_test
 }  // namespace vantage

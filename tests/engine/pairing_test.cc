@@ -14,7 +14,7 @@
 #include "tests/engine/frame_test_support.h"
 
 namespace vantage {
-namespace {
+namespace pairing_test {
 
 using test::error_of;
 using test::value_of;
@@ -184,5 +184,5 @@ TEST(MovingCameraPairs, EveryFrameIsDecodedOnce) {
   EXPECT_EQ(counted.fetched, 30);
 }
 
-}  // namespace
+}  // namespace pairing_test
 }  // namespace vantage

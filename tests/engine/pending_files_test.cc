@@ -12,7 +12,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace pending_files_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -96,5 +96,5 @@ TEST_F(PendingFilesTest, LeaveNothingWhenTheyAreGivenUp) {
               HasSubstr(path("none/a").string()));
 }
 
-}  // namespace
+}  // namespace pending_files_test
 }  // namespace vantage

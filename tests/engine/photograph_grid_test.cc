@@ -13,7 +13,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace photograph_grid_test {
 
 using test::error_of;
 using testing::HasSubstr;
@@ -138,5 +138,5 @@ TEST(PhotographGrid, RefusesAMapOfAnotherSize) {
       HasSubstr("is 41x30, expected 40x30"));
 }
 
-}  // namespace
+}  // namespace photograph_grid_test
 }  // namespace vantage

@@ -10,7 +10,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace photograph_io_test {
 
 using test::bytes_of;
 using test::error_of;
@@ -376,5 +376,5 @@ TEST(PhotographIo, ReadsAllSharedPhotographs) {
   EXPECT_GT(read, 100);
 }
 
-}  // namespace
+}  // namespace photograph_io_test
 }  // namespace vantage

@@ -10,7 +10,7 @@
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
-namespace {
+namespace photograph_methods_test {
 
 using testing::crop;
 using testing::expect_equals_oracle;
@@ -64,5 +64,5 @@ TEST_P(PhotographMethods, EqualTheOracleOnAPhotographedScene) {
 INSTANTIATE_TEST_SUITE_P(Methods, PhotographMethods, ::testing::ValuesIn(method_cases({})),
                          [](const auto& instance) { return instance.param.name; });
 
-}  // namespace
+}  // namespace photograph_methods_test
 }  // namespace vantage

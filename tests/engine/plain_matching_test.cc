@@ -11,7 +11,7 @@
 #include "tests/engine/brute_force_ssd.h"
 
 namespace vantage::testing {
-namespace {
+namespace plain_matching_test {
 
 Volume column_volume(const std::vector<double>& column) {
   Volume volume(1, 1, {0, static_cast<int>(column.size()) - 1}, Reference::kLeft);
@@ -274,5 +274,5 @@ TEST(PlainSelection, ByHand) {
       plain_select(Volume(2, 1, {2, 3}, Reference::kLeft), parameters).at(1, 0).disparity));
 }
 
-}  // namespace
+}  // namespace plain_matching_test
 }  // namespace vantage::testing

@@ -15,7 +15,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace png_decoder_test {
 
 using Bytes = std::vector<std::uint8_t>;
 using test::noise;
@@ -185,5 +185,5 @@ TEST(PngDecoder, LeavesUnusualFilesToOthers) {
   EXPECT_FALSE(decoded(HandMade{2, 1, 8, 0, false, {0, 1, 2, 3}}.file())) << "too many bytes";
 }
 
-}  // namespace
+}  // namespace png_decoder_test
 }  // namespace vantage

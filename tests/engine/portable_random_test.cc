@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace vantage {
-namespace {
+namespace portable_random_test {
 
 TEST(PortableRandom, NormalNumbersHaveTheMomentsAndTailsOfANormalDistribution) {
   constexpr int kCount = 200000;
@@ -60,5 +60,5 @@ TEST(PortableRandom, SeedsAndStreamsDiffer) {
   }
 }
 
-}  // namespace
+}  // namespace portable_random_test
 }  // namespace vantage

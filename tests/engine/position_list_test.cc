@@ -11,7 +11,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace position_list_test {
 
 using test::error_of;
 using testing::ElementsAre;
@@ -46,5 +46,5 @@ TEST(PositionList, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(problem(""), HasSubstr("holds no images"));
 }
 
-}  // namespace
+}  // namespace position_list_test
 }  // namespace vantage

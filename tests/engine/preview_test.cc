@@ -9,7 +9,7 @@
 #include "engine/error.h"
 
 namespace vantage {
-namespace {
+namespace preview_test {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -97,5 +97,5 @@ TEST(Preview, RangeOfFlatAndUnknownMapsIsUsable) {
   EXPECT_LT(unknown.min_px, unknown.max_px);
 }
 
-}  // namespace
+}  // namespace preview_test
 }  // namespace vantage

@@ -8,7 +8,7 @@
 #include "engine/profiling/stage_figures.h"
 
 namespace vantage {
-namespace {
+namespace profile_comparison_test {
 
 using testing::Contains;
 using testing::HasSubstr;
@@ -109,5 +109,5 @@ TEST(StageFigures, AreWhatTheCountsComeTo) {
   EXPECT_EQ(halo_share(stage), 0.25);
 }
 
-}  // namespace
+}  // namespace profile_comparison_test
 }  // namespace vantage

@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace vantage {
-namespace {
+namespace profile_figures_test {
 
 TEST(SampleOf, IsMedianLeastAndMost) {
   const ProfileSample odd = sample_of({3, 9, 1});
@@ -91,5 +91,5 @@ TEST(AmdahlFit, NeedsTwoNumbersOfThreads) {
   EXPECT_FALSE(amdahl_fit({}));
 }
 
-}  // namespace
+}  // namespace profile_figures_test
 }  // namespace vantage

@@ -8,7 +8,7 @@
 #include "tests/engine/made_up_profiles.h"
 
 namespace vantage {
-namespace {
+namespace profile_findings_test {
 
 using testing::AllOf;
 using testing::ElementsAre;
@@ -161,5 +161,5 @@ TEST(ProfileFindings, ComeInTheirOrder) {
               ElementsAre(Kind::kStage, Kind::kWaiting, Kind::kImbalance, Kind::kScaling));
 }
 
-}  // namespace
+}  // namespace profile_findings_test
 }  // namespace vantage

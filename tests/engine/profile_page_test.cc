@@ -10,7 +10,7 @@
 #include "tests/well_formed_xml.h"
 
 namespace vantage {
-namespace {
+namespace profile_page_test {
 
 constexpr std::string_view kFirstLine = "<!DOCTYPE html>\n";
 
@@ -200,5 +200,5 @@ TEST(ProfilePage, FiguresThatCannotBeAreLeftOut) {
   }
 }
 
-}  // namespace
+}  // namespace profile_page_test
 }  // namespace vantage

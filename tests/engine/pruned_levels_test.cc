@@ -27,7 +27,7 @@
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
-namespace {
+namespace pruned_levels_test {
 
 using kernels::CandidateGeometry;
 using scheduler::Extent;
@@ -476,5 +476,5 @@ TEST(PrunedMatching, IsRefusedWhereItHasNoMeaning) {
             "candidate with the best of all");
 }
 
-}  // namespace
+}  // namespace pruned_levels_test
 }  // namespace vantage

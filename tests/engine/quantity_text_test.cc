@@ -5,7 +5,7 @@
 #include <limits>
 
 namespace vantage {
-namespace {
+namespace quantity_text_test {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -51,5 +51,5 @@ TEST(QuantityText, WhatIsNotFiniteIsADash) {
   EXPECT_EQ(plain_sample_text({kNaN, 1, 2}), "–");
 }
 
-}  // namespace
+}  // namespace quantity_text_test
 }  // namespace vantage

@@ -11,7 +11,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace rectification_file_test {
 
 using test::error_of;
 
@@ -101,5 +101,5 @@ TEST(RectificationFile, ExtensionSaysTheFormat) {
       ".json");
 }
 
-}  // namespace
+}  // namespace rectification_file_test
 }  // namespace vantage

@@ -10,7 +10,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace rectified_pair_test {
 
 using test::error_of;
 using test::plain_projection;
@@ -203,5 +203,5 @@ TEST(RectifiedPair, RefusesCamerasThatCannotBeRectified) {
             "kept-outline is 1.5, expected 0 to 1");
 }
 
-}  // namespace
+}  // namespace rectified_pair_test
 }  // namespace vantage

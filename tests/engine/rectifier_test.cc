@@ -15,7 +15,7 @@
 #include "tests/keys_kernel.h"
 
 namespace vantage {
-namespace {
+namespace rectifier_test {
 
 using test::error_of;
 using test::keys;
@@ -327,5 +327,5 @@ TEST(Rectifier, ChessboardCornersMeetInOneRow) {
   EXPECT_GT(std::sqrt(raw_sum_squares / corners), 5);
 }
 
-}  // namespace
+}  // namespace rectifier_test
 }  // namespace vantage

@@ -13,7 +13,7 @@
 #include "tests/engine/identical_maps.h"
 
 namespace vantage {
-namespace {
+namespace refinement_test {
 
 using ::testing::ElementsAre;
 using testing::identical;
@@ -332,5 +332,5 @@ TEST(RefineMaps, BothComponentsAreCheckedAndFilledTogether) {
   EXPECT_EQ(left_y.at(0, 0), -1);
 }
 
-}  // namespace
+}  // namespace refinement_test
 }  // namespace vantage

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace vantage {
-namespace {
+namespace roofline_test {
 
 // Peak 100 GFLOP/s, L2 50 GB/s, memory 5 GB/s each: with 2 operations per byte both upper roofs
 // meet.
@@ -80,5 +80,5 @@ TEST(Roofline, RoofsAreThoseOfTheMostThreads) {
   EXPECT_FALSE(roofs_of_most_threads(profile).has_value());
 }
 
-}  // namespace
+}  // namespace roofline_test
 }  // namespace vantage

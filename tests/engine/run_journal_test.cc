@@ -12,7 +12,7 @@
 #include "tests/temporary_folder.h"
 
 namespace vantage {
-namespace {
+namespace run_journal_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -288,5 +288,5 @@ TEST_F(RunJournalTest, FramesOfVideosAreDoneWithTheirSegment) {
   EXPECT_EQ(delivered().joined(), (FrameRange{0, 4}));
 }
 
-}  // namespace
+}  // namespace run_journal_test
 }  // namespace vantage

@@ -5,7 +5,7 @@
 #include <vector>
 
 namespace vantage {
-namespace {
+namespace run_measurement_test {
 
 RunMeasurement measured(double wall_s) {
   RunMeasurement run;
@@ -87,5 +87,5 @@ TEST(SummariseCounts, KeepsWhatAllRunsHave) {
   EXPECT_EQ(counts.at("cycles").median, 15);
 }
 
-}  // namespace
+}  // namespace run_measurement_test
 }  // namespace vantage

@@ -22,7 +22,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace scene_builder_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -407,5 +407,5 @@ TEST_F(SceneBuilderTest, SaysWhatIsWrong) {
   EXPECT_THAT(error_of([&] { options.validate(); }), HasSubstr("--disparities-y"));
 }
 
-}  // namespace
+}  // namespace scene_builder_test
 }  // namespace vantage

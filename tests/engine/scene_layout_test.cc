@@ -13,7 +13,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace scene_layout_test {
 
 using test::error_of;
 using testing::AllOf;
@@ -212,5 +212,5 @@ TEST(SceneLayout, RefusesWhatItCannotJoin) {
               HasSubstr("expected finite numbers"));
 }
 
-}  // namespace
+}  // namespace scene_layout_test
 }  // namespace vantage

@@ -19,7 +19,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace scene_viewer_test {
 
 using test::error_of;
 using test::same;
@@ -301,5 +301,5 @@ TEST(SceneViewer, RefusesWhatItCannotRender) {
   EXPECT_THAT(error_of([&] { (void)scene.viewer(forward); }), HasSubstr("one-pass"));
 }
 
-}  // namespace
+}  // namespace scene_viewer_test
 }  // namespace vantage

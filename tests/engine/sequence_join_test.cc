@@ -11,7 +11,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace sequence_join_test {
 
 namespace fs = std::filesystem;
 using test::bytes_of;
@@ -94,5 +94,5 @@ TEST_F(SequenceJoinTest, FramesThatTheInputDoesNotHaveNeedNoSegment) {
   EXPECT_EQ(VideoReader(video()).frame_count(), 2);
 }
 
-}  // namespace
+}  // namespace sequence_join_test
 }  // namespace vantage

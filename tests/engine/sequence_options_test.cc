@@ -10,7 +10,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace sequence_options_test {
 
 using testing::HasSubstr;
 
@@ -57,5 +57,5 @@ TEST(SequenceOptions, WhatIsWrongIsNamed) {
   EXPECT_THAT(refusal([](Options& o) { o.temporal.weight = -1; }), HasSubstr("-1"));
 }
 
-}  // namespace
+}  // namespace sequence_options_test
 }  // namespace vantage

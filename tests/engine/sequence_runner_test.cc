@@ -22,7 +22,7 @@
 #include "tests/temporary_folder.h"
 
 namespace vantage {
-namespace {
+namespace sequence_runner_test {
 
 namespace fs = std::filesystem;
 using testing::ElementsAre;
@@ -558,5 +558,5 @@ TEST(BusyClock, CountsOverlappingActivitiesOnce) {
   EXPECT_LE(clock.seconds(), elapsed);
 }
 
-}  // namespace
+}  // namespace sequence_runner_test
 }  // namespace vantage

@@ -11,7 +11,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace sheared_images_test {
 
 Execution& threads() {
   static Execution execution({.threads = 2});
@@ -168,5 +168,5 @@ TEST(ShearedImages, EqualForAnyExecutionAndDepth) {
   EXPECT_TRUE(test::same(sheared(deep, shear, one), sheared(deep, shear, many)));
 }
 
-}  // namespace
+}  // namespace sheared_images_test
 }  // namespace vantage

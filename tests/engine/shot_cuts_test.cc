@@ -9,7 +9,7 @@
 #include <random>
 
 namespace vantage {
-namespace {
+namespace shot_cuts_test {
 
 using testing::ElementsAre;
 
@@ -113,5 +113,5 @@ TEST(Thumbnail, OfTinyPictures) {
   }
 }
 
-}  // namespace
+}  // namespace shot_cuts_test
 }  // namespace vantage

@@ -21,7 +21,7 @@
 #include "tests/temporary_folder.h"
 
 namespace vantage {
-namespace {
+namespace shots_test {
 
 using testing::HasSubstr;
 
@@ -309,5 +309,5 @@ TEST(ShotTableJson, MalformedTextIsRefused) {
   EXPECT_THAT(with([](ShotTable& t) { t.shots[1].intensity[2].gain = 0; }), HasSubstr("gain"));
 }
 
-}  // namespace
+}  // namespace shots_test
 }  // namespace vantage

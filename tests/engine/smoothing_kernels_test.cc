@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace vantage {
-namespace {
+namespace smoothing_kernels_test {
 
 using ::testing::ElementsAre;
 
@@ -80,5 +80,5 @@ TEST(SmoothingKernels, CascadeIsAsNearAsOddWidthsAllow) {
   }
 }
 
-}  // namespace
+}  // namespace smoothing_kernels_test
 }  // namespace vantage

@@ -12,7 +12,7 @@
 #include <vector>
 
 namespace vantage {
-namespace {
+namespace soft_outlines_test {
 
 // Any function of the question, unknown for some.
 double some_coverage(const SurfaceEdge& edge) {
@@ -155,5 +155,5 @@ TEST(SoftOutlinesOfOneSurface, AreNone) {
   EXPECT_EQ(questions, 0);
 }
 
-}  // namespace
+}  // namespace soft_outlines_test
 }  // namespace vantage

@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace vantage {
-namespace {
+namespace speckles_test {
 
 /// A map of one or two components and which of its pixels are matched.
 struct Case {
@@ -143,5 +143,5 @@ TEST(Speckles, ACombIsOneRegion) {
   }
 }
 
-}  // namespace
+}  // namespace speckles_test
 }  // namespace vantage

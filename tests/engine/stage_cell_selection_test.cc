@@ -18,7 +18,7 @@
 #include "tests/kernels/cell_winner_rows.h"
 
 namespace vantage {
-namespace {
+namespace stage_cell_selection_test {
 
 using kernels::CellKind;
 using testing::CellVolume;
@@ -264,5 +264,5 @@ TEST(CellSelection, RefusesAConfidenceThatTheCellsDoNotHave) {
   EXPECT_THROW(make_cell_selection_stage(geometry, settings, maps.outputs()), Error);
 }
 
-}  // namespace
+}  // namespace stage_cell_selection_test
 }  // namespace vantage

@@ -18,7 +18,7 @@
 #include "tests/engine/cell_stages.h"
 
 namespace vantage {
-namespace {
+namespace stage_column_sum_test {
 
 using kernels::CandidateGeometry;
 using scheduler::Extent;
@@ -184,5 +184,5 @@ TEST(ColumnSumScale, TakesCostsThatAreAllAlike) {
   EXPECT_EQ(scale.scale, 1);
 }
 
-}  // namespace
+}  // namespace stage_column_sum_test
 }  // namespace vantage

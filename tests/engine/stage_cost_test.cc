@@ -20,7 +20,7 @@
 #include "tests/engine/plain_cost_cells.h"
 
 namespace vantage {
-namespace {
+namespace stage_cost_test {
 
 using kernels::CandidateGeometry;
 using testing::PlainCostCells;
@@ -461,5 +461,5 @@ TEST_F(StageCost, RefusesBaselinesItCannotServe) {
   }
 }
 
-}  // namespace
+}  // namespace stage_cost_test
 }  // namespace vantage

@@ -14,7 +14,7 @@
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
-namespace {
+namespace stage_ray_census_energy_test {
 
 using kernels::CandidateGeometry;
 using scheduler::Extent;
@@ -88,5 +88,5 @@ TEST(RayCensusEnergyStage, IsTheLogarithmOfTheLikelihoods) {
   }
 }
 
-}  // namespace
+}  // namespace stage_ray_census_energy_test
 }  // namespace vantage

@@ -16,7 +16,7 @@
 #include "tests/engine/cell_stages.h"
 
 namespace vantage {
-namespace {
+namespace stage_smoothing_test {
 
 using scheduler::Extent;
 using testing::CellVolume;
@@ -163,5 +163,5 @@ TEST(SmoothingStages, GiveTheSameBitsOnEveryInstructionSet) {
   force_instruction_set("best");
 }
 
-}  // namespace
+}  // namespace stage_smoothing_test
 }  // namespace vantage

@@ -19,7 +19,7 @@
 #include "tests/engine/plain_column.h"
 
 namespace vantage {
-namespace {
+namespace stage_window_selection_test {
 
 using testing::BruteForceSsd;
 using testing::PlainColumn;
@@ -254,5 +254,5 @@ TEST(WindowSelectionSettings, RefuseTheConfidenceOfProbabilities) {
   EXPECT_NO_THROW(make_window_selection_stage(geometry, settings, {map.view()}));
 }
 
-}  // namespace
+}  // namespace stage_window_selection_test
 }  // namespace vantage

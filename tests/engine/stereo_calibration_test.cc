@@ -9,7 +9,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace stereo_calibration_test {
 
 using test::error_of;
 using test::put_text;
@@ -398,5 +398,5 @@ TEST(CalibrationFilesOfDataSets, AreRead) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace stereo_calibration_test
 }  // namespace vantage

@@ -10,7 +10,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace stereo_display_test {
 
 using test::noise;
 using test::same;
@@ -122,5 +122,5 @@ TEST(StereoDisplay, UnequalShapesAreRefused) {
   }
 }
 
-}  // namespace
+}  // namespace stereo_display_test
 }  // namespace vantage

@@ -17,7 +17,7 @@
 #include "tests/engine/identical_maps.h"
 
 namespace vantage {
-namespace {
+namespace stereo_matcher_test {
 
 using testing::BruteForceSsd;
 using testing::grey_levels_of;
@@ -347,5 +347,5 @@ TEST(StereoMatcher, RefusesWhatItCannotDo) {
   EXPECT_THROW(StereoMatcher(options, execution), UsageError);
 }
 
-}  // namespace
+}  // namespace stereo_matcher_test
 }  // namespace vantage

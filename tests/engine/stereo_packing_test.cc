@@ -12,7 +12,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace stereo_packing_test {
 
 using test::noise;
 using test::same;
@@ -256,5 +256,5 @@ TEST(StereoPacking, RefusesWhatDoesNotFit) {
   EXPECT_NE(pack_error(noise<std::uint16_t>(5, 4, 3)), "");
 }
 
-}  // namespace
+}  // namespace stereo_packing_test
 }  // namespace vantage

@@ -11,7 +11,7 @@
 #include "engine/generation/portable_random.h"
 
 namespace vantage {
-namespace {
+namespace still_pixels_test {
 
 Image<std::uint8_t> random_levels(int width, int height, unsigned seed) {
   std::mt19937 random(seed);
@@ -129,5 +129,5 @@ TEST(LumaLevels, AreTheSameForAllDepths) {
   }
 }
 
-}  // namespace
+}  // namespace still_pixels_test
 }  // namespace vantage

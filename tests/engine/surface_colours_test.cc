@@ -22,7 +22,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace surface_colours_test {
 
 using test::error_of;
 using test::noise;
@@ -473,5 +473,5 @@ TEST(SurfaceColours, RefuseTheBooksWarpAndGeometryOfAnotherSize) {
               HasSubstr("is 39×30, expected 40×30"));
 }
 
-}  // namespace
+}  // namespace surface_colours_test
 }  // namespace vantage

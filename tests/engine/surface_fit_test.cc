@@ -14,7 +14,7 @@
 #include "tests/engine/identical_maps.h"
 
 namespace vantage {
-namespace {
+namespace surface_fit_test {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
@@ -123,5 +123,5 @@ TEST(FitSurface, RefinementFitsBothComponentsBeforeItFills) {
   EXPECT_TRUE(testing::identical(map_y, stepped.map));
 }
 
-}  // namespace
+}  // namespace surface_fit_test
 }  // namespace vantage

@@ -25,7 +25,7 @@
 #include "tests/kernels/projection_cases.h"
 
 namespace vantage {
-namespace {
+namespace surface_warper_test {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
@@ -517,5 +517,5 @@ TEST(SurfaceWarper, RefusesWhatItCannotMake) {
   EXPECT_THROW(pair.synthesize({}, flat, execution, view), Error);
 }
 
-}  // namespace
+}  // namespace surface_warper_test
 }  // namespace vantage

@@ -11,7 +11,7 @@
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
-namespace {
+namespace temporal_state_test {
 
 using testing::PixelKind;
 using testing::textured_pair;
@@ -199,5 +199,5 @@ TEST(TemporalPrior, KeepsAStillNoisySceneSteady) {
   }
 }
 
-}  // namespace
+}  // namespace temporal_state_test
 }  // namespace vantage

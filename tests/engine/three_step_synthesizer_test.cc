@@ -11,7 +11,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace three_step_synthesizer_test {
 
 using test::error_of;
 
@@ -123,5 +123,5 @@ TEST_F(ThreeStepSynthesizerTest, ACameraAheadHasAPlaneThatCutsTheScene) {
   EXPECT_NO_THROW(one_pass(ahead));
 }
 
-}  // namespace
+}  // namespace three_step_synthesizer_test
 }  // namespace vantage

@@ -11,7 +11,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace trifocal_rectification_test {
 
 using test::error_of;
 using test::random_rotation;
@@ -158,5 +158,5 @@ TEST(TrifocalRectification, NamesWhatIsWrong) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace trifocal_rectification_test
 }  // namespace vantage

@@ -14,7 +14,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace triple_warper_test {
 
 using test::error_of;
 using test::noise;
@@ -187,5 +187,5 @@ TEST(TripleView, RefusesImagesThatDoNotGoTogether) {
   EXPECT_THAT(error_of([&] { centre_of(planes, {1, 0, 0}); }), HasSubstr("5×3, expected 5×4"));
 }
 
-}  // namespace
+}  // namespace triple_warper_test
 }  // namespace vantage

@@ -13,7 +13,7 @@
 #include "tests/engine/video_test_support.h"
 
 namespace vantage {
-namespace {
+namespace truncated_video_test {
 
 using test::bytes_of;
 using test::error_of;
@@ -187,5 +187,5 @@ TEST(TruncatedVideo, AnMp4WithoutIndexIsRefusedAndSaysWhy) {
   }
 }
 
-}  // namespace
+}  // namespace truncated_video_test
 }  // namespace vantage

@@ -14,7 +14,7 @@
 #include "engine/tuning/candidate_ladder.h"
 
 namespace vantage {
-namespace {
+namespace tuner_test {
 
 /// Settings with every field known.
 struct Plan {
@@ -368,5 +368,5 @@ TEST(Tuner, RefusesABudgetThatIsNone) {
   EXPECT_THROW(Tuner(machine, machine, clock, {.start = {.threads = 0}}), UsageError);
 }
 
-}  // namespace
+}  // namespace tuner_test
 }  // namespace vantage

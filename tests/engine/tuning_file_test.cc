@@ -16,7 +16,7 @@
 #include "tests/temporary_folder.h"
 
 namespace vantage {
-namespace {
+namespace tuning_file_test {
 
 namespace fs = std::filesystem;
 using testing::ElementsAre;
@@ -220,5 +220,5 @@ TEST(DefaultTuningPath, FollowsTheBaseDirectories) {
   EXPECT_EQ(path_with(nullptr, "relative"), "");
 }
 
-}  // namespace
+}  // namespace tuning_file_test
 }  // namespace vantage

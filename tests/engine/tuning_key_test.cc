@@ -9,7 +9,7 @@
 #include "engine/build_info.h"
 
 namespace vantage {
-namespace {
+namespace tuning_key_test {
 
 class TuningKeyTest : public testing::Test {
  protected:
@@ -124,5 +124,5 @@ TEST_F(TuningKeyTest, HasTextForEveryMethodAndSize) {
   EXPECT_EQ(key({1, 1, false}).size, "about 1x1 pixels, 1 disparities");
 }
 
-}  // namespace
+}  // namespace tuning_key_test
 }  // namespace vantage

@@ -8,7 +8,7 @@
 #include <variant>
 
 namespace vantage {
-namespace {
+namespace tuning_pair_test {
 
 TEST(TuningPair, IsOfTheSizeAskedFor) {
   Execution execution({});
@@ -53,5 +53,5 @@ TEST(TuningPair, TheRightImageShowsTheLeftOneShifted) {
   }
 }
 
-}  // namespace
+}  // namespace tuning_pair_test
 }  // namespace vantage

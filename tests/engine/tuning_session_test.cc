@@ -7,7 +7,7 @@
 #include "engine/error.h"
 
 namespace vantage {
-namespace {
+namespace tuning_session_test {
 
 TEST(TuneMachine, FindsSomethingToStoreInLittleTime) {
   TuningRequest request;
@@ -60,5 +60,5 @@ TEST(TuneMachine, RefusesWhatCannotBe) {
   EXPECT_THROW(tune_machine(request, {}, nullptr), Error);
 }
 
-}  // namespace
+}  // namespace tuning_session_test
 }  // namespace vantage

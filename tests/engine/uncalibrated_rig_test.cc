@@ -17,7 +17,7 @@
 #include "tests/engine/match_cases.h"
 
 namespace vantage {
-namespace {
+namespace uncalibrated_rig_test {
 
 using test::error_of;
 using test::exact_matches;
@@ -283,5 +283,5 @@ TEST(UncalibratedRig, RectifiesTheChessboardFromItsCorners) {
   }
 }
 
-}  // namespace
+}  // namespace uncalibrated_rig_test
 }  // namespace vantage

@@ -15,7 +15,7 @@
 #include "tests/engine/unrectified_pair.h"
 
 namespace vantage {
-namespace {
+namespace vertical_error_test {
 
 using test::error_of;
 using test::uniform;
@@ -229,5 +229,5 @@ TEST(VerticalError, OfTheMotorcycleIsThatOfItsTruth) {
   EXPECT_LT(other->systematic_px, 0.15);
 }
 
-}  // namespace
+}  // namespace vertical_error_test
 }  // namespace vantage

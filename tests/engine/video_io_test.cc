@@ -14,7 +14,7 @@
 #include "tests/engine/video_test_support.h"
 
 namespace vantage {
-namespace {
+namespace video_io_test {
 
 using test::bytes_of;
 using test::error_of;
@@ -343,5 +343,5 @@ TEST(VideoIo, ReadsTheSharedVideoWhichShowsTheSharedFrames) {
   EXPECT_EQ(frames, 51);
 }
 
-}  // namespace
+}  // namespace video_io_test
 }  // namespace vantage

@@ -13,7 +13,7 @@
 #include "tests/engine/video_test_support.h"
 
 namespace vantage {
-namespace {
+namespace video_join_test {
 
 using test::bytes_of;
 using test::error_of;
@@ -195,5 +195,5 @@ TEST(VideoJoin, RefusesWhatIsMissingDamagedOrDoesNotFit) {
   EXPECT_FALSE(std::filesystem::exists(folder / "joined.mp4"));
 }
 
-}  // namespace
+}  // namespace video_join_test
 }  // namespace vantage

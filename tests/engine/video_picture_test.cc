@@ -30,7 +30,7 @@ extern "C" {
 }
 
 namespace vantage {
-namespace {
+namespace video_picture_test {
 
 namespace fs = std::filesystem;
 using test::error_of;
@@ -179,5 +179,5 @@ TEST(VideoPicture, RunsOverDamagedVideosAreTheSameHoweverManyWork) {
   }
 }
 
-}  // namespace
+}  // namespace video_picture_test
 }  // namespace vantage

@@ -14,7 +14,7 @@
 #include "tests/engine/video_test_support.h"
 
 namespace vantage {
-namespace {
+namespace video_reader_test {
 
 using test::bytes_of;
 using test::error_of;
@@ -351,5 +351,5 @@ TEST(VideoReader, RefusesAbsurdSizes) {
   EXPECT_THAT(error_of([&] { VideoReader(folder / "a.y4m"); }), HasSubstr("a.y4m"));
 }
 
-}  // namespace
+}  // namespace video_reader_test
 }  // namespace vantage

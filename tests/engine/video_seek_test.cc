@@ -14,7 +14,7 @@
 #include "tests/engine/video_test_support.h"
 
 namespace vantage {
-namespace {
+namespace video_seek_test {
 
 using test::bytes_of;
 using test::error_of;
@@ -176,5 +176,5 @@ TEST(VideoSeek, DamageEndsWithItsGroup) {
   }
 }
 
-}  // namespace
+}  // namespace video_seek_test
 }  // namespace vantage

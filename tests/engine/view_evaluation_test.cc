@@ -10,7 +10,7 @@
 #include "engine/error.h"
 
 namespace vantage {
-namespace {
+namespace view_evaluation_test {
 
 Execution& serial() {
   static Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
@@ -179,5 +179,5 @@ TEST(ViewEvaluation, SizesMustAgree) {
   EXPECT_THROW((void)evaluate_view(a, a, serial(), mask.view()), Error);
 }
 
-}  // namespace
+}  // namespace view_evaluation_test
 }  // namespace vantage

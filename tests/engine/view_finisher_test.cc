@@ -22,7 +22,7 @@
 #include "kernels/view_blend/view_blend.h"
 
 namespace vantage {
-namespace {
+namespace view_finisher_test {
 
 using Bytes = Image<std::uint8_t>;
 
@@ -217,5 +217,5 @@ TEST(ViewFinisher, InpaintsEmptyRows) {
   }
 }
 
-}  // namespace
+}  // namespace view_finisher_test
 }  // namespace vantage

@@ -9,7 +9,7 @@
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {
-namespace {
+namespace view_path_test {
 
 using test::error_of;
 using testing::HasSubstr;
@@ -101,5 +101,5 @@ TEST(ViewPath, OfTwoKindsOrSizesIsRefused) {
             "view path has cameras with and without a size, expected it for all or for none");
 }
 
-}  // namespace
+}  // namespace view_path_test
 }  // namespace vantage

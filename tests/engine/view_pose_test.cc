@@ -9,7 +9,7 @@
 #include "tests/engine/calibration_cases.h"
 
 namespace vantage {
-namespace {
+namespace view_pose_test {
 
 using test::random_rotation;
 using test::uniform;
@@ -115,5 +115,5 @@ TEST(ViewPose, CamerasNeedACalibratedPair) {
   EXPECT_EQ(new_view(BaselinePosition{0.5, 0.5}, nullptr, 4, 3).height_px, 3);
 }
 
-}  // namespace
+}  // namespace view_pose_test
 }  // namespace vantage

@@ -23,7 +23,7 @@
 #include "tests/engine/plain_synthesis.h"
 
 namespace vantage {
-namespace {
+namespace view_synthesizer_test {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
@@ -447,5 +447,5 @@ TEST(ViewSynthesizer, LargeImagesAreNoOtherCase) {
   EXPECT_EQ(fit_channels(sums, 3, 1), own.intensity);
 }
 
-}  // namespace
+}  // namespace view_synthesizer_test
 }  // namespace vantage

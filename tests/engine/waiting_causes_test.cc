@@ -12,7 +12,7 @@
 #include "scheduler/trace_summary.h"
 
 namespace vantage {
-namespace {
+namespace waiting_causes_test {
 
 using scheduler::SpanKind;
 using scheduler::SpanRecord;
@@ -161,5 +161,5 @@ TEST(Timeline, JoinsWhatIsTooShort) {
   EXPECT_GT(timeline_of(trace, 100'000)[0].spans.size(), 900U);
 }
 
-}  // namespace
+}  // namespace waiting_causes_test
 }  // namespace vantage

@@ -6,7 +6,7 @@
 #include <set>
 
 namespace vantage {
-namespace {
+namespace work_plan_test {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
@@ -105,5 +105,5 @@ TEST(WorkPlan, ChunksNearTheLargestNumber) {
   EXPECT_EQ(selection.chunk_of(2147483646).end, 2147483647);
 }
 
-}  // namespace
+}  // namespace work_plan_test
 }  // namespace vantage

@@ -13,7 +13,7 @@
 #include "tests/kernels/star_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace bayes_step_test {
 
 using Kernel = void (*)(const BayesRow&);
 
@@ -214,5 +214,5 @@ TEST_P(BayesStep, ProbabilitiesSumToOne) {
 
 INSTANTIATE_TEST_SUITE_P(Targets, BayesStep, testing::ValuesIn(each_target()), target_test_name);
 
-}  // namespace
+}  // namespace bayes_step_test
 }  // namespace vantage::kernels

@@ -15,7 +15,7 @@
 #include "tests/keys_kernel.h"
 
 namespace vantage::kernels {
-namespace {
+namespace bicubic_remap_test {
 
 using test::keys;
 
@@ -195,5 +195,5 @@ TYPED_TEST(BicubicRemap, WholePositionsAreThePixelsThemselves) {
   }
 }
 
-}  // namespace
+}  // namespace bicubic_remap_test
 }  // namespace vantage::kernels

@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace vantage::kernels {
-namespace {
+namespace candidate_interpolation_test {
 
 std::vector<CandidateShift> shifts_of(double least, double step, int lanes) {
   std::vector<CandidateShift> shifts;
@@ -57,5 +57,5 @@ TEST(CandidateInterpolation, EqualsLinearInterpolation) {
   }
 }
 
-}  // namespace
+}  // namespace candidate_interpolation_test
 }  // namespace vantage::kernels

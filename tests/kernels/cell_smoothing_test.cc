@@ -14,7 +14,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace cell_smoothing_test {
 
 constexpr float kSentinel = -12345.5F;
 /// Of the sum of the terms' absolute values: an ulp per operation, fewer than 150 of them.
@@ -277,5 +277,5 @@ TEST_P(CellSmoothingOn, StripsOfACascadeAreThoseOfTheWholeRow) {
   });
 }
 
-}  // namespace
+}  // namespace cell_smoothing_test
 }  // namespace vantage::kernels

@@ -15,7 +15,7 @@
 #include "tests/kernels/winner_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace cell_winner_test {
 
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
 constexpr float kFloatSentinel = -12345.5F;
@@ -265,5 +265,5 @@ TEST_P(CellWinner, EnergyOfAProbabilityIsItsNegativeLogarithm) {
   }
 }
 
-}  // namespace
+}  // namespace cell_winner_test
 }  // namespace vantage::kernels

@@ -12,7 +12,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace census_test {
 
 class Census : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(Census);
@@ -163,5 +163,5 @@ TEST_P(Census, HammingDistance) {
   });
 }
 
-}  // namespace
+}  // namespace census_test
 }  // namespace vantage::kernels

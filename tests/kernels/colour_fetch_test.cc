@@ -12,7 +12,7 @@
 #include "tests/keys_kernel.h"
 
 namespace vantage::kernels {
-namespace {
+namespace colour_fetch_test {
 
 using test::keys;
 
@@ -178,5 +178,5 @@ TEST(FetchForward, SourcePixelsAndLinearGaps) {
   }
 }
 
-}  // namespace
+}  // namespace colour_fetch_test
 }  // namespace vantage::kernels

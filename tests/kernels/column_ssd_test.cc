@@ -13,7 +13,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace column_ssd_test {
 
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
 constexpr int kMostShift = 6;
@@ -270,5 +270,5 @@ TEST_P(ColumnSsd, InterleavesRows) {
   }
 }
 
-}  // namespace
+}  // namespace column_ssd_test
 }  // namespace vantage::kernels

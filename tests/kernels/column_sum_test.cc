@@ -12,7 +12,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace column_sum_test {
 
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
 constexpr int kCounts[] = {16, 32, 48, 64, 80, 144, 272};
@@ -84,5 +84,5 @@ VANTAGE_ON_EVERY_TARGET(ColumnSumOn);
 
 TEST_P(ColumnSumOn, MovesSumsByOneRow) { sweep(column_sum_row); }
 
-}  // namespace
+}  // namespace column_sum_test
 }  // namespace vantage::kernels

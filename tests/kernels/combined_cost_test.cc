@@ -13,7 +13,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace combined_cost_test {
 
 class CombinedCost : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(CombinedCost);
@@ -191,5 +191,5 @@ TEST(CombinedModel, StepsAreFineAndReachToWhereOnlyOutliersAre) {
   }
 }
 
-}  // namespace
+}  // namespace combined_cost_test
 }  // namespace vantage::kernels

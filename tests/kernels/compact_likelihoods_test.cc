@@ -12,7 +12,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace compact_likelihoods_test {
 
 struct Shape {
   int columns;
@@ -226,5 +226,5 @@ TEST_P(CompactLikelihoods, ProbabilitiesSurviveToHalfAStep) {
 
 VANTAGE_ON_EVERY_TARGET(CompactLikelihoods);
 
-}  // namespace
+}  // namespace compact_likelihoods_test
 }  // namespace vantage::kernels

@@ -13,7 +13,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace cross_check_test {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint8_t kSentinel = 77;
@@ -105,5 +105,5 @@ TEST_P(CrossCheck, ToleranceItselfIsTooMuch) {
   EXPECT_EQ(checked({0, 0}, {-1.0F, -0.9375F}, 1, 1), (Mask{255, 0}));
 }
 
-}  // namespace
+}  // namespace cross_check_test
 }  // namespace vantage::kernels

@@ -6,7 +6,7 @@
 #include "tests/kernels/star_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace diffusion_step_test {
 
 class DiffusionStep : public EveryTarget {};
 
@@ -36,5 +36,5 @@ TEST_P(DiffusionStep, EqualsReferenceExactly) {
 INSTANTIATE_TEST_SUITE_P(Targets, DiffusionStep, testing::ValuesIn(each_target()),
                          target_test_name);
 
-}  // namespace
+}  // namespace diffusion_step_test
 }  // namespace vantage::kernels

@@ -12,7 +12,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace disparity_prior_test {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -182,5 +182,5 @@ TEST_P(DisparityPrior, KeepsTheVertexOfAParabola) {
   }
 }
 
-}  // namespace
+}  // namespace disparity_prior_test
 }  // namespace vantage::kernels

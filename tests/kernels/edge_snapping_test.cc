@@ -12,7 +12,7 @@
 #include <vector>
 
 namespace vantage::kernels {
-namespace {
+namespace edge_snapping_test {
 
 using Row = std::vector<float>;
 using Edges = std::vector<std::uint8_t>;
@@ -155,5 +155,5 @@ TEST(EdgeSnapping, EqualsPlainTranscription) {
   }
 }
 
-}  // namespace
+}  // namespace edge_snapping_test
 }  // namespace vantage::kernels

@@ -11,7 +11,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace edge_weights_test {
 
 class EdgeWeightsRow : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(EdgeWeightsRow);
@@ -79,5 +79,5 @@ TEST_P(EdgeWeightsRow, EqualPixelsCountInFull) {
   EXPECT_EQ(weights, std::vector<float>(20, 1.0F));
 }
 
-}  // namespace
+}  // namespace edge_weights_test
 }  // namespace vantage::kernels

@@ -14,7 +14,7 @@
 #include "tests/kernels/winner_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace energy_winner_test {
 
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
 constexpr FixedEnergy kEnergySentinel = -77;
@@ -338,5 +338,5 @@ TEST(EnergyProbabilityOnAllTargets, IsIdentical) {
 VANTAGE_ON_EVERY_TARGET(EnergyWinner);
 VANTAGE_ON_EVERY_TARGET(EnergyProbability);
 
-}  // namespace
+}  // namespace energy_winner_test
 }  // namespace vantage::kernels

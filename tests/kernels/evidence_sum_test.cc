@@ -10,7 +10,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace evidence_sum_test {
 
 /// Random gradients; NaN where rows are read but not counted.
 struct RandomGradients {
@@ -101,5 +101,5 @@ TEST(EvidenceSum, EqualGradientsSupportWithTheirNorm) {
   EXPECT_NEAR(evidence_sum({gradients.block(), gradients.block(), 77, 3, false}), norms, 1e-2);
 }
 
-}  // namespace
+}  // namespace evidence_sum_test
 }  // namespace vantage::kernels

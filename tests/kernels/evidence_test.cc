@@ -12,7 +12,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace evidence_test {
 
 class Evidence : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(Evidence);
@@ -141,5 +141,5 @@ TEST_P(Evidence, Likelihood) {
   }
 }
 
-}  // namespace
+}  // namespace evidence_test
 }  // namespace vantage::kernels

@@ -13,7 +13,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace fill_unmatched_test {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
@@ -129,5 +129,5 @@ TEST(FillUnmatchedLinearly, InterpolatesWhereBothSidesAreOneSurface) {
   EXPECT_EQ(row, (Row{1, 2}));
 }
 
-}  // namespace
+}  // namespace fill_unmatched_test
 }  // namespace vantage::kernels

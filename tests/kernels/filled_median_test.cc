@@ -16,7 +16,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace filled_median_test {
 
 constexpr std::size_t kColours = 3;
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
@@ -246,5 +246,5 @@ TEST_P(FilledMedian, KeepsPixelsThatNothingIsKnownAround) {
   }
 }
 
-}  // namespace
+}  // namespace filled_median_test
 }  // namespace vantage::kernels

@@ -14,7 +14,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace fixed_energies_test {
 
 constexpr FixedEnergy kSentinel = -77;
 
@@ -196,5 +196,5 @@ TEST_P(FixedEnergies, OfVanishingLikelihoodsAreThatOfTheLeast) {
 
 VANTAGE_ON_EVERY_TARGET(FixedEnergies);
 
-}  // namespace
+}  // namespace fixed_energies_test
 }  // namespace vantage::kernels

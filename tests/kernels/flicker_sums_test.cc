@@ -14,7 +14,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace flicker_sums_test {
 
 constexpr int kWidths[] = {1, 2, 3, 15, 16, 17, 64, 65, 1023, 1024, 1025, 20000};
 
@@ -120,5 +120,5 @@ TEST_P(FlickerSumsKernel, LevelChangeAndSum) {
   }
 }
 
-}  // namespace
+}  // namespace flicker_sums_test
 }  // namespace vantage::kernels

@@ -8,7 +8,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace gradient_test {
 
 class Gradient : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(Gradient);
@@ -61,5 +61,5 @@ TEST_P(Gradient, SeparableFilter) {
   }
 }
 
-}  // namespace
+}  // namespace gradient_test
 }  // namespace vantage::kernels

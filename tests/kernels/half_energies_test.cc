@@ -12,7 +12,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace half_energies_test {
 
 /// What the bits of a half float mean (IEEE 754 binary16).
 double plain_value(std::uint16_t half) {
@@ -203,5 +203,5 @@ TEST_P(HalfEnergies, GoToTheColumnsOfTheirBlock) {
 
 VANTAGE_ON_EVERY_TARGET(HalfEnergies);
 
-}  // namespace
+}  // namespace half_energies_test
 }  // namespace vantage::kernels

@@ -12,7 +12,7 @@
 #include "tests/kernels/synthesis_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace hole_fill_test {
 
 // One letter per pixel; disparities as digits, '.' = hole.
 std::string fill(std::string pixels, const std::string& disparities, bool mirror = true,
@@ -149,5 +149,5 @@ TEST(HoleFill, EqualsPlainDefinitionOnRandomRows) {
   }
 }
 
-}  // namespace
+}  // namespace hole_fill_test
 }  // namespace vantage::kernels

@@ -10,7 +10,7 @@
 #include "tests/kernels/synthesis_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace intensity_sums_test {
 
 TEST(IntensitySums, CountOnlyWhatBothShow) {
   std::mt19937 random(10);
@@ -45,5 +45,5 @@ TEST(IntensitySums, CountOnlyWhatBothShow) {
   }
 }
 
-}  // namespace
+}  // namespace intensity_sums_test
 }  // namespace vantage::kernels

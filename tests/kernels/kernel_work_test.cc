@@ -13,7 +13,7 @@
 #include "kernels/cells/exp_log.h"
 
 namespace vantage::kernels {
-namespace {
+namespace kernel_work_test {
 
 /// A number; everything that counts as an operation is counted.
 class Counted {
@@ -578,5 +578,5 @@ TEST(KernelWork, OfSelections) {
   expect_work(cell_winner_work(false, false) + kCellEntropyWork, [&] { entropy_of(cells); });
 }
 
-}  // namespace
+}  // namespace kernel_work_test
 }  // namespace vantage::kernels

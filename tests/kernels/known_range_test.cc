@@ -9,7 +9,7 @@
 #include "tests/kernels/synthesis_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace known_range_test {
 
 TEST(KnownRange, LeastAndMostOfWhatIsKnown) {
   std::mt19937 random(1);
@@ -48,5 +48,5 @@ TEST(KnownRange, NothingIsKnown) {
   EXPECT_GT(range.least, range.most);
 }
 
-}  // namespace
+}  // namespace known_range_test
 }  // namespace vantage::kernels

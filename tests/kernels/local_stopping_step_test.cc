@@ -10,7 +10,7 @@
 #include "tests/kernels/star_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace local_stopping_step_test {
 
 class LocalStoppingStep : public EveryTarget {
  protected:
@@ -84,5 +84,5 @@ TEST_P(LocalStoppingStep, EntropyEqualsReference) {
 INSTANTIATE_TEST_SUITE_P(Targets, LocalStoppingStep, testing::ValuesIn(each_target()),
                          target_test_name);
 
-}  // namespace
+}  // namespace local_stopping_step_test
 }  // namespace vantage::kernels

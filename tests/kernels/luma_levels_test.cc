@@ -13,7 +13,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace luma_levels_test {
 
 class LumaLevels : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(LumaLevels);
@@ -76,5 +76,5 @@ TEST_P(LumaLevels, BlackAndWhiteStayThemselves) {
   EXPECT_EQ(std::count(std::begin(levels), std::end(levels), 0), 64);
 }
 
-}  // namespace
+}  // namespace luma_levels_test
 }  // namespace vantage::kernels

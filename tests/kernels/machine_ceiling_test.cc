@@ -9,7 +9,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace machine_ceiling_test {
 
 class MachineCeiling : public EveryTarget {};
 
@@ -46,5 +46,5 @@ TEST_P(MachineCeiling, ArithmeticIsInProportionToRoundsAndIsDone) {
 
 VANTAGE_ON_EVERY_TARGET(MachineCeiling);
 
-}  // namespace
+}  // namespace machine_ceiling_test
 }  // namespace vantage::kernels

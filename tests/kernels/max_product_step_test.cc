@@ -16,7 +16,7 @@
 #include "tests/kernels/star_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace max_product_step_test {
 
 using EnergyStarRows = CellStarRows<FixedEnergy>;
 using Kernel = void (*)(const MaxProductRow&);
@@ -418,5 +418,5 @@ TEST(MaxProductWork, HoldsColumnsAndTheirMargins) {
 
 VANTAGE_ON_EVERY_TARGET(MaxProductStep);
 
-}  // namespace
+}  // namespace max_product_step_test
 }  // namespace vantage::kernels

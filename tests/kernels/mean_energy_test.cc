@@ -11,7 +11,7 @@
 #include "tests/kernels/winner_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace mean_energy_test {
 
 constexpr float kSentinel = -12345.5F;
 
@@ -92,5 +92,5 @@ TEST_P(MeanEnergy, EqualsTheReferenceAndThatOfAWinnerAlone) {
   });
 }
 
-}  // namespace
+}  // namespace mean_energy_test
 }  // namespace vantage::kernels

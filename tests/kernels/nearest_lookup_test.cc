@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace vantage::kernels {
-namespace {
+namespace nearest_lookup_test {
 
 TEST(NearestLookup, TakesTheValueAtEachPlaceAndNothingElsewhere) {
   constexpr int kWidth = 5;
@@ -34,5 +34,5 @@ TEST(NearestLookup, PlacesOfTheLargestImagesAreNoHoles) {
   EXPECT_EQ(pixel_place(65499, 65498) >> 16U, 65498U);
 }
 
-}  // namespace
+}  // namespace nearest_lookup_test
 }  // namespace vantage::kernels

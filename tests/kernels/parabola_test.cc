@@ -14,7 +14,7 @@
 #include "tests/kernels/winner_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace parabola_test {
 
 constexpr float kSentinel = -12345.5F;
 
@@ -236,5 +236,5 @@ TEST_P(Parabola, MovesHalfAPixelAtMostAtAMinimum) {
   EXPECT_EQ(refine(most, 0, most), 3.0F);
 }
 
-}  // namespace
+}  // namespace parabola_test
 }  // namespace vantage::kernels

@@ -13,7 +13,7 @@
 #include "tests/kernels/synthesis_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace photograph_position_test {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr int kSizes[][2] = {{1, 1}, {2, 1}, {1, 7}, {2, 2}, {13, 5}, {37, 29}};
@@ -184,5 +184,5 @@ TEST_P(PhotographPositionTargets, EqualsTheReference) {
 
 VANTAGE_ON_EVERY_TARGET(PhotographPositionTargets);
 
-}  // namespace
+}  // namespace photograph_position_test
 }  // namespace vantage::kernels

@@ -14,7 +14,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace pixel_cost_test {
 
 class PixelCost : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(PixelCost);
@@ -283,5 +283,5 @@ TEST(ExpLog, Logarithm) {
   }
 }
 
-}  // namespace
+}  // namespace pixel_cost_test
 }  // namespace vantage::kernels

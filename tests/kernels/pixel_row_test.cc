@@ -10,7 +10,7 @@
 #include "tests/kernels/synthesis_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace pixel_row_test {
 
 template <typename T>
 class PixelRow : public testing::Test {};
@@ -47,5 +47,5 @@ TYPED_TEST(PixelRow, WidensPixelsAndClearsTheRest) {
   }
 }
 
-}  // namespace
+}  // namespace pixel_row_test
 }  // namespace vantage::kernels

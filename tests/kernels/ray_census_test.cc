@@ -13,7 +13,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace ray_census_test {
 
 class RayCensus : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(RayCensus);
@@ -137,5 +137,5 @@ TEST_P(RayCensus, EnergiesAreTheTables) {
       });
 }
 
-}  // namespace
+}  // namespace ray_census_test
 }  // namespace vantage::kernels

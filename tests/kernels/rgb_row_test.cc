@@ -13,7 +13,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace rgb_row_test {
 
 class RgbRow : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(RgbRow);
@@ -71,5 +71,5 @@ void expect_the_definition() {
 TEST_P(RgbRow, IsTheDefinitionIn8Bits) { expect_the_definition<std::uint8_t>(); }
 TEST_P(RgbRow, IsTheDefinitionIn16Bits) { expect_the_definition<std::uint16_t>(); }
 
-}  // namespace
+}  // namespace rgb_row_test
 }  // namespace vantage::kernels

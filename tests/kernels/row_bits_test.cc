@@ -10,7 +10,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace row_bits_test {
 
 using Bits = std::vector<std::uint64_t>;
 constexpr std::uint64_t kSentinel = 0xA5A5A5A5A5A5A5A5U;
@@ -87,5 +87,5 @@ TEST_P(RowBits, ZeroIsNothingElse) {
   }
 }
 
-}  // namespace
+}  // namespace row_bits_test
 }  // namespace vantage::kernels

@@ -12,7 +12,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace row_sum_test {
 
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
 constexpr int kWidths[] = {1, 2, 3, 5, 7, 8, 13, 16, 17, 31, 40};
@@ -204,5 +204,5 @@ TEST_P(RowSumOn, MakesNothingOfNoColumns) {
   EXPECT_TRUE(output.intact());
 }
 
-}  // namespace
+}  // namespace row_sum_test
 }  // namespace vantage::kernels

@@ -9,7 +9,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace simd_target_test {
 
 TEST(SimdTarget, AvailableTargetsAreBuiltOnesAndNotEmpty) {
   EXPECT_NE(available_targets(), 0);
@@ -50,5 +50,5 @@ TEST(SimdTarget, NamesTellTargetsApart) {
   }
 }
 
-}  // namespace
+}  // namespace simd_target_test
 }  // namespace vantage::kernels

@@ -13,7 +13,7 @@
 #include "tests/kernels/synthesis_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace soft_edges_test {
 
 struct Surfaces {
   std::vector<float> d, left_d, right_d;
@@ -163,5 +163,5 @@ TYPED_TEST(MixOutlines, EqualThePlainSum) {
   }
 }
 
-}  // namespace
+}  // namespace soft_edges_test
 }  // namespace vantage::kernels

@@ -13,7 +13,7 @@
 #include "tests/kernels/projection_cases.h"
 
 namespace vantage::kernels {
-namespace {
+namespace source_position_test {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
@@ -139,5 +139,5 @@ TEST(SourcePosition, EqualOnEveryInstructionSetAndToReference) {
   }
 }
 
-}  // namespace
+}  // namespace source_position_test
 }  // namespace vantage::kernels

@@ -12,7 +12,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace still_pixels_test {
 
 constexpr int kWidths[] = {1, 2, 3, 15, 16, 17, 31, 63, 64, 65, 129, 200};
 
@@ -125,5 +125,5 @@ TEST(StillView, NeedsAllThePixelsItCanComeFrom) {
   }
 }
 
-}  // namespace
+}  // namespace still_pixels_test
 }  // namespace vantage::kernels

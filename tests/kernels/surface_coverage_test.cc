@@ -13,7 +13,7 @@
 #include "tests/kernels/projection_cases.h"
 
 namespace vantage::kernels {
-namespace {
+namespace surface_coverage_test {
 
 /// A map and the way back into it.
 struct Source {
@@ -204,5 +204,5 @@ TEST(JointCoverage, MultipliesOddsOfEqualObservers) {
   EXPECT_LE(joint_coverage(0.5, 1, 1), 1);
 }
 
-}  // namespace
+}  // namespace surface_coverage_test
 }  // namespace vantage::kernels

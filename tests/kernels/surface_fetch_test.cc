@@ -17,7 +17,7 @@
 #include "tests/keys_kernel.h"
 
 namespace vantage::kernels {
-namespace {
+namespace surface_fetch_test {
 
 using test::keys;
 
@@ -270,5 +270,5 @@ TEST(SurfaceFetchColours, DoesNotMixSurfaces) {
   }
 }
 
-}  // namespace
+}  // namespace surface_fetch_test
 }  // namespace vantage::kernels

@@ -15,7 +15,7 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace {
+namespace surface_fit_test {
 
 using Maybe = std::function<float(int x, int y)>;  // kNoSurfacePx: no match
 
@@ -234,5 +234,5 @@ TEST(SurfaceLattice, SamplesAreApartAndInsideTheWindow) {
   }
 }
 
-}  // namespace
+}  // namespace surface_fit_test
 }  // namespace vantage::kernels

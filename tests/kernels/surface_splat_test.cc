@@ -15,7 +15,7 @@
 #include "tests/kernels/projection_cases.h"
 
 namespace vantage::kernels {
-namespace {
+namespace surface_splat_test {
 
 constexpr float kNowhere = -std::numeric_limits<float>::infinity();
 
@@ -374,5 +374,5 @@ TEST(SurfaceSplat, WalksEdgesAlongTheirAxis) {
   EXPECT_EQ(lower(-1.5).sign, 1);
 }
 
-}  // namespace
+}  // namespace surface_splat_test
 }  // namespace vantage::kernels

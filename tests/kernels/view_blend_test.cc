@@ -13,7 +13,7 @@
 #include "tests/kernels/synthesis_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace view_blend_test {
 
 template <typename T>
 struct View {
@@ -174,5 +174,5 @@ TEST(ViewBlendSources, NameTheImages) {
   EXPECT_EQ(blend_row(pair, {}, 1, without), 1);
 }
 
-}  // namespace
+}  // namespace view_blend_test
 }  // namespace vantage::kernels

@@ -11,7 +11,7 @@
 #include "tests/kernels/projection_cases.h"
 
 namespace vantage::kernels {
-namespace {
+namespace view_projection_test {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -92,5 +92,5 @@ TEST(ViewProjection, EqualOnEveryInstructionSetAndToReference) {
   }
 }
 
-}  // namespace
+}  // namespace view_projection_test
 }  // namespace vantage::kernels

@@ -11,7 +11,7 @@
 #include "tests/kernels/winner_rows.h"
 
 namespace vantage::kernels {
-namespace {
+namespace winner_test {
 
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
 
@@ -157,5 +157,5 @@ TEST(CandidateGeometry, AgreesWithTheDefinition) {
   });
 }
 
-}  // namespace
+}  // namespace winner_test
 }  // namespace vantage::kernels

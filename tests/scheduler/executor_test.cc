@@ -14,7 +14,7 @@
 #include "tests/scheduler/executor_cases.h"
 
 namespace vantage::scheduler {
-namespace {
+namespace executor_test {
 
 /// Counts the calls of every task.
 class Calls {
@@ -201,5 +201,5 @@ TEST(ShuffledExecutor, RunsTasksInAnotherOrderEachTime) {
   EXPECT_NE(first, order_of(*make_shuffled_executor(4)));
 }
 
-}  // namespace
+}  // namespace executor_test
 }  // namespace vantage::scheduler

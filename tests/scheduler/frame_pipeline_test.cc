@@ -18,7 +18,7 @@
 #include "tests/scheduler/executor_cases.h"
 
 namespace vantage::scheduler {
-namespace {
+namespace frame_pipeline_test {
 
 enum class Step { kRead, kPrepare, kCompute, kEncode, kWrite };
 constexpr Step kSteps[] = {Step::kRead, Step::kPrepare, Step::kCompute, Step::kEncode,
@@ -351,5 +351,5 @@ TEST_P(FramePipeline, FailureWhileStoppingIsStillReported) {
   EXPECT_EQ(sequence.written(), first_frames(3));
 }
 
-}  // namespace
+}  // namespace frame_pipeline_test
 }  // namespace vantage::scheduler

@@ -19,7 +19,7 @@
 #include "tests/temporary_folder.h"
 
 namespace vantage::scheduler {
-namespace {
+namespace hardware_counters_test {
 
 using testing::HasSubstr;
 
@@ -175,5 +175,5 @@ TEST(HardwareCounters, ScaleWhatTookTurns) {
   EXPECT_THAT(never.absence, HasSubstr("in use"));
 }
 
-}  // namespace
+}  // namespace hardware_counters_test
 }  // namespace vantage::scheduler

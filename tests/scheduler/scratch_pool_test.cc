@@ -12,7 +12,7 @@
 #include <vector>
 
 namespace vantage::scheduler {
-namespace {
+namespace scratch_pool_test {
 
 TEST(ScratchPool, MemoryIsAlignedAndWritable) {
   ScratchPool pool;
@@ -133,5 +133,5 @@ TEST(ScratchPool, KnowsTheMostThatWasLeasedForAUse) {
   EXPECT_EQ(pool.most_leased_bytes(ScratchUse::kOther), 0U);
 }
 
-}  // namespace
+}  // namespace scratch_pool_test
 }  // namespace vantage::scheduler

@@ -15,7 +15,7 @@
 #include "tests/scheduler/test_stages.h"
 
 namespace vantage::scheduler {
-namespace {
+namespace strip_pipeline_test {
 
 constexpr int kAll = 1 << 20;
 
@@ -544,5 +544,5 @@ TEST(StripPipelineTest, FindsStagesThatDependOnTheCut) {
   EXPECT_TRUE(depends_on<LooksTooFar>({kAll, kAll, {}}));
 }
 
-}  // namespace
+}  // namespace strip_pipeline_test
 }  // namespace vantage::scheduler

@@ -12,7 +12,7 @@
 #include "scheduler/sweep_layout.h"
 
 namespace vantage::scheduler {
-namespace {
+namespace strip_plan_test {
 
 /// A stage that is all geometry: `halo` rows and columns around each cell.
 class Geometry final : public RowStage {
@@ -484,5 +484,5 @@ TEST(Machine, IsDescribedSensibly) {
   EXPECT_GE(machine.l2_bytes, machine.l1_data_bytes);
 }
 
-}  // namespace
+}  // namespace strip_plan_test
 }  // namespace vantage::scheduler

@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace vantage::scheduler {
-namespace {
+namespace task_ranges_test {
 
 using testing::ElementsAre;
 
@@ -70,5 +70,5 @@ TEST(TaskRanges, ManyThreadsGetEveryTaskOnce) {
   EXPECT_THAT(taken, testing::Each(testing::Truly([](const auto& count) { return count == 1; })));
 }
 
-}  // namespace
+}  // namespace task_ranges_test
 }  // namespace vantage::scheduler

@@ -20,7 +20,7 @@
 #include "scheduler/topology.h"
 
 namespace vantage::scheduler {
-namespace {
+namespace thread_binding_test {
 
 using testing::ElementsAre;
 
@@ -239,5 +239,5 @@ TEST(LoopsOnNodes, AllNodesTakePart) {
   EXPECT_THAT(nodes, ElementsAre(0, 1, 2));
 }
 
-}  // namespace
+}  // namespace thread_binding_test
 }  // namespace vantage::scheduler

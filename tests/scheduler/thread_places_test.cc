@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace vantage::scheduler {
-namespace {
+namespace thread_places_test {
 
 using testing::ElementsAre;
 
@@ -111,5 +111,5 @@ TEST(DivideInProportion, RoundsEveryPartToANeighbour) {
   }
 }
 
-}  // namespace
+}  // namespace thread_places_test
 }  // namespace vantage::scheduler

@@ -9,7 +9,7 @@
 #include <string>
 
 namespace vantage::scheduler {
-namespace {
+namespace topology_test {
 
 using testing::ElementsAre;
 
@@ -90,5 +90,5 @@ TEST(Topology, OfThisMachineIsWhatThisProcessMayUse) {
   }
 }
 
-}  // namespace
+}  // namespace topology_test
 }  // namespace vantage::scheduler

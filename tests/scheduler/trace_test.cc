@@ -19,7 +19,7 @@
 #include "tests/scheduler/test_chains.h"
 
 namespace vantage::scheduler {
-namespace {
+namespace trace_test {
 
 using std::chrono::milliseconds;
 
@@ -297,5 +297,5 @@ TEST(TraceSummary, CountsWhatSpansWithinDoNotCover) {
   EXPECT_NEAR(summary.work_share(), 0.4, 1e-9);
 }
 
-}  // namespace
+}  // namespace trace_test
 }  // namespace vantage::scheduler

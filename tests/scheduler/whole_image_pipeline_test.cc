@@ -15,7 +15,7 @@
 // The oracle of the strip pipeline against plain loops over arrays.
 
 namespace vantage::scheduler {
-namespace {
+namespace whole_image_pipeline_test {
 
 using Plane = std::vector<float>;  // [y][x][lane]
 
@@ -151,5 +151,5 @@ TEST(WholeImagePipeline, MixesTheSourceLikePlainLoops) {
   }
 }
 
-}  // namespace
+}  // namespace whole_image_pipeline_test
 }  // namespace vantage::scheduler
