@@ -67,7 +67,7 @@ void add_experiment_settings(Settings& settings, ExperimentJob& job) {
 }
 
 /// The rows of noise.csv, for the report.
-SettingValue describe(const std::vector<ExperimentRun>& runs) {
+SettingValue describe_runs(const std::vector<ExperimentRun>& runs) {
   SettingValue rows = SettingValue::array();
   for (const ExperimentRun& run : runs) {
     rows.push_back({{"pair", run.pair},
@@ -137,8 +137,8 @@ int command_experiment(const Arguments& arguments) {
     return write_support_files(folder);
   });
 
-  report.set_results({{"noise", describe(noise_runs)},
-                      {"iterations", describe(iteration_runs)},
+  report.set_results({{"noise", describe_runs(noise_runs)},
+                      {"iterations", describe_runs(iteration_runs)},
                       {"support_largest_difference", support_difference}});
   report.write(job.common.report);
   if (!job.common.quiet) {

@@ -51,7 +51,7 @@ void print_table(const MachineCeilings& ceilings) {
              ceilings.all_memory_gb_per_s);
 }
 
-SettingValue as_json(const MachineCeilings& ceilings) {
+SettingValue ceilings_json(const MachineCeilings& ceilings) {
   return {{"threads", ceilings.threads},
           {"core_gflops", ceilings.core_gflops},
           {"all_gflops", ceilings.all_gflops},
@@ -61,7 +61,7 @@ SettingValue as_json(const MachineCeilings& ceilings) {
           {"all_memory_gb_per_s", ceilings.all_memory_gb_per_s}};
 }
 
-SettingValue as_json(const BuildInfo& build, const scheduler::Topology& topology) {
+SettingValue machine_json(const BuildInfo& build, const scheduler::Topology& topology) {
   const scheduler::Machine& machine = topology.machine;
   SettingValue nodes = SettingValue::array();
   for (const scheduler::NumaNode& node : topology.nodes) {
@@ -109,9 +109,9 @@ int command_info(const Arguments& arguments) {
     ceilings = measure_ceilings(execution, kSeconds);
   }
   if (json) {
-    SettingValue document = as_json(build, topology);
+    SettingValue document = machine_json(build, topology);
     if (ceilings) {
-      document["ceilings"] = as_json(*ceilings);
+      document["ceilings"] = ceilings_json(*ceilings);
     }
     fmt::print("{}\n", document.dump(2));
   } else {

@@ -63,7 +63,7 @@ void check(const SceneBuildJob& job) {
   }
 }
 
-SettingValue describe(const StoredEdge& edge, SettingValue rectification) {
+SettingValue describe_edge(const StoredEdge& edge, SettingValue rectification) {
   return {{"first", edge.edge.first},
           {"second", edge.edge.second},
           {"length", edge.edge.length},
@@ -123,7 +123,7 @@ int command_scene_build(const Arguments& arguments) {
         report.add_compute_seconds(-built.check_seconds);
       }
       cells += match.cells;
-      matched.push_back(describe(built.stored, rectification.add(built)));
+      matched.push_back(describe_edge(built.stored, rectification.add(built)));
       progress.update(static_cast<int>(matched.size()), to_match, cells);
     }
   }

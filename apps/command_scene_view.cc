@@ -55,7 +55,7 @@ void check(const SceneViewJob& job, const StoredScene& scene, const ViewOutputs&
   check_common_files(job.common, files);
 }
 
-SettingValue describe(const PreparedSceneView& prepared, const SynthesizedView& view) {
+SettingValue describe_view(const PreparedSceneView& prepared, const SynthesizedView& view) {
   const ScenePlace& place = prepared.place;
   SettingValue sources = SettingValue::array();
   for (int k = 0; k < place.count; ++k) {
@@ -150,7 +150,7 @@ int command_scene_view(const Arguments& arguments) {
     bool is_outside = false;
     for_each_eye(slot, view,
                  [&](ScenePosition /*eye*/, const PreparedSceneView& of_eye, std::size_t number) {
-                   described.push_back(describe(of_eye, result.eyes[number]));
+                   described.push_back(describe_view(of_eye, result.eyes[number]));
                    is_outside = is_outside || of_eye.place.is_outside;
                  });
     outside += is_outside ? 1 : 0;

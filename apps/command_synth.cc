@@ -60,7 +60,7 @@ SettingValue rows_of(const Eigen::Matrix3d& matrix) {
   return rows;
 }
 
-SettingValue describe(const ViewPose& pose, const SynthesizedView& view) {
+SettingValue describe_posed_view(const ViewPose& pose, const SynthesizedView& view) {
   SettingValue entry = SettingValue::object();
   if (const auto* camera = std::get_if<PosedCamera>(&pose)) {
     const Eigen::Vector3d& t = camera->translation;
@@ -136,7 +136,7 @@ int command_synth(const Arguments& arguments) {
     renderer.render(pose_of(view), result);
   };
   steps.describe = [&](int /*slot*/, int view, const RenderedView& result) {
-    return describe(pose_of(view), result.eyes[0]);
+    return describe_posed_view(pose_of(view), result.eyes[0]);
   };
   const ViewPipelineResult rendered =
       render_views(settings.command(), views, steps, two_eyes.has_value(), outputs, job.common,

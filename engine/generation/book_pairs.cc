@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/generation/option_range.h"
 #include "engine/generation/portable_random.h"
 
 namespace vantage {
 namespace {
 
-constexpr int kMaxSidePx = 16384;
 constexpr int kMaxDisparityPx = 4096;
 constexpr double kRampSlopePerPx = 2.5;
 constexpr double kRandomDotLevels[] = {64, 192};
@@ -250,12 +250,6 @@ Photograph finish(const BookPairOptions& options, Image<float> grey, Stream nois
   return {std::move(rounded)};
 }
 
-void require_between(const char* field, double value, double low, double high) {
-  if (!(value >= low && value <= high)) {
-    throw UsageError(fmt::format("{} is {}, expected {} to {}", field, value, low, high));
-  }
-}
-
 }  // namespace
 
 int BookPairOptions::front_disparity_or_default() const {
@@ -267,8 +261,8 @@ int BookPairOptions::narrow_disparity_or_default() const {
 }
 
 void BookPairOptions::validate() const {
-  require_between("width", width_px, 1, kMaxSidePx);
-  require_between("height", height_px, 1, kMaxSidePx);
+  require_between("width", width_px, 1, kMaxGeneratedSidePx);
+  require_between("height", height_px, 1, kMaxGeneratedSidePx);
   require_between("background disparity", background_disparity_px, -kMaxDisparityPx,
                   kMaxDisparityPx);
   require_between("front disparity", front_disparity_or_default(), background_disparity_px + 1,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/generation/option_range.h"
 #include "engine/generation/portable_random.h"
 #include "engine/generation/scene_objects.h"
 
@@ -21,17 +22,10 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kMaxSidePx = 16384;
 constexpr double kMaxBaselines = 16;
 // A point is hidden when something is met before this share of the way to it; the rest is for the
 // rounding of the two rays.
 constexpr double kVisibleShare = 1 - 1e-7;
-
-void require_between(const char* field, double value, double low, double high) {
-  if (!(value >= low && value <= high)) {
-    throw UsageError(fmt::format("{} is {}, expected {} to {}", field, value, low, high));
-  }
-}
 
 // Rays and image positions of a camera.
 class RayCaster {
@@ -168,11 +162,11 @@ double LayeredSceneOptions::near_disparity_or_default() const {
 }
 
 void LayeredSceneOptions::validate() const {
-  require_between("width", width_px, 1, kMaxSidePx);
-  require_between("height", height_px, 1, kMaxSidePx);
-  require_between("far disparity", far_disparity_or_default(), 1e-3, kMaxSidePx);
+  require_between("width", width_px, 1, kMaxGeneratedSidePx);
+  require_between("height", height_px, 1, kMaxGeneratedSidePx);
+  require_between("far disparity", far_disparity_or_default(), 1e-3, kMaxGeneratedSidePx);
   require_between("near disparity", near_disparity_or_default(), 1.5 * far_disparity_or_default(),
-                  5.0 * kMaxSidePx);
+                  5.0 * kMaxGeneratedSidePx);
   require_between("frames per cycle", frames_per_cycle, 1, 1e9);
   require_between("samples per side", samples_per_side, 1, 8);
   require_between("right gain", right_gain, 0.1, 10);

@@ -9,7 +9,7 @@ namespace {
 constexpr int kRounds = 20;
 /// Residuals beyond this many σ have no weight (95 % efficiency for Gaussian noise).
 constexpr double kBiweightReach = 4.685;
-constexpr double kLeastSigma = 1;
+constexpr double kLeastResidualSigma = 1;
 constexpr double kLeastContrast = 2;  ///< standard deviation, grey levels
 constexpr double kLargestGain = 4;
 constexpr double kLeastShare = 0.5;  ///< of the pairs: weight on the line
@@ -97,7 +97,7 @@ std::optional<LevelChange> fit_levels(std::span<const LevelPair> pairs) {
     std::ranges::transform(pairs, residuals.begin(), [&](const LevelPair& pair) {
       return static_cast<float>(std::abs(residual(pair, *line)));
     });
-    const double reach = kBiweightReach * std::max(kLeastSigma, robust_sigma(residuals));
+    const double reach = kBiweightReach * std::max(kLeastResidualSigma, robust_sigma(residuals));
     moments = moments_of(pairs, [&](const LevelPair& pair) {
       const double share = residual(pair, *line) / reach;
       const double left = std::max(0.0, 1 - share * share);

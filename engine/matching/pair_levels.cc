@@ -27,7 +27,7 @@ constexpr float kUnclippedMargin = 2;
 constexpr float kWhite = 255;
 /// What matches of even the cleanest photographs need: reflections, edges and slanted surfaces are
 /// not what sure matches are made of.
-constexpr double kLeastSigma = 4;
+constexpr double kLeastNoiseSigma = 4;
 
 /// Rows that are matched, as one image.
 struct Bands {
@@ -219,7 +219,7 @@ PairLevels PairLevelsEstimator::estimate(const Photograph& left, const Photograp
     for (const Match& match : matches) {
       residuals.push_back(residual(of_left, of_right, match, has_channels ? 1 : 0, changes));
     }
-    result.sigma_measurement = std::max(kLeastSigma, noise_sigma(residuals));
+    result.sigma_measurement = std::max(kLeastNoiseSigma, noise_sigma(residuals));
   }
   return result;
 }

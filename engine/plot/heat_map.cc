@@ -16,7 +16,7 @@ constexpr double kMostMapHeight = 320;
 constexpr double kScaleGap = 10;
 constexpr double kScaleWidth = 12;
 constexpr double kScaleLabels = 60;
-constexpr double kMargin = 16;
+constexpr double kHeatMapMargin = 16;
 constexpr double kPanelWidth = kFrameLeft + kMapWidth + kScaleGap + kScaleWidth + kScaleLabels;
 
 PreviewRange range_of(const Image<float>& values) {
@@ -107,7 +107,7 @@ Drawing draw_heat_maps(const std::string& title, const std::vector<HeatMap>& map
   }
   const double panel_height = kFrameTop + height + kFrameBottom;
   Drawing drawing;
-  drawing.width = static_cast<int>(used_columns * kPanelWidth + kMargin);
+  drawing.width = static_cast<int>(used_columns * kPanelWidth + kHeatMapMargin);
   draw_page_title(title, drawing);
   for (int i = 0; i < count; ++i) {
     const HeatMap& map = maps[static_cast<std::size_t>(i)];
@@ -118,7 +118,7 @@ Drawing draw_heat_maps(const std::string& title, const std::vector<HeatMap>& map
     draw_map(map, area, drawing);
   }
   const int rows = (count + used_columns - 1) / used_columns;
-  drawing.height = static_cast<int>(kPageTitleHeight + rows * panel_height + kMargin);
+  drawing.height = static_cast<int>(kPageTitleHeight + rows * panel_height + kHeatMapMargin);
   return drawing;
 }
 

@@ -16,7 +16,7 @@ constexpr double kChartWidth = 320;
 constexpr double kChartHeight = 200;
 constexpr double kLegendRowHeight = 20;
 constexpr double kLegendLine = 26;
-constexpr double kMargin = 16;
+constexpr double kLinePlotMargin = 16;
 
 // Distinguishable in print and for most colour-blind people.
 constexpr std::array<Colour, 8> kColours = {
@@ -58,12 +58,12 @@ Colour colour_of(const std::vector<std::string>& names, const std::string& name)
 /// Returns its height.
 double draw_legend(const std::vector<std::string>& names, double top, double width,
                    Drawing& drawing) {
-  double x = kMargin;
+  double x = kLinePlotMargin;
   double y = top + kLegendRowHeight / 2;
   for (const std::string& name : names) {
     const double entry = kLegendLine + 6 + text_width(name, kTextSize) + 18;
-    if (x > kMargin && x + entry > width) {
-      x = kMargin;
+    if (x > kLinePlotMargin && x + entry > width) {
+      x = kLinePlotMargin;
       y += kLegendRowHeight;
     }
     const Colour colour = colour_of(names, name);
@@ -143,7 +143,7 @@ Drawing draw_line_plots(const std::string& title, const std::vector<LinePlot>& p
   const int count = static_cast<int>(plots.size());
   const int used_columns = std::clamp(columns, 1, std::max(1, count));
   Drawing drawing;
-  drawing.width = static_cast<int>(used_columns * kPanelWidth + kMargin);
+  drawing.width = static_cast<int>(used_columns * kPanelWidth + kLinePlotMargin);
   draw_page_title(title, drawing);
   const std::vector<std::string> names = names_of(plots);
   const double top =
@@ -156,7 +156,7 @@ Drawing draw_line_plots(const std::string& title, const std::vector<LinePlot>& p
     draw_plot(plots[static_cast<std::size_t>(i)], area, names, drawing);
   }
   const int rows = (count + used_columns - 1) / used_columns;
-  drawing.height = static_cast<int>(top + rows * kPanelHeight + kMargin);
+  drawing.height = static_cast<int>(top + rows * kPanelHeight + kLinePlotMargin);
   return drawing;
 }
 

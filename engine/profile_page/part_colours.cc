@@ -12,7 +12,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t kColours = 7;
+constexpr std::size_t kPartColours = 7;
 
 /// Parts of the timeline, most time first.
 std::vector<std::string> parts_of(const std::vector<TimelineRow>& timeline) {
@@ -44,7 +44,7 @@ PartColours::PartColours(const Profile& profile) {
     }
   }
   for (const std::string& name : names) {
-    if (parts_.size() < kColours && std::ranges::find(parts_, name) == parts_.end()) {
+    if (parts_.size() < kPartColours && std::ranges::find(parts_, name) == parts_.end()) {
       parts_.push_back(name);
     }
   }

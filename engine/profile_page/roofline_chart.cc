@@ -14,8 +14,8 @@
 namespace vantage {
 namespace {
 
-constexpr double kWidth = 536;  // half a page
-constexpr double kHeight = 400;
+constexpr double kRooflineWidth = 536;  // half a page
+constexpr double kRooflineHeight = 400;
 constexpr double kLargestRadius = 17;
 constexpr double kLeastRadius = 3.5;
 
@@ -53,7 +53,7 @@ class RooflineChart {
         y_axis_({.title = "GFLOP/s of one thread", .scale = AxisScale::kLogarithmic}, y.least,
                 y.most, false),
         y_least_(y.least),
-        picture_(kWidth, kHeight,
+        picture_(kRooflineWidth, kRooflineHeight,
                  "Roofline: arithmetic of the stages against their operations per byte") {
     draw_axes(area_, x_axis_, y_axis_, picture_);
     draw_bandwidth(roofs.memory_gb_per_s, "memory");
@@ -129,7 +129,7 @@ class RooflineChart {
   Axis y_axis_;
   double y_least_;
   ChartArea area_{
-      {kAxesLeft, kAxesTop}, kWidth - kAxesLeft - kAxesRight, kHeight - kAxesTop - kAxesBottom};
+      {kAxesLeft, kAxesTop}, kRooflineWidth - kAxesLeft - kAxesRight, kRooflineHeight - kAxesTop - kAxesBottom};
   SvgPicture picture_;
   std::vector<LabelledDisc> labels_;
 };

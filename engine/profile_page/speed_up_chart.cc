@@ -11,8 +11,8 @@
 namespace vantage {
 namespace {
 
-constexpr double kWidth = 440;
-constexpr double kHeight = 320;
+constexpr double kSpeedUpWidth = 440;
+constexpr double kSpeedUpHeight = 320;
 constexpr double kCap = 4;
 
 /// Amdahl's law, `ratio` times as many threads.
@@ -34,8 +34,8 @@ std::string speed_up_chart(const Profile& profile) {
       {.title = fmt::format("times as fast as {} thread{}", fewest, fewest == 1 ? "" : "s")}, 0,
       highest * 1.04, false);
   const ChartArea area = {
-      {kAxesLeft, kAxesTop}, kWidth - kAxesLeft - kAxesRight, kHeight - kAxesTop - kAxesBottom};
-  SvgPicture picture(kWidth, kHeight, "Speed-up against the number of threads");
+      {kAxesLeft, kAxesTop}, kSpeedUpWidth - kAxesLeft - kAxesRight, kSpeedUpHeight - kAxesTop - kAxesBottom};
+  SvgPicture picture(kSpeedUpWidth, kSpeedUpHeight, "Speed-up against the number of threads");
   std::vector<Axis::Tick> measured;
   for (const SpeedUp& speed_up : profile.speed_ups) {
     measured.push_back({x_axis.place(speed_up.threads), std::to_string(speed_up.threads)});

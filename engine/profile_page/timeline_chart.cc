@@ -12,8 +12,8 @@
 namespace vantage {
 namespace {
 
-constexpr double kWidth = 1120;
-constexpr double kNameWidth = 90;
+constexpr double kTimelineWidth = 1120;
+constexpr double kTimelineNameWidth = 90;
 constexpr std::size_t kLongestName = 15;  // letters that fit into it
 
 struct TimeUnit {
@@ -67,21 +67,21 @@ std::string timeline_chart(const Profile& profile, const PartColours& colours) {
     end_s = row->spans.empty() ? end_s : std::max(end_s, row->spans.back().end_s);
   }
   const double row_height = rows.size() <= 8 ? 24 : 18;
-  const ChartArea area = {{kNameWidth, 4},
-                          kWidth - kNameWidth - kAxesRight,
+  const ChartArea area = {{kTimelineNameWidth, 4},
+                          kTimelineWidth - kTimelineNameWidth - kAxesRight,
                           row_height * static_cast<double>(rows.size())};
   const TimeUnit unit = unit_for(end_s);
   const Axis labels({.title = "time, " + unit.name}, 0, end_s * unit.per_second, false);
   const Axis axis({}, 0, end_s, false);
 
-  SvgPicture picture(kWidth, area.corner.y + area.height + kAxesBottom,
+  SvgPicture picture(kTimelineWidth, area.corner.y + area.height + kAxesBottom,
                      fmt::format("What {} threads did during {}", rows.size(),
                                  quantity_text(profile.timeline_s, "s")));
   draw_axes(area, labels, Axis({.title = "", .scale = AxisScale::kCategories}, 0, 1, false),
             picture);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double top = area.corner.y + row_height * static_cast<double>(i);
-    picture.text({kNameWidth - 6, top + row_height / 2 + 0.35 * kTextSize},
+    picture.text({kTimelineNameWidth - 6, top + row_height / 2 + 0.35 * kTextSize},
                  shortened(rows[i]->thread), "end");
     const ChartArea lane = {{area.corner.x, top + 2}, area.width, row_height - 4};
     for (const TimelineSpan& span : rows[i]->spans) {

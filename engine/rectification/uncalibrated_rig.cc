@@ -10,6 +10,7 @@
 
 #include "engine/error.h"
 #include "engine/io/opencv_setup.h"
+#include "engine/rectification/order_statistics.h"
 #include "engine/rectification/rig_model.h"
 #include "engine/rectification/vertical_error.h"
 
@@ -18,7 +19,7 @@ namespace {
 
 constexpr std::size_t kMostMatches = 3000;
 constexpr double kLeastShare = 0.3;
-constexpr double kDeviations = 4.5;
+constexpr double kRigDeviations = 4.5;
 constexpr double kLeastParallax_px = 0.5;
 /// Matches of less than this are never told from exact ones.
 constexpr double kExact_px = 1e-3;
@@ -36,12 +37,6 @@ std::vector<PointMatch> thinned(const std::vector<PointMatch>& matches) {
     kept.push_back(matches[i]);
   }
   return kept;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 struct RobustFundamental {
@@ -125,13 +120,13 @@ Fit epipolar_fit(const RigModel& model, const std::vector<PointMatch>& matches, 
         near.push_back(std::abs(distances[i]));
       }
     }
-    const double deviation_px = std::max(1.4826 * median(std::move(near)), 1e-9);
+    const double deviation_px = std::max(1.4826 * upper_median(std::move(near)), 1e-9);
     // While the cameras are still on their way from the usual ones, exact matches may be far.
     const double patience_px =
         std::max(std::ldexp(tolerance_px, 3 * std::min(kPatientRounds - round, 0)), kExact_px);
     // Whatever deviates by more than this does not agree, however many do.
     const double most_px = round < kPatientRounds ? HUGE_VAL : 2 * tolerance_px;
-    const double limit_px = std::min(std::max(kDeviations * deviation_px, patience_px), most_px);
+    const double limit_px = std::min(std::max(kRigDeviations * deviation_px, patience_px), most_px);
     const Eigen::ArrayXd share = (distances.array() / limit_px).square();
     fit.weights = (share < 1).select((1 - share).square(), 0);
     const double change = std::abs(deviation_px - fit.deviation_px);
@@ -169,7 +164,7 @@ double distance_from_turning_px(const RigModel& model, const std::vector<PointMa
       distances[static_cast<std::size_t>(i)] = apart.segment<2>(2 * i).norm();
     }
     // Of a camera that only turned, wrong matches may lie on an epipolar line by chance.
-    const double limit_px = std::max(6 * median(distances), kExact_px);
+    const double limit_px = std::max(6 * upper_median(distances), kExact_px);
     for (Eigen::Index i = 0; i < count; ++i) {
       weights[i] = distances[static_cast<std::size_t>(i)] < limit_px ? 1 : 0;
     }
@@ -260,7 +255,7 @@ UncalibratedRig estimate_rig(const std::vector<PointMatch>& matches, int width_p
   require_parallax(model, used, best, tolerance_px);
   require_sideways_move(rig.calibration, width_px, height_px);
 
-  const double limit_px = std::max(kDeviations * best.deviation_px, kExact_px);
+  const double limit_px = std::max(kRigDeviations * best.deviation_px, kExact_px);
   double sum_of_squares = 0;
   for (const double distance : model.epipolar_distances(best.parameters, matches)) {
     rig.is_inlier.push_back(std::abs(distance) <= limit_px);

@@ -8,24 +8,17 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/rectification/order_statistics.h"
 
 namespace vantage {
 namespace {
 
 constexpr double kTolerance_px = 1;
-constexpr double kDeviations = 4;
+constexpr double kErrorDeviations = 4;
 /// Points at infinity have disparities around 0.
 constexpr double kNegative_px = -0.5;
 constexpr int kTerms = 7;
 using Terms = Eigen::Matrix<double, Eigen::Dynamic, kTerms>;
-
-double percentile(std::vector<double> values, double share) {
-  const auto index = std::lround(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + index, values.end());
-  return values[static_cast<std::size_t>(index)];
-}
-
-double median(std::vector<double> values) { return percentile(std::move(values), 0.5); }
 
 /// What the error may consist of, per match: 1, x, y, d, x², xy, y², each from −1 to 1.
 Terms terms_of(const std::vector<PointMatch>& matches) {
@@ -53,14 +46,14 @@ Eigen::VectorXd smooth_part(const Terms& terms, const Eigen::VectorXd& errors) {
   constexpr int kRounds = 12;
   constexpr std::array<int, 3> kTermsOfDegree = {1, 4, kTerms};
   Eigen::VectorXd smooth = Eigen::VectorXd::Constant(
-      errors.size(), median(std::vector<double>(errors.begin(), errors.end())));
+      errors.size(), upper_median(std::vector<double>(errors.begin(), errors.end())));
   for (const int count : kTermsOfDegree) {
     for (int round = 0; round < kRounds; ++round) {
       const Eigen::ArrayXd residuals = errors - smooth;
       std::vector<double> distances(static_cast<std::size_t>(residuals.size()));
       std::transform(residuals.begin(), residuals.end(), distances.begin(),
                      [](double residual) { return std::abs(residual); });
-      const double deviation = std::max(1.4826 * median(std::move(distances)), 1e-6);
+      const double deviation = std::max(1.4826 * upper_median(std::move(distances)), 1e-6);
       // Tukey's weights: nothing beyond six deviations counts.
       const Eigen::ArrayXd share = (residuals / (6 * deviation)).square();
       const Eigen::ArrayXd weights = (share < 1).select((1 - share).square(), 0);
@@ -90,7 +83,7 @@ std::optional<VerticalError> vertical_error(const std::vector<PointMatch>& match
   for (Eigen::Index i = 0; i < errors.size(); ++i) {
     distances.push_back(std::abs(errors[i] - smooth[i]));
   }
-  const double limit = std::max(kTolerance_px, kDeviations * 1.4826 * median(distances));
+  const double limit = std::max(kTolerance_px, kErrorDeviations * 1.4826 * upper_median(distances));
 
   VerticalError result{.matches = static_cast<int>(matches.size())};
   std::vector<double> absolute;

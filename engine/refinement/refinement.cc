@@ -12,7 +12,7 @@ namespace vantage {
 namespace {
 
 // Neighbours whose disparities differ by no more are one surface (EQUATIONS §6).
-constexpr float kSurfaceStepPx = 1;
+constexpr float kFillSurfaceStepPx = 1;
 
 /// To the partners of a map's pixels.
 int direction_of(MapSide side) { return side == MapSide::kLeft ? -1 : +1; }
@@ -115,7 +115,7 @@ void fill_unmatched(const Mask& unmatched, MapSide side, Fill fill, Execution& e
       float* row = map_px.row(y);
       has_match[static_cast<std::size_t>(y)] =
           fill == Fill::kLinear
-              ? kernels::fill_unmatched_row_linearly(mask, background, kSurfaceStepPx,
+              ? kernels::fill_unmatched_row_linearly(mask, background, kFillSurfaceStepPx,
                                                      map_px.width(), row)
               : kernels::fill_unmatched_row(mask, background, map_px.width(), row);
     }

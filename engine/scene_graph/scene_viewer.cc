@@ -13,7 +13,7 @@
 namespace vantage {
 namespace {
 
-constexpr double kSameLength = 1e-9;  // of an edge
+constexpr double kSameDirection = 1e-9;  // of an edge
 // What is kept beside that of views under way: vertices, of which a view of two eyes needs up to
 // six, and sources.
 constexpr std::size_t kMostLoaded = 8;
@@ -201,7 +201,7 @@ NewView SceneViewer::pair_view(const SceneSources& sources, ScenePosition positi
   // Two images of a row are a rectified pair as they are, without rounding errors: what works along
   // scanlines can then take it.
   const Eigen::Vector3d baseline = view.from_right.parallax - view.from_left.parallax;
-  if ((baseline - Eigen::Vector3d::UnitX()).norm() <= kSameLength) {
+  if ((baseline - Eigen::Vector3d::UnitX()).norm() <= kSameDirection) {
     const double view_x = -view.from_left.parallax.x();
     view.from_right.parallax = {-(view_x - 1), view.from_left.parallax.y(), 0};
   }

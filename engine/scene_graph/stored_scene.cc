@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int kFormat = 2;
+constexpr int kSceneFormat = 2;
 
 fs::path file_of(const fs::path& folder) { return folder / "scene.json"; }
 
@@ -76,8 +76,8 @@ StoredEdge edge_of(const Json& json, int vertices) {
 
 StoredScene scene_of(const std::string& text) {
   const Json json = Json::parse(text);
-  if (json.at("format").get<int>() != kFormat) {
-    throw Error(fmt::format("is of format {}, expected {}", json.at("format").dump(), kFormat));
+  if (json.at("format").get<int>() != kSceneFormat) {
+    throw Error(fmt::format("is of format {}, expected {}", json.at("format").dump(), kSceneFormat));
   }
   StoredScene scene;
   scene.settings = json.at("settings").dump();
@@ -197,7 +197,7 @@ void write_scene(const fs::path& folder, const StoredScene& scene) {
   for (const StoredEdge& edge : scene.edges) {
     edges.push_back(json_of(edge));
   }
-  const Json json = {{"format", kFormat},
+  const Json json = {{"format", kSceneFormat},
                      {"version", build_info().version},
                      {"settings", Json::parse(scene.settings)},
                      {"unit_length", scene.unit_length},

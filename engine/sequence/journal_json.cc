@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kFormat = 1;
+constexpr int kJournalFormat = 1;
 
 /// Throws what nlohmann throws unless it is a whole number from 0 on.
 int count_of(const Json& json) {
@@ -148,7 +148,7 @@ std::optional<JournalRecord> record_of(const std::string& line) {
 }
 
 std::string text_of(const RunIdentity& identity) {
-  const Json json = {{"format", kFormat},
+  const Json json = {{"format", kJournalFormat},
                      {"version", build_info().version},
                      {"frame_count", identity.frame_count},
                      {"inputs", identity.inputs},
@@ -163,9 +163,9 @@ std::string text_of(const RunIdentity& identity) {
 RunIdentity identity_of(const std::string& text, const std::filesystem::path& file) {
   try {
     const Json json = Json::parse(text);
-    if (json.at("format").get<int>() != kFormat) {
+    if (json.at("format").get<int>() != kJournalFormat) {
       throw Error(fmt::format("{}: is of format {}, expected {} (written by Vantage {})",
-                              file.string(), json.at("format").dump(), kFormat,
+                              file.string(), json.at("format").dump(), kJournalFormat,
                               json.value("version", "?")));
     }
     RunIdentity identity;

@@ -11,7 +11,7 @@ namespace {
 
 // What the cost model expects to take so many times as long as the best candidate is left out; the
 // model is not trusted further.
-constexpr double kHopeless = 4;
+constexpr double kHopelessModelRatio = 4;
 // Expected durations are stretched by so much; those that only the cost model tells by more, also
 // because the first measurement warms up.
 constexpr double kMeasuredMargin = 1.2;
@@ -170,7 +170,7 @@ std::vector<TunedSettings> MatchSubject::candidates(const TuningCoordinate& coor
   std::ranges::stable_sort(
       all, {}, [&](const TunedSettings& settings) { return known(settings).model_time; });
   if (!all.empty()) {
-    const double limit = kHopeless * std::min(known(all.front()).model_time, before.model_time);
+    const double limit = kHopelessModelRatio * std::min(known(all.front()).model_time, before.model_time);
     std::erase_if(
         all, [&](const TunedSettings& settings) { return known(settings).model_time > limit; });
   }

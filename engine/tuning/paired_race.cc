@@ -19,7 +19,7 @@ constexpr int kMostRounds = 15;
 // Whether time ran out or not, fewer rounds decide nothing.
 constexpr int kFewestRounds = 3;
 // The first measurement of a plan only tells whether it is hopeless.
-constexpr double kHopeless = 1.4;
+constexpr double kHopelessTimeRatio = 1.4;
 // In a round's ranking, so far behind the best and beyond twice the noise is clearly behind.
 constexpr double kClearlyBehind = 0.03;
 // Noise as long as there are too few rounds to tell.
@@ -48,14 +48,14 @@ std::vector<Runner> scout(const TunedSettings& incumbent,
     }
   }
   for (const Runner& runner : runners) {
-    if (runner.first_seconds > kHopeless * least) {
+    if (runner.first_seconds > kHopelessTimeRatio * least) {
       trials.trial(runner.settings).ratio_to_default =
           trials.trial(incumbent).ratio_to_default.value_or(1) * runner.first_seconds /
           *incumbent_seconds;
     }
   }
   std::erase_if(runners,
-                [&](const Runner& runner) { return runner.first_seconds > kHopeless * least; });
+                [&](const Runner& runner) { return runner.first_seconds > kHopelessTimeRatio * least; });
   return runners;
 }
 

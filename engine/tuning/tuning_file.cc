@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kKind = "vantage tuning";
-constexpr int kFormat = 1;
+constexpr int kTuningFormat = 1;
 // More is no tuning file.
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{16} << 20;
 
@@ -65,7 +65,7 @@ std::string text_of(const std::vector<TuningEntry>& entries) {
   for (const TuningEntry& entry : entries) {
     list.push_back(json_of(entry));
   }
-  const Json document = {{"kind", kKind}, {"format", kFormat}, {"entries", list}};
+  const Json document = {{"kind", kKind}, {"format", kTuningFormat}, {"entries", list}};
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -155,8 +155,8 @@ Json entries_of(const std::string& text) {
   if (!document.is_object() || document.value("kind", Json()) != kKind) {
     throw Error(fmt::format("it is no tuning file, expected \"kind\": \"{}\"", kKind));
   }
-  if (const Json format = document.value("format", Json()); format != kFormat) {
-    throw Error(fmt::format("its format is {}, expected {}", format.dump(), kFormat));
+  if (const Json format = document.value("format", Json()); format != kTuningFormat) {
+    throw Error(fmt::format("its format is {}, expected {}", format.dump(), kTuningFormat));
   }
   if (!document.contains("entries") || !document["entries"].is_array()) {
     throw Error("it is damaged: there is no list of entries");

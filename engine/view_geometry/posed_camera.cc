@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-constexpr int kLargestSide = 16384;
+constexpr int kLargestCameraSide = 16384;
 constexpr double kRotationTolerance = 1e-6;
 constexpr double kLeastFocal_px = 0.001;
 constexpr double kLargestFocal_px = 1e7;
@@ -19,9 +19,9 @@ constexpr double kLargestFocal_px = 1e7;
 }  // namespace
 
 void PosedCamera::validate(const std::string& name) const {
-  if (width_px < 1 || height_px < 1 || width_px > kLargestSide || height_px > kLargestSide) {
+  if (width_px < 1 || height_px < 1 || width_px > kLargestCameraSide || height_px > kLargestCameraSide) {
     throw Error(fmt::format("{}: image is {}×{}, expected 1 to {} pixels each way", name, width_px,
-                            height_px, kLargestSide));
+                            height_px, kLargestCameraSide));
   }
   if (!matrix.allFinite() || !rotation.allFinite() || !translation.allFinite()) {
     throw Error(fmt::format("{}: K, R or t holds a value that is not finite", name));

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kNames = {"first camera", "second camera",
                                                     "camera of the new view"};
-constexpr double kLargestSide = 16384;
+constexpr double kLargestRectifiedSide = 16384;
 constexpr double kLeastElevationDegrees = 5;
 // C3 is on the baseline when it is off by less than this share of its distance: the plane would
 // follow rounding errors.
@@ -118,10 +118,10 @@ TrifocalRectification trifocal_rectification(const PosedCamera& first, const Pos
   const Eigen::Array2d below_px = result.focal_length_px * largest - corner_px;
   const Eigen::Vector2d first_edge_px = corner_px.array() + (above_px + kRounding).floor();
   const Eigen::Vector2d size_px = (below_px - kRounding).ceil() - (above_px + kRounding).floor();
-  if (!(size_px.maxCoeff() <= kLargestSide)) {
+  if (!(size_px.maxCoeff() <= kLargestRectifiedSide)) {
     throw Error(fmt::format(
         "rectified images would be {:.0f}×{:.0f}, expected at most {:.0f} pixels each way",
-        size_px.x(), size_px.y(), kLargestSide));
+        size_px.x(), size_px.y(), kLargestRectifiedSide));
   }
   result.width_px = static_cast<int>(size_px.x());
   result.height_px = static_cast<int>(size_px.y());

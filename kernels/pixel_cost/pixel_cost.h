@@ -59,20 +59,20 @@ void contaminated_likelihood_row_ref(const GreyPairs& row, ContaminatedGaussian 
                                      float* cells);
 
 /// Cells already made, geometry.lanes() a column.
-struct CellRow {
+struct CellExtent {
   int columns = 0;
   int lanes = 0;  ///< a multiple of kLaneMultiple
   int count = 0;  ///< candidates
 };
 
 /// The measurement model at r = the cost in each cell, in place. Lanes from row.count on become 0.
-void likelihood_of_costs(const CellRow& row, ContaminatedGaussian model, float* cells);
-void likelihood_of_costs_ref(const CellRow& row, ContaminatedGaussian model, float* cells);
+void likelihood_of_costs(const CellExtent& row, ContaminatedGaussian model, float* cells);
+void likelihood_of_costs_ref(const CellExtent& row, ContaminatedGaussian model, float* cells);
 
 /// exp(−energy) of each cell, in place: likelihoods of means of contaminated energies, ≥ 0 but for
 /// rounding. Lanes from row.count on become 0.
-void likelihood_of_energies(const CellRow& row, float* cells);
-void likelihood_of_energies_ref(const CellRow& row, float* cells);
+void likelihood_of_energies(const CellExtent& row, float* cells);
+void likelihood_of_energies_ref(const CellExtent& row, float* cells);
 
 /// cells += addend, cells *= factor, for several partners. cells_count: a multiple of
 /// kLaneMultiple.

@@ -80,7 +80,7 @@ void contaminated_likelihood_row_ref(const GreyPairs& row, ContaminatedGaussian 
   }
 }
 
-void likelihood_of_costs_ref(const CellRow& row, ContaminatedGaussian model, float* cells) {
+void likelihood_of_costs_ref(const CellExtent& row, ContaminatedGaussian model, float* cells) {
   for (int j = 0; j < row.columns; ++j) {
     for (int i = 0; i < row.lanes; ++i) {
       float& cell = cells[j * row.lanes + i];
@@ -89,7 +89,7 @@ void likelihood_of_costs_ref(const CellRow& row, ContaminatedGaussian model, flo
   }
 }
 
-void likelihood_of_energies_ref(const CellRow& row, float* cells) {
+void likelihood_of_energies_ref(const CellExtent& row, float* cells) {
   for (int j = 0; j < row.columns; ++j) {
     for (int i = 0; i < row.lanes; ++i) {
       float& cell = cells[j * row.lanes + i];

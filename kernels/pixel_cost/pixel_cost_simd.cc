@@ -105,7 +105,7 @@ void contaminated_likelihood(const GreyPairs& row, ContaminatedGaussian model, f
 
 // likelihood(value) of the candidates of each column, 0 in the other lanes.
 template <class Likelihood>
-HWY_INLINE void each_candidate_cell(const CellRow& row, Likelihood likelihood, float* cells) {
+HWY_INLINE void each_candidate_cell(const CellExtent& row, Likelihood likelihood, float* cells) {
   const Tag d;
   const int step = static_cast<int>(hn::Lanes(d));
   for (int j = 0; j < row.columns; ++j, cells += row.lanes) {
@@ -121,13 +121,13 @@ HWY_INLINE void each_candidate_cell(const CellRow& row, Likelihood likelihood, f
   }
 }
 
-void costs_to_likelihood(const CellRow& row, ContaminatedGaussian model, float* cells) {
+void costs_to_likelihood(const CellExtent& row, ContaminatedGaussian model, float* cells) {
   const Measurement measurement(model);
   each_candidate_cell(
       row, [&](Vec cost) HWY_ATTR { return measurement(hn::Mul(cost, cost)); }, cells);
 }
 
-void energies_to_likelihood(const CellRow& row, float* cells) {
+void energies_to_likelihood(const CellExtent& row, float* cells) {
   const Vec factor = hn::Set(Tag(), -kLog2E);
   each_candidate_cell(
       row, [&](Vec energy) HWY_ATTR { return exp2_of_negative(hn::Mul(energy, factor)); }, cells);
@@ -188,10 +188,10 @@ void contaminated_energy_row(const GreyPairs& row, ContaminatedGaussian model, f
 void contaminated_likelihood_row(const GreyPairs& row, ContaminatedGaussian model, float* cells) {
   HWY_DYNAMIC_DISPATCH(contaminated_likelihood)(row, model, cells);
 }
-void likelihood_of_costs(const CellRow& row, ContaminatedGaussian model, float* cells) {
+void likelihood_of_costs(const CellExtent& row, ContaminatedGaussian model, float* cells) {
   HWY_DYNAMIC_DISPATCH(costs_to_likelihood)(row, model, cells);
 }
-void likelihood_of_energies(const CellRow& row, float* cells) {
+void likelihood_of_energies(const CellExtent& row, float* cells) {
   HWY_DYNAMIC_DISPATCH(energies_to_likelihood)(row, cells);
 }
 void add_cells(const float* addend, int cells_count, float* cells) {

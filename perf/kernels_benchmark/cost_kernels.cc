@@ -63,7 +63,7 @@ struct Combined {
 struct Cells {
   AlignedValues<float> cells{kCellCount, 1000, 1e-3F, 1};
   AlignedValues<float> ones{kCellCount};  // so that products stay what they are, call after call
-  kernels::CellRow row{kColumns, kLanes, kLanes};
+  kernels::CellExtent row{kColumns, kLanes, kLanes};
 
   Cells() { std::fill_n(ones.data(), kCellCount, 1.0F); }
 };

@@ -9,11 +9,11 @@
 namespace vantage {
 namespace all_methods_test {
 
-using testing::expect_equals_oracle;
-using testing::name_of;
-using testing::PixelKind;
-using testing::textured_pair;
-using testing::tolerance_of;
+using test::expect_equals_oracle;
+using test::name_of;
+using test::PixelKind;
+using test::textured_pair;
+using test::tolerance_of;
 
 using Combination = std::tuple<MatchCost, Aggregation>;
 

@@ -10,7 +10,7 @@
 #include "engine/image/photograph.h"
 #include "engine/matching/match_options.h"
 
-namespace vantage::testing {
+namespace vantage::test {
 
 /// Grey levels of a photograph as EQUATIONS §0 defines them, in double.
 inline std::vector<double> grey_levels_of(const Photograph& photograph) {
@@ -116,4 +116,4 @@ inline Photograph random_grey(int width, int height, int levels, std::uint32_t s
   return {std::move(image)};
 }
 
-}  // namespace vantage::testing
+}  // namespace vantage::test

@@ -21,7 +21,7 @@
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/scheduler/test_stages.h"
 
-namespace vantage::testing {
+namespace vantage::test {
 
 /// The cells of an image, [y][x][lane].
 template <typename Cell>
@@ -213,4 +213,4 @@ CellVolume<Output> run_every_way(const CellVolume<float>& input,
   return expected;
 }
 
-}  // namespace vantage::testing
+}  // namespace vantage::test

@@ -21,16 +21,16 @@ namespace vantage {
 namespace coarse_to_fine_test {
 
 using scheduler::Extent;
-using testing::expect_equals_oracle;
-using testing::identical;
-using testing::name_of;
-using testing::PixelKind;
-using testing::plain_match;
-using testing::PlainMap;
-using testing::StoredCells;
-using testing::textured_pair;
-using testing::Tolerance;
-using testing::tolerance_of;
+using test::expect_equals_oracle;
+using test::identical;
+using test::name_of;
+using test::PixelKind;
+using test::plain_match;
+using test::PlainMap;
+using test::StoredCells;
+using test::textured_pair;
+using test::Tolerance;
+using test::tolerance_of;
 
 TEST(LevelExtents, HalveAndRoundUp) {
   const std::vector<Extent> expected = {{37, 29}, {19, 15}, {10, 8}, {5, 4}};

@@ -16,10 +16,10 @@ namespace vantage {
 namespace column_work_test {
 
 using scheduler::ColumnWork;
-using testing::method_cases;
-using testing::MethodCase;
-using testing::PixelKind;
-using testing::textured_pair;
+using test::method_cases;
+using test::MethodCase;
+using test::PixelKind;
+using test::textured_pair;
 
 constexpr int kWidth = 57;
 constexpr int kHeight = 39;

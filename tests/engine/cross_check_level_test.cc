@@ -17,9 +17,9 @@
 namespace vantage {
 namespace cross_check_level_test {
 
-using testing::identical;
-using testing::PixelKind;
-using testing::textured_pair;
+using test::identical;
+using test::PixelKind;
+using test::textured_pair;
 
 constexpr DisparityRange kRange{-3, 37};  // three blocks of candidates
 
@@ -44,7 +44,7 @@ struct BothMaps {
   DisparityMap coarse;
 };
 
-BothMaps maps_of(const testing::PhotographPair& pair, const MatchOptions& options,
+BothMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options,
                  Reference reference, int level, bool is_all) {
   const MethodParameters parameters = options.resolved();
   Execution execution({.threads = 2});
@@ -72,7 +72,7 @@ BothMaps maps_of(const testing::PhotographPair& pair, const MatchOptions& option
   return maps;
 }
 
-DisparityMaps matched(const testing::PhotographPair& pair, const MatchOptions& options,
+DisparityMaps matched(const test::PhotographPair& pair, const MatchOptions& options,
                       const MatchRequest& request = {}, int threads = 2,
                       MatchReport* report = nullptr) {
   Execution execution({.threads = threads});
@@ -127,7 +127,7 @@ TEST_P(CrossCheckLevel, CoarseMapsShowTheScene) {
       right.at(x, y) = texture.at(x + kDisparity, y);
     }
   }
-  const testing::PhotographPair pair{Photograph{std::move(left)}, Photograph{std::move(right)}};
+  const test::PhotographPair pair{Photograph{std::move(left)}, Photograph{std::move(right)}};
   for (const int level : {1, 2}) {
     const DisparityMap map = maps_of(pair, options(), Reference::kRight, level, true).coarse;
     int wrong = 0;

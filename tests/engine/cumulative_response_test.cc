@@ -54,11 +54,11 @@ struct PlainSums {
 PlainSums plain_sums(const Photograph& left, const Photograph& right,
                      const MethodParameters& parameters, Displacement displacement) {
   const auto gradient = [&](const Photograph& image) {
-    return testing::gradient_of(testing::planes_of(image, ColourUse::kLuma)[0], parameters.gradient,
+    return test::gradient_of(test::planes_of(image, ColourUse::kLuma)[0], parameters.gradient,
                                 parameters.prefilter);
   };
-  const testing::Gradient of_left = gradient(left);
-  const testing::Gradient of_right = gradient(right);
+  const test::Gradient of_left = gradient(left);
+  const test::Gradient of_right = gradient(right);
   PlainSums sums;
   for (int y = 0; y < left.height(); ++y) {
     for (int x = 0; x < left.width(); ++x) {
@@ -73,7 +73,7 @@ PlainSums plain_sums(const Photograph& left, const Photograph& right,
       const double rx = of_right.x.at(partner_x, partner_y);
       const double ry = of_right.y.at(partner_x, partner_y);
       const auto length = [&](double a, double b) {
-        return testing::length_of(a, b, parameters.norm);
+        return test::length_of(a, b, parameters.norm);
       };
       const double evidence =
           (length(lx, ly) + length(rx, ry)) / 2 - parameters.alpha * length(lx - rx, ly - ry);

@@ -107,7 +107,7 @@ TEST(FilledMedians, MatchedPixelsStayAndExecutionsAgree) {
   EXPECT_GT(changed, 100);
   Execution three({.threads = 3, .executor = scheduler::ExecutorKind::kOpenMp});
   take_filled_medians(disc.unmatched, photograph, three, work, noisy);
-  EXPECT_TRUE(testing::identical(serial, noisy));
+  EXPECT_TRUE(test::identical(serial, noisy));
 }
 
 TEST(FilledMedians, DepthsOfPhotographsAgree) {
@@ -131,8 +131,8 @@ TEST(FilledMedians, DepthsOfPhotographsAgree) {
       return map;
     };
     const DisparityMap expected = filled({bytes.copy()});
-    EXPECT_TRUE(testing::identical(filled({std::move(words)}), expected));
-    EXPECT_TRUE(testing::identical(filled({std::move(floats)}), expected));
+    EXPECT_TRUE(test::identical(filled({std::move(words)}), expected));
+    EXPECT_TRUE(test::identical(filled({std::move(floats)}), expected));
   }
 }
 
@@ -167,7 +167,7 @@ TEST(FilledMedians, RefinementTakesThemOfBothComponents) {
                  .surface_fit_px = 0,
                  .fill = fill},
                 map, nullptr, execution, work, [](std::string_view) {});
-    EXPECT_TRUE(testing::identical(map_x, map_y));
+    EXPECT_TRUE(test::identical(map_x, map_y));
     return wrong(map_x);
   };
   const int constant = refined(Fill::kConstant);

@@ -5,7 +5,7 @@
 #include "engine/image/image.h"
 #include "engine/matching/stereo_matcher.h"
 
-namespace vantage::testing {
+namespace vantage::test {
 
 /// Whether both hold the same bits, unknown pixels included.
 template <typename T>
@@ -28,4 +28,4 @@ inline bool identical(const DisparityMaps& a, const DisparityMaps& b) {
          identical(a.right_confidence, b.right_confidence);
 }
 
-}  // namespace vantage::testing
+}  // namespace vantage::test

@@ -148,7 +148,7 @@ TEST_F(MatchSubjectTest, NoSettingsChangeAResult) {
       DisparityMaps maps;
       StereoMatcher(options_.match, execution)
           .match(pair_.left, pair_.right, {.confidence = true}, maps);
-      EXPECT_TRUE(testing::identical(maps, expected)) << to_string(settings);
+      EXPECT_TRUE(test::identical(maps, expected)) << to_string(settings);
     }
   }
 }

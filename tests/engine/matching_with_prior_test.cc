@@ -15,12 +15,12 @@
 namespace vantage {
 namespace matching_with_prior_test {
 
-using testing::identical;
-using testing::method_cases;
-using testing::MethodCase;
-using testing::PhotographPair;
-using testing::PixelKind;
-using testing::textured_pair;
+using test::identical;
+using test::method_cases;
+using test::MethodCase;
+using test::PhotographPair;
+using test::PixelKind;
+using test::textured_pair;
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr DisparityRange kRange{-3, 17};

@@ -130,9 +130,9 @@ TEST(MembraneResponse, IsTheInverseTransformOfTheSupportFunction) {
 
 TEST(MembraneResponse, CandidatesDoNotMixAndTheOracleResponds) {
   const std::vector<float> cells = response_of(.15, .5, 60, 3, true);
-  testing::Volume impulse(kSide, kSide, {0, 0}, Reference::kLeft);
+  test::Volume impulse(kSide, kSide, {0, 0}, Reference::kLeft);
   impulse.at(kCentre - 3, kCentre, 0) = 1;
-  const testing::Volume expected = testing::plain_membrane(impulse, .15, .5, 60);
+  const test::Volume expected = test::plain_membrane(impulse, .15, .5, 60);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     ASSERT_NEAR(cells[i], expected.cells[i], 1e-7);
   }

@@ -15,8 +15,8 @@
 namespace vantage {
 namespace memory_use_test {
 
-using testing::PixelKind;
-using testing::textured_pair;
+using test::PixelKind;
+using test::textured_pair;
 
 constexpr int kWidth = 611;
 constexpr int kHeight = 83;

@@ -6,7 +6,7 @@
 
 #include "engine/matching/match_options.h"
 
-namespace vantage::testing {
+namespace vantage::test {
 
 /// A way of matching, and a name for messages.
 struct MethodCase {
@@ -134,4 +134,4 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
   return cases;
 }
 
-}  // namespace vantage::testing
+}  // namespace vantage::test

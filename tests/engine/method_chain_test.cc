@@ -15,15 +15,15 @@
 namespace vantage {
 namespace method_chain_test {
 
-using testing::identical;
-using testing::method_cases;
-using testing::MethodCase;
-using testing::PhotographPair;
-using testing::PixelKind;
-using testing::plain_match;
-using testing::PlainMap;
-using testing::textured_pair;
-using testing::tolerance_of;
+using test::identical;
+using test::method_cases;
+using test::MethodCase;
+using test::PhotographPair;
+using test::PixelKind;
+using test::plain_match;
+using test::PlainMap;
+using test::textured_pair;
+using test::tolerance_of;
 
 constexpr int kWidth = 57;
 constexpr int kHeight = 39;
@@ -85,7 +85,7 @@ class MethodChain : public ::testing::TestWithParam<MethodCase> {
 };
 
 TEST_P(MethodChain, EnergiesEqualTheOracle) {
-  if (testing::is_stepped(GetParam()) || GetParam().options.resolved().edge_weight < 1) {
+  if (test::is_stepped(GetParam()) || GetParam().options.resolved().edge_weight < 1) {
     GTEST_SKIP() << "rounded to steps, or weights that a chain alone has not: see stage_cost_test, "
                     "coarse_to_fine_test, edge_weights_test";
   }
@@ -95,7 +95,7 @@ TEST_P(MethodChain, EnergiesEqualTheOracle) {
     scheduler::run_whole_image(chain(outputs).stages());
     const PlainMap oracle =
         plain_match(photographs_.left, photographs_.right, reference, kRange, parameters_);
-    const testing::Tolerance tolerance = tolerance_of(parameters_);
+    const test::Tolerance tolerance = tolerance_of(parameters_);
     int candidates = 0;
     int equal = 0;
     int close = 0;

@@ -15,12 +15,12 @@
 namespace vantage {
 namespace method_execution_test {
 
-using testing::identical;
-using testing::method_cases;
-using testing::MethodCase;
-using testing::PhotographPair;
-using testing::PixelKind;
-using testing::textured_pair;
+using test::identical;
+using test::method_cases;
+using test::MethodCase;
+using test::PhotographPair;
+using test::PixelKind;
+using test::textured_pair;
 
 DisparityMaps maps_of(const PhotographPair& pair, const MatchOptions& options,
                       const ExecutionOptions& execution_options) {

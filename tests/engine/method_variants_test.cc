@@ -13,13 +13,13 @@
 namespace vantage {
 namespace method_variants_test {
 
-using testing::expect_equals_oracle;
-using testing::method_cases;
-using testing::MethodCase;
-using testing::PhotographPair;
-using testing::PixelKind;
-using testing::textured_pair;
-using testing::tolerance_of;
+using test::expect_equals_oracle;
+using test::method_cases;
+using test::MethodCase;
+using test::PhotographPair;
+using test::PixelKind;
+using test::textured_pair;
+using test::tolerance_of;
 
 struct Variant {
   const char* name;
@@ -149,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(
 class AwkwardShapes : public ::testing::TestWithParam<MethodCase> {};
 
 TEST_P(AwkwardShapes, EqualTheOracle) {
-  if (testing::is_stepped(GetParam())) {
+  if (test::is_stepped(GetParam())) {
     GTEST_SKIP() << "cells are rounded to steps: see stage_cost_test, coarse_to_fine_test";
   }
   struct Shape {
@@ -176,7 +176,7 @@ TEST_P(AwkwardShapes, EqualTheOracle) {
           << name;
       continue;
     }
-    testing::Tolerance tolerance = tolerance_of(options.resolved());
+    test::Tolerance tolerance = tolerance_of(options.resolved());
     if (options.resolved().certainty == Certainty::kEntropy) {
       tolerance.strays = 5;  // an eleventh of such small images lies beside a stray pixel
     }

@@ -15,7 +15,7 @@
 
 #include "engine/matching/stereo_matcher.h"
 
-namespace vantage::testing {
+namespace vantage::test {
 namespace {
 
 /// Uniform in [0, 1).
@@ -335,4 +335,4 @@ std::string name_of(Aggregation aggregation) {
   return "?";
 }
 
-}  // namespace vantage::testing
+}  // namespace vantage::test

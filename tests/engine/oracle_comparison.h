@@ -8,7 +8,7 @@
 #include "engine/matching/match_options.h"
 #include "tests/engine/plain_matching.h"
 
-namespace vantage::testing {
+namespace vantage::test {
 
 enum class PixelKind { kGrey8, kColour8, kGrey16, kGreyFloat };
 
@@ -72,4 +72,4 @@ Tolerance tolerance_of(const MethodParameters& parameters);
 std::string name_of(MatchCost cost);
 std::string name_of(Aggregation aggregation);
 
-}  // namespace vantage::testing
+}  // namespace vantage::test

@@ -12,12 +12,12 @@
 namespace vantage {
 namespace photograph_methods_test {
 
-using testing::crop;
-using testing::expect_equals_oracle;
-using testing::method_cases;
-using testing::MethodCase;
-using testing::PhotographPair;
-using testing::tolerance_of;
+using test::crop;
+using test::expect_equals_oracle;
+using test::method_cases;
+using test::MethodCase;
+using test::PhotographPair;
+using test::tolerance_of;
 
 class PhotographMethods : public ::testing::TestWithParam<MethodCase> {
  protected:
@@ -30,7 +30,7 @@ class PhotographMethods : public ::testing::TestWithParam<MethodCase> {
 };
 
 TEST_P(PhotographMethods, EqualTheOracleOnARenderedScene) {
-  if (testing::is_stepped(GetParam())) {
+  if (test::is_stepped(GetParam())) {
     GTEST_SKIP() << "cells are rounded to steps: see stage_cost_test, coarse_to_fine_test";
   }
   static const PhotographPair pair = [] {
@@ -49,7 +49,7 @@ TEST_P(PhotographMethods, EqualTheOracleOnARenderedScene) {
 }
 
 TEST_P(PhotographMethods, EqualTheOracleOnAPhotographedScene) {
-  if (testing::is_stepped(GetParam())) {
+  if (test::is_stepped(GetParam())) {
     GTEST_SKIP() << "cells are rounded to steps: see stage_cost_test, coarse_to_fine_test";
   }
   const std::filesystem::path folder = std::filesystem::path(VANTAGE_SHARED_DATA) / "cones_half";

@@ -6,25 +6,13 @@
 #include <limits>
 #include <utility>
 
-namespace vantage::testing {
+namespace vantage::test {
 namespace {
 
 constexpr std::array<std::pair<int, int>, 4> kNeighbours = {{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
 
 bool is_inside(const Volume& volume, int x, int y) {
   return x >= 0 && x < volume.width && y >= 0 && y < volume.height;
-}
-
-/// Calls visit(x, y, i) for every cell.
-template <typename Visit>
-void for_each_cell(const Volume& volume, Visit visit) {
-  for (int y = 0; y < volume.height; ++y) {
-    for (int x = 0; x < volume.width; ++x) {
-      for (int i = 0; i < volume.count(); ++i) {
-        visit(x, y, i);
-      }
-    }
-  }
 }
 
 std::vector<double> column_of(const Volume& volume, int x, int y) {
@@ -338,4 +326,4 @@ Volume plain_bayes_products(const Volume& energies, const MethodParameters& para
   return probabilities;
 }
 
-}  // namespace vantage::testing
+}  // namespace vantage::test

@@ -4,7 +4,7 @@
 
 #include "tests/engine/plain_costs.h"
 
-namespace vantage::testing {
+namespace vantage::test {
 
 /// Mean over the samples of a square window that lie inside both images (EQUATIONS §1; Fig. 1.11);
 /// NaN where a cell is no candidate: its partner, or with `valid` any of its window's, is outside.
@@ -45,4 +45,9 @@ Volume plain_bayes(const Volume& energies, const MethodParameters& parameters,
 /// The same for μ = ½ as products (EQUATIONS §3).
 Volume plain_bayes_products(const Volume& energies, const MethodParameters& parameters);
 
-}  // namespace vantage::testing
+/// The unit of costs in entropies (6.15): 1 ÷ (2 σM²).
+inline double entropy_scale(const MethodParameters& parameters) {
+  return 1 / (2 * parameters.sigma_measurement * parameters.sigma_measurement);
+}
+
+}  // namespace vantage::test

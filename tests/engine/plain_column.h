@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace vantage::testing {
+namespace vantage::test {
 
 /// The energies of one pixel's candidates, and §3 written out for them in double.
 class PlainColumn {
@@ -67,4 +67,4 @@ class PlainColumn {
   int winner_ = -1;
 };
 
-}  // namespace vantage::testing
+}  // namespace vantage::test

@@ -10,7 +10,7 @@
 #include "engine/matching/stage_cost.h"
 #include "tests/engine/plain_costs.h"
 
-namespace vantage::testing {
+namespace vantage::test {
 
 /// A photograph the reference is compared with, and where its camera stands.
 struct PlainPartner {
@@ -252,4 +252,4 @@ class PlainCostCells {
   std::vector<Channel> partner_luma_;
 };
 
-}  // namespace vantage::testing
+}  // namespace vantage::test

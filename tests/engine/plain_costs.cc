@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-namespace vantage::testing {
+namespace vantage::test {
 namespace {
 
 using Taps = std::vector<double>;
@@ -393,4 +393,4 @@ Volume plain_grey(const Photograph& photograph) {
   return grey;
 }
 
-}  // namespace vantage::testing
+}  // namespace vantage::test

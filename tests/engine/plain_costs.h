@@ -6,7 +6,7 @@
 #include "engine/image/photograph.h"
 #include "engine/matching/match_options.h"
 
-namespace vantage::testing {
+namespace vantage::test {
 
 /// A whole disparity space (6.1) in double precision: the oracle of all matching methods. Nothing
 /// of the engine's kernels, layouts or tricks is used to make one.
@@ -41,6 +41,18 @@ struct Volume {
            static_cast<std::size_t>(i);
   }
 };
+
+/// Calls visit(x, y, i) for every cell.
+template <typename Visit>
+void for_each_cell(const Volume& volume, Visit visit) {
+  for (int y = 0; y < volume.height; ++y) {
+    for (int x = 0; x < volume.width; ++x) {
+      for (int i = 0; i < volume.count(); ++i) {
+        visit(x, y, i);
+      }
+    }
+  }
+}
 
 /// One channel of a photograph in grey levels.
 struct Plane {
@@ -92,4 +104,4 @@ Volume plain_measurement_energies(const Photograph& reference, const Photograph&
 /// Grey levels, luma of colours, as cells of one candidate.
 Volume plain_grey(const Photograph& photograph);
 
-}  // namespace vantage::testing
+}  // namespace vantage::test

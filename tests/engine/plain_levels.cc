@@ -3,24 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vantage::testing {
+namespace vantage::test {
 namespace {
-
-double entropy_scale(const MethodParameters& parameters) {
-  return 1 / (2 * parameters.sigma_measurement * parameters.sigma_measurement);
-}
-
-/// Calls visit(x, y, i) for every cell.
-template <typename Visit>
-void for_each_cell(const Volume& volume, Visit visit) {
-  for (int y = 0; y < volume.height; ++y) {
-    for (int x = 0; x < volume.width; ++x) {
-      for (int i = 0; i < volume.count(); ++i) {
-        visit(x, y, i);
-      }
-    }
-  }
-}
 
 /// Calls visit(x, y) for every column.
 template <typename Visit>
@@ -237,4 +221,4 @@ Volume plain_coarse_to_fine(const Volume& costs, const MethodParameters& paramet
   return plain_level(costs, &coarser, of_level, grey);
 }
 
-}  // namespace vantage::testing
+}  // namespace vantage::test

@@ -4,14 +4,10 @@
 #include <cmath>
 #include <limits>
 
-namespace vantage::testing {
+namespace vantage::test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-double entropy_scale(const MethodParameters& parameters) {
-  return 1 / (2 * parameters.sigma_measurement * parameters.sigma_measurement);
-}
 
 /// (5.12), max p, (6.13) or (6.15); over the candidates, whose energies are `candidates`.
 double confidence_of(const std::vector<double>& candidates, double least,
@@ -101,4 +97,4 @@ PlainMap plain_match(const Photograph& left, const Photograph& right, Reference 
                       parameters);
 }
 
-}  // namespace vantage::testing
+}  // namespace vantage::test

@@ -4,7 +4,7 @@
 
 #include "tests/engine/plain_levels.h"
 
-namespace vantage::testing {
+namespace vantage::test {
 
 /// What the oracle chose at one pixel; all NaN where there is no candidate.
 struct PlainChoice {
@@ -45,4 +45,4 @@ PlainMap plain_match(const Photograph& left, const Photograph& right, Reference 
 /// `range` without what no pixel of an image `width_px` wide can have.
 DisparityRange possible_range(DisparityRange range, int width_px);
 
-}  // namespace vantage::testing
+}  // namespace vantage::test

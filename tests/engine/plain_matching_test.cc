@@ -10,7 +10,7 @@
 
 #include "tests/engine/brute_force_ssd.h"
 
-namespace vantage::testing {
+namespace vantage::test {
 namespace plain_matching_test {
 
 Volume column_volume(const std::vector<double>& column) {
@@ -275,4 +275,4 @@ TEST(PlainSelection, ByHand) {
 }
 
 }  // namespace plain_matching_test
-}  // namespace vantage::testing
+}  // namespace vantage::test

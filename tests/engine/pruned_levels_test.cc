@@ -31,9 +31,9 @@ namespace pruned_levels_test {
 
 using kernels::CandidateGeometry;
 using scheduler::Extent;
-using testing::CellSource;
-using testing::CellVolume;
-using testing::identical;
+using test::CellSource;
+using test::CellVolume;
+using test::identical;
 
 constexpr Extent kExtent{41, 19};
 
@@ -246,7 +246,7 @@ class PrunedLevel : public ::testing::Test {
     scheduler::run_whole_image(chain);
     if (every_way) {
       const CellVolume<Cell> expected = result;
-      testing::run_in_strips(chain, [&] { ASSERT_EQ(result.cells, expected.cells); });
+      test::run_in_strips(chain, [&] { ASSERT_EQ(result.cells, expected.cells); });
     }
     return result;
   }
@@ -330,7 +330,7 @@ MatchOptions pruned_options(DisparityRange range, int blocks,
   return options;
 }
 
-DisparityMaps maps_of(const testing::PhotographPair& pair, const MatchOptions& options,
+DisparityMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options,
                       const ExecutionOptions& how = {.threads = 2}, MatchReport* report = nullptr) {
   Execution execution(how);
   DisparityMaps maps;
@@ -350,7 +350,7 @@ TEST_P(PrunedMatchingOf, SixteenCandidatesIsFullMatching) {
   for (const Extent extent : {Extent{1, 1}, Extent{1, 7}, Extent{13, 11}, Extent{70, 37}}) {
     const DisparityRange range{0, std::min(15, extent.columns - 1)};
     const auto pair =
-        testing::textured_pair(extent.columns, extent.rows, range, testing::PixelKind::kGrey8, 3);
+        test::textured_pair(extent.columns, extent.rows, range, test::PixelKind::kGrey8, 3);
     EXPECT_TRUE(identical(maps_of(pair, pruned_options(range, 1, GetParam())),
                           maps_of(pair, pruned_options(range, 0, GetParam()))));
   }
@@ -358,7 +358,7 @@ TEST_P(PrunedMatchingOf, SixteenCandidatesIsFullMatching) {
 
 TEST_P(PrunedMatchingOf, ManyCandidatesDoesNotDependOnExecution) {
   const DisparityRange range{-3, 60};
-  const auto pair = testing::textured_pair(83, 45, range, testing::PixelKind::kGrey8, 3);
+  const auto pair = test::textured_pair(83, 45, range, test::PixelKind::kGrey8, 3);
   const MatchOptions options = pruned_options(range, 2, GetParam());
   const DisparityMaps expected =
       maps_of(pair, options, {.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
@@ -384,7 +384,7 @@ TEST_P(PrunedMatchingOf, ManyCandidatesDoesNotDependOnExecution) {
 TEST_P(PrunedMatchingOf, WiderRangesThanImagesHasADisparityEverywhere) {
   for (const Extent extent : {Extent{1, 1}, Extent{5, 3}, Extent{33, 17}}) {
     const auto pair =
-        testing::textured_pair(extent.columns, extent.rows, {0, 3}, testing::PixelKind::kGrey8, 3);
+        test::textured_pair(extent.columns, extent.rows, {0, 3}, test::PixelKind::kGrey8, 3);
     const DisparityMaps maps = maps_of(pair, pruned_options({-90, 120}, 1, GetParam()));
     for (int y = 0; y < extent.rows; ++y) {
       for (int x = 0; x < extent.columns; ++x) {
@@ -416,7 +416,7 @@ TEST_P(PrunedMatchingOf, ThinObjectsStayFound) {
       left.at(x, y) = right.at(x - kBar, y) = grey();
     }
   }
-  const testing::PhotographPair pair{Photograph{std::move(left)}, Photograph{std::move(right)}};
+  const test::PhotographPair pair{Photograph{std::move(left)}, Photograph{std::move(right)}};
   MatchReport full_report;
   MatchReport pruned_report;
   MatchOptions options = pruned_options({0, 127}, 0, GetParam());

@@ -16,7 +16,7 @@ namespace vantage {
 namespace refinement_test {
 
 using ::testing::ElementsAre;
-using testing::identical;
+using test::identical;
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr double kNoThreshold = -std::numeric_limits<double>::infinity();

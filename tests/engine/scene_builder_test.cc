@@ -163,7 +163,7 @@ TEST_F(SceneBuilderTest, AColumnIsARowOfTransposedImages) {
   }
   build(images);
   const DisparityMap of_column = read_disparity(place_ / "maps/000-001-first.pfm");
-  EXPECT_TRUE(testing::identical(transposed(of_column.view()), of_row));
+  EXPECT_TRUE(test::identical(transposed(of_column.view()), of_row));
   EXPECT_TRUE(read_scene(place_).edges.at(0).edge.is_vertical);
 }
 

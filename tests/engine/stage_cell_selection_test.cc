@@ -21,8 +21,8 @@ namespace vantage {
 namespace stage_cell_selection_test {
 
 using kernels::CellKind;
-using testing::CellVolume;
-using testing::PlainColumn;
+using test::CellVolume;
+using test::PlainColumn;
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
@@ -164,7 +164,7 @@ void expect_plain_selection(const Scene& scene, const Maps& maps) {
 void expect_right_every_way(const Scene& scene) {
   SCOPED_TRACE(::testing::PrintToString(scene));
   Maps maps(scene.cells.extent);
-  const testing::CellSource source(scene.cells);
+  const test::CellSource source(scene.cells);
   const auto stage = make_cell_selection_stage(scene.geometry, scene.settings, maps.outputs());
   const scheduler::Supervised selection(*stage, scene.cells.extent);
   const scheduler::RowStage* chain[] = {&source, &selection};
@@ -172,7 +172,7 @@ void expect_right_every_way(const Scene& scene) {
   ASSERT_NO_FATAL_FAILURE(expect_plain_selection(scene, maps));
   const std::vector<std::uint32_t> expected = maps.bits();
   maps.spoil();
-  testing::run_in_strips(chain, [&] {
+  test::run_in_strips(chain, [&] {
     ASSERT_EQ(maps.bits(), expected);
     maps.spoil();
   });
@@ -214,7 +214,7 @@ TEST(CellSelection, IsSureOfNothingWhereAllIsEqual) {
     Scene scene{{50, 0, 20, -1}, {}, {{50, 2}, 32}};
     scene.cells.cells.assign(scene.cells.cells.size(), energy);
     Maps maps(scene.cells.extent);
-    const testing::CellSource source(scene.cells);
+    const test::CellSource source(scene.cells);
     const auto run = [&] {
       const auto stage = make_cell_selection_stage(scene.geometry, scene.settings, maps.outputs());
       const scheduler::RowStage* chain[] = {&source, stage.get()};
@@ -237,7 +237,7 @@ TEST(CellSelection, MapsThatAreNotWantedChangeNothing) {
     const Scene scene = random_scene(random, 70, -3, 40, -1);
     Maps all(scene.cells.extent);
     Maps some(scene.cells.extent);
-    const testing::CellSource source(scene.cells);
+    const test::CellSource source(scene.cells);
     const auto run = [&](const MapOutputs& outputs) {
       const auto stage = make_cell_selection_stage(scene.geometry, scene.settings, outputs);
       const scheduler::RowStage* chain[] = {&source, stage.get()};

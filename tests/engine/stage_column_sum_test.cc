@@ -22,7 +22,7 @@ namespace stage_column_sum_test {
 
 using kernels::CandidateGeometry;
 using scheduler::Extent;
-using testing::CellVolume;
+using test::CellVolume;
 
 /// Costs of random_cells() lie within 100 of this; they are multiples of 1/8.
 constexpr float kLeastCost = -37;
@@ -45,7 +45,7 @@ class ColumnSums : public ::testing::TestWithParam<std::tuple<Shape, int>> {
       : shape_(std::get<0>(GetParam())),
         geometry_{shape_.extent.columns, shape_.disparity_min, shape_.count,
                   std::get<1>(GetParam())},
-        costs_(testing::random_cells(shape_.extent, geometry_.lanes(), kLeastCost, 8)) {}
+        costs_(test::random_cells(shape_.extent, geometry_.lanes(), kLeastCost, 8)) {}
 
   [[nodiscard]] std::unique_ptr<scheduler::RowStage> make_stage(ColumnSumScale scale) const {
     return make_column_sum_stage(geometry_, shape_.extent.rows, shape_.radius, scale.offset,
@@ -94,7 +94,7 @@ TEST_P(ColumnSums, AddRoundedCostsOfTheRowsInTheImage) {
   const ColumnSumScale scale = {-kLeastCost, 0.75F};
   std::vector<std::unique_ptr<scheduler::RowStage>> stages;
   stages.push_back(make_stage(scale));
-  const CellVolume<std::int32_t> sums = testing::run_every_way<std::int32_t>(costs_, stages);
+  const CellVolume<std::int32_t> sums = test::run_every_way<std::int32_t>(costs_, stages);
   for (int y = 0; y < shape_.extent.rows; ++y) {
     for (int x = 0; x < shape_.extent.columns; ++x) {
       for (int i = 0; i < shape_.count; ++i) {
@@ -127,7 +127,7 @@ TEST_P(ColumnSums, FeedWindowSelectionAsBruteForceDoes) {
     Image<float> disparity_px(shape_.extent.columns, shape_.extent.rows);
     MapOutputs outputs;
     outputs.disparity_px = disparity_px.view();
-    const testing::CellSource source(costs_);
+    const test::CellSource source(costs_);
     const auto sum = make_stage(scale);
     const auto selection = make_window_selection_stage(geometry_, settings, outputs);
     const scheduler::RowStage* chain[] = {&source, sum.get(), selection.get()};
@@ -150,7 +150,7 @@ TEST_P(ColumnSums, FeedWindowSelectionAsBruteForceDoes) {
     };
     scheduler::run_whole_image(chain);
     check();
-    testing::run_in_strips(chain, check);
+    test::run_in_strips(chain, check);
   }
 }
 

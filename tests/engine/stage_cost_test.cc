@@ -23,8 +23,8 @@ namespace vantage {
 namespace stage_cost_test {
 
 using kernels::CandidateGeometry;
-using testing::PlainCostCells;
-using testing::PlainPartner;
+using test::PlainCostCells;
+using test::PlainPartner;
 
 constexpr MatchCost kCosts[] = {MatchCost::kSquared,   MatchCost::kAbsolute,
                                 MatchCost::kTruncated, MatchCost::kBirchfieldTomasi,

@@ -18,8 +18,8 @@ namespace stage_ray_census_energy_test {
 
 using kernels::CandidateGeometry;
 using scheduler::Extent;
-using testing::CellSink;
-using testing::CellVolume;
+using test::CellSink;
+using test::CellVolume;
 
 struct Shape {
   Extent extent;
@@ -43,8 +43,8 @@ TEST(RayCensusEnergyStage, IsTheLogarithmOfTheLikelihoods) {
         parameters.sigma_measurement = 4.8;
         parameters.epsilon_measurement = epsilon;
         const Extent extent = shape.extent;
-        const auto pair = testing::textured_pair(extent.columns, extent.rows, shape.range,
-                                                 testing::PixelKind::kGrey8, 3);
+        const auto pair = test::textured_pair(extent.columns, extent.rows, shape.range,
+                                                 test::PixelKind::kGrey8, 3);
         const CandidateGeometry geometry{extent.columns, shape.range.min, shape.range.count(),
                                          direction};
         CostImage reference;

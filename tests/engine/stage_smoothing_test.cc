@@ -19,7 +19,7 @@ namespace vantage {
 namespace stage_smoothing_test {
 
 using scheduler::Extent;
-using testing::CellVolume;
+using test::CellVolume;
 using Stages = std::vector<std::unique_ptr<scheduler::RowStage>>;
 
 /// Of the sum of the absolute values of all terms: what rounding to floats may cost.
@@ -92,9 +92,9 @@ void expect_every_size(const std::function<Stages(const kernels::CandidateGeomet
       SCOPED_TRACE(::testing::Message()
                    << extent.columns << "x" << extent.rows << ", " << count << " candidates");
       const kernels::CandidateGeometry geometry = geometry_of(extent, count);
-      const CellVolume<float> input = testing::random_cells(extent, geometry.lanes(), -50, 6);
+      const CellVolume<float> input = test::random_cells(extent, geometry.lanes(), -50, 6);
       const Stages stages = make(geometry, extent.rows);
-      expect_convolved(input, testing::run_every_way<float>(input, stages), kernel);
+      expect_convolved(input, test::run_every_way<float>(input, stages), kernel);
       if (::testing::Test::HasFatalFailure()) {
         return;
       }
@@ -130,18 +130,18 @@ TEST(BoxCascadeStages, CountCellsOutsideTheImageOnce) {
   CellVolume<float> input({1, 1}, 16);
   std::fill(input.cells.begin(), input.cells.end(), 1.0F);
   const CellVolume<float> output =
-      testing::run_every_way<float>(input, make_box_cascade_stages(geometry, 1, 2));
+      test::run_every_way<float>(input, make_box_cascade_stages(geometry, 1, 2));
   EXPECT_NEAR(output.at(0, 0, 7), 25.0 * 25 / (135 * 135), 1e-8);
 }
 
 TEST(SmoothingStages, GiveTheSameBitsOnEveryInstructionSet) {
   const Extent extent = {29, 17};
   const kernels::CandidateGeometry geometry = geometry_of(extent, 70);
-  const CellVolume<float> input = testing::random_cells(extent, geometry.lanes(), -50, 7);
+  const CellVolume<float> input = test::random_cells(extent, geometry.lanes(), -50, 7);
   const auto run = [&](const Stages& stages) {
     CellVolume<float> output(extent, geometry.lanes());
-    const testing::CellSource source(input);
-    const testing::CellSink<float> sink(output);
+    const test::CellSource source(input);
+    const test::CellSink<float> sink(output);
     std::vector<const scheduler::RowStage*> chain = {&source};
     for (const auto& stage : stages) {
       chain.push_back(stage.get());

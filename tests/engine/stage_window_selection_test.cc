@@ -21,8 +21,8 @@
 namespace vantage {
 namespace stage_window_selection_test {
 
-using testing::BruteForceSsd;
-using testing::PlainColumn;
+using test::BruteForceSsd;
+using test::PlainColumn;
 
 struct Shape {
   int width;
@@ -44,10 +44,10 @@ struct NoisePair {
   std::vector<double> means;  // [y][x][candidate], NaN where it may not win
 
   NoisePair(const Shape& shape, int direction, int levels, Border border)
-      : reference(testing::random_grey(shape.width, shape.height, levels, 1)),
-        other(testing::random_grey(shape.width, shape.height, levels, 2)) {
-    const BruteForceSsd brute{shape.width, shape.height, testing::grey_levels_of(reference),
-                              testing::grey_levels_of(other), direction};
+      : reference(test::random_grey(shape.width, shape.height, levels, 1)),
+        other(test::random_grey(shape.width, shape.height, levels, 2)) {
+    const BruteForceSsd brute{shape.width, shape.height, test::grey_levels_of(reference),
+                              test::grey_levels_of(other), direction};
     for (int y = 0; y < shape.height; ++y) {
       for (int x = 0; x < shape.width; ++x) {
         for (int i = 0; i < shape.count; ++i) {
@@ -222,7 +222,7 @@ TEST_P(WindowSelection, IsTheSameInStripsAndWithoutConfidence) {
     chain.run();
     const std::vector<std::uint32_t> expected = chain.bits();
     chain.spoil();
-    testing::run_in_strips(chain.stages(), [&] {
+    test::run_in_strips(chain.stages(), [&] {
       ASSERT_EQ(chain.bits(), expected);
       chain.spoil();
     });

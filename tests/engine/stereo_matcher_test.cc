@@ -19,10 +19,10 @@
 namespace vantage {
 namespace stereo_matcher_test {
 
-using testing::BruteForceSsd;
-using testing::grey_levels_of;
-using testing::identical;
-using testing::random_grey;
+using test::BruteForceSsd;
+using test::grey_levels_of;
+using test::identical;
+using test::random_grey;
 
 MatchOptions raw_options(DisparityRange range, int window, Border border, Subpixel subpixel) {
   MatchOptions options;

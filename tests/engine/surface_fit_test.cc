@@ -82,10 +82,10 @@ TEST(FitSurface, ExecutionsAgree) {
   SurfaceFitWork work;
   Execution one({.executor = scheduler::ExecutorKind::kSerial});
   fit_surface(stepped.unmatched, 10, one, work, serial);
-  EXPECT_FALSE(testing::identical(serial, stepped.map));
+  EXPECT_FALSE(test::identical(serial, stepped.map));
   Execution three({.threads = 3, .executor = scheduler::ExecutorKind::kOpenMp});
   fit_surface(stepped.unmatched, 10, three, work, stepped.map);
-  EXPECT_TRUE(testing::identical(serial, stepped.map));
+  EXPECT_TRUE(test::identical(serial, stepped.map));
 }
 
 TEST(FitSurface, RefinementFitsBothComponentsBeforeItFills) {
@@ -119,8 +119,8 @@ TEST(FitSurface, RefinementFitsBothComponentsBeforeItFills) {
   SurfaceFitWork alone;
   fit_surface(stepped.unmatched, 6, execution, alone, stepped.map);
   fill_unmatched(stepped.unmatched, MapSide::kLeft, Fill::kConstant, execution, stepped.map);
-  EXPECT_TRUE(testing::identical(map_x, stepped.map));
-  EXPECT_TRUE(testing::identical(map_y, stepped.map));
+  EXPECT_TRUE(test::identical(map_x, stepped.map));
+  EXPECT_TRUE(test::identical(map_y, stepped.map));
 }
 
 }  // namespace surface_fit_test

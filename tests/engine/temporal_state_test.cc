@@ -13,8 +13,8 @@
 namespace vantage {
 namespace temporal_state_test {
 
-using testing::PixelKind;
-using testing::textured_pair;
+using test::PixelKind;
+using test::textured_pair;
 
 constexpr int kWidth = 67;
 constexpr int kHeight = 35;

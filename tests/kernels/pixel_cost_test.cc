@@ -198,7 +198,7 @@ TEST_P(PixelCost, LikelihoodOfCosts) {
   const auto parameters = ContaminatedGaussian::of(model.sigma, model.epsilon);
   for (const int lanes : kLaneCounts) {
     for (const int columns : {1, 2, 5}) {
-      const CellRow row{columns, lanes, random_int(random, 1, lanes)};
+      const CellExtent row{columns, lanes, random_int(random, 1, lanes)};
       std::vector<float> costs(static_cast<std::size_t>(columns * lanes));
       std::generate(costs.begin(), costs.end(), [&] { return draw_grey(random) / 8; });
       const auto cells = equal_cells(
@@ -224,7 +224,7 @@ TEST_P(PixelCost, LikelihoodsOfEnergies) {
   std::mt19937 random(7);
   for (const int count : {1, 15, 16, 17, 40}) {
     const int lanes = CandidateGeometry{1, 0, count, -1}.lanes();
-    const CellRow row{3, lanes, count};
+    const CellExtent row{3, lanes, count};
     std::vector<float> energies(static_cast<std::size_t>(3 * lanes));
     std::generate(energies.begin(), energies.end(), [&] { return draw_grey(random) / 20; });
     energies[0] = 0;

@@ -1,0 +1,43 @@
+# vantage_batch_sources(RESULT_VARIABLE FILE...): sources to compile in place of FILE...
+#
+# With VANTAGE_BATCH_SOURCES, files of one folder are compiled by the dozen, as one file that
+# includes them: most of the time of a compilation goes into headers, which they share. Names in
+# unnamed namespaces must then differ within a folder. Batches name their files relative to the
+# checkout, so that checkouts in different places can share a compiler cache, and never cross a
+# folder, so that a new file changes few of them.
+set(vantage_batch_size 12)
+
+function(vantage_batch_sources result)
+  if(NOT VANTAGE_BATCH_SOURCES)
+    set(${result} ${ARGN} PARENT_SCOPE)
+    return()
+  endif()
+  set(folders "")
+  foreach(file IN LISTS ARGN)
+    file(RELATIVE_PATH file ${PROJECT_SOURCE_DIR} ${file})
+    get_filename_component(folder ${file} DIRECTORY)
+    string(MAKE_C_IDENTIFIER ${folder} folder)
+    list(APPEND folders ${folder})
+    list(APPEND files_of_${folder} ${file})
+  endforeach()
+  list(REMOVE_DUPLICATES folders)
+  set(batches "")
+  foreach(folder IN LISTS folders)
+    list(LENGTH files_of_${folder} count)
+    # Batches of about equal size, none above the limit.
+    math(EXPR number "(${count} + ${vantage_batch_size} - 1) / ${vantage_batch_size}")
+    math(EXPR size "(${count} + ${number} - 1) / ${number}")
+    foreach(first RANGE 0 ${count} ${size})
+      list(SUBLIST files_of_${folder} ${first} ${size} members)
+      if(members)
+        list(TRANSFORM members PREPEND "#include \"")
+        list(TRANSFORM members APPEND "\"\n")
+        list(JOIN members "" text)
+        set(batch ${CMAKE_CURRENT_BINARY_DIR}/batches/${folder}_${first}.cc)
+        file(CONFIGURE OUTPUT ${batch} CONTENT "${text}" @ONLY)
+        list(APPEND batches ${batch})
+      endif()
+    endforeach()
+  endforeach()
+  set(${result} ${batches} PARENT_SCOPE)
+endfunction()
