@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "tests/apps/run_fixture.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace command_profile_test {
@@ -150,7 +151,7 @@ TEST_F(ProfileTest, EndsWithTheBudgetButMakesARound) {
 
 TEST_F(ProfileTest, ComparesWithAnotherProgram) {
   const std::string other = folder_ / "other-vantage";
-  fs::copy_file(VANTAGE_BINARY, other);
+  fs::copy_file(test_paths::vantage_binary(), other);
   const ProcessResult result = profile({"--threads", "1", "--quiet", "--against", other},
                                        match_command({"--method", "ssd"}));
   ASSERT_EQ(result.exit_code, 0) << result.err;

@@ -13,6 +13,7 @@
 #include "tests/apps/vantage_process.h"
 #include "tests/engine/unrectified_pair.h"
 #include "tests/temporary_folder.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace command_rectify_test {
@@ -268,9 +269,9 @@ TEST_F(RectifyTest, RectifiedPairsAreNotWarnedOf) {
 }
 
 TEST(RectifyChessboard, FromFeaturesOfAllPairs) {
-  const fs::path folder = fs::path(VANTAGE_SHARED_DATA) / "chessboard";
-  if (!fs::exists(folder / "left01.jpg")) {
-    GTEST_SKIP() << "no chessboard photographs at " << folder;
+  const fs::path folder = test_paths::shared_data("chessboard");
+  if (folder.empty()) {
+    GTEST_SKIP() << "VANTAGE_SHARED_DATA holds no chessboard";
   }
   const TemporaryFolder out;
   for (const bool calibrated : {false, true}) {

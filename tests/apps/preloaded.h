@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/apps/run_fixture.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 
@@ -23,8 +24,8 @@ inline std::vector<std::string> preloaded(const std::string& library,
 /// `folder`: "KILL" ends the process before it, "FULL" is a full disk from then on.
 inline std::vector<std::string> fault_at(const std::string& fault, int call,
                                          const std::string& folder) {
-  return preloaded(PRELOAD_IO_FAULTS, {"IO_FAULTS_FOLDER=" + folder,
-                                       "IO_FAULTS_" + fault + "=" + std::to_string(call)});
+  return preloaded(test_paths::io_faults(), {"IO_FAULTS_FOLDER=" + folder,
+                                             "IO_FAULTS_" + fault + "=" + std::to_string(call)});
 }
 
 }  // namespace vantage

@@ -9,6 +9,7 @@
 
 #include "tests/apps/preloaded.h"
 #include "tests/apps/run_fixture.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace run_interrupt_test {
@@ -121,7 +122,7 @@ TEST_F(ClockJump, NothingChangesButTheDate) {
   const FolderContent expected = undisturbed(outputs);
   const std::string out = folder_ / "out";
   const std::vector<std::string> environment =
-      preloaded(PRELOAD_CLOCK_JUMP, {"CLOCK_JUMP_COUNT=" + (folder_ / "count")});
+      preloaded(test_paths::clock_jump(), {"CLOCK_JUMP_COUNT=" + (folder_ / "count")});
   const std::string report = folder_ / "report.json";
   const ProcessResult half = run_vantage(
       arguments(out, joined(outputs, {"--frames", "0-9", "--report", report})), environment);
@@ -150,9 +151,10 @@ TEST_F(ClockJump, NothingChangesButTheDate) {
 /// The test above is worth nothing where the library is not loaded.
 TEST_F(ClockJump, TheClockDoesJump) {
   const std::string count = folder_ / "count";
-  EXPECT_EQ(run_vantage({"--version"}, preloaded(PRELOAD_CLOCK_JUMP, {"CLOCK_JUMP_COUNT=" + count}))
-                .exit_code,
-            0);
+  EXPECT_EQ(
+      run_vantage({"--version"}, preloaded(test_paths::clock_jump(), {"CLOCK_JUMP_COUNT=" + count}))
+          .exit_code,
+      0);
   EXPECT_TRUE(fs::exists(count));
 }
 

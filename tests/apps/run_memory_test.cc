@@ -8,6 +8,7 @@
 
 #include "tests/apps/preloaded.h"
 #include "tests/apps/run_fixture.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace run_memory_test {
@@ -84,7 +85,8 @@ class RunMemory : public RunTest {
   [[nodiscard]] double allocations(const std::vector<std::string>& arguments,
                                    std::size_t bytes) const {
     const std::string counts = folder_ / "counts";
-    (void)report_of(arguments, preloaded(PRELOAD_ALLOCATION_COUNT, {"ALLOCATION_COUNT=" + counts}));
+    (void)report_of(arguments,
+                    preloaded(test_paths::allocation_count(), {"ALLOCATION_COUNT=" + counts}));
     std::istringstream lines(read_file(counts));
     std::size_t size = 0;
     double count = 0;

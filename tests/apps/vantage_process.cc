@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "tests/temporary_folder.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace {
@@ -45,13 +46,14 @@ VantageProcess::VantageProcess(const std::vector<std::string>& arguments,
                                const std::filesystem::path& folder,
                                const std::vector<std::string>& environment)
     : out_(folder / "stdout"), err_(folder / "stderr") {
+  const std::string binary = test_paths::vantage_binary();
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   constexpr int kFlags = O_CREAT | O_TRUNC | O_WRONLY;
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out_.c_str(), kFlags, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err_.c_str(), kFlags, 0600);
-  std::vector<std::string> texts = {VANTAGE_BINARY};
+  std::vector<std::string> texts = {binary};
   texts.insert(texts.end(), arguments.begin(), arguments.end());
   std::vector<std::string> changes = environment;
   if (std::ranges::none_of(changes, [](const std::string& variable) {
@@ -61,11 +63,11 @@ VantageProcess::VantageProcess(const std::vector<std::string>& arguments,
     changes.push_back("XDG_CONFIG_HOME=" + (std::filesystem::absolute(folder) / "config").string());
   }
   std::vector<std::string> variables = with_changes(environ, changes);
-  const int error = posix_spawn(&pid_, VANTAGE_BINARY, &actions, nullptr, pointers(texts).data(),
+  const int error = posix_spawn(&pid_, binary.c_str(), &actions, nullptr, pointers(texts).data(),
                                 pointers(variables).data());
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) {
-    throw std::runtime_error("cannot start " VANTAGE_BINARY);
+    throw std::runtime_error("cannot start " + binary);
   }
 }
 
