@@ -1,4 +1,5 @@
-# vantage_batch_sources(RESULT_VARIABLE FILE...): sources to compile in place of FILE...
+# vantage_batch_sources(RESULT NAME FILE...): RESULT becomes what to compile in place of FILE...; NAME
+# tells the batches of several targets of a folder apart.
 #
 # With VANTAGE_BATCH_SOURCES, files of one folder are compiled by the dozen, as one file that
 # includes them: most of the time of a compilation goes into headers, which they share. Names in
@@ -7,7 +8,7 @@
 # folder, so that a new file changes few of them.
 set(vantage_batch_size 12)
 
-function(vantage_batch_sources result)
+function(vantage_batch_sources result name)
   if(NOT VANTAGE_BATCH_SOURCES)
     set(${result} ${ARGN} PARENT_SCOPE)
     return()
@@ -27,16 +28,15 @@ function(vantage_batch_sources result)
     # Batches of about equal size, none above the limit.
     math(EXPR number "(${count} + ${vantage_batch_size} - 1) / ${vantage_batch_size}")
     math(EXPR size "(${count} + ${number} - 1) / ${number}")
-    foreach(first RANGE 0 ${count} ${size})
+    math(EXPR last "${count} - 1")
+    foreach(first RANGE 0 ${last} ${size})
       list(SUBLIST files_of_${folder} ${first} ${size} members)
-      if(members)
-        list(TRANSFORM members PREPEND "#include \"")
-        list(TRANSFORM members APPEND "\"\n")
-        list(JOIN members "" text)
-        set(batch ${CMAKE_CURRENT_BINARY_DIR}/batches/${folder}_${first}.cc)
-        file(CONFIGURE OUTPUT ${batch} CONTENT "${text}" @ONLY)
-        list(APPEND batches ${batch})
-      endif()
+      list(TRANSFORM members PREPEND "#include \"")
+      list(TRANSFORM members APPEND "\"\n")
+      list(JOIN members "" text)
+      set(batch ${CMAKE_CURRENT_BINARY_DIR}/batches/${name}_${folder}_${first}.cc)
+      file(CONFIGURE OUTPUT ${batch} CONTENT "${text}" @ONLY)
+      list(APPEND batches ${batch})
     endforeach()
   endforeach()
   set(${result} ${batches} PARENT_SCOPE)

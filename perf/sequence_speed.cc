@@ -249,7 +249,7 @@ nlohmann::json print_table(const std::string& title, const std::vector<Contender
 
 struct Settings {
   std::optional<fs::path> json;
-  fs::path input = fs::path(VANTAGE_SHARED_DATA) / "kitti_seq1";
+  fs::path input = fs::path(kDefaultData) / "kitti_seq1";
   fs::path output = fs::temp_directory_path();
   int rounds = 5;
   int threads = scheduler::detect_machine().hardware_threads;

@@ -94,7 +94,7 @@ std::vector<const TrueScene*> chosen_scenes(CommandLine& line, const std::filesy
 
 std::vector<MapContender> chosen_contenders(CommandLine& line,
                                             const std::vector<SgbmSetting>& peers) {
-  const std::string file = line.text("--experiments").value_or(VANTAGE_EXPERIMENTS);
+  const std::string file = line.text("--experiments").value_or(kDefaultExperiments);
   std::vector<MapContender> contenders =
       chosen(experiments(file), line.text("--only"), "--only", name_of<MapContender>);
   for (const SgbmSetting& peer : peers) {
@@ -149,7 +149,7 @@ void judge(const TrueScene& scene, const std::filesystem::path& data, int rounds
 
 void run(CommandLine& line) {
   constexpr int kUsualRounds = 3;
-  const std::filesystem::path data = line.text("--data").value_or(VANTAGE_SHARED_DATA);
+  const std::filesystem::path data = line.text("--data").value_or(kDefaultData);
   const std::vector<SgbmSetting> peers =
       chosen(sgbm_settings(), line.text("--peers"), "--peers", name_of<SgbmSetting>);
   Results results{chosen_contenders(line, peers), chosen_scenes(line, data), {}, {}};

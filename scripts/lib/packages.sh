@@ -4,7 +4,7 @@
 # What building, testing and the demo need. An installed package is never touched.
 # shellcheck disable=SC2034  # used by whoever sources this
 readonly BUILD_PACKAGES=(
-  g++ cmake ninja-build pkg-config
+  g++ cmake ninja-build pkg-config ccache mold
   libtbb-dev libopencv-dev libeigen3-dev libhwy-dev libhwloc-dev
   libavformat-dev libavcodec-dev libavutil-dev libswscale-dev libswresample-dev
   libdeflate-dev

@@ -11,6 +11,7 @@
 
 #include "engine/io/photograph_io.h"
 #include "tests/engine/io_test_support.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace disparity_io_test {
@@ -229,7 +230,7 @@ TEST(DisparityIo, RefusesColourUnknownExtensionsAndEmptyMaps) {
 }
 
 TEST(DisparityIo, ReadsAllSharedTruths) {
-  const std::filesystem::path data = VANTAGE_SHARED_DATA;
+  const std::filesystem::path data = test_paths::shared_data();
   if (!std::filesystem::is_directory(data)) {
     GTEST_SKIP() << "no disparity maps at " << data;
   }

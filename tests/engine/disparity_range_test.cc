@@ -15,6 +15,7 @@
 #include "engine/io/photograph_io.h"
 #include "engine/matching/stereo_matcher.h"
 #include "tests/engine/io_test_support.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace disparity_range_test {
@@ -99,7 +100,7 @@ TEST(DisparityRange, CoversTheBookPairsWithTexture) {
 }
 
 TEST(DisparityRange, CoversPhotographs) {
-  const std::filesystem::path data = VANTAGE_SHARED_DATA;
+  const std::filesystem::path data = test_paths::shared_data();
   if (!std::filesystem::exists(data)) {
     GTEST_SKIP() << "no photographs at " << data;
   }

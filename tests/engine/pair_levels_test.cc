@@ -14,6 +14,7 @@
 #include "engine/io/photograph_io.h"
 #include "engine/matching/level_fit.h"
 #include "engine/matching/stereo_matcher.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace pair_levels_test {
@@ -277,7 +278,7 @@ TEST(PairLevels, SeveralImagesAreChangedEachByItsOwn) {
 }
 
 TEST(PairLevels, OfAPhotographTakenWithAnotherExposure) {
-  const std::filesystem::path data = std::filesystem::path(VANTAGE_SHARED_DATA) / "motorcycle";
+  const std::filesystem::path data = test_paths::shared_data() / "motorcycle";
   if (!std::filesystem::exists(data)) {
     GTEST_SKIP() << "no photographs at " << data;
   }

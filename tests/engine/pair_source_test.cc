@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/engine/frame_test_support.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace pair_source_test {
@@ -471,7 +472,7 @@ TEST(PairSource, OptionsAreChecked) {
 
 /// Real frames, as files and packed into a video.
 TEST(PairSource, FilesAndAPackedVideoOfOneDrive) {
-  const std::filesystem::path data = std::filesystem::path(VANTAGE_SHARED_DATA) / "kitti_seq1";
+  const std::filesystem::path data = test_paths::shared_data() / "kitti_seq1";
   if (!std::filesystem::exists(data)) {
     GTEST_SKIP() << "no " << data;
   }

@@ -8,6 +8,7 @@
 
 #include "engine/io/atomic_file.h"
 #include "tests/engine/io_test_support.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace photograph_io_test {
@@ -357,7 +358,7 @@ TEST(AtomicFile, NamesTheFolderThatIsMissingOrNotWritable) {
 }
 
 TEST(PhotographIo, ReadsAllSharedPhotographs) {
-  const std::filesystem::path data = VANTAGE_SHARED_DATA;
+  const std::filesystem::path data = test_paths::shared_data();
   if (!std::filesystem::is_directory(data)) {
     GTEST_SKIP() << "no photographs at " << data;
   }

@@ -8,6 +8,7 @@
 #include "engine/io/photograph_io.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace photograph_methods_test {
@@ -52,7 +53,7 @@ TEST_P(PhotographMethods, EqualTheOracleOnAPhotographedScene) {
   if (test::is_stepped(GetParam())) {
     GTEST_SKIP() << "cells are rounded to steps: see stage_cost_test, coarse_to_fine_test";
   }
-  const std::filesystem::path folder = std::filesystem::path(VANTAGE_SHARED_DATA) / "cones_half";
+  const std::filesystem::path folder = test_paths::shared_data() / "cones_half";
   if (!std::filesystem::is_directory(folder)) {
     GTEST_SKIP() << "no photographs at " << folder;
   }

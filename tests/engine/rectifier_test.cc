@@ -13,6 +13,7 @@
 #include "tests/engine/calibration_cases.h"
 #include "tests/engine/io_test_support.h"
 #include "tests/keys_kernel.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace rectifier_test {
@@ -297,7 +298,7 @@ TEST(Rectifier, BringsBackRowsOfADistortedScene) {
 }
 
 TEST(Rectifier, ChessboardCornersMeetInOneRow) {
-  const std::filesystem::path folder = std::filesystem::path(VANTAGE_SHARED_DATA) / "chessboard";
+  const std::filesystem::path folder = test_paths::shared_data() / "chessboard";
   if (!std::filesystem::exists(folder / "corners.txt")) {
     GTEST_SKIP() << "no chessboard photographs at " << folder;
   }

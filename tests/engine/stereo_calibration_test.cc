@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/engine/io_test_support.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace stereo_calibration_test {
@@ -373,7 +374,7 @@ TEST_F(CalibrationFiles, DamagedFilesEndInOneLine) {
 }
 
 TEST(CalibrationFilesOfDataSets, AreRead) {
-  const std::filesystem::path data = VANTAGE_SHARED_DATA;
+  const std::filesystem::path data = test_paths::shared_data();
   if (!std::filesystem::exists(data / "kitti_seq1" / "calib.txt")) {
     GTEST_SKIP() << "no data sets at " << data;
   }

@@ -15,6 +15,7 @@
 #include "engine/rectification/rectifier.h"
 #include "tests/engine/io_test_support.h"
 #include "tests/engine/match_cases.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace uncalibrated_rig_test {
@@ -246,7 +247,7 @@ TEST(UncalibratedRig, TheLeftCameraStaysLeft) {
 }
 
 TEST(UncalibratedRig, RectifiesTheChessboardFromItsCorners) {
-  const std::filesystem::path folder = std::filesystem::path(VANTAGE_SHARED_DATA) / "chessboard";
+  const std::filesystem::path folder = test_paths::shared_data() / "chessboard";
   std::ifstream file(folder / "corners.txt");
   if (!file) {
     GTEST_SKIP() << "no chessboard photographs at " << folder;

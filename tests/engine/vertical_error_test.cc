@@ -13,6 +13,7 @@
 #include "engine/rectification/uncalibrated_rig.h"
 #include "tests/engine/io_test_support.h"
 #include "tests/engine/unrectified_pair.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace vertical_error_test {
@@ -197,7 +198,7 @@ TEST(VerticalError, IsGoneOnceEstimatedCamerasHaveRectified) {
 }
 
 TEST(VerticalError, OfTheMotorcycleIsThatOfItsTruth) {
-  const std::filesystem::path folder = std::filesystem::path(VANTAGE_SHARED_DATA) / "motorcycle";
+  const std::filesystem::path folder = test_paths::shared_data() / "motorcycle";
   if (!std::filesystem::exists(folder / "disp0y.pfm")) {
     GTEST_SKIP() << "no imperfectly rectified pair at " << folder;
   }
@@ -222,7 +223,7 @@ TEST(VerticalError, OfTheMotorcycleIsThatOfItsTruth) {
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->mean_px, 0.23, 0.12);
   EXPECT_GT(found->systematic_px, 0.3);
-  const auto perfect = std::filesystem::path(VANTAGE_SHARED_DATA) / "motorcycle_perfect";
+  const auto perfect = test_paths::shared_data() / "motorcycle_perfect";
   const auto other = check_rectification(read_photograph(perfect / "im0.png"),
                                          read_photograph(perfect / "im1.png"));
   ASSERT_TRUE(other);

@@ -12,6 +12,7 @@
 
 #include "engine/io/photograph_io.h"
 #include "tests/engine/video_test_support.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace video_io_test {
@@ -312,7 +313,7 @@ TEST(VideoIo, ReaderRefusesWhatIsNoVideo) {
 }
 
 TEST(VideoIo, ReadsTheSharedVideoWhichShowsTheSharedFrames) {
-  const std::filesystem::path data = VANTAGE_SHARED_DATA;
+  const std::filesystem::path data = test_paths::shared_data();
   if (!std::filesystem::is_directory(data / "kitti_seq1")) {
     GTEST_SKIP() << "no video at " << data / "kitti_seq1";
   }
