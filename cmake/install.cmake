@@ -8,7 +8,8 @@ install(TARGETS vantage_kernels vantage_scheduler vantage_engine EXPORT VantageT
 install(TARGETS vantage RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/kernels ${PROJECT_SOURCE_DIR}/scheduler
                   ${PROJECT_SOURCE_DIR}/engine
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vantage FILES_MATCHING PATTERN "*.h")
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vantage FILES_MATCHING PATTERN "*.h"
+  PATTERN libav_functions.h EXCLUDE)  # FFmpeg's headers are for .cc files
 install(EXPORT VantageTargets NAMESPACE vantage:: DESTINATION ${package_dir})
 
 configure_package_config_file(

@@ -18,6 +18,7 @@
 #include "engine/sequence/sequence_runner.h"
 #include "engine/simd.h"
 #include "engine/synthesis/view_synthesizer.h"
+#include "perf/default_paths.h"
 #include "perf/opencv_loop.h"
 #include "perf/sequence_inputs.h"
 #include "perf/stopwatch.h"

@@ -19,6 +19,7 @@
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/io/photograph_io.h"
 #include "engine/synthesis/view_synthesizer.h"
+#include "perf/default_paths.h"
 #include "perf/outlines.h"
 #include "perf/peers.h"
 #include "perf/plain_view.h"

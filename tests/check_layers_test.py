@@ -14,6 +14,7 @@ CLEAN_TREE = {
     "kernels/lanes-inl.h": "int per_target();\n",
     "scheduler/pool.cc": "#include <hwloc.h>\n#include <oneapi/tbb/task_arena.h>\n#include <omp.h>\n",
     "engine/io.cc": '#include <opencv2/imgcodecs.hpp>\n#include <unistd.h>\n#include "kernels/box.h"\n',
+    "engine/io/libav_functions.h": "#pragma once\n#include <libavcodec/avcodec.h>\n",
     "engine/video.cc": 'extern "C" {\n#include <libavcodec/avcodec.h>\n#include <libswscale/swscale.h>\n}\n',
     "apps/main.cc": '#include <CLI/CLI.hpp>\n#include "engine/io.h"\n',
     "tests/engine/io_test.cc": "#include <gtest/gtest.h>\n#include <thread>\n",
@@ -73,6 +74,10 @@ class CheckLayersTest(unittest.TestCase):
         self.expect_violation("engine/a.h", "#pragma once\n#include <libswscale/swscale.h>\n",
                               "engine/a.h:2: ")
         self.expect_violation("apps/a.cc", "#include <libavcodec/avcodec.h>\n", "apps/a.cc:1: ")
+
+    def test_private_header_in_a_public_one(self):
+        self.expect_violation("engine/a.h", '#pragma once\n#include "engine/io/libav_functions.h"\n',
+                              "engine/a.h:2: ")
 
     def test_header_without_pragma_once(self):
         self.expect_violation("tests/engine/a.h", "int a();\n", "tests/engine/a.h:1: ")

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <span>
 
+#include "engine/io/libav_functions.h"
+
 extern "C" {
 #include <libavcodec/avcodec.h>
 }
@@ -50,7 +52,7 @@ bool has_fresh_start(std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 bool begins_afresh(const AVPacket& packet, const AVCodecParameters& parameters) {
-  const AVCodecDescriptor* coding = avcodec_descriptor_get(parameters.codec_id);
+  const AVCodecDescriptor* coding = libav().avcodec_descriptor_get(parameters.codec_id);
   if (coding != nullptr && (coding->props & AV_CODEC_PROP_INTRA_ONLY) != 0) {
     return true;
   }

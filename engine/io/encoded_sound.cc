@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/io/libav_functions.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -23,7 +24,7 @@ constexpr std::int64_t kBitsPerSecondAndChannel = 96'000;
 constexpr int kUsualSampleRate = 48'000;
 
 LibavCodec make_codec(const AVCodec* codec) {
-  LibavCodec result(avcodec_alloc_context3(codec));
+  LibavCodec result(libav().avcodec_alloc_context3(codec));
   if (result == nullptr) {
     throw std::bad_alloc();
   }
@@ -42,7 +43,7 @@ bool encodes_sample_rate(const AVCodec& encoder, int rate) {
 class EncodedSound : public SoundPackets {
  public:
   explicit EncodedSound(SoundInput input);
-  ~EncodedSound() override { avcodec_parameters_free(&parameters_); }
+  ~EncodedSound() override { libav().avcodec_parameters_free(&parameters_); }
 
   [[nodiscard]] const AVCodecParameters& parameters() const override { return *parameters_; }
   [[nodiscard]] AVRational time_unit() const override { return encoder_->time_base; }
@@ -82,16 +83,16 @@ EncodedSound::EncodedSound(SoundInput input) : input_(std::move(input)) {
 
 void EncodedSound::open_decoder() {
   const AVCodecParameters& source = *input_.stream()->codecpar;
-  const AVCodec* codec = avcodec_find_decoder(source.codec_id);
+  const AVCodec* codec = libav().avcodec_find_decoder(source.codec_id);
   if (codec == nullptr) {
-    input_.fail(std::string("no decoder for ") + avcodec_get_name(source.codec_id));
+    input_.fail(std::string("no decoder for ") + libav().avcodec_get_name(source.codec_id));
   }
   decoder_ = make_codec(codec);
-  int result = avcodec_parameters_to_context(decoder_.get(), &source);
+  int result = libav().avcodec_parameters_to_context(decoder_.get(), &source);
   decoder_->pkt_timebase = input_.stream()->time_base;
   decoder_->thread_count = 1;
   if (result >= 0) {
-    result = avcodec_open2(decoder_.get(), codec, nullptr);
+    result = libav().avcodec_open2(decoder_.get(), codec, nullptr);
   }
   if (result < 0 || decoder_->sample_rate <= 0 || decoder_->ch_layout.nb_channels <= 0) {
     input_.fail(result < 0 ? libav_message(result) : "no sample rate or channels");
@@ -99,7 +100,7 @@ void EncodedSound::open_decoder() {
 }
 
 void EncodedSound::open_encoder() {
-  const AVCodec* codec = avcodec_find_encoder_by_name("aac");
+  const AVCodec* codec = libav().avcodec_find_encoder_by_name("aac");
   if (codec == nullptr) {
     throw Error("FFmpeg was built without its AAC encoder");
   }
@@ -113,14 +114,14 @@ void EncodedSound::open_encoder() {
   encoder_->bit_rate = kBitsPerSecondAndChannel * channels;
   encoder_->thread_count = 1;
   encoder_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER | AV_CODEC_FLAG_BITEXACT;
-  if (const int result = avcodec_open2(encoder_.get(), codec, nullptr); result < 0) {
+  if (const int result = libav().avcodec_open2(encoder_.get(), codec, nullptr); result < 0) {
     input_.fail("AAC: " + libav_message(result));
   }
   samples_of_part_ = std::llround(input_.length_seconds() * encoder_->sample_rate);
-  parameters_ = avcodec_parameters_alloc();
+  parameters_ = libav().avcodec_parameters_alloc();
   queue_.reset(av_audio_fifo_alloc(AV_SAMPLE_FMT_FLTP, channels, encoder_->frame_size));
   if (parameters_ == nullptr || queue_ == nullptr ||
-      avcodec_parameters_from_context(parameters_, encoder_.get()) < 0) {
+      libav().avcodec_parameters_from_context(parameters_, encoder_.get()) < 0) {
     throw std::bad_alloc();
   }
 }
@@ -148,7 +149,7 @@ void EncodedSound::open_resampler() {
 
 bool EncodedSound::next() {
   for (;;) {
-    const int result = avcodec_receive_packet(encoder_.get(), &packet());
+    const int result = libav().avcodec_receive_packet(encoder_.get(), &packet());
     if (result >= 0) {
       return true;
     }
@@ -168,7 +169,7 @@ void EncodedSound::feed_encoder() {
   }
   const int samples = std::min(av_audio_fifo_size(queue_.get()), encoder_->frame_size);
   if (samples == 0) {
-    avcodec_send_frame(encoder_.get(), nullptr);
+    libav().avcodec_send_frame(encoder_.get(), nullptr);
     return;
   }
   const LibavFrame frame = make_libav_frame();
@@ -182,14 +183,14 @@ void EncodedSound::feed_encoder() {
   av_audio_fifo_read(queue_.get(), reinterpret_cast<void**>(frame->extended_data), samples);
   frame->pts = next_to_encode_;
   next_to_encode_ += samples;
-  if (const int result = avcodec_send_frame(encoder_.get(), frame.get()); result < 0) {
+  if (const int result = libav().avcodec_send_frame(encoder_.get(), frame.get()); result < 0) {
     input_.fail("AAC: " + libav_message(result));
   }
 }
 
 bool EncodedSound::decode_more() {
   for (;;) {
-    const int result = avcodec_receive_frame(decoder_.get(), decoded_.get());
+    const int result = libav().avcodec_receive_frame(decoder_.get(), decoded_.get());
     if (result >= 0) {
       queue_samples(decoded_.get());
       return true;
@@ -203,10 +204,10 @@ bool EncodedSound::decode_more() {
     }
     int sent = 0;
     if (input_.read(*source_packet_)) {
-      sent = avcodec_send_packet(decoder_.get(), source_packet_.get());
-      av_packet_unref(source_packet_.get());
+      sent = libav().avcodec_send_packet(decoder_.get(), source_packet_.get());
+      libav().av_packet_unref(source_packet_.get());
     } else {
-      sent = avcodec_send_packet(decoder_.get(), nullptr);
+      sent = libav().avcodec_send_packet(decoder_.get(), nullptr);
     }
     if (sent < 0) {
       input_.fail(libav_message(sent));

@@ -12,6 +12,7 @@
 
 #include "engine/error.h"
 #include "engine/io/image_header.h"
+#include "engine/io/opencv_codecs.h"
 #include "engine/io/opencv_setup.h"
 #include "engine/io/pfm.h"
 #include "engine/io/png_decoder.h"
@@ -59,7 +60,7 @@ Photograph decode_with_opencv(const FileBytes& file, std::span<const std::uint8_
                           const_cast<std::uint8_t*>(bytes.data()));
     // "Unchanged" keeps depth and channels and ignores the EXIF orientation: calibrations are of
     // the image as it was stored.
-    cv::imdecode(encoded, cv::IMREAD_UNCHANGED, &decoded);
+    decode_by_opencv(encoded, decoded);
   } catch (const cv::Exception&) {
     decoded.release();
   }
@@ -106,7 +107,7 @@ void encode_with_opencv(const std::string& extension, const Photograph& photogra
           constexpr int kLzw = 5;
           parameters = {cv::IMWRITE_TIFF_COMPRESSION, kLzw};
         }
-        if (!cv::imencode(extension, pixels, bytes, parameters)) {
+        if (!encode_by_opencv(extension, pixels, bytes, parameters)) {
           bytes.clear();
         }
       },

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/io/libav_functions.h"
 #include "engine/io/photograph_io.h"
 #include "engine/io/video_structure.h"
 
@@ -69,17 +70,21 @@ class ProbeOptions {
 };
 
 AVStream* find_stream(AVFormatContext& input, AVMediaType type) {
-  const int index = av_find_best_stream(&input, type, -1, -1, nullptr, 0);
+  const int index = libav().av_find_best_stream(&input, type, -1, -1, nullptr, 0);
   return index < 0 ? nullptr : input.streams[index];
 }
 
 }  // namespace
 
 void LibavFree::operator()(AVAudioFifo* samples) const noexcept { av_audio_fifo_free(samples); }
-void LibavFree::operator()(AVCodecContext* codec) const noexcept { avcodec_free_context(&codec); }
-void LibavFree::operator()(AVFormatContext* input) const noexcept { avformat_close_input(&input); }
+void LibavFree::operator()(AVCodecContext* codec) const noexcept {
+  libav().avcodec_free_context(&codec);
+}
+void LibavFree::operator()(AVFormatContext* input) const noexcept {
+  libav().avformat_close_input(&input);
+}
 void LibavFree::operator()(AVFrame* frame) const noexcept { av_frame_free(&frame); }
-void LibavFree::operator()(AVPacket* packet) const noexcept { av_packet_free(&packet); }
+void LibavFree::operator()(AVPacket* packet) const noexcept { libav().av_packet_free(&packet); }
 void LibavFree::operator()(SwrContext* resampler) const noexcept { swr_free(&resampler); }
 void LibavFree::operator()(SwsContext* scaler) const noexcept { sws_freeContext(scaler); }
 
@@ -92,7 +97,7 @@ LibavFrame make_libav_frame() {
 }
 
 LibavPacket make_libav_packet() {
-  LibavPacket packet(av_packet_alloc());
+  LibavPacket packet(libav().av_packet_alloc());
   if (packet == nullptr) {
     throw std::bad_alloc();
   }
@@ -129,7 +134,7 @@ LibavInput open_media_file(const fs::path& path) {
                     "recording was never finished",
                     path.string(), fs::file_size(path)));
   }
-  AVFormatContext* opened = avformat_alloc_context();
+  AVFormatContext* opened = libav().avformat_alloc_context();
   if (opened == nullptr) {
     throw std::bad_alloc();
   }
@@ -137,10 +142,10 @@ LibavInput open_media_file(const fs::path& path) {
   opened->protocol_whitelist = av_strdup("file");
   // "file:" keeps names with a colon from being taken for addresses. On failure `opened` is freed.
   const std::string address = "file:" + path.string();
-  int result = avformat_open_input(&opened, address.c_str(), nullptr, nullptr);
+  int result = libav().avformat_open_input(&opened, address.c_str(), nullptr, nullptr);
   LibavInput input(result < 0 ? nullptr : opened);
   if (result >= 0) {
-    result = avformat_find_stream_info(input.get(), ProbeOptions(input->nb_streams).data());
+    result = libav().avformat_find_stream_info(input.get(), ProbeOptions(input->nb_streams).data());
   }
   if (result < 0) {
     throw Error(fmt::format("{}: is not a video, or a truncated one ({})", path.string(),

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "engine/error.h"
+#include "engine/io/libav_functions.h"
 #include "engine/io/video_io.h"
 #include "engine/io/video_structure.h"
 
@@ -15,20 +16,21 @@ extern "C" {
 namespace vantage {
 
 void Mp4Muxer::Free::operator()(AVFormatContext* output) const noexcept {
-  avio_closep(&output->pb);
-  avformat_free_context(output);
+  libav().avio_closep(&output->pb);
+  libav().avformat_free_context(output);
 }
 
 Mp4Muxer::Mp4Muxer(const std::filesystem::path& path) : path_(path), file_(path) {
   silence_libav();
   const std::string address = "file:" + file_.temporary_path().string();
   AVFormatContext* output = nullptr;
-  if (avformat_alloc_output_context2(&output, nullptr, "mp4", address.c_str()) < 0) {
+  if (libav().avformat_alloc_output_context2(&output, nullptr, "mp4", address.c_str()) < 0) {
     throw std::bad_alloc();
   }
   output_.reset(output);
   output_->flags |= AVFMT_FLAG_BITEXACT;
-  if (const int result = avio_open(&output_->pb, address.c_str(), AVIO_FLAG_WRITE); result < 0) {
+  if (const int result = libav().avio_open(&output_->pb, address.c_str(), AVIO_FLAG_WRITE);
+      result < 0) {
     fail(libav_message(result));
   }
 }
@@ -40,8 +42,8 @@ void Mp4Muxer::fail(const std::string& problem) const {
 }
 
 int Mp4Muxer::add_stream(const AVCodecParameters& parameters, AVRational time_unit) {
-  AVStream* stream = avformat_new_stream(output_.get(), nullptr);
-  if (stream == nullptr || avcodec_parameters_copy(stream->codecpar, &parameters) < 0) {
+  AVStream* stream = libav().avformat_new_stream(output_.get(), nullptr);
+  if (stream == nullptr || libav().avcodec_parameters_copy(stream->codecpar, &parameters) < 0) {
     throw std::bad_alloc();
   }
   stream->codecpar->codec_tag = 0;  // the one of another container may mean nothing here
@@ -52,7 +54,7 @@ int Mp4Muxer::add_stream(const AVCodecParameters& parameters, AVRational time_un
 void Mp4Muxer::begin() {
   AVDictionary* options = nullptr;
   av_dict_set(&options, "movflags", "+faststart", 0);
-  const int result = avformat_write_header(output_.get(), &options);
+  const int result = libav().avformat_write_header(output_.get(), &options);
   av_dict_free(&options);
   if (result < 0) {
     fail(libav_message(result));
@@ -62,8 +64,8 @@ void Mp4Muxer::begin() {
 void Mp4Muxer::write(AVPacket& packet, int stream, AVRational time_unit) {
   packet.stream_index = stream;
   packet.pos = -1;
-  av_packet_rescale_ts(&packet, time_unit, output_->streams[stream]->time_base);
-  int result = av_interleaved_write_frame(output_.get(), &packet);
+  libav().av_packet_rescale_ts(&packet, time_unit, output_->streams[stream]->time_base);
+  int result = libav().av_interleaved_write_frame(output_.get(), &packet);
   if (result >= 0) {
     result = output_->pb->error;
   }
@@ -73,8 +75,8 @@ void Mp4Muxer::write(AVPacket& packet, int stream, AVRational time_unit) {
 }
 
 void Mp4Muxer::finish(int frames) {
-  int result = av_write_trailer(output_.get());
-  const int closed = avio_closep(&output_->pb);
+  int result = libav().av_write_trailer(output_.get());
+  const int closed = libav().avio_closep(&output_->pb);
   if (result >= 0) {
     result = closed;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/io/libav_functions.h"
 
 extern "C" {
 #include <libavformat/avformat.h>
@@ -37,19 +38,20 @@ SoundInput::SoundInput(const SoundTrack& track)
   const double run_up = begin_seconds_ - kRunUpSeconds;
   if (run_up > start_seconds(stream_)) {
     // Where seeking fails the file is read from its beginning.
-    av_seek_frame(input_.get(), stream_->index, std::llround(run_up / av_q2d(stream_->time_base)),
-                  AVSEEK_FLAG_BACKWARD);
+    libav().av_seek_frame(input_.get(), stream_->index,
+                          std::llround(run_up / av_q2d(stream_->time_base)), AVSEEK_FLAG_BACKWARD);
   }
 }
 
 bool SoundInput::read(AVPacket& packet) {
   for (;;) {
-    const int result = av_read_frame(input_.get(), &packet);
+    const int result = libav().av_read_frame(input_.get(), &packet);
     if (result == AVERROR_EOF) {
       return false;
     }
-    if (result >= 0 && (packet.flags & AV_PKT_FLAG_CORRUPT) != 0 && avio_feof(input_->pb) != 0) {
-      av_packet_unref(&packet);
+    if (result >= 0 && (packet.flags & AV_PKT_FLAG_CORRUPT) != 0 &&
+        libav().avio_feof(input_->pb) != 0) {
+      libav().av_packet_unref(&packet);
       return false;
     }
     if (result < 0) {
@@ -62,10 +64,10 @@ bool SoundInput::read(AVPacket& packet) {
       if (seconds(packet.pts) < length_seconds_) {
         return true;
       }
-      av_packet_unref(&packet);
+      libav().av_packet_unref(&packet);
       return false;
     }
-    av_packet_unref(&packet);
+    libav().av_packet_unref(&packet);
   }
 }
 

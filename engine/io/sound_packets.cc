@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "engine/io/encoded_sound.h"
+#include "engine/io/libav_functions.h"
 #include "engine/io/sound_input.h"
 
 extern "C" {
@@ -30,7 +31,7 @@ class CopiedSound : public SoundPackets {
         packet.dts = packet.pts;
         return true;
       }
-      av_packet_unref(&packet);
+      libav().av_packet_unref(&packet);
     }
     return false;
   }

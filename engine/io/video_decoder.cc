@@ -7,6 +7,7 @@
 
 #include "engine/error.h"
 #include "engine/io/file_bytes.h"
+#include "engine/io/libav_functions.h"
 #include "engine/io/photograph_io.h"
 #include "scheduler/trace.h"
 
@@ -37,16 +38,16 @@ bool can_decode_frames_at_once(AVCodecID codec) {
 }
 
 LibavCodec open_decoder(const AVStream& stream, int threads, const std::string& name) {
-  const AVCodec* decoder = avcodec_find_decoder(stream.codecpar->codec_id);
+  const AVCodec* decoder = libav().avcodec_find_decoder(stream.codecpar->codec_id);
   if (decoder == nullptr) {
     throw Error(fmt::format("{}: is coded as {}, which cannot be decoded here", name,
-                            avcodec_get_name(stream.codecpar->codec_id)));
+                            libav().avcodec_get_name(stream.codecpar->codec_id)));
   }
-  LibavCodec codec(avcodec_alloc_context3(decoder));
+  LibavCodec codec(libav().avcodec_alloc_context3(decoder));
   if (codec == nullptr) {
     throw std::bad_alloc();
   }
-  int result = avcodec_parameters_to_context(codec.get(), stream.codecpar);
+  int result = libav().avcodec_parameters_to_context(codec.get(), stream.codecpar);
   codec->pkt_timebase = stream.time_base;
   codec->thread_count = threads;
   codec->thread_type =
@@ -54,7 +55,7 @@ LibavCodec open_decoder(const AVStream& stream, int threads, const std::string& 
   codec->err_recognition = AV_EF_EXPLODE;
   codec->max_pixels = kMaxImagePixels;
   if (result >= 0) {
-    result = avcodec_open2(codec.get(), decoder, nullptr);
+    result = libav().avcodec_open2(codec.get(), decoder, nullptr);
   }
   if (result < 0) {
     throw Error(fmt::format("{}: its {} video cannot be decoded ({})", name, decoder->name,
@@ -88,8 +89,8 @@ VideoDecoder::VideoDecoder(const std::filesystem::path& path, int threads)
 
 void VideoDecoder::read_packet() {
   do {
-    av_packet_unref(packet_.get());
-    read_result_ = av_read_frame(input_.get(), packet_.get());
+    libav().av_packet_unref(packet_.get());
+    read_result_ = libav().av_read_frame(input_.get(), packet_.get());
   } while (read_result_ >= 0 && packet_->stream_index != stream_->index);
   packet_is_cut_off_ = read_result_ >= 0 && cut_->is_cut_off(*packet_);
 }
@@ -101,8 +102,8 @@ bool VideoDecoder::begin_at(const PossibleStart& start) {
   // Some containers look for when packets are shown, which is later by what packets before say.
   std::int64_t lag = 0;
   for (int tries = 0; tries < 3; ++tries) {
-    if (av_seek_frame(input_.get(), stream_->index, start.time + tries * lag,
-                      AVSEEK_FLAG_BACKWARD) < 0) {
+    if (libav().av_seek_frame(input_.get(), stream_->index, start.time + tries * lag,
+                              AVSEEK_FLAG_BACKWARD) < 0) {
       return false;
     }
     read_packet();
@@ -124,7 +125,7 @@ VideoDecoder::Step VideoDecoder::next() {
                                                  ? scheduler::SpanKind::kWait
                                                  : scheduler::SpanKind::kWork);
   for (;;) {
-    const int result = avcodec_receive_frame(codec_.get(), frame_.get());
+    const int result = libav().avcodec_receive_frame(codec_.get(), frame_.get());
     if (result >= 0) {
       return check_frame();
     }
@@ -152,7 +153,7 @@ VideoDecoder::Step VideoDecoder::check_frame() {
 
 void VideoDecoder::feed() {
   if (read_result_ == AVERROR_EOF) {
-    avcodec_send_packet(codec_.get(), nullptr);
+    libav().avcodec_send_packet(codec_.get(), nullptr);
     return;
   }
   if (read_result_ < 0) {
@@ -164,10 +165,11 @@ void VideoDecoder::feed() {
     packet_time_ = packet_->pts != AV_NOPTS_VALUE ? packet_->pts : packet_->dts;
     codec_->err_recognition = cut_->misses_frames() ? 0 : AV_EF_EXPLODE;
     if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) {
-      const bool at_end = avio_feof(input_->pb) != 0;
+      const bool at_end = libav().avio_feof(input_->pb) != 0;
       stop_feeding(at_end ? "the file ends in the middle of it" : "the file is damaged there",
                    packet_time_, FoundBy::kFile);
-    } else if (const int sent = avcodec_send_packet(codec_.get(), packet_.get()); sent < 0) {
+    } else if (const int sent = libav().avcodec_send_packet(codec_.get(), packet_.get());
+               sent < 0) {
       stop_feeding(libav_message(sent), packet_time_, FoundBy::kDecoder);
     }
   }
@@ -185,7 +187,7 @@ bool VideoDecoder::stop_feeding(const std::string& problem, std::int64_t damaged
   }
   problem_ = problem;
   damaged_time_ = is_exact ? damaged_time : AV_NOPTS_VALUE;
-  avcodec_send_packet(codec_.get(), nullptr);
+  libav().avcodec_send_packet(codec_.get(), nullptr);
   return true;
 }
 

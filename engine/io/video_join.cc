@@ -10,6 +10,7 @@
 
 #include "engine/error.h"
 #include "engine/io/libav.h"
+#include "engine/io/libav_functions.h"
 #include "engine/io/mp4_muxer.h"
 #include "engine/io/sound_packets.h"
 #include "engine/io/video_structure.h"
@@ -42,10 +43,10 @@ class Segment {
 
   /// Reads the next packet; its pts becomes the number of its frame. False after the last one.
   bool read(AVPacket& packet) {
-    int result = av_read_frame(input_.get(), &packet);
+    int result = libav().av_read_frame(input_.get(), &packet);
     while (result >= 0 && packet.stream_index != stream_->index) {
-      av_packet_unref(&packet);
-      result = av_read_frame(input_.get(), &packet);
+      libav().av_packet_unref(&packet);
+      result = libav().av_read_frame(input_.get(), &packet);
     }
     if (result == AVERROR_EOF) {
       return false;
@@ -108,7 +109,7 @@ JoinPlan plan_join(std::span<const fs::path> paths, AVRational frame_unit) {
       const auto lead = static_cast<std::int64_t>(shown.size()) - packet->pts;
       plan.decoding_lead = std::max(plan.decoding_lead, static_cast<int>(lead));
       shown.push_back(packet->pts);
-      av_packet_unref(packet.get());
+      libav().av_packet_unref(packet.get());
     }
     std::sort(shown.begin(), shown.end());
     for (std::size_t i = 0; i < shown.size(); ++i) {

@@ -12,6 +12,7 @@
 #include "engine/error.h"
 #include "engine/io/cut_video.h"
 #include "engine/io/libav.h"
+#include "engine/io/libav_functions.h"
 #include "engine/io/video_structure.h"
 
 extern "C" {
@@ -37,13 +38,13 @@ struct PacketTimes {
 
 bool has_whole_index(const AVFormatContext& input, const AVStream& stream) {
   return std::string_view(input.iformat->name).find("mp4") != std::string_view::npos &&
-         stream.nb_frames > 0 && avformat_index_get_entries_count(&stream) > 0;
+         stream.nb_frames > 0 && libav().avformat_index_get_entries_count(&stream) > 0;
 }
 
 PacketTimes read_index(AVStream& stream, std::uint64_t file_bytes) {
   PacketTimes result;
-  for (int i = 0; i < avformat_index_get_entries_count(&stream); ++i) {
-    const AVIndexEntry* entry = avformat_index_get_entry(&stream, i);
+  for (int i = 0; i < libav().avformat_index_get_entries_count(&stream); ++i) {
+    const AVIndexEntry* entry = libav().avformat_index_get_entry(&stream, i);
     // An edit list leaves out frames that others need: they are decoded and not shown.
     if ((entry->flags & AVINDEX_DISCARD_FRAME) == 0 && entry->size > 0) {
       result.add(entry->timestamp);
@@ -64,8 +65,8 @@ bool is_interlaced(const AVStream& stream) {
 std::vector<PossibleStart> find_starts(AVStream& stream) {
   std::vector<PossibleStart> starts;
   int frame = 0;
-  for (int i = 0; i < avformat_index_get_entries_count(&stream); ++i) {
-    const AVIndexEntry* entry = avformat_index_get_entry(&stream, i);
+  for (int i = 0; i < libav().avformat_index_get_entries_count(&stream); ++i) {
+    const AVIndexEntry* entry = libav().avformat_index_get_entry(&stream, i);
     if ((entry->flags & AVINDEX_DISCARD_FRAME) != 0 || entry->size == 0) {
       continue;
     }
@@ -106,7 +107,7 @@ PacketTimes read_packets(const std::filesystem::path& path, int stream_index, bo
   std::int64_t last_decoded = AV_NOPTS_VALUE;
   std::int64_t frames_end = std::numeric_limits<std::int64_t>::max();
   PacketTimes result;
-  while (av_read_frame(input.get(), packet.get()) >= 0) {
+  while (libav().av_read_frame(input.get(), packet.get()) >= 0) {
     const bool is_torn = !is_whole && (packet->flags & AV_PKT_FLAG_CORRUPT) != 0;
     if (packet->stream_index == stream_index && !is_torn && !cut.is_cut_off(*packet) &&
         shows_a_frame(*packet, codec)) {
@@ -118,7 +119,7 @@ PacketTimes read_packets(const std::filesystem::path& path, int stream_index, bo
       last_decoded = packet->dts;
       frames_end = packet->pos + packet->size;
     }
-    av_packet_unref(packet.get());
+    libav().av_packet_unref(packet.get());
   }
   if (!is_whole || is_cut_raw_video(*input, frames_end, std::filesystem::file_size(path))) {
     result.cut_time = last_decoded == AV_NOPTS_VALUE ? last_decoded : last_decoded + 1;

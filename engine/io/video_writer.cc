@@ -6,6 +6,7 @@
 
 #include "engine/error.h"
 #include "engine/io/file_bytes.h"
+#include "engine/io/libav_functions.h"
 #include "engine/io/mp4_muxer.h"
 #include "engine/io/photograph_to_frame.h"
 #include "engine/io/video_io.h"
@@ -85,13 +86,14 @@ struct VideoWriter::State {
         conversion(std::in_place, frame_width, frame_height),
         file(path) {
     open_encoder(encoding);
-    AVCodecParameters* parameters = avcodec_parameters_alloc();
-    if (parameters == nullptr || avcodec_parameters_from_context(parameters, encoder.get()) < 0) {
-      avcodec_parameters_free(&parameters);
+    AVCodecParameters* parameters = libav().avcodec_parameters_alloc();
+    if (parameters == nullptr ||
+        libav().avcodec_parameters_from_context(parameters, encoder.get()) < 0) {
+      libav().avcodec_parameters_free(&parameters);
       throw std::bad_alloc();
     }
     file.add_stream(*parameters, time_unit);
-    avcodec_parameters_free(&parameters);
+    libav().avcodec_parameters_free(&parameters);
     file.begin();
   }
 
@@ -101,11 +103,11 @@ struct VideoWriter::State {
 };
 
 void VideoWriter::State::open_encoder(const VideoEncoding& encoding) {
-  const AVCodec* codec = avcodec_find_encoder_by_name("libx264");
+  const AVCodec* codec = libav().avcodec_find_encoder_by_name("libx264");
   if (codec == nullptr) {
     file.fail("FFmpeg was built without the H.264 encoder libx264");
   }
-  encoder.reset(avcodec_alloc_context3(codec));
+  encoder.reset(libav().avcodec_alloc_context3(codec));
   if (encoder == nullptr) {
     throw std::bad_alloc();
   }
@@ -122,16 +124,16 @@ void VideoWriter::State::open_encoder(const VideoEncoding& encoding) {
   encoder->thread_count = 1;
   encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER | AV_CODEC_FLAG_CLOSED_GOP | AV_CODEC_FLAG_BITEXACT;
   EncoderOptions options(encoding.crf);
-  if (const int result = avcodec_open2(encoder.get(), codec, options.get()); result < 0) {
+  if (const int result = libav().avcodec_open2(encoder.get(), codec, options.get()); result < 0) {
     file.fail(fmt::format("no H.264 encoder for {}x{} pixels and {} frames per second ({})", width,
                           height, to_string(encoding.rate), libav_message(result)));
   }
 }
 
 void VideoWriter::State::encode(const AVFrame* frame) {
-  int result = avcodec_send_frame(encoder.get(), frame);
+  int result = libav().avcodec_send_frame(encoder.get(), frame);
   while (result >= 0) {
-    result = avcodec_receive_packet(encoder.get(), packet.get());
+    result = libav().avcodec_receive_packet(encoder.get(), packet.get());
     if (result >= 0) {
       packet->duration = 1;
       file.write(*packet, 0, time_unit);

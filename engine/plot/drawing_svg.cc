@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <string_view>
@@ -11,6 +10,7 @@
 #include "engine/error.h"
 #include "engine/io/base64.h"
 #include "engine/io/markup_text.h"
+#include "engine/io/opencv_codecs.h"
 #include "engine/io/opencv_setup.h"
 #include "engine/plot/drawing.h"
 
@@ -31,7 +31,7 @@ std::string png_of(const Image<std::uint8_t>& rgb) {
                        rgb.view().stride()),
                bgr, cv::COLOR_RGB2BGR);
   std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", bgr, bytes)) {
+  if (!encode_by_opencv(".png", bgr, bytes)) {
     throw Error("a picture of a drawing cannot be encoded as PNG");
   }
   return encode_base64(bytes);

@@ -13,6 +13,7 @@
 #include "engine/error.h"
 #include "engine/image/grey_levels.h"
 #include "engine/io/opencv_setup.h"
+#include "engine/late_library.h"
 
 namespace vantage {
 namespace {
@@ -23,6 +24,18 @@ constexpr int kCellsAlongSide = 12;
 constexpr float kRatio = 0.7F;
 constexpr int kRefinementWindow_px = 15;
 constexpr float kMostRefinement_px = 2;
+
+/// cv::calcOpticalFlowPyrLK(). Its library, which brings neural networks along, is opened by the
+/// first call. Throws Error when it cannot be opened.
+decltype(&cv::calcOpticalFlowPyrLK) optical_flow() {
+  static const LateLibrary library(VANTAGE_TRACKING_LIBRARY,
+                                   "cannot refine points that images share");
+  // What the Itanium C++ ABI makes of the declaration whose type is above.
+  static const auto function = library.function<decltype(&cv::calcOpticalFlowPyrLK)>(
+      "_ZN2cv20calcOpticalFlowPyrLKERKNS_11_InputArrayES2_S2_RKNS_17_InputOutputArrayERKNS_12_"
+      "OutputArrayES8_NS_5Size_IiEEiNS_12TermCriteriaEid");
+  return function;
+}
 
 /// A photograph as features are looked for in it.
 struct SearchImage {
@@ -202,11 +215,11 @@ std::vector<PointMatch> match_features(const Photograph& left, const Photograph&
   std::vector<cv::Point2f> refined = right_points;
   std::vector<std::uint8_t> found;
   std::vector<float> unused_errors;
-  cv::calcOpticalFlowPyrLK(
-      left_image.contrast, right_image.contrast, left_points, refined, found, unused_errors,
-      cv::Size(kRefinementWindow_px, kRefinementWindow_px), 0,
-      cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 1e-3),
-      cv::OPTFLOW_USE_INITIAL_FLOW);
+  constexpr double kLeastEigenvalue = 1e-4;  // OpenCV's own
+  optical_flow()(left_image.contrast, right_image.contrast, left_points, refined, found,
+                 unused_errors, cv::Size(kRefinementWindow_px, kRefinementWindow_px), 0,
+                 cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 1e-3),
+                 cv::OPTFLOW_USE_INITIAL_FLOW, kLeastEigenvalue);
 
   std::vector<PointMatch> matches;
   for (std::size_t i = 0; i < mutual.size(); ++i) {

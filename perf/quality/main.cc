@@ -18,6 +18,7 @@
 #include "apps/setting_value.h"
 #include "engine/error.h"
 #include "perf/command_line.h"
+#include "perf/default_paths.h"
 #include "perf/quality/map_contender.h"
 #include "perf/quality/results.h"
 #include "perf/quality/sgbm_search.h"

@@ -1,0 +1,40 @@
+#include "engine/late_library.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "engine/error.h"
+
+namespace vantage {
+namespace {
+
+/// Why the last call of a function of dlfcn.h in this thread failed.
+std::string last_failure() {
+  const char* reason = ::dlerror();
+  return reason == nullptr ? "no reason given" : reason;
+}
+
+}  // namespace
+
+LateLibrary::LateLibrary(std::string file_name, std::string_view without_it)
+    : file_name_(std::move(file_name)),
+      without_it_(without_it),
+      handle_(::dlopen(file_name_.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+  if (handle_ == nullptr) {
+    throw Error(fmt::format("{}: the library {} cannot be opened ({})", without_it_, file_name_,
+                            last_failure()));
+  }
+}
+
+void* LateLibrary::address(const char* name) const {
+  void* found = ::dlsym(handle_, name);
+  if (found == nullptr) {
+    throw Error(fmt::format("{}: the library {} lacks a function ({})", without_it_, file_name_,
+                            last_failure()));
+  }
+  return found;
+}
+
+}  // namespace vantage

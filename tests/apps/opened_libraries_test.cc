@@ -1,0 +1,86 @@
+// Which shared libraries commands open: those that take long only where they are needed.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/apps/pair_fixture.h"
+#include "tests/apps/vantage_process.h"
+
+namespace vantage {
+namespace opened_libraries_test {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::Each;
+using testing::Not;
+using testing::StartsWith;
+
+class OpenedLibraries : public PairTest {
+ protected:
+  /// Names of the files that the dynamic linker initialises while the program runs with these
+  /// arguments, as it tells itself.
+  [[nodiscard]] std::set<std::string> opened_by(const std::vector<std::string>& arguments) const {
+    const TemporaryFolder log;
+    const ProcessResult result =
+        run_vantage(arguments, {"LD_DEBUG=libs", "LD_DEBUG_OUTPUT=" + log / "linker"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    std::set<std::string> names;
+    for (const fs::directory_entry& file : fs::directory_iterator(log.path())) {
+      std::istringstream lines(read_file(file.path()));
+      for (std::string line; std::getline(lines, line);) {
+        const std::string what = "calling init: ";
+        if (const std::size_t at = line.find(what); at != std::string::npos) {
+          names.insert(fs::path(line.substr(at + what.size())).filename().string());
+        }
+      }
+    }
+    EXPECT_THAT(names, Contains(StartsWith("libopencv_core.so")));  // so it is told
+    return names;
+  }
+
+  /// Success when `names` has none of those that take long.
+  static void expect_only_quick_ones(const std::set<std::string>& names) {
+    for (const char* slow : {"libavformat.so", "libavcodec.so", "libopencv_imgcodecs.so",
+                             "libopencv_video.so", "libopencv_dnn.so", "libgdal.so"}) {
+      EXPECT_THAT(names, Each(Not(StartsWith(slow))));
+    }
+  }
+};
+
+TEST_F(OpenedLibraries, NoneThatTakeLongForTheVersion) {
+  expect_only_quick_ones(opened_by({"--version"}));
+}
+
+TEST_F(OpenedLibraries, NoneThatTakeLongForWhatIsKnownOfTheMachine) {
+  expect_only_quick_ones(opened_by({"info"}));
+}
+
+TEST_F(OpenedLibraries, NoneThatTakeLongForMapsOfUsualPng) {
+  expect_only_quick_ones(
+      opened_by({"match", left_, right_, "-o", folder_ / "map.pfm", "--disparities=0:9"}));
+}
+
+TEST_F(OpenedLibraries, ImageCodecsButNoVideoCodecsForJpeg) {
+  const std::string jpeg = folder_ / "left.jpg";
+  write_photograph(jpeg, pair_.left);
+  const std::set<std::string> names =
+      opened_by({"match", jpeg, right_, "-o", folder_ / "map.pfm", "--disparities=0:9"});
+  EXPECT_THAT(names, Contains(StartsWith("libopencv_imgcodecs.so")));
+  EXPECT_THAT(names, Each(Not(StartsWith("libavcodec.so"))));
+}
+
+TEST_F(OpenedLibraries, VideoCodecsButNoImageCodecsForVideos) {
+  const std::set<std::string> names = opened_by(
+      {"synth", left_, right_, "--disparities=0:9", "--sweep=0:1:3", "-o", folder_ / "sweep.mp4"});
+  EXPECT_THAT(names, Contains(StartsWith("libavcodec.so")));
+  EXPECT_THAT(names, Each(Not(StartsWith("libopencv_imgcodecs.so"))));
+}
+
+}  // namespace opened_libraries_test
+}  // namespace vantage
