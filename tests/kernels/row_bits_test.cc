@@ -76,7 +76,7 @@ TEST_P(RowBits, ZeroIsNothingElse) {
     UnalignedRow<std::uint8_t> values(static_cast<std::size_t>(width), 5);
     std::vector<bool> is_zero;
     for (std::size_t x = 0; x < values.size(); ++x) {
-      values[x] = random() % 2 == 0 ? 0 : static_cast<std::uint8_t>(1U << (random() % 8));
+      values[x] = static_cast<std::uint8_t>(random() % 2 == 0 ? 0 : 1U << (random() % 8));
       is_zero.push_back(values[x] == 0);
     }
     ASSERT_EQ(written(
