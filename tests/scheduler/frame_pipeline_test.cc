@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "tests/scheduler/executor_cases.h"
+#include "tests/test_sample.h"
 
 namespace vantage::scheduler {
 namespace frame_pipeline_test {
@@ -185,17 +187,25 @@ std::vector<int> first_frames(int count) {
 
 constexpr int kInFlight[] = {1, 2, 5};
 
-class FramePipeline : public testing::TestWithParam<ExecutorCase> {
+/// Failures of two frames: executor; both steps; distance of the frames; in flight.
+const std::vector<vantage::test::SampleRow>& failure_rows() {
+  static const auto rows = vantage::test::sampled_rows(
+      {static_cast<int>(executor_cases().size()), 25, 4, static_cast<int>(std::size(kInFlight))});
+  return rows;
+}
+
+class FramePipeline : public testing::TestWithParam<int> {
  protected:
   [[nodiscard]] Executor& executor() { return *executor_; }
 
   /// The frame that fails first in the order of frames must be the one that ends the run.
-  void expect_first_failure(int frames, const std::vector<Failure>& failures) {
+  void expect_first_failure(int frames, const std::vector<Failure>& failures,
+                            std::span<const int> all_in_flight = kInFlight) {
     const Failure first =
         *std::min_element(failures.begin(), failures.end(), [](const Failure& a, const Failure& b) {
           return std::pair(a.frame, a.step) < std::pair(b.frame, b.step);
         });
-    for (const int in_flight : kInFlight) {
+    for (const int in_flight : all_in_flight) {
       Sequence sequence(executor(), frames, in_flight, failures);
       try {
         sequence.run();
@@ -210,10 +220,14 @@ class FramePipeline : public testing::TestWithParam<ExecutorCase> {
   }
 
  private:
-  std::unique_ptr<Executor> executor_ = GetParam().make();
+  std::unique_ptr<Executor> executor_ =
+      executor_cases()[static_cast<std::size_t>(GetParam())].make();
 };
-INSTANTIATE_TEST_SUITE_P(Kinds, FramePipeline, testing::ValuesIn(executor_cases()),
-                         executor_test_name);
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, FramePipeline, testing::Range(0, static_cast<int>(executor_cases().size())),
+    [](const auto& test) {
+      return executor_test_name({executor_cases()[static_cast<std::size_t>(test.param)], 0});
+    });
 
 TEST_P(FramePipeline, WritesAllFramesInOrder) {
   for (const int in_flight : kInFlight) {
@@ -229,21 +243,27 @@ TEST_P(FramePipeline, WritesAllFramesInOrder) {
 }
 
 TEST_P(FramePipeline, AnyFailingStepEndsTheRunAtItsFrame) {
-  for (const Step step : kSteps) {
-    for (const int frame : {0, 1, 4, 11}) {
-      expect_first_failure(12, {{frame, step}});
-    }
+  SCOPED_TRACE(vantage::test::sample_name());
+  constexpr int kFrames[] = {0, 1, 4, 11};
+  static const auto rows =
+      vantage::test::sampled_rows({static_cast<int>(executor_cases().size()), 5, 4, 3});
+  for (const auto& row : vantage::test::rows_of(rows, GetParam())) {
+    expect_first_failure(12, {{kFrames[row[2]], kSteps[row[1]]}}, {&kInFlight[row[3]], 1});
   }
 }
 
 TEST_P(FramePipeline, FirstFailingFrameWinsWhateverStepsFail) {
-  for (const Step first : kSteps) {
-    for (const Step second : kSteps) {
-      for (const int distance : {1, 2, 4}) {
-        expect_first_failure(12, {{3 + distance, second}, {3, first}});
-      }
+  SCOPED_TRACE(vantage::test::sample_name());
+  for (const auto& row : vantage::test::rows_of(failure_rows(), GetParam())) {
+    const Step first = kSteps[row[1] / 5];
+    const Step second = kSteps[row[1] % 5];
+    const std::span<const int> in_flight(&kInFlight[row[3]], 1);
+    if (row[2] == 3) {
       // A frame that is computed for long fails behind one that fails at once.
-      expect_first_failure(12, {{0, Step::kCompute}, {1, first}, {2, second}});
+      expect_first_failure(12, {{0, Step::kCompute}, {1, first}, {2, second}}, in_flight);
+    } else {
+      const int distance = 1 << row[2];
+      expect_first_failure(12, {{3 + distance, second}, {3, first}}, in_flight);
     }
   }
 }

@@ -3,57 +3,50 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstring>
+#include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/scheduler/executor_cases.h"
 #include "tests/scheduler/test_chains.h"
 #include "tests/scheduler/test_stages.h"
+#include "tests/test_sample.h"
 
 namespace vantage::scheduler {
 namespace strip_pipeline_test {
 
+using vantage::test::all_rows;
+using vantage::test::rows_of;
+using vantage::test::sample_name;
+using vantage::test::sampled_rows;
+using vantage::test::SampleRow;
+
 constexpr int kAll = 1 << 20;
 
-/// How one run cuts the image and the chain.
+/// How one run cuts the image and the chain. What is not set the cost model chooses.
 struct Cut {
-  int strip_columns;
-  int band_rows;
-  std::vector<int> pass_ends;
+  std::optional<int> strip_columns;
+  std::optional<int> band_rows;
+  std::optional<std::vector<int>> pass_ends;
 };
 
-std::vector<Cut> cuts_of(const TestChain& chain) {
-  std::vector<std::vector<int>> splits = {{}};
-  if (chain.size() > 2) {
-    splits.push_back({chain.size() / 2});
-  }
-  std::vector<int> every;
-  for (int stage = 1; stage < chain.size(); ++stage) {
-    every.push_back(stage);
-  }
-  splits.push_back(every);
-  std::vector<Cut> cuts;
-  for (const std::vector<int>& split : splits) {
-    for (const int strip_columns : {1, 2, 7, 16, kAll}) {
-      for (const int band_rows : {1, 3, kAll}) {
-        cuts.push_back({strip_columns, band_rows, split});
-      }
-    }
-  }
-  return cuts;
-}
-
-ChainPlan plan_of(const TestChain& chain, const Cut& cut) {
+ChainPlan plan_of(const TestChain& chain, const Cut& cut, int threads = 1) {
   PlanRequest request;
+  request.threads = threads;
   request.strip_columns = cut.strip_columns;
   request.band_rows = cut.band_rows;
   request.pass_ends = cut.pass_ends;
   return plan_chain(chain.stages(), Machine{}, request);
 }
+
+const std::vector<int> kOnePass;
 
 /// Leaves memory in the pool that is not what a stage may hope for.
 void spoil(ScratchPool& pool, std::size_t bytes) {
@@ -80,73 +73,116 @@ std::vector<std::byte> strip_result(const TestChain& chain, const ChainPlan& pla
 }
 
 std::string describe(Extent extent, const Cut& cut, const Executor& executor) {
+  const auto text = [](std::optional<int> value) {
+    return value ? std::to_string(*value) : "chosen size";
+  };
   return std::to_string(extent.columns) + "x" + std::to_string(extent.rows) + ", strips of " +
-         std::to_string(cut.strip_columns) + ", bands of " + std::to_string(cut.band_rows) + ", " +
-         std::to_string(cut.pass_ends.size() + 1) + " passes, " + std::string(executor.name()) +
-         " with " + std::to_string(executor.thread_count()) + " threads";
+         text(cut.strip_columns) + ", bands of " + text(cut.band_rows) +
+         ", passes: " + (cut.pass_ends ? std::to_string(cut.pass_ends->size() + 1) : "chosen") +
+         ", " + std::string(executor.name()) + " with " + std::to_string(executor.thread_count()) +
+         " threads, " + sample_name();
 }
 
-class StripPipeline : public testing::TestWithParam<ChainCase> {};
-INSTANTIATE_TEST_SUITE_P(Chains, StripPipeline,
-                         testing::Values(kHashed, kDiffusion, kBoxes, kRunning, kAnchored, kScales,
-                                         kSourceNext, kSourceTwice, kSourceEachTime,
-                                         kSourceAfterSmoothing, kSourceAnchored),
-                         [](const auto& test) { return test.param.name; });
+const std::vector<ChainCase> kChains = {
+    kHashed,        kDiffusion,  kBoxes,       kRunning,        kAnchored,
+    kScales,        kSourceNext, kSourceTwice, kSourceEachTime, kSourceAfterSmoothing,
+    kSourceAnchored};
 
-TEST_P(StripPipeline, EqualsTheWholeImageBitForBit) {
-  std::vector<std::unique_ptr<Executor>> executors;
-  for (const ExecutorCase& executor_case : executor_cases()) {
-    executors.push_back(executor_case.make());
+// Dimensions of the sample of ways to cut chains and to run them.
+constexpr Extent kExtents[] = {{1, 1}, {1, 7}, {7, 1}, {13, 11}, {64, 3}, {29, 23}, {97, 61}};
+constexpr std::optional<int> kStrips[] = {1, 2, 7, 16, kAll, std::nullopt};
+constexpr std::optional<int> kBands[] = {1, 3, 6, kAll, std::nullopt};
+constexpr int kSplits = 5;
+
+/// Nowhere, half way, behind every stage, before the last, where the cost model wants it.
+std::optional<std::vector<int>> split_of(const TestChain& chain, int split) {
+  std::vector<int> every;
+  for (int stage = 1; stage < chain.size(); ++stage) {
+    every.push_back(stage);
   }
-  // More cells than this (halo cells counted) are left to smaller images.
-  constexpr double kMostCells = 3e5;
-  std::size_t turn = 0;
-  for (const Extent extent : kSizes) {
-    TestChain chain(extent);
-    GetParam().build(chain);
-    chain.finish();
-    const std::vector<std::byte> expected = whole_image_result(chain);
-    int cuts_run = 0;
-    for (const Cut& cut : cuts_of(chain)) {
-      const ChainPlan plan = plan_of(chain, cut);
+  switch (split) {
+    case 0:
+      return std::vector<int>{};
+    case 1:
+      return std::vector<int>{std::max(1, chain.size() / 2)};
+    case 2:
+      return every;
+    case 3:
+      return std::vector<int>{chain.size() - 1};
+    default:
+      return std::nullopt;
+  }
+}
+
+/// A row of the sample: chain; strip and band together, as it is their corners that halos and
+/// starting rows meet in; extent; split; executor.
+class CutSample {
+ public:
+  static const std::vector<SampleRow>& rows() {
+    static const std::vector<SampleRow> rows = CutSample().draw();
+    return rows;
+  }
+  static Cut cut_of(const TestChain& chain, const SampleRow& row) {
+    const auto size = static_cast<int>(std::size(kBands));
+    return {kStrips[row[1] / size], kBands[row[1] % size], split_of(chain, row[3])};
+  }
+
+ private:
+  std::vector<SampleRow> draw() {
+    return sampled_rows(
+        {static_cast<int>(kChains.size()), static_cast<int>(std::size(kStrips) * std::size(kBands)),
+         static_cast<int>(std::size(kExtents)), kSplits, static_cast<int>(executor_cases().size())},
+        [this](const SampleRow& row) { return is_cheap(row); });
+  }
+  /// Many cells (halo cells counted) are left to smaller images.
+  bool is_cheap(const SampleRow& row) {
+    constexpr double kMostCells = 1e5;
+    const Extent extent = kExtents[row[2]];
+    auto [known, is_new] = known_.try_emplace({row[0], row[1], row[2], row[3]}, false);
+    if (is_new) {
+      TestChain chain(extent);
+      kChains[static_cast<std::size_t>(row[0])].build(chain);
+      chain.finish();
       double cells = 0;
-      for (const PassPlan& pass : plan.passes) {
+      for (const PassPlan& pass : plan_of(chain, cut_of(chain, row)).passes) {
         cells +=
             pass.work_ratio * (pass.end_stage - pass.first_stage) * extent.columns * extent.rows;
       }
-      if (cells > kMostCells) {
-        continue;
-      }
-      ++cuts_run;
-      // Small images with every executor, large ones with one after the other.
-      const bool small = extent.columns * extent.rows < 50;
-      for (std::size_t k = 0; k < (small ? executors.size() : 1); ++k) {
-        Executor& executor = *executors[turn++ % executors.size()];
-        ASSERT_TRUE(strip_result(chain, plan, executor) == expected)
-            << describe(extent, cut, executor);
-      }
+      known->second = cells <= kMostCells;
     }
-    EXPECT_GE(cuts_run, 15) << extent.columns << "x" << extent.rows;
+    return known->second;
   }
-}
+  std::map<std::array<int, 4>, bool> known_;
+};
 
-TEST_P(StripPipeline, EqualsTheWholeImageOnEveryExecutor) {
-  const Extent extent{29, 23};
-  TestChain chain(extent);
-  GetParam().build(chain);
-  chain.finish();
-  const std::vector<std::byte> expected = whole_image_result(chain);
-  for (const ExecutorCase& executor_case : executor_cases()) {
-    const auto executor = executor_case.make();
-    for (const Cut& cut : {Cut{4, 5, {}}, Cut{7, 6, {chain.size() - 1}}}) {
-      ASSERT_TRUE(strip_result(chain, plan_of(chain, cut), *executor) == expected)
-          << describe(extent, cut, *executor);
+class StripPipeline : public testing::TestWithParam<int> {
+ protected:
+  static void build(TestChain& chain) {
+    kChains[static_cast<std::size_t>(GetParam())].build(chain);
+    chain.finish();
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Chains, StripPipeline, testing::Range(0, static_cast<int>(kChains.size())),
+                         [](const auto& test) {
+                           return kChains[static_cast<std::size_t>(test.param)].name;
+                         });
+
+TEST_P(StripPipeline, EqualsTheWholeImageBitForBit) {
+  const std::vector<ExecutorCase> executors = executor_cases();
+  std::map<int, std::pair<std::unique_ptr<TestChain>, std::vector<std::byte>>> chains;
+  for (const SampleRow& row : rows_of(CutSample::rows(), GetParam())) {
+    auto& [chain, expected] = chains[row[2]];
+    if (chain == nullptr) {
+      chain = std::make_unique<TestChain>(kExtents[row[2]]);
+      build(*chain);
+      expected = whole_image_result(*chain);
     }
-    PlanRequest request;
-    request.threads = executor_case.threads;
-    ASSERT_TRUE(strip_result(chain, plan_chain(chain.stages(), Machine{}, request), *executor) ==
-                expected)
-        << "by the cost model, " << executor_case.name;
+    const Cut cut = CutSample::cut_of(*chain, row);
+    const ExecutorCase& executor_case = executors[static_cast<std::size_t>(row[4])];
+    const auto executor = executor_case.make();
+    const ChainPlan plan = plan_of(*chain, cut, executor_case.threads);
+    ASSERT_TRUE(strip_result(*chain, plan, *executor) == expected)
+        << describe(kExtents[row[2]], cut, *executor);
   }
 }
 
@@ -173,10 +209,9 @@ TEST(StripPipelineSteps, EqualTheWholeImageAsTheCostModelChoosesThem) {
 
 TEST_P(StripPipeline, AllocatesNothingInSteadyState) {
   TestChain chain({40, 20});
-  GetParam().build(chain);
-  chain.finish();
+  build(chain);
   const auto executor = make_executor(ExecutorKind::kSerial, 1);
-  for (const Cut& cut : {Cut{9, 6, {}}, Cut{9, 6, {1}}}) {
+  for (const Cut& cut : {Cut{9, 6, kOnePass}, Cut{9, 6, std::vector<int>{1}}}) {
     const ChainPlan plan = plan_of(chain, cut);
     ScratchPool pool;
     run_strips(chain.stages(), plan, *executor, pool);
@@ -228,33 +263,44 @@ bool fits(const ChainPlan& plan, const PlanRequest& request) {
 }
 
 /// Chains that keep the number of rows: others have whole-image steps.
-class StepsOfFewRows : public testing::TestWithParam<ChainCase> {};
+const std::vector<ChainCase> kStepChains = {kHashed,        kDiffusion,      kBoxes,
+                                            kRunning,       kAnchored,       kSourceNext,
+                                            kSourceTwice,   kSourceEachTime, kSourceAfterSmoothing,
+                                            kSourceAnchored};
+/// Memory for steps, of what whole images take: from hardly too little to far too little.
+constexpr double kParts[] = {0.999, 0.7, 0.4, 0.0};
+
+/// Which chains, splits, strips and parts of the memory are not only planned but run.
+const std::vector<SampleRow>& steps_to_run() {
+  static const std::vector<SampleRow> rows = sampled_rows(
+      {static_cast<int>(kStepChains.size()), 3, 2, static_cast<int>(std::size(kParts))});
+  return rows;
+}
+
+class StepsOfFewRows : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Chains, StepsOfFewRows,
-                         testing::Values(kHashed, kDiffusion, kBoxes, kRunning, kAnchored,
-                                         kSourceNext, kSourceTwice, kSourceEachTime,
-                                         kSourceAfterSmoothing, kSourceAnchored),
-                         [](const auto& test) { return test.param.name; });
+                         testing::Range(0, static_cast<int>(kStepChains.size())),
+                         [](const auto& test) {
+                           return kStepChains[static_cast<std::size_t>(test.param)].name;
+                         });
 
 TEST_P(StepsOfFewRows, EqualTheWholeImageBitForBit) {
-  const Extent extent{13, 61};
+  const Extent extent{13, 41};
   TestChain chain(extent);
-  GetParam().build(chain);
+  kStepChains[static_cast<std::size_t>(GetParam())].build(chain);
   chain.finish();
   const std::vector<std::byte> expected = whole_image_result(chain);
   std::vector<int> every;
   for (int stage = 1; stage < chain.size(); ++stage) {
     every.push_back(stage);
   }
-  std::vector<std::unique_ptr<Executor>> executors;
-  for (const ExecutorCase& executor_case : executor_cases()) {
-    executors.push_back(executor_case.make());
-  }
-  std::size_t turn = 0;
+  const std::vector<ExecutorCase> executors = executor_cases();
   std::vector<std::vector<int>> splits = {every, {chain.size() / 2}};
   if (chain.size() > 3) {
     splits.push_back({1, chain.size() - 1});
   }
-  for (const std::vector<int>& split : splits) {
+  for (int s = 0; s < static_cast<int>(splits.size()); ++s) {
+    const std::vector<int>& split = splits[static_cast<std::size_t>(s)];
     for (const int strip_columns : {4, kAll}) {
       const int band_rows = strip_columns == kAll ? kAll : 2;
       PlanRequest request;
@@ -266,22 +312,29 @@ TEST_P(StepsOfFewRows, EqualTheWholeImageBitForBit) {
       ASSERT_EQ(whole.steps, 1);
       EXPECT_EQ(whole.step_rows, extent.rows);
       std::vector<int> all_step_rows;
-      // From hardly too little to far too little.
-      for (const double part : {0.999, 0.7, 0.4, 0.0}) {
+      for (int part = 0; part < static_cast<int>(std::size(kParts)); ++part) {
         std::size_t scratch = 0;
         for (const PassPlan& pass : whole.passes) {
           scratch = std::max(scratch, pass.scratch_bytes);
         }
         request.memory_bytes =
-            2 * scratch + static_cast<std::size_t>(part * static_cast<double>(whole.stored_bytes));
+            2 * scratch +
+            static_cast<std::size_t>(kParts[part] * static_cast<double>(whole.stored_bytes));
         const ChainPlan plan = plan_chain(chain.stages(), Machine{}, request);
         ASSERT_GT(plan.steps, 1);
         ASSERT_LT(plan.step_rows, extent.rows);
         EXPECT_TRUE(fits(plan, request) || plan.step_rows == 1);
         all_step_rows.push_back(plan.step_rows);
-        Executor& executor = *executors[turn++ % executors.size()];
-        ASSERT_TRUE(strip_result(chain, plan, executor) == expected)
-            << describe(extent, {strip_columns, band_rows, split}, executor) << ", steps of "
+        const SampleRow row = {GetParam(), s, strip_columns == kAll ? 1 : 0, part};
+        const auto place = std::ranges::find(steps_to_run(), row);
+        if (place == steps_to_run().end()) {
+          continue;
+        }
+        // One executor after the other.
+        const auto turn = static_cast<std::size_t>(place - steps_to_run().begin());
+        const auto executor = executors[turn % executors.size()].make();
+        ASSERT_TRUE(strip_result(chain, plan, *executor) == expected)
+            << describe(extent, {strip_columns, band_rows, split}, *executor) << ", steps of "
             << plan.step_rows;
       }
       EXPECT_EQ(all_step_rows.back(), 1);
@@ -362,7 +415,8 @@ TEST(StripPipelineErrors, ErrorOfAStageArrivesAndTheExecutorGoesOn) {
       chain.add<Failing>(row, extent);
       chain.add<Diffusion>(extent);
       chain.finish();
-      for (const Cut& cut : {Cut{3, 2, {}}, Cut{kAll, kAll, {2}}, Cut{6, kAll, {1, 3}}}) {
+      for (const Cut& cut : {Cut{3, 2, kOnePass}, Cut{kAll, kAll, std::vector<int>{2}},
+                             Cut{6, kAll, std::vector<int>{1, 3}}}) {
         chain.sink().forget();
         try {
           run_strips(chain.stages(), plan_of(chain, cut), *executor, pool);
@@ -470,7 +524,8 @@ TEST(StripPipelineBands, RowsThatOnlyWarmUpLeaveOtherBandsAlone) {
   chain.add<SpoilsRowsBeforeTheBand>(extent);
   chain.finish();
   const std::vector<std::byte> expected = whole_image_result(chain);
-  const ChainPlan plan = plan_of(chain, {2, SpoilsRowsBeforeTheBand::kBandRows, {2}});
+  const ChainPlan plan =
+      plan_of(chain, {2, SpoilsRowsBeforeTheBand::kBandRows, std::vector<int>{2}});
   for (const ExecutorCase& executor_case : executor_cases()) {
     const auto executor = executor_case.make();
     EXPECT_TRUE(strip_result(chain, plan, *executor) == expected) << executor_case.name;
@@ -537,11 +592,11 @@ bool depends_on(const Cut& cut) {
 }
 
 TEST(StripPipelineTest, FindsStagesThatDependOnTheCut) {
-  EXPECT_FALSE(depends_on<CountsFromTheStrip>({kAll, 3, {}}));
-  EXPECT_TRUE(depends_on<CountsFromTheStrip>({16, kAll, {}}));
-  EXPECT_FALSE(depends_on<RoundsFromTheBand>({5, kAll, {}}));
-  EXPECT_TRUE(depends_on<RoundsFromTheBand>({kAll, 3, {}}));
-  EXPECT_TRUE(depends_on<LooksTooFar>({kAll, kAll, {}}));
+  EXPECT_FALSE(depends_on<CountsFromTheStrip>({kAll, 3, kOnePass}));
+  EXPECT_TRUE(depends_on<CountsFromTheStrip>({16, kAll, kOnePass}));
+  EXPECT_FALSE(depends_on<RoundsFromTheBand>({5, kAll, kOnePass}));
+  EXPECT_TRUE(depends_on<RoundsFromTheBand>({kAll, 3, kOnePass}));
+  EXPECT_TRUE(depends_on<LooksTooFar>({kAll, kAll, kOnePass}));
 }
 
 }  // namespace strip_pipeline_test
