@@ -1,10 +1,12 @@
 // Every cost under every aggregation against the plain transcription of the equations.
 #include <gtest/gtest.h>
 
+#include <iterator>
 #include <string>
-#include <tuple>
+#include <vector>
 
 #include "tests/engine/oracle_comparison.h"
+#include "tests/test_sample.h"
 
 namespace vantage {
 namespace all_methods_test {
@@ -15,63 +17,74 @@ using test::PixelKind;
 using test::textured_pair;
 using test::tolerance_of;
 
-using Combination = std::tuple<MatchCost, Aggregation>;
+constexpr MatchCost kCosts[] = {MatchCost::kSquared,   MatchCost::kAbsolute,
+                                MatchCost::kTruncated, MatchCost::kBirchfieldTomasi,
+                                MatchCost::kGradient,  MatchCost::kContaminated,
+                                MatchCost::kCensus,    MatchCost::kRayCensus};
+constexpr Aggregation kAggregations[] = {Aggregation::kNone,          Aggregation::kBox,
+                                         Aggregation::kGaussian,      Aggregation::kBoxCascade,
+                                         Aggregation::kDiffusion,     Aggregation::kMembrane,
+                                         Aggregation::kLocalStopping, Aggregation::kBayes};
 
-MatchOptions options_of(const Combination& combination, DisparityRange range, Subpixel subpixel) {
+/// Images that a method is looked at with.
+struct ImageCase {
+  PixelKind kind;
+  int width;
+  int height;
+  DisparityRange range;
+  ColourUse colour;
+  Subpixel subpixel;
+};
+constexpr ImageCase kImages[] = {
+    {PixelKind::kGrey8, 53, 37, {0, 12}, ColourUse::kLuma, Subpixel::kNone},
+    {PixelKind::kGrey8, 61, 43, {-7, 29}, ColourUse::kLuma, Subpixel::kNone},
+    {PixelKind::kColour8, 47, 31, {-2, 10}, ColourUse::kLuma, Subpixel::kParabola},
+    {PixelKind::kColour8, 47, 31, {-2, 10}, ColourUse::kChannels, Subpixel::kParabola},
+    {PixelKind::kGreyFloat, 47, 31, {-2, 10}, ColourUse::kLuma, Subpixel::kParabola},
+    {PixelKind::kGreyFloat, 47, 31, {-2, 10}, ColourUse::kChannels, Subpixel::kParabola}};
+
+MatchOptions options_of(MatchCost cost, Aggregation aggregation, const ImageCase& images) {
   MatchOptions options;
-  options.disparities = range;
-  options.parameters.cost = std::get<MatchCost>(combination);
-  options.parameters.aggregation = std::get<Aggregation>(combination);
-  options.parameters.subpixel = subpixel;
-  if (options.parameters.aggregation == Aggregation::kBox) {
+  options.disparities = images.range;
+  options.parameters.cost = cost;
+  options.parameters.aggregation = aggregation;
+  options.parameters.subpixel = images.subpixel;
+  options.parameters.colour = images.colour;
+  if (aggregation == Aggregation::kBox) {
     options.parameters.window_px = 5;
   }
-  if (options.parameters.cost == MatchCost::kGradient) {
+  if (cost == MatchCost::kGradient) {
     options.parameters.certainty = Certainty::kEntropy;  // there is no margin of evidence
   }
   return options;
 }
 
-class AllMethods : public ::testing::TestWithParam<Combination> {};
+/// Every cost meets every aggregation and all images, and so does every aggregation.
+const std::vector<test::SampleRow>& method_rows() {
+  static const auto rows = test::sampled_rows({static_cast<int>(std::size(kCosts)),
+                                               static_cast<int>(std::size(kAggregations)),
+                                               static_cast<int>(std::size(kImages))});
+  return rows;
+}
+
+class AllMethods : public ::testing::TestWithParam<int> {};
 
 TEST_P(AllMethods, EqualTheOracle) {
   Execution execution({.threads = 2});
-  for (const DisparityRange range : {DisparityRange{0, 12}, DisparityRange{-7, 29}}) {
-    const auto pair = textured_pair(61, 43, range, PixelKind::kGrey8, 1);
-    const MatchOptions options = options_of(GetParam(), range, Subpixel::kNone);
+  for (const test::SampleRow& row : test::rows_of(method_rows(), GetParam())) {
+    const Aggregation aggregation = kAggregations[row[1]];
+    const ImageCase& images = kImages[row[2]];
+    SCOPED_TRACE("images " + std::to_string(row[2]) + ", " + test::sample_name());
+    const auto pair = textured_pair(images.width, images.height, images.range, images.kind, 1);
+    const MatchOptions options = options_of(kCosts[row[0]], aggregation, images);
     expect_equals_oracle(pair, options, execution, tolerance_of(options.resolved()),
-                         "range " + std::to_string(range.min));
+                         name_of(aggregation));
   }
 }
 
-TEST_P(AllMethods, EqualTheOracleBetweenPixelsAndInColour) {
-  Execution execution({.threads = 2});
-  const DisparityRange range{-2, 10};
-  for (const PixelKind kind : {PixelKind::kColour8, PixelKind::kGreyFloat}) {
-    const auto pair = textured_pair(47, 31, range, kind, 2);
-    for (const ColourUse colour : {ColourUse::kLuma, ColourUse::kChannels}) {
-      MatchOptions options = options_of(GetParam(), range, Subpixel::kParabola);
-      options.parameters.colour = colour;
-      expect_equals_oracle(pair, options, execution, tolerance_of(options.resolved()),
-                           colour == ColourUse::kLuma ? "luma" : "channels");
-    }
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Combinations, AllMethods,
-    ::testing::Combine(::testing::Values(MatchCost::kSquared, MatchCost::kAbsolute,
-                                         MatchCost::kTruncated, MatchCost::kBirchfieldTomasi,
-                                         MatchCost::kGradient, MatchCost::kContaminated,
-                                         MatchCost::kCensus, MatchCost::kRayCensus),
-                       ::testing::Values(Aggregation::kNone, Aggregation::kBox,
-                                         Aggregation::kGaussian, Aggregation::kBoxCascade,
-                                         Aggregation::kDiffusion, Aggregation::kMembrane,
-                                         Aggregation::kLocalStopping, Aggregation::kBayes)),
-    [](const auto& instance) {
-      return name_of(std::get<MatchCost>(instance.param)) + "_" +
-             name_of(std::get<Aggregation>(instance.param));
-    });
+INSTANTIATE_TEST_SUITE_P(Costs, AllMethods,
+                         ::testing::Range(0, static_cast<int>(std::size(kCosts))),
+                         [](const auto& instance) { return name_of(kCosts[instance.param]); });
 
 }  // namespace all_methods_test
 }  // namespace vantage

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <iterator>
 #include <memory>
 #include <ostream>
 #include <random>
@@ -20,6 +21,7 @@
 #include "scheduler/strip_plan.h"
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/scheduler/test_stages.h"
+#include "tests/test_sample.h"
 
 namespace vantage::test {
 
@@ -143,8 +145,8 @@ class DeclaredInputOnly final : public scheduler::RowStage {
   std::size_t input_bytes_per_column_;
 };
 
-/// Runs `chain` in many strips, bands and passes, on several executors, and calls check() after
-/// each run.
+/// Runs `chain` in a sample of strips, bands and passes, on several executors, and calls check()
+/// after each run.
 template <typename Check>
 void run_in_strips(scheduler::Chain chain, const Check& check) {
   using namespace scheduler;
@@ -157,31 +159,30 @@ void run_in_strips(scheduler::Chain chain, const Check& check) {
   const std::unique_ptr<Executor> executors[] = {make_executor(ExecutorKind::kSerial, 1),
                                                  make_executor(ExecutorKind::kTbb, 2),
                                                  make_shuffled_executor(5)};
-  std::size_t run = 0;
-  for (const std::vector<int>& split : splits) {
-    for (const int strip_columns : {1, 3, 17, kAll}) {
-      for (const int band_rows : {1, 5, kAll}) {
-        SCOPED_TRACE(::testing::Message()
-                     << "strips of " << strip_columns << ", bands of " << band_rows
-                     << ", passes of " << ::testing::PrintToString(split));
-        PlanRequest request;
-        request.strip_columns = strip_columns;
-        request.band_rows = band_rows;
-        request.pass_ends = split;
-        const ChainPlan plan = plan_chain(chain, Machine{}, request);
-        ScratchPool pool;
-        {
-          // Memory that is not what a stage may hope for.
-          const std::size_t bytes =
-              std::max(plan.stored_bytes, plan.passes.front().scratch_bytes) + 64;
-          std::memset(pool.lease(bytes).data(), 0xFD, bytes);
-        }
-        run_strips(chain, plan, *executors[run++ % std::size(executors)], pool);
-        check();
-        if (::testing::Test::HasFatalFailure()) {
-          return;
-        }
-      }
+  constexpr int kStrips[] = {1, 3, 17, kAll};
+  constexpr int kBands[] = {1, 5, kAll};
+  for (const test::SampleRow& row : test::sampled_rows(
+           {static_cast<int>(splits.size()), static_cast<int>(std::size(kStrips)),
+            static_cast<int>(std::size(kBands)), static_cast<int>(std::size(executors))})) {
+    PlanRequest request;
+    request.pass_ends = splits[static_cast<std::size_t>(row[0])];
+    request.strip_columns = kStrips[row[1]];
+    request.band_rows = kBands[row[2]];
+    SCOPED_TRACE(::testing::Message()
+                 << "strips of " << *request.strip_columns << ", bands of " << *request.band_rows
+                 << ", passes of " << ::testing::PrintToString(*request.pass_ends) << ", "
+                 << test::sample_name());
+    const ChainPlan plan = plan_chain(chain, Machine{}, request);
+    ScratchPool pool;
+    {
+      // Memory that is not what a stage may hope for.
+      const std::size_t bytes = std::max(plan.stored_bytes, plan.passes.front().scratch_bytes) + 64;
+      std::memset(pool.lease(bytes).data(), 0xFD, bytes);
+    }
+    run_strips(chain, plan, *executors[row[3]], pool);
+    check();
+    if (::testing::Test::HasFatalFailure()) {
+      return;
     }
   }
 }

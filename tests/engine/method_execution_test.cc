@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/matching/stereo_matcher.h"
 #include "engine/simd.h"
 #include "tests/engine/identical_maps.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
+#include "tests/test_sample.h"
 
 namespace vantage {
 namespace method_execution_test {
@@ -44,70 +48,95 @@ class SimulatedMachine {
   static constexpr const char* kVariable = "HWLOC_SYNTHETIC";
 };
 
-class MethodExecution : public ::testing::TestWithParam<MethodCase> {};
+const std::vector<MethodCase>& methods() {
+  static const std::vector<MethodCase> methods = method_cases({});
+  return methods;
+}
+
+// Dimensions of the sample of ways to match; what is not set the cost model chooses.
+constexpr PixelKind kKinds[] = {PixelKind::kGrey8, PixelKind::kColour8};
+constexpr scheduler::ExecutorKind kExecutors[] = {scheduler::ExecutorKind::kTbb,
+                                                  scheduler::ExecutorKind::kOpenMp,
+                                                  scheduler::ExecutorKind::kSerial};
+constexpr int kThreads[] = {1, 2, 3};
+/// Where threads run: anywhere; bound on this machine; on two nodes, as if bound to them.
+struct Place {
+  std::optional<scheduler::ThreadBinding> binding;
+  bool is_simulated = false;
+};
+constexpr Place kPlaces[] = {{},
+                             {scheduler::ThreadBinding::kNodes},
+                             {scheduler::ThreadBinding::kCores},
+                             {scheduler::ThreadBinding::kNodes, true},
+                             {scheduler::ThreadBinding::kCores, true}};
+constexpr std::optional<int> kStrips[] = {1, 16, 23, 500, std::nullopt};
+constexpr std::optional<int> kBands[] = {1, 9, 500, std::nullopt};
+constexpr std::optional<int> kPasses[] = {1, 3, 1000, std::nullopt};
+
+/// A row: method; pixels; executor; threads; place; strip; band; pass.
+const std::vector<test::SampleRow>& execution_rows() {
+  static const auto is_sensible = [](const test::SampleRow& row) {
+#ifdef __SANITIZE_THREAD__
+    if (kExecutors[row[2]] == scheduler::ExecutorKind::kOpenMp) {
+      return false;  // libgomp is not instrumented
+    }
+#endif
+    if (kExecutors[row[2]] == scheduler::ExecutorKind::kSerial && kPlaces[row[4]].binding) {
+      return false;
+    }
+    // Else a whole cone of cells for every pixel.
+    const int cells = kStrips[row[5]].value_or(16) * kBands[row[6]].value_or(9);
+    return cells >= 9 || kPasses[row[7]] == 1;
+  };
+  static const auto rows = test::sampled_rows(
+      {static_cast<int>(methods().size()), static_cast<int>(std::size(kKinds)),
+       static_cast<int>(std::size(kExecutors)), static_cast<int>(std::size(kThreads)),
+       static_cast<int>(std::size(kPlaces)), static_cast<int>(std::size(kStrips)),
+       static_cast<int>(std::size(kBands)), static_cast<int>(std::size(kPasses))},
+      is_sensible);
+  return rows;
+}
+
+class MethodExecution : public ::testing::TestWithParam<int> {
+ protected:
+  static const MethodCase& method() { return methods()[static_cast<std::size_t>(GetParam())]; }
+};
 
 TEST_P(MethodExecution, PlansAndExecutorsGiveIdenticalResults) {
-  using scheduler::ExecutorKind;
-  for (const PixelKind kind : {PixelKind::kGrey8, PixelKind::kColour8}) {
-    const auto pair = textured_pair(59, 41, {-3, 17}, kind, 7);
-    MatchOptions options = GetParam().options;
-    options.disparities = {-3, 17};
-    options.parameters.subpixel = Subpixel::kParabola;
-    const DisparityMaps expected =
-        maps_of(pair, options, {.threads = 1, .executor = ExecutorKind::kSerial});
-    const auto expect_identical = [&](const ExecutionOptions& execution, const std::string& what) {
-      EXPECT_TRUE(identical(maps_of(pair, options, execution), expected)) << what;
-    };
-    for (const ExecutorKind executor :
-         {ExecutorKind::kTbb, ExecutorKind::kOpenMp, ExecutorKind::kSerial}) {
-#ifdef __SANITIZE_THREAD__
-      if (executor == ExecutorKind::kOpenMp) {
-        continue;  // libgomp is not instrumented
-      }
-#endif
-      for (const int threads : {1, 2, 3}) {
-        expect_identical({.threads = threads, .executor = executor},
-                         "executor " + std::to_string(static_cast<int>(executor)) + ", threads " +
-                             std::to_string(threads));
-      }
+  MatchOptions options = method().options;
+  options.disparities = {-3, 17};
+  options.parameters.subpixel = Subpixel::kParabola;
+  PhotographPair pairs[std::size(kKinds)];
+  DisparityMaps expected[std::size(kKinds)];
+  for (const test::SampleRow& row : test::rows_of(execution_rows(), GetParam())) {
+    PhotographPair& pair = pairs[row[1]];
+    DisparityMaps& wanted = expected[row[1]];
+    if (wanted.left.empty()) {
+      pair = textured_pair(59, 41, {-3, 17}, kKinds[row[1]], 7);
+      wanted = maps_of(pair, options, {.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
     }
-    for (const ExecutorKind executor : {ExecutorKind::kTbb, ExecutorKind::kOpenMp}) {
-#ifdef __SANITIZE_THREAD__
-      if (executor == ExecutorKind::kOpenMp) {
-        continue;
-      }
-#endif
-      for (const auto binding :
-           {scheduler::ThreadBinding::kNodes, scheduler::ThreadBinding::kCores}) {
-        expect_identical({.threads = 2, .executor = executor, .binding = binding}, "bound here");
-        const SimulatedMachine machine("node:2 core:2 pu:1");
-        expect_identical({.threads = 3, .executor = executor, .binding = binding},
-                         "on two nodes, as if bound to them");
-      }
+    const Place& place = kPlaces[row[4]];
+    std::optional<SimulatedMachine> machine;
+    if (place.is_simulated) {
+      machine.emplace("node:2 core:2 pu:1");
     }
-    for (const int strip : {1, 16, 23, 500}) {
-      for (const int band : {1, 9, 500}) {
-        for (const int pass : {1, 3, 1000}) {
-          if (strip * band < 9 && pass > 1) {
-            continue;  // a whole cone of cells for every pixel
-          }
-          expect_identical({.threads = 2,
-                            .strip_width_px = strip,
-                            .band_height_px = band,
-                            .iterations_per_pass = pass},
-                           "strip " + std::to_string(strip) + ", band " + std::to_string(band) +
-                               ", iterations per pass " + std::to_string(pass));
-        }
-      }
-    }
+    const ExecutionOptions execution{.threads = kThreads[row[3]],
+                                     .executor = kExecutors[row[2]],
+                                     .binding = place.binding,
+                                     .strip_width_px = kStrips[row[5]],
+                                     .band_height_px = kBands[row[6]],
+                                     .iterations_per_pass = kPasses[row[7]]};
+    EXPECT_TRUE(identical(maps_of(pair, options, execution), wanted))
+        << "pixels, executor, threads, place, strip, band, pass: " << ::testing::PrintToString(row)
+        << ", " << test::sample_name();
   }
 }
 
 /// Each instruction set against the first. Bayesian diffusion with sums and entropies use fused
 /// operations where there are some: winners, and confidences where winners are equal.
 TEST_P(MethodExecution, InstructionSetsAgree) {
-  const auto pair = textured_pair(59, 41, {-3, 28}, PixelKind::kGrey8, 8);
-  MatchOptions options = GetParam().options;
+  const auto pair = textured_pair(45, 23, {-3, 28}, PixelKind::kGrey8, 8);
+  MatchOptions options = method().options;
   options.disparities = {-3, 28};
   const MethodParameters parameters = options.resolved();
   const bool is_fused = (parameters.aggregation == Aggregation::kBayes &&
@@ -149,8 +178,11 @@ TEST_P(MethodExecution, InstructionSetsAgree) {
   force_instruction_set("best");
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, MethodExecution, ::testing::ValuesIn(method_cases({})),
-                         [](const auto& instance) { return instance.param.name; });
+INSTANTIATE_TEST_SUITE_P(Methods, MethodExecution,
+                         ::testing::Range(0, static_cast<int>(methods().size())),
+                         [](const auto& instance) {
+                           return methods()[static_cast<std::size_t>(instance.param)].name;
+                         });
 
 }  // namespace method_execution_test
 }  // namespace vantage

@@ -43,8 +43,8 @@ TEST_P(PhotographMethods, EqualTheOracleOnARenderedScene) {
     options.near_disparity_px = 18;
     options.noise_sigma = 1;
     const LayeredScene scene(options, execution);
-    return PhotographPair{crop(scene.render({0, 0}, 0).image, 40, 30, 80, 60),
-                          crop(scene.render({1, 0}, 0).image, 40, 30, 80, 60)};
+    return PhotographPair{crop(scene.render({0, 0}, 0).image, 50, 38, 60, 44),
+                          crop(scene.render({1, 0}, 0).image, 50, 38, 60, 44)};
   }();
   expect_equal(pair, {0, 23}, "rendered");
 }
@@ -57,8 +57,8 @@ TEST_P(PhotographMethods, EqualTheOracleOnAPhotographedScene) {
   if (!std::filesystem::is_directory(folder)) {
     GTEST_SKIP() << "no photographs at " << folder;
   }
-  static const PhotographPair pair{crop(read_photograph(folder / "im2.png"), 50, 60, 80, 60),
-                                   crop(read_photograph(folder / "im6.png"), 50, 60, 80, 60)};
+  static const PhotographPair pair{crop(read_photograph(folder / "im2.png"), 60, 66, 60, 44),
+                                   crop(read_photograph(folder / "im6.png"), 60, 66, 60, 44)};
   expect_equal(pair, {4, 33}, "photographed");
 }
 

@@ -25,6 +25,7 @@
 #include "tests/engine/cell_stages.h"
 #include "tests/engine/identical_maps.h"
 #include "tests/engine/oracle_comparison.h"
+#include "tests/test_sample.h"
 
 namespace vantage {
 namespace pruned_levels_test {
@@ -358,26 +359,22 @@ TEST_P(PrunedMatchingOf, SixteenCandidatesIsFullMatching) {
 
 TEST_P(PrunedMatchingOf, ManyCandidatesDoesNotDependOnExecution) {
   const DisparityRange range{-3, 60};
-  const auto pair = test::textured_pair(83, 45, range, test::PixelKind::kGrey8, 3);
+  const auto pair = test::textured_pair(83, 37, range, test::PixelKind::kGrey8, 3);
   const MatchOptions options = pruned_options(range, 2, GetParam());
   const DisparityMaps expected =
       maps_of(pair, options, {.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
-  for (const int threads : {2, 3}) {
-    for (const auto executor : {scheduler::ExecutorKind::kTbb, scheduler::ExecutorKind::kOpenMp}) {
-      for (const int strip : {5, 16, 1000}) {
-        for (const int band : {3, 1000}) {
-          for (const int iterations : {1, 2}) {
-            EXPECT_TRUE(identical(expected, maps_of(pair, options,
-                                                    {.threads = threads,
-                                                     .executor = executor,
-                                                     .strip_width_px = strip,
-                                                     .band_height_px = band,
-                                                     .iterations_per_pass = iterations})))
-                << threads << " threads, strips of " << strip << ", bands of " << band;
-          }
-        }
-      }
-    }
+  constexpr int kStrips[] = {5, 16, 1000};
+  constexpr scheduler::ExecutorKind kExecutors[] = {scheduler::ExecutorKind::kTbb,
+                                                    scheduler::ExecutorKind::kOpenMp};
+  for (const test::SampleRow& row : test::sampled_rows({2, 2, 3, 2, 2})) {
+    EXPECT_TRUE(identical(expected, maps_of(pair, options,
+                                            {.threads = 2 + row[0],
+                                             .executor = kExecutors[row[1]],
+                                             .strip_width_px = kStrips[row[2]],
+                                             .band_height_px = row[3] == 0 ? 3 : 1000,
+                                             .iterations_per_pass = 1 + row[4]})))
+        << "threads, executor, strip, band, pass: " << ::testing::PrintToString(row) << ", "
+        << test::sample_name();
   }
 }
 

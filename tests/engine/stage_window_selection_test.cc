@@ -5,8 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <memory>
-#include <tuple>
+#include <string>
 #include <vector>
 
 #include "engine/error.h"
@@ -17,6 +18,7 @@
 #include "tests/engine/brute_force_ssd.h"
 #include "tests/engine/cell_stages.h"
 #include "tests/engine/plain_column.h"
+#include "tests/test_sample.h"
 
 namespace vantage {
 namespace stage_window_selection_test {
@@ -31,11 +33,6 @@ struct Shape {
   int count;
   int window;
 };
-
-void PrintTo(const Shape& shape, std::ostream* out) {
-  *out << shape.width << "x" << shape.height << ", disparities from " << shape.disparity_min << ", "
-       << shape.count << " of them, window " << shape.window;
-}
 
 /// A pair of 8-bit noise and the mean cost of every candidate.
 struct NoisePair {
@@ -167,57 +164,72 @@ class SsdChain {
   std::vector<const scheduler::RowStage*> stages_;
 };
 
-class WindowSelection : public ::testing::TestWithParam<std::tuple<Shape, int, Border>> {};
+constexpr Shape kShapes[] = {{1, 1, 0, 1, 1},       {1, 1, -3, 7, 9},    {1, 7, 0, 4, 3},
+                             {7, 1, 0, 4, 3},       {3, 3, -2, 5, 5},    {16, 9, -16, 33, 3},
+                             {31, 13, 3, 38, 7},    {33, 8, -40, 74, 9}, {47, 6, -30, 29, 3},
+                             {61, 11, 0, 64, 9},    {65, 10, 5, 60, 1},  {23, 17, 0, 13, 41},
+                             {101, 17, -5, 16, 11}, {20, 5, 40, 21, 3}};
+constexpr int kShapeCount = static_cast<int>(std::size(kShapes));
+constexpr int kDirections[] = {-1, 1};
+constexpr Border kBorders[] = {Border::kClip, Border::kValid};
+
+class WindowSelection : public ::testing::TestWithParam<int> {
+ protected:
+  [[nodiscard]] static const Shape& shape() { return kShapes[GetParam()]; }
+};
 
 TEST_P(WindowSelection, EnergyAndConfidenceEqualBruteForce) {
-  const auto& [shape, direction, border] = GetParam();
+  constexpr int kLevels[] = {1, 2, 256};
+  constexpr ConfidenceMeasure kMeasures[] = {
+      ConfidenceMeasure::kMargin, ConfidenceMeasure::kEntropy, ConfidenceMeasure::kEvidence};
   // Cells carry their indices where they fit, as 8-bit pairs are matched.
-  const int index_shift = shape.count <= 64 && shape.window <= 9 ? 3 : 0;
-  for (const int levels : {1, 2, 256}) {
-    const NoisePair pair(shape, direction, levels, border);
-    for (const ConfidenceMeasure measure :
-         {ConfidenceMeasure::kMargin, ConfidenceMeasure::kEntropy, ConfidenceMeasure::kEvidence}) {
-      for (const int shift : {0, index_shift}) {
-        SCOPED_TRACE(::testing::Message() << "measure " << static_cast<int>(measure) << ", shift "
-                                          << shift << ", levels " << levels);
-        WindowSelectionSettings settings;
-        settings.border = border;
-        settings.subpixel = shift == 0 ? Subpixel::kParabola : Subpixel::kNone;
-        settings.confidence = measure;
-        settings.entropy_scale = 1e-3;
-        SsdChain chain(shape, direction, pair, shift, settings);
-        chain.spoil();
-        chain.run();
-        ASSERT_NO_FATAL_FAILURE(chain.expect_brute_force());
-      }
-    }
+  const int index_shift = shape().count <= 64 && shape().window <= 9 ? 3 : 0;
+  static const auto rows = test::sampled_rows({kShapeCount, 2, 2, 3, 3, 2});
+  for (const test::SampleRow& row : test::rows_of(rows, GetParam())) {
+    SCOPED_TRACE(::testing::Message()
+                 << "shape, direction, border, levels, measure, shift: "
+                 << ::testing::PrintToString(row) << ", " << test::sample_name());
+    const int direction = kDirections[row[1]];
+    const Border border = kBorders[row[2]];
+    const int shift = row[5] == 0 ? 0 : index_shift;
+    const NoisePair pair(shape(), direction, kLevels[row[3]], border);
+    WindowSelectionSettings settings;
+    settings.border = border;
+    settings.subpixel = shift == 0 ? Subpixel::kParabola : Subpixel::kNone;
+    settings.confidence = kMeasures[row[4]];
+    settings.entropy_scale = 1e-3;
+    SsdChain chain(shape(), direction, pair, shift, settings);
+    chain.spoil();
+    chain.run();
+    ASSERT_NO_FATAL_FAILURE(chain.expect_brute_force());
   }
 }
 
 TEST_P(WindowSelection, EnergiesAreInTheUnitOfTheSettings) {
-  const auto& [shape, direction, border] = GetParam();
-  WindowSelectionSettings settings;
-  settings.border = border;
-  settings.confidence = ConfidenceMeasure::kEntropy;
-  settings.energy_scale = 1.0 / 48;
-  settings.energy_offset = 77.5;
-  settings.entropy_scale = 0.02;
-  const NoisePair pair(shape, direction, 256, border);
-  SsdChain chain(shape, direction, pair, 0, settings);
-  chain.spoil();
-  chain.run();
-  chain.expect_brute_force();
+  static const auto rows = test::sampled_rows({kShapeCount, 2, 2});
+  for (const test::SampleRow& row : test::rows_of(rows, GetParam())) {
+    WindowSelectionSettings settings;
+    settings.border = kBorders[row[2]];
+    settings.confidence = ConfidenceMeasure::kEntropy;
+    settings.energy_scale = 1.0 / 48;
+    settings.energy_offset = 77.5;
+    settings.entropy_scale = 0.02;
+    const NoisePair pair(shape(), kDirections[row[1]], 256, settings.border);
+    SsdChain chain(shape(), kDirections[row[1]], pair, 0, settings);
+    chain.spoil();
+    chain.run();
+    ASSERT_NO_FATAL_FAILURE(chain.expect_brute_force());
+  }
 }
 
 TEST_P(WindowSelection, IsTheSameInStripsAndWithoutConfidence) {
-  const auto& [shape, direction, border] = GetParam();
-  const NoisePair pair(shape, direction, 16, border);
-  for (const ConfidenceMeasure measure :
-       {ConfidenceMeasure::kMargin, ConfidenceMeasure::kEntropy}) {
+  static const auto rows = test::sampled_rows({kShapeCount, 2, 2, 2});
+  for (const test::SampleRow& row : test::rows_of(rows, GetParam())) {
     WindowSelectionSettings settings;
-    settings.border = border;
-    settings.confidence = measure;
-    SsdChain chain(shape, direction, pair, 0, settings);
+    settings.border = kBorders[row[2]];
+    settings.confidence = row[3] == 0 ? ConfidenceMeasure::kMargin : ConfidenceMeasure::kEntropy;
+    const NoisePair pair(shape(), kDirections[row[1]], 16, settings.border);
+    SsdChain chain(shape(), kDirections[row[1]], pair, 0, settings);
     chain.spoil();
     chain.run();
     const std::vector<std::uint32_t> expected = chain.bits();
@@ -234,16 +246,12 @@ TEST_P(WindowSelection, IsTheSameInStripsAndWithoutConfidence) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    AwkwardSizes, WindowSelection,
-    ::testing::Combine(::testing::Values(Shape{1, 1, 0, 1, 1}, Shape{1, 1, -3, 7, 9},
-                                         Shape{1, 7, 0, 4, 3}, Shape{7, 1, 0, 4, 3},
-                                         Shape{3, 3, -2, 5, 5}, Shape{16, 9, -16, 33, 3},
-                                         Shape{31, 13, 3, 38, 7}, Shape{33, 8, -40, 74, 9},
-                                         Shape{47, 6, -30, 29, 3}, Shape{61, 11, 0, 64, 9},
-                                         Shape{65, 10, 5, 60, 1}, Shape{23, 17, 0, 13, 41},
-                                         Shape{101, 17, -5, 16, 11}, Shape{20, 5, 40, 21, 3}),
-                       ::testing::Values(-1, 1), ::testing::Values(Border::kClip, Border::kValid)));
+INSTANTIATE_TEST_SUITE_P(AwkwardSizes, WindowSelection, ::testing::Range(0, kShapeCount),
+                         [](const auto& instance) {
+                           const Shape& s = kShapes[instance.param];
+                           return std::to_string(s.width) + "x" + std::to_string(s.height) +
+                                  "_window_" + std::to_string(s.window);
+                         });
 
 TEST(WindowSelectionSettings, RefuseTheConfidenceOfProbabilities) {
   Image<float> map(8, 2);

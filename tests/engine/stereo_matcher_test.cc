@@ -4,9 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <ostream>
+#include <iterator>
 #include <string>
-#include <tuple>
 
 #include "engine/error.h"
 #include "engine/matching/match_chain.h"
@@ -15,6 +14,7 @@
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/brute_force_ssd.h"
 #include "tests/engine/identical_maps.h"
+#include "tests/test_sample.h"
 
 namespace vantage {
 namespace stereo_matcher_test {
@@ -86,20 +86,29 @@ struct Shape {
   int window;
 };
 
-/// What test runners print of a shape instead of its bytes.
-void PrintTo(const Shape& shape, std::ostream* stream) {
-  *stream << shape.width << "x" << shape.height << ", disparities " << shape.range.min << ":"
-          << shape.range.max << ", window " << shape.window;
-}
+constexpr Shape kShapes[] = {
+    {1, 1, {0, 0}, 1},      {1, 1, {-3, 3}, 9},    {1, 7, {0, 3}, 3},      {7, 1, {0, 3}, 3},
+    {3, 3, {-2, 2}, 5},     {15, 9, {0, 15}, 3},   {16, 9, {-16, 16}, 3},  {17, 11, {-8, 7}, 5},
+    {31, 13, {3, 40}, 7},   {33, 8, {-40, 33}, 9}, {47, 6, {-30, -2}, 3},  {61, 19, {0, 63}, 9},
+    {64, 12, {0, 64}, 21},  {65, 10, {5, 100}, 1}, {37, 23, {0, 12}, 101}, {101, 17, {-5, 70}, 11},
+    {131, 15, {0, 15}, 13}, {61, 9, {0, 15}, 31},  {20, 5, {40, 60}, 3}};
+constexpr int kShapeCount = static_cast<int>(std::size(kShapes));
 
-class SsdShapes : public ::testing::TestWithParam<std::tuple<Shape, Border, Subpixel>> {};
+class SsdShapes : public ::testing::TestWithParam<int> {};
 
 TEST_P(SsdShapes, EqualBruteForce) {
-  const auto& [shape, border, subpixel] = GetParam();
-  const MatchOptions options = raw_options(shape.range, shape.window, border, subpixel);
+  const Shape& shape = kShapes[GetParam()];
   Execution execution({.threads = 2});
-  for (const int levels : {2, 256}) {
+  static const auto rows = test::sampled_rows({kShapeCount, 2, 2, 2});
+  for (const test::SampleRow& row : test::rows_of(rows, GetParam())) {
+    SCOPED_TRACE(::testing::Message()
+                 << "shape, border, subpixel, levels: " << ::testing::PrintToString(row) << ", "
+                 << test::sample_name());
+    const MatchOptions options =
+        raw_options(shape.range, shape.window, row[1] == 0 ? Border::kClip : Border::kValid,
+                    row[2] == 0 ? Subpixel::kNone : Subpixel::kParabola);
     // With two levels most energies tie: sub-pixel positions then hang on exact zeros.
+    const int levels = row[3] == 0 ? 2 : 256;
     const Photograph left = random_grey(shape.width, shape.height, levels, 1);
     const Photograph right = random_grey(shape.width, shape.height, levels, 2);
     if (!has_candidate(brute_force(left, right, Reference::kLeft), options)) {
@@ -111,24 +120,16 @@ TEST_P(SsdShapes, EqualBruteForce) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    AwkwardSizes, SsdShapes,
-    ::testing::Combine(::testing::Values(Shape{1, 1, {0, 0}, 1}, Shape{1, 1, {-3, 3}, 9},
-                                         Shape{1, 7, {0, 3}, 3}, Shape{7, 1, {0, 3}, 3},
-                                         Shape{3, 3, {-2, 2}, 5}, Shape{15, 9, {0, 15}, 3},
-                                         Shape{16, 9, {-16, 16}, 3}, Shape{17, 11, {-8, 7}, 5},
-                                         Shape{31, 13, {3, 40}, 7}, Shape{33, 8, {-40, 33}, 9},
-                                         Shape{47, 6, {-30, -2}, 3}, Shape{61, 19, {0, 63}, 9},
-                                         Shape{64, 12, {0, 64}, 21}, Shape{65, 10, {5, 100}, 1},
-                                         Shape{37, 23, {0, 12}, 101}, Shape{101, 17, {-5, 70}, 11},
-                                         Shape{131, 15, {0, 15}, 13}, Shape{61, 9, {0, 15}, 31},
-                                         Shape{20, 5, {40, 60}, 3}),
-                       ::testing::Values(Border::kClip, Border::kValid),
-                       ::testing::Values(Subpixel::kNone, Subpixel::kParabola)));
+INSTANTIATE_TEST_SUITE_P(AwkwardSizes, SsdShapes, ::testing::Range(0, kShapeCount),
+                         [](const auto& instance) {
+                           const Shape& s = kShapes[instance.param];
+                           return std::to_string(s.width) + "x" + std::to_string(s.height) +
+                                  "_window_" + std::to_string(s.window);
+                         });
 
 TEST(StereoMatcher, EqualsBruteForceOnEveryInstructionSet) {
-  const Photograph left = random_grey(79, 21, 256, 3);
-  const Photograph right = random_grey(79, 21, 256, 4);
+  const Photograph left = random_grey(79, 13, 256, 3);
+  const Photograph right = random_grey(79, 13, 256, 4);
   Execution execution({.threads = 1});
   for (const std::string& name : available_instruction_sets()) {
     force_instruction_set(name);
@@ -212,35 +213,31 @@ TEST(StereoMatcher, ResultsDoNotDependOnExecution) {
   options.disparities = {-3, 40};
   for (const bool grey : {true, false}) {
     const Photograph left =
-        grey ? random_grey(97, 61, 256, 7) : random_photograph<std::uint8_t>(97, 61, 3, 255.99, 7);
+        grey ? random_grey(67, 41, 256, 7) : random_photograph<std::uint8_t>(67, 41, 3, 255.99, 7);
     const Photograph right =
-        grey ? random_grey(97, 61, 256, 8) : random_photograph<std::uint8_t>(97, 61, 3, 255.99, 8);
+        grey ? random_grey(67, 41, 256, 8) : random_photograph<std::uint8_t>(67, 41, 3, 255.99, 8);
     DisparityMaps expected;
     Execution serial({.threads = 1, .executor = ExecutorKind::kSerial});
     StereoMatcher(options, serial).match(left, right, {}, expected);
-    for (const ExecutorKind kind :
-         {ExecutorKind::kTbb, ExecutorKind::kOpenMp, ExecutorKind::kSerial}) {
+    constexpr ExecutorKind kKinds[] = {ExecutorKind::kTbb, ExecutorKind::kOpenMp,
+                                       ExecutorKind::kSerial};
+    constexpr int kThreads[] = {1, 2, 5};
+    constexpr int kStrips[] = {1, 13, 500};
+    for (const test::SampleRow& row : test::sampled_rows({3, 3, 3, 2})) {
 #ifdef __SANITIZE_THREAD__
-      if (kind == ExecutorKind::kOpenMp) {
+      if (kKinds[row[0]] == ExecutorKind::kOpenMp) {
         continue;  // libgomp is not instrumented
       }
 #endif
-      for (const int threads : {1, 2, 5}) {
-        for (const int strip : {1, 13, 500}) {
-          for (const int band : {2, 500}) {
-            Execution execution({.threads = threads,
-                                 .executor = kind,
-                                 .strip_width_px = strip,
-                                 .band_height_px = band});
-            DisparityMaps maps;
-            StereoMatcher(options, execution).match(left, right, {}, maps);
-            ASSERT_TRUE(identical(maps.left, expected.left) &&
-                        identical(maps.right, expected.right))
-                << "executor " << static_cast<int>(kind) << " threads " << threads << " strip "
-                << strip << " band " << band;
-          }
-        }
-      }
+      Execution execution({.threads = kThreads[row[1]],
+                           .executor = kKinds[row[0]],
+                           .strip_width_px = kStrips[row[2]],
+                           .band_height_px = row[3] == 0 ? 2 : 500});
+      DisparityMaps maps;
+      StereoMatcher(options, execution).match(left, right, {}, maps);
+      ASSERT_TRUE(identical(maps.left, expected.left) && identical(maps.right, expected.right))
+          << "executor, threads, strip, band: " << ::testing::PrintToString(row) << ", "
+          << test::sample_name();
     }
   }
 }

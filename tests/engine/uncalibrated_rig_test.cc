@@ -55,7 +55,7 @@ Rows rows_of(const StereoCalibration& calibration, const std::vector<PointMatch>
 
 TEST(UncalibratedRig, ExactMatchesGiveExactRows) {
   std::mt19937 random(1);
-  for (int trial = 0; trial < 10; ++trial) {
+  for (int trial = 0; trial < 3; ++trial) {
     const StereoCalibration truth = random_calibration(random, kWidth, kHeight, 0);
     const auto matches = exact_matches(truth, kWidth, kHeight, 150, random);
     const UncalibratedRig rig = estimate_rig(matches, kWidth, kHeight);
@@ -76,7 +76,7 @@ TEST(UncalibratedRig, ExactMatchesGiveExactRows) {
 
 TEST(UncalibratedRig, WrongAndInexactMatchesAreTold) {
   std::mt19937 random(2);
-  for (int trial = 0; trial < 4; ++trial) {
+  for (int trial = 0; trial < 2; ++trial) {
     const StereoCalibration truth = random_calibration(random, kWidth, kHeight, 0);
     auto matches = exact_matches(truth, kWidth, kHeight, 400, random);
     spoil(matches, kWidth, kHeight, 0.3, 40, random);
@@ -138,9 +138,10 @@ double largest_stretch(const Eigen::Matrix3d& homography) {
 
 TEST(UncalibratedRig, HardlyStretchesTheImages) {
   std::mt19937 random(4);
+  constexpr int kTrials = 4;
   double sum = 0;
   double opencv_sum = 0;
-  for (int trial = 0; trial < 10; ++trial) {
+  for (int trial = 0; trial < kTrials; ++trial) {
     const StereoCalibration truth = random_calibration(random, kWidth, kHeight, 0, 0.05);
     auto matches = exact_matches(truth, kWidth, kHeight, 300, random);
     spoil(matches, kWidth, kHeight, 0.3, 0, random);
@@ -167,7 +168,8 @@ TEST(UncalibratedRig, HardlyStretchesTheImages) {
       opencv_sum += largest_stretch(matrix);
     }
   }
-  EXPECT_LT(sum - 20, 0.5 * (opencv_sum - 20)) << "twenty images; 1 = not stretched at all";
+  EXPECT_LT(sum - 2 * kTrials, 0.5 * (opencv_sum - 2 * kTrials))
+      << "two images a trial; 1 = not stretched at all";
 }
 
 TEST(UncalibratedRig, TheSameFromAnyThread) {
@@ -176,7 +178,7 @@ TEST(UncalibratedRig, TheSameFromAnyThread) {
   auto matches = exact_matches(truth, kWidth, kHeight, 200, random);
   spoil(matches, kWidth, kHeight, 0.3, 30, random);
   const UncalibratedRig expected = estimate_rig(matches, kWidth, kHeight);
-  std::vector<UncalibratedRig> others(3);
+  std::vector<UncalibratedRig> others(2);
   std::vector<std::thread> threads;
   for (UncalibratedRig& other : others) {
     threads.emplace_back([&] { other = estimate_rig(matches, kWidth, kHeight); });
@@ -271,7 +273,11 @@ TEST(UncalibratedRig, RectifiesTheChessboardFromItsCorners) {
   EXPECT_LT(rows_of(rig.calibration, all).rms_px, 0.35);
   // A single board is a plane, which tells less; but its own rows correspond, those of a few
   // corners excepted that were found in the wrong place.
+  int number = 0;
   for (const auto& [image, matches] : pairs) {
+    if (number++ % 4 != 0) {
+      continue;
+    }
     const UncalibratedRig single = estimate_rig(matches, kWidth, kHeight);
     EXPECT_GE(single.inliers, 48) << image;
     std::vector<PointMatch> inliers;

@@ -26,6 +26,20 @@ Execution& execution() {
   return two_threads;
 }
 
+struct SceneImages {
+  Photograph left;
+  Photograph right;
+};
+
+const SceneImages& scene_images() {
+  static const SceneImages images = [] {
+    const LayeredScene scene({.width_px = 320, .height_px = 240, .samples_per_side = 2},
+                             execution());
+    return SceneImages{scene.render({0, 0}, 0).image, scene.render({1, 0}, 0).image};
+  }();
+  return images;
+}
+
 /// Matches whose vertical error is `error` of x, y and disparity.
 template <typename Error>
 std::vector<PointMatch> matches_with(int count, const Error& error, std::mt19937& random) {
@@ -103,9 +117,7 @@ TEST(VerticalError, LeavesWrongMatchesOutAndTellsNoiseFromError) {
 
 // Even where the error is 0 on average, as of a camera that is turned about its axis.
 TEST(VerticalError, IsFoundWhereItChangesOverTheImage) {
-  const LayeredScene scene({.width_px = 320, .height_px = 240, .samples_per_side = 2}, execution());
-  const Photograph left = scene.render({0, 0}, 0).image;
-  const Photograph right = scene.render({1, 0}, 0).image;
+  const auto& [left, right] = scene_images();
   constexpr double kTurn = 0.006;
   const Eigen::Matrix3d turn = test::turned_by(0, 0, kTurn);
   const Eigen::Matrix3d to_middle{{1, 0, -159.5}, {0, 1, -119.5}, {0, 0, 1}};
@@ -118,9 +130,7 @@ TEST(VerticalError, IsFoundWhereItChangesOverTheImage) {
 }
 
 TEST(VerticalError, TellsExchangedImages) {
-  const LayeredScene scene({.width_px = 320, .height_px = 240, .samples_per_side = 2}, execution());
-  const Photograph left = scene.render({0, 0}, 0).image;
-  const Photograph right = scene.render({1, 0}, 0).image;
+  const auto& [left, right] = scene_images();
   const auto in_order = check_rectification(left, right);
   const auto exchanged = check_rectification(right, left);
   ASSERT_TRUE(in_order && exchanged);
@@ -159,9 +169,7 @@ TEST(VerticalError, SaysNothingOfTooFewMatches) {
 }
 
 TEST(VerticalError, IsFoundInPictures) {
-  const LayeredScene scene({.width_px = 320, .height_px = 240, .samples_per_side = 2}, execution());
-  const Photograph left = scene.render({0, 0}, 0).image;
-  const Photograph right = scene.render({1, 0}, 0).image;
+  const auto& [left, right] = scene_images();
   const auto rectified = check_rectification(left, right);
   ASSERT_TRUE(rectified);
   EXPECT_LT(rectified->systematic_px, 0.08);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "engine/io/frame_source.h"
 #include "engine/io/video_io.h"
 #include "tests/engine/video_test_support.h"
+#include "tests/test_sample.h"
 
 namespace vantage {
 namespace video_seek_test {
@@ -54,13 +56,16 @@ TEST(VideoSeek, FramesFromAnyStartOnAreThoseFromTheBeginning) {
     for (int last = kFrames - 1; last >= 0; --last) {
       const int start = last / kGroup * kGroup;
       ASSERT_EQ(reader.go_to_start(0, last), start);
-      for (int i = start; i < kFrames; ++i) {
+      // To the end from the last frame of each group only.
+      const bool is_group_end = last + 1 == kFrames || (last + 1) % kGroup == 0;
+      for (int i = start; i < (is_group_end ? kFrames : start + 1); ++i) {
         ASSERT_TRUE(reader.read(frame));
         ASSERT_TRUE(test::same(frame, expected[static_cast<std::size_t>(i)])) << start << " " << i;
       }
-      EXPECT_FALSE(reader.read(frame));
       EXPECT_EQ(reader.go_to_start(start + 1, last), std::nullopt);
-      EXPECT_FALSE(reader.read(frame)) << "nothing happened";
+      if (is_group_end) {
+        EXPECT_FALSE(reader.read(frame)) << "nothing happened";
+      }
     }
     EXPECT_EQ(reader.go_to_next_start(1), kGroup);
     EXPECT_EQ(reader.go_to_next_start(3 * kGroup), 3 * kGroup);
@@ -116,17 +121,22 @@ void expect_same(const Outcome& outcome, const Outcome& expected) {
   }
 }
 
-/// After skip_to() from anywhere to anywhere; returns what a source gives that is read from the
-/// beginning.
-std::vector<Outcome> expect_to_skip_everywhere(const std::filesystem::path& path) {
+/// After skip_to() from some places, in the `turn`-th call for each frame another one, to anywhere;
+/// returns what a source gives that is read from the beginning.
+std::vector<Outcome> expect_to_skip_everywhere(const std::filesystem::path& path, int turn) {
   const auto sequential = open_frame_source(path.string());
   std::vector<Outcome> expected;
   for (int i = 0; i < kFrames + 1; ++i) {
     expected.push_back(fetch_from(*sequential));
   }
   const auto source = open_frame_source(path.string());
-  for (const int from : {0, 5, kGroup, 2 * kGroup + 1, kFrames}) {
-    for (int to = 0; to < kFrames; ++to) {
+  constexpr int kFrom[] = {0, 5, kGroup, 2 * kGroup + 1, kFrames};
+  for (int to = 0; to < kFrames; ++to) {
+    for (int k = 0; k < static_cast<int>(std::size(kFrom)); ++k) {
+      if (k != (to + turn) % 5 && !test::runs_everything()) {
+        continue;
+      }
+      const int from = kFrom[k];
       SCOPED_TRACE(testing::Message() << path.filename() << " " << from << " to " << to);
       source->skip_to(from);
       expect_same(fetch_from(*source), expected[static_cast<std::size_t>(from)]);
@@ -145,11 +155,16 @@ TEST(VideoSeek, SkippingGivesTheSameFramesAndRemarks) {
   remux_video(folder / "a.mp4", folder / "gaps.mp4", "mp4", kRate, {}, [](int frame) {
     return frame < kGroup ? frame : frame < 2 * kGroup + 3 ? frame + 1 : frame + 3;
   });
-  const std::vector<Outcome> outcomes = expect_to_skip_everywhere(folder / "gaps.mp4");
+  const std::vector<Outcome> outcomes = expect_to_skip_everywhere(folder / "gaps.mp4", 0);
+  for (int turn = 1; turn < 5; ++turn) {
+    expect_to_skip_everywhere(folder / "gaps.mp4", turn);
+  }
   EXPECT_EQ(outcomes[kGroup].frame.frames_missing, 1);
   EXPECT_EQ(outcomes[2 * kGroup + 3].frame.frames_missing, 2);
   put_open_groups_video(folder / "open.mp4", kFrames, kRate);
-  expect_to_skip_everywhere(folder / "open.mp4");
+  for (const int turn : {0, 2}) {
+    expect_to_skip_everywhere(folder / "open.mp4", turn);
+  }
 }
 
 /// A packet is damaged: the frames up to the next group are lost, whoever reads them.
@@ -158,12 +173,13 @@ TEST(VideoSeek, DamageEndsWithItsGroup) {
   put_closed_groups_video(folder / "a.mp4", kFrames, kRate, kGroup);
   const std::vector<VideoPacket> packets = video_packets(folder / "a.mp4");
   const auto whole = bytes_of(folder / "a.mp4");
+  int turn = 0;
   for (const int damaged : {0, 2, kGroup, kGroup + 4, kFrames - 1}) {
     auto bytes = whole;
     std::fill_n(bytes.begin() + packets[static_cast<std::size_t>(damaged)].offset, 4,
                 std::uint8_t{0xFF});
     put_bytes(folder / "b.mp4", bytes);
-    const std::vector<Outcome> outcomes = expect_to_skip_everywhere(folder / "b.mp4");
+    const std::vector<Outcome> outcomes = expect_to_skip_everywhere(folder / "b.mp4", turn++);
     const int group_end = (damaged / kGroup + 1) * kGroup;
     for (int i = 0; i < kFrames; ++i) {
       const bool may_be_bad = i >= damaged / kGroup * kGroup && i < group_end;

@@ -9,6 +9,7 @@
 
 #include "kernels/winner/winner.h"
 #include "tests/kernels/kernel_test_utils.h"
+#include "tests/test_sample.h"
 
 namespace vantage::kernels {
 
@@ -76,33 +77,39 @@ inline int enough_index_bits(int count) {
   return bits;
 }
 
-/// Calls body(case) for every geometry of a small world, and for draws from a large one (width up
-/// to 40, up to 70 candidates).
-template <typename Body>
-void for_each_winner_case(const Body& body) {
+/// Geometries of a small world, and of the settings a sample in which each geometry meets each.
+inline std::vector<WinnerCase> small_winner_cases() {
+  std::vector<WinnerCase> geometries;
   WinnerCase c;
-  const auto with_all_settings = [&] {
-    for (const int direction : {-1, 1}) {
-      for (int radius = 0; radius <= 5; ++radius) {
-        for (const bool whole : {false, true}) {
-          for (const int bits : {0, enough_index_bits(c.count)}) {
-            c.direction = direction;
-            c.radius = radius;
-            c.whole_windows_only = whole;
-            c.index_bits = bits;
-            body(c);
-          }
-        }
-      }
-    }
-  };
   for (c.width = 1; c.width <= 7; ++c.width) {
     for (c.count = 1; c.count <= 18; c.count += c.count < 5 ? 1 : 4) {
       for (c.disparity_min = -9; c.disparity_min <= 8; ++c.disparity_min) {
-        with_all_settings();
+        geometries.push_back(c);
       }
     }
   }
+  std::vector<WinnerCase> cases;
+  for (const test::SampleRow& row :
+       test::sampled_rows({static_cast<int>(geometries.size()), 2, 6, 2, 2})) {
+    c = geometries[static_cast<std::size_t>(row[0])];
+    c.direction = row[1] == 0 ? -1 : 1;
+    c.radius = row[2];
+    c.whole_windows_only = row[3] == 1;
+    c.index_bits = row[4] == 0 ? 0 : enough_index_bits(c.count);
+    cases.push_back(c);
+  }
+  return cases;
+}
+
+/// Calls body(case) for a small world, and for draws from a large one (width up to 40, up to 70
+/// candidates).
+template <typename Body>
+void for_each_winner_case(const Body& body) {
+  static const std::vector<WinnerCase> small_cases = small_winner_cases();
+  for (const WinnerCase& small : small_cases) {
+    body(small);
+  }
+  WinnerCase c;
   std::mt19937 random(31);
   for (int width = 1; width <= 40; ++width) {
     for (int count = 1; count <= 70; ++count) {
