@@ -16,6 +16,7 @@
 #include "engine/io/opencv_setup.h"
 #include "engine/io/pfm.h"
 #include "engine/io/png_decoder.h"
+#include "engine/io/png_encoder.h"
 #include "engine/io/png_structure.h"
 #include "engine/io/pnm.h"
 
@@ -114,6 +115,18 @@ void encode_with_opencv(const std::string& extension, const Photograph& photogra
       photograph.pixels);
 }
 
+/// Leaves `bytes` empty when the image does not fit the format, as floats never do.
+void encode_with_libpng(const Photograph& photograph, std::vector<std::uint8_t>& bytes) {
+  bytes.clear();
+  std::visit(
+      [&]<typename T>(const Image<T>& image) {
+        if constexpr (!std::is_same_v<T, float>) {
+          encode_png(image, bytes);
+        }
+      },
+      photograph.pixels);
+}
+
 /// What a format can hold, by extension.
 struct Capability {
   std::string_view extension;
@@ -200,7 +213,11 @@ void encode_image(const std::filesystem::path& path, const Photograph& photograp
     return;
   }
   try {
-    encode_with_opencv(extension, photograph, bytes);
+    if (extension == ".png") {
+      encode_with_libpng(photograph, bytes);
+    } else {
+      encode_with_opencv(extension, photograph, bytes);
+    }
   } catch (const cv::Exception&) {
     bytes.clear();
   }

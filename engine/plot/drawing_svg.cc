@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/error.h"
 #include "engine/io/base64.h"
 #include "engine/io/markup_text.h"
-#include "engine/io/opencv_codecs.h"
-#include "engine/io/opencv_setup.h"
+#include "engine/io/png_encoder.h"
 #include "engine/plot/drawing.h"
 
 namespace vantage {
@@ -25,13 +24,9 @@ std::string printable(std::string text) {
 }
 
 std::string png_of(const Image<std::uint8_t>& rgb) {
-  prepare_opencv();
-  cv::Mat bgr;
-  cv::cvtColor(cv::Mat(rgb.height(), rgb.width(), CV_8UC3, const_cast<std::uint8_t*>(rgb.row(0)),
-                       rgb.view().stride()),
-               bgr, cv::COLOR_RGB2BGR);
-  std::vector<unsigned char> bytes;
-  if (!encode_by_opencv(".png", bgr, bytes)) {
+  std::vector<std::uint8_t> bytes;
+  encode_png(rgb, bytes);
+  if (bytes.empty()) {
     throw Error("a picture of a drawing cannot be encoded as PNG");
   }
   return encode_base64(bytes);
