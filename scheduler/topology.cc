@@ -18,6 +18,26 @@ Handle new_handle() {
   return {topology, hwloc_topology_destroy};
 }
 
+/// This machine, or what the environment has stand for it. Null when hwloc cannot tell.
+Handle loaded(unsigned long flags) {
+  Handle handle = new_handle();
+  if (handle == nullptr || hwloc_topology_set_flags(handle.get(), flags) != 0 ||
+      hwloc_topology_load(handle.get()) != 0) {
+    return nullptr;
+  }
+  return handle;
+}
+
+/// The same from what the system tells, and where that has no caches, from what every processor
+/// tells a thread that moves from one to the next: that waits for each until it is free.
+Handle loaded() {
+  Handle handle = loaded(HWLOC_TOPOLOGY_FLAG_DONT_CHANGE_BINDING);
+  if (handle == nullptr || hwloc_get_obj_by_type(handle.get(), HWLOC_OBJ_L1CACHE, 0) == nullptr) {
+    handle = loaded(0);
+  }
+  return handle;
+}
+
 /// Leaves what the threads of this process may run on. cgroups hwloc knows itself.
 void restrict_to_affinity_mask(hwloc_topology_t topology) {
   hwloc_bitmap_t mask = hwloc_bitmap_alloc();
@@ -108,8 +128,8 @@ int NumaNode::hardware_threads() const {
 }
 
 Topology detect_topology() {
-  const Handle handle = new_handle();
-  if (handle == nullptr || hwloc_topology_load(handle.get()) != 0) {
+  const Handle handle = loaded();
+  if (handle == nullptr) {
     Topology unknown;
     unknown.nodes = {{.number = 0, .cores = {{0}}, .memory_bytes = 0}};
     return unknown;
