@@ -7,6 +7,7 @@
 
 #include "apps/commands.h"
 #include "apps/empty_views.h"
+#include "apps/matrix_rows.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
 #include "apps/pair_input.h"
@@ -50,14 +51,6 @@ void check(const SynthJob& job, const Settings& settings, const ViewOutputs& out
   check_pair(job.pair, settings, files);
   outputs.check(files);
   check_common_files(job.common, files);
-}
-
-SettingValue rows_of(const Eigen::Matrix3d& matrix) {
-  SettingValue rows = SettingValue::array();
-  for (int row = 0; row < 3; ++row) {
-    rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2)});
-  }
-  return rows;
 }
 
 SettingValue describe_posed_view(const ViewPose& pose, const SynthesizedView& view) {

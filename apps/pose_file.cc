@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "apps/matrix_rows.h"
 #include "apps/outputs.h"
 #include "apps/toml_file.h"
 #include "engine/error.h"
@@ -117,14 +118,6 @@ PoseEntry entry_of(const SettingValue& entry, const std::string& where) {
   const std::vector<double> at = numbers_of(entry["at"], 2, where + ": at");
   result.pose = BaselinePosition{at[0], at[1]};
   return result;
-}
-
-SettingValue rows_of(const Eigen::Matrix3d& matrix) {
-  SettingValue rows = SettingValue::array();
-  for (int row = 0; row < 3; ++row) {
-    rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2)});
-  }
-  return rows;
 }
 
 SettingValue value_of(const PoseEntry& pose) {

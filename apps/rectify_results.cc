@@ -4,22 +4,11 @@
 
 #include <cstdio>
 
+#include "apps/matrix_rows.h"
 #include "apps/rectification_check.h"
 #include "apps/vertical_error_report.h"
 
 namespace vantage::apps {
-namespace {
-
-SettingValue rows_of(const Eigen::Matrix3d& matrix) {
-  SettingValue rows = SettingValue::array();
-  for (int row = 0; row < 3; ++row) {
-    rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2)});
-  }
-  return rows;
-}
-
-}  // namespace
-
 SettingValue results_of(const Rectification& rectification, const RectifiedPair& pair,
                         int pair_count) {
   SettingValue results = {

@@ -11,7 +11,7 @@
 namespace vantage::apps {
 namespace {
 
-constexpr int kMaxShards = 100000;
+constexpr int kMaxArraySize = 100000;
 constexpr int kMaxCpus = 1024;
 constexpr int kMaxRetries = 1000;
 constexpr int kMaxDrainSeconds = 86400;
@@ -58,10 +58,10 @@ std::optional<long> to_seconds(const std::string& text) {
 }  // namespace
 
 void SlurmOptions::validate() const {
-  require_range("--shards", shards, 1, kMaxShards);
+  require_range("--shards", shards, 1, kMaxArraySize);
   require_range("--retries", retries, 0, kMaxRetries);
   require_range("--cpus", cpus.value_or(1), 1, kMaxCpus);
-  require_range("--concurrent", concurrent.value_or(1), 1, kMaxShards);
+  require_range("--concurrent", concurrent.value_or(1), 1, kMaxArraySize);
   require_range("--drain-time", drain_seconds_or_default(), 1, kMaxDrainSeconds);
   require_name("--partition", partition);
   require_name("--account", account);

@@ -22,18 +22,18 @@
 namespace vantage::apps {
 namespace {
 
-constexpr double kFarthestView = 16;  // baselines, as the engine has it
-constexpr int kMaxSide = 16384;       // the largest texture of nearly all graphics
+constexpr double kFarthestPageView = 16;  // baselines, as the engine has it
+constexpr int kMaxSide = 16384;           // the largest texture of nearly all graphics
 constexpr int kLargestNumber = 65535;
 constexpr double kCoarsestStepPx = 1.0 / 16;
 constexpr double kFinestStepPx = 1.0 / 4096;
 
 void check_range(std::string_view option, const ViewRange& range) {
-  if (!(range.first <= range.last && range.first >= -kFarthestView &&
-        range.last <= kFarthestView)) {
+  if (!(range.first <= range.last && range.first >= -kFarthestPageView &&
+        range.last <= kFarthestPageView)) {
     throw UsageError(
         fmt::format("{} is {}:{}, expected two numbers within ±{}, the smaller one first", option,
-                    range.first, range.last, kFarthestView));
+                    range.first, range.last, kFarthestPageView));
   }
 }
 

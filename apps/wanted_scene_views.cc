@@ -12,24 +12,24 @@
 namespace vantage::apps {
 namespace {
 
-constexpr int kMostViews = 10000;
+constexpr int kMaxSceneViews = 10000;
 
 std::string to_text(ScenePosition position) { return fmt::format("{},{}", position.x, position.y); }
 
-SceneSweep to_sweep(const SettingValue& value) {
+SceneSweep to_scene_sweep(const SettingValue& value) {
   const auto parts = split(value.is_string() ? value.get<std::string>() : "", ':');
   try {
     if (parts.size() == 3) {
       const SceneSweep sweep{to_scene_position(parts[0]), to_scene_position(parts[1]),
                              to_integer(parts[2])};
-      if (sweep.views >= 2 && sweep.views <= kMostViews) {
+      if (sweep.views >= 2 && sweep.views <= kMaxSceneViews) {
         return sweep;
       }
     }
   } catch (const UsageError&) {  // the message below says more
   }
-  reject_value(value,
-               fmt::format("X0,Y0:X1,Y1:VIEWS with 2 to {} views, such as 0,0:2,1:50", kMostViews));
+  reject_value(value, fmt::format("X0,Y0:X1,Y1:VIEWS with 2 to {} views, such as 0,0:2,1:50",
+                                  kMaxSceneViews));
 }
 
 std::vector<ScenePosition> positions_of(const SceneSweep& sweep) {
@@ -81,7 +81,7 @@ void add_wanted_scene_views(Settings& settings, WantedSceneViews& wanted) {
   };
   Setting& sweep =
       settings.add("sweep", "A:B:N", "N views at equal steps from position A to position B");
-  sweep.set = [&wanted](const SettingValue& value) { wanted.sweep = to_sweep(value); };
+  sweep.set = [&wanted](const SettingValue& value) { wanted.sweep = to_scene_sweep(value); };
   sweep.get = [&wanted]() -> SettingValue {
     return wanted.sweep
                ? SettingValue(fmt::format("{}:{}:{}", to_text(wanted.sweep->first),

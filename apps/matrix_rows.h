@@ -1,0 +1,12 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "apps/setting_value.h"
+
+namespace vantage::apps {
+
+/// The matrix as files of poses and reports have it: an array of three rows.
+SettingValue rows_of(const Eigen::Matrix3d& matrix);
+
+}  // namespace vantage::apps
