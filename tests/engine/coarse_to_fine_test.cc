@@ -16,6 +16,7 @@
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/identical_maps.h"
 #include "tests/engine/oracle_comparison.h"
+#include "tests/test_sample.h"
 
 namespace vantage {
 namespace coarse_to_fine_test {
@@ -117,40 +118,48 @@ TEST(CoarseToFineOfEdges, EqualsTheOracle) {
     DisparityRange range;
     PixelKind pixels;
   };
-  for (const Shape& shape :
-       {Shape{1, 1, {0, 0}, PixelKind::kGrey8}, Shape{1, 7, {-2, 2}, PixelKind::kGrey8},
-        Shape{13, 11, {0, 39}, PixelKind::kGrey8}, Shape{37, 29, {-4, 12}, PixelKind::kColour8},
-        Shape{61, 43, {0, 16}, PixelKind::kGrey8}}) {
+  constexpr Shape kShapes[] = {{1, 1, {0, 0}, PixelKind::kGrey8},
+                               {1, 7, {-2, 2}, PixelKind::kGrey8},
+                               {13, 11, {0, 39}, PixelKind::kGrey8},
+                               {37, 29, {-4, 12}, PixelKind::kColour8},
+                               {61, 43, {0, 16}, PixelKind::kGrey8}};
+  constexpr int kLevels[] = {1, 2, 5};
+  struct Prior {
+    PriorSmoothing smoothing;
+    double epsilon;
+    int final_iterations;
+  };
+  constexpr Prior kPriors[] = {{PriorSmoothing::kSum, 5e-6, 2},
+                               {PriorSmoothing::kMaximum, 5e-6, 2},
+                               {PriorSmoothing::kMaximum, 5e-6, 0},
+                               {PriorSmoothing::kMaximum, 0.4, 1},
+                               {PriorSmoothing::kMaximum, 0.7, 1}};
+  for (const test::SampleRow& row : test::sampled_rows({5, 3, 5})) {
+    const Shape& shape = kShapes[row[0]];
+    const int levels = kLevels[row[1]];
+    const Prior& prior = kPriors[row[2]];
     const auto pair = textured_pair(shape.width, shape.height, shape.range, shape.pixels, 3);
-    for (const int levels : {1, 2, 5}) {
-      for (const auto& [smoothing, epsilon_prior, final_iterations] :
-           {std::tuple(PriorSmoothing::kSum, 5e-6, 2),
-            std::tuple(PriorSmoothing::kMaximum, 5e-6, 2),
-            std::tuple(PriorSmoothing::kMaximum, 5e-6, 0),
-            std::tuple(PriorSmoothing::kMaximum, 0.4, 1),
-            std::tuple(PriorSmoothing::kMaximum, 0.7, 1)}) {
-        const MatchCost cost = levels == 5 ? MatchCost::kCensus : MatchCost::kRayCensus;
-        MatchOptions options = options_of(Aggregation::kBayes, cost, levels, shape.range);
-        options.parameters.sigma_measurement = levels == 5 ? 12.4 : 4.8;
-        options.parameters.census_thresholds = levels == 2 ? 3 : 1;
-        options.parameters.epsilon_prior = epsilon_prior;
-        options.parameters.final_iterations = final_iterations;
-        options.parameters.prior_growth = 1.2;
-        options.parameters.level_weight = 0.6;
-        options.parameters.edge_weight = 0.2;
-        options.parameters.prior_smoothing = smoothing;
-        Tolerance tolerance = tolerance_with_levels(options.resolved());
-        if (final_iterations == 0) {
-          tolerance.tie = 0.1;  // what is chosen from are bytes, of 0.09 nat each
-        }
-        expect_equals_oracle(pair, options, execution, tolerance,
-                             std::to_string(shape.width) + "x" + std::to_string(shape.height) +
-                                 ", " + std::to_string(levels) + " levels, " +
-                                 (smoothing == PriorSmoothing::kSum ? "sum" : "maximum") +
-                                 ", epsilon " + std::to_string(epsilon_prior) + ", " +
-                                 std::to_string(final_iterations) + " final iterations");
-      }
+    const MatchCost cost = levels == 5 ? MatchCost::kCensus : MatchCost::kRayCensus;
+    MatchOptions options = options_of(Aggregation::kBayes, cost, levels, shape.range);
+    options.parameters.sigma_measurement = levels == 5 ? 12.4 : 4.8;
+    options.parameters.census_thresholds = levels == 2 ? 3 : 1;
+    options.parameters.epsilon_prior = prior.epsilon;
+    options.parameters.final_iterations = prior.final_iterations;
+    options.parameters.prior_growth = 1.2;
+    options.parameters.level_weight = 0.6;
+    options.parameters.edge_weight = 0.2;
+    options.parameters.prior_smoothing = prior.smoothing;
+    Tolerance tolerance = tolerance_with_levels(options.resolved());
+    if (prior.final_iterations == 0) {
+      tolerance.tie = 0.1;  // what is chosen from are bytes, of 0.09 nat each
     }
+    expect_equals_oracle(pair, options, execution, tolerance,
+                         std::to_string(shape.width) + "x" + std::to_string(shape.height) + ", " +
+                             std::to_string(levels) + " levels, " +
+                             (prior.smoothing == PriorSmoothing::kSum ? "sum" : "maximum") +
+                             ", epsilon " + std::to_string(prior.epsilon) + ", " +
+                             std::to_string(prior.final_iterations) + " final iterations, " +
+                             test::sample_name());
   }
 }
 

