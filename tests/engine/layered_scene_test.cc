@@ -153,7 +153,7 @@ TEST(LayeredScene, NothingIsOccludedInItsOwnView) {
 
 TEST(LayeredScene, ViewsShowTheSameColoursAtWarpedPositions) {
   LayeredSceneOptions options = small(320, 240);
-  options.samples_per_side = 3;
+  options.samples_per_side = 2;
   const LayeredScene scene(options, threads());
   const SceneRendering left = scene.render(kLeft, 20);
   for (const double view_x : {0.5, 1.0}) {

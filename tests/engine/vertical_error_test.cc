@@ -177,8 +177,10 @@ TEST(VerticalError, IsFoundInPictures) {
     Eigen::Matrix3d down = Eigen::Matrix3d::Identity();
     down(1, 2) = shift;
     const Photograph shifted = test::warped(right, down);
-    for (const auto& found : {check_rectification(left, shifted),
-                              std::optional(measure_vertical_error(left, shifted))}) {
+    {
+      const std::optional<VerticalError> found =
+          shift > 0 ? check_rectification(left, shifted)
+                    : std::optional(measure_vertical_error(left, shifted));
       ASSERT_TRUE(found);
       EXPECT_NEAR(found->mean_px, -shift, 0.08);
       EXPECT_NEAR(found->systematic_px, std::abs(shift), 0.08);
