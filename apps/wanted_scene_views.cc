@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMaxSceneViews = 10000;
 
-std::string to_text(ScenePosition position) { return fmt::format("{},{}", position.x, position.y); }
+std::string text_of(ScenePosition position) { return fmt::format("{},{}", position.x, position.y); }
 
 SceneSweep to_scene_sweep(const SettingValue& value) {
   const auto parts = split(value.is_string() ? value.get<std::string>() : "", ':');
@@ -75,7 +75,7 @@ void add_wanted_scene_views(Settings& settings, WantedSceneViews& wanted) {
   at.get = [&wanted] {
     SettingValue values = SettingValue::array();
     for (const ScenePosition position : wanted.at) {
-      values.push_back(to_text(position));
+      values.push_back(text_of(position));
     }
     return values;
   };
@@ -84,8 +84,8 @@ void add_wanted_scene_views(Settings& settings, WantedSceneViews& wanted) {
   sweep.set = [&wanted](const SettingValue& value) { wanted.sweep = to_scene_sweep(value); };
   sweep.get = [&wanted]() -> SettingValue {
     return wanted.sweep
-               ? SettingValue(fmt::format("{}:{}:{}", to_text(wanted.sweep->first),
-                                          to_text(wanted.sweep->last), wanted.sweep->views))
+               ? SettingValue(fmt::format("{}:{}:{}", text_of(wanted.sweep->first),
+                                          text_of(wanted.sweep->last), wanted.sweep->views))
                : SettingValue();
   };
   settings.text("path", wanted.path_file, "FILE",
