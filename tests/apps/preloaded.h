@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdlib>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,50 @@ inline std::vector<std::string> fault_at(const std::string& fault, int call,
                                          const std::string& folder) {
   return preloaded(test_paths::io_faults(), {"IO_FAULTS_FOLDER=" + folder,
                                              "IO_FAULTS_" + fault + "=" + std::to_string(call)});
+}
+
+/// What the calls that change files below a folder were, in order: "rename", "write", …
+struct FileCalls {
+  std::vector<std::string> names;
+
+  [[nodiscard]] int count() const { return static_cast<int>(names.size()); }
+  /// Numbers (from 1) of those of this name.
+  [[nodiscard]] std::vector<int> numbers_of(const std::string& name) const {
+    std::vector<int> numbers;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i] == name) {
+        numbers.push_back(static_cast<int>(i) + 1);
+      }
+    }
+    return numbers;
+  }
+  /// Numbers of the first and the last of each of these names.
+  [[nodiscard]] std::vector<int> ends_of(const std::vector<std::string>& wanted) const {
+    std::vector<int> ends;
+    for (const std::string& name : wanted) {
+      if (const std::vector<int> numbers = numbers_of(name); !numbers.empty()) {
+        ends.insert(ends.end(), {numbers.front(), numbers.back()});
+      }
+    }
+    return ends;
+  }
+};
+
+/// Runs the program to its end and notes its calls that change files below `folder`.
+inline FileCalls calls_of(const std::vector<std::string>& arguments, const std::string& folder) {
+  const TemporaryFolder notes;
+  const ProcessResult result = run_vantage(
+      arguments, joined(fault_at("KILL", -1, folder), {"IO_FAULTS_COUNT=" + (notes / "count")}));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  std::istringstream lines(read_file(notes / "count"));
+  std::size_t count = 0;
+  std::string name;
+  FileCalls calls;
+  for (lines >> count; lines >> name;) {
+    calls.names.push_back(name);
+  }
+  EXPECT_EQ(calls.names.size(), count) << "more calls than are noted";
+  return calls;
 }
 
 }  // namespace vantage

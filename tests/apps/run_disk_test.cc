@@ -6,11 +6,11 @@
 
 #include <chrono>
 #include <csignal>
-#include <random>
 #include <thread>
 
 #include "tests/apps/preloaded.h"
 #include "tests/apps/run_fixture.h"
+#include "tests/apps/sampling.h"
 
 namespace vantage {
 namespace run_disk_test {
@@ -69,6 +69,8 @@ class RunDisk : public RunTest {
   }
 };
 
+using SlowRunDisk = RunDisk;
+
 TEST_F(RunDisk, FullInTheMiddle) {
   const SmallDisk disk(folder_ / "disk");
   if (!disk.is_mounted()) {
@@ -98,7 +100,8 @@ TEST_F(RunDisk, FullInTheMiddle) {
   EXPECT_TRUE(same_files(results_in(out), expected));
 }
 
-TEST_F(RunDisk, FullWhileVideosAreWrittenOrJoined) {
+TEST_F(SlowRunDisk, FullWhileVideosAreWrittenOrJoined) {
+  SCOPED_TRACE(sampling_trace());
   const SmallDisk disk(folder_ / "disk");
   if (!disk.is_mounted()) {
     GTEST_SKIP() << "a small file system can be mounted by root only";
@@ -109,7 +112,7 @@ TEST_F(RunDisk, FullWhileVideosAreWrittenOrJoined) {
     bytes += (content.size() + 4095) / 4096 * 4096;
   }
   const std::string out = folder_ / "disk/out";
-  for (const double share : {0.2, 0.5, 0.8, 1.0, 1.05, 1.1}) {
+  for (const double share : sampled<double>({0.2, 0.5, 0.8, 1.0, 1.05, 1.1}, 1, 5)) {
     disk.resize(static_cast<std::uintmax_t>(share * static_cast<double>(bytes)));
     const ProcessResult result = run(out, joined(kVideoOutputs, {"--quiet"}));
     expect_full(result, out, expected);
@@ -123,37 +126,31 @@ TEST_F(RunDisk, FullWhileVideosAreWrittenOrJoined) {
 }
 
 /// Without a file system of its own: writing fails from some call on, whichever it is.
-TEST_F(RunDisk, FullFromAnyCallOn) {
-  const FolderContent expected = undisturbed(kVideoOutputs);
+TEST_F(SlowRunDisk, FullFromAnyCallOn) {
+  SCOPED_TRACE(sampling_trace());
   const std::string out = folder_ / "out";
-  ASSERT_EQ(
-      run_vantage(arguments(out, kVideoOutputs),
-                  joined(fault_at("KILL", -1, out), {"IO_FAULTS_COUNT=" + (folder_ / "count")}))
-          .exit_code,
-      0);
-  const int calls = std::stoi(read_file(folder_ / "count"));
-  ASSERT_GT(calls, 100);
-  fs::remove_all(out);
-  std::mt19937 generator(11);
-  std::vector<int> chosen = {calls - 30, calls - 20, calls - 12};
-  for (int i = 0; i < (kIsSanitized ? 2 : 9); ++i) {
-    chosen.push_back(1 + static_cast<int>(generator() % static_cast<unsigned>(calls)));
-  }
-  for (const int call : chosen) {
+  const FileCalls calls = calls_of(arguments(out, kVideoOutputs), out);
+  const FolderContent expected = results_in(out);
+  const int last = calls.count();
+  ASSERT_GT(last, 100);
+  // Videos are joined near the end.
+  for (const int call :
+       sampled_range(1, last, 2, 11, {calls.numbers_of("rename").front(), last - 30, last - 12})) {
+    SCOPED_TRACE("full from call " + std::to_string(call));
+    fs::remove_all(out);
     const ProcessResult result =
         run_vantage(arguments(out, joined(kVideoOutputs, {"--resume", "--quiet"})),
                     fault_at("FULL", call, out));
     if (result.exit_code == 0) {
       // What is left at the end needs no space.
-      EXPECT_GT(call, calls * 2 / 3);
+      EXPECT_GT(call, last * 2 / 3);
       EXPECT_TRUE(same_files(results_in(out), expected));
-    } else {
-      expect_full(result, out, expected);
+      continue;
     }
+    expect_full(result, out, expected);
     const ProcessResult resumed = run(out, joined(kVideoOutputs, {"--resume"}));
     EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
-    EXPECT_TRUE(same_files(results_in(out), expected)) << call;
-    fs::remove_all(out);
+    EXPECT_TRUE(same_files(results_in(out), expected));
   }
 }
 

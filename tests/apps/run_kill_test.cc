@@ -3,13 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <random>
 #include <thread>
+#include <utility>
 
 #include "tests/apps/preloaded.h"
 #include "tests/apps/run_fixture.h"
+#include "tests/apps/sampling.h"
 
 namespace vantage {
 namespace run_kill_test {
@@ -18,8 +20,10 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using testing::IsEmpty;
 
-constexpr int kKills = kIsSanitized ? 6 : 20;
 constexpr int kKilled = 128 + SIGKILL;
+
+/// Kills of a run at moments that nothing chooses but the seed.
+std::size_t random_kills() { return tests_all_cases() ? 20 : 5; }
 
 /// Execution options of the attempts of a run, taken in turn.
 using Ways = std::vector<std::vector<std::string>>;
@@ -29,7 +33,7 @@ const std::vector<std::string> kTemporalOutputs =
 const std::vector<std::string> kTemporalVideoOutputs =
     joined(kVideoOutputs, {"--temporal-prior", "1", "--measure-flicker"});
 
-class KilledRun : public RunTest {
+class SlowKilledRun : public RunTest {
  protected:
   /// Whatever has a name must be whole, at any time.
   void expect_whole_files(const FolderContent& expected) const {
@@ -60,49 +64,61 @@ class KilledRun : public RunTest {
   /// Kills at moments that are spread over the time that a run takes, from its first results on.
   /// What is killed is continued; what is done before its moment comes begins anew.
   void kill_at_random_moments(const std::vector<std::string>& outputs, const Ways& ways) {
+    SCOPED_TRACE(sampling_trace());
     const Clock::time_point dry = Clock::now();
     ASSERT_EQ(run(out_, joined(outputs, {"--dry-run"})).exit_code, 0);
     const Clock::time_point begin = Clock::now();
     const FolderContent expected = undisturbed(outputs);
     const auto opening = begin - dry;
     const auto working = Clock::now() - begin - opening;
-    std::mt19937 generator(20240607);
-    for (int kill = 0; kill < kKills; ++kill) {
-      const double share = static_cast<double>(generator()) / static_cast<double>(1LL << 32);
-      const std::size_t way = static_cast<std::size_t>(kill) % ways.size();
+    SampledNumbers numbers(20240607);
+    // One in each part of the time, in an order of the seed's.
+    std::vector<double> shares(std::max(random_kills(), ways.size()));
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      shares[i] = (static_cast<double>(i) + numbers.share()) / static_cast<double>(shares.size());
+      std::swap(shares[i], shares[numbers.below(i + 1)]);
+    }
+    for (std::size_t kill = 0; kill < shares.size(); ++kill) {
       const TemporaryFolder streams;
       const VantageProcess process(
-          arguments(out_, joined(joined(outputs, ways[way]), {"--resume"})), streams.path());
+          arguments(out_, joined(joined(outputs, ways[kill % ways.size()]), {"--resume"})),
+          streams.path());
       const auto moment = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                             0.9 * opening + share * working);
+                                             0.9 * opening + shares[kill] * working);
       while (Clock::now() < moment && !process.has_ended()) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
       process.send(SIGKILL);
-      const ProcessResult result = process.wait();
-      if (result.exit_code == kKilled) {
-        expect_whole_files(expected);
-      } else {
-        EXPECT_EQ(result.exit_code, 0) << result.err;
-        expect_done(expected);
-        fs::remove_all(out_);
-      }
+      expect_killed_or_done(process.wait(), expected);
     }
     finish(outputs, expected);
+  }
+
+  /// What is killed has whole files only; what is not has done all, and is removed. Returns whether
+  /// it was killed.
+  bool expect_killed_or_done(const ProcessResult& result, const FolderContent& expected) const {
+    if (result.exit_code == kKilled) {
+      expect_whole_files(expected);
+      return true;
+    }
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    expect_done(expected);
+    fs::remove_all(out_);
+    return false;
   }
 
   std::string out_ = folder_ / "out";
 };
 
-TEST_F(KilledRun, ImagesEndWithTheSameBytes) { kill_at_random_moments(kImageOutputs, {{}}); }
+TEST_F(SlowKilledRun, ImagesEndWithTheSameBytes) { kill_at_random_moments(kImageOutputs, {{}}); }
 
-TEST_F(KilledRun, VideosEndWithTheSameBytes) { kill_at_random_moments(kVideoOutputs, {{}}); }
+TEST_F(SlowKilledRun, VideosEndWithTheSameBytes) { kill_at_random_moments(kVideoOutputs, {{}}); }
 
-TEST_F(KilledRun, WithATemporalPriorItEndsWithTheSameBytes) {
+TEST_F(SlowKilledRun, WithATemporalPriorItEndsWithTheSameBytes) {
   kill_at_random_moments(kTemporalOutputs, {{}});
 }
 
-TEST_F(KilledRun, EachAttemptMayRunInAnotherWay) {
+TEST_F(SlowKilledRun, EachAttemptMayRunInAnotherWay) {
   kill_at_random_moments(kTemporalVideoOutputs,
                          {{"--executor", "serial", "--in-flight", "1"},
                           {"--executor", "openmp", "--threads", "3", "--in-flight", "5"},
@@ -112,51 +128,61 @@ TEST_F(KilledRun, EachAttemptMayRunInAnotherWay) {
 }
 
 /// Whatever a process was about to do to its files may be what it did not get to.
-TEST_F(KilledRun, AnyCallMayBeTheLast) {
+TEST_F(SlowKilledRun, AnyCallMayBeTheLast) {
+  SCOPED_TRACE(sampling_trace());
   for (const auto& outputs : {kVideoOutputs, kImageOutputs}) {
-    const FolderContent expected = undisturbed(outputs);
-    std::mt19937 generator(7);
+    const std::vector<std::string> all = arguments(out_, joined(outputs, {"--resume"}));
+    const FileCalls calls = calls_of(all, out_);
+    ASSERT_GT(calls.count(), 100);
+    const FolderContent expected = results_in(out_);
+    // Results get their names by renaming, and then their journal is flushed.
+    const std::vector<int> chosen =
+        sampled_range(1, calls.count(), 1, 7, calls.ends_of({"rename", "fdatasync"}));
     int killed = 0;
-    for (int attempt = 0; attempt < 2 * kKills / 3; ++attempt) {
-      const int call = 1 + static_cast<int>(generator() % 120U);
-      const ProcessResult result =
-          run_vantage(arguments(out_, joined(outputs, {"--resume"})), fault_at("KILL", call, out_));
-      if (result.exit_code == kKilled) {
-        ++killed;
-        expect_whole_files(expected);
-      } else {
-        EXPECT_EQ(result.exit_code, 0) << result.err;
-        expect_done(expected);
-        fs::remove_all(out_);
-      }
+    for (const int call : chosen) {
+      fs::remove_all(out_);
+      SCOPED_TRACE("killed before call " + std::to_string(call));
+      killed += expect_killed_or_done(run_vantage(all, fault_at("KILL", call, out_)), expected);
     }
-    EXPECT_GT(killed, 0);
+    // Not all: the last number depends on how results come together.
+    EXPECT_GT(killed, static_cast<int>(chosen.size()) / 2);
+    // A continued run is one as well.
+    for (const double share : {0.6, 0.3}) {
+      const int call = 1 + static_cast<int>(share * calls.count());
+      expect_killed_or_done(run_vantage(all, fault_at("KILL", call, out_)), expected);
+    }
     finish(outputs, expected);
     fs::remove_all(out_);
   }
 }
 
 /// When all segments are there, joining them and clearing up is all that is left to do: the process
-/// is killed before each of the calls that this takes.
-TEST_F(KilledRun, JoiningOfVideosMayBeCutOffAnywhere) {
-  const FolderContent expected = undisturbed(kVideoOutputs);
+/// is killed before calls that this takes.
+TEST_F(SlowKilledRun, JoiningOfVideosMayBeCutOffAnywhere) {
+  SCOPED_TRACE(sampling_trace());
+  const std::string prepared = folder_ / "prepared";
   ASSERT_EQ(run(out_, joined(kVideoOutputs, {"--shard", "1/1"})).exit_code, 0);
   ASSERT_FALSE(fs::exists(out_ + "/views.mp4"));
   fs::rename(out_ + "/.vantage/frames-1-of-1.jsonl", out_ + "/.vantage/frames-all.jsonl");
+  fs::copy(out_, prepared, fs::copy_options::recursive);
   const std::vector<std::string> again = arguments(out_, joined(kVideoOutputs, {"--resume"}));
-  int killed = 0;
-  for (int call = 1;; call += kIsSanitized ? 7 : 2) {
+  const FileCalls calls = calls_of(again, out_);
+  const FolderContent expected = undisturbed(kVideoOutputs);
+  expect_done(expected);
+  ASSERT_GT(calls.count(), 8);
+  const std::vector<int> chosen =
+      sampled_range(1, calls.count(), 3, 3, calls.ends_of({"rename", "unlinkat", "fdatasync"}));
+  for (const int call : chosen) {
+    fs::remove_all(out_);
+    fs::copy(prepared, out_, fs::copy_options::recursive);
     const ProcessResult result = run_vantage(again, fault_at("KILL", call, out_));
+    EXPECT_EQ(result.exit_code, kKilled) << call << result.err;
     expect_whole_files(expected);
-    if (result.exit_code != kKilled) {
-      EXPECT_EQ(result.exit_code, 0) << result.err;
-      break;
+    if (tests_all_cases() || call == chosen[chosen.size() / 2] || call == chosen.back()) {
+      finish(kVideoOutputs, expected);
+      EXPECT_FALSE(fs::exists(out_ + "/.vantage/segments"));
     }
-    ++killed;
   }
-  EXPECT_GT(killed, kIsSanitized ? 2 : 8);
-  finish(kVideoOutputs, expected);
-  EXPECT_FALSE(fs::exists(out_ + "/.vantage/segments"));
 }
 
 }  // namespace run_kill_test

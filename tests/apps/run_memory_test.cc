@@ -8,6 +8,7 @@
 
 #include "tests/apps/preloaded.h"
 #include "tests/apps/run_fixture.h"
+#include "tests/apps/sampling.h"
 #include "tests/test_paths.h"
 
 namespace vantage {
@@ -25,7 +26,7 @@ R: [1, 0, 0, 0, 0.99920011, -0.03998933, 0, 0.03998933, 0.99920011]
 T: [-1, 0.02, 0.01]
 )";
 
-class RunMemory : public RunTest {
+class SlowRunMemory : public RunTest {
  protected:
   static constexpr int kMany = 400;
   static constexpr int kLargeWidth = 400;
@@ -100,13 +101,12 @@ class RunMemory : public RunTest {
 
   /// What a frame adds when all that is reused is there.
   [[nodiscard]] double allocations_per_frame(const std::vector<std::string>& arguments,
-                                             std::size_t bytes) const {
-    constexpr int kFew = 50;
-    constexpr int kMore = 100;
+                                             std::size_t bytes, int few = 50,
+                                             int more = 100) const {
     const auto up_to = [&](int frames) {
       return allocations(joined(arguments, {"--frames", "0-" + std::to_string(frames - 1)}), bytes);
     };
-    return (up_to(kMore) - up_to(kFew)) / (kMore - kFew);
+    return (up_to(more) - up_to(few)) / (more - few);
   }
 
   std::string out_ = folder_ / "out";
@@ -117,7 +117,7 @@ class RunMemory : public RunTest {
   std::string rig_ = folder_ / "rig.yml";
 };
 
-TEST_F(RunMemory, StaysFlat) {
+TEST_F(SlowRunMemory, StaysFlat) {
   for (const auto& outputs : {kImageOutputs, joined(kVideoOutputs, {"--temporal-prior", "1"})}) {
     const std::vector<std::string> common = arguments(out_, joined(outputs, {"--in-flight", "4"}));
     const double few = report_of(joined(common, {"--frames", "0-49"}))["peak_memory_bytes"];
@@ -126,14 +126,19 @@ TEST_F(RunMemory, StaysFlat) {
   }
 }
 
-TEST_F(RunMemory, IsNotMoreThanAllowed) {
+TEST_F(SlowRunMemory, IsNotMoreThanAllowed) {
   const std::vector<std::vector<std::string>> jobs = {
-      {"--frames", "0-29"},
-      {"--frames", "0-9", "--method", "membrane", "--iterations", "10", "--save",
+      {"--frames", "0-15"},
+      {"--frames", "0-9", "--method", "membrane", "--iterations", "3", "--save",
        "disparity,right-disparity,confidence,preview,views,stereo", "--view", "0.5"},
-      {"--frames", "0-59", "--save", "preview,views", "--view", "0.5", "--video", "preview,views"},
-      {"--frames", "0-29", "--method", "diffusion", "--temporal-prior", "1", "--measure-flicker"},
-      {"--frames", "0-29", "--calibration", rig_, "--save", "views", "--view", "0.5,0.1"}};
+      {"--frames", "0-29", "--method", "ssd", "--save", "preview,views", "--view", "0.5", "--video",
+       "preview,views"},
+      {"--frames", "0-15", "--method", "diffusion", "--iterations", "4", "--temporal-prior", "1",
+       "--measure-flicker"},
+      {"--frames", "0-15", "--method", "ssd", "--calibration", rig_, "--save", "views", "--view",
+       "0.5,0.1"}};
+  SCOPED_TRACE(sampling_trace());
+  SampledNumbers numbers(4);
   for (const std::vector<std::string>& job : jobs) {
     const ProcessResult refused =
         run_vantage(large_arguments(joined(job, {"--memory", "10M", "--quiet"})));
@@ -144,16 +149,21 @@ TEST_F(RunMemory, IsNotMoreThanAllowed) {
     const std::size_t least = refused.err.find(says);
     ASSERT_NE(least, std::string::npos) << refused.err;
     const int least_mib = std::stoi(refused.err.substr(least + says.size()));
-    for (const int mib : {least_mib, least_mib * 5 / 4, least_mib * 2}) {
+    std::vector<int> allowed = {least_mib, least_mib * 5 / 4, least_mib * 2};
+    if (!tests_all_cases()) {  // the least is what planning has to be exact for
+      allowed.erase(allowed.end() - 1 - static_cast<std::ptrdiff_t>(numbers.below(2)));
+    }
+    for (const int mib : allowed) {
       const nlohmann::json report =
           report_of(large_arguments(joined(job, {"--memory", std::to_string(mib) + "M"})));
-      EXPECT_LE(report["peak_memory_bytes"], mib * 1048576.0) << job[3];
-      EXPECT_LE(report["results"]["planned_memory_bytes"], mib * 1048576.0) << job[3];
+      EXPECT_LE(report["peak_memory_bytes"], mib * 1048576.0) << testing::PrintToString(job);
+      EXPECT_LE(report["results"]["planned_memory_bytes"], mib * 1048576.0)
+          << testing::PrintToString(job);
     }
   }
 }
 
-TEST_F(RunMemory, HasOwners) {
+TEST_F(SlowRunMemory, HasOwners) {
   const nlohmann::json report =
       report_of(large_arguments({"--frames", "0-19", "--in-flight", "4", "--method", "membrane",
                                  "--iterations", "4", "--iterations-per-pass", "2"}));
@@ -180,7 +190,7 @@ TEST_F(RunMemory, HasOwners) {
 }
 
 /// Messages, names, tasks, file formats: what a frame allocates is small and does not grow.
-TEST_F(RunMemory, FramesAllocateLittle) {
+TEST_F(SlowRunMemory, FramesAllocateLittle) {
   EXPECT_LT(allocations_per_frame(arguments(out_, {}), 1), 450);
   EXPECT_LT(allocations_per_frame(arguments(out_, kImageOutputs), 1), 800);
   // In which every fiftieth frame begins videos anew.
@@ -191,20 +201,20 @@ TEST_F(RunMemory, FramesAllocateLittle) {
 }
 
 /// Pictures on their way from and to files are all that takes blocks of this size anew.
-TEST_F(RunMemory, FramesAllocateFewLargeBlocks) {
-  constexpr std::size_t kLarge = std::size_t{64} << 10;
-  EXPECT_LT(allocations_per_frame(large_arguments({"--method", "ssd"}), kLarge), 12);
-  EXPECT_LT(allocations_per_frame(large_arguments({}), kLarge), 16);
-  EXPECT_LT(allocations_per_frame(
-                large_arguments({"--save", "disparity,preview,views", "--view", "0.5"}), kLarge),
+TEST_F(SlowRunMemory, FramesAllocateFewLargeBlocks) {
+  const auto per_frame = [&](const std::vector<std::string>& more) {
+    return allocations_per_frame(large_arguments(more), std::size_t{64} << 10, 20, 45);
+  };
+  EXPECT_LT(per_frame({"--method", "ssd"}), 12);
+  EXPECT_LT(per_frame({}), 16);
+  // Matching has its own blocks in the two above.
+  EXPECT_LT(per_frame({"--method", "ssd", "--save", "disparity,preview,views", "--view", "0.5"}),
             30);
-  EXPECT_LT(allocations_per_frame(large_arguments({"--view", "0.5,0.25", "--look-at", "8",
-                                                   "--calibration", calibration_}),
-                                  kLarge),
+  EXPECT_LT(per_frame({"--method", "ssd", "--view", "0.5,0.25", "--look-at", "8", "--calibration",
+                       calibration_}),
             30);
-  EXPECT_LT(allocations_per_frame(large_arguments({"--calibration", rig_, "--save",
-                                                   "disparity,preview,views", "--view", "0.5"}),
-                                  kLarge),
+  EXPECT_LT(per_frame({"--method", "ssd", "--calibration", rig_, "--save",
+                       "disparity,preview,views", "--view", "0.5"}),
             30);
 }
 

@@ -8,6 +8,7 @@ Chromium, or one that cannot draw.
 
 import base64
 import math
+import os
 import re
 import subprocess
 import sys
@@ -32,6 +33,11 @@ def vantage(*arguments):
                             timeout=300, check=False)
     if result.returncode != 0:
         raise AssertionError(f"{result.args} exits with {result.returncode}: {result.stderr}")
+
+
+def tests_all_cases():
+    """Whether what takes long and repeats is to be tested as well."""
+    return os.environ.get("VANTAGE_TEST_ALL", "0") not in ("", "0")
 
 
 def why_impossible():
@@ -76,8 +82,9 @@ class ViewPageTest(unittest.TestCase):
         vantage("view", *cls.pair, "-o", cls.page)
         cls.browser = cls.enterClassContext(Browser())
 
-    def open(self, address="", page=None, status="ready", **more):
-        tab = Tab(self.browser, (page or self.page).as_uri() + address, **more)
+    def open(self, address="", page=None, status="ready"):
+        # Small: the processor draws, and what is drawn while the view moves takes most of the time.
+        tab = Tab(self.browser, (page or self.page).as_uri() + address, width=400, height=400)
         self.addCleanup(tab.close)
         self.assertEqual(tab.evaluate("document.documentElement.dataset.status"), status,
                          (tab.text("message"), tab.complaints()))
@@ -126,9 +133,10 @@ class ViewPageTest(unittest.TestCase):
                 "--right-disparity", cones / "disp6.png", "--disparity-scale", "2"]
         page = self.folder / "cones.html"
         vantage("view", *pair, "-o", page)
-        self.expect_synthesized_views(page, pair, {
-            ("0.5", "0"): "between", ("0", "0"): "between", ("0.25", "0"): "between",
-            ("1", "0"): "between", ("-0.4", "0"): "outside", ("0.5", "0.2"): "between"})
+        views = {("0.25", "0"): "between", ("-0.4", "0"): "outside", ("0.5", "0.2"): "between"}
+        if tests_all_cases():
+            views |= {("0.5", "0"): "between", ("0", "0"): "between", ("1", "0"): "between"}
+        self.expect_synthesized_views(page, pair, views)
 
     def test_maps_with_gaps_and_other_options(self):
         left, right = self.folder / "left.pgm", self.folder / "right.pgm"
@@ -228,7 +236,7 @@ class ViewPageTest(unittest.TestCase):
         self.assertEqual(tab.complaints(), [])
 
     def test_every_mode_draws_something_else(self):
-        tab = self.open("#x=0.25", width=400, height=400)
+        tab = self.open("#x=0.25")
         modes = ["view", "disparity", "left", "right", "parallel", "crossed", "anaglyph"]
         drawn = {}
         for mode in modes:

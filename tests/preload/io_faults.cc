@@ -4,7 +4,8 @@
 //   IO_FAULTS_FOLDER  only files below it count
 //   IO_FAULTS_KILL    number (from 1) of the call before which the process is killed
 //   IO_FAULTS_FULL    number of the call from which on nothing can be written
-//   IO_FAULTS_COUNT   file that the number of calls is written to at the end
+//   IO_FAULTS_COUNT   file that is written at the end: the number of calls, and then, a line each,
+//                     what the first kMaxNamed of them were ("rename")
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -12,6 +13,8 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -23,7 +26,11 @@
 namespace {
 
 // The calls come from C code anywhere in the process: there is nothing to hand a state through.
-std::atomic<long> calls{0};  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+constexpr long kMaxNamed = 10000;
+// NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables)
+std::atomic<long> calls{0};
+std::array<std::atomic<const char*>, kMaxNamed> names;
+// NOLINTEND(cppcoreguidelines-avoid-non-const-global-variables)
 
 long number_in(const char* variable) {
   const char* text = std::getenv(variable);
@@ -36,11 +43,14 @@ bool is_below_folder(const char* path) {
 }
 
 /// Counts a call; true when it has to fail because the disk is full.
-bool fails(const char* path, bool needs_space) {
+bool fails(const char* name, const char* path, bool needs_space) {
   if (!is_below_folder(path)) {
     return false;
   }
   const long call = ++calls;
+  if (call <= kMaxNamed) {
+    names[static_cast<std::size_t>(call - 1)] = name;
+  }
   if (call == number_in("IO_FAULTS_KILL")) {
     std::raise(SIGKILL);
   }
@@ -52,7 +62,7 @@ bool fails(const char* path, bool needs_space) {
   return false;
 }
 
-bool fails(int descriptor, bool needs_space) {
+bool fails(const char* name, int descriptor, bool needs_space) {
   char link[64];
   char path[4096];
   std::snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
@@ -61,7 +71,7 @@ bool fails(int descriptor, bool needs_space) {
     return false;
   }
   path[length] = 0;
-  return fails(path, needs_space);
+  return fails(name, path, needs_space);
 }
 
 template <typename Function>
@@ -74,6 +84,9 @@ struct CountAtEnd {
     if (const char* path = std::getenv("IO_FAULTS_COUNT")) {
       if (std::FILE* file = std::fopen(path, "w")) {
         std::fprintf(file, "%ld\n", calls.load());
+        for (long call = 0; call < std::min(calls.load(), kMaxNamed); ++call) {
+          std::fprintf(file, "%s\n", names[static_cast<std::size_t>(call)].load());
+        }
         std::fclose(file);
       }
     }
@@ -85,8 +98,9 @@ const CountAtEnd count_at_end;
 int open_as(const char* name, const char* path, int flags, va_list arguments) {
   const bool creates = (flags & O_CREAT) != 0;
   const mode_t mode = creates ? static_cast<mode_t>(va_arg(arguments, unsigned)) : 0;
-  return creates && fails(path, true) ? -1
-                                      : next<int(const char*, int, ...)>(name)(path, flags, mode);
+  return creates && fails(name, path, true)
+             ? -1
+             : next<int(const char*, int, ...)>(name)(path, flags, mode);
 }
 
 }  // namespace
@@ -110,48 +124,51 @@ int open64(const char* path, int flags, ...) {
 }
 
 ssize_t write(int descriptor, const void* bytes, size_t size) {
-  return fails(descriptor, true)
+  return fails("write", descriptor, true)
              ? -1
              : next<ssize_t(int, const void*, size_t)>("write")(descriptor, bytes, size);
 }
 
 ssize_t writev(int descriptor, const iovec* parts, int count) {
-  return fails(descriptor, true)
+  return fails("writev", descriptor, true)
              ? -1
              : next<ssize_t(int, const iovec*, int)>("writev")(descriptor, parts, count);
 }
 
 int fsync(int descriptor) {
-  return fails(descriptor, false) ? -1 : next<int(int)>("fsync")(descriptor);
+  return fails("fsync", descriptor, false) ? -1 : next<int(int)>("fsync")(descriptor);
 }
 
 int fdatasync(int descriptor) {
-  return fails(descriptor, false) ? -1 : next<int(int)>("fdatasync")(descriptor);
+  return fails("fdatasync", descriptor, false) ? -1 : next<int(int)>("fdatasync")(descriptor);
 }
 
 int ftruncate(int descriptor, off_t length) {
-  return fails(descriptor, false) ? -1 : next<int(int, off_t)>("ftruncate")(descriptor, length);
+  return fails("ftruncate", descriptor, false)
+             ? -1
+             : next<int(int, off_t)>("ftruncate")(descriptor, length);
 }
 
 int rename(const char* from, const char* to) {
-  return fails(to, false) ? -1 : next<int(const char*, const char*)>("rename")(from, to);
+  return fails("rename", to, false) ? -1 : next<int(const char*, const char*)>("rename")(from, to);
 }
 
 int link(const char* from, const char* to) {
-  return fails(to, true) ? -1 : next<int(const char*, const char*)>("link")(from, to);
+  return fails("link", to, true) ? -1 : next<int(const char*, const char*)>("link")(from, to);
 }
 
 int remove(const char* path) {
-  return fails(path, false) ? -1 : next<int(const char*)>("remove")(path);
+  return fails("remove", path, false) ? -1 : next<int(const char*)>("remove")(path);
 }
 
 int unlinkat(int folder, const char* path, int flags) {
-  return fails(folder, false) ? -1
-                              : next<int(int, const char*, int)>("unlinkat")(folder, path, flags);
+  return fails("unlinkat", folder, false)
+             ? -1
+             : next<int(int, const char*, int)>("unlinkat")(folder, path, flags);
 }
 
 int mkdir(const char* path, mode_t mode) {
-  return fails(path, true) ? -1 : next<int(const char*, mode_t)>("mkdir")(path, mode);
+  return fails("mkdir", path, true) ? -1 : next<int(const char*, mode_t)>("mkdir")(path, mode);
 }
 
 }  // extern "C"

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <random>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// Tests that could go through very many cases take a sample. It is the same each time, another one
+/// with VANTAGE_TEST_SEED set to another number, and all cases with VANTAGE_TEST_ALL set.
+namespace vantage {
+
+/// Whether nothing is to be left out: VANTAGE_TEST_ALL is neither empty nor "0".
+inline bool tests_all_cases() {
+  const char* text = std::getenv("VANTAGE_TEST_ALL");
+  const std::string_view value = text == nullptr ? "" : text;
+  return !value.empty() && value != "0";
+}
+
+inline std::uint64_t sampling_seed() {
+  const char* text = std::getenv("VANTAGE_TEST_SEED");
+  return text == nullptr || *text == '\0' ? 1 : std::strtoull(text, nullptr, 10);
+}
+
+/// For SCOPED_TRACE: how a failure can be had again.
+inline std::string sampling_trace() {
+  return tests_all_cases() ? "VANTAGE_TEST_ALL=1"
+                           : "VANTAGE_TEST_SEED=" + std::to_string(sampling_seed());
+}
+
+/// Whole numbers from the seed, the same with every standard library. `stream` tells tests apart.
+class SampledNumbers {
+ public:
+  explicit SampledNumbers(std::uint32_t stream)
+      : generator_(static_cast<std::uint32_t>(sampling_seed()) * 2654435761U + stream) {}
+  /// From 0 to `count` - 1.
+  std::size_t below(std::size_t count) { return generator_() % count; }
+  /// From 0 to below 1.
+  double share() { return static_cast<double>(generator_()) / 4294967296.0; }
+
+ private:
+  std::mt19937 generator_;
+};
+
+/// `always`, first, last and `count` others of first … last, in order; all of them when everything
+/// is tested. What of `always` lies outside of the range is left out.
+inline std::vector<int> sampled_range(int first, int last, int count, std::uint32_t stream,
+                                      const std::vector<int>& always = {}) {
+  std::set<int> chosen = {first, last};
+  for (const int number : always) {
+    if (number >= first && number <= last) {
+      chosen.insert(number);
+    }
+  }
+  const auto all = static_cast<std::size_t>(last - first + 1);
+  const std::size_t wanted =
+      tests_all_cases() ? all : std::min(all, chosen.size() + static_cast<std::size_t>(count));
+  if (wanted == all) {
+    for (int number = first; number <= last; ++number) {
+      chosen.insert(number);
+    }
+  }
+  for (SampledNumbers numbers(stream); chosen.size() < wanted;) {
+    chosen.insert(first + static_cast<int>(numbers.below(all)));
+  }
+  return {chosen.begin(), chosen.end()};
+}
+
+/// First, last and `count` others of `cases`, in order.
+template <typename Case>
+std::vector<Case> sampled(const std::vector<Case>& cases, int count, std::uint32_t stream) {
+  std::vector<Case> chosen;
+  for (const int i : sampled_range(0, static_cast<int>(cases.size()) - 1, count, stream)) {
+    chosen.push_back(cases[static_cast<std::size_t>(i)]);
+  }
+  return chosen;
+}
+
+/// One of the cases of each group, in the order of the first ones. `group_of` names a case's group,
+/// such as the option it is about.
+template <typename Case, typename GroupOf>
+std::vector<Case> sampled_of_each(const std::vector<Case>& cases, const GroupOf& group_of,
+                                  std::uint32_t stream) {
+  if (tests_all_cases()) {
+    return cases;
+  }
+  std::vector<std::pair<std::string, std::vector<Case>>> groups;
+  for (const Case& one : cases) {
+    const std::string name = group_of(one);
+    auto group =
+        std::ranges::find_if(groups, [&](const auto& other) { return other.first == name; });
+    if (group == groups.end()) {
+      group = groups.insert(groups.end(), {name, {}});
+    }
+    group->second.push_back(one);
+  }
+  std::vector<Case> chosen;
+  SampledNumbers numbers(stream);
+  for (const auto& [name, members] : groups) {
+    chosen.push_back(members[numbers.below(members.size())]);
+  }
+  return chosen;
+}
+
+}  // namespace vantage
