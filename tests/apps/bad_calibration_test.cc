@@ -47,7 +47,7 @@ std::string middlebury(const std::string& last_lines) {
   return "cam0=[70 0 30; 0 70 26; 0 0 1]\ncam1=[70 0 33; 0 70 26; 0 0 1]\nndisp=9\n" + last_lines;
 }
 
-class BadCalibration : public PairTest {
+class InputBadCalibration : public PairTest {
  protected:
   /// One of the commands that take cameras, each in its turn, or all of them, fail with `says`,
   /// which follows the file's name, and leave nothing.
@@ -79,7 +79,7 @@ class BadCalibration : public PairTest {
   std::size_t refusals_ = 0;
 };
 
-TEST_F(BadCalibration, GoodOnesAreTaken) {
+TEST_F(InputBadCalibration, GoodOnesAreTaken) {
   for (const std::string& content :
        {yaml_of(good_rig()), middlebury("doffs=3\nbaseline=100\nwidth=71\nheight=53\n")}) {
     write_file(calibration_, content);
@@ -90,7 +90,7 @@ TEST_F(BadCalibration, GoodOnesAreTaken) {
   }
 }
 
-TEST_F(BadCalibration, CamerasThatCannotBe) {
+TEST_F(InputBadCalibration, CamerasThatCannotBe) {
   expect_refused(yaml_with("M1", "[0, 0, 35, 0, 70, 26, 0, 0, 1]"), "the left camera's fx is 0");
   expect_refused(yaml_with("M2", "[70, 0, 36, 0, -70, 27, 0, 0, 1]"),
                  "the right camera's fy is -70, expected a focal length of 0.001 to 1e7 pixels");
@@ -108,7 +108,7 @@ TEST_F(BadCalibration, CamerasThatCannotBe) {
   expect_refused(yaml_without("T"), "it has no R and T");
 }
 
-TEST_F(BadCalibration, CamerasThatCannotStandSo) {
+TEST_F(InputBadCalibration, CamerasThatCannotStandSo) {
   expect_refused(yaml_with("R", "[1, 0, 0, 0, 1, 0, 0, 0, -1]"),
                  "R is mirrored: its determinant is -1, expected 1", /*by_all_commands=*/true);
   expect_refused(yaml_with("R", "[2, 0, 0, 0, 2, 0, 0, 0, 2]"), "R is not a rotation");
@@ -123,7 +123,7 @@ TEST_F(BadCalibration, CamerasThatCannotStandSo) {
   expect_refused(yaml_with("D1", "[-100, 0, 0, 0]"), "the cameras' common view is");
 }
 
-TEST_F(BadCalibration, ThoseOfOtherImages) {
+TEST_F(InputBadCalibration, ThoseOfOtherImages) {
   Entries entries = good_rig();
   entries["image_width"] = "142";
   entries["image_height"] = "106";
@@ -138,7 +138,7 @@ TEST_F(BadCalibration, ThoseOfOtherImages) {
                  "the images are 71x53, but the calibration is of 72x53 images");
 }
 
-TEST_F(BadCalibration, RectifiedOnesThatAreNot) {
+TEST_F(InputBadCalibration, RectifiedOnesThatAreNot) {
   expect_refused(middlebury("doffs=0\nbaseline=100\nwidth=71\nheight=53\n"),
                  "doffs is 0, but cx of cam1 is 3 more than of cam0");
   expect_refused(middlebury("doffs=3\nbaseline=0\nwidth=71\nheight=53\n"),
@@ -153,7 +153,7 @@ TEST_F(BadCalibration, RectifiedOnesThatAreNot) {
                  "the right camera stands left of the left one");
 }
 
-TEST_F(BadCalibration, MapsOfAnotherSizeOrSign) {
+TEST_F(InputBadCalibration, MapsOfAnotherSizeOrSign) {
   // A slanted plane: d grows by a fifth of a pixel per column of the left image.
   const auto write_map = [&](const std::string& name, const auto& disparity_of) {
     DisparityMap map(71, 53);
@@ -203,7 +203,7 @@ TEST_F(BadCalibration, MapsOfAnotherSizeOrSign) {
 
 // Cameras that look away are refused; those that look beside the scene, or stand in it, are not
 // known to before the view is made.
-TEST_F(BadCalibration, ViewsThatSeeNothingAreWarnedOf) {
+TEST_F(InputBadCalibration, ViewsThatSeeNothingAreWarnedOf) {
   write_file(calibration_, middlebury("doffs=3\nbaseline=1\nwidth=71\nheight=53\n"));
   const auto synth = [&](const std::string& pose) {
     write_file(folder_ / "pose.toml", pose);

@@ -8,7 +8,7 @@ namespace bad_input_test {
 
 using testing::HasSubstr;
 
-using BadInput = PairTest;
+using InputBadFiles = PairTest;
 
 /// Bytes of a 2×1 float image whose first pixel is `value`.
 std::string pfm_of(const std::string& header, float value) {
@@ -18,7 +18,7 @@ std::string pfm_of(const std::string& header, float value) {
   return bytes;
 }
 
-TEST_F(BadInput, ImagesThatCannotBeMatched) {
+TEST_F(InputBadFiles, ImagesThatCannotBeMatched) {
   const std::string png = read_file(left_);
   const float nan = std::nanf("");
   const float infinity = HUGE_VALF;
@@ -53,7 +53,7 @@ TEST_F(BadInput, ImagesThatCannotBeMatched) {
   }
 }
 
-TEST_F(BadInput, PairsThatDoNotGoTogether) {
+TEST_F(InputBadFiles, PairsThatDoNotGoTogether) {
   write_photograph(folder_ / "small.png", {Image<std::uint8_t>(3, 3)});
   const std::vector<std::vector<std::string>> cases = {
       {"match", left_, folder_ / "none.png"},
@@ -74,7 +74,7 @@ TEST_F(BadInput, PairsThatDoNotGoTogether) {
   EXPECT_EQ(files_below(folder_.path()), before);
 }
 
-TEST_F(BadInput, OutputsThatCannotBeWritten) {
+TEST_F(InputBadFiles, OutputsThatCannotBeWritten) {
   std::filesystem::create_directory(folder_ / "folder.pfm");
   const auto before = files_below(folder_.path());
   const std::vector<std::vector<std::string>> cases = {
@@ -95,7 +95,7 @@ TEST_F(BadInput, OutputsThatCannotBeWritten) {
   }
 }
 
-TEST_F(BadInput, OnePixelPairsWork) {
+TEST_F(InputBadFiles, OnePixelPairsWork) {
   Image<std::uint8_t> pixel(1, 1);
   pixel.fill(77);
   write_photograph(folder_ / "pixel.png", {std::move(pixel)});

@@ -91,7 +91,9 @@ TEST_F(EvalCommand, ComparesViews) {
   EXPECT_THAT(table_, HasSubstr("inf dB"));
 }
 
-TEST_F(EvalCommand, BadInputIsOneLine) {
+using InputEvalCommand = EvalCommand;
+
+TEST_F(InputEvalCommand, BadInputIsOneLine) {
   DisparityMap small(3, 2);
   small.fill(1);
   write_disparity(folder_ / "small.pfm", small.view());

@@ -64,7 +64,7 @@ TEST(ExperimentCommand, IsReproducible) {
   EXPECT_NE(run(folder / "c", {"--seed", "2"}), once);
 }
 
-TEST(ExperimentCommand, BadInputIsOneLineAndExit2) {
+TEST(InputExperimentCommand, BadInputIsOneLineAndExit2) {
   const TemporaryFolder folder;
   const std::string out = folder / "o";
   const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {

@@ -95,7 +95,7 @@ TEST(GenerateCommand, AnyCameraLooksAtTheScene) {
   EXPECT_EQ(synth.exit_code, 0) << synth.err;
 }
 
-TEST(GenerateCommand, WrongUsageIsOneLineAndExit2) {
+TEST(InputGenerateCommand, WrongUsageIsOneLineAndExit2) {
   const TemporaryFolder folder;
   const std::vector<std::vector<std::string>> misuses = {
       {"book", "-o", folder / "o", "--pattern", "stripes"},
@@ -115,7 +115,7 @@ TEST(GenerateCommand, WrongUsageIsOneLineAndExit2) {
   EXPECT_THAT(files_below(folder.path()), IsEmpty());
 }
 
-TEST(InfoCommand, TellsTheVersionAndTheInstructionSets) {
+TEST(SlowInfoCommand, TellsTheVersionAndTheInstructionSets) {
   const ProcessResult table = run_vantage({"info"});
   EXPECT_EQ(table.exit_code, 0);
   EXPECT_THAT(table.out, HasSubstr("instruction sets"));

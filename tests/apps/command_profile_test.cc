@@ -47,7 +47,9 @@ class ProfileTest : public PairTest {
   std::string json_ = folder_ / "profile.json";
 };
 
-TEST_F(ProfileTest, KeepsWhereTheTimeOfAPairGoes) {
+using SlowProfileTest = ProfileTest;
+
+TEST_F(SlowProfileTest, KeepsWhereTheTimeOfAPairGoes) {
   const std::string page = folder_ / "profile.html";
   const ProcessResult result =
       profile({"--threads", "2,1", "--html", page},
@@ -101,7 +103,7 @@ TEST_F(ProfileTest, KeepsWhereTheTimeOfAPairGoes) {
   EXPECT_EQ(out_.entries(), 0U);
 }
 
-TEST_F(ProfileTest, LeavesResultsThatAreThere) {
+TEST_F(SlowProfileTest, LeavesResultsThatAreThere) {
   write_file(out_ / "map.pfm", "mine");
   const ProcessResult result = profile({"--threads", "1"}, match_command());
   ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -109,7 +111,9 @@ TEST_F(ProfileTest, LeavesResultsThatAreThere) {
   EXPECT_EQ(out_.entries(), 1U);
 }
 
-TEST_F(ProfileTest, PassesOnWhatAFailingRunSays) {
+using InputProfileCommand = ProfileTest;
+
+TEST_F(InputProfileCommand, PassesOnWhatAFailingRunSays) {
   write_file(left_, "no image");
   const ProcessResult result = profile({"--quiet", "--threads", "1"}, match_command());
   EXPECT_EQ(result.exit_code, 1);
@@ -119,7 +123,7 @@ TEST_F(ProfileTest, PassesOnWhatAFailingRunSays) {
   EXPECT_FALSE(fs::exists(json_));
 }
 
-TEST_F(ProfileTest, RefusesWhatItCannotProfile) {
+TEST_F(InputProfileCommand, RefusesWhatItCannotProfile) {
   const auto refused = [&](const Arguments& own, const Arguments& command, const char* text) {
     const ProcessResult result = profile(own, command);
     EXPECT_EQ(result.exit_code, 2) << result.err;
@@ -140,7 +144,7 @@ TEST_F(ProfileTest, RefusesWhatItCannotProfile) {
   EXPECT_FALSE(fs::exists(json_));
 }
 
-TEST_F(ProfileTest, EndsWithTheBudgetButMakesARound) {
+TEST_F(SlowProfileTest, EndsWithTheBudgetButMakesARound) {
   const ProcessResult result = run_vantage(
       joined({"profile", "--runs", "50", "--budget", "0.001", "--threads", "1", "--json", json_},
              match_command()));
@@ -149,7 +153,7 @@ TEST_F(ProfileTest, EndsWithTheBudgetButMakesARound) {
   EXPECT_EQ(read_report(json_).at("thread_counts")[0].at("runs"), 1);
 }
 
-TEST_F(ProfileTest, ComparesWithAnotherProgram) {
+TEST_F(SlowProfileTest, ComparesWithAnotherProgram) {
   const std::string other = folder_ / "other-vantage";
   fs::copy_file(test_paths::vantage_binary(), other);
   const ProcessResult result = profile({"--threads", "1", "--quiet", "--against", other},
@@ -165,7 +169,7 @@ TEST_F(ProfileTest, ComparesWithAnotherProgram) {
   EXPECT_EQ(out_.entries(), 0U);
 }
 
-TEST_F(ProfileTest, EndsCleanlyWhenInterrupted) {
+TEST_F(SlowProfileTest, EndsCleanlyWhenInterrupted) {
   const TemporaryFolder streams;
   const VantageProcess process(
       joined({"profile", "--runs", "1000", "--threads", "1", "--json", json_}, match_command()),
@@ -214,7 +218,9 @@ class ComparedProfiles : public ProfileTest {
   json second_;
 };
 
-TEST_F(ComparedProfiles, HaveAVerdictOnlyWhereRangesAreApart) {
+using InputComparedProfiles = ComparedProfiles;
+
+TEST_F(InputComparedProfiles, HaveAVerdictOnlyWhereRangesAreApart) {
   ProcessResult result = compare();
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(HasSubstr("no difference seen"), Not(HasSubstr("faster")),
@@ -226,7 +232,7 @@ TEST_F(ComparedProfiles, HaveAVerdictOnlyWhereRangesAreApart) {
   EXPECT_THAT(compare().out, HasSubstr("warning: the instruction set differs"));
 }
 
-TEST_F(ComparedProfiles, MustBeProfiles) {
+TEST_F(InputComparedProfiles, MustBeProfiles) {
   const auto refused = [&](const char* text) {
     const ProcessResult result = compare();
     EXPECT_EQ(result.exit_code, 1);
@@ -253,9 +259,9 @@ TEST_F(ComparedProfiles, MustBeProfiles) {
 }
 
 /// Of a sequence, in a folder that holds a finished run.
-class ProfiledRun : public RunTest {
+class SlowProfiledRun : public RunTest {
  protected:
-  ProfiledRun() {
+  SlowProfiledRun() {
     const ProcessResult result = run(out_, {"--frames", "0-2"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     before_ = results_in(out_);
@@ -281,7 +287,7 @@ class ProfiledRun : public RunTest {
   std::size_t entries_ = 0;
 };
 
-TEST_F(ProfiledRun, BeginsAnewAndLeavesTheFolderAlone) {
+TEST_F(SlowProfiledRun, BeginsAnewAndLeavesTheFolderAlone) {
   const json kept = profiled(arguments(out_, {"--resume", "--save", "disparity"}));
   const json& count = kept.at("thread_counts")[0];
   EXPECT_GT(count.at("frames_per_s").at("median"), 0);
@@ -293,7 +299,7 @@ TEST_F(ProfiledRun, BeginsAnewAndLeavesTheFolderAlone) {
   expect_untouched();
 }
 
-TEST_F(ProfiledRun, IsEndedWithTheProfile) {
+TEST_F(SlowProfiledRun, IsEndedWithTheProfile) {
   const TemporaryFolder streams;
   const VantageProcess process(
       joined({"profile", "--runs", "1000", "--threads", "1", "--json", folder_ / "profile.json"},
@@ -315,7 +321,7 @@ TEST_F(ProfiledRun, IsEndedWithTheProfile) {
   EXPECT_EQ(folder_.entries(), entries_);
 }
 
-TEST_F(ProfiledRun, TakesAJobFile) {
+TEST_F(SlowProfiledRun, TakesAJobFile) {
   const TemporaryFolder jobs;
   write_file(jobs / "job.toml", "left = \"" + left_ + "\"\nright = \"" + right_ +
                                     "\"\noutput = \"" + out_ +

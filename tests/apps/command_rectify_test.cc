@@ -25,11 +25,18 @@ using testing::Not;
 /// A pair of cameras that are turned by some degrees, as raw-left.png and raw-right.png.
 class RectifyTest : public testing::Test {
  protected:
-  RectifyTest() : pair_(test::unrectified_pair(execution_)) {
+  RectifyTest() {
     write_photograph(left_, pair_.left);
     write_photograph(right_, pair_.right);
   }
 
+  static const test::UnrectifiedPair& shared_pair() {
+    static const test::UnrectifiedPair pair = [] {
+      Execution execution({.threads = 2});
+      return test::unrectified_pair(execution);
+    }();
+    return pair;
+  }
   [[nodiscard]] static ProcessResult rectify(const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {"rectify"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -41,7 +48,7 @@ class RectifyTest : public testing::Test {
 
   Execution execution_{{.threads = 2}};
   TemporaryFolder folder_;
-  test::UnrectifiedPair pair_;
+  const test::UnrectifiedPair& pair_ = shared_pair();
   std::string left_ = folder_ / "raw-left.png";
   std::string right_ = folder_ / "raw-right.png";
 };
@@ -133,17 +140,17 @@ TEST_F(RectifyTest, ExchangedImagesAreWarnedOf) {
   const std::string left = folder_ / "pair/left.png";
   const std::string right = folder_ / "pair/right.png";
   const std::string map = folder_ / "map.pfm";
-  EXPECT_FALSE(warned({"match", left, right, "-o", map, "--disparities=0:30"}));
-  EXPECT_TRUE(warned({"match", right, left, "-o", map, "--disparities=0:30"}));
+  EXPECT_FALSE(warned({"match", left, right, "-o", map, "--disparities=0:30", "--method", "ssd"}));
+  EXPECT_TRUE(warned({"match", right, left, "-o", map, "--disparities=0:30", "--method", "ssd"}));
   const auto found = json_of(report)["results"]["rectification"];
   EXPECT_TRUE(found["looks_exchanged"].get<bool>());
   EXPECT_GT(found["negative_disparity_share"].get<double>(), 0.9);
-  EXPECT_FALSE(warned({"match", right, left, "-o", map, "--disparities=-30:0"}))
+  EXPECT_FALSE(warned({"match", right, left, "-o", map, "--disparities=-30:0", "--method", "ssd"}))
       << "whoever asks for negative disparities knows";
-  EXPECT_TRUE(warned(
-      {"synth", right, left, "-o", folder_ / "view.png", "--view", "0.5", "--disparities=0:30"}));
-  EXPECT_TRUE(warned(
-      {"run", "--left", right, "--right", left, "-o", folder_ / "run", "--disparities=0:30"}));
+  EXPECT_TRUE(warned({"synth", right, left, "-o", folder_ / "view.png", "--view", "0.5",
+                      "--disparities=0:30", "--method", "ssd"}));
+  EXPECT_TRUE(warned({"run", "--left", right, "--right", left, "-o", folder_ / "run",
+                      "--disparities=0:30", "--method", "ssd"}));
 }
 
 TEST_F(RectifyTest, CalibrationsThatDoNotFitAreWarnedOf) {
@@ -211,7 +218,8 @@ TEST_F(RectifyTest, OtherCommandsWarnOfPairsThatAreNotRectified) {
   const std::string report = folder_ / "report.json";
   const auto match = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {
-        "match", left_, right_, "-o", map, "--disparities=0:20", "--report", report};
+        "match",    left_, right_,     "-o",  map, "--disparities=0:20",
+        "--method", "ssd", "--report", report};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_vantage(arguments);
   };
@@ -231,7 +239,7 @@ TEST_F(RectifyTest, OtherCommandsWarnOfPairsThatAreNotRectified) {
 
   const ProcessResult synth =
       run_vantage({"synth", left_, right_, "--view", "0.5", "-o", folder_ / "view.png",
-                   "--disparities=0:20", "--report", report});
+                   "--disparities=0:20", "--method", "ssd", "--report", report});
   EXPECT_THAT(synth.err, HasSubstr("synth: warning: the pair is not rectified"));
   EXPECT_TRUE(json_of(report)["results"].contains("rectification"));
   EXPECT_TRUE(json_of(report)["results"].contains("views"));
@@ -246,7 +254,9 @@ TEST_F(RectifyTest, OtherCommandsWarnOfPairsThatAreNotRectified) {
                                           right_,
                                           "-o",
                                           folder_ / (calibrated ? "run-c" : "run"),
-                                          "--disparities=0:20"};
+                                          "--disparities=0:20",
+                                          "--method",
+                                          "ssd"};
     if (calibrated) {
       arguments.insert(arguments.end(), {"--calibration", rig});
     }

@@ -89,7 +89,9 @@ TEST_F(ResponseCommand, CurvesForOneRange) {
   EXPECT_GT(read_photograph(folder_ / "y.png").width(), 300);
 }
 
-TEST_F(ResponseCommand, BadInputIsOneLine) {
+using InputResponseCommand = ResponseCommand;
+
+TEST_F(InputResponseCommand, BadInputIsOneLine) {
   const std::string out = folder_ / "r.csv";
   const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {
       {{"--displacements-x", "5:4"}, "displacements-x is 5:4"},

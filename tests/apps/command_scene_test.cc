@@ -253,7 +253,9 @@ TEST_F(SceneCommand, SaysWhichImagesHaveGone) {
   EXPECT_EQ(view({"--at", "0.3,0.2", "-o", folder_ / "v.png"}).exit_code, 0);
 }
 
-TEST_F(SceneCommand, AnImageThatCannotBeReadStopsTheBuildBeforeItBegins) {
+using InputSceneCommand = SceneCommand;
+
+TEST_F(InputSceneCommand, AnImageThatCannotBeReadStopsTheBuildBeforeItBegins) {
   write_file(images_ + "/3.png", read_file(images_ + "/3.png").substr(0, 900));
   const ProcessResult built = build_grid();
   EXPECT_EQ(built.exit_code, 1);
@@ -306,7 +308,7 @@ TEST_F(SceneCommand, CamerasNeedNoRowsOrColumns) {
   EXPECT_THAT(run_vantage({"scene", "info", place_}).out, HasSubstr("slope"));
 }
 
-TEST_F(SceneCommand, RefusesWrongUsage) {
+TEST_F(InputSceneCommand, RefusesWrongUsage) {
   const auto refused = [&](const ProcessResult& result, int exit_code, const std::string& command,
                            const std::string& text) {
     EXPECT_EQ(result.exit_code, exit_code) << result.err;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/pair_fixture.h"
+#include "tests/apps/sampling.h"
 
 namespace vantage {
 namespace command_submit_test {
@@ -210,7 +211,9 @@ TEST_F(SubmitCommand, WhatSlurmRefusesIsOneLine) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "other"));
 }
 
-TEST_F(SubmitCommand, WrongUsageIsOneLineAndExit2) {
+using InputSubmitCommand = SubmitCommand;
+
+TEST_F(InputSubmitCommand, WrongUsageIsOneLineAndExit2) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {
       {{"--shard", "1/3"}, "--shard cannot be submitted"},
       {{"--dry-run"}, "--dry-run cannot be submitted"},
@@ -232,7 +235,9 @@ TEST_F(SubmitCommand, WrongUsageIsOneLineAndExit2) {
       {{"--window", "4"}, "window is 4"},
       {{"--left", right_}, "--left is given 2 times"}};
   const std::string out = folder_ / "out";
-  for (const auto& [more, says] : misuses) {
+  SCOPED_TRACE(sampling_trace());
+  for (const auto& [more, says] :
+       sampled_command_lines(misuses, [](const auto& misuse) { return misuse.first; })) {
     const ProcessResult result = submit(out, more);
     EXPECT_EQ(result.exit_code, 2) << says << result.err;
     EXPECT_TRUE(is_one_line(result, "submit"));

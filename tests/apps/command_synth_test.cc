@@ -7,6 +7,7 @@
 #include "engine/image/stereo_packing.h"
 #include "engine/io/video_io.h"
 #include "tests/apps/pair_fixture.h"
+#include "tests/apps/sampling.h"
 
 namespace vantage {
 namespace command_synth_test {
@@ -145,7 +146,9 @@ TEST_F(SynthCommand, SourceMaskNamesTheImages) {
   EXPECT_GT(both, sources.width() * sources.height() / 2);
 }
 
-TEST_F(SynthCommand, WrongUsageIsOneLineAndExit2) {
+using InputSynthCommand = SynthCommand;
+
+TEST_F(InputSynthCommand, WrongUsageIsOneLineAndExit2) {
   const std::string out = outputs_ + "/v.png";
   const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {
       {{"-o", out}, "no view is given"},
@@ -176,7 +179,9 @@ TEST_F(SynthCommand, WrongUsageIsOneLineAndExit2) {
        "--window has no effect"},
       {{"-o", out, "--view", "0.5", "--gamma", "2"}, "gamma"},
       {{"-o", out, "--view", "0.5", "--gradient-limit", "-1"}, "gradient"}};
-  for (const auto& [arguments, says] : misuses) {
+  SCOPED_TRACE(sampling_trace());
+  for (const auto& [arguments, says] :
+       sampled_command_lines(misuses, [](const auto& misuse) { return misuse.first; })) {
     const ProcessResult result = synth(arguments);
     EXPECT_EQ(result.exit_code, 2) << says;
     EXPECT_TRUE(is_one_line(result, "synth"));
@@ -245,7 +250,7 @@ TEST_F(SynthCommand, CamerasAndTurnedViewsNeedACalibration) {
   EXPECT_NE(read_file(outputs_ + "/f.png"), read_file(outputs_ + "/t.png"));
 }
 
-TEST_F(SynthCommand, WhatIsWrongInAFileOfPosesIsNamed) {
+TEST_F(InputSynthCommand, WhatIsWrongInAFileOfPosesIsNamed) {
   const std::vector<std::pair<std::string, std::string>> files = {
       {"", "expected a list 'view' of poses"},
       {"[[view]]\nxy = [0, 0]", "p.toml: view 1: unknown key 'xy', the nearest known one is 'at'"},
@@ -286,7 +291,7 @@ TEST_F(SynthCommand, TwoEyesBecomeOnePicture) {
   EXPECT_EQ(read_file(outputs_ + "/r.png"), read_file(outputs_ + "/e1.png"));
 }
 
-TEST_F(SynthCommand, MapsOfAnotherSizeAreAnError) {
+TEST_F(InputSynthCommand, MapsOfAnotherSizeAreAnError) {
   DisparityMap small(3, 3);
   small.fill(1);
   write_disparity(left_map_, small.view());

@@ -70,7 +70,9 @@ class TuneTest : public PairTest {
   TunedSettings odd_ = {.threads = 3, .strip_width_px = 7, .band_height_px = 5};
 };
 
-TEST_F(TuneTest, FindsStoresAndTells) {
+using SlowTuneTest = TuneTest;
+
+TEST_F(SlowTuneTest, FindsStoresAndTells) {
   const ProcessResult result = tune({"--report", report_, "--images", "grey"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("squared box about 8 px, 8-bit grey"));
@@ -98,7 +100,7 @@ TEST_F(TuneTest, FindsStoresAndTells) {
   EXPECT_TRUE(read_tuning_file(file_).entries.empty());
 }
 
-TEST_F(TuneTest, TunesOneUse) {
+TEST_F(SlowTuneTest, TunesOneUse) {
   ASSERT_EQ(tune({"--for", "match"}).exit_code, 0);
   EXPECT_FALSE(read_tuning_file(file_).entries.at(0).run);
 }
@@ -122,7 +124,7 @@ TEST_F(TuneTest, ForgetsThisMachineOnly) {
   EXPECT_EQ(content.entries[0].key, other);
 }
 
-TEST_F(TuneTest, AnUnwritableFileFailsAfterTheResultsAreShown) {
+TEST_F(SlowTuneTest, AnUnwritableFileFailsAfterTheResultsAreShown) {
   write_file(config_, "a file");
   const ProcessResult result = tune();
   EXPECT_EQ(result.exit_code, 1);
@@ -130,7 +132,9 @@ TEST_F(TuneTest, AnUnwritableFileFailsAfterTheResultsAreShown) {
   EXPECT_THAT(result.err, HasSubstr("cannot be made a folder"));
 }
 
-TEST_F(TuneTest, RefusesWrongUsage) {
+using InputTuneCommand = TuneTest;
+
+TEST_F(InputTuneCommand, RefusesWrongUsage) {
   for (const auto& [arguments, message] : std::vector<std::pair<Arguments, std::string>>{
            {{"tune"}, "--size is missing"},
            {{"tune", "--size", "71"}, "--size is '71', expected WxH"},
@@ -191,7 +195,7 @@ TEST_F(TuneTest, WithoutAnEntryTheReportSaysWhatWasWanted) {
   EXPECT_EQ(report()["tuning"]["reason"], "there is no entry for this work");
 }
 
-TEST_F(TuneTest, ADamagedFileIsAWarning) {
+TEST_F(InputTuneCommand, ADamagedFileIsAWarning) {
   fs::create_directories(file_.parent_path());
   write_file(file_, "{ damaged");
   ProcessResult result = match_tuned();
@@ -204,7 +208,7 @@ TEST_F(TuneTest, ADamagedFileIsAWarning) {
   EXPECT_EQ(read_file(file_), "{ damaged");
 }
 
-TEST_F(TuneTest, AnotherFileCanBeNamed) {
+TEST_F(SlowTuneTest, AnotherFileCanBeNamed) {
   const std::string other = folder_ / "cluster.json";
   ASSERT_EQ(tune({"--output", other, "--for", "match", "--images", "grey"}).exit_code, 0);
   EXPECT_FALSE(fs::exists(config_));

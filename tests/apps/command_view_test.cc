@@ -9,6 +9,7 @@
 
 #include "engine/io/base64.h"
 #include "tests/apps/pair_fixture.h"
+#include "tests/apps/sampling.h"
 
 namespace vantage {
 namespace command_view_test {
@@ -243,7 +244,9 @@ TEST_F(ViewCommand, MatchesThePairWithoutMaps) {
   EXPECT_LT(bad_share(map, pair_.left_disparity, pair_.left_occluded), 0.05);
 }
 
-TEST_F(ViewCommand, WrongUsageIsOneLineAndExit2) {
+using InputViewCommand = ViewCommand;
+
+TEST_F(InputViewCommand, WrongUsageIsOneLineAndExit2) {
   const std::string out = outputs_ + "/p.html";
   const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {
       {{}, "--output is"},
@@ -259,7 +262,9 @@ TEST_F(ViewCommand, WrongUsageIsOneLineAndExit2) {
       {{"-o", out, "--left-disparity", left_map_}, "--right-disparity is missing"},
       {{"-o", out, "--left-disparity", left_map_, "--right-disparity", right_map_, "--window", "5"},
        "--window has no effect"}};
-  for (const auto& [arguments, says] : misuses) {
+  SCOPED_TRACE(sampling_trace());
+  for (const auto& [arguments, says] :
+       sampled_command_lines(misuses, [](const auto& misuse) { return misuse.first; })) {
     const ProcessResult result = view(arguments);
     EXPECT_EQ(result.exit_code, 2) << says;
     EXPECT_TRUE(is_one_line(result, "view"));
@@ -268,7 +273,7 @@ TEST_F(ViewCommand, WrongUsageIsOneLineAndExit2) {
   EXPECT_THAT(files_below(outputs_), IsEmpty());
 }
 
-TEST_F(ViewCommand, InputsThatDoNotFitAreAnErrorAndLeaveNothing) {
+TEST_F(InputViewCommand, InputsThatDoNotFitAreAnErrorAndLeaveNothing) {
   const auto expect_error = [&](const std::string& says) {
     const ProcessResult result = view_from_maps({"-o", outputs_ + "/p.html"});
     EXPECT_EQ(result.exit_code, 1);

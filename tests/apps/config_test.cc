@@ -122,7 +122,9 @@ TEST_F(Config, EveryOptionOfTheHelpIsPrinted) {
   }
 }
 
-TEST_F(Config, CommandLineOverridesFileOverridesDefault) {
+using InputConfig = Config;
+
+TEST_F(InputConfig, CommandLineOverridesFileOverridesDefault) {
   write_file(folder_ / "config.toml",
              "window = 5\ndisparities = \"0:9\"\nraw = true\nthreads = 2\ncross-check = 2\n");
   const ProcessResult result =
@@ -137,7 +139,7 @@ TEST_F(Config, CommandLineOverridesFileOverridesDefault) {
   EXPECT_THAT(result.out, HasSubstr("\nsubpixel = 'auto'\n"));
 }
 
-TEST_F(Config, AFileCanHoldTheWholeJob) {
+TEST_F(InputConfig, AFileCanHoldTheWholeJob) {
   ASSERT_EQ(match(folder_ / "a.pfm", {"--window", "5"}).exit_code, 0);
   write_file(folder_ / "job.toml", "left = '" + left_ + "'\nright = '" + right_ + "'\noutput = '" +
                                        folder_ / "b.pfm" + "'\nwindow = 5\ndisparities = '0:9'\n");
@@ -146,7 +148,7 @@ TEST_F(Config, AFileCanHoldTheWholeJob) {
   EXPECT_EQ(read_file(folder_ / "a.pfm"), read_file(folder_ / "b.pfm"));
 }
 
-TEST_F(Config, BadFilesAreOneLine) {
+TEST_F(InputConfig, BadFilesAreOneLine) {
   struct Case {
     std::string content;
     std::string says;

@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "tests/apps/pair_fixture.h"
+#include "tests/apps/sampling.h"
 
 namespace vantage {
 namespace match_options_test {
@@ -19,7 +20,9 @@ struct Refused {
   std::string says;
 };
 
-TEST_F(MatchCommandOptions, BadValuesAreRefusedWithTheirBound) {
+using InputMatchOptions = MatchCommandOptions;
+
+TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
   const std::vector<Refused> cases = {
       {{"--window", "182"}, "window is 182, expected an odd number from 1 to 181"},
       {{"--iterations", "-1"}, "iterations is -1, expected a number from 0 to 10000"},
@@ -87,7 +90,9 @@ TEST_F(MatchCommandOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--baselines", "1", "--reference", "right"}, "--reference right cannot go with"},
       {{"--baselines", "1", "--disparities-y", "0:1"}, "--disparities-y cannot go with"}};
   const auto before = files_below(folder_.path());
-  for (const Refused& refused : cases) {
+  SCOPED_TRACE(sampling_trace());
+  for (const Refused& refused :
+       sampled_command_lines(cases, [](const Refused& one) { return one.options; })) {
     std::vector<std::string> arguments = {"match", left_, right_, "-o", folder_ / "out.pfm"};
     arguments.insert(arguments.end(), refused.options.begin(), refused.options.end());
     const ProcessResult result = run_vantage(arguments);
@@ -98,7 +103,7 @@ TEST_F(MatchCommandOptions, BadValuesAreRefusedWithTheirBound) {
   EXPECT_EQ(files_below(folder_.path()), before);
 }
 
-TEST_F(MatchCommandOptions, ImagesOfUnequalSizeAmongSeveralAreNamed) {
+TEST_F(InputMatchOptions, ImagesOfUnequalSizeAmongSeveralAreNamed) {
   write_photograph(folder_ / "small.png", {Image<std::uint8_t>(7, 9)});
   const ProcessResult result =
       match(folder_ / "out.pfm", {folder_ / "small.png", "--baselines=1,2"});

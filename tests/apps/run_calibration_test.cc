@@ -82,7 +82,9 @@ TEST_F(RunCalibration, MatchesRectifiedFramesAndKeepsAsMuchOfThemAsIsAskedFor) {
   }
 }
 
-TEST_F(RunCalibration, RefusesAnOutlineThatCannotBeKept) {
+using InputRunCalibration = RunCalibration;
+
+TEST_F(InputRunCalibration, RefusesAnOutlineThatCannotBeKept) {
   for (const auto& [more, says] :
        {std::pair{std::vector<std::string>{"--kept-outline", "1"}, "expected --calibration"},
         {with_rig({"--kept-outline", "1.5"}), "kept-outline is 1.5, expected 0 to 1"}}) {

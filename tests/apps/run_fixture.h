@@ -57,7 +57,7 @@ class RunTest : public testing::Test {
                                                    const std::vector<std::string>& more = {}) const;
   [[nodiscard]] ProcessResult run(const std::string& out,
                                   const std::vector<std::string>& more = {}) const;
-  /// Results of a run that nothing happens to.
+  /// Results of a run that nothing happens to; made once in a process for the same sources.
   [[nodiscard]] FolderContent undisturbed(const std::vector<std::string>& more) const;
   /// The bytes of a source file.
   [[nodiscard]] std::string frame_bytes(const std::string& side, int frame) const;

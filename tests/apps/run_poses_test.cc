@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/apps/run_fixture.h"
+#include "tests/apps/sampling.h"
 
 namespace vantage {
 namespace run_poses_test {
@@ -167,7 +168,9 @@ TEST_F(RunPoses, OthersAreAnotherRun) {
   EXPECT_THAT(elsewhere.err, HasSubstr("look-at was 4.0, now 5.0"));
 }
 
-TEST_F(RunPoses, WrongUsageIsOneLine) {
+using InputRunPoses = RunPoses;
+
+TEST_F(InputRunPoses, WrongUsageIsOneLine) {
   const std::string bad = folder_ / "bad.toml";
   write_file(bad, "[[view]]\nat = [0.5, 0]\n[[view]]\nat = [17, 0]\n");
   const std::string away = folder_ / "away.toml";
@@ -192,7 +195,8 @@ TEST_F(RunPoses, WrongUsageIsOneLine) {
       {2, calibrated({"--path", path_, "--save", "disparity"}), "save has no views"},
       {1, {"--path", folder_ / "absent.toml"}, "absent.toml: cannot be read"},
       {1, calibrated({"--path", away}), "frame 8: camera of the new view looks away"}};
-  for (const Misuse& misuse : misuses) {
+  SCOPED_TRACE(sampling_trace());
+  for (const Misuse& misuse : kIsSanitized ? sampled(misuses, 5, 3) : misuses) {
     const ProcessResult result = run(out_, joined(misuse.options, {"--quiet"}));
     EXPECT_EQ(result.exit_code, misuse.exit_code) << misuse.says;
     EXPECT_TRUE(is_one_line(result, "run"));

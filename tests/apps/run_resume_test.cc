@@ -68,7 +68,9 @@ TEST_F(RunResumed, WhatShotsShareIsFoundAnewWhenForced) {
   EXPECT_EQ(end_of_last_shot(), kFrames + 1);
 }
 
-TEST_F(RunResumed, SettingsThatDifferAreRefusedAndNamed) {
+using InputRunResumed = RunResumed;
+
+TEST_F(InputRunResumed, SettingsThatDifferAreRefusedAndNamed) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> changes = {
       {{"--window", "7"}, "window was"},
       {{"--format", "png"}, "format was \"pfm\", now \"png\""},

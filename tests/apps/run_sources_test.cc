@@ -90,11 +90,13 @@ class RunSources : public RunTest {
   std::string out_ = folder_ / "out";
 };
 
-TEST_F(RunSources, APngThatIsCutOff) {
+using InputRunSources = RunSources;
+
+TEST_F(InputRunSources, APngThatIsCutOff) {
   break_and_repair("left", frame_bytes("left", kBad).substr(0, 900), "");
 }
 
-TEST_F(RunSources, APngWithOtherBytesInTheMiddle) {
+TEST_F(InputRunSources, APngWithOtherBytesInTheMiddle) {
   std::string bytes = frame_bytes("right", kBad);
   for (std::size_t i = bytes.size() / 2; i < bytes.size() / 2 + 40; ++i) {
     bytes[i] = static_cast<char>(~bytes[i]);
@@ -112,7 +114,7 @@ TEST_F(RunSources, AFrameOfAnotherSizeOnOneSide) {
   break_and_repair("left", bytes, "65x48");
 }
 
-TEST_F(RunSources, AFrameOfAnotherSizeOnBothSides) {
+TEST_F(InputRunSources, AFrameOfAnotherSizeOnBothSides) {
   const FolderContent expected = undisturbed({});
   const std::string left = frame_bytes("left", kBad);
   const std::string right = frame_bytes("right", kBad);
@@ -174,7 +176,7 @@ TEST_F(RunSources, FlickerIsMeasuredAgainBesideARepairedFrame) {
   EXPECT_EQ(results["flicker"], read_report(report)["results"]["flicker"]);
 }
 
-TEST_F(RunSources, AllFramesBad) {
+TEST_F(InputRunSources, AllFramesBad) {
   for (int frame = 0; frame < kFrames; ++frame) {
     write_file(file("left", frame), "");
   }
@@ -218,7 +220,7 @@ TEST_F(RunSources, AMissingNumberOfAPattern) {
   EXPECT_TRUE(same_files(results_in(out_), expected));
 }
 
-TEST_F(RunSources, UnequalLengths) {
+TEST_F(InputRunSources, UnequalLengths) {
   for (int frame = 15; frame < kFrames; ++frame) {
     fs::remove(file("right", frame));
   }
@@ -286,7 +288,9 @@ class RunVideoSources : public RunSources {
   }
 };
 
-TEST_F(RunVideoSources, AVideoWithDamageInTheMiddle) {
+using InputVideoSources = RunVideoSources;
+
+TEST_F(InputVideoSources, AVideoWithDamageInTheMiddle) {
   ASSERT_EQ(run_videos("mp4", {}).exit_code, 0);
   FolderContent expected = results_in(out_);
   fs::remove_all(out_);
@@ -307,7 +311,7 @@ TEST_F(RunVideoSources, AVideoWithDamageInTheMiddle) {
   }
 }
 
-TEST_F(RunVideoSources, AVideoThatEndsInTheMiddleOfAFrame) {
+TEST_F(InputVideoSources, AVideoThatEndsInTheMiddleOfAFrame) {
   ASSERT_EQ(run_videos("mp4", {}).exit_code, 0);
   const FolderContent expected = results_in(out_);
   fs::remove_all(out_);
@@ -322,7 +326,7 @@ TEST_F(RunVideoSources, AVideoThatEndsInTheMiddleOfAFrame) {
 }
 
 /// What cannot be opened is refused before anything else happens.
-TEST_F(RunVideoSources, AVideoThatIsNoneOrWithoutIndex) {
+TEST_F(InputVideoSources, AVideoThatIsNoneOrWithoutIndex) {
   ASSERT_EQ(run_videos("mp4", {"--frames", "0-9"}).exit_code, 0);
   const FolderContent finished = results_in(out_);
   const std::string whole = read_file(folder_ / "right.mp4");
@@ -339,7 +343,7 @@ TEST_F(RunVideoSources, AVideoThatIsNoneOrWithoutIndex) {
 }
 
 /// Nothing tells how many frames it had.
-TEST_F(RunVideoSources, ARawVideoThatEndsInTheMiddleOfAFrame) {
+TEST_F(InputVideoSources, ARawVideoThatEndsInTheMiddleOfAFrame) {
   ASSERT_EQ(run_videos("y4m", {}).exit_code, 0);
   const FolderContent expected = results_in(out_);
   fs::remove_all(out_);

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/apps/run_fixture.h"
+
 /// Tests that could go through very many cases take a sample. It is the same each time, another one
 /// with VANTAGE_TEST_SEED set to another number, and all cases with VANTAGE_TEST_ALL set.
 namespace vantage {
@@ -105,6 +107,29 @@ std::vector<Case> sampled_of_each(const std::vector<Case>& cases, const GroupOf&
     chosen.push_back(members[numbers.below(members.size())]);
   }
   return chosen;
+}
+
+/// The option that a command line is about: the last one, without a value joined to it.
+inline std::string last_option(const std::vector<std::string>& arguments) {
+  for (std::size_t i = arguments.size(); i-- > 0;) {
+    const std::string& text = arguments[i];
+    if (text.size() > 1 && text[0] == '-' && (text[1] < '0' || text[1] > '9')) {
+      return text.substr(0, text.find('='));
+    }
+  }
+  return {};
+}
+
+/// Command lines that are refused, each for its last option: all when everything is tested, else
+/// one for each option, and fewer of them under a sanitizer, where every process takes long to
+/// begin.
+template <typename Case, typename ArgumentsOf>
+std::vector<Case> sampled_command_lines(const std::vector<Case>& cases,
+                                        const ArgumentsOf& arguments_of) {
+  const auto stream = static_cast<std::uint32_t>(cases.size());
+  std::vector<Case> chosen = sampled_of_each(
+      cases, [&](const Case& one) { return last_option(arguments_of(one)); }, stream);
+  return kIsSanitized && !tests_all_cases() ? sampled(chosen, 6, stream) : chosen;
 }
 
 }  // namespace vantage

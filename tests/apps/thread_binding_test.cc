@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/apps/run_fixture.h"
+#include "tests/apps/sampling.h"
 
 namespace vantage {
 namespace thread_binding_test {
@@ -52,7 +53,8 @@ TEST_F(MatchOnNodes, ResultsAreTheSame) {
       {"HWLOC_SYNTHETIC=pack:2 node:2 core:3 pu:1", {"--strip-width", "16", "--band-height", "9"}},
       {"HWLOC_SYNTHETIC=node:4 core:1 pu:1", {"--bind", "node", "--threads", "3"}},
       {"HWLOC_SYNTHETIC=node:1 core:5 pu:1", {"--bind", "core"}}};
-  for (const Way& way : ways) {
+  SCOPED_TRACE(sampling_trace());
+  for (const Way& way : sampled(ways, 4, 9)) {
     const std::string map = folder_ / "map.pfm";
     const ProcessResult result = match_on(way.machine, map, way.options);
     ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -120,17 +122,23 @@ class RunOnNodes : public RunTest {};
 
 TEST_F(RunOnNodes, ResultsAreTheSame) {
   const FolderContent expected = undisturbed(kImageOutputs);
-  int runs = 0;
+  using Way = std::pair<std::string, std::vector<std::string>>;
+  std::vector<Way> ways;
   for (const std::string machine : {"node:2 core:2 pu:1", "node:3 core:1 pu:1", "node:2 core:4"}) {
     for (const std::vector<std::string>& options :
          {std::vector<std::string>{}, {"--in-flight", "1"}, {"--bind", "core", "--threads", "5"}}) {
-      const std::string out = folder_ / ("out" + std::to_string(++runs));
-      const ProcessResult result = run_vantage(arguments(out, joined(kImageOutputs, options)),
-                                               {"HWLOC_SYNTHETIC=" + machine});
-      ASSERT_EQ(result.exit_code, 0) << result.err;
-      EXPECT_TRUE(same_files(results_in(out), expected))
-          << machine << testing::PrintToString(options);
+      ways.emplace_back(machine, options);
     }
+  }
+  SCOPED_TRACE(sampling_trace());
+  const std::string out = folder_ / "out";
+  for (const auto& [machine, options] : sampled(ways, 2, 10)) {
+    std::filesystem::remove_all(out);
+    const ProcessResult result =
+        run_vantage(arguments(out, joined(kImageOutputs, options)), {"HWLOC_SYNTHETIC=" + machine});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(same_files(results_in(out), expected))
+        << machine << testing::PrintToString(options);
   }
 }
 
