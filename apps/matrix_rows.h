@@ -1,8 +1,7 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include "apps/setting_value.h"
+#include "engine/view_geometry/posed_camera.h"
 
 namespace vantage::apps {
 

@@ -22,9 +22,6 @@
 namespace vantage::scheduler {
 namespace strip_pipeline_test {
 
-using vantage::test::all_rows;
-using vantage::test::rows_of;
-using vantage::test::sample_name;
 using vantage::test::sampled_rows;
 using vantage::test::SampleRow;
 
@@ -80,7 +77,7 @@ std::string describe(Extent extent, const Cut& cut, const Executor& executor) {
          text(cut.strip_columns) + ", bands of " + text(cut.band_rows) +
          ", passes: " + (cut.pass_ends ? std::to_string(cut.pass_ends->size() + 1) : "chosen") +
          ", " + std::string(executor.name()) + " with " + std::to_string(executor.thread_count()) +
-         " threads, " + sample_name();
+         " threads, " + test::sample_name();
 }
 
 const std::vector<ChainCase> kChains = {
@@ -170,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(Chains, StripPipeline, testing::Range(0, static_cast<in
 TEST_P(StripPipeline, EqualsTheWholeImageBitForBit) {
   const std::vector<ExecutorCase> executors = executor_cases();
   std::map<int, std::pair<std::unique_ptr<TestChain>, std::vector<std::byte>>> chains;
-  for (const SampleRow& row : rows_of(CutSample::rows(), GetParam())) {
+  for (const SampleRow& row : test::rows_of(CutSample::rows(), GetParam())) {
     auto& [chain, expected] = chains[row[2]];
     if (chain == nullptr) {
       chain = std::make_unique<TestChain>(kExtents[row[2]]);
