@@ -128,8 +128,9 @@ class RooflineChart {
   Axis x_axis_;
   Axis y_axis_;
   double y_least_;
-  ChartArea area_{
-      {kAxesLeft, kAxesTop}, kRooflineWidth - kAxesLeft - kAxesRight, kRooflineHeight - kAxesTop - kAxesBottom};
+  ChartArea area_{{kAxesLeft, kAxesTop},
+                  kRooflineWidth - kAxesLeft - kAxesRight,
+                  kRooflineHeight - kAxesTop - kAxesBottom};
   SvgPicture picture_;
   std::vector<LabelledDisc> labels_;
 };

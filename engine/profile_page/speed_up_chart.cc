@@ -33,8 +33,9 @@ std::string speed_up_chart(const Profile& profile) {
   const Axis y_axis(
       {.title = fmt::format("times as fast as {} thread{}", fewest, fewest == 1 ? "" : "s")}, 0,
       highest * 1.04, false);
-  const ChartArea area = {
-      {kAxesLeft, kAxesTop}, kSpeedUpWidth - kAxesLeft - kAxesRight, kSpeedUpHeight - kAxesTop - kAxesBottom};
+  const ChartArea area = {{kAxesLeft, kAxesTop},
+                          kSpeedUpWidth - kAxesLeft - kAxesRight,
+                          kSpeedUpHeight - kAxesTop - kAxesBottom};
   SvgPicture picture(kSpeedUpWidth, kSpeedUpHeight, "Speed-up against the number of threads");
   std::vector<Axis::Tick> measured;
   for (const SpeedUp& speed_up : profile.speed_ups) {

@@ -60,7 +60,8 @@ class Regions {
   void compare(int y, int columns, int rows) {
     const int count = width_ - columns;
     const auto compare_map = [&](ImageView<const float> map, std::uint64_t* bits) {
-      kernels::near_bits_row(map.row(y), map.row(y + rows) + columns, kSpeckleSurfaceStepPx, count, bits);
+      kernels::near_bits_row(map.row(y), map.row(y + rows) + columns, kSpeckleSurfaceStepPx, count,
+                             bits);
     };
     compare_map(map_px_, work_.near.data());
     if (!map_y_px_.empty()) {

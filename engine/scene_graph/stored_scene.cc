@@ -77,7 +77,8 @@ StoredEdge edge_of(const Json& json, int vertices) {
 StoredScene scene_of(const std::string& text) {
   const Json json = Json::parse(text);
   if (json.at("format").get<int>() != kSceneFormat) {
-    throw Error(fmt::format("is of format {}, expected {}", json.at("format").dump(), kSceneFormat));
+    throw Error(
+        fmt::format("is of format {}, expected {}", json.at("format").dump(), kSceneFormat));
   }
   StoredScene scene;
   scene.settings = json.at("settings").dump();

@@ -170,7 +170,8 @@ std::vector<TunedSettings> MatchSubject::candidates(const TuningCoordinate& coor
   std::ranges::stable_sort(
       all, {}, [&](const TunedSettings& settings) { return known(settings).model_time; });
   if (!all.empty()) {
-    const double limit = kHopelessModelRatio * std::min(known(all.front()).model_time, before.model_time);
+    const double limit =
+        kHopelessModelRatio * std::min(known(all.front()).model_time, before.model_time);
     std::erase_if(
         all, [&](const TunedSettings& settings) { return known(settings).model_time > limit; });
   }

@@ -54,8 +54,9 @@ std::vector<Runner> scout(const TunedSettings& incumbent,
           *incumbent_seconds;
     }
   }
-  std::erase_if(runners,
-                [&](const Runner& runner) { return runner.first_seconds > kHopelessTimeRatio * least; });
+  std::erase_if(runners, [&](const Runner& runner) {
+    return runner.first_seconds > kHopelessTimeRatio * least;
+  });
   return runners;
 }
 

@@ -19,7 +19,8 @@ constexpr double kLargestFocal_px = 1e7;
 }  // namespace
 
 void PosedCamera::validate(const std::string& name) const {
-  if (width_px < 1 || height_px < 1 || width_px > kLargestCameraSide || height_px > kLargestCameraSide) {
+  if (width_px < 1 || height_px < 1 || width_px > kLargestCameraSide ||
+      height_px > kLargestCameraSide) {
     throw Error(fmt::format("{}: image is {}×{}, expected 1 to {} pixels each way", name, width_px,
                             height_px, kLargestCameraSide));
   }

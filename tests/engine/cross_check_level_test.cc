@@ -44,8 +44,8 @@ struct BothMaps {
   DisparityMap coarse;
 };
 
-BothMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options,
-                 Reference reference, int level, bool is_all) {
+BothMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options, Reference reference,
+                 int level, bool is_all) {
   const MethodParameters parameters = options.resolved();
   Execution execution({.threads = 2});
   const bool is_left = reference == Reference::kLeft;

@@ -55,7 +55,7 @@ PlainSums plain_sums(const Photograph& left, const Photograph& right,
                      const MethodParameters& parameters, Displacement displacement) {
   const auto gradient = [&](const Photograph& image) {
     return test::gradient_of(test::planes_of(image, ColourUse::kLuma)[0], parameters.gradient,
-                                parameters.prefilter);
+                             parameters.prefilter);
   };
   const test::Gradient of_left = gradient(left);
   const test::Gradient of_right = gradient(right);

@@ -15,8 +15,8 @@
 namespace vantage {
 namespace refinement_test {
 
-using ::testing::ElementsAre;
 using test::identical;
+using ::testing::ElementsAre;
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr double kNoThreshold = -std::numeric_limits<double>::infinity();

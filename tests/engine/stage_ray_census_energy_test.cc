@@ -44,7 +44,7 @@ TEST(RayCensusEnergyStage, IsTheLogarithmOfTheLikelihoods) {
         parameters.epsilon_measurement = epsilon;
         const Extent extent = shape.extent;
         const auto pair = test::textured_pair(extent.columns, extent.rows, shape.range,
-                                                 test::PixelKind::kGrey8, 3);
+                                              test::PixelKind::kGrey8, 3);
         const CandidateGeometry geometry{extent.columns, shape.range.min, shape.range.count(),
                                          direction};
         CostImage reference;
