@@ -199,7 +199,8 @@ TEST_F(InputMatchCommand, WrongUsageIsOneLineAndExit2) {
       {{"-o", out, "--window"}, "--window"}};
   const auto before = files_below(folder_.path());
   SCOPED_TRACE(sampling_trace());
-  for (const Misuse& misuse : kIsSanitized ? sampled(misuses, 6, 2) : misuses) {
+  for (const Misuse& misuse :
+       sampled_command_lines(misuses, [](const Misuse& one) { return one.arguments; })) {
     std::vector<std::string> arguments = {"match", left_, right_};
     arguments.insert(arguments.end(), misuse.arguments.begin(), misuse.arguments.end());
     const ProcessResult result = run_vantage(arguments);

@@ -137,9 +137,11 @@ TEST_F(SlowKilledRun, AnyCallMayBeTheLast) {
     const FileCalls calls = calls_of(all, out_);
     ASSERT_GT(calls.count(), 100);
     const FolderContent expected = results_in(out_);
-    // Results get their names by renaming, and then their journal is flushed.
-    const std::vector<int> chosen =
-        sampled_range(1, calls.count(), 1, 7, calls.ends_of({"rename", "fdatasync"}));
+    // Results are written, get their names by renaming, and then their journal is flushed.
+    std::vector<int> points = calls.ends_of({"rename", "fdatasync"});
+    const std::vector<int> writes = calls.numbers_of("write");
+    points.push_back(writes[writes.size() / 2]);
+    const std::vector<int> chosen = sampled_range(1, calls.count(), 1, 7, points);
     int killed = 0;
     for (const int call : chosen) {
       fs::remove_all(out_);
