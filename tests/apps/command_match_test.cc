@@ -198,7 +198,7 @@ TEST_F(InputMatchCommand, WrongUsageIsOneLineAndExit2) {
       {{"-o", out, "--reference", "right", "--output-right", folder_ / "r.pfm"}, "--output-right"},
       {{"-o", out, "--window"}, "--window"}};
   const auto before = files_below(folder_.path());
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   for (const Misuse& misuse :
        sampled_command_lines(misuses, [](const Misuse& one) { return one.arguments; })) {
     std::vector<std::string> arguments = {"match", left_, right_};

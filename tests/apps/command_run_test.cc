@@ -80,7 +80,7 @@ TEST_F(RunCommand, EveryFrameEqualsTheSingleCommands) {
                 "--report", folder_ / "r.json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, ContainsRegex("6 frames of 47x29 pixels, [0-9.]+ frames/s -> "));
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   for (const int frame : sampled_range(0, kFrames - 1, 0, 12)) {
     const std::string left = left_ + name(frame);
     const std::string right = right_ + name(frame);
@@ -274,7 +274,7 @@ TEST_F(InputRunCommand, WrongUsageIsOneLineAndExit2) {
       {{"-p", "2"}, "unknown option '-p', the nearest known one is '-o'"},
       {{"--overwrite", "--resume"}, "--overwrite and --resume"},
       {{"--overwrite", "--shard", "1/2"}, "--overwrite with --shard"}};
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   for (const auto& [more, says] :
        sampled_command_lines(misuses, [](const auto& misuse) { return misuse.first; })) {
     const ProcessResult result = run(out, more);

@@ -235,7 +235,7 @@ TEST_F(InputSubmitCommand, WrongUsageIsOneLineAndExit2) {
       {{"--window", "4"}, "window is 4"},
       {{"--left", right_}, "--left is given 2 times"}};
   const std::string out = folder_ / "out";
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   for (const auto& [more, says] :
        sampled_command_lines(misuses, [](const auto& misuse) { return misuse.first; })) {
     const ProcessResult result = submit(out, more);

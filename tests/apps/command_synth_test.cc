@@ -179,7 +179,7 @@ TEST_F(InputSynthCommand, WrongUsageIsOneLineAndExit2) {
        "--window has no effect"},
       {{"-o", out, "--view", "0.5", "--gamma", "2"}, "gamma"},
       {{"-o", out, "--view", "0.5", "--gradient-limit", "-1"}, "gradient"}};
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   for (const auto& [arguments, says] :
        sampled_command_lines(misuses, [](const auto& misuse) { return misuse.first; })) {
     const ProcessResult result = synth(arguments);

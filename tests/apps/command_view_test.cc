@@ -262,7 +262,7 @@ TEST_F(InputViewCommand, WrongUsageIsOneLineAndExit2) {
       {{"-o", out, "--left-disparity", left_map_}, "--right-disparity is missing"},
       {{"-o", out, "--left-disparity", left_map_, "--right-disparity", right_map_, "--window", "5"},
        "--window has no effect"}};
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   for (const auto& [arguments, says] :
        sampled_command_lines(misuses, [](const auto& misuse) { return misuse.first; })) {
     const ProcessResult result = view(arguments);

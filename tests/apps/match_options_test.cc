@@ -90,7 +90,7 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--baselines", "1", "--reference", "right"}, "--reference right cannot go with"},
       {{"--baselines", "1", "--disparities-y", "0:1"}, "--disparities-y cannot go with"}};
   const auto before = files_below(folder_.path());
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   for (const Refused& refused :
        sampled_command_lines(cases, [](const Refused& one) { return one.options; })) {
     std::vector<std::string> arguments = {"match", left_, right_, "-o", folder_ / "out.pfm"};

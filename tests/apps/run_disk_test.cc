@@ -101,7 +101,7 @@ TEST_F(RunDisk, FullInTheMiddle) {
 }
 
 TEST_F(SlowRunDisk, FullWhileVideosAreWrittenOrJoined) {
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   const SmallDisk disk(folder_ / "disk");
   if (!disk.is_mounted()) {
     GTEST_SKIP() << "a small file system can be mounted by root only";
@@ -127,7 +127,7 @@ TEST_F(SlowRunDisk, FullWhileVideosAreWrittenOrJoined) {
 
 /// Without a file system of its own: writing fails from some call on, whichever it is.
 TEST_F(SlowRunDisk, FullFromAnyCallOn) {
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   const std::string out = folder_ / "out";
   const FileCalls calls = calls_of(arguments(out, kVideoOutputs), out);
   const FolderContent expected = results_in(out);

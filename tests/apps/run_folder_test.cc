@@ -247,7 +247,7 @@ TEST_F(InputRunFolder, ADescriptionThatIsDamagedIsAClearError) {
                                           with("frame_count", -1),
                                           with("sound", nullptr)};
   bool merges = false;
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   for (const std::string& text : sampled(texts, kIsSanitized ? 2 : 6, 8)) {
     write_file(description(), text);
     merges = !merges;

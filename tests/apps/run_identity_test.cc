@@ -75,7 +75,7 @@ class RunIdentity : public RunTest, public testing::WithParamInterface<Outputs> 
 };
 
 TEST_P(RunIdentity, ForAnyExecutionAndFramesInFlight) {
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   for (const Way& way : sampled(ways_of(GetParam().rotation), 2,
                                 static_cast<std::uint32_t>(GetParam().name.size()))) {
     const std::string out = folder_ / "out";
@@ -92,7 +92,7 @@ TEST_P(RunIdentity, ForAnyNumberOfParts) {
   const std::vector<Way> ways = ways_of(GetParam().rotation);
   std::size_t next_way = 1;
   // With seven, some parts have no frames.
-  for (const int shards : tests_all_cases() ? std::vector{1, 2, 7} : std::vector{2, 7}) {
+  for (const int shards : test::runs_everything() ? std::vector{1, 2, 7} : std::vector{2, 7}) {
     const std::string out = folder_ / "out";
     // Two at a time, each in its own way.
     for (int shard = 1; shard <= shards; shard += 2) {

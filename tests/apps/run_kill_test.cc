@@ -23,7 +23,7 @@ using testing::IsEmpty;
 constexpr int kKilled = 128 + SIGKILL;
 
 /// Kills of a run at moments that nothing chooses but the seed.
-std::size_t random_kills() { return tests_all_cases() ? 20 : 5; }
+std::size_t random_kills() { return test::runs_everything() ? 20 : 5; }
 
 /// Execution options of the attempts of a run, taken in turn.
 using Ways = std::vector<std::vector<std::string>>;
@@ -64,7 +64,7 @@ class SlowKilledRun : public RunTest {
   /// Kills at moments that are spread over the time that a run takes, from its first results on.
   /// What is killed is continued; what is done before its moment comes begins anew.
   void kill_at_random_moments(const std::vector<std::string>& outputs, const Ways& ways) {
-    SCOPED_TRACE(sampling_trace());
+    SCOPED_TRACE(test::sample_name());
     const Clock::time_point dry = Clock::now();
     ASSERT_EQ(run(out_, joined(outputs, {"--dry-run"})).exit_code, 0);
     const Clock::time_point begin = Clock::now();
@@ -131,7 +131,7 @@ TEST_F(SlowKilledRun, EachAttemptMayRunInAnotherWay) {
 
 /// Whatever a process was about to do to its files may be what it did not get to.
 TEST_F(SlowKilledRun, AnyCallMayBeTheLast) {
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   for (const auto& outputs : {kVideoOutputs, kImageOutputs}) {
     const std::vector<std::string> all = arguments(out_, joined(outputs, {"--resume"}));
     const FileCalls calls = calls_of(all, out_);
@@ -163,7 +163,7 @@ TEST_F(SlowKilledRun, AnyCallMayBeTheLast) {
 /// When all segments are there, joining them and clearing up is all that is left to do: the process
 /// is killed before calls that this takes.
 TEST_F(SlowKilledRun, JoiningOfVideosMayBeCutOffAnywhere) {
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   const std::string prepared = folder_ / "prepared";
   ASSERT_EQ(run(out_, joined(kVideoOutputs, {"--shard", "1/1"})).exit_code, 0);
   ASSERT_FALSE(fs::exists(out_ + "/views.mp4"));
@@ -182,7 +182,7 @@ TEST_F(SlowKilledRun, JoiningOfVideosMayBeCutOffAnywhere) {
     const ProcessResult result = run_vantage(again, fault_at("KILL", call, out_));
     EXPECT_EQ(result.exit_code, kKilled) << call << result.err;
     expect_whole_files(expected);
-    if (tests_all_cases() || call == chosen[chosen.size() / 2] || call == chosen.back()) {
+    if (test::runs_everything() || call == chosen[chosen.size() / 2] || call == chosen.back()) {
       finish(kVideoOutputs, expected);
       EXPECT_FALSE(fs::exists(out_ + "/.vantage/segments"));
     }

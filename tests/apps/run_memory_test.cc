@@ -137,7 +137,7 @@ TEST_F(SlowRunMemory, IsNotMoreThanAllowed) {
        "--measure-flicker"},
       {"--frames", "0-15", "--method", "ssd", "--calibration", rig_, "--save", "views", "--view",
        "0.5,0.1"}};
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   SampledNumbers numbers(4);
   for (const std::vector<std::string>& job : jobs) {
     const ProcessResult refused =
@@ -150,7 +150,7 @@ TEST_F(SlowRunMemory, IsNotMoreThanAllowed) {
     ASSERT_NE(least, std::string::npos) << refused.err;
     const int least_mib = std::stoi(refused.err.substr(least + says.size()));
     std::vector<int> allowed = {least_mib, least_mib * 5 / 4, least_mib * 2};
-    if (!tests_all_cases()) {  // the least is what planning has to be exact for
+    if (!test::runs_everything()) {  // the least is what planning has to be exact for
       allowed.erase(allowed.end() - 1 - static_cast<std::ptrdiff_t>(numbers.below(2)));
     }
     for (const int mib : allowed) {

@@ -195,7 +195,7 @@ TEST_F(InputRunPoses, WrongUsageIsOneLine) {
       {2, calibrated({"--path", path_, "--save", "disparity"}), "save has no views"},
       {1, {"--path", folder_ / "absent.toml"}, "absent.toml: cannot be read"},
       {1, calibrated({"--path", away}), "frame 8: camera of the new view looks away"}};
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   for (const Misuse& misuse : kIsSanitized ? sampled(misuses, 5, 3) : misuses) {
     const ProcessResult result = run(out_, joined(misuse.options, {"--quiet"}));
     EXPECT_EQ(result.exit_code, misuse.exit_code) << misuse.says;

@@ -35,7 +35,7 @@ using SlowSurvey = Survey;
 /// The process is killed before calls that lie between its start and its first results: the
 /// journal's, and those that make the table of shots.
 TEST_F(SlowSurvey, MayBeKilledAtAnyCall) {
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   const std::vector<std::string> all = arguments(out_, kShotOutputs);
   const FileCalls calls = calls_of(all, out_);
   const FolderContent expected = results_in(out_);

@@ -3,43 +3,23 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <random>
 #include <set>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "tests/apps/run_fixture.h"
+#include "tests/test_sample.h"
 
-/// Tests that could go through very many cases take a sample. It is the same each time, another one
-/// with VANTAGE_TEST_SEED set to another number, and all cases with VANTAGE_TEST_ALL set.
+/// Tests that could go through very many cases take a sample; tests/test_sample.h says which.
 namespace vantage {
-
-/// Whether nothing is to be left out: VANTAGE_TEST_ALL is neither empty nor "0".
-inline bool tests_all_cases() {
-  const char* text = std::getenv("VANTAGE_TEST_ALL");
-  const std::string_view value = text == nullptr ? "" : text;
-  return !value.empty() && value != "0";
-}
-
-inline std::uint64_t sampling_seed() {
-  const char* text = std::getenv("VANTAGE_TEST_SEED");
-  return text == nullptr || *text == '\0' ? 1 : std::strtoull(text, nullptr, 10);
-}
-
-/// For SCOPED_TRACE: how a failure can be had again.
-inline std::string sampling_trace() {
-  return tests_all_cases() ? "VANTAGE_TEST_ALL=1"
-                           : "VANTAGE_TEST_SEED=" + std::to_string(sampling_seed());
-}
 
 /// Whole numbers from the seed, the same with every standard library. `stream` tells tests apart.
 class SampledNumbers {
  public:
   explicit SampledNumbers(std::uint32_t stream)
-      : generator_(static_cast<std::uint32_t>(sampling_seed()) * 2654435761U + stream) {}
+      : generator_(test::sample_seed() * 2654435761U + stream) {}
   /// From 0 to `count` - 1.
   std::size_t below(std::size_t count) { return generator_() % count; }
   /// From 0 to below 1.
@@ -60,8 +40,9 @@ inline std::vector<int> sampled_range(int first, int last, int count, std::uint3
     }
   }
   const auto all = static_cast<std::size_t>(last - first + 1);
-  const std::size_t wanted =
-      tests_all_cases() ? all : std::min(all, chosen.size() + static_cast<std::size_t>(count));
+  const std::size_t wanted = test::runs_everything()
+                                 ? all
+                                 : std::min(all, chosen.size() + static_cast<std::size_t>(count));
   if (wanted == all) {
     for (int number = first; number <= last; ++number) {
       chosen.insert(number);
@@ -88,7 +69,7 @@ std::vector<Case> sampled(const std::vector<Case>& cases, int count, std::uint32
 template <typename Case, typename GroupOf>
 std::vector<Case> sampled_of_each(const std::vector<Case>& cases, const GroupOf& group_of,
                                   std::uint32_t stream) {
-  if (tests_all_cases()) {
+  if (test::runs_everything()) {
     return cases;
   }
   std::vector<std::pair<std::string, std::vector<Case>>> groups;

@@ -53,7 +53,7 @@ TEST_F(MatchOnNodes, ResultsAreTheSame) {
       {"HWLOC_SYNTHETIC=pack:2 node:2 core:3 pu:1", {"--strip-width", "16", "--band-height", "9"}},
       {"HWLOC_SYNTHETIC=node:4 core:1 pu:1", {"--bind", "node", "--threads", "3"}},
       {"HWLOC_SYNTHETIC=node:1 core:5 pu:1", {"--bind", "core"}}};
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   for (const Way& way : sampled(ways, 4, 9)) {
     const std::string map = folder_ / "map.pfm";
     const ProcessResult result = match_on(way.machine, map, way.options);
@@ -130,7 +130,7 @@ TEST_F(RunOnNodes, ResultsAreTheSame) {
       ways.emplace_back(machine, options);
     }
   }
-  SCOPED_TRACE(sampling_trace());
+  SCOPED_TRACE(test::sample_name());
   const std::string out = folder_ / "out";
   for (const auto& [machine, options] : sampled(ways, 2, 10)) {
     std::filesystem::remove_all(out);
