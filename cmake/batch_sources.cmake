@@ -5,7 +5,7 @@
 # includes them: most of the time of a compilation goes into headers, which they share. Names in
 # unnamed namespaces must then differ within a folder. Batches name their files relative to the
 # checkout, so that checkouts in different places can share a compiler cache, and never cross a
-# folder, so that a new file changes few of them.
+# folder, so that a new file changes few of them, unless VANTAGE_BATCH_ACROSS_FOLDERS is set.
 set(vantage_batch_size 12)
 
 function(vantage_batch_sources result name)
@@ -17,6 +17,9 @@ function(vantage_batch_sources result name)
   foreach(file IN LISTS ARGN)
     file(RELATIVE_PATH file ${PROJECT_SOURCE_DIR} ${file})
     get_filename_component(folder ${file} DIRECTORY)
+    if(VANTAGE_BATCH_ACROSS_FOLDERS)
+      set(folder ${name})
+    endif()
     string(MAKE_C_IDENTIFIER ${folder} folder)
     list(APPEND folders ${folder})
     list(APPEND files_of_${folder} ${file})

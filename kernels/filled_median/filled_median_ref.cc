@@ -10,11 +10,12 @@ namespace {
 
 constexpr int kUnitWeight = 4096;
 
-struct Sample {
+struct WeightedSample {
   float disparity_px;
   int weight;
 };
-using Samples = std::array<Sample, std::size_t{kFilledMedianSamples * kFilledMedianSamples}>;
+using Samples =
+    std::array<WeightedSample, std::size_t{kFilledMedianSamples * kFilledMedianSamples}>;
 
 FilledMedianWeights make_weights() {
   FilledMedianWeights weights{};
@@ -31,7 +32,7 @@ int difference(const std::uint8_t* a, const std::uint8_t* b) {
 
 /// `count` ≥ 1 samples with `total` > 0 weight, which are put into another order: a quickselect
 /// that counts weights. Samples that are equal, of which there are many, are set apart together.
-float weighted_median(Sample* samples, int count, int total) {
+float weighted_median(WeightedSample* samples, int count, int total) {
   int below = 0;  // weight of what is known to be less than the median
   for (;;) {
     const float pivot = samples[count / 2].disparity_px;
@@ -40,7 +41,7 @@ float weighted_median(Sample* samples, int count, int total) {
     int weight_of_less = 0;
     int weight_of_equal = 0;
     for (int i = 0; i < greater;) {
-      const Sample sample = samples[i];
+      const WeightedSample sample = samples[i];
       if (sample.disparity_px < pivot) {
         weight_of_less += sample.weight;
         std::swap(samples[i++], samples[less++]);

@@ -7,7 +7,7 @@
 namespace vantage::kernels {
 namespace {
 
-struct Sample {
+struct WarpedSample {
   int column = 0;
   int target = 0;           // −1 and width stand for everything outside the view
   double exact_target = 0;  // x − s·d
@@ -30,9 +30,9 @@ void forward_warp_row_ref(const ForwardWarpRow& row, float* warped_disparity_px,
     write(n, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN());
   }
 
-  Sample previous;
+  WarpedSample previous;
   for (int i = 0; i < row.width; ++i) {
-    Sample sample;
+    WarpedSample sample;
     sample.column = s >= 0 ? i : row.width - 1 - i;
     if (std::isfinite(row.disparity_px[sample.column])) {
       sample.disparity_px = row.disparity_px[sample.column];

@@ -15,12 +15,12 @@ struct Plane {
 };
 
 /// How much a sample counts, and that times its distance from the plane.
-struct Sample {
+struct FitSample {
   float w = 0;
   float we = 0;
 };
 
-Sample weigh(float disparity_px, float plane_px) {
+FitSample weigh(float disparity_px, float plane_px) {
   constexpr float kPerReach = 1 / (kSurfaceReachPx * kSurfaceReachPx);
   const float e = disparity_px - plane_px;
   const float w = std::max(1 - e * e * kPerReach, 0.0F);
@@ -42,7 +42,7 @@ Sums sum_samples(const SurfaceRow& row, int x, const SurfaceLattice& lattice, co
   for (int j = -steps; j <= steps; ++j) {
     const float v = static_cast<float>(j) / static_cast<float>(steps);
     const float middle_px = *own + (plane.height + plane.slope_v * v);
-    const Sample middle = weigh(sample(0, j), middle_px);
+    const FitSample middle = weigh(sample(0, j), middle_px);
     Sums line;
     line.w = middle.w;
     line.we = middle.we;
@@ -50,8 +50,8 @@ Sums sum_samples(const SurfaceRow& row, int x, const SurfaceLattice& lattice, co
     for (int i = 1; i <= steps; ++i) {
       const float u = static_cast<float>(i) / static_cast<float>(steps);
       const float rise_px = plane.slope_u * u;
-      const Sample above = weigh(sample(i, j), middle_px + rise_px);
-      const Sample below = weigh(sample(-i, j), middle_px - rise_px);
+      const FitSample above = weigh(sample(i, j), middle_px + rise_px);
+      const FitSample below = weigh(sample(-i, j), middle_px - rise_px);
       const float w = above.w + below.w;
       line.w += w;
       line.wu += (above.w - below.w) * u;
