@@ -19,7 +19,7 @@ from pathlib import Path
 from headless_browser import Browser, BrowserError, Tab, find_browser
 
 EXIT_SKIPPED = 77
-SIZE = {"width": 240, "height": 180}
+SIZE = {"width": 160, "height": 120}
 # What synth and the page do differently: one fit of intensities for all views instead of one for
 # each, 16 bits of a disparity, single precision. That is worth a grey level here and there. Where
 # s·d ends in exactly ½, as it often does for maps in half pixels, rounding may move a pixel at the
@@ -133,9 +133,10 @@ class ViewPageTest(unittest.TestCase):
                 "--right-disparity", cones / "disp6.png", "--disparity-scale", "2"]
         page = self.folder / "cones.html"
         vantage("view", *pair, "-o", page)
-        views = {("0.25", "0"): "between", ("-0.4", "0"): "outside", ("0.5", "0.2"): "between"}
+        views = {("0.25", "0"): "between", ("-0.4", "0"): "outside"}
         if tests_all_cases():
-            views |= {("0.5", "0"): "between", ("0", "0"): "between", ("1", "0"): "between"}
+            views |= {("0.5", "0"): "between", ("0", "0"): "between", ("1", "0"): "between",
+                      ("0.5", "0.2"): "between"}
         self.expect_synthesized_views(page, pair, views)
 
     def test_maps_with_gaps_and_other_options(self):
