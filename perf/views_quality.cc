@@ -187,7 +187,7 @@ void measure(const ViewScene& scene, const std::filesystem::path& folder, Execut
 
 int main(int argc, char** argv) {
   using namespace vantage;
-  const std::filesystem::path data = argc > 1 ? argv[1] : kDefaultData;
+  const std::filesystem::path data = argc > 1 ? argv[1] : vantage::perf::kDefaultData;
   Execution execution({});
   std::vector<perf::Line> lines;
   for (const perf::ViewScene& scene : perf::view_scenes()) {
