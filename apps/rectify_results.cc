@@ -9,6 +9,7 @@
 #include "apps/vertical_error_report.h"
 
 namespace vantage::apps {
+
 SettingValue results_of(const Rectification& rectification, const RectifiedPair& pair,
                         int pair_count) {
   SettingValue results = {

@@ -4,8 +4,8 @@
 # With VANTAGE_BATCH_SOURCES, files of one folder are compiled by the dozen, as one file that
 # includes them: most of the time of a compilation goes into headers, which they share. Names in
 # unnamed namespaces must then differ within a folder. Batches name their files relative to the
-# checkout, so that checkouts in different places can share a compiler cache, and never cross a
-# folder, so that a new file changes few of them, unless VANTAGE_BATCH_ACROSS_FOLDERS is set.
+# checkout, so that checkouts in different places can share a compiler cache. A batch holds files of
+# one folder, so that a new file changes few batches, unless VANTAGE_BATCH_ACROSS_FOLDERS is set.
 set(vantage_batch_size 12)
 
 function(vantage_batch_sources result name)

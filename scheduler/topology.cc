@@ -28,8 +28,8 @@ Handle loaded(unsigned long flags) {
   return handle;
 }
 
-/// The same from what the system tells, and where that has no caches, from what every processor
-/// tells a thread that moves from one to the next: that waits for each until it is free.
+/// The topology as the operating system reports it. Where that lists no caches, hwloc asks each
+/// processor in turn instead, which is slow: the thread waits until each one is free.
 Handle loaded() {
   Handle handle = loaded(HWLOC_TOPOLOGY_FLAG_DONT_CHANGE_BINDING);
   if (handle == nullptr || hwloc_get_obj_by_type(handle.get(), HWLOC_OBJ_L1CACHE, 0) == nullptr) {

@@ -11,7 +11,7 @@ constexpr const char* kWithoutThem = "cannot read or write videos";
 
 }  // namespace
 
-// Of the versions that the types in the header are of: FFmpeg changes types with the first number.
+// The major versions of the headers compiled against: FFmpeg changes types only between those.
 LibavFunctions::LibavFunctions()
     : format_("libavformat.so." AV_STRINGIFY(LIBAVFORMAT_VERSION_MAJOR), kWithoutThem),
       codec_("libavcodec.so." AV_STRINGIFY(LIBAVCODEC_VERSION_MAJOR), kWithoutThem) {}
