@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "apps/tell.h"
 #include "apps/tuning_report.h"
 #include "scheduler/machine.h"
 
@@ -42,11 +43,19 @@ TunedSettings left_open(TunedSettings settings, const TuningSituation& situation
 
 void add_tuning_settings(Settings& settings, TuningSource& source) {
   settings.begin_group("Execution (never changes a result)", false);
-  settings.text("tuning", source.file, "FILE",
-                "Where to look for what 'vantage tune' has found for such images; it goes before "
-                "auto below. Without it tuning.json in the folder vantage of $XDG_CONFIG_HOME or "
-                "~/.config");
+  settings.input_path(
+      "tuning", source.file, "FILE",
+      "Where to look for what 'vantage tune' has found for such images; it goes before "
+      "auto below. Without it tuning.json in the folder vantage of $XDG_CONFIG_HOME or "
+      "~/.config");
   settings.flag("no-tuning", source.ignored, "Leave what is auto below to the cost model");
+}
+
+fs::path file_of(const TuningSource& source) {
+  if (source.ignored) {
+    return {};
+  }
+  return source.file.empty() ? default_tuning_path().value_or(fs::path()) : fs::path(source.file);
 }
 
 AppliedTuning no_tuning(const std::string& reason) {
@@ -60,19 +69,18 @@ AppliedTuning apply_tuning(const TuningSource& source, const TuningSituation& si
   if (source.ignored) {
     return no_tuning("--no-tuning");
   }
-  const std::optional<fs::path> path =
-      source.file.empty() ? default_tuning_path() : std::optional<fs::path>(source.file);
-  if (!path) {
+  const fs::path path = file_of(source);
+  if (path.empty()) {
     return no_tuning("neither XDG_CONFIG_HOME nor HOME is an absolute path");
   }
-  TuningFileContent content = read_tuning_file(*path);
+  TuningFileContent content = read_tuning_file(path);
   std::error_code ignored_error;
-  if (!source.file.empty() && !fs::exists(*path, ignored_error)) {
-    content.warnings.push_back(fmt::format("{}: there is no such file", path->string()));
+  if (!source.file.empty() && !fs::exists(path, ignored_error)) {
+    content.warnings.push_back(fmt::format("{}: there is no such file", path.string()));
   }
   if (!quiet) {
     for (const std::string& warning : content.warnings) {
-      fmt::print(stderr, "{}: warning: tuning is not used: {}\n", command, warning);
+      tell("{}: warning: tuning is not used: {}\n", command, warning);
     }
   }
   const TuningKey key = make_tuning_key(
@@ -90,12 +98,12 @@ AppliedTuning apply_tuning(const TuningSource& source, const TuningSituation& si
     applied = no_tuning(content.warnings.empty() ? "there is no entry for this work"
                                                  : content.warnings.front());
     applied.report["wanted"] = key.text();
-    applied.report["file"] = path->string();
+    applied.report["file"] = path.string();
     return applied;
   }
   applied.settings = left_open(plan->settings, situation);
   applied.report = {{"key", key.text()},
-                    {"file", path->string()},
+                    {"file", path.string()},
                     {"use", name_of(situation.use)},
                     {"date", plan->date},
                     {"settings", as_json(applied.settings)}};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "apps/setting_value.h"
@@ -17,6 +18,9 @@ struct TuningSource {
 
 /// --tuning and --no-tuning, in the group of the execution settings.
 void add_tuning_settings(Settings& settings, TuningSource& source);
+
+/// The file that `source` names, or the one to look for without a name; empty: none.
+std::filesystem::path file_of(const TuningSource& source);
 
 /// What a command uses of a tuning file, and what it says about that.
 struct AppliedTuning {

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "apps/tell.h"
 #include "engine/matching/disparity_range.h"
 
 namespace vantage::apps {
@@ -20,8 +21,8 @@ void choose_disparities(const Settings& settings, const CommonOptions& common,
   options.validate();
   report.set_settings(reported_settings(settings, options));
   if (!common.quiet) {
-    fmt::print(stderr, "{}: --disparities auto is {}:{}\n", settings.command(),
-               options.disparities.min, options.disparities.max);
+    tell("{}: --disparities auto is {}:{}\n", settings.command(), options.disparities.min,
+         options.disparities.max);
   }
 }
 

@@ -58,6 +58,15 @@ pid_t spawn(const std::vector<std::string>& command, const Pipe& out, const Pipe
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, out.write_end(), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, err.write_end(), STDERR_FILENO);
+  // What this process ignores (set_up_process()) is nothing to hand on.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t usual;
+  sigemptyset(&usual);
+  sigaddset(&usual, SIGPIPE);
+  sigaddset(&usual, SIGXFSZ);
+  posix_spawnattr_setsigdefault(&attributes, &usual);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
   std::vector<std::string> words = command;  // posix_spawnp wants them writable
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
@@ -67,7 +76,8 @@ pid_t spawn(const std::vector<std::string>& command, const Pipe& out, const Pipe
   arguments.push_back(nullptr);
   pid_t process = 0;
   const int failure =
-      ::posix_spawnp(&process, arguments.front(), &actions, nullptr, arguments.data(), environ);
+      ::posix_spawnp(&process, arguments.front(), &actions, &attributes, arguments.data(), environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (failure != 0) {
     throw Error(fmt::format("{} cannot be started: {}", command.front(), std::strerror(failure)));

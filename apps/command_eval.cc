@@ -49,7 +49,8 @@ void add_eval_settings(Settings& settings, EvalJob& job) {
                   "Divides the values of an integer TRUTH file; auto: 256 for 16-bit PNG, needed "
                   "for 8-bit files");
   settings.number("disparity-scale", job.disparity_scale, "S", "The same for DISPARITY");
-  settings.text("mask", job.mask, "FILE", "Only pixels that are white in this 8-bit image count");
+  settings.input_path("mask", job.mask, "FILE",
+                      "Only pixels that are white in this 8-bit image count");
   settings.integer("ignore-border", job.ignore_border_px, "PX",
                    "Rows and columns left out at each side");
 }
@@ -60,7 +61,7 @@ void require_positive(const char* option, const std::optional<double>& scale) {
   }
 }
 
-void check(const EvalJob& job) {
+void check(const EvalJob& job, const Settings& settings) {
   job.common.execution.validate();
   require_positive("--scale", job.truth_scale);
   require_positive("--disparity-scale", job.disparity_scale);
@@ -71,10 +72,7 @@ void check(const EvalJob& job) {
   if (job.views && (job.truth_scale || job.disparity_scale || job.ignore_border_px != 0)) {
     throw UsageError("--scale, --disparity-scale and --ignore-border do not go with --views");
   }
-  FileChecks files;
-  files.add_input(job.first);
-  files.add_input(job.second);
-  files.add_input(job.mask);
+  FileChecks files(settings);
   check_common_files(job.common, files);
 }
 
@@ -176,7 +174,7 @@ int command_eval(const Arguments& arguments) {
   if (!settings.read(arguments)) {
     return kExitDone;
   }
-  check(job);
+  check(job, settings);
   RunReport report(settings.command(), settings.values());
   report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);

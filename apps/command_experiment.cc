@@ -13,6 +13,7 @@
 #include "apps/progress.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
+#include "apps/tell.h"
 #include "engine/sequence/sequence_layout.h"
 #include "engine/simd.h"
 
@@ -35,13 +36,14 @@ void add_experiment_settings(Settings& settings, ExperimentJob& job) {
       "noise: error of the methods against noise (Figs. 6.16, 6.17), against iterations (6.10), "
       "and the membrane's support (6.9)");
   name.required = true;
+  name.path = PathRole::kNone;
   name.set = [&job](const SettingValue& value) {
     if (value != kNoise) {
       reject_value(value, kNoise);
     }
     job.name = to_text(value);
   };
-  Setting& output = settings.text("output", job.output, "DIR", "Folder to write to");
+  Setting& output = settings.path("output", job.output, "DIR", "Folder to write to");
   output.short_name = 'o';
   output.required = true;
 
@@ -94,7 +96,10 @@ int command_experiment(const Arguments& arguments) {
   }
   job.options.validate();
   job.common.execution.validate();
-  FileChecks files;
+  FileChecks files(settings);
+  for (const char* name : {"noise.csv", "iterations.csv", "support.csv"}) {
+    files.add_made_file(std::filesystem::path(job.output) / name, "--output");
+  }
   check_common_files(job.common, files);
   RunReport report(settings.command(), settings.values());
   report.start_trace(job.common.trace);
@@ -127,7 +132,7 @@ int command_experiment(const Arguments& arguments) {
   }
   if (noise_runs.empty() || iteration_runs.empty()) {
     if (!job.common.quiet) {
-      fmt::print(stderr, "experiment: interrupted\n");
+      tell("experiment: interrupted\n");
     }
     return kExitInterrupted;
   }
@@ -142,9 +147,9 @@ int command_experiment(const Arguments& arguments) {
                       {"support_largest_difference", support_difference}});
   report.write(job.common.report);
   if (!job.common.quiet) {
-    fmt::print(stderr, "experiment noise: {} runs, {}x{} pixels -> {}\n",
-               noise_runs.size() + iteration_runs.size(), job.options.size_px, job.options.size_px,
-               job.output);
+    tell("experiment noise: {} runs, {}x{} pixels -> {}\n",
+         noise_runs.size() + iteration_runs.size(), job.options.size_px, job.options.size_px,
+         job.output);
     report.print_summary();
   }
   return kExitDone;

@@ -6,6 +6,7 @@
 #include "apps/outputs.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
+#include "apps/tell.h"
 #include "engine/generation/book_pairs.h"
 #include "engine/simd.h"
 
@@ -20,7 +21,7 @@ struct BookJob {
 
 void add_book_settings(Settings& settings, BookJob& job) {
   settings.begin_group("Files");
-  Setting& output = settings.text("output", job.output, "DIR", "Folder to write to");
+  Setting& output = settings.path("output", job.output, "DIR", "Folder to write to");
   output.short_name = 'o';
   output.required = true;
 
@@ -80,7 +81,11 @@ int command_generate_book(const Arguments& arguments) {
   }
   job.pair.validate();
   job.common.execution.validate();
-  FileChecks checks;
+  FileChecks checks(settings);
+  GeneratedFiles::check(
+      job.output, false,
+      {"left", "right", "left-disparity", "right-disparity", "left-occluded", "right-occluded"},
+      checks);
   check_common_files(job.common, checks);
   RunReport report(settings.command(), settings.values());
   report.start_trace(job.common.trace);
@@ -102,8 +107,8 @@ int command_generate_book(const Arguments& arguments) {
   report.set_results({{"disparities", fmt::format("{}:{}", pair.search.min, pair.search.max)}});
   report.write(job.common.report);
   if (!job.common.quiet) {
-    fmt::print(stderr, "generate book: {}x{} pixels, search with --disparities={}:{} -> {}\n",
-               pair.left.width(), pair.left.height(), pair.search.min, pair.search.max, job.output);
+    tell("generate book: {}x{} pixels, search with --disparities={}:{} -> {}\n", pair.left.width(),
+         pair.left.height(), pair.search.min, pair.search.max, job.output);
     report.print_summary();
   }
   return kExitDone;

@@ -12,6 +12,7 @@
 #include "apps/progress.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
+#include "apps/tell.h"
 #include "apps/wanted_views.h"
 #include "engine/error.h"
 #include "engine/generation/layered_scene.h"
@@ -31,12 +32,13 @@ struct SceneJob {
 };
 
 constexpr int kMaxFrames = 1000000;
+constexpr const char* kCalibrationFile = "calib.txt";
 constexpr SceneView kLeftCamera{0, 0};
 constexpr SceneView kRightCamera{1, 0};
 
 void add_scene_settings(Settings& settings, SceneJob& job) {
   settings.begin_group("Files");
-  Setting& output = settings.text("output", job.output, "DIR", "Folder to write to");
+  Setting& output = settings.path("output", job.output, "DIR", "Folder to write to");
   output.short_name = 'o';
   output.required = true;
   settings.integer("frames", job.frames, "N",
@@ -44,9 +46,9 @@ void add_scene_settings(Settings& settings, SceneJob& job) {
                    "(DIR/left.png …)",
                    "single");
   add_view_setting(settings, job.views);
-  settings.text("pose", job.pose_file, "FILE",
-                "Also what the cameras of a file of poses see (as for 'vantage synth'; t in "
-                "baselines), as camera-0, camera-1, ...");
+  settings.input_path("pose", job.pose_file, "FILE",
+                      "Also what the cameras of a file of poses see (as for 'vantage synth'; t in "
+                      "baselines), as camera-0, camera-1, ...");
 
   settings.begin_group("Scene");
   LayeredSceneOptions& scene = job.scene;
@@ -66,6 +68,16 @@ void add_scene_settings(Settings& settings, SceneJob& job) {
   add_seed_setting(settings, scene.seed);
 }
 
+/// Views are named as those of 'vantage run' are, so that they can be compared file by file.
+std::string view_name(const SceneJob& job, BaselinePosition view) {
+  if (!job.frames) {
+    return "view-" + to_string(view);
+  }
+  return job.views.size() == 1 ? "views" : "views/" + to_string(view);
+}
+
+std::string camera_name(std::size_t camera) { return fmt::format("camera-{}", camera); }
+
 void check(const SceneJob& job) {
   job.scene.validate();
   job.common.execution.validate();
@@ -79,8 +91,25 @@ void check(const SceneJob& job) {
           fmt::format("--view is {} twice, expected different positions", to_string(*view)));
     }
   }
-  FileChecks checks;
-  check_common_files(job.common, checks);
+}
+
+void check_files(const SceneJob& job, const Settings& settings) {
+  FileChecks files(settings);
+  std::vector<std::string> names;
+  for (const std::string side : {"left", "right"}) {
+    for (const char* kind : {"", "-disparity", "-occluded"}) {
+      names.push_back(side + kind);
+    }
+  }
+  for (const BaselinePosition view : job.views) {
+    names.push_back(view_name(job, view));
+  }
+  for (std::size_t camera = 0; camera < job.cameras.size(); ++camera) {
+    names.push_back(camera_name(camera));
+  }
+  GeneratedFiles::check(job.output, job.frames.has_value(), names, files);
+  files.add_made_file(std::filesystem::path(job.output) / kCalibrationFile, "--output");
+  check_common_files(job.common, files);
 }
 
 std::vector<PosedCamera> cameras_of(const SceneJob& job) {
@@ -103,14 +132,6 @@ std::vector<PosedCamera> cameras_of(const SceneJob& job) {
     }
   }
   return cameras;
-}
-
-/// Views are named as those of 'vantage run' are, so that they can be compared file by file.
-std::string view_name(const SceneJob& job, BaselinePosition view) {
-  if (!job.frames) {
-    return "view-" + to_string(view);
-  }
-  return job.views.size() == 1 ? "views" : "views/" + to_string(view);
 }
 
 void make_frame(const SceneJob& job, const LayeredScene& scene, int frame,
@@ -137,7 +158,7 @@ void make_frame(const SceneJob& job, const LayeredScene& scene, int frame,
     make_view(view_name(job, view), scene.camera({view.x, view.y}));
   }
   for (std::size_t i = 0; i < job.cameras.size(); ++i) {
-    make_view(fmt::format("camera-{}", i), job.cameras[i]);
+    make_view(camera_name(i), job.cameras[i]);
   }
 }
 
@@ -164,6 +185,7 @@ int command_generate_scene(const Arguments& arguments) {
   }
   check(job);
   job.cameras = cameras_of(job);
+  check_files(job, settings);
   RunReport report(settings.command(), settings.values());
   report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
@@ -173,7 +195,7 @@ int command_generate_scene(const Arguments& arguments) {
   const GeneratedFiles files(job.output, job.frames.has_value());
 
   report.timed_file_access("write",
-                           [&] { files.write_text("calib.txt", calibration_text(scene)); });
+                           [&] { files.write_text(kCalibrationFile, calibration_text(scene)); });
   const std::atomic<bool>& interrupted = interrupt_flag();
   const int frames = job.frames.value_or(1);
   int frames_done = 0;
@@ -191,11 +213,9 @@ int command_generate_scene(const Arguments& arguments) {
   report.set_results({{"frames", frames_done}, {"disparities", fmt::format("{}:{}", least, most)}});
   report.write(job.common.report);
   if (!job.common.quiet) {
-    fmt::print(
-        stderr,
-        "generate scene: {} frame{} of {}x{} pixels, search with --disparities={}:{} -> {}\n",
-        frames_done, frames_done == 1 ? "" : "s", job.scene.width_px, job.scene.height_px, least,
-        most, job.output);
+    tell("generate scene: {} frame{} of {}x{} pixels, search with --disparities={}:{} -> {}\n",
+         frames_done, frames_done == 1 ? "" : "s", job.scene.width_px, job.scene.height_px, least,
+         most, job.output);
     report.print_summary();
   }
   return frames_done < frames ? kExitInterrupted : kExitDone;

@@ -9,6 +9,7 @@
 #include "apps/rectification_check.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
+#include "apps/tell.h"
 #include "engine/error.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/displacement_io.h"
@@ -110,7 +111,7 @@ void print_levels(const MatchReport& match) {
   if (levels.sigma_measurement) {
     text += fmt::format(", noise {:.3g}", *levels.sigma_measurement);
   }
-  fmt::print(stderr, "match: of {} matches: {}\n", levels.matches, text);
+  tell("match: of {} matches: {}\n", levels.matches, text);
 }
 
 }  // namespace
@@ -127,7 +128,7 @@ int command_match(const Arguments& arguments) {
   if (job.has_several() && !job.match.method && !job.match.preset) {
     job.match.method = MatchMethod::kSsd;  // census codes cannot be interpolated
   }
-  check(job);
+  check(job, settings);
   RunReport report(settings.command(), reported_settings(settings, job.match));
   report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
@@ -175,9 +176,9 @@ int command_match(const Arguments& arguments) {
 
   report.write(job.common.report);
   if (!job.common.quiet) {
-    fmt::print(stderr, "match: {}x{} pixels, disparities {}:{}, {} -> {}\n", images[0].width(),
-               images[0].height(), job.match.disparities.min, job.match.disparities.max, job.left,
-               job.output);
+    tell("match: {}x{} pixels, disparities {}:{}, {} -> {}\n", images[0].width(),
+         images[0].height(), job.match.disparities.min, job.match.disparities.max, job.left,
+         job.output);
     print_levels(match);
     report.print_summary();
   }

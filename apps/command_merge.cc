@@ -11,6 +11,8 @@
 #include "apps/run_results.h"
 #include "apps/run_session.h"
 #include "apps/run_settings.h"
+#include "apps/tell.h"
+#include "apps/verified_run.h"
 #include "engine/error.h"
 #include "engine/sequence/delivered_frames.h"
 #include "engine/sequence/sequence_join.h"
@@ -21,6 +23,7 @@ namespace {
 struct MergeJob {
   std::string folder;
   bool partial = false;
+  bool verify = false;
   std::string report;
   bool quiet = false;
 };
@@ -29,7 +32,9 @@ void add_merge_settings(Settings& settings, MergeJob& job) {
   settings.positional("dir", job.folder, "Folder of the run").required = true;
   settings.flag("partial", job.partial,
                 "Join the frames there are, if they follow each other without a gap");
-  settings.text("report", job.report, "FILE", "Write a JSON report to FILE");
+  settings.flag("verify", job.verify,
+                "Read all results first and stop if one is not as it was written");
+  settings.path("report", job.report, "FILE", "Write a JSON report to FILE");
   settings.flag("quiet", job.quiet, "Print errors only");
 }
 
@@ -42,7 +47,7 @@ int command_merge(const Arguments& arguments) {
   if (!settings.read(arguments)) {
     return kExitDone;
   }
-  FileChecks files;
+  FileChecks files(settings);
   files.add_output(job.report, "--report", OutputKind::kText);
   RunReport report(settings.command(), settings.values());
   RunJob run;
@@ -50,6 +55,19 @@ int command_merge(const Arguments& arguments) {
   add_run_settings(run_settings, run);
   const RunIdentity identity = read_run(job.folder, run_settings, run);
   const SequenceLayout layout(job.folder, run.sequence);
+  add_run_outputs(layout, "DIR", files);
+  if (job.verify) {
+    const RunVerification verification = report.timed_file_access("verify", [&] {
+      return verify_with_progress(layout, settings.command(),
+                                  job.quiet ? ProgressStyle::kNone : ProgressStyle::kAuto);
+    });
+    if (verification.interrupted) {
+      return kExitInterrupted;
+    }
+    if (!verification.damaged.empty()) {
+      throw Error(describe_damage(verification, job.folder));
+    }
+  }
   const DeliveredFrames delivered(layout);
   const FrameRange all{0, identity.frame_count};
   const std::vector<FrameRange> missing = delivered.missing(all);
@@ -86,11 +104,10 @@ int command_merge(const Arguments& arguments) {
   report.set_results(std::move(results));
   report.write(job.report);
   if (!job.quiet) {
-    fmt::print(
-        stderr, "merge: {} holds {}{}\n", job.folder,
-        frames == all ? fmt::format("all {} frames", all.count())
-                      : fmt::format("frames {} of {}", to_string({frames}), all.count()),
-        skipped.empty() ? "" : fmt::format(", but {} of them could not be made", skipped.size()));
+    tell("merge: {} holds {}{}\n", job.folder,
+         frames == all ? fmt::format("all {} frames", all.count())
+                       : fmt::format("frames {} of {}", to_string({frames}), all.count()),
+         skipped.empty() ? "" : fmt::format(", but {} of them could not be made", skipped.size()));
   }
   return skipped.empty() ? kExitDone : kExitSkipped;
 }

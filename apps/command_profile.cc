@@ -17,6 +17,7 @@
 #include "apps/profile_rounds.h"
 #include "apps/profiled_command.h"
 #include "apps/settings.h"
+#include "apps/tell.h"
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
 #include "engine/profile_page/profile_page.h"
@@ -65,14 +66,15 @@ void add_profile_settings(Settings& settings, ProfileJob& job) {
   };
   settings.number("budget", job.rounds.budget_s, "SECONDS",
                   "No round begins that would end later; one is always made", "none");
-  settings.text("against", job.against, "PROGRAM",
+  settings.path("against", job.against, "PROGRAM",
                 "Another build of vantage, run in turn with this one and compared with it");
-  settings.text("html", job.html, "FILE", "Write the profile as a page that stands on its own");
-  settings.text("json", job.json, "FILE", "Write the profile as JSON, which --compare reads");
+  settings.path("html", job.html, "FILE", "Write the profile as a page that stands on its own");
+  settings.path("json", job.json, "FILE", "Write the profile as JSON, which --compare reads");
   settings.flag("compare", job.compare,
                 "Compare two profiles that --json has kept, instead of making one");
   Setting& profiles = settings.add("profiles", "PROFILE", "With --compare: A.json B.json");
   profiles.positional = true;
+  profiles.path = PathRole::kInput;
   profiles.list = true;
   profiles.set = [&job](const SettingValue& value) {
     job.profiles = value.get<std::vector<std::string>>();
@@ -113,9 +115,13 @@ void check(const ProfileJob& job) {
   for (const int threads : job.threads) {
     ExecutionOptions{.threads = threads}.validate();
   }
-  FileChecks files;
-  for (const std::string& profile : job.profiles) {
-    files.add_input(profile);
+}
+
+/// `command`: null with --compare.
+void check_files(const ProfileJob& job, const Settings& settings, const ProfiledCommand* command) {
+  FileChecks files(settings);
+  if (command != nullptr) {
+    std::ranges::for_each(command->inputs(), [&](const auto& input) { files.add_input(input); });
   }
   files.add_output(job.html, "--html", OutputKind::kPage);
   files.add_output(job.json, "--json", OutputKind::kText);
@@ -250,9 +256,9 @@ Profile profile_of(const std::string& program, const ProfiledCommand& command,
 
 void print_before(const ProfiledCommand& command) {
   for (const std::string& remark : command.remarks()) {
-    fmt::print(stderr, "profile: {}\n", remark);
+    tell("profile: {}\n", remark);
   }
-  fmt::print(stderr, "profile: measuring what the machine can do\n");
+  tell("profile: measuring what the machine can do\n");
 }
 
 int profile(const ProfileJob& job, ProfiledCommand& command) {
@@ -267,15 +273,14 @@ int profile(const ProfileJob& job, ProfiledCommand& command) {
   std::vector<Contestant> contestants = contestants_of(job, counts);
   if (interrupted.load() || !run_rounds(command, job.rounds, contestants, interrupted)) {
     if (!job.quiet) {
-      fmt::print(stderr, "profile: interrupted, nothing is kept\n");
+      tell("profile: interrupted, nothing is kept\n");
     }
     return kExitInterrupted;
   }
   const Profile profile = profile_of(path_of_this_program(), command, contestants, ceilings);
   const int rounds = profile.thread_counts.front().runs;
   if (rounds < job.rounds.rounds && !job.quiet) {
-    fmt::print(stderr, "profile: the budget ended it after {} of {} rounds\n", rounds,
-               job.rounds.rounds);
+    tell("profile: the budget ended it after {} of {} rounds\n", rounds, job.rounds.rounds);
   }
   write_files(job, profile);
   fmt::print("{}", describe(profile));
@@ -303,6 +308,7 @@ int command_profile(const Arguments& arguments) {
   }
   check(job);
   if (job.compare) {
+    check_files(job, settings, nullptr);
     return compare(job);
   }
   const Arguments words(end_of_own, arguments.end());
@@ -314,11 +320,12 @@ int command_profile(const Arguments& arguments) {
   if (command == nullptr) {
     return kExitDone;
   }
+  check_files(job, settings, command.get());
   job.rounds.progress = job.quiet ? ProgressStyle::kNone : ProgressStyle::kAuto;
   try {
     return profile(job, *command);
   } catch (const RunFailure& failure) {
-    fmt::print(stderr, "{}\n", failure.what());
+    tell("{}\n", failure.what());
     return failure.exit_code();
   }
 }

@@ -14,6 +14,7 @@
 #include "apps/run_report.h"
 #include "apps/sampled_matches.h"
 #include "apps/settings.h"
+#include "apps/tell.h"
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
 #include "engine/io/photograph_io.h"
@@ -54,42 +55,25 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
   settings
       .positional("right", job.input.right, "Right photograph, or photographs, of the same size")
       .required = true;
-  settings.text("calibration", job.calibration, "FILE",
-                "OpenCV YAML or XML, Middlebury or KITTI calib.txt; without it the cameras are "
-                "estimated from the images");
+  settings.input_path(
+      "calibration", job.calibration, "FILE",
+      "OpenCV YAML or XML, Middlebury or KITTI calib.txt; without it the cameras are "
+      "estimated from the images");
   settings.integer("sample-pairs", job.sample_pairs, "N",
                    "Of several pairs, so many are looked at to estimate and to measure");
   settings.begin_group("Output: at least one of these");
   settings
-      .text("output", job.output, "DIR",
+      .path("output", job.output, "DIR",
             "Folder for the rectified images: DIR/left.png and DIR/right.png, of several pairs "
             "DIR/left/000000.png and so on")
       .short_name = 'o';
-  settings.text("matrices", job.matrices, "FILE",
+  settings.path("matrices", job.matrices, "FILE",
                 "Write cameras, rectifying rotations, homographies and the valid region as OpenCV "
                 "does: .yml .yaml .xml .json; YAML and XML serve as --calibration");
-  settings.text("valid-mask", job.valid_mask, "MASK.png",
+  settings.path("valid-mask", job.valid_mask, "MASK.png",
                 "Write a mask of the pixels that both rectified images show something at");
   settings.number("kept-outline", job.rectification.kept_outline, "S",
                   "0: nothing black comes in; 1: nothing of the photographs is lost");
-}
-
-/// Results must not replace the photographs they are made from.
-void require_separate_files(const RectifyJob& job) {
-  for (const std::string& source : {job.input.left, job.input.right}) {
-    std::error_code ignored;
-    const fs::path folder =
-        fs::is_directory(source, ignored) ? fs::path(source) : fs::path(source).parent_path();
-    for (const char* side : {"left", "right"}) {
-      const fs::path written = fs::path(job.output) / side;
-      const bool is_file = resolved(written.string() + ".png") == resolved(source) ||
-                           resolved(written.string() + ".pfm") == resolved(source);
-      if (is_file || resolved(written) == resolved(folder)) {
-        throw UsageError(fmt::format("--output is '{}', but '{}' is an input and would be replaced",
-                                     job.output, source));
-      }
-    }
-  }
 }
 
 void check(const RectifyJob& job) {
@@ -110,16 +94,24 @@ void check(const RectifyJob& job) {
         fmt::format("--matrices is '{}', expected a file name that ends in .yml .yaml .xml .json",
                     job.matrices));
   }
-  if (!job.output.empty()) {
-    require_separate_files(job);
-  }
-  FileChecks files;
-  for (const std::string& input : {job.input.left, job.input.right, job.calibration}) {
-    files.add_input(input);
-  }
+}
+
+/// Before the pairs are opened: that may take time.
+FileChecks check_files(const RectifyJob& job, const Settings& settings) {
+  FileChecks files(settings);
   files.add_output(job.matrices, "--matrices", OutputKind::kText);
   files.add_output(job.valid_mask, "--valid-mask", OutputKind::kMask);
   check_common_files(job.common, files);
+  return files;
+}
+
+void check_pairs(const RectifyJob& job, const PairSource& pairs, FileChecks& files) {
+  for (const fs::path& file : pairs.files()) {
+    files.add_input(file);
+  }
+  if (!job.output.empty()) {
+    GeneratedFiles::check(job.output, pairs.pair_count() > 1, {"left", "right"}, files);
+  }
 }
 
 /// Runs `work`; its errors say which input they are about.
@@ -234,6 +226,7 @@ int command_rectify(const Arguments& arguments) {
     return kExitDone;
   }
   check(job);
+  FileChecks files = check_files(job, settings);
   RunReport report(settings.command(), settings.values());
   report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
@@ -241,6 +234,7 @@ int command_rectify(const Arguments& arguments) {
   report.set_execution(execution);
 
   const std::unique_ptr<PairSource> pairs = open_pair_source(job.input);
+  check_pairs(job, *pairs, files);
   const int pair_count = pairs->pair_count();
   FramePair pair;
   report.timed_file_access("read", [&] { read_equal_pair(*pairs, 0, pair); });
@@ -295,7 +289,7 @@ int command_rectify(const Arguments& arguments) {
   });
   const std::atomic<bool>& interrupted = interrupt_flag();
   if (!job.output.empty()) {
-    const GeneratedFiles files(job.output, pair_count > 1);
+    const GeneratedFiles results(job.output, pair_count > 1);
     Progress progress(
         "rectify", "pairs",
         job.common.quiet || pair_count == 1 ? ProgressStyle::kNone : ProgressStyle::kAuto);
@@ -305,8 +299,8 @@ int command_rectify(const Arguments& arguments) {
         report.timed_compute("remap", [&] { rectify_pair(rectifier, pair, execution); });
       });
       report.timed_file_access("write", [&] {
-        files.write("left", index, pair.left);
-        files.write("right", index, pair.right);
+        results.write("left", index, pair.left);
+        results.write("right", index, pair.right);
       });
       progress.update(index + 1, pair_count, 0);
     }
@@ -315,7 +309,7 @@ int command_rectify(const Arguments& arguments) {
   report.write(job.common.report);
   if (!job.common.quiet) {
     for (const std::string& remark : pairs->remarks()) {
-      fmt::print(stderr, "rectify: note: {}\n", remark);
+      tell("rectify: note: {}\n", remark);
     }
     print_results(rectification, rectifier.pair(), pair_count, job.calibration);
     report.print_summary();

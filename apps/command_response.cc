@@ -9,6 +9,7 @@
 #include "apps/outputs.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
+#include "apps/tell.h"
 #include "engine/error.h"
 #include "engine/evaluation/cumulative_response.h"
 #include "engine/io/atomic_file.h"
@@ -39,13 +40,13 @@ void add_response_settings(Settings& settings, ResponseJob& job) {
   settings.begin_group("Files");
   settings.positional("left", job.left, "Left image").required = true;
   settings.positional("right", job.right, "Right image of the same size").required = true;
-  Setting& output = settings.text(
+  Setting& output = settings.path(
       "output", job.output, "FILE",
       "Sums to write: .csv, one row per displacement, or .npy of shape (5, y, x): whole image, "
       "top left, top right, bottom left and bottom right quadrant");
   output.short_name = 'o';
   output.required = true;
-  settings.text(
+  settings.path(
       "plot", job.plot, "FILE",
       "Draw the sums per pixel: curves over one range, heat maps over two: .svg .png .jpg ...");
 
@@ -81,12 +82,10 @@ CumulativeResponseOptions options_of(const ResponseJob& job, int width) {
           .parameters = resolve(MatchMethod::kGradient, job.parameters)};
 }
 
-void check(const ResponseJob& job) {
+void check(const ResponseJob& job, const Settings& settings) {
   options_of(job, 0).validate();
   job.common.execution.validate();
-  FileChecks files;
-  files.add_input(job.left);
-  files.add_input(job.right);
+  FileChecks files(settings);
   files.add_output(job.output, "--output", OutputKind::kTable);
   files.add_output(job.plot, "--plot", OutputKind::kPlot);
   check_common_files(job.common, files);
@@ -214,7 +213,7 @@ int command_response(const Arguments& arguments) {
   if (!settings.read(arguments)) {
     return kExitDone;
   }
-  check(job);
+  check(job, settings);
   RunReport report(settings.command(), settings.values());
   report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
@@ -239,9 +238,8 @@ int command_response(const Arguments& arguments) {
   report.set_results({{"dominant", print_dominant(response)}});
   report.write(job.common.report);
   if (!job.common.quiet) {
-    fmt::print(stderr, "response: {}x{} pixels, displacements {} x {} -> {}\n", left.width(),
-               left.height(), to_text(options.displacements_x), to_text(options.displacements_y),
-               job.output);
+    tell("response: {}x{} pixels, displacements {} x {} -> {}\n", left.width(), left.height(),
+         to_text(options.displacements_x), to_text(options.displacements_y), job.output);
     report.print_summary();
   }
   return kExitDone;

@@ -5,12 +5,13 @@
 
 #include "apps/commands.h"
 #include "apps/interrupt.h"
-#include "apps/outputs.h"
 #include "apps/progress.h"
+#include "apps/resumed_run.h"
 #include "apps/run_report.h"
 #include "apps/run_results.h"
 #include "apps/run_session.h"
 #include "apps/run_settings.h"
+#include "apps/tell.h"
 #include "engine/error.h"
 #include "engine/memory_use.h"
 #include "engine/sequence/sequence_join.h"
@@ -83,6 +84,7 @@ int command_run(const Arguments& arguments) {
   if (!settings.read(arguments)) {
     return kExitDone;
   }
+  take_up_run(arguments, settings, job);
   complete(job);
   RunReport report(settings.command(), reported_settings(settings, job.sequence.match));
   report.start_trace(job.common.trace);
@@ -93,10 +95,8 @@ int command_run(const Arguments& arguments) {
     fmt::print("{}", plan);
     return kExitDone;
   }
-  FileChecks files;
-  check_common_files(job.common, files);
   if (!job.common.quiet) {
-    fmt::print(stderr, "{}", plan);
+    tell("{}", plan);
   }
   ExecutionOptions execution_options = session.execution;
   execution_options.chain_memory_bytes = session.memory.chain_bytes;
@@ -113,7 +113,7 @@ int command_run(const Arguments& arguments) {
     shots = find_shots(job, session, layout, execution, report);
     if (!shots) {
       if (!job.common.quiet) {
-        fmt::print(stderr, "run: interrupted while looking for shots, --resume begins with that\n");
+        tell("run: interrupted while looking for shots, --resume begins with that\n");
       }
       return kExitInterrupted;
     }

@@ -13,6 +13,7 @@
 #include "apps/scene_images.h"
 #include "apps/scene_rectification.h"
 #include "apps/settings.h"
+#include "apps/tell.h"
 #include "engine/error.h"
 #include "engine/scene_graph/scene_builder.h"
 #include "engine/simd.h"
@@ -32,7 +33,7 @@ struct SceneBuildJob {
 void add_file_settings(Settings& settings, SceneBuildJob& job) {
   settings.begin_group("Files");
   add_scene_images_settings(settings, job.images);
-  Setting& output = settings.text("output", job.output, "SCENE",
+  Setting& output = settings.path("output", job.output, "SCENE",
                                   "Folder of the scene; what it holds already is kept");
   output.short_name = 'o';
   output.required = true;
@@ -52,15 +53,22 @@ std::string match_settings_of(MatchOptions match) {
 
 void check(const SceneBuildJob& job) {
   job.common.execution.validate();
-  FileChecks files;
-  if (!job.images.positions.empty()) {
-    files.add_input(job.images.positions);
-  }
-  check_common_files(job.common, files);
   const std::filesystem::path folder = job.output;
   if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder)) {
     throw UsageError(fmt::format("--output is '{}', a file; expected a folder", job.output));
   }
+}
+
+void check_files(const SceneBuildJob& job, const Settings& settings,
+                 const std::vector<SceneImage>& images) {
+  FileChecks files(settings);
+  for (const SceneImage& image : images) {
+    files.add_input(image.file);
+  }
+  const std::filesystem::path folder = job.output;
+  files.add_made_file(folder / "scene.json", "--output");
+  files.add_made_folder(folder / "maps", "--output");
+  check_common_files(job.common, files);
 }
 
 SettingValue describe_edge(const StoredEdge& edge, SettingValue rectification) {
@@ -100,7 +108,9 @@ int command_scene_build(const Arguments& arguments) {
   report.set_execution(execution);
 
   SceneBuilder builder = report.timed_file_access("read", [&] {
-    return SceneBuilder(job.output, scene_images(job.images, settings), options, execution);
+    std::vector<SceneImage> images = scene_images(job.images, settings);
+    check_files(job, settings, images);
+    return SceneBuilder(job.output, std::move(images), options, execution);
   });
   const std::atomic<bool>& interrupted = interrupt_flag();
   const int edges = static_cast<int>(builder.layout().edges().size());
@@ -133,9 +143,8 @@ int command_scene_build(const Arguments& arguments) {
   const int done = static_cast<int>(matched.size());
   if (done < to_match) {
     if (!job.common.quiet) {
-      fmt::print(stderr,
-                 "scene build: interrupted after {} of {} edges; the same command goes on there\n",
-                 edges - to_match + done, edges);
+      tell("scene build: interrupted after {} of {} edges; the same command goes on there\n",
+           edges - to_match + done, edges);
     }
     return kExitInterrupted;
   }
@@ -146,8 +155,8 @@ int command_scene_build(const Arguments& arguments) {
                       {"edges_matched", matched}});
   report.write(job.common.report);
   if (!job.common.quiet) {
-    fmt::print(stderr, "scene build: {} images, {} edges, {} of them matched now -> {}\n",
-               builder.layout().positions().size(), edges, done, job.output);
+    tell("scene build: {} images, {} edges, {} of them matched now -> {}\n",
+         builder.layout().positions().size(), edges, done, job.output);
     report.print_summary();
   }
   return kExitDone;

@@ -11,6 +11,7 @@
 #include "apps/outputs.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
+#include "apps/tell.h"
 #include "apps/view_output.h"
 #include "apps/view_pipeline.h"
 #include "apps/wanted_scene_views.h"
@@ -44,13 +45,12 @@ void add_settings(Settings& settings, SceneViewJob& job) {
   add_surface_settings(settings, job.synthesis);
 }
 
-void check(const SceneViewJob& job, const StoredScene& scene, const ViewOutputs& outputs) {
-  FileChecks files;
-  files.add_input((std::filesystem::path(job.scene) / "scene.json").string());
-  for (const StoredImage& image : scene.images) {
-    files.add_input((std::filesystem::path(job.scene) / image.file).string());
+void check(const SceneViewJob& job, const Settings& settings, const StoredScene& scene,
+           const ViewOutputs& outputs) {
+  FileChecks files(settings);
+  for (const std::filesystem::path& file : scene.files()) {
+    files.add_input(std::filesystem::path(job.scene) / file);
   }
-  files.add_input(job.views.path_file);
   outputs.check(files);
   check_common_files(job.common, files);
 }
@@ -95,7 +95,7 @@ int command_scene_view(const Arguments& arguments) {
   job.synthesis.validate();
   job.common.execution.validate();
   const StoredScene scene = read_scene(job.scene);
-  check(job, scene, outputs);
+  check(job, settings, scene, outputs);
   const SceneLayout layout(scene.positions(), scene.names());
   require_complete(scene, layout, job.scene);
 
@@ -166,13 +166,13 @@ int command_scene_view(const Arguments& arguments) {
   report.write(job.common.report);
   if (!job.common.quiet) {
     if (outside > 0) {
-      fmt::print(stderr,
-                 "scene view: {} of {} view{} outside of what the images enclose, made from the "
-                 "nearest edge\n",
-                 outside, views, views == 1 ? " is" : "s are");
+      tell(
+          "scene view: {} of {} view{} outside of what the images enclose, made from the "
+          "nearest edge\n",
+          outside, views, views == 1 ? " is" : "s are");
     }
-    fmt::print(stderr, "scene view: {}x{} pixels, {} view{} -> {}\n", rendered.width_px,
-               rendered.height_px, views, views == 1 ? "" : "s", job.output.output);
+    tell("scene view: {}x{} pixels, {} view{} -> {}\n", rendered.width_px, rendered.height_px,
+         views, views == 1 ? "" : "s", job.output.output);
     report.print_summary();
   }
   return kExitDone;

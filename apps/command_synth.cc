@@ -13,6 +13,7 @@
 #include "apps/pair_input.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
+#include "apps/tell.h"
 #include "apps/view_output.h"
 #include "apps/view_pipeline.h"
 #include "apps/view_renderer.h"
@@ -47,8 +48,8 @@ void add_file_settings(Settings& settings, SynthJob& job) {
 void check(const SynthJob& job, const Settings& settings, const ViewOutputs& outputs) {
   job.synthesis.validate();
   job.common.execution.validate();
-  FileChecks files;
-  check_pair(job.pair, settings, files);
+  check_pair(job.pair, settings);
+  FileChecks files(settings);
   outputs.check(files);
   check_common_files(job.common, files);
 }
@@ -150,8 +151,8 @@ int command_synth(const Arguments& arguments) {
   report.set_results({{"views", rendered.views}});
   report.write(job.common.report);
   if (!job.common.quiet) {
-    fmt::print(stderr, "synth: {}x{} pixels, {} view{} -> {}\n", rendered.width_px,
-               rendered.height_px, views, views == 1 ? "" : "s", job.output.output);
+    tell("synth: {}x{} pixels, {} view{} -> {}\n", rendered.width_px, rendered.height_px, views,
+         views == 1 ? "" : "s", job.output.output);
     report.print_summary();
   }
   return kExitDone;

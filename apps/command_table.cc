@@ -14,6 +14,7 @@ constexpr std::array kCommands = {
     Command{"run", "Disparity maps and new views of a sequence of pairs", command_run},
     Command{"merge", "Checks that a run made in parts is complete, joins its videos",
             command_merge},
+    Command{"verify", "Reads the results of a run, tells which have been damaged", command_verify},
     Command{"submit", "Has a cluster make a sequence (Slurm)", command_submit},
     Command{"scene build", "Matches the neighbours among many images of a row or grid",
             command_scene_build},

@@ -16,6 +16,7 @@
 #include "apps/progress.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
+#include "apps/tell.h"
 #include "apps/tuning_report.h"
 #include "engine/error.h"
 #include "engine/simd.h"
@@ -70,7 +71,7 @@ void add_tune_settings(Settings& settings, TuneJob& job) {
                         "What is to become fast: single pairs, or sequences");
   settings.number("budget", job.budget_seconds, "SECONDS", "How long the search may take");
   settings
-      .text("output", job.output, "FILE",
+      .path("output", job.output, "FILE",
             "Tuning file to keep what is found in; without it tuning.json in the folder "
             "vantage of $XDG_CONFIG_HOME or ~/.config, where match and run look for it")
       .short_name = 'o';
@@ -108,7 +109,7 @@ void check(const TuneJob& job) {
 int list_entries(const fs::path& path) {
   const TuningFileContent content = read_tuning_file(path);
   for (const std::string& warning : content.warnings) {
-    fmt::print(stderr, "tune: warning: {}\n", warning);
+    tell("tune: warning: {}\n", warning);
   }
   fmt::print("{}: {} entr{}\n", path.string(), content.entries.size(),
              content.entries.size() == 1 ? "y" : "ies");
@@ -132,10 +133,10 @@ void warn_of_other_programs(const scheduler::Machine& machine) {
   constexpr double kBusyShare = 0.25;
   double load = 0;  // threads that ran or wanted to, mean of the last minute
   if (::getloadavg(&load, 1) == 1 && load > kBusyShare * machine.hardware_threads) {
-    fmt::print(stderr,
-               "tune: warning: other programs are at work (load {:.1f} on {} threads), expected an "
-               "idle machine\n",
-               load, machine.hardware_threads);
+    tell(
+        "tune: warning: other programs are at work (load {:.1f} on {} threads), expected an "
+        "idle machine\n",
+        load, machine.hardware_threads);
   }
 }
 
@@ -194,7 +195,8 @@ int command_tune(const Arguments& arguments) {
   if (job.forget) {
     return forget_entries(job, path);
   }
-  FileChecks files;
+  FileChecks files(settings);
+  files.add_made_file(path, "--output");
   check_common_files(job.common, files);
   const TuningRequest request = request_of(job);
   request.validate();
@@ -220,7 +222,7 @@ int command_tune(const Arguments& arguments) {
   report.write(job.common.report);
   if (tuned.interrupted) {
     if (!job.common.quiet) {
-      fmt::print(stderr, "tune: interrupted, nothing is kept\n");
+      tell("tune: interrupted, nothing is kept\n");
     }
     return kExitInterrupted;
   }

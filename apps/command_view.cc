@@ -8,6 +8,7 @@
 #include "apps/pair_input.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
+#include "apps/tell.h"
 #include "apps/view_page.h"
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
@@ -73,7 +74,7 @@ int command_view(const Arguments& arguments) {
   Settings settings("view", "Writes a page that renders new views of a rectified pair by itself.");
   settings.begin_group("Files");
   add_pair_settings(settings, job.pair);
-  Setting& output = settings.text("output", job.output, "FILE.html",
+  Setting& output = settings.path("output", job.output, "FILE.html",
                                   "Page to write; it holds everything it needs");
   output.short_name = 'o';
   output.required = true;
@@ -85,8 +86,8 @@ int command_view(const Arguments& arguments) {
   }
   job.page.validate();
   job.common.execution.validate();
-  FileChecks files;
-  check_pair(job.pair, settings, files);
+  check_pair(job.pair, settings);
+  FileChecks files(settings);
   files.add_output(job.output, "--output", OutputKind::kPage);
   check_common_files(job.common, files);
 
@@ -104,8 +105,8 @@ int command_view(const Arguments& arguments) {
   report.set_results({{"page_bytes", page.size()}});
   report.write(job.common.report);
   if (!job.common.quiet) {
-    fmt::print(stderr, "view: {}x{} pixels, {:.1f} MB -> {}\n", pair.left.width(),
-               pair.left.height(), static_cast<double>(page.size()) / 1e6, job.output);
+    tell("view: {}x{} pixels, {:.1f} MB -> {}\n", pair.left.width(), pair.left.height(),
+         static_cast<double>(page.size()) / 1e6, job.output);
     report.print_summary();
   }
   return kExitDone;

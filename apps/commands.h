@@ -41,6 +41,7 @@ int command_generate_scene(const Arguments& arguments);
 int command_response(const Arguments& arguments);
 int command_experiment(const Arguments& arguments);
 int command_merge(const Arguments& arguments);
+int command_verify(const Arguments& arguments);
 int command_submit(const Arguments& arguments);
 int command_tune(const Arguments& arguments);
 int command_profile(const Arguments& arguments);

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdio>
 
+#include "apps/tell.h"
 #include "engine/view_geometry/new_view.h"
 
 namespace vantage::apps {
@@ -44,10 +45,9 @@ void warn_of_empty_views(const std::string& command, const PairWithMaps& pair,
     return;
   }
   const int first = empty_views.front();
-  fmt::print(stderr,
-             "{}: warning: {} of {} views see none of the scene, the first is view {}: {}\n",
-             command, empty_views.size(), poses.size(), first + 1,
-             why_empty(pair, poses[static_cast<std::size_t>(first)]));
+  tell("{}: warning: {} of {} views see none of the scene, the first is view {}: {}\n", command,
+       empty_views.size(), poses.size(), first + 1,
+       why_empty(pair, poses[static_cast<std::size_t>(first)]));
 }
 
 }  // namespace vantage::apps

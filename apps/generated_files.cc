@@ -17,6 +17,19 @@ GeneratedFiles::GeneratedFiles(std::filesystem::path folder, bool sequence)
   make_folder(folder_);
 }
 
+void GeneratedFiles::check(const std::filesystem::path& folder, bool sequence,
+                           const std::vector<std::string>& names, FileChecks& checks) {
+  for (const std::string& name : names) {
+    if (sequence) {
+      checks.add_made_folder(folder / name, "--output");
+      continue;
+    }
+    for (const char* extension : {".png", ".pfm"}) {
+      checks.add_made_file(folder / (name + extension), "--output");
+    }
+  }
+}
+
 std::filesystem::path GeneratedFiles::file(const std::string& name, int frame,
                                            const std::string& extension) const {
   if (!sequence_) {

@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "apps/outputs.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
 
@@ -14,6 +16,11 @@ class GeneratedFiles {
  public:
   /// Throws Error when `folder` cannot be made.
   GeneratedFiles(std::filesystem::path folder, bool sequence);
+
+  /// Tells `checks` what is going to be written to `folder` as --output: pictures and maps of these
+  /// names.
+  static void check(const std::filesystem::path& folder, bool sequence,
+                    const std::vector<std::string>& names, FileChecks& checks);
 
   // Each writes the file `name` of frame `frame`: integer pictures as PNG, float ones and
   // disparities as PFM, masks as PNG. Throw Error.

@@ -20,6 +20,10 @@ const std::atomic<bool>& interrupt_flag() {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction before {};
+  if (sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) {
+    sigaction(SIGHUP, &action, nullptr);  // else nohup has asked to go on
+  }
   return interrupted;
 }
 

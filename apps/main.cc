@@ -1,13 +1,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
+#include <system_error>
 
 #include "apps/commands.h"
+#include "apps/process_setup.h"
 #include "apps/setting_value.h"
+#include "apps/tell.h"
 #include "engine/build_info.h"
 #include "engine/error.h"
 
@@ -65,9 +70,12 @@ int fail(const std::string& command, std::string message, int exit_code) {
   std::replace(message.begin(), message.end(), '\r', ' ');
   const std::string line =
       fmt::format("vantage{}{}: {}\n", command.empty() ? "" : " ", command, message);
-  std::fputs(line.c_str(), stderr);
+  vantage::apps::tell_text(line);
   return exit_code;
 }
+
+/// Whoever reads stdout has seen enough, as `head` does: no error to talk about.
+constexpr int kExitUnread = 128 + SIGPIPE;
 
 int run(Arguments arguments, std::string& name) {
   if (arguments.empty()) {
@@ -92,6 +100,7 @@ int run(Arguments arguments, std::string& name) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  vantage::apps::set_up_process();
   std::string command;
   int exit_code = vantage::apps::kExitDone;
   try {
@@ -100,12 +109,20 @@ int main(int argc, char** argv) {
     return fail(command, error.what(), vantage::apps::kExitUsage);
   } catch (const std::bad_alloc&) {
     return fail(command, "out of memory", vantage::apps::kExitFailed);
+  } catch (const std::system_error& error) {
+    return error.code() == std::errc::broken_pipe
+               ? kExitUnread
+               : fail(command, error.what(), vantage::apps::kExitFailed);
   } catch (const std::exception& error) {
     return fail(command, error.what(), vantage::apps::kExitFailed);
   } catch (...) {
     return fail(command, "unknown error", vantage::apps::kExitFailed);
   }
+  errno = 0;
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    if (errno == EPIPE) {
+      return kExitUnread;
+    }
     return fail(command, "standard output cannot be written", vantage::apps::kExitFailed);
   }
   return exit_code;

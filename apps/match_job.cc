@@ -15,6 +15,7 @@ void add_several_settings(Settings& settings, MatchJob& job) {
   Setting& more = settings.add("more", "OTHER",
                                "More images of cameras on the same line, compared with the first");
   more.positional = true;
+  more.path = PathRole::kInput;
   more.list = true;
   more.set = [&job](const SettingValue& value) {
     std::vector<std::string> files;
@@ -50,21 +51,21 @@ void add_file_settings(Settings& settings, MatchJob& job) {
       true;
   settings.positional("right", job.right, "Right image of the same size").required = true;
   add_several_settings(settings, job);
-  Setting& output = settings.text("output", job.output, "FILE",
+  Setting& output = settings.path("output", job.output, "FILE",
                                   "Disparity map to write: .pfm .png .tiff .exr .npy; with "
                                   "--disparities-y the displacements: .flo .npy .tiff .exr");
   output.short_name = 'o';
   output.required = true;
-  settings.text("output-right", job.output_right, "FILE", "Write the map of the right image too");
-  settings.text("confidence", job.confidence, "FILE",
+  settings.path("output-right", job.output_right, "FILE", "Write the map of the right image too");
+  settings.path("confidence", job.confidence, "FILE",
                 "Write how sure the map is, before refinement: the evidence for cost gradient, the "
                 "largest probability for bayes, the certainty for local-stopping, the winner's "
                 "margin for others: .pfm .tiff .exr .npy");
-  settings.text("unmatched", job.unmatched, "MASK.png",
+  settings.path("unmatched", job.unmatched, "MASK.png",
                 "Write a mask of the pixels of the map that had no match");
-  settings.text("unmatched-right", job.unmatched_right, "MASK.png",
+  settings.path("unmatched-right", job.unmatched_right, "MASK.png",
                 "The same of the map of the right image");
-  settings.text("preview", job.preview, "FILE",
+  settings.path("preview", job.preview, "FILE",
                 "Write the map as a picture whose colours span the search range");
   add_rectification_check_setting(settings, job.check_rectification);
 }
@@ -102,7 +103,7 @@ void add_match_job_settings(Settings& settings, MatchJob& job) {
   add_common_settings(settings, job.common);
 }
 
-void check(const MatchJob& job) {
+void check(const MatchJob& job, const Settings& settings) {
   job.match.validate();
   job.common.execution.validate();
   if (job.has_several()) {
@@ -122,10 +123,8 @@ void check(const MatchJob& job) {
   }
   const OutputKind map_kind =
       job.match.disparities_y ? OutputKind::kDisplacements : OutputKind::kDisparity;
-  FileChecks files;
-  for (const std::string& input : job.inputs()) {
-    files.add_input(input);
-  }
+  FileChecks files(settings);
+  files.add_input(file_of(job.tuning));
   files.add_output(job.output, "--output", map_kind);
   files.add_output(job.output_right, "--output-right", map_kind);
   files.add_output(job.confidence, "--confidence", OutputKind::kConfidence);

@@ -47,6 +47,6 @@ void add_match_job_settings(Settings& settings, MatchJob& job);
 
 /// Throws UsageError where fields are wrong or do not go together, Error where results cannot be
 /// written.
-void check(const MatchJob& job);
+void check(const MatchJob& job, const Settings& settings);
 
 }  // namespace vantage::apps

@@ -31,8 +31,8 @@ void add_common_settings(Settings& settings, CommonOptions& options) {
   settings.text("isa", options.isa, "NAME",
                 "Instruction set of the kernels; best, or a name of 'vantage info'");
   settings.begin_group("Messages", false);
-  settings.text("report", options.report, "FILE", "Write a JSON report of the run to FILE");
-  settings.text("trace", options.trace, "FILE",
+  settings.path("report", options.report, "FILE", "Write a JSON report of the run to FILE");
+  settings.path("trace", options.trace, "FILE",
                 "Record what every thread does, as Chrome trace events: FILE opens in Perfetto");
   settings.flag("quiet", options.quiet, "Print errors only");
 }

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
 
 #include "engine/error.h"
+#include "engine/io/atomic_file.h"
 
 namespace vantage::apps {
 namespace {
@@ -67,9 +69,69 @@ bool has_extension(const fs::path& path, const std::vector<std::string>& extensi
   return std::ranges::find(extensions, extension) != extensions.end();
 }
 
-void FileChecks::add_input(const std::string& path) {
-  if (!path.empty()) {
-    inputs_.emplace_back(path);
+FileChecks::FileChecks(const Settings& settings) {
+  for (const std::string& path : settings.input_paths()) {
+    add_input(path);
+  }
+}
+
+bool FileChecks::find_id(const fs::path& path, FileId& id) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) {
+    return false;
+  }
+  id = {static_cast<std::uint64_t>(status.st_dev), static_cast<std::uint64_t>(status.st_ino)};
+  return true;
+}
+
+std::vector<fs::path> FileChecks::folders_of(const fs::path& path) {
+  const auto folder_of = [](const fs::path& file) {
+    return file.has_parent_path() ? file.parent_path() : fs::path(".");
+  };
+  std::vector<fs::path> folders = {folder_of(path)};
+  std::error_code ignored;
+  if (fs::is_symlink(path, ignored)) {
+    folders.push_back(folder_of(resolved(path)));
+  }
+  return folders;
+}
+
+void FileChecks::add_input(const fs::path& path) {
+  if (path.empty()) {
+    return;
+  }
+  const auto refuse = [&](const Output& output) {
+    throw UsageError(
+        fmt::format("{} is '{}', which is an input as well", output.option, output.path.string()));
+  };
+  const auto refuse_folder = [&](const Output& output) {
+    throw UsageError(fmt::format("{} would write into '{}', where the input '{}' is", output.option,
+                                 output.path.string(), path.string()));
+  };
+  FileId id;
+  if (find_id(path, id)) {
+    input_ids_.try_emplace(id, path);
+    if (const auto output = output_ids_.find(id); output != output_ids_.end()) {
+      refuse(output->second);
+    }
+    if (const auto made = made_folders_.find(id); made != made_folders_.end()) {
+      refuse_folder(made->second);
+    }
+  } else {
+    const fs::path place = resolved(path);
+    absent_inputs_.insert(place);
+    if (const auto output = outputs_.find(place); output != outputs_.end()) {
+      refuse(output->second);
+    }
+  }
+  // Sequences have many files and few folders.
+  for (const fs::path& folder : folders_of(path)) {
+    if (!input_folders_.try_emplace(folder, path).second || !find_id(folder, id)) {
+      continue;
+    }
+    if (const auto made = made_folders_.find(id); made != made_folders_.end()) {
+      refuse_folder(made->second);
+    }
   }
 }
 
@@ -82,23 +144,56 @@ void FileChecks::add_output(const std::string& path, const std::string& option, 
     throw UsageError(fmt::format("{} is '{}', expected a file name that ends in {}", option, path,
                                  fmt::join(extensions, " ")));
   }
-  std::error_code ignored;
-  const fs::path file = resolved(path);
-  for (const fs::path& input : inputs_) {
-    if (file == resolved(input) || fs::equivalent(file, input, ignored)) {
-      throw UsageError(fmt::format("{} is '{}', which is an input as well", option, path));
+  add_made_file(path, option);
+  require_writable(path);
+}
+
+void FileChecks::add_made_file(const fs::path& path, const std::string& option) {
+  const fs::path place = resolved(path);
+  FileId id;
+  const bool is_there = find_id(path, id);
+  if (is_there ? input_ids_.contains(id) : absent_inputs_.contains(place)) {
+    throw UsageError(fmt::format("{} is '{}', which is an input as well", option, path.string()));
+  }
+  const auto [other, is_new] = outputs_.try_emplace(place, Output{option, path});
+  if (!is_new) {
+    throw UsageError(fmt::format("{} and {} are the same file '{}'", other->second.option, option,
+                                 path.string()));
+  }
+  if (is_there) {
+    output_ids_.try_emplace(id, Output{option, path});
+  }
+  FileId folder;
+  if (find_id(place.parent_path(), folder) && made_folders_.contains(folder)) {
+    throw UsageError(fmt::format("{} is '{}', in a folder that {} writes to", option, path.string(),
+                                 made_folders_.at(folder).option));
+  }
+}
+
+void FileChecks::add_made_folder(const fs::path& path, const std::string& option) {
+  FileId id;
+  if (!find_id(path, id)) {
+    return;  // nothing can be in it
+  }
+  made_folders_.try_emplace(id, Output{option, path});
+  const auto refuse = [&](const fs::path& input) {
+    throw UsageError(fmt::format("{} would write into '{}', where the input '{}' is", option,
+                                 path.string(), input.string()));
+  };
+  if (const auto input = input_ids_.find(id); input != input_ids_.end()) {
+    refuse(input->second);
+  }
+  for (const auto& [folder, input] : input_folders_) {
+    FileId folder_id;
+    if (find_id(folder, folder_id) && folder_id == id) {
+      refuse(input);
     }
   }
-  const auto [other, is_new] = outputs_.emplace(file, option);
-  if (!is_new) {
-    throw UsageError(fmt::format("{} and {} are the same file '{}'", other->second, option, path));
-  }
-  require_writable(path);
 }
 
 fs::path resolved(const fs::path& path) {
   std::error_code ignored;
-  const fs::path absolute = fs::absolute(path, ignored);
+  const fs::path absolute = fs::absolute(behind_links(path), ignored);
   const fs::path canonical = fs::weakly_canonical(absolute, ignored);
   return canonical.empty() ? absolute.lexically_normal() : canonical;
 }

@@ -49,13 +49,13 @@ RectifiedPair rectify(const StereoCalibration& calibration, const RectificationO
 void add_pair_settings(Settings& settings, PairInput& pair) {
   settings.positional("left", pair.left, "Left image").required = true;
   settings.positional("right", pair.right, "Right image of the same size").required = true;
-  settings.text("left-disparity", pair.left_disparity, "FILE",
-                "Disparity map of the left image; without maps the pair is matched");
-  settings.text("right-disparity", pair.right_disparity, "FILE",
-                "Disparity map of the right image");
+  settings.input_path("left-disparity", pair.left_disparity, "FILE",
+                      "Disparity map of the left image; without maps the pair is matched");
+  settings.input_path("right-disparity", pair.right_disparity, "FILE",
+                      "Disparity map of the right image");
   settings.number("disparity-scale", pair.disparity_scale, "S",
                   "Divides the values of integer disparity files; auto: 256 for 16-bit PNG");
-  settings.text(
+  settings.input_path(
       "calibration", pair.calibration, "FILE",
       "Cameras of the pair: OpenCV YAML or XML, Middlebury or KITTI text. Images that are "
       "not rectified are rectified first; maps in files are of rectified images");
@@ -65,7 +65,7 @@ void add_pair_settings(Settings& settings, PairInput& pair) {
   add_rectification_check_setting(settings, pair.check_rectification);
 }
 
-void check_pair(const PairInput& pair, const Settings& settings, FileChecks& files) {
+void check_pair(const PairInput& pair, const Settings& settings) {
   if (pair.left_disparity.empty() != pair.right_disparity.empty()) {
     throw UsageError(
         "one of --left-disparity and --right-disparity is missing, expected both or "
@@ -89,10 +89,6 @@ void check_pair(const PairInput& pair, const Settings& settings, FileChecks& fil
   pair.rectification.validate();
   if (settings.given_on_command_line("kept-outline") && pair.calibration.empty()) {
     throw UsageError("--kept-outline has no effect without --calibration");
-  }
-  for (const std::string& input :
-       {pair.left, pair.right, pair.left_disparity, pair.right_disparity, pair.calibration}) {
-    files.add_input(input);
   }
 }
 

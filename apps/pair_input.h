@@ -53,7 +53,7 @@ void add_pair_settings(Settings& settings, PairInput& pair);
 
 /// Throws UsageError when the options do not go together, or when options of matching are on the
 /// command line beside maps, where they would have no effect. Adds the files to `files`.
-void check_pair(const PairInput& pair, const Settings& settings, FileChecks& files);
+void check_pair(const PairInput& pair, const Settings& settings);
 
 /// What the report says of the settings of a command with such a pair.
 SettingValue reported_settings(const Settings& settings, const PairInput& pair);

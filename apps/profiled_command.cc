@@ -68,7 +68,7 @@ void ProfiledCommand::check() {
             "each run writes its own, --json keeps the profile");
   refuse_if(!common().trace.empty(), "trace", "each run writes its own, --html shows one of them");
   if (auto* match = std::get_if<MatchJob>(&job_)) {
-    apps::check(*match);
+    apps::check(*match, settings_);
     return;
   }
   auto& run = std::get<RunJob>(job_);

@@ -30,6 +30,8 @@ class ProfiledCommand {
   [[nodiscard]] const CommonOptions& common() const;
   /// Things about it that people should know.
   [[nodiscard]] const std::vector<std::string>& remarks() const { return remarks_; }
+  /// The files that its settings name as inputs.
+  [[nodiscard]] std::vector<std::string> inputs() const { return settings_.input_paths(); }
   /// Where its first result is meant to go.
   [[nodiscard]] const std::filesystem::path& place() const { return place_; }
 

@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
+
+#include "apps/tell.h"
 
 namespace vantage::apps {
 namespace {
@@ -43,7 +44,7 @@ Progress::Progress(std::string command, std::string unit, ProgressStyle style)
 
 Progress::~Progress() {
   if (line_open_) {
-    std::fputc('\n', stderr);
+    tell("\n");
   }
 }
 
@@ -58,12 +59,11 @@ void Progress::update(int done, std::optional<int> total, double cells) {
     const std::string text = describe(now, total);
     if (style_ == ProgressStyle::kBar) {
       next_print_ = now.time + kBarInterval;
-      fmt::print(stderr, "\r{}\x1b[K", text);
-      std::fflush(stderr);
+      tell("\r{}\x1b[K", text);
       line_open_ = true;
     } else {
       next_print_ = now.time + kLineInterval;
-      fmt::print(stderr, "{}\n", text);
+      tell("{}\n", text);
     }
   }
   if (now.time - samples_.back().time >= kSampleInterval) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "apps/match_settings.h"
+#include "apps/tell.h"
 #include "apps/vertical_error_report.h"
 #include "engine/rectification/vertical_error.h"
 #include "scheduler/trace.h"
@@ -39,8 +40,8 @@ Look look_at_rows(const Photograph& left, const Photograph& right) {
   return look;
 }
 
-void tell(const Look& look, const Settings& settings, const CommonOptions& common,
-          RunReport& report) {
+void tell_of(const Look& look, const Settings& settings, const CommonOptions& common,
+             RunReport& report) {
   report.add_stage("check", look.seconds);
   if (!look.error) {
     return;
@@ -54,14 +55,14 @@ void tell(const Look& look, const Settings& settings, const CommonOptions& commo
   values["looks_exchanged"] = looks_exchanged;
   report.add_result("rectification", std::move(values));
   if (!is_rectified && !common.quiet) {
-    fmt::print(stderr,
-               "{}: warning: the pair is not rectified: rows are off by {:.2f} px (limit {}), {}; "
-               "see 'vantage rectify'\n",
-               settings.command(), error.systematic_px, kRectificationLimit_px,
-               vertical_error_text(error));
+    tell(
+        "{}: warning: the pair is not rectified: rows are off by {:.2f} px (limit {}), {}; "
+        "see 'vantage rectify'\n",
+        settings.command(), error.systematic_px, kRectificationLimit_px,
+        vertical_error_text(error));
   }
   if (looks_exchanged && !common.quiet) {
-    fmt::print(stderr, "{}: warning: {}\n", settings.command(), exchanged_text(error));
+    tell("{}: warning: {}\n", settings.command(), exchanged_text(error));
   }
 }
 
@@ -82,7 +83,7 @@ void warn_unless_rectified(const Settings& settings, const CommonOptions& common
                            const Photograph& left, const Photograph& right, RunReport& report) {
   // Of images that differ in size whoever uses the pair will say so.
   if (left.width() == right.width() && left.height() == right.height()) {
-    tell(look_at_rows(left, right), settings, common, report);
+    tell_of(look_at_rows(left, right), settings, common, report);
   }
 }
 
@@ -98,7 +99,7 @@ void warn_unless_rectified_beside(const std::function<void()>& work, const Setti
       look = look_at_rows(left, right);
     }
   });
-  tell(look, settings, common, report);
+  tell_of(look, settings, common, report);
 }
 
 }  // namespace vantage::apps

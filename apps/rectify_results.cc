@@ -6,6 +6,7 @@
 
 #include "apps/matrix_rows.h"
 #include "apps/rectification_check.h"
+#include "apps/tell.h"
 #include "apps/vertical_error_report.h"
 
 namespace vantage::apps {
@@ -44,32 +45,30 @@ SettingValue results_of(const Rectification& rectification, const RectifiedPair&
 
 void print_results(const Rectification& rectification, const RectifiedPair& pair, int pair_count,
                    const std::string& calibration) {
-  fmt::print(
-      stderr, "rectify: {} pair{} of {}x{} pixels, {}\n", pair_count, pair_count == 1 ? "" : "s",
-      pair.width_px, pair.height_px,
-      rectification.estimate
-          ? fmt::format("cameras estimated from {} of {} points", rectification.estimate->inliers,
-                        rectification.matches)
-          : fmt::format("cameras from {} ({})", calibration, rectification.calibration.format));
+  tell("rectify: {} pair{} of {}x{} pixels, {}\n", pair_count, pair_count == 1 ? "" : "s",
+       pair.width_px, pair.height_px,
+       rectification.estimate
+           ? fmt::format("cameras estimated from {} of {} points", rectification.estimate->inliers,
+                         rectification.matches)
+           : fmt::format("cameras from {} ({})", calibration, rectification.calibration.format));
   if (rectification.remaining) {
-    fmt::print(stderr, "rectify: rows are off by {}; disparities {}\n",
-               vertical_error_text(*rectification.remaining),
-               disparities_text(*rectification.remaining));
+    tell("rectify: rows are off by {}; disparities {}\n",
+         vertical_error_text(*rectification.remaining), disparities_text(*rectification.remaining));
     if (!rectification.estimate &&
         rectification.remaining->systematic_px > kRectificationLimit_px) {
-      fmt::print(stderr,
-                 "rectify: warning: rows are still off by {:.2f} px (limit {}): the calibration "
-                 "does not fit the images\n",
-                 rectification.remaining->systematic_px, kRectificationLimit_px);
+      tell(
+          "rectify: warning: rows are still off by {:.2f} px (limit {}): the calibration "
+          "does not fit the images\n",
+          rectification.remaining->systematic_px, kRectificationLimit_px);
     }
     if (rectification.remaining->looks_exchanged()) {
-      fmt::print(stderr, "rectify: warning: {}\n", exchanged_text(*rectification.remaining));
+      tell("rectify: warning: {}\n", exchanged_text(*rectification.remaining));
     }
   } else {
-    fmt::print(stderr, "rectify: too few points in common to measure what rows are off by\n");
+    tell("rectify: too few points in common to measure what rows are off by\n");
   }
-  fmt::print(stderr, "rectify: valid are {}x{} pixels from ({}, {})\n", pair.valid.width,
-             pair.valid.height, pair.valid.x, pair.valid.y);
+  tell("rectify: valid are {}x{} pixels from ({}, {})\n", pair.valid.width, pair.valid.height,
+       pair.valid.x, pair.valid.y);
 }
 
 }  // namespace vantage::apps

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "apps/tell.h"
 #include "apps/trace_file.h"
 #include "engine/build_info.h"
 #include "engine/io/atomic_file.h"
@@ -230,7 +231,7 @@ void RunReport::print_summary() const {
   if (cells_ > 0) {
     line += fmt::format("; {:.0f} million cells/s", cells_per_second() * 1e-6);
   }
-  fmt::print(stderr, "{}\n", line);
+  tell("{}\n", line);
 }
 
 }  // namespace vantage::apps

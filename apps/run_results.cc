@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 
+#include "apps/tell.h"
 #include "engine/sequence/sequence_join.h"
 
 namespace vantage::apps {
@@ -24,11 +25,10 @@ SettingValue remark_values(const std::vector<FrameRemark>& remarks) {
 
 void print_remarks(const char* kind, const std::vector<FrameRemark>& remarks) {
   for (std::size_t i = 0; i < std::min(remarks.size(), kRemarksPrinted); ++i) {
-    fmt::print(stderr, "run: {}frame {}: {}\n", kind, remarks[i].frame, remarks[i].text);
+    tell("run: {}frame {}: {}\n", kind, remarks[i].frame, remarks[i].text);
   }
   if (remarks.size() > kRemarksPrinted) {
-    fmt::print(stderr, "run: {}… and {} more, see --report\n", kind,
-               remarks.size() - kRemarksPrinted);
+    tell("run: {}… and {} more, see --report\n", kind, remarks.size() - kRemarksPrinted);
   }
 }
 
@@ -61,6 +61,7 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
   report.set_plan(sequence.frames > 0 ? sequence.plan : session.memory.chain);
   SettingValue results = {{"frames", sequence.frames},
                           {"frames_before", sequence.frames_before},
+                          {"pictures_again", sequence.pictures_again},
                           {"frames_of_part", session.selection.own().count()},
                           {"frames_of_input", session.selection.frame_count},
                           {"interrupted", sequence.interrupted},
@@ -91,6 +92,9 @@ void print_summary(const RunJob& job, const RunSession& session, const SequenceR
   if (sequence.frames_before > 0) {
     line += fmt::format(", {} had been done before", sequence.frames_before);
   }
+  if (sequence.pictures_again > 0) {
+    line += fmt::format(" ({} put into the videos now)", sequence.pictures_again);
+  }
   if (!sequence.skipped.empty()) {
     line += fmt::format(", {} skipped", sequence.skipped.size());
   }
@@ -98,7 +102,11 @@ void print_summary(const RunJob& job, const RunSession& session, const SequenceR
   if (sequence.interrupted) {
     line += " (interrupted, --resume continues)";
   }
-  fmt::print(stderr, "{}\n", line);
+  tell("{}\n", line);
+  if (sequence.interrupted && sequence.videos_from) {
+    tell("run: all files of frames are kept, the videos go on at frame {}\n",
+         *sequence.videos_from);
+  }
 }
 
 }  // namespace vantage::apps

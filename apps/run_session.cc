@@ -8,6 +8,7 @@
 
 #include "apps/automatic_disparities.h"
 #include "apps/rectification_check.h"
+#include "apps/resumed_run.h"
 #include "engine/error.h"
 #include "engine/io/file_identity.h"
 #include "engine/sequence/delivered_frames.h"
@@ -61,6 +62,7 @@ RunIdentity identity_of(const RunJob& job, const Settings& settings, const RunSe
     }
   }
   identity.settings = values.dump(-1, ' ', false, SettingValue::error_handler_t::replace);
+  identity.sources = sources_of(job, settings);
   identity.inputs = session.pairs->identities();
   if (!job.calibration.empty()) {
     FileIdentity calibration;
@@ -157,8 +159,12 @@ std::string RunSession::part_name(const RunJob& job) {
 }
 
 RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
+  FileChecks files = check_files(job, settings);
   RunSession session;
   session.pairs = open_pair_source(job.input);
+  for (const fs::path& file : session.pairs->files()) {
+    files.add_input(file);
+  }
   FramePair first;
   report.timed_file_access("open", [&] { read_first_pair(*session.pairs, first); });
   session.shape = shape_of(first.left);

@@ -33,7 +33,8 @@ struct RunSession {
 };
 
 /// Opens the input of `job`, which is complete(), and fills in what follows from it: the range of
-/// disparities where it is automatic, the frame rate, the plan. Throws Error.
+/// disparities where it is automatic, the frame rate, the plan. Throws Error, UsageError where a
+/// result would replace an input.
 RunSession open_run(RunJob& job, const Settings& settings, RunReport& report);
 
 /// What is going to be done, for people; several lines.

@@ -5,20 +5,16 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 #include "apps/frame_rate_setting.h"
 #include "apps/match_settings.h"
-#include "apps/outputs.h"
 #include "apps/rectification_check.h"
+#include "apps/slurm_scripts.h"
 #include "engine/error.h"
-#include "engine/sequence/sequence_layout.h"
 
 namespace vantage::apps {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::string_view kAutomatic = "auto";
 constexpr int kMaxInFlight = 64;
@@ -123,7 +119,7 @@ void add_input_settings(Settings& settings, RunJob& job) {
   const auto path = [&](std::string name, std::string& field, std::string value_name,
                         std::string help) -> Setting& {
     Setting& setting =
-        settings.text(std::move(name), field, std::move(value_name), std::move(help));
+        settings.input_path(std::move(name), field, std::move(value_name), std::move(help));
     // The journal knows inputs by what is in them.
     setting.changes_results = false;
     return setting;
@@ -168,7 +164,7 @@ void add_stereo_views_setting(Settings& settings, std::array<double, 2>& views_x
 
 void add_output_settings(Settings& settings, RunJob& job) {
   settings.begin_group("Output");
-  Setting& output = settings.text("output", job.output, "DIR",
+  Setting& output = settings.path("output", job.output, "DIR",
                                   "Folder to write to: DIR/disparity/000000.pfm, DIR/views.mp4 and "
                                   "so on");
   output.short_name = 'o';
@@ -268,7 +264,8 @@ void add_part_settings(Settings& settings, RunJob& job) {
                "Frames that are never divided between parts; videos are made and a temporal "
                "prior starts anew in such chunks")
       .changes_results = true;
-  settings.flag("resume", job.resume, "Continue the run that the folder holds");
+  settings.flag("resume", job.resume,
+                "Continue the run that the folder holds; -o DIR alone is enough");
   settings.flag("overwrite", job.overwrite, "Begin anew where the folder holds a run");
   settings.flag("force", job.force, "Continue although settings or inputs differ");
   settings.flag("keep-going", job.keep_going, "Skip and record bad frames; exit code 3");
@@ -299,28 +296,6 @@ void add_pipeline_settings(Settings& settings, RunJob& job) {
                                   {"none", ProgressStyle::kNone}},
                                  "A bar, a line every few seconds, or none; auto: a bar on a "
                                  "terminal, else lines");
-}
-
-/// Results must not land among the frames they are made from.
-void require_separate_folders(const RunJob& job) {
-  const SequenceLayout layout(job.output, job.sequence);
-  for (const std::string& source :
-       {job.input.left, job.input.right, job.input.stereo, job.input.sequence}) {
-    if (source.empty()) {
-      continue;
-    }
-    std::error_code ignored;
-    const fs::path folder =
-        fs::is_directory(source, ignored) ? fs::path(source) : fs::path(source).parent_path();
-    for (const OutputStream& stream : layout.streams()) {
-      const fs::path written =
-          stream.as_video ? layout.video(stream) : layout.folder() / stream.name;
-      if (resolved(written) == resolved(folder) || resolved(written) == resolved(source)) {
-        throw UsageError(fmt::format("--output would write into '{}', where the frames '{}' are",
-                                     written.string(), source));
-      }
-    }
-  }
 }
 
 }  // namespace
@@ -376,7 +351,29 @@ void complete(RunJob& job) {
         "--overwrite with --shard would remove what other shards have done; remove the folder "
         "first, or use another one");
   }
-  require_separate_folders(job);
+}
+
+void add_run_outputs(const SequenceLayout& layout, const std::string& option, FileChecks& files) {
+  files.add_made_folder(layout.journal_folder(), option);
+  for (const OutputStream& stream : layout.streams()) {
+    if (stream.as_video) {
+      files.add_made_file(layout.video(stream), option);
+    } else {
+      files.add_made_folder(layout.folder() / stream.name, option);
+    }
+  }
+}
+
+FileChecks check_files(const RunJob& job, const Settings& settings) {
+  FileChecks files(settings);
+  files.add_input(file_of(job.tuning));
+  const SequenceLayout layout(job.output, job.sequence);
+  add_run_outputs(layout, "--output", files);
+  if (job.overwrite) {
+    files.add_made_folder(slurm_folder(job.output), "--overwrite");  // goes with the journal
+  }
+  check_common_files(job.common, files);
+  return files;
 }
 
 }  // namespace vantage::apps

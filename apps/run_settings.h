@@ -7,11 +7,13 @@
 
 #include "apps/applied_tuning.h"
 #include "apps/option_groups.h"
+#include "apps/outputs.h"
 #include "apps/progress.h"
 #include "apps/sequence_views.h"
 #include "apps/settings.h"
 #include "engine/rectification/rectified_pair.h"
 #include "engine/sequence/pair_source.h"
+#include "engine/sequence/sequence_layout.h"
 #include "engine/sequence/sequence_options.h"
 #include "engine/sequence/work_plan.h"
 
@@ -56,8 +58,12 @@ void add_run_settings(Settings& settings, RunJob& job);
 void complete_sequence(RunJob& job);
 
 /// The same of all fields, with the files of poses read. Throws UsageError where fields are wrong
-/// or do not go together; other files are not looked at but to keep results out of the folders they
-/// are made from.
+/// or do not go together; other files are not looked at.
 void complete(RunJob& job);
+
+/// Tells `files` what runs write to the folder of `layout`, which `option` names.
+void add_run_outputs(const SequenceLayout& layout, const std::string& option, FileChecks& files);
+/// All that a run reads and writes but the frames, which are not known before its input is opened.
+FileChecks check_files(const RunJob& job, const Settings& settings);
 
 }  // namespace vantage::apps

@@ -72,9 +72,10 @@ ScenePosition to_scene_position(const SettingValue& value) {
 }
 
 void add_scene_images_settings(Settings& settings, SceneImagesInput& input) {
-  settings.text("images", input.images, "SOURCE",
-                "Folder, pattern (images/%03d.png) or glob of the images, row by row from the "
-                "upper left");
+  settings.input_path(
+      "images", input.images, "SOURCE",
+      "Folder, pattern (images/%03d.png) or glob of the images, row by row from the "
+      "upper left");
   Setting& grid = settings.add("grid", "COLSxROWS", "How they stand; row: all in one row");
   grid.set = [&input](const SettingValue& value) {
     if (value.is_string() && value.get_ref<const std::string&>() == "row") {
@@ -92,8 +93,8 @@ void add_scene_images_settings(Settings& settings, SceneImagesInput& input) {
   spacing.get = [&input]() -> SettingValue {
     return fmt::format("{},{}", input.spacing.x, input.spacing.y);
   };
-  settings.text("positions", input.positions, "FILE.csv",
-                "Instead: lines image,x,y, y down; names are relative to the file's folder");
+  settings.input_path("positions", input.positions, "FILE.csv",
+                      "Instead: lines image,x,y, y down; names are relative to the file's folder");
 }
 
 std::vector<SceneImage> scene_images(const SceneImagesInput& input, const Settings& settings) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "apps/rectification_check.h"
+#include "apps/tell.h"
 #include "apps/vertical_error_report.h"
 
 namespace vantage::apps {
@@ -64,11 +65,11 @@ void SceneRectification::print_warnings() const {
                    [](const Warning& a, const Warning& b) { return a.severity > b.severity; });
   const std::size_t printed = std::min(worst.size(), kMostWarnings);
   for (std::size_t i = 0; i < printed; ++i) {
-    fmt::print(stderr, "scene build: warning: {}\n", worst[i].text);
+    tell("scene build: warning: {}\n", worst[i].text);
   }
   if (worst.size() > printed) {
-    fmt::print(stderr, "scene build: warning: and {} more like these; --report tells of all\n",
-               worst.size() - printed);
+    tell("scene build: warning: and {} more like these; --report tells of all\n",
+         worst.size() - printed);
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "apps/toml_file.h"
 #include "engine/error.h"
+#include "engine/io/stored_name.h"
 
 namespace vantage::apps {
 namespace {
@@ -111,6 +112,21 @@ void require_files(const std::vector<std::string>& texts, const std::vector<std:
   }
 }
 
+/// What `convert` makes of all texts in `value`.
+template <typename Convert>
+SettingValue with_texts(const SettingValue& value, const Convert& convert) {
+  if (value.is_string()) {
+    return convert(value.get_ref<const std::string&>());
+  }
+  SettingValue converted = value;
+  if (value.is_array()) {
+    for (SettingValue& member : converted) {
+      member = with_texts(member, convert);
+    }
+  }
+  return converted;
+}
+
 bool is_unset(const SettingValue& value) {
   return value.is_null() || (value.is_array() && value.empty());
 }
@@ -196,8 +212,22 @@ Setting& Settings::text(std::string name, std::string& field, std::string value_
   return setting;
 }
 
+Setting& Settings::path(std::string name, std::string& field, std::string value_name,
+                        std::string help) {
+  Setting& setting = text(std::move(name), field, std::move(value_name), std::move(help));
+  setting.path = PathRole::kOther;
+  return setting;
+}
+
+Setting& Settings::input_path(std::string name, std::string& field, std::string value_name,
+                              std::string help) {
+  Setting& setting = path(std::move(name), field, std::move(value_name), std::move(help));
+  setting.path = PathRole::kInput;
+  return setting;
+}
+
 Setting& Settings::positional(std::string name, std::string& field, std::string help) {
-  Setting& setting = text(std::move(name), field, "", std::move(help));
+  Setting& setting = input_path(std::move(name), field, "", std::move(help));
   setting.value_name = upper_case(setting.name);
   setting.positional = true;
   return setting;
@@ -222,13 +252,32 @@ SettingValue Settings::result_values() const {
   return values;
 }
 
+std::vector<std::string> Settings::input_paths() const {
+  std::vector<std::string> paths;
+  for (const Setting& setting : settings_) {
+    if (setting.path != PathRole::kInput) {
+      continue;
+    }
+    for (const SettingValue& value : to_list(setting.get())) {
+      if (value.is_string()) {
+        paths.push_back(value.get<std::string>());
+      }
+    }
+  }
+  if (!config_path_.empty()) {
+    paths.push_back(config_path_);
+  }
+  return paths;
+}
+
 void Settings::set_values(const SettingValue& values) {
   for (const auto& [key, value] : values.items()) {
     const auto setting = std::ranges::find(settings_, key, &Setting::name);
     if (setting == settings_.end()) {
       throw UsageError(fmt::format("unknown setting '{}'", key));
     }
-    set_value(*setting, value, key);
+    set_value(*setting,
+              setting->path == PathRole::kNone ? value : with_texts(value, name_of_stored), key);
   }
 }
 
@@ -315,13 +364,16 @@ void Settings::apply_config(const std::string& path) {
     names.push_back(setting.name);
   }
   const SettingValue values = read_toml(path);
+  config_path_ = path;
   for (const auto& [key, value] : values.items()) {
     const auto setting = std::ranges::find(settings_, key, &Setting::name);
     if (setting == settings_.end()) {
       throw UsageError(fmt::format("{}: unknown key '{}', the nearest known one is '{}'", path, key,
                                    nearest_name(key, names)));
     }
-    set_value(*setting, value, fmt::format("{}: {}", path, key));
+    set_value(*setting,
+              setting->path == PathRole::kNone ? value : with_texts(value, name_of_stored),
+              fmt::format("{}: {}", path, key));
   }
 }
 
@@ -345,7 +397,8 @@ std::string Settings::toml() const {
       text += fmt::format("\n# {}\n", setting.group);
       group = &setting.group;
     }
-    const SettingValue value = setting.get();
+    const SettingValue value =
+        setting.path == PathRole::kNone ? setting.get() : with_texts(setting.get(), stored_name);
     text += value.is_null() ? fmt::format("# {} is not set\n", setting.name)
                             : fmt::format("{} = {}\n", setting.name, to_toml(value));
   }

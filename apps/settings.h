@@ -13,6 +13,13 @@
 
 namespace vantage::apps {
 
+/// What a setting's text is to the command, where it is the name of a file or folder.
+enum class PathRole {
+  kNone,   ///< no name
+  kInput,  ///< the command reads it
+  kOther   ///< it is written, or handed on to another program
+};
+
 /// One thing a user can set: an option of the command line, a key of the TOML file and an entry of
 /// the report, bound to a field of an option struct.
 struct Setting {
@@ -26,6 +33,7 @@ struct Setting {
   bool flag = false;
   bool list = false;            ///< may be given several times; an array in TOML
   bool changes_results = true;  ///< else it says how work is done, not what comes of it
+  PathRole path = PathRole::kNone;
   /// Takes a value of the TOML file or a text (list: texts) of the command line. Throws UsageError
   /// "is …, expected …" without the name.
   std::function<void(const SettingValue&)> set;
@@ -57,8 +65,15 @@ class Settings {
                    std::string help, const std::string& unset_name = "auto");
   Setting& number(std::string name, std::optional<double>& field, std::string value_name,
                   std::string help, const std::string& unset_name = "auto");
-  /// An empty text counts as not set.
+  /// The name of a file or folder that the command reads; FileChecks learn of it. An empty name
+  /// counts as not set, here and below.
+  Setting& input_path(std::string name, std::string& field, std::string value_name,
+                      std::string help);
+  /// The name of a file or folder that is not read.
+  Setting& path(std::string name, std::string& field, std::string value_name, std::string help);
+  /// Any other text.
   Setting& text(std::string name, std::string& field, std::string value_name, std::string help);
+  /// A name to read, without an option before it.
   Setting& positional(std::string name, std::string& field, std::string help);
   /// One of the names of an enumeration.
   template <typename Enum>
@@ -85,9 +100,11 @@ class Settings {
   [[nodiscard]] SettingValue values() const;
   /// Those that change results, without those that are not set.
   [[nodiscard]] SettingValue result_values() const;
-  /// Sets what result_values() gave. Throws UsageError naming a key that is not known or a value
-  /// that is not accepted.
+  /// Sets what result_values() gave, and paths as stored_name() makes them. Throws UsageError
+  /// naming a key that is not known or a value that is not accepted.
   void set_values(const SettingValue& values);
+  /// The names that the user gave of what is read, the file of --config among them.
+  [[nodiscard]] std::vector<std::string> input_paths() const;
   /// All settings as --print-config writes them.
   [[nodiscard]] std::string toml() const;
   [[nodiscard]] const std::string& command() const { return command_; }
@@ -107,6 +124,7 @@ class Settings {
   bool takes_job_file_ = false;
   std::deque<Setting> settings_;  // deque: add() hands out references
   std::set<std::string> given_;
+  std::string config_path_;  ///< empty: none was read
 };
 
 template <typename Enum>

@@ -124,7 +124,7 @@ void add_slurm_settings(Settings& settings, SlurmOptions& options) {
     }
   };
   more.get = [&options] { return SettingValue(options.sbatch_options); };
-  settings.text("program", options.program, "FILE",
+  settings.path("program", options.program, "FILE",
                 "The vantage program on the nodes, where it is not this one");
 }
 

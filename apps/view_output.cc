@@ -15,13 +15,13 @@ bool is_video(const std::string& path) { return has_extension(path, {".mp4"}); }
 
 void add_view_file_settings(Settings& settings, ViewOutputOptions& options) {
   Setting& file =
-      settings.text("output", options.output, "FILE",
+      settings.path("output", options.output, "FILE",
                     "Image to write; for several views a pattern (views/%03d.png) or an .mp4");
   file.short_name = 'o';
   file.required = true;
-  settings.text("hole-mask", options.hole_mask, "MASK.png",
+  settings.path("hole-mask", options.hole_mask, "MASK.png",
                 "Write a mask of the pixels that no image shows; a pattern for several views");
-  settings.text("source-mask", options.source_mask, "MASK.png",
+  settings.path("source-mask", options.source_mask, "MASK.png",
                 "Write which images the pixels are made of: 0 none, 85 the left one (of three the "
                 "first two), 170 the right or last one, 255 both");
 }

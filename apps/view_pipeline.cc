@@ -11,6 +11,7 @@
 
 #include "apps/interrupt.h"
 #include "apps/progress.h"
+#include "apps/tell.h"
 #include "engine/sequence/busy_clock.h"
 #include "scheduler/frame_pipeline.h"
 
@@ -108,7 +109,7 @@ ViewPipelineResult render_views(const std::string& command, int views, const Vie
   report.add_compute_seconds(computing.seconds());
   if (result.interrupted) {
     if (!common.quiet) {
-      fmt::print(stderr, "{}: interrupted after {} of {} views\n", command, written, views);
+      tell("{}: interrupted after {} of {} views\n", command, written, views);
     }
     return result;
   }

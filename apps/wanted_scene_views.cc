@@ -88,8 +88,8 @@ void add_wanted_scene_views(Settings& settings, WantedSceneViews& wanted) {
                                           text_of(wanted.sweep->last), wanted.sweep->views))
                : SettingValue();
   };
-  settings.text("path", wanted.path_file, "FILE",
-                "A movie along the positions of a TOML or JSON file, each with its frame");
+  settings.input_path("path", wanted.path_file, "FILE",
+                      "A movie along the positions of a TOML or JSON file, each with its frame");
 }
 
 std::vector<ScenePosition> scene_positions_of(const WantedSceneViews& wanted) {

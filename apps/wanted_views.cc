@@ -73,6 +73,7 @@ std::vector<ViewPose> poses_of_sweep(const Sweep& sweep) {
 
 void add_pose_list(Settings& settings, std::string name, PoseList& list, std::string help) {
   Setting& setting = settings.add(std::move(name), "FILE", std::move(help));
+  setting.path = PathRole::kInput;
   // What is in the file does, not its name.
   setting.changes_results = false;
   setting.set = [&list](const SettingValue& value) {

@@ -113,6 +113,7 @@ class RepeatedPairs final : public PairSource {
     return source_->frame_rate();
   }
   [[nodiscard]] Sound sound() const override { return {}; }
+  [[nodiscard]] std::vector<std::filesystem::path> files() const override { return {}; }
   [[nodiscard]] std::vector<std::string> identities() const override {
     return source_->identities();
   }

@@ -9,6 +9,7 @@
 
 #include "engine/error.h"
 #include "engine/io/file_descriptor.h"
+#include "engine/io/temporary_name.h"
 
 namespace vantage {
 namespace {
@@ -22,13 +23,6 @@ namespace fs = std::filesystem;
 
 fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
-}
-
-/// Where the bytes of `path` lie: behind a link, not in its place.
-fs::path resolve_links(const fs::path& path) {
-  std::error_code ignored;
-  const fs::path resolved = fs::canonical(path, ignored);
-  return ignored ? path : resolved;
 }
 
 std::span<const std::uint8_t> bytes_of(std::string_view text) {
@@ -46,7 +40,7 @@ void fill(const fs::path& target, std::span<const std::uint8_t> bytes, const fs:
 
 }  // namespace
 
-AtomicFile::AtomicFile(const fs::path& path) : given_path_(path), final_path_(resolve_links(path)) {
+AtomicFile::AtomicFile(const fs::path& path) : given_path_(path), final_path_(behind_links(path)) {
   if (!path.has_filename()) {
     throw Error(fmt::format("cannot write '{}': expected a file name", path.string()));
   }
@@ -63,8 +57,7 @@ AtomicFile::AtomicFile(const fs::path& path) : given_path_(path), final_path_(re
         fmt::format("cannot write {}: there is no folder {}", path.string(), folder.string()));
   }
   for (int attempt = 0;; ++attempt) {
-    temporary_path_ = folder / fmt::format(".{}.tmp-{}-{}{}", final_path_.stem().string(),
-                                           ::getpid(), attempt, final_path_.extension().string());
+    temporary_path_ = folder / temporary_name(final_path_, attempt);
     const FileDescriptor file(
         ::open(temporary_path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (file.valid()) {
@@ -120,6 +113,20 @@ bool AtomicFile::commit_if_absent() {
   }
   commit();
   return true;
+}
+
+fs::path behind_links(const fs::path& path) {
+  constexpr int kMostLinks = 40;  // as Linux follows
+  std::error_code error;
+  fs::path place = path;
+  for (int links = 0; fs::is_symlink(place, error); ++links) {
+    const fs::path target = fs::read_symlink(place, error);
+    if (error || links == kMostLinks) {
+      return path;
+    }
+    place = place.parent_path() / target;  // an absolute target stays itself
+  }
+  return place;
 }
 
 void write_binary_file(const fs::path& path, std::span<const std::uint8_t> bytes) {

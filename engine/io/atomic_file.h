@@ -15,7 +15,8 @@ namespace vantage {
 class AtomicFile {
  public:
   /// Creates the empty temporary file. Throws Error when the folder is missing or not writable, or
-  /// when `path` is there and is not a regular file. A link is followed.
+  /// when `path` is there and is not a regular file. A link is followed, also one to a file that is
+  /// not there yet.
   explicit AtomicFile(const std::filesystem::path& path);
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -42,6 +43,9 @@ class AtomicFile {
   std::filesystem::path temporary_path_;
   bool committed_ = false;
 };
+
+/// What `path` leads to where it is a link, else itself. Links in circles stay as they are.
+std::filesystem::path behind_links(const std::filesystem::path& path);
 
 /// Writes `bytes` as the file `path`; whole or not at all. Throws Error.
 void write_binary_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);

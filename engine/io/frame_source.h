@@ -63,6 +63,9 @@ class FrameSource {
   /// The video file, which may hold sound; empty for image files.
   [[nodiscard]] virtual std::filesystem::path video_file() const = 0;
 
+  /// The files that frames are read from.
+  [[nodiscard]] virtual std::vector<std::filesystem::path> files() const { return {video_file()}; }
+
   /// What the frames are read from, so that a later run can tell whether it is still the same: one
   /// line of kind, name, number of files, bytes and a hash of all names, sizes and times of change.
   [[nodiscard]] virtual std::string identity() const = 0;

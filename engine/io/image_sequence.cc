@@ -60,6 +60,14 @@ std::optional<long long> ImageSequence::number_of(int index) const {
   return frame_number(path(index));
 }
 
+std::vector<fs::path> ImageSequence::files() const {
+  std::vector<fs::path> files;
+  for (int i = 0; i < count_; ++i) {
+    files.push_back(path(i));
+  }
+  return files;
+}
+
 std::string ImageSequence::identity() const {
   FileIdentity files;
   for (int i = 0; i < count_; ++i) {

@@ -21,6 +21,7 @@ class ImageSequence : public FrameSource {
   [[nodiscard]] std::optional<long long> number_of(int index) const final;
   [[nodiscard]] std::optional<FrameRate> frame_rate() const final { return std::nullopt; }
   [[nodiscard]] std::filesystem::path video_file() const final { return {}; }
+  [[nodiscard]] std::vector<std::filesystem::path> files() const final;
   [[nodiscard]] std::string identity() const final;
 
  protected:

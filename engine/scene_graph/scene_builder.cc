@@ -19,6 +19,7 @@
 #include "engine/io/disparity_io.h"
 #include "engine/io/file_bytes.h"
 #include "engine/io/photograph_io.h"
+#include "engine/io/temporary_name.h"
 #include "engine/matching/disparity_range.h"
 #include "engine/scene_graph/sheared_images.h"
 
@@ -78,21 +79,22 @@ void make_folder(const fs::path& folder) {
   }
 }
 
-/// What a process that was killed had not finished (AtomicFile). No other one works on the folder.
-void remove_leftovers(const fs::path& folder) {
-  std::vector<fs::path> found;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (name.starts_with('.') && name.find(".tmp-") != std::string::npos) {
-      found.push_back(entry->path());
-    }
-  }
-  for (const fs::path& file : found) {
-    fs::remove(file, error);
-  }
+/// What whoever builds the scene locks.
+fs::path lock_file(const fs::path& folder) {
+  make_folder(folder / "maps");
+  const fs::path file = folder / ".lock";
+  create_text_file(file, "");
+  return file;
 }
+
+/// "maps/003-004-first": what the files of an edge's maps are called, but for their ends.
+std::string map_name(const SceneEdge& edge, std::size_t side) {
+  return fmt::format("maps/{:03}-{:03}-{}", edge.first, edge.second,
+                     side == 0 ? "first" : "second");
+}
+
+constexpr const char* kMapEnd = ".pfm";
+constexpr const char* kMaskEnd = "-unmatched.png";
 
 /// From pixels along x to pixels along the edge.
 void scale(ImageView<float> disparity, double factor) {
@@ -132,17 +134,19 @@ SceneBuilder::SceneBuilder(fs::path folder, std::vector<SceneImage> images,
       images_(std::move(images)),
       options_(std::move(options)),
       execution_(execution),
-      layout_(positions_of(images_), names_of(images_)) {
+      layout_(positions_of(images_), names_of(images_)),
+      lock_(lock_file(folder_), FileLock::Wait::kNo) {
   options_.validate();
+  if (!lock_.is_held()) {
+    throw Error(
+        fmt::format("{}: another process builds this scene, expected none", folder_.string()));
+  }
   scene_.settings = nlohmann::ordered_json::parse(options_.settings).dump();
   scene_.unit_length = layout_.unit_length();
-  make_folder(folder_ / "maps");
   if (options_.copy_images) {
     make_folder(folder_ / "images");
   }
-  for (const fs::path& place : {folder_, folder_ / "maps", folder_ / "images"}) {
-    remove_leftovers(place);
-  }
+  remove_leftovers();
   Photograph first;
   for (const SceneImage& image : images_) {
     Photograph photograph = read_photograph(image.file);
@@ -158,6 +162,21 @@ SceneBuilder::SceneBuilder(fs::path folder, std::vector<SceneImage> images,
   keep_finished_edges();
 }
 
+/// What a process that was killed had not finished. No other one works on the folder.
+void SceneBuilder::remove_leftovers() const {
+  remove_temporary_files_of(folder_ / "scene.json");
+  std::set<std::string> maps;
+  for (const SceneEdge& edge : layout_.edges()) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      for (const char* end : {kMapEnd, kMaskEnd}) {
+        maps.insert(fs::path(map_name(edge, side) + end).filename().string());
+      }
+    }
+  }
+  remove_temporary_files(folder_ / "maps",
+                         [&](const std::string& name) { return maps.contains(name); });
+}
+
 StoredImage SceneBuilder::stored_image(const SceneImage& image) const {
   const std::string content = content_of_file(image.file);
   StoredImage stored{
@@ -170,6 +189,7 @@ StoredImage SceneBuilder::stored_image(const SceneImage& image) const {
   stored.file =
       fmt::format("images/{}-{}{}", image.file.stem().string(),
                   content.substr(content.size() - kHashDigits), image.file.extension().string());
+  remove_temporary_files_of(folder_ / stored.file);
   std::error_code ignored;
   if (!fs::exists(folder_ / stored.file, ignored) ||
       content_of_file(folder_ / stored.file) != content) {
@@ -308,15 +328,14 @@ SceneBuilder::BuiltEdge SceneBuilder::build(int edge, MatchReport* report) {
       unmatched = transposed(unmatched.view());
     }
     result.matched_share[side] = matched_share_of(unmatched.view());
-    const std::string name = fmt::format("maps/{:03}-{:03}-{}", wanted.first, wanted.second,
-                                         side == 0 ? "first" : "second");
+    const std::string name = map_name(wanted, side);
     const auto stored = [&](const std::string& file) {
       return StoredFile{.name = file, .bytes = fs::file_size(folder_ / file)};
     };
-    write_disparity(folder_ / (name + ".pfm"), disparity.view());
-    result.maps[side] = stored(name + ".pfm");
-    write_mask(folder_ / (name + "-unmatched.png"), unmatched.view());
-    result.unmatched[side] = stored(name + "-unmatched.png");
+    write_disparity(folder_ / (name + kMapEnd), disparity.view());
+    result.maps[side] = stored(name + kMapEnd);
+    write_mask(folder_ / (name + kMaskEnd), unmatched.view());
+    result.unmatched[side] = stored(name + kMaskEnd);
   }
   scene_.edges.push_back(result);
   // In the order of the layout, so that the file does not depend on interruptions.

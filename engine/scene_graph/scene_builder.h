@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/execution.h"
+#include "engine/io/file_lock.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/rectification/vertical_error.h"
 #include "engine/scene_graph/scene_layout.h"
@@ -44,12 +45,13 @@ struct SceneBuildOptions {
 /// (sheared_images.h). Both maps of an edge are on the grids of its images and count pixels along
 /// the edge: d ≥ 0 for the usual scene, near is large.
 ///
-/// Thread rule: one thread at a time; one process per folder.
+/// Thread rule: one thread at a time; one process per folder, which locks it.
 class SceneBuilder {
  public:
   /// Reads all images and what the folder holds, which is made if it is missing; removes from
   /// scene.json what does not hold any more. Throws Error naming the file for images that cannot be
-  /// read or differ in size, depth or channels, for a damaged scene.json and as SceneLayout does;
+  /// read or differ in size, depth or channels, for a damaged scene.json, while another process
+  /// builds the scene, and as SceneLayout does;
   /// UsageError for invalid options. `execution` must outlive the builder.
   SceneBuilder(std::filesystem::path folder, std::vector<SceneImage> images,
                SceneBuildOptions options, Execution& execution);
@@ -76,6 +78,7 @@ class SceneBuilder {
 
  private:
   [[nodiscard]] StoredImage stored_image(const SceneImage& image) const;
+  void remove_leftovers() const;
   void keep_finished_edges();
   void match(const SceneEdge& edge, const std::array<Photograph, 2>& images, DisparityMaps& maps,
              StoredEdge& result, MatchReport* report) const;
@@ -88,6 +91,7 @@ class SceneBuilder {
   Execution& execution_;
   StoredScene scene_;
   SceneLayout layout_;
+  FileLock lock_;
   std::vector<int> edges_to_match_;
 };
 

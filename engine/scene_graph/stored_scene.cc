@@ -16,6 +16,7 @@
 #include "engine/io/file_bytes.h"
 #include "engine/io/file_identity.h"
 #include "engine/io/photograph_io.h"
+#include "engine/io/stored_name.h"
 
 namespace vantage {
 namespace {
@@ -25,7 +26,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kSceneFormat = 2;
 
-fs::path file_of(const fs::path& folder) { return folder / "scene.json"; }
+constexpr const char* kSceneFile = "scene.json";
+
+fs::path file_of(const fs::path& folder) { return folder / kSceneFile; }
 
 Json json_of(const StoredFile& file) { return {{"file", file.name}, {"bytes", file.bytes}}; }
 
@@ -87,7 +90,7 @@ StoredScene scene_of(const std::string& text) {
   scene.height_px = json.at("size").at(1).get<int>();
   for (const Json& image : json.at("images")) {
     scene.images.push_back(
-        {.file = image.at("file").get<std::string>(),
+        {.file = name_of_stored(image.at("file").get<std::string>()),
          .content = image.at("content").get<std::string>(),
          .position = {image.at("x").get<double>(), image.at("y").get<double>()}});
   }
@@ -146,6 +149,20 @@ std::vector<ScenePosition> StoredScene::positions() const {
   return all;
 }
 
+std::vector<fs::path> StoredScene::files() const {
+  std::vector<fs::path> all = {kSceneFile};
+  for (const StoredImage& image : images) {
+    all.emplace_back(image.file);
+  }
+  for (const StoredEdge& edge : edges) {
+    for (const auto& pair : {edge.maps, edge.unmatched}) {
+      all.emplace_back(pair[0].name);
+      all.emplace_back(pair[1].name);
+    }
+  }
+  return all;
+}
+
 std::vector<std::string> StoredScene::names() const {
   std::vector<std::string> all;
   for (const StoredImage& image : images) {
@@ -189,7 +206,7 @@ StoredScene read_scene(const fs::path& folder) {
 void write_scene(const fs::path& folder, const StoredScene& scene) {
   Json images = Json::array();
   for (const StoredImage& image : scene.images) {
-    images.push_back({{"file", image.file},
+    images.push_back({{"file", stored_name(image.file)},
                       {"x", image.position.x},
                       {"y", image.position.y},
                       {"content", image.content}});
@@ -205,7 +222,7 @@ void write_scene(const fs::path& folder, const StoredScene& scene) {
                      {"size", {scene.width_px, scene.height_px}},
                      {"images", images},
                      {"edges", edges}};
-  write_text_file(file_of(folder), json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_text_file(file_of(folder), json.dump(1) + "\n");
 }
 
 void require_complete(const StoredScene& scene, const SceneLayout& layout, const fs::path& folder) {

@@ -55,6 +55,8 @@ struct StoredScene {
   [[nodiscard]] const StoredEdge* find(const SceneEdge& edge) const;
   [[nodiscard]] std::vector<ScenePosition> positions() const;
   [[nodiscard]] std::vector<std::string> names() const;
+  /// Everything that it is stored in, relative to its folder: scene.json, images, maps and masks.
+  [[nodiscard]] std::vector<std::filesystem::path> files() const;
 };
 
 /// "1234 bytes, hash 00112233445566ff": the same for equal files, wherever and whenever they are.

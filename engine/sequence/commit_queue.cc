@@ -153,6 +153,12 @@ void CommitQueue::deliver(std::vector<Delivery>& batch) {
     try {
       delivery.files.commit(folders);
       finish_videos(delivery.videos);
+      if (delivery.segment) {
+        for (FileRecord& file : delivery.segment->files) {
+          file = record_of_file(delivery.folder, file.name);
+        }
+        delivery.records.emplace_back(*std::move(delivery.segment));
+      }
     } catch (const Error& error) {
       record_delivered();  // what came before the failure counts
       throw DeliveryError(fmt::format("frame {}: {}", delivery.frame, error.what()));

@@ -7,32 +7,24 @@
 #include <system_error>
 #include <utility>
 
+#include "engine/sequence/journal_content.h"
+
 namespace vantage {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool has_content(const fs::path& path) {
-  std::error_code error;
-  const auto bytes = fs::file_size(path, error);
-  return !error && bytes > 0;
-}
 
 bool is_whole(const fs::path& path, std::uintmax_t bytes) {
   std::error_code error;
   return bytes > 0 && fs::file_size(path, error) == bytes && !error;
 }
 
-/// Whether all videos are there, whole or in this segment.
-template <typename PathOf>
-bool has_videos(const SequenceLayout& layout, const PathOf& path_of) {
-  return std::ranges::all_of(layout.streams(), [&](const OutputStream& stream) {
-    return !stream.as_video || has_content(path_of(stream));
-  });
-}
-
 /// In order; those within another are left out.
-std::vector<FrameRange> outermost(std::vector<FrameRange> ranges) {
+std::vector<FrameRange> outermost(const std::vector<SegmentRecord>& segments) {
+  std::vector<FrameRange> ranges;
+  for (const SegmentRecord& segment : segments) {
+    ranges.push_back(segment.frames);
+  }
   std::ranges::sort(ranges, [](FrameRange a, FrameRange b) {
     return a.first != b.first ? a.first < b.first : a.end > b.end;
   });
@@ -48,48 +40,50 @@ std::vector<FrameRange> outermost(std::vector<FrameRange> ranges) {
 }  // namespace
 
 DeliveredFrames::DeliveredFrames(const SequenceLayout& layout) {
-  for (JournalRecord& record : RunJournal::read_records(layout.journal_folder())) {
-    if (auto* frame = std::get_if<FrameRecord>(&record)) {
-      // A skipped frame that has been repaired since is done, whichever part says so later.
-      const auto known = records_.find(frame->frame);
-      if (known == records_.end() || known->second.skipped || !frame->skipped) {
-        records_[frame->frame] = std::move(*frame);
-      }
-    } else if (const auto* segment = std::get_if<SegmentRecord>(&record)) {
-      segments_.push_back(segment->frames);
-    } else {
-      // Parts are read in no particular order; what was joined last is what was joined most of.
-      // Of the same frames the one with fewer skipped ones.
-      auto& join = std::get<JoinRecord>(record);
-      const auto rank = [](const JoinRecord& joined) {
-        return std::pair(joined.frames.count(), -static_cast<int>(joined.skipped.size()));
-      };
-      if (rank(join) > rank(joined_)) {
-        joined_ = std::move(join);
-      }
+  JournalContent journal = read_journal(layout);
+  const auto are_there = [&](const std::vector<FileRecord>& files) {
+    return std::ranges::all_of(files, [&](const FileRecord& file) {
+      return is_whole(layout.folder() / file.name, file.content.bytes);
+    });
+  };
+  // Parts are read in no particular order; what was joined last is what was joined most of. Of the
+  // same frames the one with fewer skipped ones.
+  const auto rank = [](const JoinRecord& joined) {
+    return std::pair(joined.frames.count(), -static_cast<int>(joined.skipped.size()));
+  };
+  for (JoinRecord& join : journal.joins) {
+    if (are_there(join.files) && rank(join) > rank(joined_)) {
+      joined_ = std::move(join);
     }
   }
-  if (!has_videos(layout, [&](const OutputStream& stream) { return layout.video(stream); })) {
-    joined_ = {};
-  }
-  std::erase_if(segments_, [&](FrameRange frames) {
-    return !has_videos(layout,
-                       [&](const OutputStream& stream) { return layout.segment(stream, frames); });
-  });
-  segments_ = outermost(std::move(segments_));
-  std::erase_if(records_, [&](const auto& entry) {
-    const auto& [frame, record] = entry;
+  std::erase_if(journal.segments,
+                [&](const SegmentRecord& segment) { return !are_there(segment.files); });
+  segments_ = outermost(journal.segments);
+  for (auto& [frame, record] : journal.frames) {
+    if (!are_there(record.files)) {
+      continue;
+    }
     const bool in_video = !layout.has_videos() || record.absent || joined_.frames.contains(frame) ||
                           !segment_with(frame).empty();
-    return !in_video || !std::ranges::all_of(record.files, [&](const FileRecord& file) {
-      return is_whole(layout.folder() / file.name, file.bytes);
-    });
-  });
+    if (in_video || !record.files.empty()) {
+      (in_video ? records_ : without_video_)[frame] = std::move(record);
+    }
+  }
 }
 
 bool DeliveredFrames::is_done(int frame) const {
   const auto known = records_.find(frame);
   return known != records_.end() && !known->second.skipped;
+}
+
+const FrameRecord* DeliveredFrames::files_of(int frame) const {
+  for (const auto* records : {&records_, &without_video_}) {
+    const auto known = records->find(frame);
+    if (known != records->end()) {
+      return known->second.files.empty() ? nullptr : &known->second;
+    }
+  }
+  return nullptr;
 }
 
 std::vector<int> DeliveredFrames::skipped(FrameRange frames) const {

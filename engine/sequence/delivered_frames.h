@@ -15,11 +15,14 @@ class DeliveredFrames {
  public:
   /// Reads the journal of the layout's folder and looks for every file it tells of. Frames whose
   /// files are gone or of another size, or that are of no video segment where there are videos, do
-  /// not count.
+  /// not count, but for files_of().
   explicit DeliveredFrames(const SequenceLayout& layout);
 
   /// Delivered and not skipped.
   [[nodiscard]] bool is_done(int frame) const;
+  /// The record of a frame whose files are there, whether or not a video has it; null: there is
+  /// none, or it has no files of its own.
+  [[nodiscard]] const FrameRecord* files_of(int frame) const;
   /// Newest record of every frame that is done or skipped.
   [[nodiscard]] const std::map<int, FrameRecord>& records() const { return records_; }
   /// The skipped ones of `frames`, in order.
@@ -43,6 +46,7 @@ class DeliveredFrames {
   [[nodiscard]] FrameRange segment_with(int frame) const;
 
   std::map<int, FrameRecord> records_;
+  std::map<int, FrameRecord> without_video_;  ///< whose files are there, but not their pictures
   std::vector<FrameRange> segments_;
   JoinRecord joined_;
 };

@@ -21,6 +21,9 @@ struct FrameSlot {
   int frame = 0;
   bool is_lead_in = false;  ///< computed for the frames behind it only
   bool is_absent = false;   ///< the input ends before it: nothing is made of it
+  /// The files that are there of the frame, where only its pictures for the videos are wanted; null
+  /// where they are to be written.
+  const FrameRecord* stored = nullptr;
   FramePair pair;
   std::array<Photograph, 2> rectified;  ///< where a calibration is applied
   const Photograph* left = nullptr;     ///< what is matched: of `pair` or `rectified`

@@ -13,6 +13,7 @@
 #include "engine/error.h"
 #include "engine/image/content_hash.h"
 #include "engine/image/stereo_display.h"
+#include "engine/io/checksum.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/photograph_io.h"
 #include "engine/io/preview.h"
@@ -74,6 +75,27 @@ bool views_show_photographs(const SequenceOptions& options) {
          (!options.views.empty() || options.saves(SequenceOutput::kStereo));
 }
 
+/// Whether videos show new views, alone or in stereo pictures.
+bool show_views(const SequenceOptions& options) {
+  return std::ranges::any_of(options.video, [](SequenceOutput output) {
+    return is_per_view(output) || output == SequenceOutput::kStereo;
+  });
+}
+
+/// Masks of what was filled are not in maps, and a prior is made of them.
+bool stores_maps_for_videos(const SequenceOptions& options) {
+  const bool needs_masks = options.temporal.weight > 0 ||
+                           options.saves_as_video(SequenceOutput::kUnmatched) ||
+                           options.saves_as_video(SequenceOutput::kRightUnmatched);
+  const bool has_both =
+      options.match.reference == Reference::kLeft && options.saves(SequenceOutput::kRightDisparity);
+  const bool needs_both =
+      show_views(options) || (options.measure_flicker && !options.views.empty());
+  // PNG rounds.
+  return options.map_format != "png" && options.saves(SequenceOutput::kDisparity) && !needs_masks &&
+         (has_both || !needs_both);
+}
+
 FrameWorker::FrameWorker(const FrameTools& tools)
     : options_(tools.options),
       layout_(tools.layout),
@@ -85,6 +107,8 @@ FrameWorker::FrameWorker(const FrameTools& tools)
       execution_(tools.execution),
       matcher_(tools.options.match, tools.execution),
       renderer_(tools.options.synthesis, tools.cameras, tools.execution),
+      videos_show_views_(show_views(tools.options)),
+      maps_are_stored_(stores_maps_for_videos(tools.options)),
       temporal_(tools.options.temporal) {
   if (rectifier_ != nullptr && rectifier_->needs_rectification() &&
       views_show_photographs(options_)) {
@@ -122,7 +146,12 @@ void FrameWorker::compute(FrameSlot& slot) {
     return;
   }
   const BusyClock::Activity activity(compute_clock_);
-  match(slot);
+  if (slot.stored != nullptr && maps_are_stored_ && !read_maps(slot)) {
+    slot.stored = nullptr;
+  }
+  if (slot.stored == nullptr || !maps_are_stored_) {
+    match(slot);
+  }
   if (slot.is_lead_in && !options_.measure_flicker) {
     return;
   }
@@ -132,6 +161,36 @@ void FrameWorker::compute(FrameSlot& slot) {
   }
   paint_preview(slot);
   pack_stereo_picture(slot);
+}
+
+bool FrameWorker::read_maps(FrameSlot& slot) const {
+  const TimedStep step(slot, "read maps");
+  slot.match = {};
+  for (const OutputStream& stream : layout_.streams()) {
+    const bool is_primary = stream.output == SequenceOutput::kDisparity;
+    const bool is_other = stream.output == SequenceOutput::kRightDisparity && needs_views(slot);
+    if (!is_primary && !is_other) {
+      continue;
+    }
+    const auto file = std::ranges::find_if(slot.stored->files, [&](const FileRecord& record) {
+      return std::filesystem::path(record.name).parent_path() == stream.name;
+    });
+    if (file == slot.stored->files.end() ||
+        file_content(layout_.folder() / file->name) != file->content) {
+      return false;
+    }
+    const bool is_left = is_primary && options_.match.reference == Reference::kLeft;
+    (is_left ? slot.maps.left : slot.maps.right) = read_disparity(layout_.folder() / file->name);
+  }
+  return true;
+}
+
+bool FrameWorker::wants(const FrameSlot& slot, SequenceOutput output) const {
+  return slot.stored == nullptr ? options_.saves(output) : options_.saves_as_video(output);
+}
+
+bool FrameWorker::needs_views(const FrameSlot& slot) const {
+  return slot.stored == nullptr || videos_show_views_ || options_.measure_flicker;
 }
 
 void FrameWorker::match(FrameSlot& slot) {
@@ -165,6 +224,9 @@ const Photograph* FrameWorker::photograph_at(const FrameSlot& slot, double view_
 
 void FrameWorker::synthesize(FrameSlot& slot) const {
   slot.view_poses.clear();
+  if (!needs_views(slot)) {
+    return;
+  }
   for (const ViewPath& path : options_.views) {
     slot.view_poses.push_back(placed(path.at(slot.frame), options_.look_at_px, cameras_,
                                      slot.left->width(), slot.left->height()));
@@ -195,7 +257,7 @@ void FrameWorker::synthesize(FrameSlot& slot) const {
 }
 
 void FrameWorker::paint_preview(FrameSlot& slot) const {
-  if (!options_.saves(SequenceOutput::kPreview)) {
+  if (!wants(slot, SequenceOutput::kPreview)) {
     return;
   }
   const TimedStep step(slot, "preview");
@@ -206,7 +268,7 @@ void FrameWorker::paint_preview(FrameSlot& slot) const {
 }
 
 void FrameWorker::pack_stereo_picture(FrameSlot& slot) const {
-  if (!options_.saves(SequenceOutput::kStereo)) {
+  if (!wants(slot, SequenceOutput::kStereo)) {
     return;
   }
   const TimedStep step(slot, "stereo");
@@ -305,7 +367,7 @@ void FrameWorker::encode_stream(FrameSlot& slot, const OutputStream& stream,
 void FrameWorker::encode(FrameSlot& slot) const {
   slot.files.discard();  // left by a frame that was given up
   slot.file_records.clear();
-  if (slot.is_lead_in || slot.is_absent) {
+  if (slot.is_lead_in || slot.is_absent || slot.stored != nullptr) {
     return;
   }
   const TimedStep step(slot, "encode");
@@ -318,7 +380,7 @@ void FrameWorker::encode(FrameSlot& slot) const {
     const std::filesystem::path path = layout_.folder() / name;
     encode_stream(slot, stream, path);
     slot.files.add(path, slot.encoded);
-    slot.file_records.push_back({name.string(), slot.encoded.size()});
+    slot.file_records.push_back({name.string(), {slot.encoded.size(), crc32_of(slot.encoded)}});
   }
 }
 

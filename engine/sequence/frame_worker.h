@@ -57,9 +57,12 @@ class FrameWorker {
   /// Decodes and rectifies. Thread rule: concurrently for different slots; so encode(), and
   /// compute() unless computes_in_order().
   void prepare(FrameSlot& slot) const;
-  /// Maps, new views, pictures. Throws Error where the images do not fit.
+  /// Maps, new views, pictures; of a frame that is stored, what videos show. Its maps are read
+  /// where all that is needed is in files that are as they were written; a file that is not makes
+  /// it a frame that is not stored. Throws Error where the images do not fit.
   void compute(FrameSlot& slot);
-  /// Writes the files of a frame that is no lead-in, without their names. Throws OutputError.
+  /// Writes the files of a frame that is neither a lead-in nor stored, without their names. Throws
+  /// OutputError.
   void encode(FrameSlot& slot) const;
 
   /// Time during which at least one frame was in compute(), or rectified.
@@ -75,6 +78,11 @@ class FrameWorker {
 
  private:
   void match(FrameSlot& slot);
+  /// False when a file is not as it was written.
+  bool read_maps(FrameSlot& slot) const;
+  /// Whether something that is made of the frame needs new views.
+  [[nodiscard]] bool needs_views(const FrameSlot& slot) const;
+  [[nodiscard]] bool wants(const FrameSlot& slot, SequenceOutput output) const;
   void synthesize(FrameSlot& slot) const;
   void paint_preview(FrameSlot& slot) const;
   void pack_stereo_picture(FrameSlot& slot) const;
@@ -97,6 +105,9 @@ class FrameWorker {
   StereoMatcher matcher_;
   PoseRenderer renderer_;
   std::optional<PhotographGrid> photograph_grid_;  ///< where views_show_photographs()
+  bool videos_show_views_;
+  /// Whether the files of a frame hold the maps that its pictures in videos are made of.
+  bool maps_are_stored_;
   TemporalState temporal_;
   int temporal_chunk_ = -1;  ///< that temporal_ is of
   mutable BusyClock compute_clock_;

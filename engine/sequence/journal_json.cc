@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -11,13 +12,15 @@
 
 #include "engine/build_info.h"
 #include "engine/error.h"
+#include "engine/io/checksum.h"
+#include "engine/io/stored_name.h"
 
 namespace vantage {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kJournalFormat = 1;
+constexpr int kJournalFormat = 2;
 
 /// Throws what nlohmann throws unless it is a whole number from 0 on.
 int count_of(const Json& json) {
@@ -58,6 +61,29 @@ FlickerSums flicker_of(const Json& json) {
   return sums;
 }
 
+/// {"disparity/000000.pfm": [12345, "00112233"], …}
+Json files_json(const std::vector<FileRecord>& files) {
+  Json json = Json::object();
+  for (const FileRecord& file : files) {
+    json[file.name] = {file.content.bytes, fmt::format("{:08x}", file.content.crc32)};
+  }
+  return json;
+}
+
+std::vector<FileRecord> files_in(const Json& json) {
+  std::vector<FileRecord> files;
+  if (!json.contains("files")) {
+    return files;
+  }
+  for (const auto& [name, content] : json.at("files").get_ref<const Json::object_t&>()) {
+    const auto& digits = content.at(1).get_ref<const std::string&>();
+    FileRecord file{name, {content.at(0).get_ref<const Json::number_unsigned_t&>(), 0}};
+    std::from_chars(digits.data(), digits.data() + digits.size(), file.content.crc32, 16);
+    files.push_back(std::move(file));
+  }
+  return files;
+}
+
 struct ToJson {
   Json operator()(const FrameRecord& record) const {
     Json json = {{"frame", record.frame}};
@@ -72,8 +98,8 @@ struct ToJson {
         json[key] = list;
       }
     };
-    for (const FileRecord& file : record.files) {
-      json["files"][file.name] = file.bytes;
+    if (!record.files.empty()) {
+      json["files"] = files_json(record.files);
     }
     add_list("remarks", record.remarks);
     if (record.flicker.frames > 0) {
@@ -82,13 +108,14 @@ struct ToJson {
     return json;
   }
   Json operator()(const SegmentRecord& record) const {
-    return {{"segment", range_json(record.frames)}};
+    return {{"segment", range_json(record.frames)}, {"files", files_json(record.files)}};
   }
   Json operator()(const JoinRecord& record) const {
     Json json = {{"joined", range_json(record.frames)}};
     if (!record.skipped.empty()) {
       json["skipped"] = record.skipped;
     }
+    json["files"] = files_json(record.files);
     return json;
   }
 };
@@ -96,21 +123,18 @@ struct ToJson {
 /// Throws what nlohmann throws when it is none of ours.
 JournalRecord record_in(const Json& json) {
   if (json.contains("segment")) {
-    return SegmentRecord{range_of(json.at("segment"))};
+    return SegmentRecord{range_of(json.at("segment")), files_in(json)};
   }
   if (json.contains("joined")) {
-    return JoinRecord{range_of(json.at("joined")), json.value("skipped", std::vector<int>())};
+    return JoinRecord{range_of(json.at("joined")), json.value("skipped", std::vector<int>()),
+                      files_in(json)};
   }
   FrameRecord record;
   record.frame = count_of(json.at("frame"));
   record.skipped = json.contains("skipped");
   record.problem = json.value("skipped", "");
   record.absent = json.value("absent", false);
-  if (json.contains("files")) {
-    for (const auto& [name, bytes] : json.at("files").get_ref<const Json::object_t&>()) {
-      record.files.push_back({name, bytes.get_ref<const Json::number_unsigned_t&>()});
-    }
-  }
+  record.files = files_in(json);
   record.remarks = json.value("remarks", record.remarks);
   if (json.contains("flicker")) {
     record.flicker = flicker_of(json.at("flicker"));
@@ -136,10 +160,15 @@ std::string change_of(const std::string& key, const std::string& before, const s
 }  // namespace
 
 std::string line_of(const JournalRecord& record) {
-  return std::visit(ToJson(), record).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return with_checksum(
+             std::visit(ToJson(), record).dump(-1, ' ', false, Json::error_handler_t::replace)) +
+         "\n";
 }
 
 std::optional<JournalRecord> record_of(const std::string& line) {
+  if (!has_valid_checksum(line)) {
+    return std::nullopt;
+  }
   try {
     return record_in(Json::parse(line));
   } catch (const nlohmann::json::exception&) {
@@ -153,27 +182,34 @@ std::string text_of(const RunIdentity& identity) {
                      {"frame_count", identity.frame_count},
                      {"inputs", identity.inputs},
                      {"sound",
-                      {{"file", identity.sound_file.string()},
+                      {{"file", stored_name(identity.sound_file.string())},
                        {"first_frame", identity.sound_first_frame},
                        {"rate", to_string(identity.sound_rate)}}},
+                     {"sources", Json::parse(identity.sources)},
                      {"settings", Json::parse(identity.settings)}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return with_checksum(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 RunIdentity identity_of(const std::string& text, const std::filesystem::path& file) {
   try {
     const Json json = Json::parse(text);
     if (json.at("format").get<int>() != kJournalFormat) {
-      throw Error(fmt::format("{}: is of format {}, expected {} (written by Vantage {})",
-                              file.string(), json.at("format").dump(), kJournalFormat,
-                              json.value("version", "?")));
+      throw Error(fmt::format(
+          "{}: is of format {} (written by Vantage {}), expected {}: that version finishes the "
+          "run, or --overwrite begins it anew",
+          file.string(), json.at("format").dump(), json.value("version", "?"), kJournalFormat));
+    }
+    if (!has_valid_checksum(text)) {
+      throw Error(
+          fmt::format("{}: is damaged, its checksum does not fit what it holds", file.string()));
     }
     RunIdentity identity;
     // Throws unless it is an object.
     identity.settings = Json(json.at("settings").get_ref<const Json::object_t&>()).dump();
+    identity.sources = Json(json.at("sources").get_ref<const Json::object_t&>()).dump();
     identity.inputs = json.at("inputs").get<std::vector<std::string>>();
     identity.frame_count = count_of(json.at("frame_count"));
-    identity.sound_file = json.at("sound").at("file").get<std::string>();
+    identity.sound_file = name_of_stored(json.at("sound").at("file").get<std::string>());
     identity.sound_first_frame = json.at("sound").at("first_frame").get<int>();
     identity.sound_rate =
         parse_frame_rate(json.at("sound").at("rate").get<std::string>()).value_or(FrameRate());

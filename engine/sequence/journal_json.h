@@ -8,9 +8,9 @@
 
 namespace vantage {
 
-/// A record as one line of JSON with its line end, in UTF-8 whatever file names hold.
+/// A record as one line of JSON with its checksum and line end, in UTF-8 whatever file names hold.
 std::string line_of(const JournalRecord& record);
-/// Empty when the line is none of ours.
+/// Empty when the line is none of ours, or not as it was written.
 std::optional<JournalRecord> record_of(const std::string& line);
 
 /// What run.json holds.

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <filesystem>
-
 #include "engine/sequence/frame_range.h"
 #include "engine/sequence/sequence_layout.h"
 
@@ -10,8 +8,5 @@ namespace vantage {
 /// Removes what a process that was killed left behind without a name while it worked on `frames`:
 /// hidden files of those frames in the folders of the layout. Files that cannot be removed stay.
 void remove_leftovers(const SequenceLayout& layout, FrameRange frames);
-
-/// The same for one file that was being written as an AtomicFile. Nothing else may be writing it.
-void remove_leftovers_of(const std::filesystem::path& file);
 
 }  // namespace vantage

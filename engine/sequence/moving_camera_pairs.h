@@ -23,6 +23,7 @@ class MovingCameraPairs : public PairSource {
   [[nodiscard]] Sound sound() const final {
     return {source_->video_file(), later_is_left_ ? distance_ : 0};
   }
+  [[nodiscard]] std::vector<std::filesystem::path> files() const final { return source_->files(); }
   [[nodiscard]] std::vector<std::string> identities() const final { return {source_->identity()}; }
 
  protected:

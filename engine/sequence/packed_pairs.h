@@ -24,6 +24,9 @@ class PackedPairs : public PairSource {
     return source_->frame_rate();
   }
   [[nodiscard]] Sound sound() const override { return {source_->video_file(), 0}; }
+  [[nodiscard]] std::vector<std::filesystem::path> files() const override {
+    return source_->files();
+  }
   [[nodiscard]] std::vector<std::string> identities() const override {
     return {source_->identity()};
   }

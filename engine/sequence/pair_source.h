@@ -91,6 +91,8 @@ class PairSource {
     int first_frame = 0;
   };
   [[nodiscard]] virtual Sound sound() const = 0;
+  /// All files that frames are read from.
+  [[nodiscard]] virtual std::vector<std::filesystem::path> files() const = 0;
   /// One line per source: see FrameSource::identity().
   [[nodiscard]] virtual std::vector<std::string> identities() const = 0;
 };

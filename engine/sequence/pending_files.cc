@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "engine/io/file_descriptor.h"
+#include "engine/io/temporary_name.h"
 
 namespace vantage {
 namespace {
@@ -29,9 +30,8 @@ PendingFiles& PendingFiles::operator=(PendingFiles&& other) noexcept {
 }
 
 void PendingFiles::add(const fs::path& path, std::span<const std::uint8_t> bytes) {
-  // The process in the name: a requeued job may begin while the one before it still ends.
-  const fs::path hidden =
-      path.parent_path() / fmt::format(".{}.{}.pending", path.filename().string(), ::getpid());
+  // A name of this process: a requeued job may begin while the one before it still ends.
+  const fs::path hidden = path.parent_path() / temporary_name(path, 0);
   files_.push_back({.hidden = hidden, .path = path});
   const FileDescriptor file(::open(hidden.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
   if (!file.valid() || !write_all(file.get(), bytes)) {

@@ -27,6 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kIdentityFile = "run.json";
+constexpr std::string_view kPartBegin = "frames-";
+constexpr std::string_view kPartEnd = ".jsonl";
 
 std::string system_message(int error_number) {
   return std::generic_category().message(error_number);
@@ -42,7 +44,7 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
 
 bool is_journal_of_part(const fs::path& path) {
   const std::string name = path.filename().string();
-  return name.starts_with("frames-") && name.ends_with(".jsonl");
+  return name.starts_with(kPartBegin) && name.ends_with(kPartEnd);
 }
 
 bool lock(int descriptor) {
@@ -178,7 +180,7 @@ RunJournal::RunJournal(const fs::path& journal_folder, const RunIdentity& identi
   if (opening != JournalOpening::kForce) {
     require_description(journal_folder);
   }
-  state_->path = journal_folder / fmt::format("frames-{}.jsonl", part);
+  state_->path = journal_folder / fmt::format("{}{}{}", kPartBegin, part, kPartEnd);
   const bool is_new = create_text_file(journal_folder / kIdentityFile, text_of(identity));
   if (!is_new) {
     if (opening == JournalOpening::kNew && (part == "all" || fs::exists(state_->path))) {
@@ -251,19 +253,41 @@ RunIdentity RunJournal::read_identity(const fs::path& journal_folder) {
   return identity_of(std::string(std::istreambuf_iterator<char>(stream), {}), path);
 }
 
-std::vector<JournalRecord> RunJournal::read_records(const fs::path& journal_folder) {
-  std::vector<JournalRecord> records;
+std::vector<std::string> RunJournal::parts(const fs::path& journal_folder) {
+  std::vector<std::string> parts;
+  for (const fs::path& file : entries_of(journal_folder)) {
+    if (is_journal_of_part(file)) {
+      const std::string name = file.filename().string();
+      parts.push_back(
+          name.substr(kPartBegin.size(), name.size() - kPartBegin.size() - kPartEnd.size()));
+    }
+  }
+  return parts;
+}
+
+JournalRecords RunJournal::read_records(const fs::path& journal_folder) {
+  JournalRecords all;
   for (const fs::path& file : entries_of(journal_folder)) {
     if (!is_journal_of_part(file)) {
       continue;
     }
     for (const std::string& line : whole_lines(file).first) {
       if (std::optional<JournalRecord> record = record_of(line)) {
-        records.push_back(std::move(*record));
-      }  // else damaged: the frame counts as not done and is made again
+        all.records.push_back(std::move(*record));
+      } else {
+        ++all.damaged_lines;  // the frame counts as not done and is made again
+      }
     }
   }
-  return records;
+  return all;
+}
+
+FileRecord record_of_file(const fs::path& folder, const std::string& name) {
+  const std::optional<FileContent> content = file_content(folder / name);
+  if (!content) {
+    throw Error(fmt::format("cannot read {}: {}", (folder / name).string(), system_message(errno)));
+  }
+  return {name, *content};
 }
 
 }  // namespace vantage

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/io/checksum.h"
 #include "engine/io/frame_rate.h"
 #include "engine/sequence/flicker.h"
 #include "engine/sequence/frame_range.h"
@@ -18,6 +19,9 @@ namespace vantage {
 /// What the files of a run depend on. Two processes that work in one folder must agree on it.
 struct RunIdentity {
   std::string settings = "{}";  ///< a JSON object: the settings that results depend on
+  /// Another one: where the input was when the run began, for going on without being told. Two
+  /// processes need not agree on it.
+  std::string sources = "{}";
   /// A line per source, see FrameSource::identity(). What follows the last ": " must be the same.
   std::vector<std::string> inputs;
   int frame_count = 0;               ///< of the whole input
@@ -26,10 +30,10 @@ struct RunIdentity {
   FrameRate sound_rate;              ///< of the frames of that video
 };
 
-/// A result of a frame.
+/// A result.
 struct FileRecord {
   std::string name;  ///< relative to the run's folder
-  std::uint64_t bytes = 0;
+  FileContent content;
   friend bool operator==(const FileRecord&, const FileRecord&) = default;
 };
 
@@ -47,15 +51,26 @@ struct FrameRecord {
 /// All videos have a segment of these frames.
 struct SegmentRecord {
   FrameRange frames;
+  std::vector<FileRecord> files = {};
 };
 
 /// The videos of these frames have been joined and their segments removed.
 struct JoinRecord {
   FrameRange frames;
   std::vector<int> skipped = {};  ///< of `frames`, those of which the videos show a neighbour
+  std::vector<FileRecord> files = {};
 };
 
 using JournalRecord = std::variant<FrameRecord, SegmentRecord, JoinRecord>;
+
+/// What is recorded of `name`, which has just been written below `folder`. Throws Error when it
+/// cannot be read.
+FileRecord record_of_file(const std::filesystem::path& folder, const std::string& name);
+
+struct JournalRecords {
+  std::vector<JournalRecord> records;
+  int damaged_lines = 0;  ///< that cannot be believed
+};
 
 /// What a process may find in the folder it is to work in.
 enum class JournalOpening {
@@ -67,7 +82,8 @@ enum class JournalOpening {
 
 /// The journal in DIR/.vantage: run.json says what the run is, frames-PART.jsonl what has been
 /// finished, a line each, written after the files it tells of are safe. Every process appends to a
-/// file of its own, which it locks; all read all.
+/// file of its own, which it locks; all read all. run.json and each line hold a checksum of
+/// themselves.
 ///
 /// Thread rule: one thread at a time.
 class RunJournal {
@@ -86,11 +102,13 @@ class RunJournal {
 
   /// Whether the folder holds a run.
   static bool is_present(const std::filesystem::path& journal_folder);
-  /// Throws Error when there is none or it is damaged.
+  /// The parts that have been begun, as the constructor names them, in order.
+  static std::vector<std::string> parts(const std::filesystem::path& journal_folder);
+  /// Throws Error when there is none, or it is damaged or of another version.
   static RunIdentity read_identity(const std::filesystem::path& journal_folder);
-  /// The records of all parts, each part's in order. Lines that were cut off by a crash are not
-  /// counted. Throws Error when a file cannot be read.
-  static std::vector<JournalRecord> read_records(const std::filesystem::path& journal_folder);
+  /// The records of all parts, each part's in order. Lines that were cut off by a crash are no
+  /// lines. Throws Error when a file cannot be read.
+  static JournalRecords read_records(const std::filesystem::path& journal_folder);
 
  private:
   struct State;

@@ -1,42 +1,20 @@
 #include "engine/sequence/sequence_join.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/io/file_lock.h"
+#include "engine/io/temporary_name.h"
 #include "engine/io/video_join.h"
-#include "engine/sequence/leftovers.h"
 
 namespace vantage {
 namespace {
-
-/// Held while a process joins: several may find at one time that all frames are there.
-class JoinLock {
- public:
-  explicit JoinLock(const std::filesystem::path& journal_folder)
-      : descriptor_(::open((journal_folder / "run.json").c_str(), O_RDWR | O_CLOEXEC)) {
-    if (descriptor_ >= 0) {
-      (void)::flock(descriptor_, LOCK_EX);
-    }
-  }
-  JoinLock(const JoinLock&) = delete;
-  JoinLock& operator=(const JoinLock&) = delete;
-  ~JoinLock() {
-    if (descriptor_ >= 0) {
-      ::close(descriptor_);
-    }
-  }
-
- private:
-  int descriptor_;
-};
 
 /// Segments that follow each other from the first of `frames` on.
 std::vector<FrameRange> segments_of(const DeliveredFrames& delivered, FrameRange frames) {
@@ -72,7 +50,7 @@ void join_videos_of(const SequenceOptions& options, const SequenceLayout& layout
     for (const FrameRange segment : segments) {
       paths.push_back(layout.segment(stream, segment));
     }
-    remove_leftovers_of(layout.video(stream));
+    remove_temporary_files_of(layout.video(stream));
     join_videos(paths, options.frame_rate, sound, layout.video(stream));
   }
 }
@@ -94,7 +72,8 @@ void join_segments(const SequenceOptions& options, const SequenceLayout& layout,
   if (!layout.has_videos() || frames.empty()) {
     return;
   }
-  const JoinLock lock(layout.journal_folder());
+  // Several processes may find at one time that all frames are there.
+  const FileLock lock(layout.journal_folder() / "run.json", FileLock::Wait::kYes);
   const DeliveredFrames delivered(layout);
   const std::vector<FrameRange> segments = segments_of(delivered, frames);
   const int segments_end = segments.empty() ? frames.first : segments.back().end;
@@ -115,8 +94,12 @@ void join_segments(const SequenceOptions& options, const SequenceLayout& layout,
                       segments_end, frames.first, end - 1));
     }
     join_videos_of(options, layout, sound_of(options, identity, {frames.first, end}), segments);
-    const JournalRecord joined = JoinRecord{frames, skipped};
-    journal.append({&joined, 1});
+    JoinRecord joined{frames, skipped};
+    for (const std::string& name : layout.video_names()) {
+      joined.files.push_back(record_of_file(layout.folder(), name));
+    }
+    const JournalRecord record = std::move(joined);
+    journal.append({&record, 1});
   }
   if (is_complete) {
     std::error_code ignored;  // they do no harm

@@ -73,6 +73,26 @@ fs::path SequenceLayout::segment(const OutputStream& stream, FrameRange frames) 
   return segment_folder(stream) / fmt::format("{:06}-{:06}.mp4", frames.first, frames.end - 1);
 }
 
+std::vector<std::string> SequenceLayout::video_names() const {
+  std::vector<std::string> names;
+  for (const OutputStream& stream : streams_) {
+    if (stream.as_video) {
+      names.push_back(video(stream).lexically_relative(folder_).string());
+    }
+  }
+  return names;
+}
+
+std::vector<std::string> SequenceLayout::segment_names(FrameRange frames) const {
+  std::vector<std::string> names;
+  for (const OutputStream& stream : streams_) {
+    if (stream.as_video) {
+      names.push_back(segment(stream, frames).lexically_relative(folder_).string());
+    }
+  }
+  return names;
+}
+
 void SequenceLayout::make_folders() const {
   make_folder(journal_folder());
   for (const OutputStream& stream : streams_) {

@@ -43,6 +43,9 @@ class SequenceLayout {
                                                   const std::string& extension);
   [[nodiscard]] std::filesystem::path video(const OutputStream& stream) const;
   [[nodiscard]] std::filesystem::path segment(const OutputStream& stream, FrameRange frames) const;
+  /// Names of all videos, or of all of their segments, relative to the folder.
+  [[nodiscard]] std::vector<std::string> video_names() const;
+  [[nodiscard]] std::vector<std::string> segment_names(FrameRange frames) const;
 
   /// Makes all folders that a run of these options needs. Throws Error.
   void make_folders() const;

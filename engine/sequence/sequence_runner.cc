@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <iterator>
+#include <map>
 #include <string_view>
 #include <utility>
 
@@ -49,7 +51,8 @@ bool lacks_past(const std::vector<int>& skipped, int frame, int chunk_begin,
 class Run {
  public:
   Run(const SequenceOptions& options, const SequenceRun& run, const SequenceLayout& layout,
-      RunJournal& journal, std::vector<FrameRun> work, Execution& execution)
+      RunJournal& journal, std::vector<FrameRun> work, std::map<int, const FrameRecord*> stored,
+      Execution& execution)
       : options_(options),
         run_(run),
         layout_(layout),
@@ -57,6 +60,7 @@ class Run {
         worker_({options, layout, run.pairs, run.frame_size, run.rectifier, run.cameras, run.shots,
                  execution}),
         feed_(std::move(work)),
+        stored_(std::move(stored)),
         segments_(options, layout, worker_, run.frame_size.value_or(ImageExtent()), execution),
         flicker_(options.temporal.threshold),
         slots_(static_cast<std::size_t>(run.in_flight)),
@@ -82,7 +86,9 @@ class Run {
         scheduler::run_frames(execution_.executor(), run_.in_flight, steps, skip, run_.stop);
     queue_.finish();
     report_.interrupted = outcome.interrupted;
-    report_.frames -= frames_of_segment_;  // the videos of an unfinished chunk are given up
+    // The videos of an unfinished chunk are given up, and frames that are nowhere else.
+    report_.frames -= frames_of_segment_;
+    report_.videos_from = segment_begin_;
     report_.compute_seconds = worker_.compute_seconds();
     for (const FrameSlot& slot : slots_) {
       report_.memory.add("frames in flight", held_bytes(slot));
@@ -102,6 +108,8 @@ class Run {
       run_.pairs.skip_to(slot.frame);
     }
     next_pair_ = slot.frame + 1;
+    const auto known = stored_.find(slot.frame);
+    slot.stored = known == stored_.end() ? nullptr : known->second;
     // Some containers promise a few frames more than there are; a file that is cut off throws.
     slot.is_absent = !run_.pairs.fetch(slot.pair);
     slot.times.push_back({"read", seconds_since(start)});
@@ -126,8 +134,11 @@ class Run {
     }
     slot.times.push_back({"write", seconds_since(start)});
     add_to_report(slot);
-    frames_of_segment_ += layout_.has_videos() ? 1 : 0;
-    deliver(std::move(slot.files), std::move(record), slot.match.cells);
+    if (slot.stored != nullptr) {
+      deliver(slot.frame, {}, std::nullopt, slot.match.cells);
+    } else {
+      deliver(slot.frame, std::move(slot.files), std::move(record), slot.match.cells);
+    }
   }
 
   /// Frames that never were are done with: nobody is to wait for them.
@@ -141,7 +152,7 @@ class Run {
     FrameRecord record{.frame = slot.frame, .absent = true};
     record.remarks = {"the input ends before it, although its container promises it"};
     report_.remarks.push_back({slot.frame, record.remarks.front()});
-    deliver({}, std::move(record), 0);
+    deliver(slot.frame, {}, std::move(record), 0);
   }
 
   /// Compares with the frame before it in its chunk.
@@ -175,6 +186,9 @@ class Run {
     }
     last_frame_ = slot.frame;
     last_content_ = slot.content;
+    if (slot.stored != nullptr) {
+      return;  // said when it was made
+    }
     for (const std::string& remark : record.remarks) {
       report_.remarks.push_back({slot.frame, remark});
     }
@@ -207,7 +221,8 @@ class Run {
       segment_of(slot.frame);
       segments_.add_skipped();
     }
-    deliver({}, {.frame = slot.frame, .skipped = true, .problem = std::move(problem)}, 0);
+    deliver(slot.frame, {},
+            FrameRecord{.frame = slot.frame, .skipped = true, .problem = std::move(problem)}, 0);
     return true;
   }
 
@@ -217,30 +232,38 @@ class Run {
     if (frame == chunk.first) {
       segments_.begin(chunk);
       segment_records_.clear();
+      segment_begin_ = chunk.first;
     }
   }
 
-  /// With videos the journal tells of frames when their segment is whole.
-  void deliver(PendingFiles files, FrameRecord record, double cells) {
+  /// Of frames that are nowhere but in videos the journal tells when their segment is whole.
+  /// `record`: none of a frame that was delivered before.
+  void deliver(int frame, PendingFiles files, std::optional<FrameRecord> record, double cells) {
     Delivery delivery;
     delivery.files = std::move(files);
     delivery.frames = 1;
     delivery.cells = cells;
-    const int frame = record.frame;
     delivery.frame = frame;
-    if (!layout_.has_videos()) {
-      delivery.records.emplace_back(std::move(record));
-    } else {
-      segment_records_.emplace_back(std::move(record));
-      const FrameRange chunk = run_.selection.chunk_of(frame);
-      if (frame + 1 == chunk.end) {
-        delivery.videos = segments_.end();
-        if (!delivery.videos.empty()) {
-          segment_records_.emplace_back(SegmentRecord{chunk});
+    if (record && (!layout_.has_videos() || !record->files.empty())) {
+      delivery.records.emplace_back(*std::move(record));
+    } else if (record) {
+      frames_of_segment_ += record->skipped || record->absent ? 0 : 1;
+      segment_records_.emplace_back(*std::move(record));
+    }
+    const FrameRange chunk = run_.selection.chunk_of(frame);
+    if (layout_.has_videos() && frame + 1 == chunk.end) {
+      delivery.videos = segments_.end();
+      if (!delivery.videos.empty()) {
+        delivery.folder = layout_.folder();
+        delivery.segment = SegmentRecord{chunk};
+        for (std::string& name : layout_.segment_names(chunk)) {
+          delivery.segment->files.push_back({.name = std::move(name)});
         }
-        delivery.records = std::exchange(segment_records_, {});
-        frames_of_segment_ = 0;
       }
+      std::ranges::move(segment_records_, std::back_inserter(delivery.records));
+      segment_records_.clear();
+      frames_of_segment_ = 0;
+      segment_begin_.reset();
     }
     queue_.push(std::move(delivery));
   }
@@ -255,11 +278,13 @@ class Run {
   }
 
   void add_to_report(const FrameSlot& slot) {
-    ++report_.frames;
+    ++(slot.stored != nullptr ? report_.pictures_again : report_.frames);
     report_.width_px = slot.left->width();
     report_.height_px = slot.left->height();
     report_.cells += slot.match.cells;
-    report_.plan = slot.match.plan;
+    if (slot.match.cells > 0) {
+      report_.plan = slot.match.plan;
+    }
     for (const auto& times : {slot.match.stages, slot.times}) {
       for (const StageTime& stage : times) {
         add_stage(stage.name, stage.seconds);
@@ -281,12 +306,14 @@ class Run {
   const SequenceLayout& layout_;
   Execution& execution_;
   FrameWorker worker_;
-  FrameFeed feed_;      // only the reading step touches it while frames are under way
+  FrameFeed feed_;  // only the reading step touches it while frames are under way
+  std::map<int, const FrameRecord*> stored_;
   int next_pair_ = -1;  // likewise; the source may be anywhere at first
   // What follows, up to the slots, only the writing step touches.
   SegmentWriter segments_;
   std::vector<JournalRecord> segment_records_;
-  int frames_of_segment_ = 0;  // counted in the report though the segment is unfinished
+  int frames_of_segment_ = 0;         // counted in the report though the segment is unfinished
+  std::optional<int> segment_begin_;  // of the unfinished one
   FlickerMeter flicker_;
   int next_flicker_frame_ = -1;
   int last_frame_ = -2;
@@ -312,19 +339,31 @@ SequenceReport SequenceRunner::run(const SequenceRun& run, const SequenceLayout&
   const DeliveredFrames delivered(layout);
   const FrameDependence dependence = dependence_of(options_, layout);
   const std::vector<int> skipped = delivered.skipped({0, run.selection.frame_count});
+  const auto lacks = [&](int frame) {
+    return lacks_past(skipped, frame, run.selection.chunk_begin(frame), dependence.past);
+  };
   std::vector<FrameRun> work = plan_work(run.selection, dependence, [&](int frame) {
-    if (!delivered.is_done(frame) ||
-        lacks_past(skipped, frame, run.selection.chunk_begin(frame), dependence.past)) {
+    if (!delivered.is_done(frame) || lacks(frame)) {
       return false;
     }
     const FrameRange chunk = run.selection.chunk_of(frame);
     return !layout.has_videos() || frame != chunk.first || delivered.is_in_one_piece(chunk);
   });
   int before = own.count();
+  std::map<int, const FrameRecord*> stored;
   for (const FrameRun& part : work) {
     before -= part.frames.count();
+    for (int frame = part.frames.first; dependence.whole_chunks && frame < part.frames.end;
+         ++frame) {
+      const FrameRecord* record = delivered.files_of(frame);
+      if (record != nullptr && !lacks(frame)) {
+        stored.emplace(frame, record);
+      }
+    }
   }
-  SequenceReport report = Run(options_, run, layout, journal, std::move(work), execution_).work();
+  before += static_cast<int>(stored.size());
+  SequenceReport report =
+      Run(options_, run, layout, journal, std::move(work), std::move(stored), execution_).work();
   report.frames_before = before;
   return report;
 }

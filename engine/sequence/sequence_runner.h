@@ -41,8 +41,11 @@ struct FrameRemark {
 };
 
 struct SequenceReport {
-  int frames = 0;         ///< delivered by this run
-  int frames_before = 0;  ///< of its share that had been delivered before
+  int frames = 0;          ///< delivered by this run
+  int frames_before = 0;   ///< of its share that had been delivered before
+  int pictures_again = 0;  ///< of these, those whose pictures were made again for the videos
+  /// Where the videos go on when the run does, if that is before the frames that are delivered.
+  std::optional<int> videos_from;
   std::vector<FrameRemark> skipped;
   std::vector<FrameRemark> remarks;  ///< frames that repeat the one before, gaps in time, …
   bool interrupted = false;          ///< `stop` was raised before all was done

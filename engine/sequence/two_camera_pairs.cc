@@ -158,6 +158,13 @@ PairSource::Sound TwoCameraPairs::sound() const {
   return {right_->video_file(), first_right_};
 }
 
+std::vector<std::filesystem::path> TwoCameraPairs::files() const {
+  std::vector<std::filesystem::path> files = left_->files();
+  const std::vector<std::filesystem::path> right = right_->files();
+  files.insert(files.end(), right.begin(), right.end());
+  return files;
+}
+
 std::vector<std::string> TwoCameraPairs::identities() const {
   return {left_->identity(), right_->identity()};
 }

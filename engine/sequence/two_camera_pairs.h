@@ -25,6 +25,7 @@ class TwoCameraPairs final : public PairSource {
   [[nodiscard]] int unpaired_frames() const override;
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override;
   [[nodiscard]] Sound sound() const override;
+  [[nodiscard]] std::vector<std::filesystem::path> files() const override;
   [[nodiscard]] std::vector<std::string> identities() const override;
 
  private:

@@ -62,6 +62,7 @@ class MadeUpPairs : public PairSource {
   [[nodiscard]] int unpaired_frames() const override { return 0; }
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override { return {}; }
   [[nodiscard]] Sound sound() const override { return {}; }
+  [[nodiscard]] std::vector<std::filesystem::path> files() const override { return {}; }
   [[nodiscard]] std::vector<std::string> identities() const override { return {"made up"}; }
 
  private:

@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include "apps/commands.h"
+#include "apps/outputs.h"
+#include "apps/run_report.h"
+#include "apps/run_session.h"
+#include "apps/run_settings.h"
+#include "apps/tell.h"
+#include "apps/verified_run.h"
+#include "engine/error.h"
+#include "engine/sequence/delivered_frames.h"
+
+namespace vantage::apps {
+namespace {
+
+struct VerifyJob {
+  std::string folder;
+  bool remove = false;
+  std::string report;
+  bool quiet = false;
+};
+
+void add_verify_settings(Settings& settings, VerifyJob& job) {
+  settings.positional("dir", job.folder, "Folder of the run").required = true;
+  settings.flag("remove", job.remove,
+                "Remove damaged files; 'vantage run --resume' then makes them again");
+  settings.path("report", job.report, "FILE", "Write a JSON report to FILE");
+  settings.flag("quiet", job.quiet, "Print errors only");
+}
+
+void remove_damaged(const RunVerification& verification, const std::filesystem::path& folder) {
+  for (const DamagedFile& file : verification.damaged) {
+    std::error_code error;
+    std::filesystem::remove(folder / file.name, error);
+    if (error) {
+      throw Error(
+          fmt::format("{}: cannot be removed: {}", (folder / file.name).string(), error.message()));
+    }
+  }
+}
+
+}  // namespace
+
+int command_verify(const Arguments& arguments) {
+  VerifyJob job;
+  Settings settings("verify", "Reads the results of a run and tells which have been damaged.");
+  add_verify_settings(settings, job);
+  if (!settings.read(arguments)) {
+    return kExitDone;
+  }
+  FileChecks files(settings);
+  files.add_output(job.report, "--report", OutputKind::kText);
+  RunReport report(settings.command(), settings.values());
+  RunJob run;
+  Settings run_settings("run", "");
+  add_run_settings(run_settings, run);
+  const RunIdentity identity = read_run(job.folder, run_settings, run);
+  const SequenceLayout layout(job.folder, run.sequence);
+  add_run_outputs(layout, "DIR", files);
+
+  const RunVerification verification = report.timed_file_access("verify", [&] {
+    return verify_with_progress(layout, settings.command(),
+                                job.quiet ? ProgressStyle::kNone : ProgressStyle::kAuto);
+  });
+  if (verification.interrupted) {
+    return kExitInterrupted;
+  }
+  report.set_results(to_value(verification));
+  report.write(job.report);
+  // All of them: what follows on stderr names the first.
+  for (const DamagedFile& file : verification.damaged) {
+    fmt::print("{} {}\n", file.name, file.problem);
+  }
+  if (job.remove) {
+    remove_damaged(verification, job.folder);
+  }
+  const std::vector<FrameRange> missing =
+      DeliveredFrames(layout).missing({0, identity.frame_count});
+  if (!verification.damaged.empty() || (verification.damaged_lines > 0 && !missing.empty())) {
+    throw Error(fmt::format(
+        "{}; 'vantage {}run -o {} --resume' makes it again",
+        describe_damage(verification, job.folder),
+        job.remove || verification.damaged.empty() ? "" : "verify --remove' and 'vantage ",
+        job.folder));
+  }
+  if (!job.quiet) {
+    tell("verify: {} files with {:.1f} MB are as they were written{}\n", verification.files,
+         static_cast<double>(verification.bytes) * 1e-6,
+         missing.empty() ? std::string()
+                         : fmt::format("; frames {} are still to be made", to_string(missing)));
+  }
+  return kExitDone;
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,22 @@
+#include "apps/process_setup.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <initializer_list>
+
+namespace vantage::apps {
+
+void set_up_process() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(descriptor, F_GETFD) == -1) {
+      // The lowest free number, which is this one. Writing to what is open for reading fails.
+      (void)::open("/dev/null", O_RDONLY);
+    }
+  }
+  (void)std::signal(SIGPIPE, SIG_IGN);
+  (void)std::signal(SIGXFSZ, SIG_IGN);
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,74 @@
+#include "apps/resumed_run.h"
+
+#include <array>
+#include <filesystem>
+#include <regex>
+
+#include "engine/error.h"
+#include "engine/io/stored_name.h"
+#include "engine/sequence/run_journal.h"
+#include "engine/sequence/sequence_layout.h"
+
+namespace vantage::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kSources = {"left", "right", "stereo", "pairs", "sequence", "calibration"};
+constexpr const char* kKeepGoing = "keep-going";
+
+bool names_input(const PairSourceOptions& input) {
+  return !(input.left.empty() && input.right.empty() && input.stereo.empty() &&
+           input.pairs.empty() && input.sequence.empty());
+}
+
+/// The part that RunSession::part_name() called so, if it did.
+void take_part(const std::string& name, RunJob& job) {
+  static const std::regex form("(?:frames-([0-9]+)-([0-9]+))?-?(?:([0-9]+)-of-([0-9]+))?");
+  std::smatch numbers;
+  if (!std::regex_match(name, numbers, form)) {
+    return;
+  }
+  if (numbers[1].matched) {
+    job.frames = FrameRange{std::stoi(numbers[1]), std::stoi(numbers[2]) + 1};
+  }
+  if (numbers[3].matched) {
+    job.shard = Shard{std::stoi(numbers[3]), std::stoi(numbers[4])};
+  }
+}
+
+}  // namespace
+
+std::string sources_of(const RunJob& job, const Settings& settings) {
+  const SettingValue values = settings.values();
+  SettingValue sources = {{kKeepGoing, job.keep_going}};
+  for (const char* name : kSources) {
+    if (values[name].is_string()) {
+      sources[name] = stored_name(fs::absolute(values[name].get<std::string>()).string());
+    }
+  }
+  return sources.dump();
+}
+
+void take_up_run(const Arguments& arguments, Settings& settings, RunJob& job) {
+  if (!job.resume || names_input(job.input)) {
+    return;
+  }
+  const fs::path journal = SequenceLayout(job.output, job.sequence).journal_folder();
+  const RunIdentity identity = RunJournal::read_identity(journal);
+  const std::vector<std::string> parts = RunJournal::parts(journal);
+  job = RunJob();
+  try {
+    settings.set_values(SettingValue::parse(identity.settings));
+    settings.set_values(SettingValue::parse(identity.sources));
+  } catch (const UsageError& error) {
+    throw Error(fmt::format("{}: cannot be read as the settings of a run: {}",
+                            (journal / "run.json").string(), error.what()));
+  }
+  (void)settings.read(arguments);
+  if (parts.size() == 1 && !job.frames && !job.shard) {
+    take_part(parts.front(), job);
+  }
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "apps/commands.h"
+#include "apps/run_settings.h"
+#include "apps/settings.h"
+
+namespace vantage::apps {
+
+/// What run.json keeps beside the settings that results depend on, so that the run can be gone on
+/// with by its folder alone: a JSON object of where the input is, and --keep-going.
+std::string sources_of(const RunJob& job, const Settings& settings);
+
+/// Where --resume comes without an input, fills in `job`, to which `settings` are bound, from the
+/// run in its folder; what `arguments` say goes before that. If one part alone (--frames, --shard)
+/// was begun, that is the part. Throws Error when there is no run.
+void take_up_run(const Arguments& arguments, Settings& settings, RunJob& job);
+
+}  // namespace vantage::apps
