@@ -84,9 +84,9 @@ int command_merge(const Arguments& arguments) {
       count += range.count();
     }
     throw Error(
-        fmt::format("{}: {} of {} frames are missing ({}), expected all; 'vantage run "
-                    "--resume' with the settings of the run makes them",
-                    job.folder, count, identity.frame_count, to_string(missing)));
+        fmt::format("{}: {} of {} frames are missing ({}), expected all; 'vantage run -o {} "
+                    "--resume' makes them",
+                    job.folder, count, identity.frame_count, to_string(missing), job.folder));
   }
   {
     // The part name keeps two merges, not merge and run, from working at once.

@@ -119,6 +119,7 @@ int command_synth(const Arguments& arguments) {
     two_eyes = {*job.output.stereo_packing, job.output.eye_separation};
   }
   ViewRenderer renderer(input, job.synthesis, two_eyes, execution);
+  renderer.check(poses);
   if (views > 1) {
     report.timed_compute("views", [&] { renderer.fix_intensities(); });
   }

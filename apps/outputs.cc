@@ -84,6 +84,11 @@ bool FileChecks::find_id(const fs::path& path, FileId& id) {
   return true;
 }
 
+void FileChecks::refuse_in_folder(const Output& output, const Output& folder) {
+  throw UsageError(fmt::format("{} is '{}', in a folder that {} writes to", output.option,
+                               output.path.string(), folder.option));
+}
+
 std::vector<fs::path> FileChecks::folders_of(const fs::path& path) {
   const auto folder_of = [](const fs::path& file) {
     return file.has_parent_path() ? file.parent_path() : fs::path(".");
@@ -165,8 +170,7 @@ void FileChecks::add_made_file(const fs::path& path, const std::string& option) 
   }
   FileId folder;
   if (find_id(place.parent_path(), folder) && made_folders_.contains(folder)) {
-    throw UsageError(fmt::format("{} is '{}', in a folder that {} writes to", option, path.string(),
-                                 made_folders_.at(folder).option));
+    refuse_in_folder({option, path}, made_folders_.at(folder));
   }
 }
 
@@ -176,6 +180,12 @@ void FileChecks::add_made_folder(const fs::path& path, const std::string& option
     return;  // nothing can be in it
   }
   made_folders_.try_emplace(id, Output{option, path});
+  for (const auto& [place, output] : outputs_) {
+    FileId folder;
+    if (find_id(place.parent_path(), folder) && folder == id) {
+      refuse_in_folder(output, {option, path});
+    }
+  }
   const auto refuse = [&](const fs::path& input) {
     throw UsageError(fmt::format("{} would write into '{}', where the input '{}' is", option,
                                  path.string(), input.string()));

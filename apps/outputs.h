@@ -59,6 +59,7 @@ class FileChecks {
     std::filesystem::path path;
   };
   static bool find_id(const std::filesystem::path& path, FileId& id);
+  [[noreturn]] static void refuse_in_folder(const Output& output, const Output& folder);
   /// The folders that hold a name, and what is behind it if it is a link.
   static std::vector<std::filesystem::path> folders_of(const std::filesystem::path& path);
 

@@ -1,5 +1,12 @@
 #include "apps/view_renderer.h"
 
+#include <fmt/format.h>
+
+#include <exception>
+#include <string>
+
+#include "engine/error.h"
+
 namespace vantage::apps {
 
 ViewRenderer::ViewRenderer(const PairWithMaps& pair, const SynthesisOptions& options,
@@ -23,14 +30,38 @@ void ViewRenderer::fix_intensities() {
   }
 }
 
+std::vector<ViewPose> ViewRenderer::eyes_of(const ViewPose& pose) const {
+  if (!two_eyes_) {
+    return {pose};
+  }
+  const double half = two_eyes_->separation_baselines / 2;
+  return {moved_right(pose, -half, baseline_), moved_right(pose, half, baseline_)};
+}
+
+void ViewRenderer::check(const std::vector<ViewPose>& poses) const {
+  for (std::size_t view = 0; view < poses.size(); ++view) {
+    const auto text = [&](const std::exception& error) {
+      return poses.size() == 1 ? error.what() : fmt::format("view {}: {}", view + 1, error.what());
+    };
+    try {
+      for (const ViewPose& eye : eyes_of(poses[view])) {
+        renderer_.check(eye, source_.left.width(), source_.left.height());
+      }
+    } catch (const UsageError& error) {
+      throw UsageError(text(error));
+    } catch (const Error& error) {
+      throw Error(text(error));
+    }
+  }
+}
+
 void ViewRenderer::render(const ViewPose& pose, RenderedView& result) const {
+  const std::vector<ViewPose> eyes = eyes_of(pose);
+  for (std::size_t eye = 0; eye < eyes.size(); ++eye) {
+    synthesize(eyes[eye], result.eyes[eye]);
+  }
   if (two_eyes_) {
-    const double half = two_eyes_->separation_baselines / 2;
-    synthesize(moved_right(pose, -half, baseline_), result.eyes[0]);
-    synthesize(moved_right(pose, half, baseline_), result.eyes[1]);
     show_stereo(result.eyes[0].image, result.eyes[1].image, two_eyes_->display, result.both);
-  } else {
-    synthesize(pose, result.eyes[0]);
   }
 }
 

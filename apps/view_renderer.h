@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "apps/pair_input.h"
 #include "engine/execution.h"
@@ -37,6 +38,10 @@ class ViewRenderer {
   ViewRenderer(const PairWithMaps& pair, const SynthesisOptions& options,
                std::optional<TwoEyes> two_eyes, Execution& execution);
 
+  /// Throws, naming the view, what render() would throw for one of these poses: before any file is
+  /// written.
+  void check(const std::vector<ViewPose>& poses) const;
+
   /// One brightness for all views from now on: that of the view half-way between the cameras.
   /// Estimated view by view it would jump in a movie.
   void fix_intensities();
@@ -46,6 +51,8 @@ class ViewRenderer {
 
  private:
   void synthesize(const ViewPose& pose, SynthesizedView& view) const;
+  /// One pose, or those of both eyes.
+  [[nodiscard]] std::vector<ViewPose> eyes_of(const ViewPose& pose) const;
 
   ViewSource source_;
   double baseline_;  ///< 0 without calibration

@@ -29,8 +29,8 @@ struct Delivery {
   std::vector<std::unique_ptr<VideoWriter>> videos;  ///< that have all their frames
   std::vector<JournalRecord> records;
   /// Of `videos`, which lie below `folder`; what is in them is known once they are finished.
-  std::optional<SegmentRecord> segment;
-  std::filesystem::path folder;
+  std::optional<SegmentRecord> segment = {};
+  std::filesystem::path folder = {};
   int frame = 0;     ///< the newest one it is about, for messages
   int frames = 0;    ///< so many frames are finished by it, and
   double cells = 0;  ///< so many cells were computed for them: for progress

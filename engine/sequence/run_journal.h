@@ -33,7 +33,7 @@ struct RunIdentity {
 /// A result.
 struct FileRecord {
   std::string name;  ///< relative to the run's folder
-  FileContent content;
+  FileContent content = {};
   friend bool operator==(const FileRecord&, const FileRecord&) = default;
 };
 

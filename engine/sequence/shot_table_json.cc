@@ -4,6 +4,7 @@
 
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
+#include "engine/io/checksum.h"
 #include "engine/io/file_bytes.h"
 #include "engine/sequence/shots.h"
 
@@ -100,8 +101,13 @@ std::optional<ShotTable> read_shot_table(const std::filesystem::path& file) {
     return std::nullopt;
   }
   const std::vector<std::uint8_t> bytes = read_file_bytes(file);
+  const std::string text(bytes.begin(), bytes.end());
   try {
-    return shot_table_from_json({bytes.begin(), bytes.end()});
+    ShotTable table = shot_table_from_json(text);
+    if (!has_valid_checksum(text)) {
+      throw Error("its checksum does not fit what it holds");
+    }
+    return table;
   } catch (const Error& error) {
     throw Error(
         fmt::format("{}: is damaged ({}), expected the shots of the run; without the file "
@@ -111,7 +117,7 @@ std::optional<ShotTable> read_shot_table(const std::filesystem::path& file) {
 }
 
 ShotTable keep_shot_table(const std::filesystem::path& file, const ShotTable& table) {
-  create_text_file(file, to_json(table));
+  create_text_file(file, with_checksum(to_json(table)));
   const std::optional<ShotTable> kept = read_shot_table(file);
   if (!kept) {
     throw Error(fmt::format("{}: has been removed while the run began", file.string()));

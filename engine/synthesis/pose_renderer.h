@@ -39,6 +39,9 @@ class PoseRenderer {
   /// baseline. They and `execution` outlive the renderer. Throws UsageError for invalid options.
   PoseRenderer(const SynthesisOptions& options, const RectifiedPair* cameras, Execution& execution);
 
+  /// Throws what render() would throw for such a pose, from images of this size.
+  void check(const ViewPose& pose, int width_px, int height_px) const;
+
   /// Errors as new_view() and the synthesizers.
   void render(const ViewSource& source, const ViewPose& pose, SynthesizedView& view,
               const std::array<IntensityFit, 4>* given_fit) const;
@@ -49,6 +52,9 @@ class PoseRenderer {
   [[nodiscard]] const SynthesisOptions& options() const { return synthesizer_.options(); }
 
  private:
+  /// The camera of a pose that is rendered in three steps; null: in one.
+  [[nodiscard]] const PosedCamera* three_step_camera(const ViewPose& pose) const;
+
   const RectifiedPair* cameras_;
   ViewSynthesizer synthesizer_;
   ThreeStepSynthesizer three_steps_;

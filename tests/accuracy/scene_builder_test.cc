@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -75,11 +76,11 @@ class SceneBuilderTest : public ::testing::Test {
       one.build(edge);
     }
   }
-  /// Name → bytes of everything in the scene's folder.
+  /// Name → bytes of everything in the scene's folder but its lock.
   [[nodiscard]] std::map<std::string, std::vector<std::uint8_t>> contents() const {
     std::map<std::string, std::vector<std::uint8_t>> files;
     for (const auto& entry : fs::recursive_directory_iterator(place_)) {
-      if (entry.is_regular_file()) {
+      if (entry.is_regular_file() && entry.path().filename() != ".lock") {
         files[entry.path().lexically_relative(place_).string()] = bytes_of(entry.path());
       }
     }
@@ -184,16 +185,29 @@ TEST_F(SceneBuilderTest, FinishedEdgesAreKept) {
   EXPECT_EQ(contents(), complete);
 
   // What a killed process was writing goes.
-  put_text(place_ / ".scene.tmp-17-0.json", "{");
-  put_text(place_ / "maps/.000-001-first.tmp-17-0.pfm", "Pf");
+  put_text(place_ / ".scene.tmp-0123abcd-17-0.json", "{");
+  put_text(place_ / "maps/.000-001-first.tmp-0123abcd-17-0.pfm", "Pf");
   EXPECT_THAT(builder(images).edges_to_match(), IsEmpty());
   EXPECT_EQ(contents(), complete);
+  // Nothing else does.
+  const std::vector<fs::path> mine = {place_ / ".notes.tmp-mine",
+                                      place_ / "maps/.other.tmp-0123abcd-17-0.pfm"};
+  for (const fs::path& file : mine) {
+    put_text(file, "mine");
+  }
+  builder(images);
+  for (const fs::path& file : mine) {
+    EXPECT_TRUE(fs::exists(file)) << file;
+  }
 
   // Interrupted after two of three, and continued.
   fs::remove_all(place_);
-  SceneBuilder interrupted = builder(images);
-  interrupted.build(0);
-  interrupted.build(2);
+  {
+    SceneBuilder interrupted = builder(images);
+    interrupted.build(0);
+    EXPECT_THAT(error_of([&] { builder(images); }), HasSubstr("another process builds this scene"));
+    interrupted.build(2);
+  }
   EXPECT_THAT(error_of([&] {
                 const StoredScene stored = read_scene(place_);
                 require_complete(stored, SceneLayout(stored.positions(), stored.names()), place_);
@@ -248,9 +262,11 @@ TEST_F(SceneBuilderTest, CopiedImagesMakeTheFolderDependOnNothingElse) {
   const std::vector<SceneImage> images = row({0, 0.5, 1});
   builder(images, "{}", true);  // interrupted before the first edge
   EXPECT_THAT(builder(images, "{}", true).edges_to_match(), ElementsAre(0, 1));
-  SceneBuilder whole = builder(images, "{}", true);
-  whole.build(0);
-  whole.build(1);
+  {
+    SceneBuilder whole = builder(images, "{}", true);
+    whole.build(0);
+    whole.build(1);
+  }
   const auto complete = contents();
   EXPECT_EQ(complete.size(), 1U + 8U + 3U);
   EXPECT_THAT(builder(images, "{}", true).edges_to_match(), IsEmpty());
@@ -287,12 +303,13 @@ TEST_F(SceneBuilderTest, ObliqueNeighboursAreMatched) {
                                                            {{{0.3, 0.1}, {-0.1, 0.6}}}};
   for (const auto& places : cases) {
     fs::remove_all(place_);
-    SceneBuilder one =
-        builder({photograph("oblique0", places[0]), photograph("oblique1", places[1])});
-    ASSERT_EQ(one.layout().edges().size(), 1U);
-    const SceneEdge edge = one.layout().edges()[0];
+    std::optional<SceneBuilder> one(
+        builder({photograph("oblique0", places[0]), photograph("oblique1", places[1])}));
+    ASSERT_EQ(one->layout().edges().size(), 1U);
+    const SceneEdge edge = one->layout().edges()[0];
     EXPECT_NE(edge.slope, 0);
-    const StoredEdge stored = one.build(0).stored;
+    const StoredEdge stored = one->build(0).stored;
+    one.reset();  // it has the folder for itself
     const std::array<int, 2> ends = {edge.first, edge.second};
     for (std::size_t side = 0; side < 2; ++side) {
       const ScenePosition at = places[static_cast<std::size_t>(ends[side])];

@@ -266,6 +266,8 @@ TEST(ShotTableFile, IsThatOfTheFirstWhoKeepsOne) {
   EXPECT_EQ(keep_shot_table(file, second), first);
   EXPECT_EQ(read_shot_table(file), first);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+  test::put_text(file, to_json(first));
+  EXPECT_THAT(test::error_of([&] { read_shot_table(file); }), HasSubstr("checksum does not fit"));
   test::put_text(file, to_json(first).substr(0, 40));
   EXPECT_THAT(test::error_of([&] { read_shot_table(file); }),
               HasSubstr(file.string() + ": is damaged (shots: "));

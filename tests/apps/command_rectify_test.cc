@@ -210,7 +210,7 @@ TEST_F(RectifyTest, ErrorsAreOneLine) {
 
   fs::copy_file(left_, folder_ / "left.png");
   expect_error({folder_ / "left.png", right_, "-o", fs::path(folder_ / "left.png").parent_path()},
-               2, "is an input and would be replaced");
+               2, "which is an input as well");
 }
 
 TEST_F(RectifyTest, OtherCommandsWarnOfPairsThatAreNotRectified) {

@@ -273,6 +273,46 @@ TEST_F(InputSynthCommand, WhatIsWrongInAFileOfPosesIsNamed) {
   EXPECT_THAT(files_below(outputs_), IsEmpty());
 }
 
+/// Before the views that come ahead of it are written.
+TEST_F(InputSynthCommand, APoseThatCannotBeRenderedIsFoundFirst) {
+  write_file(folder_ / "calib.txt",
+             "cam0=[80 0 35; 0 80 26; 0 0 1]\ncam1=[80 0 35; 0 80 26; 0 0 1]\ndoffs=0\n"
+             "baseline=2\nwidth=71\nheight=53\n");
+  const std::string usual =
+      "[[view]]\nK = [80, 0, 35, 0, 80, 26, 0, 0, 1]\nR = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n"
+      "t = [-1, 0, 0]\n";
+  const auto camera = [&](const std::string& turn, const std::string& place) {
+    return "[[view]]\nK = [80, 0, 35, 0, 80, 26, 0, 0, 1]\nR = " + turn + "\nt = " + place + "\n";
+  };
+  const std::string straight = "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]";
+  struct Case {
+    std::string last;
+    std::vector<std::string> more;
+    std::string says;
+  };
+  const std::vector<Case> cases = {
+      {"[[view]]\nat = [2.5e5, 0]\n", {}, "view 3: view is at 250000, 0 baselines"},
+      {"[[view]]\nat = [0, -17]\n", {}, "view 3: view is at 0, -17 baselines"},
+      {"[[view]]\nat = [15.9, 0]\n", {"--stereo-packing", "sbsl"}, "view 3: view is at 16.4"},
+      {camera(straight, "[-400, 0, 0]"), {}, "view 3: camera of the new view is 200 baselines"},
+      {camera("[[-1, 0, 0], [0, 1, 0], [0, 0, -1]]", "[0, 0, 0]"), {}, "view 3: camera of the new"},
+      {camera("[[0, 0, 1], [0, 1, 0], [-1, 0, 0]]", "[0, 0, 1]"),
+       {"--warp", "forward"},
+       "view 3: "}};
+  for (const auto& [last, more, says] : cases) {
+    write_file(folder_ / "p.toml", usual + usual + last);
+    std::vector<std::string> arguments = {
+        "-o",     outputs_ + "/v%d.png", "--calibration", folder_ / "calib.txt",
+        "--pose", folder_ / "p.toml"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProcessResult result = synth_from_maps(arguments);
+    EXPECT_TRUE(result.exit_code == 1 || result.exit_code == 2) << last;
+    EXPECT_TRUE(is_one_line(result, "synth"));
+    EXPECT_THAT(result.err, HasSubstr(says));
+    EXPECT_THAT(files_below(outputs_), IsEmpty()) << last;
+  }
+}
+
 TEST_F(SynthCommand, TwoEyesBecomeOnePicture) {
   ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/s.png", "--view", "0.5", "--eye-separation", "0.5",
                              "--stereo-packing", "sbsl", "--no-intensity-matching"})

@@ -16,9 +16,7 @@ namespace {
 
 constexpr std::size_t kDifferencesTold = 5;
 
-bool is_unnamed(const std::string& name) {
-  return name.ends_with(".pending") || name.find(".tmp-") != std::string::npos;
-}
+bool is_unnamed(const std::string& name) { return name.find(".tmp-") != std::string::npos; }
 
 std::string png_of(const Photograph& photograph) {
   std::vector<std::uint8_t> bytes;

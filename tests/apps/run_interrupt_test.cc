@@ -68,6 +68,7 @@ class InterruptedRun : public RunTest {
     EXPECT_EQ(done.back() + 1, static_cast<int>(done.size()));
     const ProcessResult resumed = run(out_, joined(outputs, {"--resume", "--report", report}));
     EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    EXPECT_EQ(results["frames"], done.size());
     EXPECT_EQ(read_report(report)["results"]["frames_before"], done.size());
     EXPECT_THAT(leftovers_in(out_), IsEmpty());
     EXPECT_EQ(journalled_frames(out_).size(), static_cast<std::size_t>(kMany));
@@ -89,11 +90,21 @@ TEST_F(InterruptedRun, CtrlCFinishesWhatIsUnderWay) {
   interrupt(SIGINT, {});
   fs::remove_all(out_);
   interrupt(SIGTERM, {});
+  fs::remove_all(out_);
+  interrupt(SIGHUP, {});
 }
 
 TEST_F(InterruptedRun, CtrlCWithVideos) {
   interrupt(SIGINT, {"--save", "disparity,preview", "--video", "preview", "--chunk-frames", "5"});
   EXPECT_FALSE(fs::exists(out_ + "/.vantage/segments"));
+  EXPECT_GT(fs::file_size(out_ + "/preview.mp4"), 1000U);
+}
+
+/// All frames are of one chunk: nothing of the video is kept, all maps are.
+TEST_F(InterruptedRun, CtrlCBeforeTheFirstSegmentOfAVideo) {
+  const std::vector<std::string> outputs = {"--save",  "disparity,preview", "--video",
+                                            "preview", "--chunk-frames",    "500"};
+  interrupt(SIGINT, outputs);
   EXPECT_GT(fs::file_size(out_ + "/preview.mp4"), 1000U);
 }
 

@@ -31,7 +31,7 @@ class CommitQueueTest : public testing::Test {
     Delivery made{
         .files = {}, .videos = {}, .records = {}, .frame = frame, .frames = 1, .cells = 2};
     made.files.add(path(name), std::vector<std::uint8_t>(10));
-    made.records.emplace_back(FrameRecord{.frame = frame, .files = {{name, 10}}});
+    made.records.emplace_back(FrameRecord{.frame = frame, .files = {{name, {10, 0}}}});
     return made;
   }
   [[nodiscard]] std::unique_ptr<VideoWriter> video(const std::string& name) const {
@@ -44,7 +44,7 @@ class CommitQueueTest : public testing::Test {
   }
   [[nodiscard]] std::vector<int> journalled() const {
     std::vector<int> frames;
-    for (const JournalRecord& record : RunJournal::read_records(path("journal"))) {
+    for (const JournalRecord& record : RunJournal::read_records(path("journal")).records) {
       frames.push_back(std::get<FrameRecord>(record).frame);
     }
     return frames;
@@ -83,8 +83,15 @@ TEST_F(CommitQueueTest, VideosAreThereBeforeTheJournalTellsOfThem) {
   with_videos.videos.push_back(video("a.mp4"));
   with_videos.videos.push_back(video("b.mp4"));
   EXPECT_FALSE(exists("a.mp4"));
+  with_videos.folder = path(".");
+  with_videos.segment = SegmentRecord{{0, 1}, {{"a.mp4", {}}, {"b.mp4", {}}}};
   queue.push(std::move(with_videos));
   queue.finish();
+  const auto records = RunJournal::read_records(path("journal")).records;
+  for (const FileRecord& file : std::get<SegmentRecord>(records.back()).files) {
+    EXPECT_EQ(file.content, file_content(path(file.name)));
+    EXPECT_GT(file.content.bytes, 500U);
+  }
   EXPECT_EQ(frames_told_, 1);
   EXPECT_EQ(VideoReader(path("b.mp4")).frame_count(), 1);
 }

@@ -34,7 +34,8 @@ class SequenceJoinTest : public testing::Test {
       writer.write(picture);
     }
     writer.finish();
-    append(SegmentRecord{frames});
+    append(SegmentRecord{frames,
+                         {record_of_file(folder_.path(), layout_.segment_names(frames).front())}});
   }
   void append(const JournalRecord& record) { journal_.append({&record, 1}); }
   void join(bool made_segments) {

@@ -501,17 +501,18 @@ TEST_F(SequenceRunnerTest, LostFilesAreMadeAgain) {
 TEST_F(SequenceRunnerTest, LeftoversOfAKilledProcessAreRemoved) {
   const fs::path disparity = folder("a") / "disparity";
   fs::create_directories(disparity);
-  for (const char* name : {".000001.pfm.4711.pending", ".000002.tmp-12-0.pfm",
-                           ".000007.pfm.4711.pending", ".keep", ".notes.tmp-x"}) {
+  for (const char* name :
+       {".000001.tmp-0123abcd-4711-0.pfm", ".000002.tmp-0123abcd-12-0.pfm",
+        ".000007.tmp-0123abcd-4711-0.pfm", ".000001.tmp-mine", ".keep", ".notes.tmp-x"}) {
     std::ofstream(disparity / name) << "x";
   }
   MadeUpPairs pairs(9);
   run(pairs, folder("a"), {.frames = FrameRange{0, 4}});
   const auto left = names(folder("a"));
   EXPECT_THAT(left,
-              ElementsAre("disparity/.000007.pfm.4711.pending", "disparity/.keep",
-                          "disparity/.notes.tmp-x", "disparity/000000.pfm", "disparity/000001.pfm",
-                          "disparity/000002.pfm", "disparity/000003.pfm"));
+              ElementsAre("disparity/.000001.tmp-mine", "disparity/.000007.tmp-0123abcd-4711-0.pfm",
+                          "disparity/.keep", "disparity/.notes.tmp-x", "disparity/000000.pfm",
+                          "disparity/000001.pfm", "disparity/000002.pfm", "disparity/000003.pfm"));
 }
 
 TEST_F(SequenceRunnerTest, AResultThatCannotBeWrittenEndsTheRunEvenWhenItKeepsGoing) {
