@@ -31,8 +31,8 @@ TEST(Checksum, IsTheCommonCrc32) {
   EXPECT_EQ(crc32_of(bytes_in("123456789")), 0xcbf43926U);
   EXPECT_EQ(crc32_of({}), 0U);
   std::string text;
-  for (int i = 0; i < 700000; ++i) {
-    text += static_cast<char>(i * i >> 3);
+  for (unsigned i = 0; i < 700000; ++i) {
+    text += static_cast<char>(i * i >> 3U);
   }
   EXPECT_EQ(crc32_of(bytes_in(text)), plain_crc32(text));
   const TemporaryFolder folder;
