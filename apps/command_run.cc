@@ -70,7 +70,8 @@ void join_if_whole(const RunJob& job, const RunSession& session, const SequenceL
   const DeliveredFrames delivered(layout);
   const FrameRange frames = contiguous_frames(delivered, session.selection.frame_count);
   report.timed_file_access("join", [&] {
-    join_segments(job.sequence, layout, session.identity, frames, sequence.frames > 0, journal);
+    join_segments(job.sequence, layout, session.identity, frames,
+                  sequence.frames + sequence.pictures_again > 0, journal);
   });
 }
 

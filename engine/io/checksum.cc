@@ -20,9 +20,10 @@ std::uint32_t crc32_of(std::string_view text) {
   return libdeflate_crc32(0, text.data(), text.size());
 }
 
-/// The last entry and the end of an object of which `before` is what comes before it.
-std::string end_of(std::string_view before, std::string_view gap) {
-  return fmt::format(",{}{}\"{:08x}\"", gap, kKey, crc32_of(before));
+/// `before`, which is what an object holds, and its last entry behind `gap`.
+std::string with_entry(std::string_view before, std::string_view gap) {
+  const std::string text = fmt::format("{},{}{}", before, gap, kKey);
+  return fmt::format("{}\"{:08x}\"", text, crc32_of(text));
 }
 
 }  // namespace
@@ -63,7 +64,7 @@ std::string with_checksum(std::string_view object) {
   const std::size_t line = before.rfind('\n');
   const std::string_view last_line = line == std::string_view::npos ? "" : before.substr(line);
   const std::string_view gap = last_line.substr(0, last_line.find_first_not_of(kBlanks));
-  return fmt::format("{}{}{}", before, end_of(before, gap), object.substr(end));
+  return with_entry(before, gap) + std::string(object.substr(end));
 }
 
 bool has_valid_checksum(std::string_view text) {
@@ -72,13 +73,12 @@ bool has_valid_checksum(std::string_view text) {
   if (comma == std::string_view::npos) {
     return false;
   }
-  const std::string_view before = text.substr(0, comma);
-  const std::string expected = end_of(before, text.substr(comma + 1, key - comma - 1));
-  std::string_view rest = text.substr(comma);
-  if (!rest.starts_with(expected)) {
+  const std::string expected =
+      with_entry(text.substr(0, comma), text.substr(comma + 1, key - comma - 1));
+  if (!text.starts_with(expected)) {
     return false;
   }
-  rest.remove_prefix(expected.size());
+  const std::string_view rest = text.substr(expected.size());
   const std::size_t brace = rest.find_first_not_of(kBlanks);
   return brace != std::string_view::npos && rest[brace] == '}' &&
          rest.find_first_not_of(kBlanks, brace + 1) == std::string_view::npos;
