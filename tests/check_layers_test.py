@@ -79,6 +79,10 @@ class CheckLayersTest(unittest.TestCase):
         self.expect_violation("engine/a.h", '#pragma once\n#include "engine/io/libav_functions.h"\n',
                               "engine/a.h:2: ")
 
+    def test_printing_to_stderr(self):
+        self.expect_violation("apps/a.cc", 'fmt::print(stderr, "text");\n', "apps/a.cc:1: ")
+        self.expect_violation("apps/a.cc", 'std::fputs(text, stderr);\n', "apps/a.cc:1: ")
+
     def test_header_without_pragma_once(self):
         self.expect_violation("tests/engine/a.h", "int a();\n", "tests/engine/a.h:1: ")
 

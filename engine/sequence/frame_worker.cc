@@ -18,6 +18,7 @@
 #include "engine/io/photograph_io.h"
 #include "engine/io/preview.h"
 #include "engine/sequence/preview_range.h"
+#include "engine/sequence/stored_maps.h"
 #include "scheduler/trace.h"
 
 namespace vantage {
@@ -75,27 +76,6 @@ bool views_show_photographs(const SequenceOptions& options) {
          (!options.views.empty() || options.saves(SequenceOutput::kStereo));
 }
 
-/// Whether videos show new views, alone or in stereo pictures.
-bool show_views(const SequenceOptions& options) {
-  return std::ranges::any_of(options.video, [](SequenceOutput output) {
-    return is_per_view(output) || output == SequenceOutput::kStereo;
-  });
-}
-
-/// Masks of what was filled are not in maps, and a prior is made of them.
-bool stores_maps_for_videos(const SequenceOptions& options) {
-  const bool needs_masks = options.temporal.weight > 0 ||
-                           options.saves_as_video(SequenceOutput::kUnmatched) ||
-                           options.saves_as_video(SequenceOutput::kRightUnmatched);
-  const bool has_both =
-      options.match.reference == Reference::kLeft && options.saves(SequenceOutput::kRightDisparity);
-  const bool needs_both =
-      show_views(options) || (options.measure_flicker && !options.views.empty());
-  // PNG rounds.
-  return options.map_format != "png" && options.saves(SequenceOutput::kDisparity) && !needs_masks &&
-         (has_both || !needs_both);
-}
-
 FrameWorker::FrameWorker(const FrameTools& tools)
     : options_(tools.options),
       layout_(tools.layout),
@@ -107,8 +87,8 @@ FrameWorker::FrameWorker(const FrameTools& tools)
       execution_(tools.execution),
       matcher_(tools.options.match, tools.execution),
       renderer_(tools.options.synthesis, tools.cameras, tools.execution),
-      videos_show_views_(show_views(tools.options)),
-      maps_are_stored_(stores_maps_for_videos(tools.options)),
+      videos_show_views_(videos_show_views(tools.options)),
+      maps_are_stored_(maps_are_stored(tools.options)),
       temporal_(tools.options.temporal) {
   if (rectifier_ != nullptr && rectifier_->needs_rectification() &&
       views_show_photographs(options_)) {
@@ -146,8 +126,8 @@ void FrameWorker::compute(FrameSlot& slot) {
     return;
   }
   const BusyClock::Activity activity(compute_clock_);
-  if (slot.stored != nullptr && maps_are_stored_ && !read_maps(slot)) {
-    slot.stored = nullptr;
+  if (slot.stored != nullptr && maps_are_stored_) {
+    read_maps(slot);
   }
   if (slot.stored == nullptr || !maps_are_stored_) {
     match(slot);
@@ -163,26 +143,13 @@ void FrameWorker::compute(FrameSlot& slot) {
   pack_stereo_picture(slot);
 }
 
-bool FrameWorker::read_maps(FrameSlot& slot) const {
+void FrameWorker::read_maps(FrameSlot& slot) const {
   const TimedStep step(slot, "read maps");
   slot.match = {};
-  for (const OutputStream& stream : layout_.streams()) {
-    const bool is_primary = stream.output == SequenceOutput::kDisparity;
-    const bool is_other = stream.output == SequenceOutput::kRightDisparity && needs_views(slot);
-    if (!is_primary && !is_other) {
-      continue;
-    }
-    const auto file = std::ranges::find_if(slot.stored->files, [&](const FileRecord& record) {
-      return std::filesystem::path(record.name).parent_path() == stream.name;
-    });
-    if (file == slot.stored->files.end() ||
-        file_content(layout_.folder() / file->name) != file->content) {
-      return false;
-    }
-    const bool is_left = is_primary && options_.match.reference == Reference::kLeft;
-    (is_left ? slot.maps.left : slot.maps.right) = read_disparity(layout_.folder() / file->name);
+  if (!read_stored_maps(layout_, *slot.stored, options_.match.reference, needs_views(slot),
+                        slot.maps)) {
+    slot.stored = nullptr;
   }
-  return true;
 }
 
 bool FrameWorker::wants(const FrameSlot& slot, SequenceOutput output) const {

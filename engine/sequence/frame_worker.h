@@ -78,8 +78,8 @@ class FrameWorker {
 
  private:
   void match(FrameSlot& slot);
-  /// False when a file is not as it was written.
-  bool read_maps(FrameSlot& slot) const;
+  /// The frame is no longer stored when a file is not as it was written.
+  void read_maps(FrameSlot& slot) const;
   /// Whether something that is made of the frame needs new views.
   [[nodiscard]] bool needs_views(const FrameSlot& slot) const;
   [[nodiscard]] bool wants(const FrameSlot& slot, SequenceOutput output) const;
