@@ -30,18 +30,18 @@ struct Reach {
   int end_line = 0;  ///< none if not above first_line
 };
 
-/// Pixels and their disparities, borders included.
-struct PixelBox {
-  int first_x;
-  int last_x;
-  int first_y;
-  int last_y;
+/// Positions and their disparities, borders included.
+struct PositionBox {
+  double first_x;
+  double last_x;
+  double first_y;
+  double last_y;
   kernels::KnownRange disparity_px;
 };
 
 // u and v are quotients of linear functions of x, y and d: as long as λ > 0 their extremes are at
 // corners of the box.
-Reach reach_of(const PixelBox& box, const kernels::ViewProjection& view,
+Reach reach_of(const PositionBox& box, const kernels::ViewProjection& view,
                ImageView<const float> target) {
   if (!(box.disparity_px.least <= box.disparity_px.most)) {
     return {};
@@ -99,8 +99,9 @@ class ProjectedRows {
   kernels::ProjectedRow lower;
 
  private:
+  // One more on either side, which do not exist.
   static std::size_t floats(int width) {
-    return static_cast<std::size_t>(width + 1 + kernels::kSplatPadding);
+    return static_cast<std::size_t>(width + 2 + kernels::kSplatPadding);
   }
 };
 
@@ -113,6 +114,7 @@ class SurfaceMapper {
         gradient_limit_px_(gradient_limit_px),
         nearness_(nearness),
         execution_(execution),
+        border_px_(view.is_translation ? 0 : 1),
         tile_columns_(tiles_in(disparity_px.width(), kTileColumns)),
         tile_rows_(tiles_in(disparity_px.height(), kTileRows)),
         reaches_memory_(execution.scratch().lease(
@@ -141,17 +143,22 @@ class SurfaceMapper {
   }
 
   void find_reaches(int tile_row) {
-    PixelBox box{};
-    box.first_y = tile_row * kTileRows;
-    // One pixel more to the right and below: gaps reach as far as them.
-    box.last_y = std::min(box.first_y + kTileRows, disparity_px_.height() - 1);
+    // One pixel more to the right and below: gaps reach as far as them. Torn surfaces reach half a
+    // pixel beyond the image.
+    const double beyond = 0.5 * border_px_;
+    const int first_y = tile_row * kTileRows;
+    const int last_y = std::min(first_y + kTileRows, disparity_px_.height() - 1);
     for (int column = 0; column < tile_columns_; ++column) {
-      box.first_x = column * kTileColumns;
-      box.last_x = std::min(box.first_x + kTileColumns, disparity_px_.width() - 1);
-      box.disparity_px = {};
-      for (int y = box.first_y; y <= box.last_y; ++y) {
-        box.disparity_px = kernels::known_range_row(disparity_px_.row(y) + box.first_x,
-                                                    box.last_x - box.first_x + 1, box.disparity_px);
+      const int first_x = column * kTileColumns;
+      const int last_x = std::min(first_x + kTileColumns, disparity_px_.width() - 1);
+      PositionBox box{.first_x = first_x - beyond,
+                      .last_x = last_x + beyond,
+                      .first_y = first_y - beyond,
+                      .last_y = last_y + beyond,
+                      .disparity_px = {}};
+      for (int y = first_y; y <= last_y; ++y) {
+        box.disparity_px = kernels::known_range_row(disparity_px_.row(y) + first_x,
+                                                    last_x - first_x + 1, box.disparity_px);
       }
       reach(tile_row, column) = reach_of(box, view_, nearness_);
     }
@@ -190,10 +197,11 @@ class SurfaceMapper {
   // The tiles [begin, end) of a row of tiles.
   void map_tiles(int tile_row, int begin, int end, ProjectedRows& rows,
                  const kernels::SplatBand& band) {
-    const int first_x = begin * kTileColumns;
+    // The quads before the first column and row count to the tiles there.
+    const int first_x = begin == 0 ? -border_px_ : begin * kTileColumns;
     const int count = std::min(end * kTileColumns, disparity_px_.width()) - first_x;
-    const int first_y = tile_row * kTileRows;
-    const int end_y = std::min(first_y + kTileRows, disparity_px_.height());
+    const int first_y = tile_row == 0 ? -border_px_ : tile_row * kTileRows;
+    const int end_y = std::min((tile_row + 1) * kTileRows, disparity_px_.height());
     const double centre_x = 0.5 * (disparity_px_.width() - 1);
     const double centre_y = 0.5 * (disparity_px_.height() - 1);
     kernels::SplatRows splat{.view = view_,
@@ -217,21 +225,28 @@ class SurfaceMapper {
 
   // Pixels first_x … first_x + count of row y; those outside the image do not exist.
   void project(int first_x, int count, int y, const kernels::ProjectedRow& row) {
-    const int there =
-        y < disparity_px_.height() ? std::min(count + 1, disparity_px_.width() - first_x) : 0;
-    if (there > 0) {
+    const bool has_row = y >= 0 && y < disparity_px_.height();
+    const int before = has_row ? std::max(-first_x, 0) : count + 1;
+    const int end = std::min(count + 1, disparity_px_.width() - first_x);
+    const auto fill_missing = [&](int first, int number) {
+      std::fill_n(row.disparity_px + first, number, std::numeric_limits<float>::quiet_NaN());
+      std::fill_n(row.nearness + first, number, -std::numeric_limits<float>::infinity());
+      std::fill_n(row.column + first, number, 0);
+      std::fill_n(row.line + first, number, 0);
+    };
+    fill_missing(0, before);
+    if (has_row) {
       kernels::project_row(view_,
-                           {.disparity_px = disparity_px_.row(y) + first_x,
-                            .count = there,
-                            .first_column = first_x,
+                           {.disparity_px = disparity_px_.row(y) + first_x + before,
+                            .count = end - before,
+                            .first_column = first_x + before,
                             .line = y},
-                           row);
+                           {.disparity_px = row.disparity_px + before,
+                            .nearness = row.nearness + before,
+                            .column = row.column + before,
+                            .line = row.line + before});
+      fill_missing(end, count + 1 - end);
     }
-    const int missing = count + 1 - there;
-    std::fill_n(row.disparity_px + there, missing, std::numeric_limits<float>::quiet_NaN());
-    std::fill_n(row.nearness + there, missing, -std::numeric_limits<float>::infinity());
-    std::fill_n(row.column + there, missing, 0);
-    std::fill_n(row.line + there, missing, 0);
   }
 
   ImageView<const float> disparity_px_;
@@ -239,6 +254,7 @@ class SurfaceMapper {
   float gradient_limit_px_;
   ImageView<float> nearness_;
   Execution& execution_;
+  int border_px_;  // pixels around the image that quads are looked at with
   int tile_columns_;
   int tile_rows_;
   scheduler::ScratchPool::Lease reaches_memory_;

@@ -133,6 +133,39 @@ void fill_triangle(const Corner& a, const Corner& b, const Corner& c, const Corn
   }
 }
 
+// Adds what the triangle is at every position inside.
+void fill_whole_triangle(const Corner& a, const Corner& b, const Corner& c, const SplatBand& band) {
+  const auto first = [](double least, int limit) {
+    return std::max(static_cast<int>(std::ceil(std::max(least - kOutsidePx, -1.0))), limit);
+  };
+  const auto last = [](double most, int limit) {
+    return std::min(static_cast<int>(std::floor(std::min(most + kOutsidePx, limit + 1.0))), limit);
+  };
+  const int last_line = last(std::max({a.v, b.v, c.v}), band.first_line + band.lines - 1);
+  const int last_column = last(std::max({a.u, b.u, c.u}), band.width - 1);
+  const int first_column = first(std::min({a.u, b.u, c.u}), 0);
+  for (int v = first(std::min({a.v, b.v, c.v}), band.first_line); v <= last_line; ++v) {
+    for (int u = first_column; u <= last_column; ++u) {
+      add_inside(a, b, c, u, v, band);
+    }
+  }
+}
+
+// The disparity of a surface in the middle of a quad: its mean over the corners of the quad that
+// are on it; of three, over the two that are not beside each other. `is_on`: by corner.
+double middle_disparity(const bool (&is_on)[4], const float (&disparity_px)[4]) {
+  const auto count = std::count(is_on, is_on + 4, true);
+  if (count == 3) {
+    const auto missing = static_cast<unsigned>(std::find(is_on, is_on + 4, false) - is_on);
+    return 0.5 * (double{disparity_px[missing ^ 1U]} + double{disparity_px[missing ^ 2U]});
+  }
+  double sum = 0;
+  for (unsigned k = 0; k < 4; ++k) {
+    sum += is_on[k] ? double{disparity_px[k]} : 0.0;
+  }
+  return sum / static_cast<double>(count);
+}
+
 // Derivatives (∂u, ∂v) · λ of points at infinity along x (k = 0) or y (k = 1).
 EdgeDirection direction_of(const ViewProjection& view, double x, double y, int k) {
   double far[9];  // homography of the points at infinity
@@ -208,6 +241,67 @@ void fill_quad_gaps(const SplatRows& rows, const Quad& quad, const SplatBand& ba
   }
   if (bd && cd) {
     fill_triangle(b, d, c, nullptr, band);
+  }
+}
+
+bool is_torn(const SplatRows& rows, int i) {
+  const float a = rows.upper.disparity_px[i];
+  const float b = rows.upper.disparity_px[i + 1];
+  const float c = rows.lower.disparity_px[i];
+  const float d = rows.lower.disparity_px[i + 1];
+  const auto joined = [&](float p, float q) { return std::abs(p - q) <= rows.gradient_limit_px; };
+  return !(joined(a, b) && joined(a, c) && joined(b, d) && joined(c, d));
+}
+
+void fill_torn_quad(const SplatRows& rows, int i, const SplatBand& band) {
+  // By corner: bit 0 is right, bit 1 is below.
+  const float disparity_px[4] = {rows.upper.disparity_px[i], rows.upper.disparity_px[i + 1],
+                                 rows.lower.disparity_px[i], rows.lower.disparity_px[i + 1]};
+  const auto joined = [&](unsigned p, unsigned q) {
+    return std::abs(disparity_px[p] - disparity_px[q]) <= rows.gradient_limit_px;
+  };
+  const auto mean = [&](unsigned p, unsigned q) {
+    return 0.5 * (double{disparity_px[p]} + double{disparity_px[q]});
+  };
+  const double left = rows.first_column + i;
+  const double top = rows.line;
+  for (unsigned k = 0; k < 4; ++k) {
+    const double own{disparity_px[k]};
+    if (std::isnan(own)) {
+      continue;
+    }
+    const unsigned beside = k ^ 1U;
+    const unsigned across = k ^ 2U;
+    const unsigned opposite = k ^ 3U;
+    bool is_on[4] = {};
+    is_on[k] = true;
+    is_on[beside] = joined(k, beside) ||
+                    (joined(k, across) && joined(across, opposite) && joined(opposite, beside));
+    is_on[across] = joined(k, across) ||
+                    (joined(k, beside) && joined(beside, opposite) && joined(opposite, across));
+    is_on[opposite] =
+        (is_on[beside] && joined(beside, opposite)) || (is_on[across] && joined(across, opposite));
+    // The quarter of the quad beside the corner.
+    Corner quarter[4];
+    bool is_before = true;
+    const auto set = [&](unsigned place, double x, double y, double d) {
+      const ExactTarget at = exact_target(rows.view, x, y, d);
+      is_before = is_before && at.depth_ratio > kLeastDepthRatio;
+      quarter[place].u = at.u;
+      quarter[place].v = at.v;
+      quarter[place].nearness =
+          static_cast<float>((d - rows.view.infinity_disparity_px) * (1 / at.depth_ratio));
+    };
+    const double x = left + (k & 1U);
+    const double y = top + (k >> 1U);
+    set(k, x, y, own);
+    set(beside, left + 0.5, y, joined(k, beside) ? mean(k, beside) : own);
+    set(across, x, top + 0.5, joined(k, across) ? mean(k, across) : own);
+    set(opposite, left + 0.5, top + 0.5, middle_disparity(is_on, disparity_px));
+    if (is_before) {
+      fill_whole_triangle(quarter[0], quarter[1], quarter[2], band);
+      fill_whole_triangle(quarter[1], quarter[3], quarter[2], band);
+    }
   }
 }
 

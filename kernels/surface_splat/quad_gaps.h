@@ -37,8 +37,14 @@ struct Quad {
 /// The quad of upper columns i and i + 1.
 Quad quad_at(const SplatRows& rows, int i);
 
-/// What splat_rows() adds between the pixels of a quad. Few quads lack something, so this is plain
-/// code for all instruction sets.
+/// Whether the quad of upper columns i and i + 1 is not one surface.
+bool is_torn(const SplatRows& rows, int i);
+
+/// What splat_rows() adds to such a quad in views that are no translations.
+void fill_torn_quad(const SplatRows& rows, int i, const SplatBand& band);
+
+/// What it adds between the pixels of all others. Few quads lack something, so this and the former
+/// are plain code for all instruction sets.
 void fill_quad_gaps(const SplatRows& rows, const Quad& quad, const SplatBand& band);
 
 }  // namespace vantage::kernels

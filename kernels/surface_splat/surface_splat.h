@@ -58,6 +58,15 @@ struct SplatBand {
 /// have no gaps to fill. In translations along rows a line is made from the row alone, and equals
 /// what forward_warp_row() makes of it.
 ///
+/// A translation leaves pixels as large as they are, so that holes are what parallax opens. Any
+/// other view also spreads them. There a quad that is torn (not one surface; unknown pixels belong
+/// to none) is divided among its corners instead: each known one has the quarter of the quad beside
+/// it, and every position inside the quarter's two triangles is a sample. At the corners of the
+/// quarter the surface has the pixel's disparity, beside it the mean of two joined pixels or else
+/// the pixel's own, and in the middle of the quad the mean of all of its pixels that neighbours
+/// join to this one; of three, of the two that are not beside each other. So each surface reaches
+/// half a pixel of the image beyond its last pixels, at any magnification.
+///
 /// The upper row's pixels, their edges and the quads between the rows are added. As the largest
 /// value stays, neither the order of calls nor how a view is cut into bands makes a difference.
 /// Identical on every instruction set and to the reference.

@@ -13,7 +13,11 @@ void splat_rows_ref(const SplatRows& rows, const SplatBand& band) {
       float& nearest = band.nearness[line * band.stride + column];
       nearest = std::max(nearest, rows.upper.nearness[i]);
     }
-    fill_quad_gaps(rows, quad_at(rows, i), band);
+    if (!rows.view.is_translation && is_torn(rows, i)) {
+      fill_torn_quad(rows, i, band);
+    } else {
+      fill_quad_gaps(rows, quad_at(rows, i), band);
+    }
   }
 }
 

@@ -131,6 +131,33 @@ HWY_INLINE std::uint64_t find_gaps(const SplatRows& rows, const SplatBand& band,
   return count < kBlock ? gaps & ((std::uint64_t{1} << count) - 1) : gaps;
 }
 
+// Bit i: the quad of upper columns begin + i and begin + i + 1 has known corners, but is not one
+// surface.
+HWY_INLINE std::uint64_t find_torn(const SplatRows& rows, int begin) {
+  const Tag d;
+  const auto limit = hn::Set(d, rows.gradient_limit_px);
+  std::uint64_t torn = 0;
+  for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d))) {
+    const int at = begin + i;
+    const auto upper_a = hn::LoadU(d, rows.upper.disparity_px + at);
+    const auto upper_b = hn::LoadU(d, rows.upper.disparity_px + at + 1);
+    const auto lower_c = hn::LoadU(d, rows.lower.disparity_px + at);
+    const auto lower_d = hn::LoadU(d, rows.lower.disparity_px + at + 1);
+    const auto joined = [&](Vec p, Vec q)
+                            HWY_ATTR { return hn::Le(hn::Abs(hn::Sub(p, q)), limit); };
+    const auto is_known = [&](Vec p) HWY_ATTR { return hn::Eq(p, p); };
+    const auto one_surface = hn::And(hn::And(joined(upper_a, upper_b), joined(upper_a, lower_c)),
+                                     hn::And(joined(upper_b, lower_d), joined(lower_c, lower_d)));
+    const auto some = hn::Or(hn::Or(is_known(upper_a), is_known(upper_b)),
+                             hn::Or(is_known(lower_c), is_known(lower_d)));
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, hn::AndNot(one_surface, some), bits);
+    torn |= (std::uint64_t{bits[0]} | std::uint64_t{bits[1]} << 8) << i;
+  }
+  const int count = rows.count - begin;
+  return count < kBlock ? torn & ((std::uint64_t{1} << count) - 1) : torn;
+}
+
 // Exact targets of a row's pixels from one column on, and the whole numbers next to them.
 struct BlockTargets {
   double u[kBlock + 1];
@@ -303,7 +330,15 @@ void splat_any(const SplatRows& given, const SplatBand& band) {
   const SplatRows rows = given;  // which stores to the band cannot change
   for (int begin = 0; begin < rows.count; begin += kBlock) {
     splat_pixels(rows, band, begin);
-    const std::uint64_t gaps = find_gaps(rows, band, begin);
+    std::uint64_t gaps = find_gaps(rows, band, begin);
+    if (!rows.view.is_translation) {
+      std::uint64_t torn = find_torn(rows, begin);
+      gaps &= ~torn;
+      for (; torn != 0; torn &= torn - 1) {
+        const int i = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(torn));
+        fill_torn_quad(rows, begin + i, band);
+      }
+    }
     if (gaps != 0) {
       fill_gaps(rows, band, begin, gaps);
     }

@@ -141,21 +141,28 @@ TEST(SurfaceMap, MissesNothing) {
       const int view_height = 210;
       Image<float> expected(view_width, view_height);
       expected.fill(-std::numeric_limits<float>::infinity());
+      // What is spread reaches beyond the first column and row, too.
+      const int border = view.is_translation ? 0 : 1;
       const auto project = [&](int y) {
-        kernels::ProjectedValues row(width);
-        if (y < height) {
-          kernels::project_row(view, {map.row(y), width, 0, y}, row.row());
+        kernels::ProjectedValues row(width + border);
+        if (y >= 0 && y < height) {
+          kernels::ProjectedRow inside = row.row();
+          inside.disparity_px += border;
+          inside.nearness += border;
+          inside.column += border;
+          inside.line += border;
+          kernels::project_row(view, {map.row(y), width, 0, y}, inside);
         }
         return row;
       };
-      for (int y = 0; y < height; ++y) {
+      for (int y = -border; y < height; ++y) {
         kernels::ProjectedValues upper = project(y);
         kernels::ProjectedValues lower = project(y + 1);
         kernels::splat_rows({.view = view,
                              .upper = upper.row(),
                              .lower = lower.row(),
-                             .count = width,
-                             .first_column = 0,
+                             .count = width + border,
+                             .first_column = -border,
                              .line = y,
                              .right_edge = kernels::right_edge_direction(view, (width - 1) / 2.0,
                                                                          (height - 1) / 2.0),
