@@ -71,7 +71,8 @@ void add_holes_setting(Settings& settings, HoleFilling& holes) {
 
 void add_combining_settings(Settings& settings, SynthesisOptions& options) {
   settings.number("gamma", options.gamma, "G",
-                  "Whose brightness a view has, 1 left to 0 right; alpha: moves with the view",
+                  "Brightness of views: 1 as the left image, 0 as the right one; alpha: by the "
+                  "view's position, at a camera's place as its photograph",
                   "alpha");
   add_surface_settings(settings, options);
 }

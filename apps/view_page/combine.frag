@@ -78,6 +78,9 @@ vec3 fetchRow(sampler2D image, sampler2D map, int x, float f, int y, float d) {
 
 // The colour of the surface of disparity d that the new view shows at `position`.
 vec3 fetch(sampler2D image, sampler2D map, ivec2 position, vec2 shift, float d) {
+  if (shift == vec2(0.0)) {
+    return texelFetch(image, position, 0).rgb;  // the camera's own place
+  }
   int x;
   float fx;
   split(position.x, shift.x * d, uSize.x, x, fx);

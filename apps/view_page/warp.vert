@@ -23,6 +23,9 @@ void main() {
   vec4 d;
   for (int k = 0; k < 4; ++k) {
     d[k] = disparityAt(uMap, vPixel + CORNERS[k]);
+    if (d[k] == UNKNOWN && uShift == vec2(0.0) && all(lessThan(vPixel + CORNERS[k], uSize))) {
+      d[k] = uSmallest;  // at the camera's own place a pixel is seen whatever its disparity
+    }
     place[k] = vec2(CORNERS[k]) - uShift * d[k];
   }
   vPlaces01 = vec4(place[0], place[1]);

@@ -133,8 +133,7 @@ std::size_t surface_view_bytes(const SequenceOptions& options, const PairShape& 
                                                shape.bytes_per_value);
   }
   const NewView view = new_view(place, cameras, width, height);
-  return ViewSynthesizer::filling_bytes(options.synthesis, view.width_px, view.height_px,
-                                        shape.channels) +
+  return ViewSynthesizer::filling_bytes(options.synthesis, view, width, height, shape.channels) +
          ViewSynthesizer::working_bytes(view, width, height, shape.channels);
 }
 

@@ -29,7 +29,9 @@ struct ViewSource {
 
 /// Renders a pair from wherever a pose says, in the way that suits the pose and the options: with
 /// WarpColour::kForward cameras take the book's three steps, everything else is one pass, from the
-/// photographs where the source has them.
+/// photographs where the source has them. At the place of a camera a view is that camera's
+/// photograph, resampled by the view's homography alone, also where its map is unknown (with γ = α;
+/// forward warps of cameras aside).
 ///
 /// Thread rule: everything may be called concurrently for different results. Identical for any
 /// ExecutionOptions.
@@ -56,6 +58,7 @@ class PoseRenderer {
   [[nodiscard]] const PosedCamera* three_step_camera(const ViewPose& pose) const;
 
   const RectifiedPair* cameras_;
+  Execution& execution_;
   ViewSynthesizer synthesizer_;
   ThreeStepSynthesizer three_steps_;
 };

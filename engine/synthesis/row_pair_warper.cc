@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "engine/synthesis/warped_pair_layout.h"
+#include "engine/view_geometry/new_view.h"
 #include "kernels/colour_fetch/colour_fetch.h"
 #include "kernels/forward_warp/forward_warp.h"
 #include "kernels/pixel_row/pixel_row.h"
@@ -37,9 +38,7 @@ RowPairWarper<T>::RowPairWarper(const StereoSource<T>& source, const SynthesisOp
 
 template <typename T>
 double RowPairWarper<T>::alpha() const {
-  const double left_distance = std::abs(view_x_);  // (3.13)
-  const double right_distance = std::abs(view_x_ - 1);
-  return right_distance / (left_distance + right_distance);
+  return share_of_left(std::abs(view_x_), std::abs(view_x_ - 1));
 }
 
 template <typename T>

@@ -1,6 +1,7 @@
 #include "engine/synthesis/surface_warper.h"
 
 #include <cstdint>
+#include <limits>
 
 #include "engine/synthesis/surface_map.h"
 #include "engine/synthesis/warped_pair_layout.h"
@@ -13,6 +14,15 @@ ViewFrame frame_of(const NewView& view) {
   return {.width_px = view.width_px,
           .height_px = view.height_px,
           .infinity_disparity_px = view.infinity_disparity_px};
+}
+
+// For an image whose camera is `distance` baselines away. At its own place nothing moves, whatever
+// its disparity: parallax tears nothing, and all of the image is one surface.
+SynthesisOptions options_at(double distance, SynthesisOptions options) {
+  if (distance < kSamePlace) {
+    options.disparity_gradient_limit_px = std::numeric_limits<double>::infinity();
+  }
+  return options;
 }
 
 }  // namespace
@@ -28,10 +38,10 @@ template <typename T>
 SurfaceWarper<T>::SurfaceWarper(const StereoSource<T>& source, const SynthesisOptions& options,
                                 const NewView& view, Execution& execution)
     : alpha_(view.alpha()),
-      left_(source.left, source.left_disparity, view.from_left, frame_of(view), options, execution,
-            source.left_photograph),
-      right_(source.right, source.right_disparity, view.from_right, frame_of(view), options,
-             execution, source.right_photograph) {}
+      left_(source.left, source.left_disparity, view.from_left, frame_of(view),
+            options_at(view.distance_from_left, options), execution, source.left_photograph),
+      right_(source.right, source.right_disparity, view.from_right, frame_of(view),
+             options_at(view.distance_from_right, options), execution, source.right_photograph) {}
 
 template <typename T>
 void SurfaceWarper<T>::warp(int y, std::span<float> scratch, float* memory) const {

@@ -11,7 +11,8 @@
 
 namespace vantage {
 
-/// Brings both images of a pair to any new view, each by an ImageWarper.
+/// Brings both images of a pair to any new view, each by an ImageWarper. At the place of its own
+/// camera an image appears as the homography alone moves it: nothing is torn there.
 ///
 /// Thread rule: warp() may be called concurrently. Does not own any memory it is given, which must
 /// outlive it. T is uint8_t, uint16_t or float.

@@ -21,8 +21,9 @@ enum class WarpColour {
 struct SynthesisOptions {
   WarpColour warp = WarpColour::kOnePass;
   HoleFilling holes = HoleFilling::kMirror;
-  /// γ of (3.12), 0..1: which camera's brightness the view has (1 = left). Empty: γ = α.
-  std::optional<double> gamma = 0.5;
+  /// γ of (3.12), 0..1: which camera's brightness the view has (1 = left). Empty: γ = α, so that a
+  /// view at a camera's place has the brightness of its photograph.
+  std::optional<double> gamma = std::nullopt;
   /// Neighbours whose disparities differ by at most this are one surface; ≥ 0, in pixels.
   double disparity_gradient_limit_px = 1.0;
   /// Regress the right image's intensities on the left's (3.9–3.11); off: a = 0, b = 1.

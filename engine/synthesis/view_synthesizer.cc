@@ -15,6 +15,7 @@
 #include "engine/synthesis/row_pair_warper.h"
 #include "engine/synthesis/surface_warper.h"
 #include "engine/synthesis/view_finisher.h"
+#include "engine/synthesis/view_sampling.h"
 #include "engine/synthesis/warped_pair_layout.h"
 #include "kernels/intensity_sums/intensity_sums.h"
 #include "kernels/view_blend/view_blend.h"
@@ -285,16 +286,29 @@ PairOfMaps pair_of(const UnrectifiedPair& photographs, ImageView<const float> le
           right_disparity,  photographs.left_geometry, photographs.right_geometry};
 }
 
+/// Forward mapping moves whole pixels, so it has no use for several samples.
+ViewSampling sampling_of(const PairOfMaps& pair, const SynthesisOptions& options,
+                         const NewView& view) {
+  return options.warp == WarpColour::kOnePass
+             ? view_sampling(view, pair.left_disparity, pair.right_disparity)
+             : ViewSampling{};
+}
+
 /// XS of a view that RowPairWarper can make: on the baseline, with the images' orientation, focal
-/// length and size.
-std::optional<double> scanline_position(const NewView& view, const Photograph& left) {
+/// length and size. At a camera's place colours of a photograph that is not rectified go the
+/// general way, which knows that nothing is hidden there.
+std::optional<double> scanline_position(const NewView& view, const PairOfMaps& pair) {
   const auto moves_along_rows = [](const ViewWarp& warp) {
     return warp.is_translation() && warp.parallax.y() == 0;
   };
   const double view_x = -view.from_left.parallax.x();
+  const bool stands_at_photograph =
+      !pair.left_geometry.empty() &&
+      (std::abs(view_x) < kSamePlace || std::abs(view_x - 1) < kSamePlace);
   if (moves_along_rows(view.from_left) && moves_along_rows(view.from_right) &&
       view.from_right.parallax.x() == -(view_x - 1) && view.infinity_disparity_px == 0 &&
-      view.width_px == left.width() && view.height_px == left.height()) {
+      view.width_px == pair.left.width() && view.height_px == pair.left.height() &&
+      !stands_at_photograph) {
     return view_x;
   }
   return std::nullopt;
@@ -334,7 +348,7 @@ void with_synthesis(const PairOfMaps& pair, const SynthesisOptions& options, dou
 template <typename Body>
 void with_synthesis(const PairOfMaps& pair, const SynthesisOptions& options, const NewView& view,
                     Execution& execution, const Body& body) {
-  if (const std::optional<double> view_x = scanline_position(view, pair.left)) {
+  if (const std::optional<double> view_x = scanline_position(view, pair)) {
     with_synthesis(pair, options, *view_x, execution, body);
     return;
   }
@@ -365,11 +379,11 @@ void with_synthesis(const PhotographTriple& triple, const SynthesisOptions& opti
       first.pixels);
 }
 
-/// `position`: XS or a NewView.
+/// `position`: XS or a NewView that needs no more than one sample per pixel.
 template <typename Position>
-void synthesize_at(const PairOfMaps& pair, const SynthesisOptions& options,
-                   const Position& position, Execution& execution, SynthesizedView& view,
-                   const std::array<IntensityFit, 4>* given_fit) {
+void sample_at(const PairOfMaps& pair, const SynthesisOptions& options, const Position& position,
+               Execution& execution, SynthesizedView& view,
+               const std::array<IntensityFit, 4>* given_fit) {
   with_synthesis(pair, options, position, execution,
                  [&]<typename T, typename Warper>(Synthesis<T, Warper>&& synthesis) {
                    if (!std::holds_alternative<Image<T>>(view.image.pixels)) {
@@ -377,6 +391,25 @@ void synthesize_at(const PairOfMaps& pair, const SynthesisOptions& options,
                    }
                    synthesis.run(std::get<Image<T>>(view.image.pixels), view, given_fit);
                  });
+}
+
+void synthesize_at(const PairOfMaps& pair, const SynthesisOptions& options, double view_x,
+                   Execution& execution, SynthesizedView& view,
+                   const std::array<IntensityFit, 4>* given_fit) {
+  sample_at(pair, options, view_x, execution, view, given_fit);
+}
+
+void synthesize_at(const PairOfMaps& pair, const SynthesisOptions& options, const NewView& new_view,
+                   Execution& execution, SynthesizedView& view,
+                   const std::array<IntensityFit, 4>* given_fit) {
+  const ViewSampling sampling = sampling_of(pair, options, new_view);
+  if (sampling.samples == 1) {
+    sample_at(pair, options, new_view, execution, view, given_fit);
+    return;
+  }
+  SynthesizedView fine;
+  sample_at(pair, options, with_samples(new_view, sampling.samples), execution, fine, given_fit);
+  reduce_view(fine, sampling, view, execution);
 }
 
 /// In grey levels.
@@ -394,14 +427,27 @@ kernels::IntensitySums grey_level_sums(Synthesis<T, Warper>& synthesis) {
 }
 
 template <typename Position>
-kernels::IntensitySums intensity_sums_at(const PairOfMaps& pair, const SynthesisOptions& options,
-                                         const Position& position, Execution& execution) {
+kernels::IntensitySums sampled_sums_at(const PairOfMaps& pair, const SynthesisOptions& options,
+                                       const Position& position, Execution& execution) {
   kernels::IntensitySums sums;
   with_synthesis(pair, options, position, execution,
                  [&]<typename T, typename Warper>(Synthesis<T, Warper>&& synthesis) {
                    sums = grey_level_sums(synthesis);
                  });
   return sums;
+}
+
+kernels::IntensitySums intensity_sums_at(const PairOfMaps& pair, const SynthesisOptions& options,
+                                         double view_x, Execution& execution) {
+  return sampled_sums_at(pair, options, view_x, execution);
+}
+
+kernels::IntensitySums intensity_sums_at(const PairOfMaps& pair, const SynthesisOptions& options,
+                                         const NewView& view, Execution& execution) {
+  const ViewSampling sampling = sampling_of(pair, options, view);
+  return sampled_sums_at(pair, options,
+                         sampling.samples == 1 ? view : with_samples(view, sampling.samples),
+                         execution);
 }
 
 }  // namespace
@@ -420,14 +466,27 @@ std::size_t ViewSynthesizer::working_bytes(int width, int height, int channels) 
 
 std::size_t ViewSynthesizer::working_bytes(const NewView& view, int width, int height,
                                            int channels) {
-  return working_bytes(view.width_px, view.height_px, channels) +
-         ViewFinisher<float>::surface_outline_bytes(view.width_px, view.height_px, channels) +
-         SurfaceWarper<float>::working_bytes(view, width, height);
+  const int samples = most_samples_per_side(view, width, height);
+  const NewView fine = with_samples(view, samples);
+  const std::size_t sampled_bytes = samples == 1
+                                        ? 0
+                                        : (sizeof(float) * static_cast<std::size_t>(channels) + 2) *
+                                              static_cast<std::size_t>(fine.width_px) *
+                                              static_cast<std::size_t>(fine.height_px);
+  return sampled_bytes + working_bytes(fine.width_px, fine.height_px, channels) +
+         ViewFinisher<float>::surface_outline_bytes(fine.width_px, fine.height_px, channels) +
+         SurfaceWarper<float>::working_bytes(fine, width, height);
 }
 
 std::size_t ViewSynthesizer::filling_bytes(const SynthesisOptions& options, int width, int height,
                                            int channels) {
   return ViewFinisher<float>::working_bytes(options, width, height, channels);
+}
+
+std::size_t ViewSynthesizer::filling_bytes(const SynthesisOptions& options, const NewView& view,
+                                           int width, int height, int channels) {
+  const NewView fine = with_samples(view, most_samples_per_side(view, width, height));
+  return filling_bytes(options, fine.width_px, fine.height_px, channels);
 }
 
 void ViewSynthesizer::synthesize(const Photograph& left, const Photograph& right,

@@ -14,7 +14,8 @@
 
 namespace vantage {
 
-/// One new view and how it came about. Reused from call to call without allocating.
+/// One new view and how it came about. Reused from call to call without allocating, but by views
+/// that are reduced from several samples per pixel.
 struct SynthesizedView {
   Photograph image;  ///< depth and channels of the left photograph
   Mask holes;        ///< 255 where neither image is defined, before filling
@@ -45,10 +46,12 @@ struct TripleFit {
 /// images do (RowPairWarper), else in one pass through all homographies (SurfaceWarper). Their
 /// colours are regressed on each other over the whole view (3.9–3.11), combined (3.12–3.14), and
 /// the holes filled along its scanlines. What images of a surface agree on within the gradient
-/// limit is disparity, or off the baseline nearness (NewView). At XS = 0 and 1 the view shows that
-/// camera's own pixels wherever its map is known; with γ = α unaltered. A row that neither image
-/// reaches takes the nearest row that has pixels, unless holes are left black (all channels 0). An
-/// alpha channel is warped and blended like a colour, but not regressed.
+/// limit is disparity, or off the baseline nearness (NewView). Views that reduce the images are
+/// made of several samples per pixel (view_sampling.h). At the place of a camera, XS = 0 or 1, the
+/// view shows that camera's own photograph wherever its map is known, as the homography alone moves
+/// it; with γ = α, the default, unaltered. A row that neither image reaches takes the nearest row
+/// that has pixels, unless holes are left black (all channels 0). An alpha channel is warped and
+/// blended like a colour, but not regressed.
 ///
 /// Thread rule: synthesize() may be called concurrently for different results. Results are
 /// identical for any ExecutionOptions and on any instruction set.
@@ -122,6 +125,10 @@ class ViewSynthesizer {
   /// What filling the holes takes beside that.
   [[nodiscard]] static std::size_t filling_bytes(const SynthesisOptions& options, int width,
                                                  int height, int channels);
+  /// The same for any view of images of this shape.
+  [[nodiscard]] static std::size_t filling_bytes(const SynthesisOptions& options,
+                                                 const NewView& view, int width, int height,
+                                                 int channels);
 
   [[nodiscard]] const SynthesisOptions& options() const { return options_; }
 

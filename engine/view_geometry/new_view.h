@@ -19,6 +19,19 @@ struct ViewWarp {
   [[nodiscard]] bool is_translation() const;
 };
 
+/// Closer than this to a camera of the pair, in baselines, a new camera stands at its place,
+/// whatever rounding did to either.
+inline constexpr double kSamePlace = 1e-4;
+
+/// α = dR / (dL + dR) (3.14), the share of the left image in a view so many baselines away from
+/// both cameras (3.13); 1 or 0 at the place of one of them.
+[[nodiscard]] inline double share_of_left(double distance_from_left, double distance_from_right) {
+  if (distance_from_left < kSamePlace || distance_from_right < kSamePlace) {
+    return distance_from_left < kSamePlace ? 1 : 0;
+  }
+  return distance_from_right / (distance_from_left + distance_from_right);
+}
+
 /// A new view of a rectified pair.
 ///
 /// What is seen along one ray of the new view is ordered by nearness
@@ -35,9 +48,8 @@ struct NewView {
   double distance_from_left = 0;
   double distance_from_right = 1;
 
-  /// α = dR / (dL + dR) (3.14).
   [[nodiscard]] double alpha() const {
-    return distance_from_right / (distance_from_left + distance_from_right);
+    return share_of_left(distance_from_left, distance_from_right);
   }
 };
 

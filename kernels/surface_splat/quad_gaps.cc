@@ -133,20 +133,33 @@ void fill_triangle(const Corner& a, const Corner& b, const Corner& c, const Corn
   }
 }
 
-// Adds what the triangle is at every position inside.
-void fill_whole_triangle(const Corner& a, const Corner& b, const Corner& c, const SplatBand& band) {
-  const auto first = [](double least, int limit) {
-    return std::max(static_cast<int>(std::ceil(std::max(least - kOutsidePx, -1.0))), limit);
-  };
-  const auto last = [](double most, int limit) {
-    return std::min(static_cast<int>(std::floor(std::min(most + kOutsidePx, limit + 1.0))), limit);
-  };
-  const int last_line = last(std::max({a.v, b.v, c.v}), band.first_line + band.lines - 1);
-  const int last_column = last(std::max({a.u, b.u, c.u}), band.width - 1);
-  const int first_column = first(std::min({a.u, b.u, c.u}), 0);
-  for (int v = first(std::min({a.v, b.v, c.v}), band.first_line); v <= last_line; ++v) {
-    for (int u = first_column; u <= last_column; ++u) {
+// Whole numbers from `least` on and up to `most`, within the limits; not by the library's
+// functions, which are calls on the processors that this is compiled for.
+struct WholeRange {
+  int first;
+  int last;
+
+  WholeRange(double least, double most, int least_limit, int most_limit) {
+    const double from = std::clamp(least - kOutsidePx, least_limit - 1.0, most_limit + 1.0);
+    const double to = std::clamp(most + kOutsidePx, least_limit - 1.0, most_limit + 1.0);
+    const int whole_from = static_cast<int>(from);
+    const int whole_to = static_cast<int>(to);
+    first = std::max(whole_from + (whole_from < from ? 1 : 0), least_limit);
+    last = std::min(whole_to - (whole_to > to ? 1 : 0), most_limit);
+  }
+};
+
+// Adds what a part of a quad is at every position inside its two triangles.
+void fill_part(const Corner (&part)[4], const SplatBand& band) {
+  const auto& [a, b, c, d] = part;
+  const WholeRange columns(std::min({a.u, b.u, c.u, d.u}), std::max({a.u, b.u, c.u, d.u}), 0,
+                           band.width - 1);
+  const WholeRange lines(std::min({a.v, b.v, c.v, d.v}), std::max({a.v, b.v, c.v, d.v}),
+                         band.first_line, band.first_line + band.lines - 1);
+  for (int v = lines.first; v <= lines.last; ++v) {
+    for (int u = columns.first; u <= columns.last; ++u) {
       add_inside(a, b, c, u, v, band);
+      add_inside(b, d, c, u, v, band);
     }
   }
 }
@@ -254,12 +267,16 @@ bool is_torn(const SplatRows& rows, int i) {
 }
 
 void fill_torn_quad(const SplatRows& rows, int i, const SplatBand& band) {
+  const ViewProjection& view = rows.view;
   // By corner: bit 0 is right, bit 1 is below.
   const float disparity_px[4] = {rows.upper.disparity_px[i], rows.upper.disparity_px[i + 1],
                                  rows.lower.disparity_px[i], rows.lower.disparity_px[i + 1]};
-  const auto joined = [&](unsigned p, unsigned q) {
-    return std::abs(disparity_px[p] - disparity_px[q]) <= rows.gradient_limit_px;
-  };
+  bool is_joined[4][4];
+  for (unsigned k = 0; k < 4; ++k) {
+    for (const unsigned next : {k ^ 1U, k ^ 2U}) {
+      is_joined[k][next] = std::abs(disparity_px[k] - disparity_px[next]) <= rows.gradient_limit_px;
+    }
+  }
   const auto mean = [&](unsigned p, unsigned q) {
     return 0.5 * (double{disparity_px[p]} + double{disparity_px[q]});
   };
@@ -275,32 +292,31 @@ void fill_torn_quad(const SplatRows& rows, int i, const SplatBand& band) {
     const unsigned opposite = k ^ 3U;
     bool is_on[4] = {};
     is_on[k] = true;
-    is_on[beside] = joined(k, beside) ||
-                    (joined(k, across) && joined(across, opposite) && joined(opposite, beside));
-    is_on[across] = joined(k, across) ||
-                    (joined(k, beside) && joined(beside, opposite) && joined(opposite, across));
-    is_on[opposite] =
-        (is_on[beside] && joined(beside, opposite)) || (is_on[across] && joined(across, opposite));
+    is_on[beside] = is_joined[k][beside] || (is_joined[k][across] && is_joined[across][opposite] &&
+                                             is_joined[opposite][beside]);
+    is_on[across] = is_joined[k][across] || (is_joined[k][beside] && is_joined[beside][opposite] &&
+                                             is_joined[opposite][across]);
+    is_on[opposite] = (is_on[beside] && is_joined[beside][opposite]) ||
+                      (is_on[across] && is_joined[across][opposite]);
     // The quarter of the quad beside the corner.
     Corner quarter[4];
     bool is_before = true;
     const auto set = [&](unsigned place, double x, double y, double d) {
-      const ExactTarget at = exact_target(rows.view, x, y, d);
+      const ExactTarget at = exact_target(view, x, y, d);
       is_before = is_before && at.depth_ratio > kLeastDepthRatio;
       quarter[place].u = at.u;
       quarter[place].v = at.v;
       quarter[place].nearness =
-          static_cast<float>((d - rows.view.infinity_disparity_px) * (1 / at.depth_ratio));
+          static_cast<float>((d - view.infinity_disparity_px) * (1 / at.depth_ratio));
     };
     const double x = left + (k & 1U);
     const double y = top + (k >> 1U);
     set(k, x, y, own);
-    set(beside, left + 0.5, y, joined(k, beside) ? mean(k, beside) : own);
-    set(across, x, top + 0.5, joined(k, across) ? mean(k, across) : own);
+    set(beside, left + 0.5, y, is_joined[k][beside] ? mean(k, beside) : own);
+    set(across, x, top + 0.5, is_joined[k][across] ? mean(k, across) : own);
     set(opposite, left + 0.5, top + 0.5, middle_disparity(is_on, disparity_px));
     if (is_before) {
-      fill_whole_triangle(quarter[0], quarter[1], quarter[2], band);
-      fill_whole_triangle(quarter[1], quarter[3], quarter[2], band);
+      fill_part(quarter, band);
     }
   }
 }

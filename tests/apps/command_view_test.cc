@@ -183,18 +183,18 @@ TEST_F(ViewCommand, OptionsReachThePage) {
   EXPECT_EQ(usual["height"], 53);
   EXPECT_THAT(usual["rangeX"], ElementsAre(-0.5, 1.5));
   EXPECT_THAT(usual["rangeY"], ElementsAre(-0.2, 0.2));
-  EXPECT_EQ(usual["gamma"], 0.5);
+  EXPECT_TRUE(usual["gamma"].is_null());
   EXPECT_EQ(usual["holes"], "mirror");
   EXPECT_EQ(usual["softEdges"], true);
   EXPECT_EQ(usual["gradientLimit"], 1.0);
   EXPECT_NEAR(usual["intensity"]["gain"][0], 1.0, 0.1);
 
   const nlohmann::json other =
-      scene_of(page({"--range=0:1", "--vertical-range=0:0", "--gamma", "alpha", "--holes", "spread",
+      scene_of(page({"--range=0:1", "--vertical-range=0:0", "--gamma", "0.25", "--holes", "spread",
                      "--gradient-limit", "2.5", "--no-intensity-matching"}));
   EXPECT_THAT(other["rangeX"], ElementsAre(0.0, 1.0));
   EXPECT_THAT(other["rangeY"], ElementsAre(0.0, 0.0));
-  EXPECT_TRUE(other["gamma"].is_null());
+  EXPECT_EQ(other["gamma"], 0.25);
   EXPECT_EQ(other["holes"], "spread");
   EXPECT_EQ(other["gradientLimit"], 2.5);
   EXPECT_THAT(other["intensity"]["gain"], ElementsAre(1.0, 1.0, 1.0));

@@ -1,0 +1,238 @@
+#include "engine/synthesis/view_sampling.h"
+
+#include <Eigen/Core>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <variant>
+
+#include "engine/synthesis/view_synthesizer.h"
+
+namespace vantage {
+namespace {
+
+constexpr int kMostSamples = 8;
+constexpr int kLargestSide = 65500;
+
+// Up to this much above a whole number the next one is not needed: little would alias.
+constexpr double kToleratedReduction = 0.2;
+
+// Every so manieth pixel along both axes tells how much a view reduces an image.
+constexpr int kGridPx = 16;
+
+// Disparities that are planned for, as a share of the image's width.
+constexpr double kLargestDisparity = 0.25;
+
+/// Area of a view, and how much images are reduced there: a sum over that area.
+struct Reduction {
+  double area = 0;
+  double sum = 0;
+
+  void add(const Reduction& other, double weight) {
+    area += weight * other.area;
+    sum += weight * other.sum;
+  }
+  [[nodiscard]] double mean() const { return area > 0 ? sum / area : 1; }
+};
+
+// disparity(x, y): NaN or ±inf where it is unknown.
+template <typename Disparity>
+Reduction reduction_of(const ViewWarp& warp, const NewView& view, int width, int height,
+                       const Disparity& disparity) {
+  Reduction result;
+  for (int y = std::min(kGridPx, height) / 2; y < height; y += kGridPx) {
+    for (int x = std::min(kGridPx, width) / 2; x < width; x += kGridPx) {
+      const double d = disparity(x, y);
+      if (!std::isfinite(d)) {
+        continue;
+      }
+      const Eigen::Vector3d at = warp.homography * Eigen::Vector3d(x, y, 1) + d * warp.parallax;
+      const Eigen::Vector2d target = at.head<2>() / at.z();
+      if (!(at.z() > 0) || !(target.x() > -0.5) || !(target.x() < view.width_px - 0.5) ||
+          !(target.y() > -0.5) || !(target.y() < view.height_px - 0.5)) {
+        continue;
+      }
+      // ∂(u, v) / ∂(x, y)
+      const Eigen::Matrix2d growth = (warp.homography.topLeftCorner<2, 2>() -
+                                      target * warp.homography.bottomLeftCorner<1, 2>()) /
+                                     at.z();
+      const double area = std::abs(growth.determinant());
+      const double least = growth.jacobiSvd().singularValues()(1);
+      if (least > 0) {
+        result.area += area;
+        result.sum += area / least;
+      }
+    }
+  }
+  return result;
+}
+
+int samples_for(double reduction, const NewView& view) {
+  const int largest_side = std::max(view.width_px, view.height_px);
+  const int most = std::clamp(kLargestSide / std::max(largest_side, 1), 1, kMostSamples);
+  const double wanted = std::ceil(reduction - kToleratedReduction);
+  return wanted > 1 ? static_cast<int>(std::min(wanted, 1.0 * most)) : 1;  // 1 also for NaN
+}
+
+bool keeps_sizes(const NewView& view) {
+  return view.from_left.is_translation() && view.from_right.is_translation();
+}
+
+/// Weights of the samples along a line through a pixel, the outermost of which are the neighbours'.
+///
+/// Variances of what samples stand for add up: that of a pixel of the view is m²/12 in pixels of
+/// the images, m the reduction; interpolated samples bring 1/12, so that their places must spread
+/// by (m² − 1)/12. Equal weights for a pixel's own samples do so if there are m of them.
+class SampleWeights {
+ public:
+  explicit SampleWeights(const ViewSampling& sampling) : count_(sampling.samples + 2) {
+    const double samples = sampling.samples;
+    const double distance = sampling.reduction / samples;  // of two samples, in image pixels
+    const double wanted =
+        (sampling.reduction * sampling.reduction - 1) / (12 * distance * distance);
+    const double own = (samples * samples - 1) / 12;  // with equal weights
+    const double beside = (samples + 1) * (samples + 1) / 4;
+    const double outer = (wanted - own) / (2 * (beside - own));
+    std::fill_n(weights_.begin(), count_, static_cast<float>((1 - 2 * outer) / samples));
+    weights_.front() = weights_[static_cast<std::size_t>(count_ - 1)] = static_cast<float>(outer);
+  }
+
+  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] float operator[](int sample) const {
+    return weights_[static_cast<std::size_t>(sample)];
+  }
+
+ private:
+  int count_;
+  std::array<float, kMostSamples + 2> weights_{};
+};
+
+template <typename T>
+void reduce_row(const Image<T>& fine, const SampleWeights& weights, int y, Image<T>& image) {
+  const int samples = weights.count() - 2;
+  const int channels = fine.channels();
+  const float largest = 255 / kGreyLevelsPerUnit<T>;
+  T* row = image.row(y);
+  for (int x = 0; x < image.width(); ++x) {
+    for (int c = 0; c < channels; ++c) {
+      float sum = 0;
+      for (int j = 0; j < weights.count(); ++j) {
+        const T* line = fine.row(std::clamp(samples * y + j - 1, 0, fine.height() - 1));
+        float along = 0;
+        for (int i = 0; i < weights.count(); ++i) {
+          const int column = std::clamp(samples * x + i - 1, 0, fine.width() - 1);
+          along += weights[i] * static_cast<float>(line[column * channels + c]);
+        }
+        sum += weights[j] * along;
+      }
+      if constexpr (std::is_integral_v<T>) {
+        sum = std::clamp(sum, 0.0F, largest) + 0.5F;
+      }
+      row[x * channels + c] = static_cast<T>(sum);
+    }
+  }
+}
+
+// Calls add(value) for all samples of a pixel.
+template <typename Add>
+void for_each_sample(const Mask& fine, int samples, int x, int y, const Add& add) {
+  for (int j = 0; j < samples; ++j) {
+    for (int i = 0; i < samples; ++i) {
+      add(fine.at(samples * x + i, samples * y + j));
+    }
+  }
+}
+
+}  // namespace
+
+ViewSampling view_sampling(const NewView& view, ImageView<const float> left_disparity_px,
+                           ImageView<const float> right_disparity_px) {
+  if (keeps_sizes(view)) {
+    return {};
+  }
+  const auto of_map = [&](const ViewWarp& warp, ImageView<const float> map_px) {
+    return reduction_of(warp, view, map_px.width(), map_px.height(),
+                        [&](int x, int y) { return double{map_px.at(x, y)}; });
+  };
+  Reduction reduction;
+  reduction.add(of_map(view.from_left, left_disparity_px), view.alpha());
+  reduction.add(of_map(view.from_right, right_disparity_px), 1 - view.alpha());
+  const int most =
+      most_samples_per_side(view, left_disparity_px.width(), left_disparity_px.height());
+  return {.samples = std::min(samples_for(reduction.mean(), view), most),
+          .reduction = reduction.mean()};
+}
+
+int most_samples_per_side(const NewView& view, int source_width, int source_height) {
+  if (keeps_sizes(view)) {
+    return 1;
+  }
+  double most = 1;
+  for (const double nearest : {0.0, kLargestDisparity * source_width}) {
+    for (const ViewWarp* warp : {&view.from_left, &view.from_right}) {
+      most = std::max(most, reduction_of(*warp, view, source_width, source_height, [&](int, int) {
+                              return view.infinity_disparity_px + nearest;
+                            }).mean());
+    }
+  }
+  return samples_for(most, view);
+}
+
+NewView with_samples(const NewView& view, int samples) {
+  Eigen::Matrix3d finer = Eigen::Matrix3d::Identity();
+  finer(0, 0) = finer(1, 1) = samples;
+  finer(0, 2) = finer(1, 2) = 0.5 * (samples - 1);
+  NewView result = view;
+  result.width_px = samples * view.width_px;
+  result.height_px = samples * view.height_px;
+  for (ViewWarp* warp : {&result.from_left, &result.from_right}) {
+    warp->homography = finer * warp->homography;
+    warp->parallax = finer * warp->parallax;
+  }
+  return result;
+}
+
+void reduce_view(const SynthesizedView& fine, const ViewSampling& sampling, SynthesizedView& view,
+                 Execution& execution) {
+  const int samples = sampling.samples;
+  const SampleWeights weights(sampling);
+  const int width = fine.image.width() / samples;
+  const int height = fine.image.height() / samples;
+  view.holes.resize(width, height);
+  view.sources.resize(width, height);
+  view.intensity = fine.intensity;
+  std::visit(
+      [&]<typename T>(const Image<T>& fine_image) {
+        if (!std::holds_alternative<Image<T>>(view.image.pixels)) {
+          view.image.pixels.template emplace<Image<T>>();
+        }
+        auto& image = std::get<Image<T>>(view.image.pixels);
+        image.resize(width, height, fine_image.channels());
+        execution.for_each_band(height, [&](int first_row, int end_row) {
+          for (int y = first_row; y < end_row; ++y) {
+            reduce_row(fine_image, weights, y, image);
+            for (int x = 0; x < width; ++x) {
+              unsigned holes = 255;
+              unsigned sources = 0;
+              for_each_sample(fine.holes, samples, x, y, [&](unsigned value) { holes &= value; });
+              for_each_sample(fine.sources, samples, x, y,
+                              [&](unsigned value) { sources |= value; });
+              view.holes.at(x, y) = static_cast<std::uint8_t>(holes);
+              view.sources.at(x, y) = static_cast<std::uint8_t>(sources);
+            }
+          }
+        });
+      },
+      fine.image.pixels);
+  std::int64_t holes = 0;
+  for (int y = 0; y < height; ++y) {
+    holes += std::count(view.holes.row(y), view.holes.row(y) + width, std::uint8_t{255});
+  }
+  view.hole_fraction = static_cast<double>(holes) / (static_cast<double>(width) * height);
+}
+
+}  // namespace vantage
