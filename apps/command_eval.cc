@@ -170,7 +170,7 @@ int command_eval(const Arguments& arguments) {
   Settings settings("eval",
                     "Compares a disparity map or, with --views, a photograph with the truth.");
   add_eval_settings(settings, job);
-  add_common_settings(settings, job.common);
+  add_common_settings(settings, job.common, Work::kWithoutMatching);
   if (!settings.read(arguments)) {
     return kExitDone;
   }

@@ -75,11 +75,14 @@ int command_generate_book(const Arguments& arguments) {
   BookJob job;
   Settings settings("generate book", "Writes a synthetic pair of the book with its truth.");
   add_book_settings(settings, job);
-  add_common_settings(settings, job.common);
+  add_common_settings(settings, job.common, Work::kWithoutMatching);
   if (!settings.read(arguments)) {
     return kExitDone;
   }
   job.pair.validate();
+  if (job.pair.shape == BookShape::kSquare) {
+    settings.refuse_idle({"narrow-disparity"}, "without bars (--pattern rds-bars or real-bars)");
+  }
   job.common.execution.validate();
   FileChecks checks(settings);
   GeneratedFiles::check(

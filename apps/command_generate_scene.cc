@@ -78,8 +78,11 @@ std::string view_name(const SceneJob& job, BaselinePosition view) {
 
 std::string camera_name(std::size_t camera) { return fmt::format("camera-{}", camera); }
 
-void check(const SceneJob& job) {
+void check(const SceneJob& job, const Settings& settings) {
   job.scene.validate();
+  if (!job.frames) {
+    settings.refuse_idle({"frames-per-cycle"}, "without --frames");
+  }
   job.common.execution.validate();
   if (job.frames && (*job.frames < 1 || *job.frames > kMaxFrames)) {
     throw UsageError(
@@ -179,11 +182,11 @@ int command_generate_scene(const Arguments& arguments) {
   Settings settings("generate scene",
                     "Renders a made-up moving scene for both cameras, with its truth.");
   add_scene_settings(settings, job);
-  add_common_settings(settings, job.common);
+  add_common_settings(settings, job.common, Work::kWithoutMatching);
   if (!settings.read(arguments)) {
     return kExitDone;
   }
-  check(job);
+  check(job, settings);
   job.cameras = cameras_of(job);
   check_files(job, settings);
   RunReport report(settings.command(), settings.values());

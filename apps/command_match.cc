@@ -14,6 +14,7 @@
 #include "engine/io/disparity_io.h"
 #include "engine/io/displacement_io.h"
 #include "engine/io/photograph_io.h"
+#include "engine/matching/method_names.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/memory_use.h"
 #include "engine/sequence/preview_range.h"
@@ -176,9 +177,9 @@ int command_match(const Arguments& arguments) {
 
   report.write(job.common.report);
   if (!job.common.quiet) {
-    tell("match: {}x{} pixels, disparities {}:{}, {} -> {}\n", images[0].width(),
-         images[0].height(), job.match.disparities.min, job.match.disparities.max, job.left,
-         job.output);
+    tell("match: {} ({}), {}x{} pixels, disparities {}:{}, {} -> {}\n", job.match.chosen(),
+         summary_of(job.match.resolved()), images[0].width(), images[0].height(),
+         job.match.disparities.min, job.match.disparities.max, job.left, job.output);
     print_levels(match);
     report.print_summary();
   }

@@ -221,7 +221,7 @@ int command_rectify(const Arguments& arguments) {
                     "Turns photographs of two cameras so that their rows correspond, and tells how "
                     "well they do.");
   add_rectify_settings(settings, job);
-  add_common_settings(settings, job.common);
+  add_common_settings(settings, job.common, Work::kWithoutMatching);
   if (!settings.read(arguments)) {
     return kExitDone;
   }

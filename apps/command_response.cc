@@ -209,7 +209,7 @@ int command_response(const Arguments& arguments) {
                     "Sums the gradient evidence of a pair for a range of displacements, over the "
                     "image and its quadrants, and prints where it is largest.");
   add_response_settings(settings, job);
-  add_common_settings(settings, job.common);
+  add_common_settings(settings, job.common, Work::kWithoutMatching);
   if (!settings.read(arguments)) {
     return kExitDone;
   }

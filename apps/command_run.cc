@@ -86,12 +86,12 @@ int command_run(const Arguments& arguments) {
     return kExitDone;
   }
   take_up_run(arguments, settings, job);
-  complete(job);
+  complete(job, settings);
   RunReport report(settings.command(), reported_settings(settings, job.sequence.match));
   report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
   RunSession session = open_run(job, settings, report);
-  const std::string plan = describe_plan(job, settings, session);
+  const std::string plan = describe_plan(job, session);
   if (job.dry_run) {
     fmt::print("{}", plan);
     return kExitDone;

@@ -85,7 +85,7 @@ int command_scene_view(const Arguments& arguments) {
   SceneViewJob job;
   Settings settings("scene view", "Renders new views among the images of a scene.");
   add_settings(settings, job);
-  add_common_settings(settings, job.common);
+  add_common_settings(settings, job.common, Work::kWithoutMatching);
   if (!settings.read(arguments)) {
     return kExitDone;
   }

@@ -219,7 +219,7 @@ int command_submit(const Arguments& arguments) {
     return kExitDone;
   }
   check(job);
-  complete(job.run);
+  complete(job.run, settings);
   make_paths_absolute(job);
   require_folder_for_scripts(job.run.output);
   const fs::path folder = slurm_folder(job.run.output);

@@ -47,6 +47,7 @@ void add_file_settings(Settings& settings, SynthJob& job) {
 
 void check(const SynthJob& job, const Settings& settings, const ViewOutputs& outputs) {
   job.synthesis.validate();
+  check_combining(settings, job.synthesis);
   job.common.execution.validate();
   check_pair(job.pair, settings);
   FileChecks files(settings);

@@ -85,6 +85,7 @@ int command_view(const Arguments& arguments) {
     return kExitDone;
   }
   job.page.validate();
+  check_combining(settings, job.page.synthesis);
   job.common.execution.validate();
   check_pair(job.pair, settings);
   FileChecks files(settings);

@@ -12,6 +12,7 @@
 #include "apps/commands.h"
 #include "apps/process_setup.h"
 #include "apps/setting_value.h"
+#include "apps/suggestions.h"
 #include "apps/tell.h"
 #include "engine/build_info.h"
 #include "engine/error.h"
@@ -30,7 +31,7 @@ std::string help() {
     text += fmt::format("  {:<15} {}\n", command.name, command.summary);
   }
   return text +
-         "\n'vantage COMMAND --help' lists its options; --version tells the version.\n"
+         "\n'vantage help COMMAND' lists its options; --version tells the version.\n"
          "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 frames skipped, 130 interrupted.\n";
 }
 
@@ -58,10 +59,11 @@ std::string unknown_command(const Arguments& arguments) {
     }
   }
   if (!kinds.empty()) {
-    return fmt::format("expected {}", kinds);
+    return fmt::format("'{}' is the first word of several commands, expected {}", arguments.front(),
+                       kinds);
   }
-  return fmt::format("unknown command '{}', the nearest known one is '{}'", arguments.front(),
-                     vantage::apps::nearest_name(arguments.front(), names));
+  return fmt::format("unknown command '{}'{}", arguments.front(),
+                     vantage::apps::hint_for_command(arguments.front(), names));
 }
 
 /// One line on stderr, whatever the message holds.
@@ -80,6 +82,10 @@ constexpr int kExitUnread = 128 + SIGPIPE;
 int run(Arguments arguments, std::string& name) {
   if (arguments.empty()) {
     throw vantage::UsageError("a command is missing; see 'vantage --help'");
+  }
+  if (arguments.front() == "help") {
+    std::rotate(arguments.begin(), arguments.begin() + 1, arguments.end());
+    arguments.back() = "--help";
   }
   if (arguments.front() == "--help" || arguments.front() == "-h") {
     std::fputs(help().c_str(), stdout);

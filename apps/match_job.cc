@@ -70,7 +70,10 @@ void add_file_settings(Settings& settings, MatchJob& job) {
   add_rectification_check_setting(settings, job.check_rectification);
 }
 
-void check_several(const MatchJob& job) {
+void check_several(const MatchJob& job, const Settings& settings) {
+  settings.refuse_idle({"cross-check", "cross-check-level"},
+                       "with several images, which have one map: there is none to compare it with");
+  settings.refuse_idle({"tuning"}, "with several images: tuning is for pairs");
   const std::size_t others = 1 + job.more.size();
   if (job.baselines.size() != others) {
     throw UsageError(
@@ -107,12 +110,15 @@ void check(const MatchJob& job, const Settings& settings) {
   job.match.validate();
   job.common.execution.validate();
   if (job.has_several()) {
-    check_several(job);
+    check_several(job, settings);
   } else if (job.match.reference == Reference::kRight &&
              !(job.output_right.empty() && job.unmatched_right.empty())) {
     throw UsageError(fmt::format("--{} cannot go with --reference right: {} is of the right map",
                                  job.output_right.empty() ? "unmatched-right" : "output-right",
                                  job.output_right.empty() ? "--unmatched" : "--output"));
+  }
+  if (job.tuning.ignored) {
+    settings.refuse_idle({"tuning"}, "with --no-tuning");
   }
   if (has_extension(job.confidence, {".png"})) {
     throw UsageError(

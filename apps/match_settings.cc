@@ -6,73 +6,22 @@
 
 #include "engine/error.h"
 #include "engine/matching/match_presets.h"
+#include "engine/matching/method_names.h"
 
 namespace vantage::apps {
 namespace {
 
 constexpr double kNoThreshold = -std::numeric_limits<double>::infinity();
 
-template <typename Enum>
-using Names = std::vector<std::pair<std::string_view, Enum>>;
-
-const Names<MatchMethod>& method_names() {
-  static const Names<MatchMethod> names = {{"ssd", MatchMethod::kSsd},
-                                           {"gradient", MatchMethod::kGradient},
-                                           {"diffusion", MatchMethod::kDiffusion},
-                                           {"membrane", MatchMethod::kMembrane},
-                                           {"local-stopping", MatchMethod::kLocalStopping},
-                                           {"bayes", MatchMethod::kBayes}};
-  return names;
-}
-
-const Names<MatchPreset>& preset_names() {
-  static const Names<MatchPreset> names = {{"fast", MatchPreset::kFast},
-                                           {"balanced", MatchPreset::kBalanced},
-                                           {"quality", MatchPreset::kQuality}};
-  return names;
-}
-
-const Names<MatchCost>& cost_names() {
-  static const Names<MatchCost> names = {
-      {"squared", MatchCost::kSquared},     {"absolute", MatchCost::kAbsolute},
-      {"truncated", MatchCost::kTruncated}, {"birchfield-tomasi", MatchCost::kBirchfieldTomasi},
-      {"gradient", MatchCost::kGradient},   {"contaminated", MatchCost::kContaminated},
-      {"census", MatchCost::kCensus},       {"census-rays", MatchCost::kRayCensus},
-      {"combined", MatchCost::kCombined}};
-  return names;
-}
-
-const Names<Aggregation>& aggregation_names() {
-  static const Names<Aggregation> names = {{"none", Aggregation::kNone},
-                                           {"box", Aggregation::kBox},
-                                           {"gaussian", Aggregation::kGaussian},
-                                           {"box-cascade", Aggregation::kBoxCascade},
-                                           {"diffusion", Aggregation::kDiffusion},
-                                           {"membrane", Aggregation::kMembrane},
-                                           {"local-stopping", Aggregation::kLocalStopping},
-                                           {"bayes", Aggregation::kBayes}};
-  return names;
-}
-
-template <typename Enum>
-std::string name_of(Enum value, const Names<Enum>& names) {
-  for (const auto& [name, named] : names) {
-    if (named == value) {
-      return std::string(name);
-    }
-  }
-  return "";
-}
-
 /// "auto: squared; gradient for gradient, …": a default that depends on the method. The rule is
 /// what most methods have.
 template <typename Enum>
-std::string by_method(const Names<Enum>& names, Enum MethodParameters::*field, Enum rule) {
-  std::string text = fmt::format("auto: {}", name_of(rule, names));
+std::string by_method(const EnumNames<Enum>& names, Enum MethodParameters::*field, Enum rule) {
+  std::string text = fmt::format("auto: {}", name_of(rule));
   std::string separator = "; ";
   for (const auto& [method_name, method] : method_names()) {
     if (const Enum value = book_parameters(method).*field; value != rule) {
-      text += fmt::format("{}{} for {}", separator, name_of(value, names), method_name);
+      text += fmt::format("{}{} for {}", separator, name_of(value), method_name);
       separator = ", ";
     }
   }
@@ -342,7 +291,7 @@ std::string describe(MatchPreset preset) {
   const SettingValue unset = settings.values();
   options.parameters = preset_values.parameters;
   options.refinement = preset_values.refinement;
-  std::string text = name_of(preset_values.method, method_names());
+  std::string text(name_of(preset_values.method));
   const SettingValue values = settings.values();
   for (const auto& [name, value] : values.items()) {
     if (value != unset[name]) {
@@ -359,7 +308,7 @@ void add_method_settings(Settings& settings, MatchOptions& options) {
                   "without one ssd");
   std::string help =
       "For real photographs, instead of --method; what it sets goes before auto; auto: balanced, "
-      "none with --method, --cost, --aggregate, --disparities-y or several images";
+      "none with --method, --aggregate, --disparities-y or several images, which begin with ssd";
   for (const auto& [name, preset] : preset_names()) {
     help += fmt::format("; {}: {}", name, describe(preset));
   }
@@ -447,7 +396,8 @@ SettingValue reported_settings(const Settings& settings, const MatchOptions& opt
   add_match_settings(resolved, in_force);
   SettingValue values = settings.values();
   values["resolved"] = resolved.values();
-  values["resolved"]["preset"] = "none";  // its values are all there
+  const std::optional<MatchPreset> preset = options.preset_in_force();
+  values["resolved"]["preset"] = preset ? std::string(name_of(*preset)) : "none";
   return values;
 }
 

@@ -19,7 +19,8 @@ void add_gradient_settings(Settings& settings, MethodOverrides& parameters);
 void add_reference_setting(Settings& settings, MatchOptions& options);
 
 /// What a report shows: the values of `settings` and, under `resolved`, those of
-/// add_match_settings() that are in force after preset and method have filled in what is not set.
+/// add_match_settings() that are in force after preset and method have filled in what is not set;
+/// there `preset` is the one that did, or "none".
 SettingValue reported_settings(const Settings& settings, const MatchOptions& options);
 
 }  // namespace vantage::apps

@@ -5,7 +5,7 @@
 #include "engine/error.h"
 
 namespace vantage::apps {
-void add_common_settings(Settings& settings, CommonOptions& options) {
+void add_common_settings(Settings& settings, CommonOptions& options, Work work) {
   using scheduler::ExecutorKind;
   using scheduler::ThreadBinding;
   settings.begin_group("Execution (never changes a result)", false);
@@ -22,12 +22,14 @@ void add_common_settings(Settings& settings, CommonOptions& options) {
                                   {"core", ThreadBinding::kCores}},
                                  "Keep each thread on the cores of one NUMA node, or on one core; "
                                  "auto: on nodes where one has too few cores for all threads");
-  settings.integer("strip-width", options.execution.strip_width_px, "PX",
-                   "Columns of a strip; auto: from the cache sizes");
-  settings.integer("band-height", options.execution.band_height_px, "PX",
-                   "Rows of a band; auto: from the cache sizes");
-  settings.integer("iterations-per-pass", options.execution.iterations_per_pass, "K",
-                   "Iterations between two stores of their state; auto: from the cache sizes");
+  if (work == Work::kWithMatching) {
+    settings.integer("strip-width", options.execution.strip_width_px, "PX",
+                     "Columns of a strip; auto: from the cache sizes");
+    settings.integer("band-height", options.execution.band_height_px, "PX",
+                     "Rows of a band; auto: from the cache sizes");
+    settings.integer("iterations-per-pass", options.execution.iterations_per_pass, "K",
+                     "Iterations between two stores of their state; auto: from the cache sizes");
+  }
   settings.text("isa", options.isa, "NAME",
                 "Instruction set of the kernels; best, or a name of 'vantage info'");
   settings.begin_group("Messages", false);
@@ -75,6 +77,12 @@ void add_combining_settings(Settings& settings, SynthesisOptions& options) {
                   "view's position, at a camera's place as its photograph",
                   "alpha");
   add_surface_settings(settings, options);
+}
+
+void check_combining(const Settings& settings, const SynthesisOptions& options) {
+  if (!options.match_intensities) {
+    settings.refuse_idle({"gamma"}, "with --no-intensity-matching");
+  }
 }
 
 void add_surface_settings(Settings& settings, SynthesisOptions& options) {

@@ -22,7 +22,10 @@ struct CommonOptions {
 };
 
 // Each binds the fields of one option struct to its settings: the only list of them.
-void add_common_settings(Settings& settings, CommonOptions& options);
+/// Whether a command has pairs matched: strips, bands and passes are of that work only.
+enum class Work { kWithMatching, kWithoutMatching };
+void add_common_settings(Settings& settings, CommonOptions& options,
+                         Work work = Work::kWithMatching);
 /// The files of --report and --trace.
 void check_common_files(const CommonOptions& options, FileChecks& files);
 void add_synthesis_settings(Settings& settings, SynthesisOptions& options);
@@ -31,7 +34,9 @@ void add_holes_setting(Settings& settings, HoleFilling& holes);
 void add_soft_edges_setting(Settings& settings, bool& soft_edges);
 /// How two warped images become one.
 void add_combining_settings(Settings& settings, SynthesisOptions& options);
-/// The same without gamma.
+/// Refuses a gamma that nothing reads.
+void check_combining(const Settings& settings, const SynthesisOptions& options);
+/// The same settings without gamma.
 void add_surface_settings(Settings& settings, SynthesisOptions& options);
 
 /// --seed, a whole number of at least 0.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
 #include <utility>
 
 #include "apps/automatic_disparities.h"
@@ -20,12 +21,11 @@ void refuse_idle_match_options(const Settings& settings) {
   Settings matching("match", "");
   MatchOptions unused;
   add_match_settings(matching, unused);
+  constexpr std::string_view kWithMaps = "with --left-disparity and --right-disparity";
+  settings.refuse_idle({"strip-width", "band-height", "iterations-per-pass"}, kWithMaps);
   const SettingValue options = matching.values();
   for (const auto& [name, value] : options.items()) {
-    if (settings.given_on_command_line(name)) {
-      throw UsageError(
-          fmt::format("--{} has no effect with --left-disparity and --right-disparity", name));
-    }
+    settings.refuse_idle({name.c_str()}, kWithMaps);
   }
 }
 
@@ -87,8 +87,8 @@ void check_pair(const PairInput& pair, const Settings& settings) {
     }
   }
   pair.rectification.validate();
-  if (settings.given_on_command_line("kept-outline") && pair.calibration.empty()) {
-    throw UsageError("--kept-outline has no effect without --calibration");
+  if (pair.calibration.empty()) {
+    settings.refuse_idle({"kept-outline"}, "without --calibration");
   }
 }
 

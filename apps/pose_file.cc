@@ -11,6 +11,7 @@
 
 #include "apps/matrix_rows.h"
 #include "apps/outputs.h"
+#include "apps/suggestions.h"
 #include "apps/toml_file.h"
 #include "engine/error.h"
 
@@ -93,8 +94,7 @@ PoseEntry entry_of(const SettingValue& entry, const std::string& where) {
   }
   for (const auto& [key, value] : entry.items()) {
     if (std::ranges::find(kKeys, key) == kKeys.end()) {
-      throw UsageError(fmt::format("{}: unknown key '{}', the nearest known one is '{}'", where,
-                                   key, nearest_name(key, kKeys)));
+      throw UsageError(fmt::format("{}: unknown key '{}'{}", where, key, hint_for_key(key, kKeys)));
     }
   }
   PoseEntry result;

@@ -73,7 +73,7 @@ void ProfiledCommand::check() {
   }
   auto& run = std::get<RunJob>(job_);
   refuse_if(run.dry_run, "dry-run", "it does no work");
-  complete(run);
+  complete(run, settings_);
   const std::array<std::pair<bool*, const char*>, 3> openings = {
       {{&run.resume, "resume"}, {&run.overwrite, "overwrite"}, {&run.force, "force"}}};
   for (const auto& [given, option] : openings) {

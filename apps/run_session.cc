@@ -93,14 +93,6 @@ std::string outputs_text(const RunJob& job) {
   return text;
 }
 
-std::string matcher_text(const RunJob& job, const SettingValue& values) {
-  const MatchOptions& match = job.sequence.match;
-  if (match.preset_in_force()) {
-    return "preset " + (match.preset ? values["preset"].get<std::string>() : "balanced");
-  }
-  return "method " + (match.method ? values["method"].get<std::string>() : "ssd");
-}
-
 std::string strips_text(const scheduler::ChainPlan& plan) {
   const scheduler::PassPlan& pass = plan.passes.front();
   std::string text = fmt::format("{} strip{} of {} columns x {} band{} of {} rows", pass.strips,
@@ -213,7 +205,7 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   return session;
 }
 
-std::string describe_plan(const RunJob& job, const Settings& settings, const RunSession& session) {
+std::string describe_plan(const RunJob& job, const RunSession& session) {
   const FrameRange own = session.selection.own();
   std::string text;
   const auto line = [&](const std::string& content) { text += "run: " + content + "\n"; };
@@ -226,7 +218,7 @@ std::string describe_plan(const RunJob& job, const Settings& settings, const Run
   for (const std::string& remark : session.pairs->remarks()) {
     line("note: " + remark);
   }
-  line(fmt::format("{}, disparities {}:{}, {}", matcher_text(job, settings.values()),
+  line(fmt::format("{}, disparities {}:{}, {}", job.sequence.match.chosen(),
                    job.sequence.match.disparities.min, job.sequence.match.disparities.max,
                    strips_text(session.memory.chain)));
   line(fmt::format("{}, {} frame{} in flight; memory about {}{}", session.executor,

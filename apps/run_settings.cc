@@ -298,6 +298,42 @@ void add_pipeline_settings(Settings& settings, RunJob& job) {
                                  "terminal, else lines");
 }
 
+/// What says how outputs are made that are not made.
+void refuse_idle_outputs(const Settings& settings, const SequenceOptions& sequence) {
+  using Output = SequenceOutput;
+  const auto saves_any = [&](std::initializer_list<Output> outputs) {
+    return std::ranges::any_of(outputs, [&](Output output) { return sequence.saves(output); });
+  };
+  if (sequence.video.empty()) {
+    settings.refuse_idle({"fps", "crf", "no-sound"}, "without --video");
+  }
+  if (!saves_any({Output::kDisparity, Output::kRightDisparity, Output::kConfidence})) {
+    settings.refuse_idle({"format"}, "where --save has no disparity, right-disparity, confidence");
+  }
+  if (!saves_any({Output::kDisparity, Output::kConfidence, Output::kUnmatched, Output::kPreview})) {
+    settings.refuse_idle({"reference"},
+                         "where --save has no disparity, confidence, unmatched, preview");
+  }
+  if (!sequence.saves(Output::kPreview)) {
+    settings.refuse_idle({"preview-range"}, "where --save has no preview");
+  }
+  if (!sequence.saves(Output::kStereo)) {
+    settings.refuse_idle({"stereo-views", "stereo-packing"}, "where --save has no stereo");
+  }
+  if (!saves_any({Output::kViews, Output::kHoles, Output::kSources, Output::kStereo})) {
+    settings.refuse_idle({"intensity-fit", "warp", "holes", "soft-edges", "gamma", "gradient-limit",
+                          "no-intensity-matching"},
+                         "where --save has no views, holes, sources, stereo");
+  }
+  check_combining(settings, sequence.synthesis);
+  if (!sequence.synthesis.match_intensities) {
+    settings.refuse_idle({"intensity-fit"}, "with --no-intensity-matching");
+  }
+  if (sequence.temporal.weight == 0 && !sequence.measure_flicker) {
+    settings.refuse_idle({"temporal-threshold"}, "without --temporal-prior and --measure-flicker");
+  }
+}
+
 }  // namespace
 
 void add_run_settings(Settings& settings, RunJob& job) {
@@ -328,9 +364,16 @@ void complete_sequence(RunJob& job) {
   sequence.validate();
 }
 
-void complete(RunJob& job) {
+void complete(RunJob& job, const Settings& settings) {
   read_pose_files(job.views);
   complete_sequence(job);
+  refuse_idle_outputs(settings, job.sequence);
+  if (job.tuning.ignored) {
+    settings.refuse_idle({"tuning"}, "with --no-tuning");
+  }
+  if (job.memory_bytes) {
+    settings.refuse_idle({"tuning"}, "with --memory, for which the cost model plans");
+  }
   check_views(job.views, job.sequence.views, job.sequence.look_at_px, !job.calibration.empty());
   job.input.validate();
   job.rectification.validate();

@@ -59,7 +59,7 @@ void complete_sequence(RunJob& job);
 
 /// The same of all fields, with the files of poses read. Throws UsageError where fields are wrong
 /// or do not go together; other files are not looked at.
-void complete(RunJob& job);
+void complete(RunJob& job, const Settings& settings);
 
 /// Tells `files` what runs write to the folder of `layout`, which `option` names.
 void add_run_outputs(const SequenceLayout& layout, const std::string& option, FileChecks& files);

@@ -106,11 +106,7 @@ std::vector<SceneImage> scene_images(const SceneImagesInput& input, const Settin
   if (input.positions.empty()) {
     return images_on_grid(input);
   }
-  for (const char* option : {"grid", "spacing"}) {
-    if (settings.given_on_command_line(option)) {
-      throw UsageError(fmt::format("--{} has no effect with --positions", option));
-    }
-  }
+  settings.refuse_idle({"grid", "spacing"}, "with --positions");
   return read_position_list(input.positions);
 }
 

@@ -26,8 +26,4 @@ std::vector<SettingValue> to_list(const SettingValue& value);
 /// The parts of `text` between `separator`s; at least one.
 std::vector<std::string> split(std::string_view text, char separator);
 
-/// The candidate that takes the fewest edits (insertion, deletion, substitution) from `text`; empty
-/// when there is no candidate.
-std::string nearest_name(std::string_view text, const std::vector<std::string>& candidates);
-
 }  // namespace vantage::apps

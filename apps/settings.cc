@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cstdio>
 
+#include "apps/suggestions.h"
 #include "apps/toml_file.h"
 #include "engine/error.h"
 #include "engine/io/stored_name.h"
@@ -75,18 +76,18 @@ CLI::Option* add_option(CLI::App& app, const Setting& setting) {
   return option;
 }
 
-[[noreturn]] void reject_option(const std::string& argument,
+[[noreturn]] void reject_option(const std::string& command, const std::string& argument,
                                 const std::vector<std::string>& known) {
   const std::string name = argument.substr(0, argument.find('='));
-  throw UsageError(fmt::format("unknown option '{}', the nearest known one is '{}'", name,
-                               nearest_name(name, known)));
+  throw UsageError(
+      fmt::format("unknown option '{}'{}", name, hint_for_option(command, name, known)));
 }
 
-void require_known(const std::vector<std::string>& leftovers,
+void require_known(const std::string& command, const std::vector<std::string>& leftovers,
                    const std::vector<std::string>& known) {
   for (const std::string& argument : leftovers) {
     if (argument.size() > 1 && argument[0] == '-') {
-      reject_option(argument, known);
+      reject_option(command, argument, known);
     }
   }
   if (!leftovers.empty()) {
@@ -103,11 +104,12 @@ void set_value(const Setting& setting, const SettingValue& value, const std::str
 }
 
 /// CLI11 takes "-7" for a number and so for a positional argument; here those are files.
-void require_files(const std::vector<std::string>& texts, const std::vector<std::string>& known) {
+void require_files(const std::string& command, const std::vector<std::string>& texts,
+                   const std::vector<std::string>& known) {
   for (const std::string& text : texts) {
     if (text.size() > 1 && text[0] == '-' &&
         (text[1] == '.' || std::isdigit(static_cast<unsigned char>(text[1])) != 0)) {
-      reject_option(text, known);
+      reject_option(command, text, known);
     }
   }
 }
@@ -318,10 +320,10 @@ bool Settings::read(const std::vector<std::string>& arguments) {
     return false;
   } catch (const CLI::ParseError& error) {
     // An unknown option is the likelier cause of whatever CLI11 stumbled over.
-    require_known(app.remaining(), known);
+    require_known(command_, app.remaining(), known);
     throw UsageError(first_line(error.what()));
   }
-  require_known(app.remaining(), known);
+  require_known(command_, app.remaining(), known);
 
   if (!job_file.empty() && !config_path.empty()) {
     throw UsageError(
@@ -338,7 +340,7 @@ bool Settings::read(const std::vector<std::string>& arguments) {
       continue;
     }
     if (setting.positional) {
-      require_files(texts, known);
+      require_files(command_, texts, known);
     }
     const std::string shown_name = setting.positional ? setting.value_name : "--" + setting.name;
     if (!setting.list && texts.size() > 1) {
@@ -347,7 +349,7 @@ bool Settings::read(const std::vector<std::string>& arguments) {
     }
     set_value(setting, setting.list ? SettingValue(texts) : SettingValue(texts.front()),
               shown_name);
-    given_.insert(setting.name);
+    set_.insert(setting.name);
   }
 
   if (print_config) {
@@ -368,12 +370,16 @@ void Settings::apply_config(const std::string& path) {
   for (const auto& [key, value] : values.items()) {
     const auto setting = std::ranges::find(settings_, key, &Setting::name);
     if (setting == settings_.end()) {
-      throw UsageError(fmt::format("{}: unknown key '{}', the nearest known one is '{}'", path, key,
-                                   nearest_name(key, names)));
+      throw UsageError(
+          fmt::format("{}: unknown key '{}'{}", path, key, hint_for_option(command_, key, names)));
     }
+    const SettingValue before = setting->get();
     set_value(*setting,
               setting->path == PathRole::kNone ? value : with_texts(value, name_of_stored),
               fmt::format("{}: {}", path, key));
+    if (setting->get() != before) {
+      set_.insert(setting->name);
+    }
   }
 }
 
@@ -385,6 +391,14 @@ void Settings::require_complete() const {
               ? fmt::format("{} is missing; see 'vantage {} --help'", setting.value_name, command_)
               : fmt::format("--{} is missing, expected --{} {}", setting.name, setting.name,
                             setting.value_name));
+    }
+  }
+}
+
+void Settings::refuse_idle(std::initializer_list<const char*> names, std::string_view why) const {
+  for (const char* const name : names) {
+    if (is_set(name)) {
+      throw UsageError(fmt::format("--{} has no effect {}", name, why));
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <set>
 #include <string>
@@ -92,10 +93,12 @@ class Settings {
   /// file of --config cannot be read.
   [[nodiscard]] bool read(const std::vector<std::string>& arguments);
 
-  /// Whether the command line (not the file) named the setting.
-  [[nodiscard]] bool given_on_command_line(const std::string& name) const {
-    return given_.contains(name);
-  }
+  /// Whether the user set it: the command line names it, or the file gives it another value than
+  /// it has by default. A file that --print-config wrote names all.
+  [[nodiscard]] bool is_set(const std::string& name) const { return set_.contains(name); }
+  /// Throws UsageError "--NAME has no effect …" for the first of `names` that is set; `why` such as
+  /// "without --video".
+  void refuse_idle(std::initializer_list<const char*> names, std::string_view why) const;
   /// Name → present value, in order of registration.
   [[nodiscard]] SettingValue values() const;
   /// Those that change results, without those that are not set.
@@ -123,7 +126,7 @@ class Settings {
   bool group_changes_results_ = true;
   bool takes_job_file_ = false;
   std::deque<Setting> settings_;  // deque: add() hands out references
-  std::set<std::string> given_;
+  std::set<std::string> set_;
   std::string config_path_;  ///< empty: none was read
 };
 

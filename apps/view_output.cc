@@ -91,8 +91,11 @@ ViewOutputs::ViewOutputs(const ViewOutputOptions& options, const Settings& setti
     throw UsageError(fmt::format("--eye-separation is {}, expected more than 0, at most {}",
                                  options.eye_separation, kLargestSeparation));
   }
-  if (!options.stereo_packing && settings.given_on_command_line("eye-separation")) {
-    throw UsageError("--eye-separation has no effect without --stereo-packing");
+  if (!options.stereo_packing) {
+    settings.refuse_idle({"eye-separation"}, "without --stereo-packing");
+  }
+  if (!is_video(options.output) && !is_video(options.hole_mask) && !is_video(options.source_mask)) {
+    settings.refuse_idle({"fps"}, "without an output that ends in .mp4");
   }
   const auto add_mask = [&](const char* option, const std::string& path,
                             Mask SynthesizedView::*mask) {

@@ -34,6 +34,7 @@ class OneMap {
 
   static MatchOptions options(int disparities, int window, Subpixel subpixel) {
     MatchOptions result;
+    result.method = MatchMethod::kSsd;
     result.disparities = {0, disparities - 1};
     result.parameters.window_px = window;
     result.parameters.subpixel = subpixel;

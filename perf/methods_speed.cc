@@ -37,7 +37,9 @@ Method make_method(std::string name, MatchMethod method, int iterations) {
   Method result{std::move(name), {}, kCells * std::max(1, iterations)};
   result.options.method = method;
   result.options.parameters.subpixel = Subpixel::kNone;
-  result.options.parameters.sigma_prior = 0.1;
+  if (method == MatchMethod::kBayes) {
+    result.options.parameters.sigma_prior = 0.1;
+  }
   if (iterations > 0) {
     result.options.parameters.iterations = iterations;
   }

@@ -25,7 +25,9 @@ inline std::vector<SpeedMethod> speed_methods(int disparities, const std::string
     options.disparities = {0, disparities - 1};
     options.raw = true;
     options.parameters.subpixel = Subpixel::kNone;
-    options.parameters.iterations = kIterations;
+    if (method != MatchMethod::kSsd && method != MatchMethod::kGradient) {
+      options.parameters.iterations = kIterations;
+    }
     methods.push_back({std::move(name), options});
     return methods.back().options.parameters;
   };

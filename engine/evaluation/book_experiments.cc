@@ -54,17 +54,16 @@ MatchOptions match_options(const ExperimentRun& run, const BookPairOptions& pair
   options.raw = true;
   MethodOverrides& parameters = options.parameters;
   parameters.subpixel = Subpixel::kNone;
-  parameters.iterations = run.iterations;
-  parameters.sigma_measurement = signal_of(pair.pattern);
   switch (run.method) {
     case ExperimentMethod::kSsd:
       parameters.window_px = 5;
-      break;
+      return options;
     case ExperimentMethod::kLocalStoppingMargin:
       parameters.certainty = Certainty::kMargin;
       break;
     case ExperimentMethod::kLocalStoppingEntropy:
       parameters.certainty = Certainty::kEntropy;
+      parameters.sigma_measurement = signal_of(pair.pattern);
       break;
     case ExperimentMethod::kMembrane:
       parameters.beta = 0.5;
@@ -73,10 +72,12 @@ MatchOptions match_options(const ExperimentRun& run, const BookPairOptions& pair
       parameters.sigma_prior = 0.1;
       parameters.epsilon_prior = 0.01;
       parameters.epsilon_measurement = 0.1;
+      parameters.sigma_measurement = signal_of(pair.pattern);
       break;
     case ExperimentMethod::kDiffusion:
       break;
   }
+  parameters.iterations = run.iterations;
   return options;
 }
 

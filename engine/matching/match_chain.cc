@@ -36,7 +36,9 @@ kernels::CandidateGeometry candidate_geometry(const MatchOptions& options, Refer
                                               int width, int height) {
   // Whole windows need room: with border `valid` they shorten the largest shift that can match.
   const MethodParameters parameters = options.resolved();
-  const int margin = parameters.border == Border::kValid ? parameters.window_px - 1 : 0;
+  const bool has_whole_windows =
+      parameters.aggregation == Aggregation::kBox && parameters.border == Border::kValid;
+  const int margin = has_whole_windows ? parameters.window_px - 1 : 0;
   const int most_shift = width - 1 - margin;
   const int least = std::max(options.disparities.min, -most_shift);
   const int most = std::min(options.disparities.max, most_shift);

@@ -9,6 +9,8 @@
 
 #include "engine/error.h"
 #include "engine/matching/match_presets.h"
+#include "engine/matching/method_names.h"
+#include "engine/matching/parameter_readers.h"
 #include "kernels/surface_fit/surface_fit.h"
 
 namespace vantage {
@@ -103,6 +105,28 @@ void validate_refinement(const RefinementOptions& refinement, bool is_two_dimens
   }
 }
 
+/// Throws UsageError for the first field that is set although refinement does not look at it.
+void require_read(const RefinementOverrides& set, const RefinementOptions& in_force, bool raw) {
+  const auto refuse_if = [](bool is_unread, std::string_view field, std::string_view why) {
+    if (is_unread) {
+      throw UsageError(fmt::format("{} is set but has no effect with {}", field, why));
+    }
+  };
+  constexpr std::string_view kWithRaw = "raw, which leaves all refinement out";
+  refuse_if(raw && set.edge_snapping_px, "edge-snapping", kWithRaw);
+  refuse_if(raw && (set.cross_check || set.cross_check_px), "cross-check", kWithRaw);
+  refuse_if(raw && set.cross_check_level, "cross-check-level", kWithRaw);
+  refuse_if(raw && set.confidence_threshold, "confidence-threshold", kWithRaw);
+  refuse_if(raw && set.speckle_size_px, "speckle-size", kWithRaw);
+  refuse_if(raw && set.surface_fit_px, "surface-fit", kWithRaw);
+  refuse_if(raw && set.fill, "fill", kWithRaw);
+  constexpr std::string_view kUnchecked = "cross-check none";
+  refuse_if(!in_force.cross_check && set.cross_check_px, "a number of pixels for cross-check",
+            kUnchecked);
+  refuse_if(!in_force.cross_check && set.cross_check_level.value_or(0) > 0, "cross-check-level",
+            kUnchecked);
+}
+
 }  // namespace
 
 bool uses_confidence(const RefinementOptions& refinement) {
@@ -138,13 +162,31 @@ void MatchOptions::validate() const {
         "of coarse levels",
         of_maps.cross_check_level));
   }
+  require_read(parameters, in_force, chosen());
+  require_read(refinement, of_maps, raw);
 }
 
 std::optional<MatchPreset> MatchOptions::preset_in_force() const {
-  if (preset || method || parameters.cost || parameters.aggregation || disparities_y) {
+  if (preset || method || parameters.aggregation || disparities_y) {
     return preset;
   }
   return MatchPreset::kBalanced;
+}
+
+std::string MatchOptions::chosen() const {
+  const std::optional<MatchPreset> in_force = preset_in_force();
+  std::string text = in_force
+                         ? fmt::format("preset {}", name_of(*in_force))
+                         : fmt::format("method {}", name_of(method.value_or(MatchMethod::kSsd)));
+  std::string_view separator = " with ";
+  if (parameters.cost) {
+    text += fmt::format("{}cost {}", separator, name_of(*parameters.cost));
+    separator = " and ";
+  }
+  if (parameters.aggregation) {
+    text += fmt::format("{}aggregation {}", separator, name_of(*parameters.aggregation));
+  }
+  return text;
 }
 
 MethodParameters MatchOptions::resolved() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <type_traits>
 
 #include "engine/matching/method_parameters.h"
@@ -81,9 +82,13 @@ struct MatchOptions {
   bool raw = false;
   RefinementOverrides refinement;
 
-  /// Without method and preset it is `balanced`; but none for who composes a method of cost or
-  /// aggregation, which then starts from SSD, nor with `disparities_y`: presets search along rows.
+  /// Without method and preset it is `balanced`, whatever the cost. None with an aggregation, which
+  /// starts from SSD: most of a preset is about its own. None with `disparities_y`: presets search
+  /// along rows.
   [[nodiscard]] std::optional<MatchPreset> preset_in_force() const;
+  /// What maps are made by, in words: "preset balanced", "method ssd with aggregation gaussian",
+  /// "preset balanced with cost census".
+  [[nodiscard]] std::string chosen() const;
   /// What is in force: the fields of `parameters`, else the preset's, else the method's.
   [[nodiscard]] MethodParameters resolved() const;
   /// What is in force unless `raw`: the fields of `refinement`, else the preset's, else: no
@@ -91,10 +96,12 @@ struct MatchOptions {
   /// gradient evidence and any for the others, speckles kept, no surface fit, fill at constant
   /// depth.
   [[nodiscard]] RefinementOptions resolved_refinement() const;
-  /// The same options with every field set to what is in force, without the preset.
+  /// The same options with every field set to what is in force, without the preset. To be shown:
+  /// validate() refuses them, as a method reads some of the fields only.
   [[nodiscard]] MatchOptions spelled_out() const;
   /// Throws UsageError naming the field, its value and its limit, or why options do not go
-  /// together.
+  /// together, or which field of `parameters` or `refinement` is set although nothing reads it
+  /// (parameter_readers).
   void validate() const;
 };
 

@@ -12,10 +12,6 @@
 namespace vantage {
 namespace {
 
-bool is_census(MatchCost cost) {
-  return cost == MatchCost::kCensus || cost == MatchCost::kRayCensus;
-}
-
 // 181² · 255² is the largest windowed sum of squares that fits 31 bits.
 constexpr int kMaxWindow = 181;
 constexpr int kMaxIterations = 10000;
@@ -186,12 +182,6 @@ void validate_bayes(const MethodParameters& parameters) {
 }
 
 void validate_combination(const MethodParameters& parameters) {
-  if (parameters.border == Border::kValid && parameters.aggregation != Aggregation::kBox &&
-      parameters.aggregation != Aggregation::kNone) {
-    throw UsageError(
-        "border is valid, which asks for whole windows, but only the aggregation box has windows; "
-        "expected border clip");
-  }
   if (parameters.aggregation == Aggregation::kLocalStopping &&
       parameters.certainty == Certainty::kMargin && is_evidence(parameters)) {
     throw UsageError(

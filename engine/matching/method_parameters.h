@@ -137,6 +137,11 @@ bool can_prune(const MethodParameters& parameters);
 
 /// What is in force on one level, the image's own being 0: iterations and σP.
 MethodParameters at_level(const MethodParameters& parameters, int level);
+/// Whether the cost compares census codes, which no change of exposure changes.
+inline bool is_census(MatchCost cost) {
+  return cost == MatchCost::kCensus || cost == MatchCost::kRayCensus;
+}
+
 /// Whether σM takes part.
 bool uses_sigma_measurement(const MethodParameters& parameters);
 

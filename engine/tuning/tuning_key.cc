@@ -8,57 +8,12 @@
 #include "engine/build_info.h"
 #include "engine/matching/energy_format.h"
 #include "engine/matching/match_chain.h"
+#include "engine/matching/method_names.h"
 #include "engine/simd.h"
 #include "engine/thread_placement.h"
 
 namespace vantage {
 namespace {
-
-std::string_view name_of(MatchCost cost) {
-  switch (cost) {
-    case MatchCost::kSquared:
-      return "squared";
-    case MatchCost::kAbsolute:
-      return "absolute";
-    case MatchCost::kTruncated:
-      return "truncated";
-    case MatchCost::kBirchfieldTomasi:
-      return "birchfield-tomasi";
-    case MatchCost::kGradient:
-      return "gradient";
-    case MatchCost::kContaminated:
-      return "contaminated";
-    case MatchCost::kCensus:
-      return "census";
-    case MatchCost::kRayCensus:
-      return "census-rays";
-    case MatchCost::kCombined:
-      return "combined";
-  }
-  return "";
-}
-
-std::string_view name_of(Aggregation aggregation) {
-  switch (aggregation) {
-    case Aggregation::kNone:
-      return "none";
-    case Aggregation::kBox:
-      return "box";
-    case Aggregation::kGaussian:
-      return "gaussian";
-    case Aggregation::kBoxCascade:
-      return "box-cascade";
-    case Aggregation::kDiffusion:
-      return "diffusion";
-    case Aggregation::kMembrane:
-      return "membrane";
-    case Aggregation::kLocalStopping:
-      return "local-stopping";
-    case Aggregation::kBayes:
-      return "bayes";
-  }
-  return "";
-}
 
 std::string_view name_of(scheduler::ExecutorKind kind) {
   switch (kind) {

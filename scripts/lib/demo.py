@@ -18,7 +18,6 @@ import disparity_picture as picture
 SWEEP_VIEWS = 73
 SEQUENCE_FRAMES = 30
 SEQUENCE_SIZE = (512, 384)
-WINDOW = 13
 CROSS_CHECK_PX = 1
 SPECKLE_SIZE_PX = 100
 JUDGED_FRAMES = [0, 10, 20]
@@ -110,11 +109,11 @@ def match_and_synthesise(demo, scene):
     """Both maps, their errors against the truth, the view between and the sweep."""
     for folder in ["maps", "views", "pictures"]:
         (demo.out / folder).mkdir()
-    matching = ["--disparities", scene.disparities, "--window", WINDOW,
-                "--cross-check", CROSS_CHECK_PX, "--speckle-size", SPECKLE_SIZE_PX]
+    matching = ["--disparities", scene.disparities]
+    refinement = ["--cross-check", CROSS_CHECK_PX, "--speckle-size", SPECKLE_SIZE_PX]
     demo.run("match", "match: both disparity maps", "match", scene.left, scene.right,
              "-o", "maps/left.pfm", "--output-right", "maps/right.pfm",
-             "--unmatched", "maps/unmatched.png", "--preview", "maps/preview.png", *matching)
+             "--unmatched", "maps/unmatched.png", "--preview", "maps/preview.png", *matching, *refinement)
     demo.run("match-raw", "match --raw: winner-take-all only", "match", scene.left, scene.right,
              "-o", "maps/left-raw.pfm", "--raw", *matching)
     scale = ["--scale", scene.truth_scale] if scene.truth_scale else []

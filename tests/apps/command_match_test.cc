@@ -17,7 +17,7 @@ using testing::IsEmpty;
 using MatchCommand = PairTest;
 
 TEST_F(MatchCommand, FindsTheTruth) {
-  const ProcessResult result = match(folder_ / "map.pfm", {"--window", "5"});
+  const ProcessResult result = match(folder_ / "map.pfm", {});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, IsEmpty());
   EXPECT_THAT(result.err, HasSubstr("71x53"));
@@ -80,7 +80,7 @@ TEST_F(MatchCommand, ReferenceRightWritesTheRightMap) {
 
 TEST_F(MatchCommand, SignedRangesInBothSpellings) {
   // With the images swapped every disparity changes its sign.
-  const std::vector<std::string> swapped = {"match", right_, left_, "--window", "5", "-o"};
+  const std::vector<std::string> swapped = {"match", right_, left_, "-o"};
   auto joined = swapped;
   joined.insert(joined.end(), {folder_ / "joined.pfm", "--disparities=-9:0"});
   auto apart = swapped;
@@ -218,6 +218,15 @@ TEST(InputCommandLine, UnknownCommandsAndHelp) {
   result = run_vantage({"generate"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("'vantage generate scene'"));
+  // What is not near is not suggested; what users of other programs mean is answered.
+  EXPECT_EQ(run_vantage({"foo"}).err,
+            "vantage: unknown command 'foo'; 'vantage help' lists those there are\n");
+  EXPECT_EQ(run_vantage({"disparity"}).err,
+            "vantage: unknown command 'disparity': 'vantage match' makes disparity maps\n");
+  EXPECT_EQ(run_vantage({"help"}).out, run_vantage({"--help"}).out);
+  EXPECT_EQ(run_vantage({"help", "match"}).out, run_vantage({"match", "--help"}).out);
+  EXPECT_EQ(run_vantage({"help", "scene", "view"}).out,
+            run_vantage({"scene", "view", "--help"}).out);
   EXPECT_EQ(run_vantage({}).exit_code, 2);
   result = run_vantage({"--help"});
   EXPECT_EQ(result.exit_code, 0);

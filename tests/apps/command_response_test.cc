@@ -139,7 +139,7 @@ class AutomaticDisparities : public PairTest {
 TEST_F(AutomaticDisparities, MatchTellsTheRangeAndReportsIt) {
   const ProcessResult result =
       run_vantage({"match", left_, right_, "-o", folder_ / "a.pfm", "--disparities", "auto",
-                   "--window", "5", "--report", folder_ / "r.json"});
+                   "--report", folder_ / "r.json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
   const std::string range = report["settings"]["disparities"];
@@ -152,8 +152,7 @@ TEST_F(AutomaticDisparities, MatchTellsTheRangeAndReportsIt) {
   EXPECT_GE(most, 6);
   EXPECT_LE(most - least, 20);
   // The same as giving that range.
-  ASSERT_EQ(run_vantage({"match", left_, right_, "-o", folder_ / "b.pfm", "--disparities=" + range,
-                         "--window", "5"})
+  ASSERT_EQ(run_vantage({"match", left_, right_, "-o", folder_ / "b.pfm", "--disparities=" + range})
                 .exit_code,
             0);
   EXPECT_EQ(read_file(folder_ / "a.pfm"), read_file(folder_ / "b.pfm"));

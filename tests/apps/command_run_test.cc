@@ -269,9 +269,14 @@ TEST_F(InputRunCommand, WrongUsageIsOneLineAndExit2) {
       {{"--chunk-frames", "0"}, "chunk-frames is 0"},
       {{"--temporal-prior", "-1"}, "-1"},
       {{"--progress", "loud"}, "--progress is 'loud'"},
+      {{"--crf", "20"}, "--crf has no effect without --video"},
+      {{"--save", "preview", "--format", "npy"}, "--format has no effect where --save has no"},
+      {{"--gamma", "1"}, "--gamma has no effect where --save has no views"},
+      {{"--temporal-threshold", "5"}, "--temporal-threshold has no effect without"},
+      {{"--stride", "2"}, "'--stride': all frames of the input are taken"},
       {{"--step", "2"}, "step"},
       {{"--stereo", "x.mp4"}, "stereo"},
-      {{"-p", "2"}, "unknown option '-p', the nearest known one is '-o'"},
+      {{"-p", "2"}, "unknown option '-p'; 'vantage run --help' lists those there are"},
       {{"--overwrite", "--resume"}, "--overwrite and --resume"},
       {{"--overwrite", "--shard", "1/2"}, "--overwrite with --shard"}};
   SCOPED_TRACE(test::sample_name());
@@ -354,20 +359,12 @@ TEST_F(InputRunCommand, EveryKindOfInputGivesTheSame) {
 }
 
 TEST_F(RunCommand, VideosHoldWhatTheImagesShow) {
-  const std::vector<std::string> outputs = {"--save",
-                                            "preview,views,stereo",
-                                            "--view-path",
-                                            "0=0,5=1",
-                                            "--stereo-views",
-                                            "0.25,0.75",
-                                            "--stereo-packing",
-                                            "sbsl",
-                                            "--fps",
-                                            "30000/1001",
-                                            "--chunk-frames",
-                                            "4"};
+  const std::vector<std::string> outputs = {
+      "--save",    "preview,views,stereo", "--view-path", "0=0,5=1",        "--stereo-views",
+      "0.25,0.75", "--stereo-packing",     "sbsl",        "--chunk-frames", "4"};
   std::vector<std::string> videos = outputs;
-  videos.insert(videos.end(), {"--video", "preview,views,stereo", "--crf", "4"});
+  videos.insert(videos.end(),
+                {"--video", "preview,views,stereo", "--crf", "4", "--fps", "30000/1001"});
   ASSERT_EQ(run(folder_ / "images", outputs).exit_code, 0);
   const ProcessResult result = run(folder_ / "videos", videos);
   ASSERT_EQ(result.exit_code, 0) << result.err;

@@ -135,7 +135,7 @@ TEST_F(SceneCommand, ASecondBuildKeepsWhatIsThere) {
               HasSubstr("001-004-second.pfm"));
   EXPECT_THAT(build_grid({"--threads", "1"}).err, HasSubstr("1 of them matched now"));
   EXPECT_EQ(read_file(map), before);
-  EXPECT_THAT(build_grid({"--window", "5"}).err, HasSubstr("7 of them matched now"));
+  EXPECT_THAT(build_grid({"--iterations", "2"}).err, HasSubstr("7 of them matched now"));
 }
 
 TEST_F(SceneCommand, MakesMoviesAndSaysWhatLiesOutside) {

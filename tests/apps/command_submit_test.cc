@@ -110,7 +110,7 @@ TEST_F(SubmitCommand, TheJobFileHoldsTheWholeRunWithAbsolutePaths) {
   std::filesystem::current_path(folder_.path());
   const ProcessResult result =
       run_vantage({"submit", "--left", "left", "--right", "right/*.png", "-o", "out", "--shards",
-                   "1", "--no-submit", "--window", "7", "--keep-going", "--disparities=0:9"});
+                   "1", "--no-submit", "--mu", "0.3", "--keep-going", "--disparities=0:9"});
   std::filesystem::current_path(start);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const std::string out = folder_ / "out";
@@ -120,8 +120,8 @@ TEST_F(SubmitCommand, TheJobFileHoldsTheWholeRunWithAbsolutePaths) {
   const ProcessResult of_file = run_vantage({"run", slurm(out, "job.toml"), "--print-config"});
   EXPECT_EQ(of_file.exit_code, 0) << of_file.err;
   EXPECT_EQ(of_file.out,
-            run_vantage({"run", "--left", left_, "--right", right_ + "/*.png", "-o", out,
-                         "--window", "7", "--keep-going", "--disparities=0:9", "--print-config"})
+            run_vantage({"run", "--left", left_, "--right", right_ + "/*.png", "-o", out, "--mu",
+                         "0.3", "--keep-going", "--disparities=0:9", "--print-config"})
                 .out);
   EXPECT_EQ(run_vantage({"submit", slurm(out, "submit.toml"), "--print-config"}).out,
             read_file(slurm(out, "submit.toml")));
@@ -263,11 +263,11 @@ TEST_F(SubmitCommand, TheFolderOfAnotherRunIsRefused) {
   run.insert(run.begin(), {"run", "--quiet"});
   ASSERT_EQ(run_vantage(run).exit_code, 0);
   EXPECT_EQ(submit(out).exit_code, 0);
-  const ProcessResult other = submit(out, {"--window", "5"});
+  const ProcessResult other = submit(out, {"--iterations", "2"});
   EXPECT_EQ(other.exit_code, 1);
   EXPECT_TRUE(is_one_line(other, "submit"));
-  EXPECT_THAT(other.err, HasSubstr("window"));
-  EXPECT_EQ(submit(out, {"--window", "5", "--overwrite"}).exit_code, 0);
+  EXPECT_THAT(other.err, HasSubstr("iterations"));
+  EXPECT_EQ(submit(out, {"--iterations", "2", "--overwrite"}).exit_code, 0);
   // Only the submission begins anew, not its tasks nor its repetition.
   EXPECT_THAT(read_file(slurm(out, "job.toml")), HasSubstr("overwrite = false"));
   EXPECT_THAT(read_file(slurm(out, "submit.toml")), HasSubstr("overwrite = false"));

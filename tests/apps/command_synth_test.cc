@@ -258,7 +258,7 @@ TEST_F(SynthCommand, CamerasAndTurnedViewsNeedACalibration) {
 TEST_F(InputSynthCommand, WhatIsWrongInAFileOfPosesIsNamed) {
   const std::vector<std::pair<std::string, std::string>> files = {
       {"", "expected a list 'view' of poses"},
-      {"[[view]]\nxy = [0, 0]", "p.toml: view 1: unknown key 'xy', the nearest known one is 'at'"},
+      {"[[view]]\nxy = [0, 0]", "p.toml: view 1: unknown key 'xy', expected one of"},
       {"[[view]]\nat = [0]", "p.toml: view 1: at is [0], expected a list of 2 numbers"},
       {"[[view]]\nat = [0, 0]\n[[view]]\nK = 1", "p.toml: view 2 has no R, expected at = [XS, YS]"},
       {"[[view]]\nat = [0, 0]\nsize = [3, 4]", "p.toml: view 1 has both 'at' and 'size'"},

@@ -140,9 +140,9 @@ TEST_F(InputConfig, CommandLineOverridesFileOverridesDefault) {
 }
 
 TEST_F(InputConfig, AFileCanHoldTheWholeJob) {
-  ASSERT_EQ(match(folder_ / "a.pfm", {"--window", "5"}).exit_code, 0);
+  ASSERT_EQ(match(folder_ / "a.pfm", {"--mu", "0.4"}).exit_code, 0);
   write_file(folder_ / "job.toml", "left = '" + left_ + "'\nright = '" + right_ + "'\noutput = '" +
-                                       folder_ / "b.pfm" + "'\nwindow = 5\ndisparities = '0:9'\n");
+                                       folder_ / "b.pfm" + "'\nmu = 0.4\ndisparities = '0:9'\n");
   const ProcessResult result = run_vantage({"match", "--config", folder_ / "job.toml"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(read_file(folder_ / "a.pfm"), read_file(folder_ / "b.pfm"));

@@ -4,7 +4,9 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
 
+#include "engine/matching/parameter_readers.h"
 #include "tests/apps/pair_fixture.h"
 #include "tests/apps/sampling.h"
 
@@ -24,7 +26,8 @@ using InputMatchOptions = MatchCommandOptions;
 
 TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
   const std::vector<Refused> cases = {
-      {{"--window", "182"}, "window is 182, expected an odd number from 1 to 181"},
+      {{"--method", "ssd", "--window", "182"},
+       "window is 182, expected an odd number from 1 to 181"},
       {{"--iterations", "-1"}, "iterations is -1, expected a number from 0 to 10000"},
       {{"--levels", "0"}, "levels is 0, expected a number from 1 to 10"},
       {{"--levels", "3", "--candidate-blocks", "2", "--method", "membrane"},
@@ -67,7 +70,7 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--disparities", "0:4096"}, "(4097 candidates), expected at most 4096"},
       {{"--disparities-y", "-300:300"}, "expected at most 4096"},
       {{"--disparities-y", "3"}, "--disparities-y is '3', expected MIN:MAX"},
-      {{"--border", "valid", "--aggregate", "gaussian"}, "only the aggregation box has windows"},
+      {{"--border", "valid", "--aggregate", "gaussian"}, "it is read by the aggregation box"},
       {{"--method", "local-stopping", "--cost", "gradient"}, "expected certainty entropy"},
       {{"--method", "ssd", "--preset", "fast"}, "method and preset are both set"},
       {{"--disparities-y", "0:1", "--edge-snapping", "on"}, "expected 0 with disparities-y"},
@@ -75,6 +78,14 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--fill", "quadratic"},
        "--fill is 'quadratic', expected one of constant|linear|median|none"},
       {{"--prefilter", "box"}, "--prefilter is 'box', expected one of gaussian|none"},
+      {{"--lambda", "0.1"},
+       "lambda is set but has no effect with preset balanced (cost census-rays, aggregation bayes, "
+       "7 levels); it is read by diffusion, membrane and local-stopping"},
+      {{"--raw", "--fill", "none"}, "fill is set but has no effect with raw"},
+      {{"--baselines", "1", "--cross-check", "2"}, "--cross-check has no effect with several"},
+      {{"--tuning", "t.json", "--no-tuning"}, "--tuning has no effect with --no-tuning"},
+      {{"--max-disp", "64"}, "'--max-disp': --disparities MIN:MAX gives the range to search"},
+      {{"--xyzzy"}, "'--xyzzy'; 'vantage match --help' lists those there are"},
       {{"--sigma-pior", "1"}, "'--sigma-pior', the nearest known one is '--sigma-prior'"},
       {{"--agregate", "box"}, "'--agregate', the nearest known one is '--aggregate'"},
       {{"--confidence", folder_ / "c.png"}, "PNG holds no floats"},
@@ -111,6 +122,83 @@ TEST_F(InputMatchOptions, ImagesOfUnequalSizeAmongSeveralAreNamed) {
   EXPECT_TRUE(is_one_line(result, "match"));
   EXPECT_THAT(result.err, HasSubstr("small.png is 7x9 but "));
   EXPECT_THAT(result.err, HasSubstr("left.png is 71x53, expected equal sizes"));
+}
+
+TEST_F(InputMatchOptions, AFileOrAPrintedConfigIsLookedAtLikeTheCommandLine) {
+  write_file(folder_ / "job.toml", "method = 'ssd'\nmu = 0.3\n");
+  ProcessResult result = match(folder_ / "a.pfm", {"--config", folder_ / "job.toml"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("mu is set but has no effect with method ssd"));
+  // A printed file names every setting; only what differs from its default is the user's.
+  const std::vector<std::string> synth = {"synth",           left_,    right_, "-o",
+                                          folder_ / "v.png", "--view", "0.5",  "--disparities=0:9"};
+  auto printed = synth;
+  printed.emplace_back("--print-config");
+  write_file(folder_ / "synth.toml", run_vantage(printed).out);
+  result = run_vantage({"synth", "--config", folder_ / "synth.toml"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  for (const auto& [line, says] :
+       {std::pair("fps = '30'\n", "--fps has no effect without an output that ends in .mp4"),
+        std::pair("gamma = 0.25\nno-intensity-matching = true\n",
+                  "--gamma has no effect with --no-intensity-matching")}) {
+    write_file(folder_ / "idle.toml", line);
+    auto idle = synth;
+    idle.insert(idle.end(), {"--config", folder_ / "idle.toml"});
+    result = run_vantage(idle);
+    EXPECT_EQ(result.exit_code, 2) << line;
+    EXPECT_THAT(result.err, HasSubstr(says));
+  }
+}
+
+TEST_F(MatchCommandOptions, TheTableOfReadersHasEveryOptionOfAMethod) {
+  const std::string config = run_vantage({"match", "--print-config"}).out;
+  std::vector<std::string> names;
+  bool is_of_method = false;
+  std::istringstream lines(config);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("# Matching: ") || line.starts_with("# Refinement")) {
+      is_of_method = line.starts_with("# Matching: ");
+    } else if (is_of_method && !line.empty()) {
+      names.push_back(line.substr(0, line.find(' ')));
+    }
+  }
+  std::vector<std::string> of_table;
+  for (const ParameterReaders& parameter : parameter_readers()) {
+    of_table.emplace_back(parameter.name);
+  }
+  EXPECT_THAT(names, testing::UnorderedElementsAreArray(of_table));
+}
+
+TEST_F(MatchCommandOptions, TheFirstLineNamesWhatMapsAreMadeBy) {
+  struct Choice {
+    std::vector<std::string> options;
+    std::string says;
+    std::string preset;  ///< in the report
+  };
+  const std::vector<Choice> choices = {
+      {{},
+       "match: preset balanced (cost census-rays, aggregation bayes, 7 levels), 71x53 pixels",
+       "balanced"},
+      {{"--preset", "fast"}, "match: preset fast (", "fast"},
+      {{"--cost", "census"},
+       "match: preset balanced with cost census (cost census, aggregation bayes, 7 levels), ",
+       "balanced"},
+      {{"--aggregate", "gaussian"},
+       "match: method ssd with aggregation gaussian (cost squared, aggregation gaussian, 1 "
+       "level), ",
+       "none"},
+      {{"--method", "membrane"}, "match: method membrane (", "none"}};
+  for (const Choice& choice : choices) {
+    auto options = choice.options;
+    options.insert(options.end(), {"--report", folder_ / "r.json"});
+    const ProcessResult result = match(folder_ / "map.pfm", options);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(result.err.starts_with(choice.says)) << result.err;
+    const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+    EXPECT_EQ(report["settings"]["resolved"]["preset"], choice.preset);
+    options.emplace_back("--quiet");
+    EXPECT_EQ(match(folder_ / "map.pfm", options).err, "");
+  }
 }
 
 TEST_F(MatchCommandOptions, ReportShowsWhatWasSetAndWhatIsInForce) {

@@ -34,7 +34,7 @@ int main() {
 
   vantage::MatchOptions options;
   options.disparities = {0, 15};
-  options.parameters.window_px = 7;
+  options.parameters.iterations = 4;
   const vantage::StereoMatcher matcher(options, execution);
 
   vantage::DisparityMaps maps;

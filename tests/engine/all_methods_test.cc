@@ -55,7 +55,7 @@ MatchOptions options_of(MatchCost cost, Aggregation aggregation, const ImageCase
   if (aggregation == Aggregation::kBox) {
     options.parameters.window_px = 5;
   }
-  if (cost == MatchCost::kGradient) {
+  if (cost == MatchCost::kGradient && aggregation == Aggregation::kLocalStopping) {
     options.parameters.certainty = Certainty::kEntropy;  // there is no margin of evidence
   }
   return options;

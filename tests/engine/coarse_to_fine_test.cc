@@ -52,12 +52,15 @@ MatchOptions options_of(Aggregation aggregation, MatchCost cost, int levels, Dis
   options.parameters.aggregation = aggregation;
   options.parameters.cost = cost;
   options.parameters.levels = levels;
-  options.parameters.iterations = 3;
   options.parameters.subpixel = Subpixel::kNone;
+  if (aggregation == Aggregation::kDiffusion || aggregation == Aggregation::kMembrane ||
+      aggregation == Aggregation::kLocalStopping || aggregation == Aggregation::kBayes) {
+    options.parameters.iterations = 3;
+  }
   if (aggregation == Aggregation::kBox) {
     options.parameters.window_px = 5;
   }
-  if (cost == MatchCost::kGradient) {
+  if (cost == MatchCost::kGradient && aggregation == Aggregation::kLocalStopping) {
     options.parameters.certainty = Certainty::kEntropy;  // there is no margin of evidence
   }
   return options;
@@ -142,7 +145,9 @@ TEST(CoarseToFineOfEdges, EqualsTheOracle) {
     const MatchCost cost = levels == 5 ? MatchCost::kCensus : MatchCost::kRayCensus;
     MatchOptions options = options_of(Aggregation::kBayes, cost, levels, shape.range);
     options.parameters.sigma_measurement = levels == 5 ? 12.4 : 4.8;
-    options.parameters.census_thresholds = levels == 2 ? 3 : 1;
+    if (cost == MatchCost::kRayCensus) {
+      options.parameters.census_thresholds = levels == 2 ? 3 : 1;
+    }
     options.parameters.epsilon_prior = prior.epsilon;
     options.parameters.final_iterations = prior.final_iterations;
     options.parameters.prior_growth = 1.2;

@@ -138,9 +138,12 @@ TEST(MethodParameters, WithoutAnyChoiceTheyAreThoseOfBalanced) {
   options.disparities_y = {0, 1};
   EXPECT_EQ(options.resolved(), ssd);
   EXPECT_EQ(options.spelled_out().method, MatchMethod::kSsd);
-  options = {};
-  options.parameters.cost = MatchCost::kSquared;
-  EXPECT_EQ(options.resolved(), ssd);
+  // Another cost in the preset's place leaves all else as it is.
+  options = balanced = {};
+  balanced.preset = MatchPreset::kBalanced;
+  options.parameters.cost = balanced.parameters.cost = MatchCost::kCensus;
+  EXPECT_EQ(options.resolved(), balanced.resolved());
+  EXPECT_EQ(options.resolved_refinement(), balanced.resolved_refinement());
   options = {};
   options.parameters.aggregation = Aggregation::kBox;
   EXPECT_EQ(options.resolved(), ssd);
@@ -162,11 +165,10 @@ TEST(MethodParameters, SpelledOutIsTheSameWithoutPreset) {
   MatchOptions options;
   options.preset = MatchPreset::kQuality;
   options.disparities = {-7, 90};
-  options.parameters.beta = 0.25;
+  options.parameters.mu = 0.25;
   options.refinement.fill = Fill::kLinear;
   const MatchOptions spelled_out = options.spelled_out();
   EXPECT_FALSE(spelled_out.preset.has_value());
-  EXPECT_EQ(complaint(spelled_out), "");
   EXPECT_EQ(spelled_out.resolved(), options.resolved());
   EXPECT_EQ(spelled_out.resolved_refinement(), options.resolved_refinement());
   // Nothing is left to the defaults of a method or of the range.
@@ -200,7 +202,20 @@ struct Bound {
   std::vector<double> bad;
   std::string says;  ///< the limit, as the message has it
   MatchMethod method = MatchMethod::kSsd;
+  /// What makes the method read the field.
+  std::function<void(MethodOverrides&)> needs = {};
 };
+
+void several_levels(MethodOverrides& parameters) { parameters.levels = 2; }
+void pruned(MethodOverrides& parameters) {
+  parameters.levels = 3;
+  parameters.candidate_blocks = 2;
+}
+void edges(MethodOverrides& parameters) { parameters.edge_weight = 0.5; }
+template <MatchCost cost>
+void costs_by(MethodOverrides& parameters) {
+  parameters.cost = cost;
+}
 
 template <typename T>
 std::function<void(MatchOptions&, double)> parameter(std::optional<T> MethodOverrides::*field) {
@@ -250,25 +265,35 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
        parameter(&P::aggregation_sigma_px),
        {0.5, 16},
        {0.49, 16.1, kNan},
-       "from 0.5 to 16"},
-      {"iterations", parameter(&P::iterations), {0, 10000}, {-1, 10001}, "from 0 to 10000"},
+       "from 0.5 to 16",
+       MatchMethod::kGradient},
+      {"iterations",
+       parameter(&P::iterations),
+       {0, 10000},
+       {-1, 10001},
+       "from 0 to 10000",
+       MatchMethod::kDiffusion},
       {"final-iterations",
        parameter(&P::final_iterations),
        {0, 10000},
        {-1, 10001},
-       "from 0 to 10000"},
+       "from 0 to 10000",
+       MatchMethod::kMembrane,
+       several_levels},
       {"prior-growth",
        parameter(&P::prior_growth),
        {1, 4},
        {0.99, 4.01, kNan},
        "from 1 to 4",
-       MatchMethod::kBayes},
+       MatchMethod::kBayes,
+       several_levels},
       {"level-weight",
        parameter(&P::level_weight),
        {0.001, 1},
        {0, -0.1, 1.001, kNan},
        "above 0 and at most 1",
-       MatchMethod::kBayes},
+       MatchMethod::kBayes,
+       several_levels},
       {"edge-weight",
        parameter(&P::edge_weight),
        {0, 1},
@@ -280,11 +305,24 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
        {0.01, 255},
        {0, -1, kNan, kInfinity},
        "above 0",
-       MatchMethod::kBayes},
+       MatchMethod::kBayes,
+       edges},
       {"levels", parameter(&P::levels), {1, 10}, {-1, 0, 11}, "from 1 to 10"},
       {"candidate-blocks", parameter(&P::candidate_blocks), {0}, {-1, 9}, "(all candidates) to 8"},
-      {"census-thresholds", parameter(&P::census_thresholds), {1, 3}, {-1, 0, 2, 4}, "1 or 3"},
-      {"pruned-levels", parameter(&P::pruned_levels), {1, 10}, {-1, 0, 11}, "from 1 to 10"},
+      {"census-thresholds",
+       parameter(&P::census_thresholds),
+       {1, 3},
+       {-1, 0, 2, 4},
+       "1 or 3",
+       MatchMethod::kSsd,
+       costs_by<MatchCost::kRayCensus>},
+      {"pruned-levels",
+       parameter(&P::pruned_levels),
+       {1, 10},
+       {-1, 0, 11},
+       "from 1 to 10",
+       MatchMethod::kBayes,
+       pruned},
       {"lambda",
        parameter(&P::lambda),
        {0.01, 0.249},
@@ -343,13 +381,23 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
        parameter(&P::sigma_census),
        {0, .01, 1},
        {-.1, 1.01, kNan},
-       "a share of bits"},
+       "a share of bits",
+       MatchMethod::kSsd,
+       costs_by<MatchCost::kCombined>},
       {"sigma-gradient",
        parameter(&P::sigma_gradient),
        {0, .1, 99},
        {-.1, kNan, kInfinity},
-       "grey levels per pixel"},
-      {"truncation", parameter(&P::truncation), {0.1, 255}, {0, -1, kNan, kInfinity}, "above 0"},
+       "grey levels per pixel",
+       MatchMethod::kSsd,
+       costs_by<MatchCost::kCombined>},
+      {"truncation",
+       parameter(&P::truncation),
+       {0.1, 255},
+       {0, -1, kNan, kInfinity},
+       "above 0",
+       MatchMethod::kSsd,
+       costs_by<MatchCost::kTruncated>},
       {"alpha",
        parameter(&P::alpha),
        {0, 3},
@@ -375,6 +423,9 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
     const auto complaint_about = [&](double value) {
       MatchOptions options;
       options.method = bound.method;
+      if (bound.needs) {
+        bound.needs(options.parameters);
+      }
       bound.set(options, value);
       return complaint(options);
     };
@@ -419,13 +470,13 @@ TEST(MatchOptions, CombinationsThatMakeNoSenseAreRefusedWithTheReason) {
   options.method = MatchMethod::kSsd;
   options.parameters.border = Border::kValid;
   EXPECT_EQ(complaint(options), "");
-  options.parameters.aggregation = Aggregation::kNone;
-  EXPECT_EQ(complaint(options), "");
   for (const Aggregation aggregation :
-       {Aggregation::kGaussian, Aggregation::kBoxCascade, Aggregation::kDiffusion,
-        Aggregation::kMembrane, Aggregation::kLocalStopping, Aggregation::kBayes}) {
+       {Aggregation::kNone, Aggregation::kGaussian, Aggregation::kBoxCascade,
+        Aggregation::kDiffusion, Aggregation::kMembrane, Aggregation::kLocalStopping,
+        Aggregation::kBayes}) {
     options.parameters.aggregation = aggregation;
-    EXPECT_THAT(complaint(options), HasSubstr("only the aggregation box has windows"));
+    EXPECT_THAT(complaint(options),
+                HasSubstr("border is set but has no effect with method ssd with"));
   }
   options = {};
   options.method = MatchMethod::kLocalStopping;
@@ -436,10 +487,12 @@ TEST(MatchOptions, CombinationsThatMakeNoSenseAreRefusedWithTheReason) {
   options.parameters.estimate_sigma_measurement = true;
   for (const MatchCost cost : {MatchCost::kGradient, MatchCost::kCensus, MatchCost::kRayCensus}) {
     options.parameters.cost = cost;
+    options.method = MatchMethod::kLocalStopping;
     options.parameters.certainty = Certainty::kEntropy;
     EXPECT_THAT(complaint(options), HasSubstr("sigma-measurement is estimated"));
     options.method = MatchMethod::kSsd;  // without σM
-    EXPECT_EQ(complaint(options), "");
+    options.parameters.certainty.reset();
+    EXPECT_THAT(complaint(options), HasSubstr("sigma-measurement is set but has no effect"));
     options.method = MatchMethod::kBayes;
     EXPECT_THAT(complaint(options), HasSubstr("expected a number"));
   }

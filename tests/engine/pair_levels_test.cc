@@ -243,7 +243,9 @@ TEST(PairLevels, MatchersSeeThroughExposure) {
   const Scene scene = make_scene(200, {{.6, 12}, 2, 1});
   for (const MatchCost cost : {MatchCost::kSquared, MatchCost::kAbsolute, MatchCost::kCombined}) {
     MatchOptions options = exposure_options(Reference::kLeft, cost);
-    options.parameters.sigma_census = 0;
+    if (cost == MatchCost::kCombined) {
+      options.parameters.sigma_census = 0;
+    }
     options.parameters.estimate_sigma_measurement = false;
     DisparityMaps maps;
     MatchReport report;

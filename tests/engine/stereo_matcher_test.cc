@@ -343,6 +343,7 @@ TEST(StereoMatcher, RefusesWhatItCannotDo) {
   options.disparities = {20, 30};
   EXPECT_THROW(StereoMatcher(options, execution).match(image, image, {}, maps), Error);
   options = {};
+  options.method = MatchMethod::kSsd;
   options.parameters.window_px = 8;
   EXPECT_THROW(StereoMatcher(options, execution), UsageError);
   options = {};

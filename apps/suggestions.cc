@@ -1,0 +1,211 @@
+#include "apps/suggestions.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+
+namespace vantage::apps {
+namespace {
+
+/// Insertions, deletions, substitutions and exchanges of neighbours that make `b` of `a`.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> edits(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        edits[i][j] = i + j;
+        continue;
+      }
+      const bool is_equal = a[i - 1] == b[j - 1];
+      edits[i][j] = std::min(
+          {edits[i - 1][j] + 1, edits[i][j - 1] + 1, edits[i - 1][j - 1] + (is_equal ? 0 : 1)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        edits[i][j] = std::min(edits[i][j], edits[i - 2][j - 2] + 1);
+      }
+    }
+  }
+  return edits[a.size()][b.size()];
+}
+
+std::string_view without_dashes(std::string_view name) {
+  return name.substr(std::min(name.find_first_not_of('-'), name.size()));
+}
+
+/// Words for the same thing in other programs.
+struct Words {
+  std::initializer_list<std::string_view> words;
+  std::string_view needs;  ///< option that a command must have for the answer to be true of it
+  std::string_view answer;
+};
+
+const auto& option_words() {
+  static const std::array kWords = {
+      Words{{"max-disp", "max-disparity", "maxdisp", "min-disp", "min-disparity", "mindisp",
+             "num-disparities", "num-disp", "ndisp", "numdisparities", "disp-range",
+             "disparity-range", "search-range"},
+            "--disparities",
+            "--disparities MIN:MAX gives the range to search, both ends included"},
+      Words{{"block-size", "blocksize", "window-size", "win-size", "sad-window", "kernel-size"},
+            "--window",
+            "--window PX is the side of the window of --method ssd; the presets have none"},
+      Words{{"uniqueness", "uniqueness-ratio"},
+            "--confidence-threshold",
+            "--confidence-threshold X leaves out what is unsure"},
+      Words{{"speckle-window", "speckle-window-size", "speckle-range", "speckles"},
+            "--speckle-size",
+            "--speckle-size PX leaves out small islands"},
+      Words{{"disp12-max-diff", "max-diff", "lr-check", "left-right-check", "lrc", "consistency"},
+            "--cross-check",
+            "--cross-check PX compares the left map with the right one"},
+      Words{{"p1", "p2", "smoothness"},
+            "--epsilon-prior",
+            "--epsilon-prior and --sigma-prior say how smooth the maps of bayes are"},
+      Words{{"color", "colors", "use-color"},
+            "--colour",
+            "--colour luma|channels says what is compared of colour images"},
+      Words{{"colormap", "color-map", "colourmap", "colour-map", "cmap", "jet", "visualize"},
+            "--preview",
+            "--preview FILE writes the map in colours, of which there is one scale"},
+      Words{{"colormap", "color-map", "colourmap", "colour-map", "cmap", "jet", "visualize"},
+            "--sequence",
+            "--save preview writes the maps in colours, of which there is one scale"},
+      Words{{"every", "stride", "skip", "nth", "subsample", "frame-step"},
+            "--sequence",
+            "all frames of the input are taken; a glob such as 'left/0000*0.png' or a list "
+            "(--pairs) takes every Nth, --frames A-B those from A to B"},
+      Words{{"start", "end", "start-frame", "end-frame", "first-frame", "last-frame", "num-frames",
+             "frame-range", "from", "to"},
+            "--sequence",
+            "--frames A-B takes the frames from A to B, counted from 0"},
+      Words{{"depth", "depth-map", "depthmap", "point-cloud", "pointcloud", "ply"},
+            "--disparities",
+            "maps hold disparities d in pixels; of rectified cameras the depth is focal length * "
+            "baseline / (d + doffs), doffs the difference of the principal points (right - left)"},
+      Words{{"resize", "scale", "downscale", "downsample", "resolution"},
+            "--disparities",
+            "images are matched in the size they have; resize them before"},
+      Words{{"jobs", "cores", "workers", "nproc", "cpus", "num-threads", "nthreads", "j"},
+            "--threads",
+            "--threads N says on how many threads the work is done"},
+      Words{{"gpu", "cuda", "device", "opencl"},
+            "--threads",
+            "all work is done by the processor, on --threads N"},
+      Words{{"verbose", "debug", "v", "log-level"},
+            "--report",
+            "remarks are printed without --quiet; --report FILE writes all figures"},
+      Words{{"silent", "q"}, "--quiet", "--quiet prints errors only"},
+      Words{{"out", "outfile", "out-dir", "outdir", "output-dir", "output-file", "output-folder"},
+            "--output",
+            "-o or --output says where results go"},
+      Words{{"algorithm", "algo", "matcher", "mode", "sgbm", "bm", "fast", "balanced", "quality",
+             "best"},
+            "--preset",
+            "--preset fast|balanced|quality says how pairs are matched"},
+      Words{{"calib", "camera", "cameras", "intrinsics", "extrinsics"},
+            "--calibration",
+            "--calibration FILE names the cameras"},
+      Words{{"version"}, "", "'vantage --version' tells the version"},
+  };
+  return kWords;
+}
+
+const auto& command_words() {
+  static const std::array kWords = {
+      Words{{"disparity", "disparities", "stereo", "disp", "sgbm", "sgm", "bm", "compute",
+             "matching"},
+            "",
+            "'vantage match' makes disparity maps"},
+      Words{{"depth", "pointcloud", "point-cloud"},
+            "",
+            "'vantage match' makes disparity maps, of which depths follow"},
+      Words{{"calibrate", "calibration", "undistort", "align"},
+            "",
+            "'vantage rectify' estimates cameras and rectifies photographs"},
+      Words{{"render", "synthesis", "synthesize", "synthesise", "interpolate", "novel-view"},
+            "",
+            "'vantage synth' renders new views of a pair"},
+      Words{{"video", "movie", "sequence", "batch", "process"},
+            "",
+            "'vantage run' makes maps and views of sequences and videos"},
+      Words{{"viewer", "html", "web", "show", "display"},
+            "",
+            "'vantage view' writes a page that shows new views in a browser"},
+      Words{{"evaluate", "evaluation", "compare", "metrics", "score", "error", "psnr"},
+            "",
+            "'vantage eval' compares a map or a view with the truth"},
+      Words{{"benchmark", "bench", "perf", "time"},
+            "",
+            "'vantage profile' tells where the time of match or run goes"},
+      Words{{"slurm", "cluster", "sbatch"}, "", "'vantage submit' has a Slurm cluster do a run"},
+      Words{{"join", "concat"}, "", "'vantage merge' joins what parts of a run have made"},
+      Words{{"resume", "continue"}, "", "'vantage run' goes on with --resume"},
+      Words{{"version"}, "", "'vantage --version' tells the version"},
+      Words{{"commands", "list", "usage"}, "", "'vantage help' lists the commands"},
+  };
+  return kWords;
+}
+
+template <typename AllWords>
+std::string_view answer_to(std::string_view word, const AllWords& all,
+                           const std::vector<std::string>& known) {
+  for (const Words& one : all) {
+    const bool is_true = one.needs.empty() || std::ranges::find(known, without_dashes(one.needs),
+                                                                without_dashes) != known.end();
+    if (is_true && std::ranges::find(one.words, word) != one.words.end()) {
+      return one.answer;
+    }
+  }
+  return "";
+}
+
+template <typename AllWords>
+std::string hint(const std::string& name, const AllWords& words,
+                 const std::vector<std::string>& known, std::string_view list) {
+  if (const std::string_view answer = answer_to(without_dashes(name), words, known);
+      !answer.empty()) {
+    return fmt::format(": {}", answer);
+  }
+  if (const std::string nearest = nearest_name(name, known); !nearest.empty()) {
+    return fmt::format(", the nearest known one is '{}'", nearest);
+  }
+  return fmt::format("; '{}' lists those there are", list);
+}
+
+}  // namespace
+
+std::string nearest_name(std::string_view text, const std::vector<std::string>& candidates) {
+  constexpr std::size_t kLettersPerEdit = 4;
+  constexpr std::size_t kLeastBeginning = 3;
+  const std::string_view letters = without_dashes(text);
+  std::string nearest;
+  std::size_t least = (letters.size() + 1) / kLettersPerEdit + 1;
+  for (const std::string& candidate : candidates) {
+    const bool is_beginning = letters.size() >= kLeastBeginning && candidate.starts_with(text);
+    const std::size_t distance = is_beginning ? 1 : edit_distance(text, candidate);
+    if (distance < least) {
+      least = distance;
+      nearest = candidate;
+    }
+  }
+  return nearest;
+}
+
+std::string hint_for_option(const std::string& command, const std::string& name,
+                            const std::vector<std::string>& known) {
+  return hint(name, option_words(), known, fmt::format("vantage {} --help", command));
+}
+
+std::string hint_for_command(const std::string& name, const std::vector<std::string>& known) {
+  return hint(name, command_words(), known, "vantage help");
+}
+
+std::string hint_for_key(const std::string& key, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_name(key, known);
+  return nearest.empty() ? fmt::format(", expected one of {}", fmt::join(known, ", "))
+                         : fmt::format(", the nearest known one is '{}'", nearest);
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,356 @@
+// What the table says reads a parameter, against what changes when the parameter is changed: maps
+// that the matching code makes of given parameters, without the validation that uses the table.
+#include "engine/matching/parameter_readers.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/matching/cost_planes.h"
+#include "engine/matching/edge_weights.h"
+#include "engine/matching/map_search.h"
+#include "engine/matching/match_options.h"
+#include "engine/matching/method_names.h"
+#include "engine/matching/pair_levels.h"
+#include "tests/engine/oracle_comparison.h"
+#include "tests/test_sample.h"
+
+namespace vantage {
+namespace parameter_readers_test {
+
+using testing::HasSubstr;
+
+constexpr int kWidth = 31;
+constexpr int kHeight = 17;
+constexpr DisparityRange kRange{0, 19};  // two blocks of candidates
+
+/// Map and confidence, byte by byte.
+using Bytes = std::vector<float>;
+
+class Maps {
+ public:
+  Maps() {
+    pair_ = test::textured_pair(kWidth, kHeight, kRange, test::PixelKind::kColour8, 5);
+    // Another exposure, and noise that is not that of the book's parameters.
+    auto& right = std::get<Image<std::uint8_t>>(pair_.right.pixels);
+    for (int y = 0; y < kHeight; ++y) {
+      for (int i = 0; i < kWidth * right.channels(); ++i) {
+        right.row(y)[i] = static_cast<std::uint8_t>(right.row(y)[i] * 3 / 4 + 20);
+      }
+    }
+  }
+
+  /// What the parameters make of the pair, whoever may set them.
+  const Bytes& of(const MethodParameters& parameters) {
+    for (const auto& [known, bytes] : known_) {
+      if (known == parameters) {
+        return bytes;
+      }
+    }
+    known_.emplace_back(parameters, made_by(parameters));
+    return known_.back().second;
+  }
+
+ private:
+  Bytes made_by(MethodParameters parameters) {
+    MatchOptions options;  // of which only the range of candidates is made
+    options.method = MatchMethod::kSsd;
+    options.disparities = kRange;
+    options.parameters = as_overrides(parameters);
+    LevelChanges of_right;
+    if (uses_pair_levels(parameters)) {
+      const PairLevels levels = estimated(parameters.match_exposure);
+      of_right = levels.of_right;
+      if (parameters.estimate_sigma_measurement) {
+        parameters.sigma_measurement = levels.sigma_measurement.value();
+      }
+    }
+    const auto geometry = candidate_geometry(options, Reference::kLeft, kWidth, kHeight);
+    CostImage left;
+    CostImage right;
+    left.prepare(pair_.left, parameters, geometry, {true, false, false}, execution_);
+    right.prepare(pair_.right, parameters, geometry, {false, true, false, of_right}, execution_);
+    ChainInput input{nullptr, &left, {CostPartner{&right}}};
+    EdgeWeightLevels edges;
+    input.edges = edges.prepare(pair_.left, parameters, execution_);
+    DisparityMap map(kWidth, kHeight);
+    Image<float> confidence(kWidth, kHeight);
+    MapSearchWork work;
+    MatchReport report;
+    MapSearch(options, parameters, execution_, work, report)
+        .compute(Reference::kLeft, input, {.disparity_px = &map, .confidence = &confidence});
+    Bytes bytes;
+    for (const Image<float>* image : {&map, &confidence}) {
+      for (int y = 0; y < kHeight; ++y) {
+        bytes.insert(bytes.end(), image->row(y), image->row(y) + kWidth);
+      }
+    }
+    return bytes;
+  }
+
+  /// As if estimated from the pair, which is too small for that.
+  static PairLevels estimated(bool match_exposure) {
+    PairLevels levels;
+    levels.sigma_measurement = 7.5;
+    if (match_exposure) {
+      levels.has_levels = true;
+      levels.of_right.luma = {.gain = 4.0F / 3, .offset = -27};
+      levels.of_right.channels.fill(levels.of_right.luma);
+    }
+    return levels;
+  }
+
+  Execution execution_{{.threads = 1}};
+  test::PhotographPair pair_;
+  std::vector<std::pair<MethodParameters, Bytes>> known_;
+};
+
+bool are_equal(const Bytes& a, const Bytes& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+/// Other values of a parameter: what reads it makes another map of one of them.
+using Changes = std::vector<std::function<void(MethodOverrides&)>>;
+
+template <typename T>
+Changes values_of(std::optional<T> MethodOverrides::*field, std::vector<T> values) {
+  Changes changes;
+  for (const T value : values) {
+    changes.push_back([=](MethodOverrides& parameters) { parameters.*field = value; });
+  }
+  return changes;
+}
+
+const std::map<std::string_view, Changes>& changes() {
+  using P = MethodOverrides;
+  static const std::map<std::string_view, Changes> all = {
+      {"cost", values_of<MatchCost>(&P::cost, {MatchCost::kBirchfieldTomasi, MatchCost::kCensus})},
+      {"colour", values_of<ColourUse>(&P::colour, {ColourUse::kChannels})},
+      {"truncation", values_of<double>(&P::truncation, {3, 11})},
+      {"match-exposure", values_of<bool>(&P::match_exposure, {true})},
+      {"sigma-measurement", values_of<double>(&P::sigma_measurement, {2, 14})},
+      {"epsilon-measurement", values_of<double>(&P::epsilon_measurement, {0.01, 0.4})},
+      {"census-thresholds", values_of<int>(&P::census_thresholds, {3})},
+      {"sigma-census", values_of<double>(&P::sigma_census, {0, 0.05})},
+      {"sigma-gradient", values_of<double>(&P::sigma_gradient, {3})},
+      {"alpha", values_of<double>(&P::alpha, {0.3})},
+      {"norm", values_of<GradientNorm>(&P::norm, {GradientNorm::kOctagon})},
+      {"gradient", values_of<GradientFilter>(&P::gradient, {GradientFilter::kSimoncelli5})},
+      {"prefilter", values_of<bool>(&P::prefilter, {false})},
+      {"aggregate",
+       values_of<Aggregation>(&P::aggregation, {Aggregation::kGaussian, Aggregation::kNone})},
+      {"window", values_of<int>(&P::window_px, {3})},
+      {"border", values_of<Border>(&P::border, {Border::kValid})},
+      {"aggregation-sigma", values_of<double>(&P::aggregation_sigma_px, {0.9, 3.5})},
+      {"iterations", values_of<int>(&P::iterations, {1, 5})},
+      {"levels", values_of<int>(&P::levels, {2, 4})},
+      {"candidate-blocks", values_of<int>(&P::candidate_blocks, {2})},
+      {"pruned-levels", values_of<int>(&P::pruned_levels, {1})},
+      {"final-iterations", values_of<int>(&P::final_iterations, {0, 5})},
+      {"lambda", values_of<double>(&P::lambda, {0.05})},
+      {"beta", values_of<double>(&P::beta, {1.5})},
+      {"certainty", values_of<Certainty>(&P::certainty, {Certainty::kEntropy, Certainty::kMargin})},
+      {"mu", values_of<double>(&P::mu, {0.2})},
+      {"sigma-prior", values_of<double>(&P::sigma_prior, {1.1})},
+      {"epsilon-prior", values_of<double>(&P::epsilon_prior, {0.2})},
+      {"prior-growth", values_of<double>(&P::prior_growth, {3})},
+      {"prior-smoothing",
+       values_of<PriorSmoothing>(&P::prior_smoothing,
+                                 {PriorSmoothing::kSum, PriorSmoothing::kMaximum})},
+      {"level-weight", values_of<double>(&P::level_weight, {0.4})},
+      {"edge-weight", values_of<double>(&P::edge_weight, {0.05})},
+      {"edge-contrast", values_of<double>(&P::edge_contrast, {40})},
+      {"subpixel", values_of<Subpixel>(&P::subpixel, {Subpixel::kNone})},
+  };
+  return all;
+}
+
+constexpr std::array kCosts = {
+    MatchCost::kSquared,          MatchCost::kAbsolute,  MatchCost::kTruncated,
+    MatchCost::kBirchfieldTomasi, MatchCost::kGradient,  MatchCost::kContaminated,
+    MatchCost::kCensus,           MatchCost::kRayCensus, MatchCost::kCombined};
+constexpr std::array kAggregations = {Aggregation::kNone,          Aggregation::kBox,
+                                      Aggregation::kGaussian,      Aggregation::kBoxCascade,
+                                      Aggregation::kDiffusion,     Aggregation::kMembrane,
+                                      Aggregation::kLocalStopping, Aggregation::kBayes};
+
+/// Levels, and what Bayesian diffusion is asked for besides.
+struct Situation {
+  int levels;
+  int candidate_blocks;
+  double edge_weight;
+  Certainty certainty;
+};
+constexpr std::array kSituations = {Situation{1, 0, 1, Certainty::kMargin},
+                                    Situation{3, 0, 0.3, Certainty::kEntropy},
+                                    Situation{3, 1, 1, Certainty::kMargin}};
+
+MethodParameters parameters_of(const test::SampleRow& row) {
+  const Situation& situation = kSituations[static_cast<std::size_t>(row[2])];
+  MethodOverrides overrides;
+  overrides.cost = kCosts[static_cast<std::size_t>(row[0])];
+  overrides.aggregation = kAggregations[static_cast<std::size_t>(row[1])];
+  overrides.iterations = 3;
+  overrides.final_iterations = 2;
+  overrides.levels = situation.levels;
+  overrides.edge_weight = situation.edge_weight;
+  overrides.certainty = situation.certainty;
+  overrides.estimate_sigma_measurement = false;
+  if (overrides.cost == MatchCost::kGradient &&
+      overrides.aggregation == Aggregation::kLocalStopping) {
+    overrides.certainty = Certainty::kEntropy;
+  }
+  MethodParameters parameters = resolve(MatchMethod::kSsd, overrides);
+  parameters.candidate_blocks = can_prune(parameters) ? situation.candidate_blocks : 0;
+  return parameters;
+}
+
+bool is_valid(const MethodParameters& parameters) {
+  try {
+    validate(parameters);
+    return true;
+  } catch (const UsageError&) {
+    return false;
+  }
+}
+
+/// Where a parameter is read, but no other value can be had or makes a difference.
+bool is_without_difference(std::string_view name, const MethodParameters& parameters) {
+  if (name == "candidate-blocks") {
+    return !can_prune(parameters);  // it is 0, and only that is accepted
+  }
+  if (name == "certainty") {
+    return parameters.cost == MatchCost::kGradient;  // which has entropy only
+  }
+  return false;
+}
+
+TEST(ParameterReaders, ListEveryParameterOnce) {
+  std::vector<std::string_view> names;
+  for (const ParameterReaders& parameter : parameter_readers()) {
+    names.push_back(parameter.name);
+    ASSERT_TRUE(changes().contains(parameter.name)) << parameter.name;
+    EXPECT_FALSE(parameter.is_set({})) << parameter.name;
+    for (const auto& change : changes().at(parameter.name)) {
+      MethodOverrides overrides;
+      change(overrides);
+      for (const ParameterReaders& other : parameter_readers()) {
+        EXPECT_EQ(other.is_set(overrides), other.name == parameter.name)
+            << parameter.name << ' ' << other.name;
+      }
+    }
+  }
+  EXPECT_EQ(names.size(), changes().size());
+  // No field is left out: what sets all of them is set, whichever way it is looked at.
+  const MethodOverrides all = as_overrides(book_parameters(MatchMethod::kBayes));
+  for (const ParameterReaders& parameter : parameter_readers()) {
+    EXPECT_TRUE(parameter.is_set(all)) << parameter.name;
+  }
+}
+
+TEST(ParameterReaders, AreThoseWhoseMapsChange) {
+  SCOPED_TRACE(test::sample_name());
+  Maps maps;
+  const auto rows =
+      test::sampled_rows({static_cast<int>(kCosts.size()), static_cast<int>(kAggregations.size()),
+                          static_cast<int>(kSituations.size())});
+  // A third of them takes long enough: what reads a parameter is a matter of cost or aggregation.
+  const std::size_t step = test::runs_everything() ? 1 : 3;
+  for (std::size_t i = test::sample_seed() % step; i < rows.size(); i += step) {
+    const test::SampleRow& row = rows[i];
+    const MethodParameters before = parameters_of(row);
+    ASSERT_TRUE(is_valid(before));
+    for (const ParameterReaders& parameter : parameter_readers()) {
+      bool is_changed = false;
+      for (const auto& change : changes().at(parameter.name)) {
+        MethodOverrides overrides = as_overrides(before);
+        change(overrides);
+        MethodParameters after = resolve(MatchMethod::kSsd, overrides);
+        if (after.candidate_blocks == before.candidate_blocks && !can_prune(after)) {
+          after.candidate_blocks = 0;  // as without the preset that had set it
+        }
+        if (!is_valid(after) || after == before) {
+          continue;
+        }
+        is_changed = is_changed || !are_equal(maps.of(before), maps.of(after));
+      }
+      const bool is_expected =
+          parameter.is_read(before) && !is_without_difference(parameter.name, before);
+      EXPECT_EQ(is_changed, is_expected) << parameter.name << " with " << summary_of(before);
+    }
+  }
+}
+
+std::string complaint(const MatchOptions& options) {
+  try {
+    options.validate();
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ParameterReaders, WhatNothingReadsIsRefusedUnlessAPresetSetsIt) {
+  MatchOptions options;
+  EXPECT_EQ(complaint(options), "");
+  options.parameters.lambda = 0.1;
+  EXPECT_EQ(complaint(options),
+            "lambda is set but has no effect with preset balanced (cost census-rays, aggregation "
+            "bayes, 7 levels); it is read by diffusion, membrane and local-stopping");
+  options.method = MatchMethod::kDiffusion;
+  EXPECT_EQ(complaint(options), "");
+  options.parameters.edge_weight = 0.2;
+  EXPECT_THAT(complaint(options), HasSubstr("edge-weight is set but has no effect with method "
+                                            "diffusion (cost squared, aggregation diffusion, 1 "
+                                            "level); it is read by the aggregation bayes"));
+  // What a preset sets for an aggregation that is replaced is nobody's mistake.
+  options = {};
+  options.preset = MatchPreset::kQuality;
+  options.parameters.aggregation = Aggregation::kMembrane;
+  options.parameters.levels = 1;
+  EXPECT_EQ(complaint(options), "");
+}
+
+TEST(Refinement, WhatNothingReadsIsRefused) {
+  using R = RefinementOverrides;
+  const std::vector<std::pair<std::string, std::function<void(R&)>>> fields = {
+      {"edge-snapping", [](R& r) { r.edge_snapping_px = 0; }},
+      {"cross-check", [](R& r) { r.cross_check = false; }},
+      {"cross-check", [](R& r) { r.cross_check_px = 2; }},
+      {"cross-check-level", [](R& r) { r.cross_check_level = 1; }},
+      {"confidence-threshold", [](R& r) { r.confidence_threshold = 0; }},
+      {"speckle-size", [](R& r) { r.speckle_size_px = 5; }},
+      {"surface-fit", [](R& r) { r.surface_fit_px = 5; }},
+      {"fill", [](R& r) { r.fill = Fill::kNone; }}};
+  for (const auto& [name, set] : fields) {
+    MatchOptions options;
+    set(options.refinement);
+    EXPECT_EQ(complaint(options), "") << name;
+    options.raw = true;
+    EXPECT_EQ(complaint(options),
+              name + " is set but has no effect with raw, which leaves all refinement out");
+  }
+  MatchOptions options;
+  options.refinement.cross_check = false;
+  options.refinement.cross_check_level = 1;
+  EXPECT_EQ(complaint(options), "cross-check-level is set but has no effect with cross-check none");
+  options.refinement.cross_check_level.reset();
+  options.refinement.cross_check_px = 3;
+  EXPECT_THAT(complaint(options), HasSubstr("has no effect with cross-check none"));
+  // A preset's level is no mistake.
+  options.refinement.cross_check_px.reset();
+  options.preset = MatchPreset::kFast;
+  EXPECT_EQ(complaint(options), "");
+}
+
+}  // namespace parameter_readers_test
+}  // namespace vantage
