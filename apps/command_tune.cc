@@ -1,13 +1,15 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
 
 #include "apps/commands.h"
 #include "apps/interrupt.h"
@@ -23,6 +25,7 @@
 #include "engine/tuning/tuning_file.h"
 #include "engine/tuning/tuning_session.h"
 #include "scheduler/machine.h"
+#include "scheduler/processor_use.h"
 
 namespace vantage::apps {
 namespace {
@@ -91,11 +94,13 @@ fs::path tuning_path(const TuneJob& job) {
       "neither XDG_CONFIG_HOME nor HOME is an absolute path, expected one of them or --output");
 }
 
-void check(const TuneJob& job) {
+void check(const TuneJob& job, const Settings& settings) {
   if (job.list && job.forget) {
     throw UsageError("--list and --forget cannot go together");
   }
   if (job.list || job.forget) {
+    settings.refuse_idle({"size", "images", "for", "budget", "dry-run"},
+                         job.list ? "with --list" : "with --forget");
     return;
   }
   if (!job.images) {
@@ -128,16 +133,25 @@ int forget_entries(const TuneJob& job, const fs::path& path) {
   return kExitDone;
 }
 
-/// What is found while other programs take processors away may not hold without them.
-void warn_of_other_programs(const scheduler::Machine& machine) {
-  constexpr double kBusyShare = 0.25;
-  double load = 0;  // threads that ran or wanted to, mean of the last minute
-  if (::getloadavg(&load, 1) == 1 && load > kBusyShare * machine.hardware_threads) {
+/// What is found while other programs take processors away may not hold without them. `when` such
+/// as "were at work while plans were measured".
+void warn_of_other_programs(std::optional<double> of_others, const scheduler::Machine& machine,
+                            std::string_view when) {
+  constexpr double kBusyShare = 0.05;
+  if (of_others.value_or(0) > kBusyShare * machine.hardware_threads) {
     tell(
-        "tune: warning: other programs are at work (load {:.1f} on {} threads), expected an "
-        "idle machine\n",
-        load, machine.hardware_threads);
+               "tune: warning: the machine is busy: other programs {} ({:.1f} of {} processors in "
+               "the mean), expected an idle one; tune again then\n",
+               when, *of_others, machine.hardware_threads);
   }
+}
+
+/// A look before the work begins.
+std::optional<double> others_at_present() {
+  constexpr std::chrono::milliseconds kLook(200);
+  const scheduler::ProcessorUse use;
+  std::this_thread::sleep_for(kLook);
+  return use.of_others();
 }
 
 std::string now_as_text() {
@@ -186,7 +200,7 @@ int command_tune(const Arguments& arguments) {
   if (!settings.read(arguments)) {
     return kExitDone;
   }
-  check(job);
+  check(job, settings);
   force_instruction_set(job.common.isa);
   const fs::path path = tuning_path(job);
   if (job.list) {
@@ -214,11 +228,19 @@ int command_tune(const Arguments& arguments) {
     return kExitDone;
   }
   if (!job.common.quiet) {
-    warn_of_other_programs(machine);
+    warn_of_other_programs(others_at_present(), machine, "are at work");
   }
+  const scheduler::ProcessorUse use;
   const TuningReport tuned = report.timed_compute("tune", [&] { return tune(job, request); });
+  const std::optional<double> of_others = use.of_others();
   fmt::print("{}", describe(tuned, request));
-  report.set_results(as_json(tuned, path));
+  if (!job.common.quiet) {
+    std::fflush(stdout);
+    warn_of_other_programs(of_others, machine, "were at work while plans were measured");
+  }
+  SettingValue results = as_json(tuned, path);
+  results["processors_used_by_others"] = of_others ? SettingValue(*of_others) : SettingValue();
+  report.set_results(std::move(results));
   report.write(job.common.report);
   if (tuned.interrupted) {
     if (!job.common.quiet) {

@@ -60,15 +60,16 @@ std::string result_text(const TunedUseReport& use, const TunedImages& images) {
   const TuningOutcome& outcome = use.outcome;
   std::string text = faster_text(outcome.settings, outcome.ratio_to_default);
   if (outcome.settings != TunedSettings{}) {
-    text += fmt::format(" ({:.2f} ms, default {:.2f} ms; {} pairs of measurements of {}x{})",
+    text += fmt::format(" ({:.2f} ms, default {:.2f} ms; {} rounds of {}x{}, noise {:.1f} %)",
                         outcome.frame_seconds * kMilliseconds,
                         outcome.default_frame_seconds * kMilliseconds, outcome.rounds,
-                        images.width_px, use.final_rows);
+                        images.width_px, use.final_rows, 100 * outcome.noise);
   }
   if (outcome.settings == TunedSettings{} && outcome.rounds > 0) {
-    text += fmt::format(", the best of the search included ({} pair{} of measurements of {}x{})",
-                        outcome.rounds, outcome.rounds == 1 ? "" : "s", images.width_px,
-                        use.final_rows);
+    text += fmt::format(
+        " beyond noise, the best of the search included ({} round{} of {}x{}, noise {:.1f} %)",
+        outcome.rounds, outcome.rounds == 1 ? "" : "s", images.width_px, use.final_rows,
+        100 * outcome.noise);
   }
   if (!outcome.complete) {
     text += outcome.interrupted ? "; interrupted" : "; the budget ended the search";
@@ -137,6 +138,7 @@ SettingValue as_json(const TuningReport& report, const std::filesystem::path& fi
                                            {"default_frame_seconds", outcome.default_frame_seconds},
                                            {"ratio_to_default", outcome.ratio_to_default},
                                            {"final_rounds", outcome.rounds},
+                                           {"final_noise", outcome.noise},
                                            {"measurements", outcome.measurements},
                                            {"seconds", outcome.elapsed_seconds},
                                            {"complete", outcome.complete},

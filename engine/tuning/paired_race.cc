@@ -124,6 +124,15 @@ int PairedComparison::wins() const {
   return static_cast<int>(std::ranges::count_if(ratios, [](double ratio) { return ratio < 1; }));
 }
 
+double PairedComparison::noise() const {
+  constexpr double kDeviationsPerMedian = 1.4826;  // of a normal distribution around 1
+  std::vector<double> distances;
+  for (const double ratio : repeats) {
+    distances.push_back(std::abs(ratio - 1));
+  }
+  return distances.empty() ? 0 : kDeviationsPerMedian * median(std::move(distances));
+}
+
 bool PairedComparison::is_won(int least_rounds) const {
   if (rounds() < std::max(1, least_rounds)) {
     return false;
@@ -131,7 +140,7 @@ bool PairedComparison::is_won(int least_rounds) const {
   const double error = spread(ratios) / std::sqrt(rounds());
   const int losses = rounds() - wins();
   return losses <= (rounds() - kRoundsToWin) / kRoundsPerLoss &&
-         1 - median_ratio() >= std::max(kLeastGain, kStandardErrors * error);
+         1 - median_ratio() >= std::max({kLeastGain, kStandardErrors * error, noise()});
 }
 
 RaceResult race(const TunedSettings& incumbent, const std::vector<TunedSettings>& candidates,
@@ -175,9 +184,14 @@ PairedComparison compare(const TunedSettings& incumbent, const TunedSettings& ch
   }
   // Whoever stopped as soon as it looks good would be taken in by chance more often.
   for (int round = 1; round <= rounds && !is_lost(comparison); ++round) {
-    if (!run_round(incumbent, runners, round % 2 == 1, trials)) {
+    const auto before = trials.measure(incumbent);
+    const auto seconds = before ? trials.measure(challenger) : std::nullopt;
+    const auto behind = seconds ? trials.measure(incumbent) : std::nullopt;
+    if (!behind) {
       break;
     }
+    comparison.ratios.push_back(2 * *seconds / (*before + *behind));
+    comparison.repeats.push_back(*behind / *before);
   }
   if (!comparison.ratios.empty()) {
     note_ratios(incumbent, runners, trials);

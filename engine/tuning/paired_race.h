@@ -10,12 +10,17 @@ namespace vantage {
 /// What comparing one plan with another, measured in turn, says.
 struct PairedComparison {
   std::vector<double> ratios;  ///< challenger ÷ incumbent, one per round
+  /// Where the incumbent is measured twice in a round, before and behind the challenger: the second
+  /// time ÷ the first. All that is not 1 in them is noise.
+  std::vector<double> repeats = {};
 
   [[nodiscard]] int rounds() const { return static_cast<int>(ratios.size()); }
   [[nodiscard]] int wins() const;  ///< rounds in which the challenger was faster
   [[nodiscard]] double median_ratio() const { return median(ratios); }
-  /// Whether the challenger is faster beyond noise: by at least 1 % and twice the standard error,
-  /// in all but a few of at least `least_rounds` rounds.
+  /// By how much the incumbent differs from itself, as a standard deviation; 0 without repeats.
+  [[nodiscard]] double noise() const;
+  /// Whether the challenger is faster beyond noise: by at least 1 %, twice the standard error and
+  /// noise(), in all but a few of at least `least_rounds` rounds.
   [[nodiscard]] bool is_won(int least_rounds) const;
 };
 
@@ -31,7 +36,8 @@ struct RaceResult {
 RaceResult race(const TunedSettings& incumbent, const std::vector<TunedSettings>& candidates,
                 BudgetedTrials& trials);
 
-/// Compares two plans in `rounds` rounds; ends early when the challenger cannot win any more.
+/// Compares two plans in `rounds` rounds, in each of which the incumbent goes before and behind the
+/// challenger; ends early when the challenger cannot win any more.
 PairedComparison compare(const TunedSettings& incumbent, const TunedSettings& challenger,
                          int rounds, BudgetedTrials& trials);
 

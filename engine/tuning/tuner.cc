@@ -12,9 +12,9 @@
 namespace vantage {
 namespace {
 
-// The final comparison: pairs of measurements.
+// The final comparison: a measurement of the best plan between two of the default one.
 constexpr int kFinalRounds = 9;
-constexpr int kFewestFinalRounds = 3;  // where time is short
+constexpr int kFewestFinalRounds = 5;  // where time is short; three are won by chance too often
 // The time of so many of them is set aside, at most such a share of the budget.
 constexpr int kReservedRounds = 5;
 constexpr double kMostFinalShare = 0.3;
@@ -112,7 +112,7 @@ TuningOutcome Tuner::tune() {
   const bool has_begun = trials.measure(by_default) && trials.measure(by_default);
   if (has_begun) {
     const double wanted =
-        (2 * kReservedRounds + 2) * std::max(final_subject_.expected_seconds(by_default),
+        (3 * kReservedRounds + 2) * std::max(final_subject_.expected_seconds(by_default),
                                              final_subject_.expected_seconds(incumbent));
     trials.set_deadline(deadline - std::min(wanted, kMostFinalShare * options_.budget_seconds));
     outcome.complete = search(trials, incumbent);
@@ -124,6 +124,7 @@ TuningOutcome Tuner::tune() {
     final_trials.on_measured([&] { report(final_trials, "final", incumbent); });
     const PairedComparison comparison = compare(by_default, incumbent, kFinalRounds, final_trials);
     outcome.rounds = comparison.rounds();
+    outcome.noise = comparison.noise();
     // A tie, and what there was no time to compare, is the default's.
     if (comparison.is_won(kFewestFinalRounds)) {
       outcome.settings = incumbent;

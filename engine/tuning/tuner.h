@@ -36,6 +36,8 @@ struct TuningOutcome {
   double default_frame_seconds = 0;
   double ratio_to_default = 1;  ///< median of pairs
   int rounds = 0;               ///< of the final comparison
+  /// By how much the default plan differed from itself in them, as a share of its time.
+  double noise = 0;
   int measurements = 0;
   double elapsed_seconds = 0;
   bool complete = false;           ///< the search ended by itself, not by the budget

@@ -87,6 +87,8 @@ TEST_F(SlowTuneTest, FindsStoresAndTells) {
   EXPECT_EQ(json["results"]["key"], content.entries[0].key.text());
   EXPECT_EQ(json["results"]["match"]["tried"][0]["settings"], nlohmann::json::object());
   EXPECT_GT(json["results"]["match"]["frame_seconds"], 0);
+  EXPECT_GE(json["results"]["match"]["final_noise"], 0);
+  EXPECT_TRUE(json["results"].contains("processors_used_by_others"));
 
   const ProcessResult list = run({"tune", "--list"});
   EXPECT_EQ(list.exit_code, 0);
@@ -142,6 +144,7 @@ TEST_F(InputTuneCommand, RefusesWrongUsage) {
            {{"tune", "--size", "71x53", "--disparities=auto"}, "--disparities is auto"},
            {{"tune", "--size", "71x53", "--budget", "-1"}, "budget is -1"},
            {{"tune", "--size", "71x53", "--window", "4"}, "window is 4"},
+           {{"tune", "--list", "--budget", "5"}, "--budget has no effect with --list"},
            {{"tune", "--list", "--forget"}, "cannot go together"}}) {
     const ProcessResult result = run(arguments);
     EXPECT_EQ(result.exit_code, 2) << message;

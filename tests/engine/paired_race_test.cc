@@ -53,6 +53,31 @@ TEST(PairedComparison, IsWonBeyondNoiseOnly) {
   EXPECT_FALSE(comparison({}).is_won(0));
 }
 
+TEST(PairedComparison, IsNotWonByLessThanThePlanDiffersFromItself) {
+  PairedComparison comparison{{0.96, 0.955, 0.965, 0.96, 0.96, 0.958, 0.962, 0.96, 0.96}};
+  EXPECT_TRUE(comparison.is_won(5)) << "4 % and nothing that speaks against it";
+  EXPECT_EQ(comparison.noise(), 0);
+  comparison.repeats = {1.01, 0.99, 1, 1.02, 0.99, 1, 1, 0.98, 1.01};
+  EXPECT_NEAR(comparison.noise(), 0.0148, 1e-4);
+  EXPECT_TRUE(comparison.is_won(5));
+  // A busy machine: the plan takes 8 % more or less from one time to the next.
+  comparison.repeats = {1.08, 0.9, 1.02, 0.92, 1.07, 1.11, 0.93, 0.99, 1.05};
+  EXPECT_FALSE(comparison.is_won(5));
+}
+
+TEST(PairedRace, MeasuresTheIncumbentOnBothSidesOfTheChallenger) {
+  // The incumbent takes 10 and 12 s by turns; the challenger 11, as long in the mean.
+  ToldTimes subject({{1, {10, 10, 12, 10, 12, 10, 12, 10, 12, 10, 12}}, {2, {11}}});
+  const TuningClock clock = subject.clock();
+  BudgetedTrials trials(subject, clock, 1000, nullptr);
+  const PairedComparison comparison = compare(strips_of(1), strips_of(2), 5, trials);
+  for (const double ratio : comparison.ratios) {
+    EXPECT_DOUBLE_EQ(ratio, 1);
+  }
+  EXPECT_EQ(comparison.repeats.size(), comparison.ratios.size());
+  EXPECT_NEAR(comparison.noise(), 1.4826 * 0.2, 1e-9);
+}
+
 TEST(PairedRace, TakesTheFastestAndDropsOthersEarly) {
   ToldTimes subject({{1, {10}}, {2, {20}}, {3, {8}}, {4, {10.5}}, {5, {9}}});
   const TuningClock clock = subject.clock();
