@@ -21,6 +21,7 @@
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
 #include "engine/profile_page/profile_page.h"
+#include "engine/profiling/profile_advice.h"
 #include "engine/profiling/profile_comparison.h"
 #include "engine/profiling/profile_figures.h"
 #include "engine/simd.h"
@@ -127,7 +128,9 @@ void check_files(const ProfileJob& job, const Settings& settings, const Profiled
   files.add_output(job.json, "--json", OutputKind::kText);
 }
 
-int compare(const ProfileJob& job) {
+int compare(const ProfileJob& job, const Settings& settings) {
+  settings.refuse_idle({"runs", "threads", "budget"},
+                       "with --compare, which only prints what two files hold");
   if (job.profiles.size() != 2) {
     throw UsageError(fmt::format("--compare is given {} file{}, expected two: A.json B.json",
                                  job.profiles.size(), job.profiles.size() == 1 ? "" : "s"));
@@ -202,6 +205,7 @@ Profile make_profile(const ProfiledCommand& command, const std::vector<Contestan
   }
   profile.speed_ups = speed_ups(walls);
   profile.serial_fraction = amdahl_fit(profile.speed_ups);
+  profile.advice = profile_advice(profile, median_steps(most.runs), command.choices());
   const RunMeasurement& median = most.runs[median_run(most.runs)];
   profile.peak_memory_bytes =
       static_cast<std::uint64_t>(profile.thread_counts.back().peak_memory_bytes.most);
@@ -309,7 +313,7 @@ int command_profile(const Arguments& arguments) {
   check(job);
   if (job.compare) {
     check_files(job, settings, nullptr);
-    return compare(job);
+    return compare(job, settings);
   }
   const Arguments words(end_of_own, arguments.end());
   if (words.empty()) {

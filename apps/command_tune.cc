@@ -140,9 +140,9 @@ void warn_of_other_programs(std::optional<double> of_others, const scheduler::Ma
   constexpr double kBusyShare = 0.05;
   if (of_others.value_or(0) > kBusyShare * machine.hardware_threads) {
     tell(
-               "tune: warning: the machine is busy: other programs {} ({:.1f} of {} processors in "
-               "the mean), expected an idle one; tune again then\n",
-               when, *of_others, machine.hardware_threads);
+        "tune: warning: the machine is busy: other programs {} ({:.1f} of {} processors in "
+        "the mean), expected an idle one; tune again then\n",
+        when, *of_others, machine.hardware_threads);
   }
 }
 

@@ -277,6 +277,7 @@ requires std::is_class_v<T> &&
 SettingValue as_json(const Profile& profile) {
   SettingValue document = {{kSchemaKey, kSchema}};
   document.update(to_value(profile));
+  document["advice"] = profile.advice;  // for people: not read again
   return document;
 }
 

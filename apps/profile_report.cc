@@ -39,6 +39,14 @@ std::string wrapped(const std::string& sentence) {
   return text + "  " + line + "\n";
 }
 
+std::string advice(const Profile& profile) {
+  std::string text;
+  for (const std::string& sentence : profile.advice) {
+    text += wrapped(sentence);
+  }
+  return text.empty() ? "" : "What you can do about the time\n" + text + "\n";
+}
+
 std::string findings(const Profile& profile) {
   std::string text;
   for (const ProfileFinding& finding : profile_findings(profile)) {
@@ -194,8 +202,8 @@ std::string describe(const Profile& profile) {
   return fmt::format("{}\n{}, {}, vantage {}; {} run{} each\n\n", profile.command,
                      profile.processor, profile.isa, profile.version, most.runs,
                      most.runs == 1 ? "" : "s") +
-         findings(profile) + scaling(profile) + stages(profile, most) + parts(most) +
-         workers(most) + ceilings(profile) + memory(profile) +
+         advice(profile) + findings(profile) + scaling(profile) + stages(profile, most) +
+         parts(most) + workers(most) + ceilings(profile) + memory(profile) +
          counters(profile.hardware, most.threads);
 }
 

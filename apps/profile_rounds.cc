@@ -57,6 +57,9 @@ void take_trace(const SettingValue& trace, RunMeasurement& run) {
 RunMeasurement measurement_in(const SettingValue& report) {
   RunMeasurement run;
   take_trace(report.at("trace"), run);
+  for (const auto& [step, seconds] : report.at("seconds").at("stages").items()) {
+    run.steps[step] = seconds;
+  }
   run.compute_s = report.at("seconds").at("compute");
   run.cells_per_s = report.at("cells_per_second");
   run.peak_memory_bytes = report.at("peak_memory_bytes");

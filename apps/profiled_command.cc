@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <optional>
 #include <utility>
 
 #include "apps/child_process.h"
@@ -57,6 +58,36 @@ ProfiledCommand::ProfiledCommand(const Arguments& words, bool is_match)
 
 const CommonOptions& ProfiledCommand::common() const {
   return std::visit([](const auto& job) -> const CommonOptions& { return job.common; }, job_);
+}
+
+ProfiledChoices ProfiledCommand::choices() const {
+  const auto* match_job = std::get_if<MatchJob>(&job_);
+  const auto* run_job = std::get_if<RunJob>(&job_);
+  const MatchOptions& match = match_job != nullptr ? match_job->match : run_job->sequence.match;
+  bool needs_both = false;  // maps, for themselves
+  bool has_several = false;
+  if (match_job != nullptr) {
+    has_several = match_job->has_several();
+    needs_both = match_job->wants_right() && match_job->is_left();
+  } else {
+    needs_both = !run_job->sequence.views.empty();
+    for (const SequenceOutput output : {SequenceOutput::kRightDisparity,
+                                        SequenceOutput::kRightUnmatched, SequenceOutput::kStereo}) {
+      needs_both = needs_both || run_job->sequence.saves(output);
+    }
+  }
+  const RefinementOptions refinement = match.resolved_refinement();
+  ProfiledChoices choices;
+  choices.preset = has_several ? std::nullopt : match.preset_in_force();
+  choices.estimates_range = match.disparities_auto;
+  choices.candidates = match.disparities_auto ? 0 : match.disparities.count();
+  choices.checks_rows =
+      match_job != nullptr ? match_job->check_rectification : run_job->check_rectification;
+  choices.has_map_for_check_only =
+      !match.raw && refinement.cross_check && !needs_both && !has_several;
+  choices.can_check_coarse_map =
+      can_check_levels(match.resolved()) && refinement.cross_check_level == 0;
+  return choices;
 }
 
 CommonOptions& ProfiledCommand::changeable_common() {

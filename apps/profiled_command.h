@@ -12,6 +12,7 @@
 #include "apps/run_settings.h"
 #include "apps/settings.h"
 #include "apps/throw_away_folder.h"
+#include "engine/profiling/profile_advice.h"
 
 namespace vantage::apps {
 
@@ -28,6 +29,8 @@ class ProfiledCommand {
   /// As it would be typed.
   [[nodiscard]] const std::string& text() const { return text_; }
   [[nodiscard]] const CommonOptions& common() const;
+  /// What it was told, as far as other settings would take less time.
+  [[nodiscard]] ProfiledChoices choices() const;
   /// Things about it that people should know.
   [[nodiscard]] const std::vector<std::string>& remarks() const { return remarks_; }
   /// The files that its settings name as inputs.

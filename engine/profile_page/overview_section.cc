@@ -87,6 +87,16 @@ std::string head(const Profile& profile) {
       escaped_markup(profile.command), items);
 }
 
+std::string advice_markup(const Profile& profile) {
+  std::string items;
+  for (const std::string& sentence : profile.advice) {
+    items += fmt::format("<li>{}</li>\n", escaped_markup(sentence));
+  }
+  return items.empty() ? ""
+                       : section_markup("What you can do about the time",
+                                        "<ul class=\"findings\">\n" + items + "</ul>\n");
+}
+
 std::string findings_markup(const Profile& profile) {
   const std::vector<ProfileFinding> findings = profile_findings(profile);
   if (findings.empty()) {
@@ -129,7 +139,8 @@ std::string overview_section(const Profile& profile) {
   }
   const std::string list = figures.empty() ? note("No run was measured.")
                                            : "<dl class=\"figures\">\n" + figures + "</dl>\n";
-  return head(profile) + list + section_markup("What holds it back", findings_markup(profile));
+  return head(profile) + list + advice_markup(profile) +
+         section_markup("What holds it back", findings_markup(profile));
 }
 
 }  // namespace vantage

@@ -122,6 +122,9 @@ struct Profile {
   /// For each number of threads that was measured, in that order.
   std::vector<MachineCeilings> ceilings;
   std::vector<ThreadCountProfile> thread_counts;  ///< fewest first
+  /// What the user can do about the time, most first (profile_advice); none in a profile that was
+  /// read from a file.
+  std::vector<std::string> advice = {};
   std::vector<SpeedUp> speed_ups;
   /// Least-squares fit of Amdahl's law to speed_ups; none with a single number of threads.
   std::optional<double> serial_fraction;

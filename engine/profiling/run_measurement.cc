@@ -94,6 +94,17 @@ WaitingProfile waiting_of(Runs runs) {
 
 }  // namespace
 
+std::map<std::string, double> median_steps(Runs runs) {
+  std::map<std::string, double> medians;
+  for (const std::string& name : names_in<double>(runs, &RunMeasurement::steps)) {
+    medians[name] = sample_over(runs, [&](const RunMeasurement& run) {
+                      const auto found = run.steps.find(name);
+                      return found == run.steps.end() ? 0 : found->second;
+                    }).median;
+  }
+  return medians;
+}
+
 std::size_t median_run(Runs runs) {
   std::vector<std::size_t> order(runs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

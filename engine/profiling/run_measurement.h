@@ -32,6 +32,8 @@ struct RunMeasurement {
   double frames_per_s = 0;  ///< 0 for one pair
   double work_share = 0;
   std::vector<ThreadProfile> workers;
+  /// Seconds of the command's steps as its report tells them: "read", "check", "match left", …
+  std::map<std::string, double> steps;
   std::map<std::string, Stage> stages;
   std::map<std::string, Part> parts;
   std::map<std::string, Part> waits;
@@ -48,6 +50,9 @@ std::size_t median_run(std::span<const RunMeasurement> runs);
 /// Medians and ranges over `runs` (at least one) on `threads` threads. A stage, part or wait that a
 /// run does not have counts as 0 there. Thread rule: pure.
 ThreadCountProfile summarise_runs(int threads, std::span<const RunMeasurement> runs);
+
+/// Medians of the steps' seconds; a step that a run does not have counts as 0 there.
+std::map<std::string, double> median_steps(std::span<const RunMeasurement> runs);
 
 /// Greatest ÷ mean work of a thread of the pool; 1 without any.
 double imbalance_of(std::span<const ThreadProfile> workers);

@@ -55,6 +55,9 @@ TEST_F(SlowProfileTest, KeepsWhereTheTimeOfAPairGoes) {
       profile({"--threads", "2,1", "--html", page},
               match_command({"--method", "ssd", "--unmatched", out_ / "m.png"}));
   ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_LT(result.out.find("What you can do about the time\n"),
+            result.out.find("What holds it back\n"));
+  EXPECT_THAT(read_file(page), HasSubstr("What you can do about the time"));
   for (const char* text : {"Threads", "speed-up", "column SSD", "Work and waiting",
                            "What the machine", "level 2", "Memory", "idle"}) {
     EXPECT_THAT(result.out, HasSubstr(text));
