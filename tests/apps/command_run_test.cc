@@ -406,7 +406,7 @@ TEST_F(InputRunCommand, JobFilesHoldEverything) {
                                          "--video",      "stereo",
                                          "--fps",        "12.5",
                                          "--frames",     "1-4",
-                                         "--window",     "5",
+                                         "--iterations", "2",
                                          "--memory",     "2G",
                                          "--keep-going", "--no-sound"};
   std::vector<std::string> printed = arguments(folder_ / "job", more);
@@ -416,7 +416,8 @@ TEST_F(InputRunCommand, JobFilesHoldEverything) {
   write_file(folder_ / "job.toml", config.out);
   const ProcessResult again = run_vantage({"run", folder_ / "job.toml", "--print-config"});
   EXPECT_EQ(again.out, config.out);
-  ASSERT_EQ(run(folder_ / "options", more).exit_code, 0);
+  const ProcessResult options = run(folder_ / "options", more);
+  ASSERT_EQ(options.exit_code, 0) << options.err;
   const ProcessResult job = run_vantage({"run", folder_ / "job.toml"});
   ASSERT_EQ(job.exit_code, 0) << job.err;
   EXPECT_EQ(results_in(folder_ / "job"), results_in(folder_ / "options"));
