@@ -4,26 +4,41 @@
 
 #include <cstdio>
 
+#include "apps/match_settings.h"
 #include "apps/tell.h"
+#include "engine/error.h"
 #include "engine/matching/disparity_range.h"
 
 namespace vantage::apps {
 
 void choose_disparities(const Settings& settings, const CommonOptions& common,
-                        const Photograph& left, const Photograph& right, MatchOptions& options,
-                        Execution& execution, RunReport& report) {
+                        const std::function<std::optional<DisparityRange>()>& find,
+                        MatchOptions& options, RunReport& report) {
   if (!options.disparities_auto) {
     return;
   }
-  options.disparities = report.timed_compute(
-      "range", [&] { return estimate_disparity_range(left, right, execution); });
+  const std::optional<DisparityRange> range = report.timed_compute("range", find);
+  if (!range) {
+    throw Error(
+        "the images give no evidence for any range of disparities, expected texture that both of "
+        "them show; give --disparities MIN:MAX");
+  }
+  options.disparities = *range;
   options.disparities_auto = false;
   options.validate();
   report.set_settings(reported_settings(settings, options));
   if (!common.quiet) {
-    tell("{}: --disparities auto is {}:{}\n", settings.command(), options.disparities.min,
-         options.disparities.max);
+    tell("{}: --disparities auto is {}{}\n", settings.command(), to_text(*range),
+         -range->min > 2 * range->max ? ", mostly negative: left and right look exchanged" : "");
   }
+}
+
+void choose_disparities(const Settings& settings, const CommonOptions& common,
+                        const Photograph& left, const Photograph& right, MatchOptions& options,
+                        Execution& execution, RunReport& report) {
+  choose_disparities(
+      settings, common, [&] { return find_disparity_range(left, right, execution); }, options,
+      report);
 }
 
 }  // namespace vantage::apps

@@ -144,7 +144,9 @@ int command_match(const Arguments& arguments) {
   const bool first_is_left = !job.has_several() || job.is_left();
   const Photograph& left = images[first_is_left ? 0 : 1];
   const Photograph& right = images[first_is_left ? 1 : 0];
+  const bool expects_negative = expects_negative_disparities(job.match);
   choose_disparities(settings, job.common, left, right, job.match, execution, report);
+  require_files_hold_search(job);
   const AppliedTuning tuning = job.has_several()
                                    ? no_tuning("tuning is for pairs, there are more images")
                                    : apply_tuning(job.tuning,
@@ -167,7 +169,8 @@ int command_match(const Arguments& arguments) {
     report.timed_compute([&] { match_images(job, matcher, images, maps, match); });
   };
   if (job.check_rectification && !job.match.disparities_y) {
-    warn_unless_rectified_beside(compute, settings, job.common, left, right, chosen, report);
+    warn_unless_rectified_beside(compute, settings, job.common, expects_negative, left, right,
+                                 chosen, report);
   } else {
     compute();
   }

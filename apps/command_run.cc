@@ -43,13 +43,7 @@ std::optional<ShotTable> find_shots(const RunJob& job, RunSession& session,
   };
   hooks.stop = &interrupt_flag();
   if (session.rectifier) {
-    hooks.prepare = [&](FramePair& pair) {
-      Photograph rectified;
-      session.rectifier->apply(pair.left, Side::kLeft, rectified, execution);
-      std::swap(pair.left, rectified);
-      session.rectifier->apply(pair.right, Side::kRight, rectified, execution);
-      std::swap(pair.right, rectified);
-    };
+    hooks.prepare = [&](FramePair& pair) { session.rectify(pair, execution); };
   }
   auto shots = report.timed_compute("shots", [&] {
     return survey_shots(*session.pairs, 0, session.selection.frame_count, job.sequence, hooks,

@@ -5,6 +5,7 @@
 
 #include "apps/commands.h"
 #include "apps/interrupt.h"
+#include "apps/match_settings.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
@@ -23,7 +24,7 @@ namespace {
 
 struct SceneBuildJob {
   SceneImagesInput images;
-  MatchOptions match;
+  MatchOptions match = options_with_found_range();
   CommonOptions common;
   std::string output;
   bool copy_images = false;

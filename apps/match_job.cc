@@ -7,6 +7,7 @@
 #include "apps/outputs.h"
 #include "apps/rectification_check.h"
 #include "engine/error.h"
+#include "engine/io/disparity_io.h"
 
 namespace vantage::apps {
 namespace {
@@ -106,6 +107,15 @@ void add_match_job_settings(Settings& settings, MatchJob& job) {
   add_common_settings(settings, job.common);
 }
 
+void require_files_hold_search(const MatchJob& job) {
+  if (job.match.disparities_auto) {
+    return;
+  }
+  for (const std::string& file : {job.output, job.output_right}) {
+    require_holds_search(file, job.match.disparities.min, job.match.disparities.max);
+  }
+}
+
 void check(const MatchJob& job, const Settings& settings) {
   job.match.validate();
   job.common.execution.validate();
@@ -138,6 +148,7 @@ void check(const MatchJob& job, const Settings& settings) {
   files.add_output(job.unmatched_right, "--unmatched-right", OutputKind::kMask);
   files.add_output(job.preview, "--preview", OutputKind::kPhotograph);
   check_common_files(job.common, files);
+  require_files_hold_search(job);
 }
 
 }  // namespace vantage::apps

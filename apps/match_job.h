@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "apps/applied_tuning.h"
+#include "apps/match_settings.h"
 #include "apps/option_groups.h"
 #include "apps/settings.h"
 #include "engine/matching/match_options.h"
@@ -12,7 +13,7 @@ namespace vantage::apps {
 
 /// Everything a user can set about a match.
 struct MatchJob {
-  MatchOptions match;
+  MatchOptions match = options_with_found_range();
   CommonOptions common;
   TuningSource tuning;
   std::string left;
@@ -44,6 +45,10 @@ struct MatchJob {
 
 /// Binds all of it: the options of 'vantage match'.
 void add_match_job_settings(Settings& settings, MatchJob& job);
+
+/// Throws UsageError where a map may hold disparities that its file cannot. Says nothing while the
+/// range is not known (--disparities auto).
+void require_files_hold_search(const MatchJob& job);
 
 /// Throws UsageError where fields are wrong or do not go together, Error where results cannot be
 /// written.

@@ -330,6 +330,12 @@ DisparityRange to_disparity_range(const SettingValue& value, std::string_view ex
 
 std::string to_text(DisparityRange range) { return fmt::format("{}:{}", range.min, range.max); }
 
+MatchOptions options_with_found_range() {
+  MatchOptions options;
+  options.disparities_auto = true;
+  return options;
+}
+
 void add_gradient_settings(Settings& settings, MethodOverrides& parameters) {
   settings.number("alpha", parameters.alpha, "A",
                   "Cost gradient: weight of the difference of the gradients, at least 0; " +
@@ -353,8 +359,8 @@ void add_match_settings(Settings& settings, MatchOptions& options) {
   settings.begin_group("Matching");
   Setting& disparities = settings.add(
       "disparities", "MIN:MAX|auto",
-      "Candidate disparities x_left - x_right in pixels, both inclusive; auto: what the (first) "
-      "pair suggests");
+      "Candidate disparities x_left - x_right in pixels, both inclusive; auto: what the pair "
+      "suggests, of a sequence up to 16 pairs of it");
   disparities.set = [&options](const SettingValue& value) {
     options.disparities_auto = is_word(value, "auto");
     if (!options.disparities_auto) {

@@ -12,6 +12,10 @@ namespace vantage::apps {
 DisparityRange to_disparity_range(const SettingValue& value, std::string_view expected);
 std::string to_text(DisparityRange range);
 
+/// What commands that match images start from: the range of disparities is found unless it is
+/// given.
+MatchOptions options_with_found_range();
+
 /// All of MatchOptions but `reference`.
 void add_match_settings(Settings& settings, MatchOptions& options);
 /// Those of them that say what gradient evidence is.

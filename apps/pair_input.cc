@@ -114,7 +114,8 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
                              execution, report, result);
   }
   if (pair.check_rectification) {
-    warn_unless_rectified(settings, common, result.left, result.right, report);
+    warn_unless_rectified(settings, common, expects_negative_disparities(pair.match), result.left,
+                          result.right, report);
   }
   if (!pair.has_maps()) {
     choose_disparities(settings, common, result.left, result.right, pair.match, execution, report);

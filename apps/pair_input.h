@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/match_settings.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
 #include "apps/run_report.h"
@@ -25,7 +26,7 @@ struct PairInput {
   std::optional<double> disparity_scale;
   std::string calibration;  ///< file, empty = a rectified pair of which nothing is known
   RectificationOptions rectification;
-  MatchOptions match;
+  MatchOptions match = options_with_found_range();
   bool check_rectification = true;
 
   [[nodiscard]] bool has_maps() const { return !left_disparity.empty(); }

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <optional>
 
-#include "apps/match_settings.h"
 #include "apps/tell.h"
 #include "apps/vertical_error_report.h"
 #include "engine/rectification/vertical_error.h"
@@ -14,17 +13,6 @@
 
 namespace vantage::apps {
 namespace {
-
-/// Whether whoever chose the range of disparities knows that most are negative.
-bool expects_negative_disparities(const Settings& settings) {
-  const SettingValue values = settings.values();
-  const auto chosen = values.find("disparities");
-  if (chosen == values.end() || *chosen == "auto") {
-    return false;
-  }
-  const DisparityRange range = to_disparity_range(*chosen, "MIN:MAX");
-  return -range.min > range.max;
-}
 
 struct Look {
   std::optional<VerticalError> error;
@@ -41,7 +29,7 @@ Look look_at_rows(const Photograph& left, const Photograph& right) {
 }
 
 void tell_of(const Look& look, const Settings& settings, const CommonOptions& common,
-             RunReport& report) {
+          bool expects_negative, RunReport& report) {
   report.add_stage("check", look.seconds);
   if (!look.error) {
     return;
@@ -51,7 +39,7 @@ void tell_of(const Look& look, const Settings& settings, const CommonOptions& co
   const bool is_rectified = error.systematic_px <= kRectificationLimit_px;
   values["limit_px"] = kRectificationLimit_px;
   values["is_rectified"] = is_rectified;
-  const bool looks_exchanged = error.looks_exchanged() && !expects_negative_disparities(settings);
+  const bool looks_exchanged = error.looks_exchanged() && !expects_negative;
   values["looks_exchanged"] = looks_exchanged;
   report.add_result("rectification", std::move(values));
   if (!is_rectified && !common.quiet) {
@@ -68,6 +56,10 @@ void tell_of(const Look& look, const Settings& settings, const CommonOptions& co
 
 }  // namespace
 
+bool expects_negative_disparities(const MatchOptions& options) {
+  return !options.disparities_auto && -options.disparities.min > options.disparities.max;
+}
+
 void add_rectification_check_setting(Settings& settings, bool& wanted) {
   Setting& setting =
       settings.add("no-rectification-check", "",
@@ -80,17 +72,18 @@ void add_rectification_check_setting(Settings& settings, bool& wanted) {
 }
 
 void warn_unless_rectified(const Settings& settings, const CommonOptions& common,
-                           const Photograph& left, const Photograph& right, RunReport& report) {
+                           bool expects_negative, const Photograph& left, const Photograph& right,
+                           RunReport& report) {
   // Of images that differ in size whoever uses the pair will say so.
   if (left.width() == right.width() && left.height() == right.height()) {
-    tell_of(look_at_rows(left, right), settings, common, report);
+    tell_of(look_at_rows(left, right), settings, common, expects_negative, report);
   }
 }
 
 void warn_unless_rectified_beside(const std::function<void()>& work, const Settings& settings,
-                                  const CommonOptions& common, const Photograph& left,
-                                  const Photograph& right, Execution& execution,
-                                  RunReport& report) {
+                                  const CommonOptions& common, bool expects_negative,
+                                  const Photograph& left, const Photograph& right,
+                                  Execution& execution, RunReport& report) {
   Look look;
   execution.executor().parallel_for(2, [&](int task) {
     if (task == 0) {
@@ -99,7 +92,7 @@ void warn_unless_rectified_beside(const std::function<void()>& work, const Setti
       look = look_at_rows(left, right);
     }
   });
-  tell_of(look, settings, common, report);
+  tell_of(look, settings, common, expects_negative, report);
 }
 
 }  // namespace vantage::apps

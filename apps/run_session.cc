@@ -13,6 +13,7 @@
 #include "engine/io/file_identity.h"
 #include "engine/sequence/delivered_frames.h"
 #include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/sequence_range.h"
 
 namespace vantage::apps {
 namespace {
@@ -123,6 +124,17 @@ AppliedTuning find_tuning(const RunJob& job, const FramePair& first, const Setti
 
 }  // namespace
 
+void RunSession::rectify(FramePair& pair, Execution& pool) const {
+  if (!rectifier) {
+    return;
+  }
+  Photograph rectified;
+  rectifier->apply(pair.left, Side::kLeft, rectified, pool);
+  std::swap(pair.left, rectified);
+  rectifier->apply(pair.right, Side::kRight, rectified, pool);
+  std::swap(pair.right, rectified);
+}
+
 SequenceRun RunSession::run(const RunJob& job, const ShotTable* shots) const {
   // Pairs of a list need not have to do with one another.
   const bool any_size = !job.input.pairs.empty() && job.sequence.video.empty() &&
@@ -180,16 +192,18 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
     if (rectifier.needs_rectification()) {
       session.rectifier.emplace(std::move(rectifier));
       session.shape.is_rectified_here = true;
-      FramePair source = std::move(first);
-      session.rectifier->apply(source.left, Side::kLeft, first.left, execution);
-      session.rectifier->apply(source.right, Side::kRight, first.right, execution);
+      session.rectify(first, execution);
     }
   }
   if (job.check_rectification) {
-    warn_unless_rectified(settings, job.common, first.left, first.right, report);
+    warn_unless_rectified(settings, job.common, expects_negative_disparities(job.sequence.match),
+                          first.left, first.right, report);
   }
-  choose_disparities(settings, job.common, first.left, first.right, job.sequence.match, execution,
-                     report);
+  const auto rectify = [&](FramePair& pair) { session.rectify(pair, execution); };
+  choose_disparities(
+      settings, job.common, [&] { return find_sequence_range(*session.pairs, rectify, execution); },
+      job.sequence.match, report);
+  job.sequence.validate();
   job.sequence.frame_rate =
       job.frame_rate.value_or(session.pairs->frame_rate().value_or(FrameRate()));
   session.identity = identity_of(job, settings, session);

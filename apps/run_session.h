@@ -26,6 +26,8 @@ struct RunSession {
   MemoryPlan memory;
   std::string executor;  ///< "2 threads (tbb)"
 
+  /// Rectifies a pair in place where a calibration has to be applied.
+  void rectify(FramePair& pair, Execution& pool) const;
   /// What the run gets to do; `shots` where the options need them.
   [[nodiscard]] SequenceRun run(const RunJob& job, const ShotTable* shots) const;
   /// Names this process's part of the run, for the journal: "all", "2-of-7", "frames-100-199".

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/applied_tuning.h"
+#include "apps/match_settings.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
@@ -21,6 +22,8 @@ namespace vantage::apps {
 
 /// Everything a user can set about a run.
 struct RunJob {
+  RunJob() { sequence.match = options_with_found_range(); }
+
   PairSourceOptions input;
   std::string calibration;  ///< file, empty = rectified pairs
   RectificationOptions rectification;

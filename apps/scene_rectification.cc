@@ -25,9 +25,7 @@ const char* line_of(const SceneEdge& edge) {
 }  // namespace
 
 SceneRectification::SceneRectification(const SceneBuilder& builder, const MatchOptions& options)
-    : builder_(builder),
-      expects_negative_disparities_(!options.disparities_auto &&
-                                    -options.disparities.min > options.disparities.max) {}
+    : builder_(builder), expects_negative_disparities_(expects_negative_disparities(options)) {}
 
 SettingValue SceneRectification::add(const SceneBuilder::BuiltEdge& edge) {
   if (!edge.rectification) {

@@ -21,6 +21,7 @@ namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr double kKittiScale = 256;
+constexpr double kKittiMost = 65535;
 
 template <typename Change>
 Image<float> transformed(ImageView<const float> source, const Change& change) {
@@ -57,13 +58,13 @@ Image<std::uint16_t> to_kitti(const std::filesystem::path& path, ImageView<const
         continue;
       }
       const double stored = std::round(d * kKittiScale);
-      if (d < 0 || stored > 65535) {
+      if (stored < 0 || stored > kKittiMost) {
         throw Error(fmt::format(
             "cannot write {}: disparity {} at pixel ({}, {}) does not fit a 16-bit PNG, expected "
             "0..255.99 (.pfm, .tiff, .exr and .npy hold any)",
             path.string(), d, x, y));
       }
-      // 0 means unknown, so the disparity 0 is stored as the nearest there is.
+      // 0 means unknown, so what is known is stored as the nearest there is.
       image.at(x, y) = static_cast<std::uint16_t>(std::max(stored, 1.0));
     }
   }
@@ -131,6 +132,17 @@ void write_disparity(const std::filesystem::path& path, ImageView<const float> d
   std::vector<std::uint8_t> bytes;
   encode_disparity(path, disparity, bytes);
   write_binary_file(path, bytes);
+}
+
+void require_holds_search(const std::filesystem::path& path, int least_px, int most_px) {
+  if (lower_case_extension(path) == ".png" &&
+      (least_px < 0 || most_px * kKittiScale > kKittiMost)) {
+    throw UsageError(
+        fmt::format("{} is a 16-bit PNG, which holds disparities from 0 to 255.99, but {}:{} are "
+                    "searched; expected .pfm, .tiff, .exr or .npy, which hold any, or "
+                    "--disparities MIN:MAX within 0:255",
+                    path.string(), least_px, most_px));
+  }
 }
 
 bool is_disparity_extension(const std::filesystem::path& path) {

@@ -4,39 +4,60 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <limits>
+#include <iterator>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/error.h"
 #include "engine/image/grey_levels.h"
-#include "engine/matching/evidence_pair.h"
+#include "engine/matching/stereo_matcher.h"
 
 namespace vantage {
 namespace {
 
-// Wide and low: along the rows of a rectified pair a tile needs texture, down them surfaces such as
-// roads change their disparity.
-constexpr int kTileWidthPx = 32;
-constexpr int kTileHeightPx = 16;
-/// Images are reduced by whole factors, but not below this width.
-constexpr int kLeastReducedWidthPx = 960;
-/// Mean |g| of a tile below which it counts as uniform, grey levels over two pixels.
-constexpr double kLeastContrast = 0.5;
-/// A peak reaches this part of what a perfect match would, and stands out by that part from all
-/// disparities that are more than kPeakRadiusPx away.
-constexpr double kLeastAgreement = 0.3;
-constexpr double kLeastDistinction = 0.15;
-constexpr int kPeakRadiusPx = 2;
-/// What the other image finds at the partner may differ by this.
-constexpr int kPartnerTolerancePx = 2;
-/// What a neighbouring tile finds may differ by this and this part of the disparity.
-constexpr int kNeighbourTolerancePx = 3;
-constexpr double kNeighbourToleranceRatio = 0.1;
-/// The range is widened on both sides by this and this part of it.
-constexpr int kMarginPx = 3;
-constexpr double kMarginRatio = 0.1;
+/// Images are reduced by at most this factor while they stay at least kLeastWidthPx wide, and by
+/// more where they would stay wider than kMostWidthPx. A search takes 1/factor³ of the time that it
+/// takes on whole images, so these are what the range costs.
+constexpr int kUsualFactor = 4;
+constexpr int kLeastWidthPx = 128;
+constexpr int kMostWidthPx = 320;
+
+// In pixels of the reduced images.
+constexpr int kLeastRegionPixels = 10;
+/// Winners of less certain pixels say nothing: of uniform areas all disparities are as likely.
+constexpr double kLeastConfidence = 0.3;
+/// Disparities with no others this near, plus this part of them, stand apart.
+constexpr float kGapPx = 2;
+constexpr float kGapRatio = 0.1F;
+/// Winners of surfaces at infinity are this near to 0.
+constexpr float kExactnessPx = 0.4F;
+
+// Shares of what is matched in both images.
+/// So many at either end may be wrong.
+constexpr double kStrayShare = 0.0002;
+/// What stands apart counts from here on: repeated texture matches elsewhere in small areas. What
+/// is far behind everything, but not behind infinity, is a background of which little is seen.
+constexpr double kApartShare = 0.0025;
+constexpr double kBehindShare = 0.0003;
+/// Of an untextured sky a little may be found at any disparity.
+constexpr double kNegativeShare = 0.02;
+/// Share of both images: unrelated ones agree by chance.
+constexpr double kLeastMatchedShare = 0.05;
+
+/// Winners that are spread over a larger part of the search are everywhere, as those of texture
+/// that repeats itself.
+constexpr double kMostSpread = 0.75;
+
+/// The range is widened by this and this part of it: winners are as exact as reduced pixels.
+constexpr double kMarginReducedPx = 0.5;
+constexpr double kMarginPx = 1;
+constexpr double kMarginRatio = 0.03;
+
+int reduction_of(int width) {
+  const auto parts = [width](int part) { return (width + part - 1) / part; };
+  return std::max({1, std::min(kUsualFactor, parts(kLeastWidthPx)), parts(kMostWidthPx)});
+}
 
 /// Grey levels, averaged over squares of `factor` pixels a side; what is left over at the right and
 /// lower sides is dropped.
@@ -54,8 +75,11 @@ Photograph reduced(const Photograph& photograph, int factor, Execution& executio
       std::fill_n(sums, width, 0.0F);
       for (int row = 0; row < rows; ++row) {
         grey_levels_row(photograph, y * factor + row, grey.data());
-        for (int x = 0; x < width * factor; ++x) {
-          sums[x / factor] += grey[static_cast<std::size_t>(x)];
+        const float* block = grey.data();
+        for (int x = 0; x < width; ++x, block += factor) {
+          for (int column = 0; column < factor; ++column) {
+            sums[x] += block[column];
+          }
         }
       }
       std::transform(sums, sums + width, sums, [&](float sum) { return sum * scale; });
@@ -64,159 +88,108 @@ Photograph reduced(const Photograph& photograph, int factor, Execution& executio
   return {std::move(result)};
 }
 
-/// The tiles of one image and the disparities at which they respond most, where that is distinct.
-class TilePeaks {
- public:
-  TilePeaks(const EvidencePair& pair, Reference reference, DisparityRange search,
-            Execution& execution)
-      : width_(pair.width()),
-        height_(pair.height()),
-        direction_(reference == Reference::kLeft ? -1 : 1),
-        columns_(std::max(1, width_ / kTileWidthPx)),
-        rows_(std::max(1, height_ / kTileHeightPx)),
-        peaks_(static_cast<std::size_t>(columns_ * rows_)) {
-    execution.executor().parallel_for(columns_ * rows_, [&](int tile) {
-      peaks_[static_cast<std::size_t>(tile)] =
-          find_peak(pair, reference, block_of(tile % columns_, tile / columns_), search);
-    });
-  }
+/// What is searched in images of this width.
+DisparityRange search_in(int width) { return {-width / 8, width / 3}; }
 
-  /// Calls body(disparity, neighbour_agrees) for every tile with a distinct peak that the tiles of
-  /// the other image confirm.
-  template <typename Body>
-  void for_each_confirmed(const TilePeaks& other, const Body& body) const {
-    for (int row = 0; row < rows_; ++row) {
-      for (int column = 0; column < columns_; ++column) {
-        const std::optional<int> peak = at(column, row);
-        if (peak && other.confirms(partner_column(column, *peak), row, *peak)) {
-          body(*peak, neighbour_agrees(column, row, *peak));
-        }
-      }
+/// The disparities that both images agree on, in pixels of `left` and `right`, sorted.
+std::vector<float> agreed_disparities(const Photograph& left, const Photograph& right,
+                                      Execution& execution) {
+  MatchOptions options;
+  options.preset = MatchPreset::kBalanced;
+  options.disparities = search_in(left.width());
+  if (options.disparities.count() == 1) {
+    return {};  // winners without others say nothing
+  }
+  options.parameters.levels = 4;  // more would be for larger images
+  options.refinement.cross_check_level = 0;
+  options.refinement.confidence_threshold = kLeastConfidence;
+  options.refinement.speckle_size_px = kLeastRegionPixels;
+  options.refinement.surface_fit_px = 0;
+  options.refinement.fill = Fill::kNone;
+  DisparityMaps maps;
+  StereoMatcher(options, execution).match(left, right, {}, maps);
+  std::vector<float> values;
+  for (const DisparityMap* map : {&maps.left, &maps.right}) {
+    for (int y = 0; y < map->height(); ++y) {
+      std::copy_if(map->row(y), map->row(y) + map->width(), std::back_inserter(values),
+                   [](float d) { return std::isfinite(d); });
     }
   }
+  std::sort(values.begin(), values.end());
+  return values;
+}
 
- private:
-  [[nodiscard]] PixelBlock block_of(int column, int row) const {
-    return {width_ * column / columns_, width_ * (column + 1) / columns_, height_ * row / rows_,
-            height_ * (row + 1) / rows_};
-  }
-  [[nodiscard]] std::optional<int> at(int column, int row) const {
-    if (column < 0 || column >= columns_ || row < 0 || row >= rows_) {
-      return std::nullopt;
-    }
-    return peaks_[static_cast<std::size_t>(row * columns_ + column)];
-  }
-  /// Of the other image, where the middle of a tile has its partner; may lie outside.
-  [[nodiscard]] int partner_column(int column, int disparity) const {
-    const PixelBlock block = block_of(column, 0);
-    const int x = (block.x_begin + block.x_end) / 2 + direction_ * disparity;
-    return static_cast<int>(std::floor(static_cast<double>(x) * columns_ / width_));
-  }
-  [[nodiscard]] bool confirms(int column, int row, int disparity) const {
-    for (int beside = column - 1; beside <= column + 1; ++beside) {
-      const std::optional<int> peak = at(beside, row);
-      if (peak && std::abs(*peak - disparity) <= kPartnerTolerancePx) {
-        return true;
-      }
-    }
-    return false;
-  }
-  [[nodiscard]] bool neighbour_agrees(int column, int row, int disparity) const {
-    const double tolerance = kNeighbourTolerancePx + kNeighbourToleranceRatio * std::abs(disparity);
-    for (int y = row - 1; y <= row + 1; ++y) {
-      for (int x = column - 1; x <= column + 1; ++x) {
-        const std::optional<int> peak = at(x, y);
-        if ((x != column || y != row) && peak && std::abs(*peak - disparity) <= tolerance) {
-          return true;
-        }
-      }
-    }
-    return false;
-  }
-
-  static std::optional<int> find_peak(const EvidencePair& pair, Reference reference,
-                                      const PixelBlock& block, DisparityRange search) {
-    const double contrast = pair.contrast(reference, block);
-    const double area = static_cast<double>(block.x_end - block.x_begin) *
-                        static_cast<double>(block.y_end - block.y_begin);
-    if (!(contrast > kLeastContrast * area)) {
-      return std::nullopt;
-    }
-    std::vector<double> responses;
-    for (int disparity = search.min; disparity <= search.max; ++disparity) {
-      responses.push_back(pair.evidence(reference, block, {disparity, 0}));
-    }
-    const auto peak = std::ranges::max_element(responses);
-    double second = 0;
-    for (auto response = responses.begin(); response != responses.end(); ++response) {
-      if (std::abs(response - peak) > kPeakRadiusPx) {
-        second = std::max(second, *response);
-      }
-    }
-    if (*peak <= kLeastAgreement * contrast || *peak - second <= kLeastDistinction * contrast) {
-      return std::nullopt;
-    }
-    return search.min + static_cast<int>(peak - responses.begin());
-  }
-
-  int width_;
-  int height_;
-  int direction_;
-  int columns_;
-  int rows_;
-  std::vector<std::optional<int>> peaks_;
-};
-
-/// The least range that holds all values it is given.
 struct Span {
-  int least = std::numeric_limits<int>::max();
-  int most = std::numeric_limits<int>::min();
-  [[nodiscard]] bool empty() const { return most < least; }
-  void include(int value) {
-    least = std::min(least, value);
-    most = std::max(most, value);
-  }
+  float least = 0;
+  float most = 0;
 };
 
-/// In pixels of the images as they are.
-Span peak_span(const Photograph& left, const Photograph& right, Execution& execution) {
-  const EvidencePair pair(left, right, book_parameters(MatchMethod::kGradient), execution);
-  const DisparityRange search{-pair.width() / 8, pair.width() / 3};
-  const TilePeaks of_left(pair, Reference::kLeft, search, execution);
-  const TilePeaks of_right(pair, Reference::kRight, search, execution);
-  Span supported;
-  Span confirmed;  // for images of hardly more than a tile
-  const auto include = [&](int disparity, bool neighbour_agrees) {
-    confirmed.include(disparity);
-    if (neighbour_agrees) {
-      supported.include(disparity);
+/// What holds the values, sorted and at least one, but for stray ones and for few that stand apart.
+Span span_of(const std::vector<float>& values) {
+  const auto count = static_cast<double>(values.size());
+  const auto stray = static_cast<std::size_t>(kStrayShare * count);
+  std::optional<Span> span;
+  for (std::size_t begin = stray; begin + stray < values.size();) {
+    std::size_t end = begin + 1;
+    while (end + stray < values.size() &&
+           values[end] - values[end - 1] <= kGapPx + kGapRatio * std::abs(values[end])) {
+      ++end;
     }
-  };
-  of_left.for_each_confirmed(of_right, include);
-  of_right.for_each_confirmed(of_left, include);
-  return supported.empty() ? confirmed : supported;
+    const bool is_behind = !span && values[begin] >= -kExactnessPx;
+    if (static_cast<double>(end - begin) >= (is_behind ? kBehindShare : kApartShare) * count) {
+      span = Span{span ? span->least : values[begin], values[end - 1]};
+    }
+    begin = end;
+  }
+  return span.value_or(Span{values.front(), values.back()});
 }
 
 }  // namespace
 
+std::optional<DisparityRange> find_disparity_range(const Photograph& left, const Photograph& right,
+                                                   Execution& execution) {
+  if (left.width() != right.width() || left.height() != right.height()) {
+    throw Error(fmt::format("left image is {}x{} but right image is {}x{}, expected equal sizes",
+                            left.width(), left.height(), right.width(), right.height()));
+  }
+  const int factor = reduction_of(left.width());
+  const std::vector<float> values = agreed_disparities(
+      reduced(left, factor, execution), reduced(right, factor, execution), execution);
+  const double pixels = 2.0 * (left.width() / factor) * std::max(1, left.height() / factor);
+  if (static_cast<double>(values.size()) < std::max(1.0, kLeastMatchedShare * pixels)) {
+    return std::nullopt;
+  }
+  const Span span = span_of(values);
+  const DisparityRange search = search_in(left.width() / factor);
+  if (span.most - span.least > kMostSpread * search.count()) {
+    return std::nullopt;
+  }
+  const double least_px = factor * static_cast<double>(span.least);
+  const double most_px = factor * static_cast<double>(span.most);
+  const double margin_px =
+      kMarginPx + kMarginReducedPx * factor + kMarginRatio * (most_px - least_px);
+  const int farthest = left.width() - 1;
+  DisparityRange range{
+      std::clamp(static_cast<int>(std::floor(least_px - margin_px)), -farthest, farthest),
+      std::clamp(static_cast<int>(std::ceil(most_px + margin_px)), -farthest, farthest)};
+  // Infinity is at 0 in rectified pairs, so what is below is to be believed where it is not little.
+  const auto negative = std::lower_bound(values.begin(), values.end(), -kExactnessPx);
+  if (static_cast<double>(negative - values.begin()) <
+      kNegativeShare * static_cast<double>(values.size())) {
+    range.min = std::max(range.min, 0);
+  }
+  return range;
+}
+
 DisparityRange estimate_disparity_range(const Photograph& left, const Photograph& right,
                                         Execution& execution) {
-  const int factor = std::max(1, left.width() / kLeastReducedWidthPx);
-  const bool equal_sizes = left.width() == right.width() && left.height() == right.height();
-  const Span span = factor == 1 || !equal_sizes
-                        ? peak_span(left, right, execution)
-                        : peak_span(reduced(left, factor, execution),
-                                    reduced(right, factor, execution), execution);
-  if (span.empty()) {
+  const std::optional<DisparityRange> range = find_disparity_range(left, right, execution);
+  if (!range) {
     throw Error(
         "the images give no evidence for any range of disparities, expected texture that both of "
         "them show; give --disparities MIN:MAX");
   }
-  const int margin =
-      kMarginPx + static_cast<int>(std::ceil(kMarginRatio * (span.most - span.least)));
-  const int farthest = left.width() - 1;
-  return {std::clamp((span.least - margin) * factor, -farthest, farthest),
-          std::clamp((span.most + margin) * factor, -farthest, farthest)};
+  return *range;
 }
 
 }  // namespace vantage

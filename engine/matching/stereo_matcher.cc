@@ -236,7 +236,9 @@ MapToRefine StereoMatcher::to_refine(const Side& side, bool is_result) const {
           .confidence = side.confidence,
           .unmatched = side.unmatched,
           .check_px = side.check_px,
-          .is_result = is_result};
+          .is_result = is_result,
+          .search = options_.disparities,
+          .search_y = options_.disparities_y.value_or(kAnyDisparity)};
 }
 
 void StereoMatcher::match(const Photograph& left, const Photograph& right,

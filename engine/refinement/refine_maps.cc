@@ -78,11 +78,11 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
   if (options.surface_fit_px > 0) {
     begin_step("surface fit");
     for (const MapToRefine* one : maps) {
-      for (DisparityMap* map_px : {one->disparity_px, one->disparity_y_px}) {
-        if (map_px != nullptr) {
-          fit_surface(*one->unmatched, options.surface_fit_px, execution, work.surface_fit,
-                      *map_px);
-        }
+      fit_surface(*one->unmatched, options.surface_fit_px, one->search, execution, work.surface_fit,
+                  *one->disparity_px);
+      if (one->disparity_y_px != nullptr) {
+        fit_surface(*one->unmatched, options.surface_fit_px, one->search_y, execution,
+                    work.surface_fit, *one->disparity_y_px);
       }
     }
   }

@@ -16,6 +16,9 @@
 
 namespace vantage {
 
+/// Wider than any search.
+inline constexpr DisparityRange kAnyDisparity{-(1 << 20), 1 << 20};
+
 /// One map on its way through refinement; all images have one size.
 struct MapToRefine {
   MapSide side = MapSide::kLeft;
@@ -30,6 +33,9 @@ struct MapToRefine {
   /// false: the map is there for the cross-check of the other one alone; what becomes of it, and
   /// its `unmatched`, mean nothing.
   bool is_result = true;
+  /// What the disparities, and those of disparity_y_px, were searched in, and stay within.
+  DisparityRange search = kAnyDisparity;
+  DisparityRange search_y = kAnyDisparity;
 };
 
 /// Working memory of refine_maps(), reused from call to call.

@@ -6,8 +6,8 @@
 
 namespace vantage {
 
-void fit_surface(const Mask& unmatched, int radius_px, Execution& execution, SurfaceFitWork& work,
-                 DisparityMap& map_px) {
+void fit_surface(const Mask& unmatched, int radius_px, DisparityRange search, Execution& execution,
+                 SurfaceFitWork& work, DisparityMap& map_px) {
   const int width = map_px.width();
   const int height = map_px.height();
   work.matched_px.resize(radius_px + width + radius_px + kernels::kSurfaceRowSlack,
@@ -33,7 +33,9 @@ void fit_surface(const Mask& unmatched, int radius_px, Execution& execution, Sur
           {.disparity_px = work.matched_px.row(y + radius_px) + radius_px,
            .pitch = static_cast<std::ptrdiff_t>(work.matched_px.view().stride()),
            .radius_px = radius_px,
-           .width = width},
+           .width = width,
+           .least_px = static_cast<float>(search.min),
+           .most_px = static_cast<float>(search.max)},
           map_px.row(y));
     }
   });

@@ -2,6 +2,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
+#include "engine/matching/match_options.h"
 
 namespace vantage {
 
@@ -13,10 +14,11 @@ struct SurfaceFitWork {
 /// Gives matched pixels (0 in `unmatched`) the values of planes through the matched disparities
 /// around them, radius_px columns and rows far (kernels/surface_fit says which): winners and
 /// sub-pixel fits are nearer to whole pixels than surfaces are. All planes are fitted to the map as
-/// it comes, so results do not depend on the order. radius_px from 1 to
+/// it comes, so results do not depend on the order. Values stay within `search`, the range that the
+/// map was searched in: a slope at its end would go on beyond it. radius_px from 1 to
 /// kernels::kMaxSurfaceRadiusPx; `unmatched` has the size of the map, whose matched pixels are
 /// finite. Identical for any `execution`.
-void fit_surface(const Mask& unmatched, int radius_px, Execution& execution, SurfaceFitWork& work,
-                 DisparityMap& map_px);
+void fit_surface(const Mask& unmatched, int radius_px, DisparityRange search, Execution& execution,
+                 SurfaceFitWork& work, DisparityMap& map_px);
 
 }  // namespace vantage

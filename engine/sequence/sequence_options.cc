@@ -90,6 +90,12 @@ void check_formats(const SequenceOptions& options) {
     throw UsageError(
         fmt::format("format is '{}', expected pfm, png, tiff, exr or npy", options.map_format));
   }
+  const bool saves_maps =
+      options.saves(SequenceOutput::kDisparity) || options.saves(SequenceOutput::kRightDisparity);
+  if (saves_maps && !options.match.disparities_auto) {
+    require_holds_search("map." + options.map_format, options.match.disparities.min,
+                         options.match.disparities.max);
+  }
   if (options.saves(SequenceOutput::kConfidence) && options.map_format == "png") {
     throw UsageError(
         "format is png, which holds no floats, but save has confidence; expected pfm, tiff, exr or "

@@ -16,6 +16,9 @@ struct SurfaceRow {
   std::ptrdiff_t pitch = 0;  ///< values from row to row
   int radius_px = 1;         ///< of the square window, 1..kMaxSurfaceRadiusPx
   int width = 0;
+  /// Planes are cut off at these: a slope goes on beyond what was searched.
+  float least_px = -kNoSurfacePx;
+  float most_px = kNoSurfacePx;
 };
 
 constexpr int kMaxSurfaceRadiusPx = 16;
@@ -50,11 +53,12 @@ struct SurfaceLattice {
 SurfaceLattice surface_lattice(int radius_px);
 
 /// fitted_px[x] of matched pixels becomes the value there of the plane through the disparities
-/// around: weighted least squares, in which what is too far from the plane does not count, so that
-/// other surfaces have no say. Winners have steps on slanted surfaces, and sub-pixel fits prefer
-/// whole pixels; a plane averages over several of both. A pixel from which the plane would be
-/// kSurfaceReachPx away or more keeps its value. `fitted_px` comes with the row's values, width of
-/// them; those of unmatched pixels stay. Identical on every instruction set.
+/// around, within least_px and most_px: weighted least squares, in which what is too far from the
+/// plane does not count, so that other surfaces have no say. Winners have steps on slanted
+/// surfaces, and sub-pixel fits prefer whole pixels; a plane averages over several of both. A pixel
+/// from which the plane would be kSurfaceReachPx away or more keeps its value. `fitted_px` comes
+/// with the row's values, width of them; those of unmatched pixels stay. Identical on every
+/// instruction set.
 void fit_surface_row(const SurfaceRow& row, float* fitted_px);
 
 /// The same, plainly.

@@ -117,7 +117,7 @@ void fit_surface_row_ref(const SurfaceRow& row, float* fitted_px) {
       improve(sum_samples(row, x, lattice, plane), plane);
     }
     if (std::abs(plane.height) < kSurfaceReachPx) {
-      fitted_px[x] = row.disparity_px[x] + plane.height;
+      fitted_px[x] = std::clamp(row.disparity_px[x] + plane.height, row.least_px, row.most_px);
     }
   }
 }

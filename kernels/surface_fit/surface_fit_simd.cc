@@ -124,9 +124,18 @@ HWY_INLINE void improve(const Sums& sums, Planes& planes) {
   planes.slope_v = hn::Add(planes.slope_v, slope_v);
 }
 
+// What fitted values are kept within.
+struct Limits {
+  explicit Limits(const SurfaceRow& row)
+      : least(hn::Set(TagF(), row.least_px)), most(hn::Set(TagF(), row.most_px)) {}
+  Vec least;
+  Vec most;
+};
+
 // `before`: what pixels are that keep their values.
 template <int kSteps>
-HWY_INLINE Vec fitted(const float* disparity_px, const Places<kSteps>& places, Vec before) {
+HWY_INLINE Vec fitted(const float* disparity_px, const Places<kSteps>& places, const Limits& limits,
+                      Vec before) {
   const TagF d;
   Planes planes{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   for (int pass = 0; pass < kSurfacePasses; ++pass) {
@@ -135,23 +144,25 @@ HWY_INLINE Vec fitted(const float* disparity_px, const Places<kSteps>& places, V
   const Vec own = hn::LoadU(d, disparity_px);
   const auto is_near = hn::Lt(hn::Abs(planes.height), hn::Set(d, kSurfaceReachPx));
   const auto is_matched = hn::Lt(own, hn::Set(d, kNoSurfacePx));
-  return hn::IfThenElse(hn::And(is_near, is_matched), hn::Add(own, planes.height), before);
+  const Vec within = hn::Min(hn::Max(hn::Add(own, planes.height), limits.least), limits.most);
+  return hn::IfThenElse(hn::And(is_near, is_matched), within, before);
 }
 
 template <int kSteps>
 HWY_INLINE void fit_row(const SurfaceRow& row, float* fitted_px) {
   const TagF d;
   const Places<kSteps> places(row);
+  const Limits limits(row);
   int x = 0;
   for (; x + kStep <= row.width; x += kStep) {
     const Vec before = hn::LoadU(d, fitted_px + x);
-    hn::StoreU(fitted(row.disparity_px + x, places, before), d, fitted_px + x);
+    hn::StoreU(fitted(row.disparity_px + x, places, limits, before), d, fitted_px + x);
   }
   if (x < row.width) {
     HWY_ALIGN float last[kStep] = {};
     std::copy_n(fitted_px + x, row.width - x, last);
     const Vec before = hn::Load(d, last);
-    hn::Store(fitted(row.disparity_px + x, places, before), d, last);
+    hn::Store(fitted(row.disparity_px + x, places, limits, before), d, last);
     std::copy_n(last, row.width - x, fitted_px + x);
   }
 }

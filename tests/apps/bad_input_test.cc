@@ -99,8 +99,8 @@ TEST_F(InputBadFiles, OnePixelPairsWork) {
   Image<std::uint8_t> pixel(1, 1);
   pixel.fill(77);
   write_photograph(folder_ / "pixel.png", {std::move(pixel)});
-  const ProcessResult result =
-      run_vantage({"match", folder_ / "pixel.png", folder_ / "pixel.png", "-o", folder_ / "o.pfm"});
+  const ProcessResult result = run_vantage({"match", folder_ / "pixel.png", folder_ / "pixel.png",
+                                            "--disparities", "0:63", "-o", folder_ / "o.pfm"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(read_disparity(folder_ / "o.pfm").at(0, 0), 0);
 }

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -189,6 +190,80 @@ TEST_F(AutomaticDisparities, ConstantImagesNeedARange) {
     EXPECT_THAT(result.err, HasSubstr("give --disparities MIN:MAX"));
   }
   EXPECT_FALSE(std::filesystem::exists(std::string(folder_ / "o.pfm")));
+}
+
+TEST_F(AutomaticDisparities, IsWhatCommandsDoUnlessARangeIsGiven) {
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"match", left_, right_, "-o", folder_ / "d.png"},
+        {"synth", left_, right_, "--view", "0.5", "-o", folder_ / "d.png"},
+        {"view", left_, right_, "-o", folder_ / "d.html"},
+        {"run", "--left", left_, "--right", right_, "--format", "png", "-o", folder_ / "run"}}) {
+    const ProcessResult result = run_vantage(command);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(command.front() + ": --disparities auto is 0:"));
+  }
+  std::ofstream(folder_ / "places.csv") << "left.png,0,0\nright.png,1,0\n";
+  const ProcessResult built =
+      run_vantage({"scene", "build", "--positions", folder_ / "places.csv", "-o", folder_ / "scene",
+                   "--report", folder_ / "scene.json"});
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  const auto report = nlohmann::json::parse(read_file(folder_ / "scene.json"));
+  EXPECT_THAT(report["results"]["edges_matched"][0]["disparities"].get<std::string>(),
+              testing::StartsWith("0:"));
+}
+
+TEST_F(AutomaticDisparities, ExchangedImagesAreToldAndNoPngIsBegun) {
+  const ProcessResult map = run_vantage(
+      {"match", right_, left_, "-o", folder_ / "d.pfm", "--report", folder_ / "r.json"});
+  EXPECT_EQ(map.exit_code, 0) << map.err;
+  EXPECT_THAT(map.err, HasSubstr("mostly negative: left and right look exchanged"));
+  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  if (report["results"].contains("rectification")) {  // points enough to tell
+    EXPECT_TRUE(report["results"]["rectification"]["looks_exchanged"].get<bool>());
+  }
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"match", right_, left_, "-o", folder_ / "d.png"},
+        {"run", "--left", right_, "--right", left_, "--format", "png", "-o", folder_ / "run"}}) {
+    const ProcessResult png = run_vantage(command);
+    EXPECT_EQ(png.exit_code, 2);
+    EXPECT_THAT(png.err, testing::AllOf(HasSubstr("16-bit PNG, which holds disparities from 0"),
+                                        HasSubstr("expected .pfm, .tiff, .exr or .npy"),
+                                        HasSubstr("look exchanged")));
+  }
+  EXPECT_FALSE(std::filesystem::exists(std::string(folder_ / "d.png")));
+  EXPECT_FALSE(std::filesystem::exists(std::string(folder_ / "run")));
+}
+
+TEST_F(AutomaticDisparities, ARunFindsItInAllOfTheInput) {
+  // The second pair is far nearer, the third cannot be read.
+  BookPairOptions near = book_pair_options("real-square");
+  near.width_px = 160;
+  near.height_px = 120;
+  near.background_disparity_px = 30;
+  near.front_disparity_px = 36;
+  const BookPair second = make_book_pair(near);
+  write_photograph(folder_ / "l2.png", second.left);
+  write_photograph(folder_ / "r2.png", second.right);
+  std::ofstream(folder_ / "bad.png") << "no picture";
+  std::ofstream(folder_ / "pairs.csv")
+      << "bad.png,bad.png\nleft.png,right.png\nl2.png,r2.png\nbad.png,bad.png\n";
+  std::string ranges[2];
+  for (const int part : {0, 1}) {
+    // Parts of one folder must agree, whichever pairs are theirs.
+    const ProcessResult result =
+        run_vantage({"run", "--pairs", folder_ / "pairs.csv", "--keep-going", "--chunk-frames", "1",
+                     "--shard", std::to_string(part + 1) + "/2", "--threads",
+                     std::to_string(part + 1), "-o", folder_ / "run"});
+    EXPECT_EQ(result.exit_code, 3) << result.err;
+    ranges[part] = nlohmann::json::parse(
+        read_file(folder_ / "run/.vantage/run.json"))["settings"]["disparities"];
+  }
+  EXPECT_EQ(ranges[0], ranges[1]);
+  int least = 0;
+  int most = 0;
+  ASSERT_EQ(std::sscanf(ranges[0].c_str(), "%d:%d", &least, &most), 2) << ranges[0];
+  EXPECT_LE(least, 2);
+  EXPECT_GE(most, 36);
 }
 
 TEST_F(AutomaticDisparities, NotForTwoDimensions) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -69,6 +70,12 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--surface-fit", "17"}, "surface-fit is 17, expected a number of pixels from 0 to 16"},
       {{"--disparities", "0:4096"}, "(4097 candidates), expected at most 4096"},
       {{"--disparities-y", "-300:300"}, "expected at most 4096"},
+      {{"--disparities", "auto", "--disparities-y", "0:1"},
+       "disparities is auto, expected MIN:MAX"},
+      {{"--disparities", "-3:60", "--output-right", folder_ / "r.png"},
+       "r.png is a 16-bit PNG, which holds disparities from 0 to 255.99, but -3:60 are searched"},
+      {{"--disparities", "0:256", "--output-right", folder_ / "r.PNG"},
+       "expected .pfm, .tiff, .exr or .npy"},
       {{"--disparities-y", "3"}, "--disparities-y is '3', expected MIN:MAX"},
       {{"--border", "valid", "--aggregate", "gaussian"}, "it is read by the aggregation box"},
       {{"--method", "local-stopping", "--cost", "gradient"}, "expected certainty entropy"},
@@ -106,6 +113,9 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
        sampled_command_lines(cases, [](const Refused& one) { return one.options; })) {
     std::vector<std::string> arguments = {"match", left_, right_, "-o", folder_ / "out.pfm"};
     arguments.insert(arguments.end(), refused.options.begin(), refused.options.end());
+    if (std::ranges::find(arguments, "--disparities") == arguments.end()) {
+      arguments.insert(arguments.end(), {"--disparities", "0:63"});  // nothing is looked for first
+    }
     const ProcessResult result = run_vantage(arguments);
     EXPECT_EQ(result.exit_code, 2) << refused.says << '\n' << result.err;
     EXPECT_TRUE(is_one_line(result, "match"));

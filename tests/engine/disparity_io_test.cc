@@ -152,16 +152,30 @@ TEST(DisparityIo, IntegerFilesAreDividedByTheirScale) {
 TEST(DisparityIo, PngKeepsZeroKnownAndRefusesWhatDoesNotFit) {
   const TemporaryFolder folder;
   DisparityMap map(2, 1);
-  map.at(0, 0) = 0;
   map.at(1, 0) = 255.99F;
-  write_disparity(folder / "d.png", map.view());
-  EXPECT_EQ(read_disparity(folder / "d.png").at(0, 0), 1 / 256.0F);
-  for (const float bad : {-0.5F, 256.0F, 1e30F}) {
+  for (const float small : {0.0F, -0.0F, 1e-30F, 0.9F / 512, 1.0F / 512, -0.9F / 512}) {
+    map.at(0, 0) = small;
+    write_disparity(folder / "d.png", map.view());
+    EXPECT_EQ(read_disparity(folder / "d.png").at(0, 0), 1 / 256.0F) << small;
+  }
+  for (const float bad : {-0.5F, -1.1F / 512, 256.0F, 1e30F}) {
     map.at(1, 0) = bad;
     EXPECT_THAT(error_of([&] { write_disparity(folder / "e.png", map.view()); }),
                 HasSubstr("pixel (1, 0)"));
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "e.png"));
+}
+
+TEST(DisparityIo, SaysBeforeASearchWhichFilesHoldIt) {
+  for (const char* name : {"d.pfm", "d.tiff", "d.exr", "d.npy", "d.PNG"}) {
+    EXPECT_NO_THROW(require_holds_search(name, 0, 255)) << name;
+  }
+  EXPECT_NO_THROW(require_holds_search("d.pfm", -3, 300));
+  for (const auto& [least, most] : {std::pair{-1, 63}, {-90, -10}, {0, 256}}) {
+    EXPECT_THROW(require_holds_search("d.png", least, most), UsageError);
+  }
+  EXPECT_THAT(error_of([&] { require_holds_search("maps/d.PNG", -3, 60); }),
+              testing::AllOf(HasSubstr("maps/d.PNG"), HasSubstr("-3:60"), HasSubstr(".pfm")));
 }
 
 std::string npy(const std::string& dictionary, const std::string& data, char version = 1) {

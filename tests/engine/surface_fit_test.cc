@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -49,7 +50,7 @@ TEST(FitSurface, OnlyMatchedPixelsCountAndChange) {
     for (const int radius : {1, 7, 16}) {
       SteppedMap stepped = stepped_map(width, height);
       const DisparityMap before = stepped.map.copy();
-      fit_surface(stepped.unmatched, radius, execution, work, stepped.map);
+      fit_surface(stepped.unmatched, radius, kAnyDisparity, execution, work, stepped.map);
       // The same with all unmatched pixels unknown: their values have no say.
       SteppedMap unknown{before.copy(), std::move(stepped.unmatched)};
       for (int y = 0; y < height; ++y) {
@@ -59,7 +60,7 @@ TEST(FitSurface, OnlyMatchedPixelsCountAndChange) {
           }
         }
       }
-      fit_surface(unknown.unmatched, radius, execution, work, unknown.map);
+      fit_surface(unknown.unmatched, radius, kAnyDisparity, execution, work, unknown.map);
       for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
           if (unknown.unmatched.at(x, y) == 0) {
@@ -76,15 +77,43 @@ TEST(FitSurface, OnlyMatchedPixelsCountAndChange) {
   }
 }
 
+TEST(FitSurface, ValuesStayWithinTheSearch) {
+  // Winners at the ends of the search stand for half a pixel beyond them, where the plane goes on.
+  Execution execution({.threads = 2});
+  SurfaceFitWork work;
+  const DisparityRange search{5, 9};
+  SteppedMap stepped = stepped_map(61, 43);
+  for (int y = 0; y < 43; ++y) {
+    for (int x = 0; x < 61; ++x) {
+      if (stepped.map.at(x, y) < 5 || stepped.map.at(x, y) > 9) {
+        stepped.unmatched.at(x, y) = 255;
+      }
+    }
+  }
+  DisparityMap free = stepped.map.copy();
+  fit_surface(stepped.unmatched, 10, kAnyDisparity, execution, work, free);
+  fit_surface(stepped.unmatched, 10, search, execution, work, stepped.map);
+  int outside = 0;
+  for (int y = 0; y < 43; ++y) {
+    for (int x = 0; x < 61; ++x) {
+      if (stepped.unmatched.at(x, y) == 0) {
+        outside += free.at(x, y) < 5 || free.at(x, y) > 9 ? 1 : 0;
+        ASSERT_EQ(stepped.map.at(x, y), std::clamp(free.at(x, y), 5.0F, 9.0F)) << x << ", " << y;
+      }
+    }
+  }
+  EXPECT_GT(outside, 20);
+}
+
 TEST(FitSurface, ExecutionsAgree) {
   SteppedMap stepped = stepped_map(97, 151);
   DisparityMap serial = stepped.map.copy();
   SurfaceFitWork work;
   Execution one({.executor = scheduler::ExecutorKind::kSerial});
-  fit_surface(stepped.unmatched, 10, one, work, serial);
+  fit_surface(stepped.unmatched, 10, kAnyDisparity, one, work, serial);
   EXPECT_FALSE(test::identical(serial, stepped.map));
   Execution three({.threads = 3, .executor = scheduler::ExecutorKind::kOpenMp});
-  fit_surface(stepped.unmatched, 10, three, work, stepped.map);
+  fit_surface(stepped.unmatched, 10, kAnyDisparity, three, work, stepped.map);
   EXPECT_TRUE(test::identical(serial, stepped.map));
 }
 
@@ -117,7 +146,7 @@ TEST(FitSurface, RefinementFitsBothComponentsBeforeItFills) {
               [&](std::string_view step) { steps.emplace_back(step); });
   EXPECT_THAT(steps, ::testing::ElementsAre("surface fit", "fill"));
   SurfaceFitWork alone;
-  fit_surface(stepped.unmatched, 6, execution, alone, stepped.map);
+  fit_surface(stepped.unmatched, 6, kAnyDisparity, execution, alone, stepped.map);
   fill_unmatched(stepped.unmatched, MapSide::kLeft, Fill::kConstant, execution, stepped.map);
   EXPECT_TRUE(test::identical(map_x, stepped.map));
   EXPECT_TRUE(test::identical(map_y, stepped.map));

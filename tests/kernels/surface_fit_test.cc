@@ -62,6 +62,33 @@ std::vector<float> fitted(MarginMap& map, int y, decltype(fit_surface_row)* fit)
   return row.values();
 }
 
+constexpr float kLeastPx = -0.75F;
+constexpr float kMostPx = 2.0F;
+
+/// Fits a row within limits.
+template <decltype(fit_surface_row)* kFit>
+void limited_row(const SurfaceRow& row, float* fitted_px) {
+  SurfaceRow limited = row;
+  limited.least_px = kLeastPx;
+  limited.most_px = kMostPx;
+  kFit(limited, fitted_px);
+}
+
+/// Whether `limited` is `row` but for the limits. Pixels that keep what they are need none, as
+/// their values come from the search.
+bool is_limited(MarginMap& map, int y, const std::vector<float>& row,
+                const std::vector<float>& limited) {
+  for (int x = 0; x < map.width; ++x) {
+    const auto i = static_cast<std::size_t>(x);
+    const bool may_be_kept = !map.is_matched(x, y) || row[i] == map.at(x, y);
+    if (limited[i] != std::clamp(row[i], kLeastPx, kMostPx) &&
+        !(may_be_kept && limited[i] == row[i])) {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// Solves a · x = b by elimination.
 std::array<double, 3> solve(std::array<std::array<double, 3>, 3> a, std::array<double, 3> b) {
   for (std::size_t k = 0; k < 3; ++k) {
@@ -144,6 +171,9 @@ TEST_P(SurfaceFit, EqualsPlainTranscription) {
       for (int y = 0; y < height; ++y) {
         const std::vector<float> simd = fitted(map, y, fit_surface_row);
         ASSERT_EQ(simd, fitted(map, y, fit_surface_row_ref)) << "radius " << radius;
+        const std::vector<float> limited = fitted(map, y, limited_row<fit_surface_row>);
+        ASSERT_EQ(limited, fitted(map, y, limited_row<fit_surface_row_ref>));
+        ASSERT_TRUE(is_limited(map, y, simd, limited));
         for (int x = 0; x < width; ++x) {
           const float value = simd[static_cast<std::size_t>(x)];
           if (!map.is_matched(x, y)) {

@@ -1,0 +1,54 @@
+#include "engine/sequence/sequence_range.h"
+
+#include <algorithm>
+
+#include "engine/error.h"
+#include "engine/matching/disparity_range.h"
+
+namespace vantage {
+namespace {
+
+/// A look at a pair takes an eighth of the time of matching it: little beside a long sequence, and
+/// no more than that of a single pair beside a short one.
+constexpr int kMostPairs = 16;
+
+std::optional<DisparityRange> range_of_pair(PairSource& pairs, int index,
+                                            const PreparePair& prepare, FramePair& pair,
+                                            Execution& execution) {
+  try {
+    pairs.skip_to(index);
+    if (!pairs.fetch(pair)) {
+      return std::nullopt;
+    }
+    pairs.decode(pair);
+    if (prepare) {
+      prepare(pair);
+    }
+    return find_disparity_range(pair.left, pair.right, execution);
+  } catch (const Error&) {
+    return std::nullopt;  // the run itself tells of bad frames
+  }
+}
+
+}  // namespace
+
+std::optional<DisparityRange> find_sequence_range(PairSource& pairs, const PreparePair& prepare,
+                                                  Execution& execution) {
+  const int all = pairs.pair_count();
+  const int count = std::min(all, kMostPairs);
+  std::optional<DisparityRange> together;
+  FramePair pair;
+  for (int i = 0; i < count; ++i) {
+    const auto index =
+        count == 1 ? 0 : static_cast<int>(static_cast<long long>(i) * (all - 1) / (count - 1));
+    if (const auto range = range_of_pair(pairs, index, prepare, pair, execution)) {
+      together = together ? DisparityRange{std::min(together->min, range->min),
+                                           std::max(together->max, range->max)}
+                          : *range;
+    }
+  }
+  pairs.skip_to(0);
+  return together;
+}
+
+}  // namespace vantage
