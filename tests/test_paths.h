@@ -22,6 +22,10 @@ inline std::string required(const char* variable) {
 /// The program `vantage`.
 inline std::string vantage_binary() { return required("VANTAGE_BINARY"); }
 
+/// Whether that program is compiled with a sanitizer, which takes time and memory of its own: tests
+/// then do less, or nothing.
+inline bool is_sanitized() { return std::getenv("VANTAGE_IS_SANITIZED") != nullptr; }
+
 /// Libraries that tests load into the program before all others.
 inline std::string io_faults() { return required("PRELOAD_IO_FAULTS"); }
 inline std::string clock_jump() { return required("PRELOAD_CLOCK_JUMP"); }

@@ -69,9 +69,8 @@ struct SimpleCamera {
 };
 
 /// The residuals as the minimiser wants them: those of matches, then the parameters themselves.
-template <typename Residuals>
 struct Problem {
-  const Residuals& residuals_of;
+  const RigModel::Residuals& residuals_of;
   Eigen::Index residuals;
 
   [[nodiscard]] Eigen::Index inputs() const { return RigModel::kParameters; }
@@ -191,11 +190,10 @@ Eigen::VectorXd RigModel::turning_distances(const Parameters& parameters,
   return distances;
 }
 
-template <typename Residuals>
 RigModel::Parameters RigModel::least_squares(const Parameters& start, Eigen::Index residuals,
                                              const Residuals& of) {
-  Problem<Residuals> problem{of, residuals};
-  Eigen::LevenbergMarquardt<Problem<Residuals>, double> minimiser(problem);
+  Problem problem{of, residuals};
+  Eigen::LevenbergMarquardt<Problem, double> minimiser(problem);
   minimiser.parameters.maxfev = 100;
   minimiser.parameters.xtol = 1e-12;
   minimiser.parameters.ftol = 1e-14;

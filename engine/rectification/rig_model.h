@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "engine/rectification/feature_matches.h"
@@ -18,6 +19,7 @@ class RigModel {
  public:
   static constexpr int kParameters = 13;
   using Parameters = Eigen::Matrix<double, kParameters, 1>;
+  using Residuals = std::function<Eigen::VectorXd(const Parameters&)>;
 
   /// `width_px` and `height_px` ≥ 2.
   RigModel(int width_px, int height_px);
@@ -61,7 +63,6 @@ class RigModel {
   struct Cameras;
 
   [[nodiscard]] Cameras cameras(const Parameters& parameters) const;
-  template <typename Residuals>
   [[nodiscard]] static Parameters least_squares(const Parameters& start, Eigen::Index residuals,
                                                 const Residuals& of);
 

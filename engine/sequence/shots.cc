@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <set>
 
 #include "engine/error.h"
 #include "engine/matching/stereo_matcher.h"
@@ -166,11 +167,10 @@ class Survey {
 
   /// First, middle and last frame, each once.
   [[nodiscard]] static std::vector<int> samples_of(const Shot& shot) {
-    std::vector<int> frames = {shot.first_frame,
-                               shot.first_frame + (shot.end_frame - 1 - shot.first_frame) / 2,
-                               shot.end_frame - 1};
-    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
-    return frames;
+    const std::set<int> frames = {shot.first_frame,
+                                  shot.first_frame + (shot.end_frame - 1 - shot.first_frame) / 2,
+                                  shot.end_frame - 1};
+    return {frames.begin(), frames.end()};
   }
 
   /// False when stopped.

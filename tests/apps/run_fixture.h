@@ -15,13 +15,6 @@
 
 namespace vantage {
 
-/// Sanitizers take time and memory of their own: tests then do less, or nothing.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool kIsSanitized = true;
-#else
-inline constexpr bool kIsSanitized = false;
-#endif
-
 /// Names of files, relative to a folder, and their bytes.
 using FolderContent = std::map<std::string, std::string>;
 

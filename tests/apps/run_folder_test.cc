@@ -11,6 +11,7 @@
 
 #include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace run_folder_test {
@@ -249,7 +250,7 @@ TEST_F(InputRunFolder, ADescriptionThatIsDamagedIsAClearError) {
                                           with("sound", nullptr)};
   bool merges = false;
   SCOPED_TRACE(test::sample_name());
-  for (const std::string& text : sampled(texts, kIsSanitized ? 2 : 6, 8)) {
+  for (const std::string& text : sampled(texts, test_paths::is_sanitized() ? 2 : 6, 8)) {
     write_file(description(), text);
     merges = !merges;
     const ProcessResult result = merges ? merge() : run(out_, {"--resume", "--quiet"});

@@ -22,10 +22,10 @@ using testing::Not;
 
 class InterruptedRun : public RunTest {
  protected:
-  static constexpr int kMany = kIsSanitized ? 200 : 400;
+  const int frames_ = test_paths::is_sanitized() ? 200 : 400;
 
   InterruptedRun() {
-    for (int frame = kFrames; frame < kMany; ++frame) {
+    for (int frame = kFrames; frame < frames_; ++frame) {
       for (const std::string& side : {left_, right_}) {
         fs::create_hard_link(side + "/" + frame_file(frame % kFrames),
                              side + "/" + frame_file(frame));
@@ -63,7 +63,7 @@ class InterruptedRun : public RunTest {
     EXPECT_EQ(results["interrupted"], true);
     const std::vector<int> done = journalled_frames(out_);
     EXPECT_FALSE(done.empty());
-    EXPECT_LT(done.size(), static_cast<std::size_t>(kMany));
+    EXPECT_LT(done.size(), static_cast<std::size_t>(frames_));
     // In order and without a gap.
     EXPECT_EQ(done.back() + 1, static_cast<int>(done.size()));
     const ProcessResult resumed = run(out_, joined(outputs, {"--resume", "--report", report}));
@@ -71,14 +71,14 @@ class InterruptedRun : public RunTest {
     EXPECT_EQ(results["frames"], done.size());
     EXPECT_EQ(read_report(report)["results"]["frames_before"], done.size());
     EXPECT_THAT(leftovers_in(out_), IsEmpty());
-    EXPECT_EQ(journalled_frames(out_).size(), static_cast<std::size_t>(kMany));
+    EXPECT_EQ(journalled_frames(out_).size(), static_cast<std::size_t>(frames_));
     expect_maps_of_their_sources();
   }
 
   void expect_maps_of_their_sources() const {
     const FolderContent maps = results_in(out_ + "/disparity");
-    ASSERT_EQ(maps.size(), static_cast<std::size_t>(kMany));
-    for (int frame = kFrames; frame < kMany; ++frame) {
+    ASSERT_EQ(maps.size(), static_cast<std::size_t>(frames_));
+    for (int frame = kFrames; frame < frames_; ++frame) {
       EXPECT_EQ(maps.at(frame_file(frame, "pfm")), maps.at(frame_file(frame % kFrames, "pfm")));
     }
   }

@@ -33,7 +33,7 @@ class SlowRunMemory : public RunTest {
   static constexpr int kLargeHeight = 300;
 
   void SetUp() override {
-    if (kIsSanitized) {
+    if (test_paths::is_sanitized()) {
       GTEST_SKIP() << "sanitizers have memory of their own";
     }
     add_links(left_, kFrames);

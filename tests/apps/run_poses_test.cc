@@ -10,6 +10,7 @@
 
 #include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace run_poses_test {
@@ -196,7 +197,7 @@ TEST_F(InputRunPoses, WrongUsageIsOneLine) {
       {1, {"--path", folder_ / "absent.toml"}, "absent.toml: cannot be read"},
       {1, calibrated({"--path", away}), "frame 8: camera of the new view looks away"}};
   SCOPED_TRACE(test::sample_name());
-  for (const Misuse& misuse : kIsSanitized ? sampled(misuses, 5, 3) : misuses) {
+  for (const Misuse& misuse : test_paths::is_sanitized() ? sampled(misuses, 5, 3) : misuses) {
     const ProcessResult result = run(out_, joined(misuse.options, {"--quiet"}));
     EXPECT_EQ(result.exit_code, misuse.exit_code) << misuse.says;
     EXPECT_TRUE(is_one_line(result, "run"));

@@ -10,6 +10,7 @@
 #include "tests/apps/preloaded.h"
 #include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace run_survey_test {
@@ -84,9 +85,9 @@ TEST_F(Survey, MayBeInterrupted) {
     fs::remove(right_ + "/" + frame_file(frame));
   }
   // Samples then take long, compared with everything before them.
-  const std::vector<std::string> outputs = joined(
-      kShotOutputs,
-      {"--method", "membrane", "--iterations", kIsSanitized ? "300" : "2000", "--progress", "bar"});
+  const std::vector<std::string> outputs =
+      joined(kShotOutputs, {"--method", "membrane", "--iterations",
+                            test_paths::is_sanitized() ? "300" : "2000", "--progress", "bar"});
   const FolderContent expected = undisturbed(outputs);
   const TemporaryFolder streams;
   const VantageProcess process(arguments(out_, outputs), streams.path());

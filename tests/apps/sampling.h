@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/apps/run_fixture.h"
+#include "tests/test_paths.h"
 #include "tests/test_sample.h"
 
 /// Tests that could go through very many cases take a sample; tests/test_sample.h says which.
@@ -107,7 +108,7 @@ inline std::string last_option(const std::vector<std::string>& arguments) {
 template <typename Case, typename ArgumentsOf>
 std::vector<Case> sampled_command_lines(const std::vector<Case>& cases,
                                         const ArgumentsOf& arguments_of) {
-  if (!kIsSanitized) {
+  if (!test_paths::is_sanitized()) {
     return cases;
   }
   const auto stream = static_cast<std::uint32_t>(cases.size());

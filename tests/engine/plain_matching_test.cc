@@ -8,8 +8,6 @@
 #include <numeric>
 #include <random>
 
-#include "tests/engine/brute_force_ssd.h"
-
 namespace vantage::test {
 namespace plain_matching_test {
 
@@ -126,28 +124,25 @@ TEST(PlainCosts, GainsOfGradientFilters) {
   }
 }
 
-TEST(PlainAggregation, BoxIsBruteForceSsd) {
-  const Photograph left = random_grey(13, 7, 256, 1);
-  const Photograph right = random_grey(13, 7, 256, 2);
-  MethodParameters parameters = book_parameters(MatchMethod::kSsd);
-  parameters.window_px = 5;
-  for (const Border border : {Border::kClip, Border::kValid}) {
-    parameters.border = border;
-    const Volume means = plain_aggregate(right, left, Reference::kRight, {-4, 20}, parameters);
-    const BruteForceSsd brute{13, 7, grey_levels_of(right), grey_levels_of(left), 1};
-    for (int y = 0; y < 7; ++y) {
-      for (int x = 0; x < 13; ++x) {
-        for (int i = 0; i < means.count(); ++i) {
-          const double expected = brute.energy(x, y, i - 4, 5, border);
-          if (std::isnan(expected)) {
-            EXPECT_TRUE(std::isnan(means.at(x, y, i)));
-          } else {
-            EXPECT_DOUBLE_EQ(means.at(x, y, i), expected);
-          }
-        }
-      }
-    }
+TEST(PlainAggregation, BoxMeanByHand) {
+  // A row of three columns, d = 0 and 1. At d = 1 column 0 has no partner.
+  Volume costs(3, 1, {0, 1}, Reference::kLeft);
+  costs.cells = {3, 100, 6, 8, 15, 10};
+  const Volume clipped = plain_box_mean(costs, 3, Border::kClip);
+  EXPECT_DOUBLE_EQ(clipped.at(0, 0, 0), 4.5);
+  EXPECT_DOUBLE_EQ(clipped.at(1, 0, 0), 8);
+  EXPECT_DOUBLE_EQ(clipped.at(2, 0, 0), 10.5);
+  EXPECT_TRUE(std::isnan(clipped.at(0, 0, 1)));
+  EXPECT_DOUBLE_EQ(clipped.at(1, 0, 1), 9);
+  EXPECT_DOUBLE_EQ(clipped.at(2, 0, 1), 9);
+  for (const double mean : plain_box_mean(costs, 3, Border::kValid).cells) {
+    EXPECT_TRUE(std::isnan(mean));  // a window of three rows does not fit
   }
+  // Rows count as columns do.
+  Volume column(1, 3, {0, 0}, Reference::kLeft);
+  column.cells = {3, 6, 15};
+  EXPECT_DOUBLE_EQ(plain_box_mean(column, 3, Border::kClip).at(0, 1, 0), 8);
+  EXPECT_DOUBLE_EQ(plain_box_mean(column, 3, Border::kClip).at(0, 2, 0), 10.5);
 }
 
 TEST(PlainAggregation, KernelsAreNormalisedAndHaveTheirVariance) {

@@ -15,15 +15,15 @@
 #include "engine/matching/intensity_planes.h"
 #include "engine/matching/stage_column_ssd.h"
 #include "scheduler/whole_image_pipeline.h"
-#include "tests/engine/brute_force_ssd.h"
 #include "tests/engine/cell_stages.h"
+#include "tests/engine/plain_aggregation.h"
 #include "tests/engine/plain_column.h"
+#include "tests/engine/random_grey.h"
 #include "tests/test_sample.h"
 
 namespace vantage {
 namespace stage_window_selection_test {
 
-using test::BruteForceSsd;
 using test::PlainColumn;
 
 struct Shape {
@@ -43,15 +43,12 @@ struct NoisePair {
   NoisePair(const Shape& shape, int direction, int levels, Border border)
       : reference(test::random_grey(shape.width, shape.height, levels, 1)),
         other(test::random_grey(shape.width, shape.height, levels, 2)) {
-    const BruteForceSsd brute{shape.width, shape.height, test::grey_levels_of(reference),
-                              test::grey_levels_of(other), direction};
-    for (int y = 0; y < shape.height; ++y) {
-      for (int x = 0; x < shape.width; ++x) {
-        for (int i = 0; i < shape.count; ++i) {
-          means.push_back(brute.energy(x, y, shape.disparity_min + i, shape.window, border));
-        }
-      }
-    }
+    MethodParameters parameters = book_parameters(MatchMethod::kSsd);
+    const DisparityRange range = {shape.disparity_min, shape.disparity_min + shape.count - 1};
+    const Reference side = direction < 0 ? Reference::kLeft : Reference::kRight;
+    means = test::plain_box_mean(test::plain_costs(reference, other, side, range, parameters),
+                                 shape.window, border)
+                .cells;
   }
 };
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <string>
@@ -12,16 +13,18 @@
 #include "engine/simd.h"
 #include "scheduler/strip_pipeline.h"
 #include "scheduler/whole_image_pipeline.h"
-#include "tests/engine/brute_force_ssd.h"
 #include "tests/engine/identical_maps.h"
+#include "tests/engine/plain_aggregation.h"
+#include "tests/engine/plain_matching.h"
+#include "tests/engine/random_grey.h"
 #include "tests/test_sample.h"
 
 namespace vantage {
 namespace stereo_matcher_test {
 
-using test::BruteForceSsd;
-using test::grey_levels_of;
 using test::identical;
+using test::plain_match;
+using test::PlainMap;
 using test::random_grey;
 
 MatchOptions raw_options(DisparityRange range, int window, Border border, Subpixel subpixel) {
@@ -35,38 +38,31 @@ MatchOptions raw_options(DisparityRange range, int window, Border border, Subpix
   return options;
 }
 
-BruteForceSsd brute_force(const Photograph& left, const Photograph& right, Reference reference) {
-  const bool is_left = reference == Reference::kLeft;
-  return {left.width(), left.height(), grey_levels_of(is_left ? left : right),
-          grey_levels_of(is_left ? right : left), is_left ? -1 : 1};
+bool has_candidate(const PlainMap& map) {
+  return std::any_of(map.choices.begin(), map.choices.end(),
+                     [](const test::PlainChoice& choice) { return !std::isnan(choice.disparity); });
 }
 
-bool has_candidate(const BruteForceSsd& brute, const MatchOptions& options) {
-  for (int y = 0; y < brute.height; ++y) {
-    for (int x = 0; x < brute.width; ++x) {
-      if (!std::isnan(brute.disparity(x, y, options))) {
-        return true;
-      }
-    }
-  }
-  return false;
+PlainMap plain_map(const Photograph& left, const Photograph& right, Reference reference,
+                   const MatchOptions& options) {
+  return plain_match(left, right, reference, options.disparities, options.resolved());
 }
 
 /// Exact equality, cell for cell; disparities from sub-pixel fits may differ in the last bit of a
 /// float because means are formed in another order.
-void expect_equals_brute_force(const Photograph& left, const Photograph& right,
+void expect_equals_plain_match(const Photograph& left, const Photograph& right,
                                const MatchOptions& options, Execution& execution) {
   const StereoMatcher matcher(options, execution);
   DisparityMaps maps;
   matcher.match(left, right, {}, maps);
   for (const Reference reference : {Reference::kLeft, Reference::kRight}) {
-    const BruteForceSsd brute = brute_force(left, right, reference);
+    const PlainMap plain = plain_map(left, right, reference, options);
     const DisparityMap& map = reference == Reference::kLeft ? maps.left : maps.right;
     ASSERT_EQ(map.width(), left.width());
     ASSERT_EQ(map.height(), left.height());
     for (int y = 0; y < map.height(); ++y) {
       for (int x = 0; x < map.width(); ++x) {
-        const double expected = brute.disparity(x, y, options);
+        const double expected = plain.at(x, y).disparity;
         const double actual = map.at(x, y);
         if (std::isnan(expected)) {
           ASSERT_TRUE(std::isnan(actual)) << "at " << x << ", " << y;
@@ -96,7 +92,7 @@ constexpr int kShapeCount = static_cast<int>(std::size(kShapes));
 
 class SsdShapes : public ::testing::TestWithParam<int> {};
 
-TEST_P(SsdShapes, EqualBruteForce) {
+TEST_P(SsdShapes, EqualPlainMatch) {
   const Shape& shape = kShapes[GetParam()];
   Execution execution({.threads = 2});
   static const auto rows = test::sampled_rows({kShapeCount, 2, 2, 2});
@@ -111,12 +107,12 @@ TEST_P(SsdShapes, EqualBruteForce) {
     const int levels = row[3] == 0 ? 2 : 256;
     const Photograph left = random_grey(shape.width, shape.height, levels, 1);
     const Photograph right = random_grey(shape.width, shape.height, levels, 2);
-    if (!has_candidate(brute_force(left, right, Reference::kLeft), options)) {
+    if (!has_candidate(plain_map(left, right, Reference::kLeft, options))) {
       DisparityMaps maps;
       EXPECT_THROW(StereoMatcher(options, execution).match(left, right, {}, maps), Error);
       continue;
     }
-    expect_equals_brute_force(left, right, options, execution);
+    expect_equals_plain_match(left, right, options, execution);
   }
 }
 
@@ -127,19 +123,19 @@ INSTANTIATE_TEST_SUITE_P(AwkwardSizes, SsdShapes, ::testing::Range(0, kShapeCoun
                                   "_window_" + std::to_string(s.window);
                          });
 
-TEST(StereoMatcher, EqualsBruteForceOnEveryInstructionSet) {
+TEST(StereoMatcher, EqualsPlainMatchOnEveryInstructionSet) {
   const Photograph left = random_grey(79, 13, 256, 3);
   const Photograph right = random_grey(79, 13, 256, 4);
   Execution execution({.threads = 1});
   for (const int window : {3, 9, 33}) {
     for (const DisparityRange range : {DisparityRange{-9, 37}, DisparityRange{0, 79}}) {
       const MatchOptions options = raw_options(range, window, Border::kClip, Subpixel::kNone);
-      DisparityMaps expected;  // of the first set, which are those of brute force
+      DisparityMaps expected;  // of the first set, which are the plain ones
       for (const std::string& name : available_instruction_sets()) {
         force_instruction_set(name);
         ASSERT_EQ(instruction_set_in_use(), name);
         if (expected.left.empty()) {
-          expect_equals_brute_force(left, right, options, execution);
+          expect_equals_plain_match(left, right, options, execution);
           StereoMatcher(options, execution).match(left, right, {}, expected);
           continue;
         }
@@ -193,16 +189,18 @@ TEST_P(SsdDepths, AgreeWithDoubleArithmetic) {
     const MatchOptions options = raw_options({-4, 30}, window, Border::kClip, Subpixel::kNone);
     DisparityMaps maps;
     StereoMatcher(options, execution).match(left, right, {}, maps);
-    const BruteForceSsd brute = brute_force(left, right, Reference::kLeft);
+    const test::Volume energies = test::plain_aggregate(left, right, Reference::kLeft,
+                                                        options.disparities, options.resolved());
+    const PlainMap plain = test::plain_select(energies, options.resolved());
     int different = 0;
     for (int y = 0; y < maps.left.height(); ++y) {
       for (int x = 0; x < maps.left.width(); ++x) {
-        const double expected = brute.disparity(x, y, options);
+        const double expected = plain.at(x, y).disparity;
         const double actual = maps.left.at(x, y);
         if (actual != expected) {
           ++different;
           const auto energy = [&](double d) {
-            return brute.energy(x, y, static_cast<int>(d), window, Border::kClip);
+            return energies.at(x, y, static_cast<int>(d) - energies.range.min);
           };
           // Means of costs that are rounded to at most 1/64 of a squared grey level.
           EXPECT_NEAR(energy(actual), energy(expected), 1.0 / 64) << x << ", " << y;
