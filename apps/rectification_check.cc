@@ -29,7 +29,7 @@ Look look_at_rows(const Photograph& left, const Photograph& right) {
 }
 
 void tell_of(const Look& look, const Settings& settings, const CommonOptions& common,
-          bool expects_negative, RunReport& report) {
+             bool expects_negative, RunReport& report) {
   report.add_stage("check", look.seconds);
   if (!look.error) {
     return;

@@ -11,6 +11,7 @@
 #include "apps/commands.h"
 #include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace output_checks_test {
@@ -109,7 +110,7 @@ TEST_F(OutputChecks, NoReportReplacesAnInput) {
     }
   }
   SCOPED_TRACE(test::sample_name());
-  for (const auto& [command, input] : sampled(lines, kIsSanitized ? 5 : 20, 31)) {
+  for (const auto& [command, input] : sampled(lines, test_paths::is_sanitized() ? 5 : 20, 31)) {
     const bool is_tuning_output = command.front() == "tune" && input == at("tuning.json");
     expect_refused(command, is_tuning_output ? "--output and --report are the same file"
                                              : "which is an input as well");
