@@ -1,7 +1,6 @@
 #include "engine/synthesis/view_sampling.h"
 
 #include <Eigen/Core>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,7 +21,7 @@ constexpr int kLargestSide = 65500;
 constexpr double kToleratedReduction = 0.2;
 
 // Every so manieth pixel along both axes tells how much a view reduces an image.
-constexpr int kGridPx = 16;
+constexpr int kGridPx = 32;
 
 // Disparities that are planned for, as a share of the image's width.
 constexpr double kLargestDisparity = 0.25;
@@ -60,12 +59,14 @@ Reduction reduction_of(const ViewWarp& warp, const NewView& view, int width, int
       const Eigen::Matrix2d growth = (warp.homography.topLeftCorner<2, 2>() -
                                       target * warp.homography.bottomLeftCorner<1, 2>()) /
                                      at.z();
+      // A small circle becomes an ellipse, which is reduced by 1 / `least` and covers the area
+      // `least` · `most`.
       const double area = std::abs(growth.determinant());
-      const double least = growth.jacobiSvd().singularValues()(1);
-      if (least > 0) {
-        result.area += area;
-        result.sum += area / least;
-      }
+      const double squares = growth.squaredNorm();
+      const double most = std::sqrt(
+          0.5 * (squares + std::sqrt(std::max(squares * squares - 4 * area * area, 0.0))));
+      result.area += area;
+      result.sum += most;
     }
   }
   return result;
@@ -111,23 +112,29 @@ class SampleWeights {
   std::array<float, kMostSamples + 2> weights_{};
 };
 
+// `line` is memory for the values of a row of `fine`.
 template <typename T>
-void reduce_row(const Image<T>& fine, const SampleWeights& weights, int y, Image<T>& image) {
+void reduce_row(const Image<T>& fine, const SampleWeights& weights, int y, float* line,
+                Image<T>& image) {
   const int samples = weights.count() - 2;
   const int channels = fine.channels();
+  const int values = fine.width() * channels;
+  std::fill_n(line, values, 0.0F);
+  for (int j = 0; j < weights.count(); ++j) {
+    const T* from = fine.row(std::clamp(samples * y + j - 1, 0, fine.height() - 1));
+    const float weight = weights[j];
+    for (int k = 0; k < values; ++k) {
+      line[k] += weight * static_cast<float>(from[k]);
+    }
+  }
   const float largest = 255 / kGreyLevelsPerUnit<T>;
   T* row = image.row(y);
   for (int x = 0; x < image.width(); ++x) {
     for (int c = 0; c < channels; ++c) {
       float sum = 0;
-      for (int j = 0; j < weights.count(); ++j) {
-        const T* line = fine.row(std::clamp(samples * y + j - 1, 0, fine.height() - 1));
-        float along = 0;
-        for (int i = 0; i < weights.count(); ++i) {
-          const int column = std::clamp(samples * x + i - 1, 0, fine.width() - 1);
-          along += weights[i] * static_cast<float>(line[column * channels + c]);
-        }
-        sum += weights[j] * along;
+      for (int i = 0; i < weights.count(); ++i) {
+        const int column = std::clamp(samples * x + i - 1, 0, fine.width() - 1);
+        sum += weights[i] * line[column * channels + c];
       }
       if constexpr (std::is_integral_v<T>) {
         sum = std::clamp(sum, 0.0F, largest) + 0.5F;
@@ -161,10 +168,13 @@ ViewSampling view_sampling(const NewView& view, ImageView<const float> left_disp
   Reduction reduction;
   reduction.add(of_map(view.from_left, left_disparity_px), view.alpha());
   reduction.add(of_map(view.from_right, right_disparity_px), 1 - view.alpha());
+  const int samples = samples_for(reduction.mean(), view);
+  if (samples == 1) {
+    return {};
+  }
   const int most =
       most_samples_per_side(view, left_disparity_px.width(), left_disparity_px.height());
-  return {.samples = std::min(samples_for(reduction.mean(), view), most),
-          .reduction = reduction.mean()};
+  return {.samples = std::min(samples, most), .reduction = reduction.mean()};
 }
 
 int most_samples_per_side(const NewView& view, int source_width, int source_height) {
@@ -213,8 +223,12 @@ void reduce_view(const SynthesizedView& fine, const ViewSampling& sampling, Synt
         auto& image = std::get<Image<T>>(view.image.pixels);
         image.resize(width, height, fine_image.channels());
         execution.for_each_band(height, [&](int first_row, int end_row) {
+          const auto memory = execution.scratch().lease(
+              sizeof(float) * static_cast<std::size_t>(fine_image.width()) *
+              static_cast<std::size_t>(fine_image.channels()));
+          auto* line = reinterpret_cast<float*>(memory.data());
           for (int y = first_row; y < end_row; ++y) {
-            reduce_row(fine_image, weights, y, image);
+            reduce_row(fine_image, weights, y, line, image);
             for (int x = 0; x < width; ++x) {
               unsigned holes = 255;
               unsigned sources = 0;
