@@ -57,4 +57,22 @@ struct CandidateGeometry {
   }
 };
 
+/// The candidates of a cell column that are displacements in two dimensions: `rows` runs of
+/// `row_candidates` horizontal ones each, a run for each vertical one, without gaps.
+struct CandidatePlane {
+  int row_candidates = 0;  ///< 0: candidates are displacements in one dimension
+  int rows = 0;
+
+  [[nodiscard]] bool is_given() const { return row_candidates > 0; }
+  [[nodiscard]] int count() const { return row_candidates * rows; }
+  /// Lanes that a run takes in whole vectors.
+  [[nodiscard]] int row_lanes() const { return CandidateGeometry{.count = row_candidates}.lanes(); }
+  /// Cells of working memory to smooth one column in both directions: its runs with `margin` cells
+  /// around each, the runs smoothed, and the column.
+  [[nodiscard]] int work_cells(int margin) const {
+    return margin + rows * (row_lanes() + margin) + rows * row_lanes() +
+           CandidateGeometry{.count = count()}.lanes() + kLaneMultiple;
+  }
+};
+
 }  // namespace vantage::kernels

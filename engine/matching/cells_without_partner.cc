@@ -6,14 +6,13 @@
 namespace vantage {
 
 void clear_without_partner(const kernels::CandidateGeometry& geometry, int radius,
-                           scheduler::Range columns, std::int32_t* sums) {
-  const int lanes = geometry.lanes();
+                           scheduler::Range columns, int pitch, std::int32_t* sums) {
   const auto clear = [&](int x) {
     const kernels::CandidateRange inside = geometry.with_partner(x);
     const int inside_end = std::max(inside.begin, inside.end);
-    std::int32_t* cells = sums + static_cast<std::ptrdiff_t>(x - columns.begin) * lanes;
+    std::int32_t* cells = sums + static_cast<std::ptrdiff_t>(x - columns.begin) * pitch;
     std::fill(cells + std::max(0, inside.begin - radius), cells + inside.begin, 0);
-    std::fill(cells + inside_end, cells + std::min(lanes, inside_end + radius), 0);
+    std::fill(cells + inside_end, cells + std::min(geometry.count, inside_end + radius), 0);
   };
   // Only columns near the borders have such cells.
   const auto [inner_begin, inner_end] = geometry.columns_with_all_partners();

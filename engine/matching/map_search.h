@@ -17,11 +17,6 @@ scheduler::ChainPlan chain_plan(const MatchChain& chain, const ExecutionOptions&
 /// Working memory of MapSearch, reused from map to map without allocating.
 struct MapSearchWork {
   CoarseLevels levels;
-  // Of a search in two dimensions: winners of one vertical disparity, and the least energies yet.
-  DisparityMap candidate_disparity_px;
-  Image<float> candidate_confidence;
-  Image<float> candidate_energy;
-  Image<float> energy;
 };
 
 /// One map and what goes with it, all of the image's size. Not owned.
@@ -49,10 +44,6 @@ class MapSearch {
   void compute(Reference reference, const ChainInput& input, const MapResult& result);
 
  private:
-  void search_rows(const kernels::CandidateGeometry& geometry, const ChainInput& input,
-                   const MapResult& result);
-  void run_levels(const kernels::CandidateGeometry& geometry, const ChainInput& input,
-                  const MapOutputs& outputs, const CoarseMap& coarse_map);
   void run_chain(const MatchChain& chain);
 
   const MatchOptions& options_;

@@ -21,6 +21,8 @@
 #include "engine/matching/stage_column_sum.h"
 #include "engine/matching/stage_diffusion.h"
 #include "engine/matching/stage_disparity_prior.h"
+#include "engine/matching/stage_displacement_cost.h"
+#include "engine/matching/stage_displacement_selection.h"
 #include "engine/matching/stage_energy_selection.h"
 #include "engine/matching/stage_fixed_energies.h"
 #include "engine/matching/stage_level_energies.h"
@@ -115,6 +117,19 @@ bool has_byte_energies(const MethodParameters& parameters, const ChainInput& inp
          input.partners.size() == 1 && input.prior_px.empty();
 }
 
+/// The cells of all displacements; of_partner makes the stage of one vertical disparity.
+template <typename OfPartner>
+std::unique_ptr<scheduler::RowStage> of_all_rows(const ChainInput& input, unsigned char padding,
+                                                 const OfPartner& of_partner) {
+  std::vector<std::unique_ptr<scheduler::RowStage>> of_rows;
+  for (int row = 0; row < input.grid->rows; ++row) {
+    CostPartner partner = input.partners.front();
+    partner.disparity_y_px = input.grid->disparity_y_min + row;
+    of_rows.push_back(of_partner(partner));
+  }
+  return make_displacement_cost_stage(std::move(of_rows), *input.grid, padding);
+}
+
 WindowSelectionSettings window_selection(const MethodParameters& parameters) {
   WindowSelectionSettings settings;
   settings.radius = parameters.window_px / 2;
@@ -158,7 +173,7 @@ MatchChain::MatchChain(const MethodParameters& parameters,
   if (level.result != nullptr) {
     add_result(parameters, level);
   } else {
-    add_selection(parameters, level);
+    add_selection(parameters, input, level);
   }
 }
 
@@ -186,8 +201,7 @@ void MatchChain::add_reduction(const MethodParameters& parameters, const ChainIn
                                const ChainLevel& level) {
   const auto weight = static_cast<float>(parameters.level_weight);
   if (has_byte_energies(parameters, input)) {
-    add(make_ray_census_energy_stage(parameters, geometry_, *input.reference,
-                                     input.partners.front(), height_));
+    add(byte_energies(parameters, input, 0, geometry_.count));
     add(make_byte_energy_reduction_stage(geometry_, ray_census_energies(parameters).step, weight,
                                          *level.reduced));
     return;
@@ -236,6 +250,16 @@ std::unique_ptr<scheduler::RowStage> MatchChain::plain_costs(const MethodParamet
   const CellMeaning meaning = parameters.aggregation == Aggregation::kBayes
                                   ? CellMeaning::kLikelihood
                                   : CellMeaning::kEnergy;
+  if (input.grid != nullptr) {
+    // Evidence is compared with that of all candidates.
+    const bool is_relative = is_evidence(parameters) && meaning == CellMeaning::kLikelihood;
+    auto costs = of_all_rows(input, 0, [&](const CostPartner& partner) {
+      return make_cost_stage(parameters, input.grid->along_rows, *input.reference, {&partner, 1},
+                             is_relative ? CellMeaning::kEnergy : meaning, height_);
+    });
+    return is_relative ? make_displacement_evidence_stage(std::move(costs), *input.grid, parameters)
+                       : std::move(costs);
+  }
   auto costs = make_cost_stage(parameters, of_candidates(first_candidate, count), *input.reference,
                                input.partners, meaning, height_);
   if (!input.prior_px.empty()) {
@@ -254,14 +278,28 @@ std::unique_ptr<scheduler::RowStage> MatchChain::costs_of(const MethodParameters
     return plain_costs(parameters, input, first_candidate, count);
   }
   if (has_byte_energies(parameters, input)) {
-    return make_fixed_energy_stage(
-        make_ray_census_energy_stage(parameters, of_candidates(first_candidate, count),
-                                     *input.reference, input.partners.front(), height_),
-        EnergySource::kBytes, count, EnergyFormat(parameters),
-        ray_census_energies(parameters).step);
+    return make_fixed_energy_stage(byte_energies(parameters, input, first_candidate, count),
+                                   EnergySource::kBytes, count, EnergyFormat(parameters),
+                                   ray_census_energies(parameters).step);
   }
   return make_fixed_energy_stage(plain_costs(parameters, input, first_candidate, count),
                                  EnergySource::kLikelihoods, count, EnergyFormat(parameters));
+}
+
+/// Of costs that has_byte_energies().
+std::unique_ptr<scheduler::RowStage> MatchChain::byte_energies(const MethodParameters& parameters,
+                                                               const ChainInput& input,
+                                                               int first_candidate,
+                                                               int count) const {
+  if (input.grid == nullptr) {
+    return make_ray_census_energy_stage(parameters, of_candidates(first_candidate, count),
+                                        *input.reference, input.partners.front(), height_);
+  }
+  return of_all_rows(input, std::numeric_limits<unsigned char>::max(),
+                     [&](const CostPartner& partner) {
+                       return make_ray_census_energy_stage(parameters, input.grid->along_rows,
+                                                           *input.reference, partner, height_);
+                     });
 }
 
 kernels::CandidateGeometry MatchChain::of_candidates(int first_candidate, int count) const {
@@ -297,6 +335,12 @@ void MatchChain::add_box(const MethodParameters& parameters, const ChainInput& i
   WindowSelectionSettings settings = window_selection(parameters);
   settings.energy_scale = 1.0F / quantised.scale;
   settings.energy_offset = quantised.offset;
+  if (input.grid != nullptr) {
+    add(make_displacement_sum_stage(*input.grid, settings.radius, quantised.offset,
+                                    quantised.scale));
+    add(make_displacement_window_selection_stage(*input.grid, settings, outputs_));
+    return;
+  }
   add(make_column_sum_stage(geometry_, height_, settings.radius, quantised.offset,
                             quantised.scale));
   add(make_window_selection_stage(geometry_, settings, outputs_));
@@ -337,11 +381,13 @@ void MatchChain::add_aggregation(const MethodParameters& parameters, const Chain
     case Aggregation::kBayes: {
       iterations_ = parameters.iterations;
       const CoarserResult coarser{.volume = level.coarser, .blocks = level.coarser_blocks};
-      add_all(
-          uses_fixed_energies(parameters)
-              ? make_max_product_stages(parameters, geometry_, height_, coarser, edges,
-                                        level.blocks)
-              : make_bayes_stages(parameters, geometry_, height_, coarser, edges, level.blocks));
+      const kernels::CandidatePlane plane =
+          input.grid != nullptr ? input.grid->plane() : kernels::CandidatePlane{};
+      add_all(uses_fixed_energies(parameters)
+                  ? make_max_product_stages(parameters, geometry_, height_, coarser, edges,
+                                            level.blocks, plane)
+                  : make_bayes_stages(parameters, geometry_, height_, coarser, edges, level.blocks,
+                                      plane));
       ++first_iteration_;  // behind the start
       break;
     }
@@ -359,8 +405,14 @@ void MatchChain::add_result(const MethodParameters& parameters, const ChainLevel
   }
 }
 
-void MatchChain::add_selection(const MethodParameters& parameters, const ChainLevel& level) {
+void MatchChain::add_selection(const MethodParameters& parameters, const ChainInput& input,
+                               const ChainLevel& level) {
   if (uses_fixed_energies(parameters)) {
+    if (input.grid != nullptr) {
+      add(make_displacement_energy_selection_stage(
+          *input.grid, parameters.subpixel, EnergyFormat(parameters).steps_per_nat(), outputs_));
+      return;
+    }
     add(make_energy_selection_stage(geometry_, parameters.subpixel,
                                     EnergyFormat(parameters).steps_per_nat(), outputs_,
                                     level.blocks));
@@ -375,7 +427,8 @@ void MatchChain::add_selection(const MethodParameters& parameters, const ChainLe
   settings.subpixel = parameters.subpixel;
   settings.confidence = confidence_measure(parameters);
   settings.entropy_scale = static_cast<float>(entropy_scale(parameters));
-  add(make_cell_selection_stage(geometry_, settings, outputs_));
+  add(input.grid != nullptr ? make_displacement_selection_stage(*input.grid, settings, outputs_)
+                            : make_cell_selection_stage(geometry_, settings, outputs_));
 }
 
 }  // namespace vantage

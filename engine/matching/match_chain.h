@@ -8,6 +8,7 @@
 
 #include "engine/image/image.h"
 #include "engine/matching/candidate_blocks.h"
+#include "engine/matching/displacement_grid.h"
 #include "engine/matching/edge_weights.h"
 #include "engine/matching/intensity_planes.h"
 #include "engine/matching/level_volume.h"
@@ -39,6 +40,9 @@ struct ChainInput {
   /// How neighbours in the reference count for each other, one for each level, the image's own
   /// first; empty: all alike. See EdgeWeightLevels.
   std::span<const EdgeWeights> edges = {};
+  /// Of a search in two dimensions, of one partner and without a prior, whose disparity_y_px does
+  /// not count; the geometry is then that of the grid's columns. Null: along rows only.
+  const DisplacementGrid* grid = nullptr;
 };
 
 /// Where a chain stands in matching from coarse to fine. Volumes are of the format of the method
@@ -91,12 +95,16 @@ class MatchChain {
   [[nodiscard]] std::unique_ptr<scheduler::RowStage> costs_of(const MethodParameters& parameters,
                                                               const ChainInput& input,
                                                               int first_candidate, int count) const;
+  [[nodiscard]] std::unique_ptr<scheduler::RowStage> byte_energies(
+      const MethodParameters& parameters, const ChainInput& input, int first_candidate,
+      int count) const;
   void add_column_ssd(const MethodParameters& parameters, const PreparedPair& pair);
   void add_box(const MethodParameters& parameters, const ChainInput& input);
   void add_aggregation(const MethodParameters& parameters, const ChainInput& input,
                        const ChainLevel& level);
   void add_result(const MethodParameters& parameters, const ChainLevel& level);
-  void add_selection(const MethodParameters& parameters, const ChainLevel& level);
+  void add_selection(const MethodParameters& parameters, const ChainInput& input,
+                     const ChainLevel& level);
 
   kernels::CandidateGeometry geometry_;
   MapOutputs outputs_;

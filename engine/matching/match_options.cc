@@ -149,13 +149,20 @@ void MatchOptions::validate() const {
   validate_candidates(disparities, disparities_y);
   const MethodParameters in_force = resolved();
   vantage::validate(in_force);
-  if (in_force.levels > 1 && disparities_y) {
+  if (in_force.candidate_blocks > 0 && disparities_y) {
     throw UsageError(fmt::format(
-        "levels is {}, expected 1 with disparities-y: coarse to fine searches along rows only",
-        in_force.levels));
+        "candidate-blocks is {}, expected 0 with disparities-y: blocks are of candidates along "
+        "rows",
+        in_force.candidate_blocks));
   }
   const RefinementOptions of_maps = resolved_refinement();
   validate_refinement(of_maps, disparities_y.has_value());
+  if (of_maps.cross_check_level > 0 && disparities_y) {
+    throw UsageError(fmt::format(
+        "cross-check-level is {}, expected 0 with disparities-y: winners of coarse levels are kept "
+        "of searches along rows only",
+        of_maps.cross_check_level));
+  }
   if (of_maps.cross_check_level > 0 && !can_check_levels(in_force)) {
     throw UsageError(fmt::format(
         "cross-check-level is {}, expected 0: only aggregation bayes with levels above 1 has maps "
@@ -196,11 +203,8 @@ MethodParameters MatchOptions::resolved() const {
   }
   MethodParameters result =
       resolve(method.value_or(settings.method), merge(settings.parameters, parameters));
-  // A preset's levels and pruning hold where they can: what else the user chose goes before them.
-  if (disparities_y && !parameters.levels) {
-    result.levels = 1;
-  }
-  if (!parameters.candidate_blocks && !can_prune(result)) {
+  // A preset's pruning holds where it can: what else the user chose goes before it.
+  if (!parameters.candidate_blocks && (disparities_y || !can_prune(result))) {
     result.candidate_blocks = 0;
   }
   return result;
@@ -220,7 +224,7 @@ RefinementOptions MatchOptions::resolved_refinement() const {
   take_over(settings_of(preset_in_force()).refinement, result);
   take_over(refinement, result);
   // As with pruning: a preset's level holds where there can be one.
-  if (!refinement.cross_check_level && !can_check_levels(resolved())) {
+  if (!refinement.cross_check_level && (disparities_y || !can_check_levels(resolved()))) {
     result.cross_check_level = 0;
   }
   return result;

@@ -35,6 +35,11 @@ std::vector<float> prior_taps(const MethodParameters& parameters, int count) {
   return taps;
 }
 
+/// Of smoothing along lanes that takes as many operations: in two dimensions there are two passes.
+int radius_of_work(int radius, const kernels::CandidatePlane& plane) {
+  return plane.is_given() ? 2 * radius : radius;
+}
+
 enum class Form { kStart, kHalf, kGeneral };
 
 /// What stands for neighbours outside the image: factors of 1, or logarithms of those.
@@ -50,7 +55,7 @@ class BayesStage final : public BayesStepStage<float> {
  public:
   BayesStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
              int height, Form form, BayesState state, const EdgeWeights* edges,
-             const CandidateBlocks* blocks)
+             const CandidateBlocks* blocks, const kernels::CandidatePlane& plane)
       : BayesStepStage(geometry, height, form == Form::kStart, neutral_state(form),
                        absent_state(parameters, form), blocks),
         form_(form),
@@ -58,7 +63,8 @@ class BayesStage final : public BayesStepStage<float> {
         mu_(static_cast<float>(parameters.mu)),
         taps_(prior_taps(parameters, geometry.count)),
         floor_(static_cast<float>(parameters.epsilon_prior)),
-        edges_(edges) {}
+        edges_(edges),
+        plane_(plane) {}
 
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     return vantage::column_work(kernel_work(), candidates());
@@ -66,7 +72,8 @@ class BayesStage final : public BayesStepStage<float> {
 
  protected:
   [[nodiscard]] std::size_t work_cells() const override {
-    return static_cast<std::size_t>(kernels::bayes_work_floats(lanes(), radius(), most_segments()));
+    return static_cast<std::size_t>(
+        kernels::bayes_work_floats(lanes(), radius(), most_segments(), plane_));
   }
 
   void make_columns(const Columns& columns) const override {
@@ -78,6 +85,7 @@ class BayesStage final : public BayesStepStage<float> {
     row.weights = weights(columns.x, columns.y);
     row.count = columns.candidates;
     row.segment_ends = columns.segment_ends;
+    row.plane = plane_;
     row.output = columns.output;
     row.source_pitch = row.output_pitch = lanes();
     row.work = columns.work;
@@ -106,15 +114,16 @@ class BayesStage final : public BayesStepStage<float> {
             .below = edges_->above(y + 1) + x};
   }
   [[nodiscard]] kernels::KernelWork kernel_work() const {
+    const int radius = radius_of_work(this->radius(), plane_);
     switch (form_) {
       case Form::kStart:
-        return kernels::bayes_start_work(state_, radius());
+        return kernels::bayes_start_work(state_, radius);
       case Form::kHalf:
-        return kernels::bayes_half_work(state_, radius());
+        return kernels::bayes_half_work(state_, radius);
       case Form::kGeneral:
         break;
     }
-    return kernels::bayes_general_work(state_, radius(), kernels::bayes_scales_sums(mu_, floor_),
+    return kernels::bayes_general_work(state_, radius, kernels::bayes_scales_sums(mu_, floor_),
                                        edges_ != nullptr);
   }
 
@@ -124,6 +133,7 @@ class BayesStage final : public BayesStepStage<float> {
   std::vector<float> taps_;
   float floor_;
   const EdgeWeights* edges_;
+  kernels::CandidatePlane plane_;
 };
 
 /// The state before the first iteration of a level, from the probabilities that the next coarser
@@ -132,25 +142,28 @@ class BayesFromCoarserStage final : public FromCoarserStage<float> {
  public:
   BayesFromCoarserStage(const MethodParameters& parameters,
                         const kernels::CandidateGeometry& geometry, int height, BayesState state,
-                        const CoarserResult& coarser, const CandidateBlocks* blocks)
+                        const CoarserResult& coarser, const CandidateBlocks* blocks,
+                        const kernels::CandidatePlane& plane)
       : FromCoarserStage(geometry, height, coarser, blocks),
         state_(state),
         mu_(static_cast<float>(parameters.mu)),
         taps_(prior_taps(parameters, geometry.count)),
-        floor_(static_cast<float>(parameters.epsilon_prior)) {}
+        floor_(static_cast<float>(parameters.epsilon_prior)),
+        plane_(plane) {}
 
   [[nodiscard]] std::string_view name() const override { return "Bayes start from coarser"; }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
-    return vantage::column_work(kernels::bayes_start_from_coarser_work(state_, radius()),
-                                candidates());
+    return vantage::column_work(
+        kernels::bayes_start_from_coarser_work(state_, radius_of_work(radius(), plane_)),
+        candidates());
   }
 
  protected:
   /// Probabilities, and what smoothing needs.
   [[nodiscard]] std::size_t work_cells() const override {
     return kCoarserColumns * static_cast<std::size_t>(lanes()) +
-           static_cast<std::size_t>(
-               kernels::bayes_work_floats(lanes(), radius(), most_segments(lanes(), blocks())));
+           static_cast<std::size_t>(kernels::bayes_work_floats(
+               lanes(), radius(), most_segments(lanes(), blocks()), plane_));
   }
 
   void make_states(const kernels::CompactRow& coarser, std::span<const int> segment_ends,
@@ -168,7 +181,11 @@ class BayesFromCoarserStage final : public FromCoarserStage<float> {
     row.count = coarser.count;
     row.output = states;
     row.source_pitch = row.output_pitch = coarser.lanes;
-    row.segment_ends = segment_ends;
+    if (plane_.is_given()) {
+      row.plane = plane_;
+    } else {
+      row.segment_ends = segment_ends;
+    }
     row.work = work + kCoarserColumns * static_cast<std::size_t>(lanes());
     kernels::bayes_start_row(row);
   }
@@ -180,13 +197,15 @@ class BayesFromCoarserStage final : public FromCoarserStage<float> {
   float mu_;
   std::vector<float> taps_;
   float floor_;
+  kernels::CandidatePlane plane_;
 };
 
 }  // namespace
 
 std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const CoarserResult& coarser, const EdgeWeights* edges, const CandidateBlocks* blocks) {
+    const CoarserResult& coarser, const EdgeWeights* edges, const CandidateBlocks* blocks,
+    const kernels::CandidatePlane& plane) {
   const bool half = parameters.mu == 0.5 && edges == nullptr &&
                     parameters.epsilon_prior >= kLeastEpsilonOfProductForm;
   const BayesState between = half ? BayesState::kSmoothed : BayesState::kLogSmoothed;
@@ -196,11 +215,11 @@ std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
     const BayesState state = i == parameters.iterations ? BayesState::kProbability : between;
     if (i == 0 && coarser.volume != nullptr) {
       stages.push_back(std::make_unique<BayesFromCoarserStage>(parameters, geometry, height, state,
-                                                               coarser, blocks));
+                                                               coarser, blocks, plane));
       continue;
     }
-    stages.push_back(
-        std::make_unique<BayesStage>(parameters, geometry, height, form, state, edges, blocks));
+    stages.push_back(std::make_unique<BayesStage>(parameters, geometry, height, form, state, edges,
+                                                  blocks, plane));
   }
   return stages;
 }

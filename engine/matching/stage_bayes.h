@@ -28,12 +28,15 @@ namespace vantage {
 /// `edges`: of the image of this level, which must outlive the stages: they weight neighbours
 /// (7.3), p ∝ p0 · Π pS^(μ·w) with w = 1 for the column itself. Null: all neighbours count 1.
 ///
+/// `plane`: of a search in two dimensions, without blocks; the prior is then one of the length of
+/// an offset.
+///
 /// μ = ½ takes the form without exponentials and logarithms, unless neighbours are weighted or εP
 /// is so small (below 1e-7) that the product of five smoothed probabilities could leave the range
 /// of normal floats.
 std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
     const CoarserResult& coarser = {}, const EdgeWeights* edges = nullptr,
-    const CandidateBlocks* blocks = nullptr);
+    const CandidateBlocks* blocks = nullptr, const kernels::CandidatePlane& plane = {});
 
 }  // namespace vantage

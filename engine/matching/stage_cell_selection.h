@@ -22,7 +22,8 @@ enum class ConfidenceMeasure {
 struct MapOutputs {
   ImageView<float> disparity_px;
   ImageView<float> confidence = {};
-  ImageView<float> energy = {};  ///< of the winner: E, or −log p
+  ImageView<float> energy = {};          ///< of the winner: E, or −log p; of a search along rows
+  ImageView<float> disparity_y_px = {};  ///< of a search in two dimensions, always wanted there
 };
 
 struct CellSelectionSettings {

@@ -49,7 +49,7 @@ class ColumnSsdStage : public scheduler::RowStage {
       add_rows(task, enters < extent().rows ? enters : kNoRow, leaves >= 0 ? leaves : kNoRow,
                previous, sums);
     }
-    clear_without_partner(geometry_, radius_, task.columns, sums);
+    clear_without_partner(geometry_, radius_, task.columns, geometry_.lanes(), sums);
   }
 
  protected:

@@ -17,7 +17,7 @@ namespace {
 using scheduler::Extent;
 using scheduler::Range;
 
-class ColumnSumStage final : public scheduler::RowStage {
+class ColumnSumStage : public scheduler::RowStage {
  public:
   ColumnSumStage(const kernels::CandidateGeometry& geometry, int height, int radius, float offset,
                  float scale)
@@ -52,18 +52,31 @@ class ColumnSumStage final : public scheduler::RowStage {
     if (task.sweep_begins) {
       std::memset(sums, 0, bytes_per_column() * static_cast<std::size_t>(task.columns.size()));
       for (int y = std::max(0, task.y - radius_); y < task.input.rows().end; ++y) {
-        row.entering = input_row(task, y);
+        row.entering = window_row(task, y, 0);
         kernels::column_sum_row(row, sums, sums);
       }
     } else {
-      row.entering = input_row(task, task.y + radius_);
-      row.leaving = input_row(task, task.y - radius_ - 1);
+      row.entering = window_row(task, task.y + radius_, 0);
+      row.leaving = window_row(task, task.y - radius_ - 1, 1);
       kernels::column_sum_row(row, reinterpret_cast<const std::int32_t*>(task.previous), sums);
     }
-    clear_without_partner(geometry_, radius_, task.columns, sums);
+    clear_columns(task.columns, sums);
   }
 
- private:
+ protected:
+  [[nodiscard]] const kernels::CandidateGeometry& geometry() const { return geometry_; }
+  [[nodiscard]] int radius() const { return radius_; }
+  /// A cost that adds nothing to sums.
+  [[nodiscard]] float nothing() const { return -offset_; }
+  /// What a window has of input row y, in the columns to be made; null: nothing. `place`: 0 or 1,
+  /// rows of one place are not looked at together.
+  [[nodiscard]] virtual const float* window_row(const scheduler::RowTask& task, int y,
+                                                int /*place*/) const {
+    return input_row(task, y);
+  }
+  virtual void clear_columns(Range columns, std::int32_t* sums) const {
+    clear_without_partner(geometry_, radius_, columns, geometry_.lanes(), sums);
+  }
   /// The columns to be made of input row y; null outside the image.
   [[nodiscard]] const float* input_row(const scheduler::RowTask& task, int y) const {
     if (y < 0 || y >= extent().rows) {
@@ -74,10 +87,54 @@ class ColumnSumStage final : public scheduler::RowStage {
                geometry_.lanes();
   }
 
+ private:
   kernels::CandidateGeometry geometry_;
   int radius_;
   float offset_;
   float scale_;
+};
+
+class DisplacementSumStage final : public ColumnSumStage {
+ public:
+  DisplacementSumStage(const DisplacementGrid& grid, int radius, float offset, float scale)
+      : ColumnSumStage(grid.columns(), grid.height, radius, offset, scale), grid_(grid) {}
+
+  /// An entering and a leaving row, without the costs that do not count.
+  [[nodiscard]] std::size_t state_bytes(Range columns, Extent /*input*/) const override {
+    return 2 * bytes_per_column() * static_cast<std::size_t>(columns.size());
+  }
+
+ protected:
+  [[nodiscard]] const float* window_row(const scheduler::RowTask& task, int y,
+                                        int place) const override {
+    const float* const costs = input_row(task, y);
+    const kernels::CandidateRange inside = grid_.rows_with_partner(y);
+    if (costs == nullptr || inside.empty()) {
+      return nullptr;
+    }
+    if (inside.end - inside.begin == grid_.rows) {
+      return costs;
+    }
+    const std::ptrdiff_t lanes = geometry().lanes();
+    const std::ptrdiff_t cells = task.columns.size() * lanes;
+    auto* const counted = reinterpret_cast<float*>(task.state) + place * cells;
+    std::fill_n(counted, cells, nothing());
+    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(inside.begin) * grid_.along_rows.count;
+    const int count = (inside.end - inside.begin) * grid_.along_rows.count;
+    for (std::ptrdiff_t column = 0; column < cells; column += lanes) {
+      std::copy_n(costs + column + first, count, counted + column + first);
+    }
+    return counted;
+  }
+  void clear_columns(Range columns, std::int32_t* sums) const override {
+    for (int row = 0; row < grid_.rows; ++row) {
+      clear_without_partner(grid_.along_rows, radius(), columns, geometry().lanes(),
+                            sums + static_cast<std::ptrdiff_t>(row) * grid_.along_rows.count);
+    }
+  }
+
+ private:
+  DisplacementGrid grid_;
 };
 
 }  // namespace
@@ -104,6 +161,12 @@ ColumnSumScale column_sum_scale(float least, float largest, int window_px) {
 std::unique_ptr<scheduler::RowStage> make_column_sum_stage(
     const kernels::CandidateGeometry& geometry, int height, int radius, float offset, float scale) {
   return std::make_unique<ColumnSumStage>(geometry, height, radius, offset, scale);
+}
+
+std::unique_ptr<scheduler::RowStage> make_displacement_sum_stage(const DisplacementGrid& grid,
+                                                                 int radius, float offset,
+                                                                 float scale) {
+  return std::make_unique<DisplacementSumStage>(grid, radius, offset, scale);
 }
 
 }  // namespace vantage

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "engine/matching/displacement_grid.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
 
@@ -25,5 +26,10 @@ ColumnSumScale column_sum_scale(float least, float largest, int window_px);
 /// Costs of cells with a partner must lie in the range that column_sum_scale() was given.
 std::unique_ptr<scheduler::RowStage> make_column_sum_stage(
     const kernels::CandidateGeometry& geometry, int height, int radius, float offset, float scale);
+/// The same for the displacements of a grid. Rows whose partner row is outside do not count,
+/// either.
+std::unique_ptr<scheduler::RowStage> make_displacement_sum_stage(const DisplacementGrid& grid,
+                                                                 int radius, float offset,
+                                                                 float scale);
 
 }  // namespace vantage

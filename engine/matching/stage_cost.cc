@@ -91,8 +91,6 @@ class CostStage final : public scheduler::RowStage {
 
  private:
   static constexpr int kBlockColumns = 16;
-  /// So that differences of evidence over σ stay finite.
-  static constexpr double kLeastSigma = 1e-30;
 
   [[nodiscard]] std::size_t lanes() const { return static_cast<std::size_t>(lanes_); }
   [[nodiscard]] bool in_one_go() const {
@@ -248,10 +246,10 @@ class CostStage final : public scheduler::RowStage {
       }
       case MatchCost::kGradient:
         energies(partner, y, columns, work, cells);
-        kernels::likelihood_of_evidence(
-            {partner.geometry(), columns.begin, columns.size()},
-            static_cast<float>(std::max(kLeastSigma, parameters_.sigma_measurement)),
-            measurement_.epsilon, cells);
+        kernels::likelihood_of_evidence({partner.geometry(), columns.begin, columns.size()},
+                                        static_cast<float>(std::max(kernels::kLeastEvidenceSigma,
+                                                                    parameters_.sigma_measurement)),
+                                        measurement_.epsilon, cells);
         break;
       case MatchCost::kCombined:
         combine(partner, y, columns, cells);

@@ -17,14 +17,20 @@ using kernels::FixedWeight;
 /// What all stages know of the prior.
 class PriorRises {
  public:
-  PriorRises(const MethodParameters& parameters, int count)
-      : rises_(EnergyFormat(parameters).prior_rises(parameters.sigma_prior, count)),
+  PriorRises(const MethodParameters& parameters, int count, const kernels::CandidatePlane& plane)
+      : plane_(plane),
+        rises_(EnergyFormat(parameters).prior_rises(parameters.sigma_prior, count)),
         ceiling_(EnergyFormat(parameters).ceiling()) {}
 
   [[nodiscard]] int radius() const { return static_cast<int>(rises_.size()); }
   [[nodiscard]] kernels::EnergyPrior prior() const { return {rises_.data(), radius(), ceiling_}; }
+  [[nodiscard]] const kernels::CandidatePlane& plane() const { return plane_; }
+  /// Of smoothing along lanes that takes as many operations: in two dimensions there are two
+  /// passes.
+  [[nodiscard]] int radius_of_work() const { return plane_.is_given() ? 2 * radius() : radius(); }
 
  private:
+  kernels::CandidatePlane plane_;
   std::vector<FixedEnergy> rises_;
   FixedEnergy ceiling_;
 };
@@ -34,24 +40,25 @@ class MaxProductStage final : public BayesStepStage<FixedEnergy> {
   /// is_start: the state before the first iteration. smooths: iterations follow.
   MaxProductStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
                   int height, bool is_start, bool smooths, const EdgeWeights* edges,
-                  const CandidateBlocks* blocks)
+                  const CandidateBlocks* blocks, const kernels::CandidatePlane& plane)
       : BayesStepStage(geometry, height, is_start, 0, EnergyFormat(parameters).ceiling(), blocks),
         smooths_(smooths),
         mu_(kernels::fixed_weight(static_cast<float>(parameters.mu))),
-        rises_(parameters, geometry.count),
+        rises_(parameters, geometry.count, plane),
         edges_(edges) {}
 
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     const kernels::KernelWork work =
-        is_start() ? kernels::max_product_start_work(rises_.radius())
-                   : kernels::max_product_work(rises_.radius(), smooths_, edges_ != nullptr);
+        is_start()
+            ? kernels::max_product_start_work(rises_.radius_of_work())
+            : kernels::max_product_work(rises_.radius_of_work(), smooths_, edges_ != nullptr);
     return vantage::column_work(work, candidates());
   }
 
  protected:
   [[nodiscard]] std::size_t work_cells() const override {
     return static_cast<std::size_t>(
-        kernels::max_product_work_cells(lanes(), rises_.radius(), most_segments()));
+        kernels::max_product_work_cells(lanes(), rises_.radius(), most_segments(), rises_.plane()));
   }
 
   void make_columns(const Columns& columns) const override {
@@ -61,6 +68,7 @@ class MaxProductStage final : public BayesStepStage<FixedEnergy> {
     row.mu = mu_;
     row.smooths = smooths_;
     row.segment_ends = columns.segment_ends;
+    row.plane = rises_.plane();
     row.output = columns.output;
     row.source_pitch = row.output_pitch = lanes();
     row.work = columns.work;
@@ -87,23 +95,25 @@ class MaxProductFromCoarserStage final : public FromCoarserStage<FixedEnergy> {
  public:
   MaxProductFromCoarserStage(const MethodParameters& parameters,
                              const kernels::CandidateGeometry& geometry, int height, bool smooths,
-                             const CoarserResult& coarser, const CandidateBlocks* blocks)
+                             const CoarserResult& coarser, const CandidateBlocks* blocks,
+                             const kernels::CandidatePlane& plane)
       : FromCoarserStage(geometry, height, coarser, blocks),
         smooths_(smooths),
-        rises_(parameters, geometry.count),
+        rises_(parameters, geometry.count, plane),
         byte_steps_(EnergyFormat(parameters).of_result()) {}
 
   [[nodiscard]] std::string_view name() const override { return "Bayes start from coarser"; }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
-    return vantage::column_work(kernels::max_product_start_from_coarser_work(rises_.radius()),
-                                candidates());
+    return vantage::column_work(
+        kernels::max_product_start_from_coarser_work(rises_.radius_of_work()), candidates());
   }
 
  protected:
   /// Energies, and what smoothing needs.
   [[nodiscard]] std::size_t work_cells() const override {
-    return energy_cells() + static_cast<std::size_t>(kernels::max_product_work_cells(
-                                lanes(), rises_.radius(), most_segments(lanes(), blocks())));
+    return energy_cells() +
+           static_cast<std::size_t>(kernels::max_product_work_cells(
+               lanes(), rises_.radius(), most_segments(lanes(), blocks()), rises_.plane()));
   }
 
   void make_states(const kernels::CompactRow& coarser, std::span<const int> segment_ends,
@@ -118,7 +128,11 @@ class MaxProductFromCoarserStage final : public FromCoarserStage<FixedEnergy> {
     row.smooths = smooths_;
     row.output = states;
     row.source_pitch = row.output_pitch = coarser.lanes;
-    row.segment_ends = segment_ends;
+    if (rises_.plane().is_given()) {
+      row.plane = rises_.plane();
+    } else {
+      row.segment_ends = segment_ends;
+    }
     row.work = work + energy_cells();
     kernels::max_product_start_row(row);
   }
@@ -137,18 +151,19 @@ class MaxProductFromCoarserStage final : public FromCoarserStage<FixedEnergy> {
 
 std::vector<std::unique_ptr<scheduler::RowStage>> make_max_product_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const CoarserResult& coarser, const EdgeWeights* edges, const CandidateBlocks* blocks) {
+    const CoarserResult& coarser, const EdgeWeights* edges, const CandidateBlocks* blocks,
+    const kernels::CandidatePlane& plane) {
   std::vector<std::unique_ptr<scheduler::RowStage>> stages;
   for (int i = 0; i <= parameters.iterations; ++i) {
     const bool is_start = i == 0;
     const bool smooths = i < parameters.iterations;
     if (is_start && coarser.volume != nullptr) {
-      stages.push_back(std::make_unique<MaxProductFromCoarserStage>(parameters, geometry, height,
-                                                                    smooths, coarser, blocks));
+      stages.push_back(std::make_unique<MaxProductFromCoarserStage>(
+          parameters, geometry, height, smooths, coarser, blocks, plane));
       continue;
     }
     stages.push_back(std::make_unique<MaxProductStage>(parameters, geometry, height, is_start,
-                                                       smooths, edges, blocks));
+                                                       smooths, edges, blocks, plane));
   }
   return stages;
 }

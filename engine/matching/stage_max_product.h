@@ -27,6 +27,6 @@ namespace vantage {
 std::vector<std::unique_ptr<scheduler::RowStage>> make_max_product_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
     const CoarserResult& coarser = {}, const EdgeWeights* edges = nullptr,
-    const CandidateBlocks* blocks = nullptr);
+    const CandidateBlocks* blocks = nullptr, const kernels::CandidatePlane& plane = {});
 
 }  // namespace vantage

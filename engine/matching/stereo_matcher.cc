@@ -147,8 +147,13 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
   Side of_right = right_side(right, maps);
   of_left.need = {.whole = true};
   prepare_inputs(of_left, of_right, false, *prepared);
-  const auto geometry = candidate_geometry(options_, Reference::kLeft, left.width(), left.height());
+  auto geometry = candidate_geometry(options_, Reference::kLeft, left.width(), left.height());
   maps.left.resize(left.width(), left.height());
+  const auto grid = displacement_grid(options_, Reference::kLeft, left.width(), left.height());
+  if (grid) {
+    of_left.input.grid = &*grid;
+    geometry = grid->columns();
+  }
   const LevelVolume coarser;  // nobody looks into it
   const auto extents = level_extents({left.width(), left.height()}, parameters_.levels);
   const bool is_pruned = parameters_.candidate_blocks > 0 && extents.size() > 1;
@@ -353,14 +358,9 @@ void StereoMatcher::add_memory_use(MemoryUse& use) const {
     for (const CostImage& image : prepared.images) {
       bytes += image.held_bytes();
     }
-    const MapSearchWork& search = prepared.search;
-    for (const Image<float>* image :
-         {&search.candidate_disparity_px, &search.energy, &search.candidate_confidence,
-          &search.candidate_energy, &prepared.coarse_px[0], &prepared.coarse_px[1]}) {
-      bytes += held_bytes(*image);
-    }
+    bytes += held_bytes(prepared.coarse_px[0]) + held_bytes(prepared.coarse_px[1]);
     use.add("prepared images", bytes);
-    use.add("coarse levels", search.levels.held_bytes());
+    use.add("coarse levels", prepared.search.levels.held_bytes());
   });
   refinement_works_.for_each_idle(
       [&use](const RefinementWork& work) { use.add("refinement", held_bytes_of(work)); });

@@ -71,8 +71,7 @@ class StereoMatcher {
              DisparityMaps& maps, MatchReport* report = nullptr) const;
 
   /// How the map of the left image is going to be worked off, with several levels the finest of
-  /// them: what a report of match() says.
-  /// Errors as match(), without a vertical search.
+  /// them: what a report of match() says. Errors as match().
   [[nodiscard]] scheduler::ChainPlan plan(const Photograph& left, const Photograph& right) const;
   /// The same for each of `executions` in place of the matcher's own; the machine stays the same.
   [[nodiscard]] std::vector<scheduler::ChainPlan> plans(

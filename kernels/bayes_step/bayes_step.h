@@ -56,6 +56,9 @@ struct BayesRow {
   /// to the next. Multiples of kLaneMultiple, ascending, the last one star.lanes; empty: all lanes
   /// are one run.
   std::span<const int> segment_ends;
+  /// Where candidates are displacements in two dimensions: the prior's taps then multiply, which
+  /// makes it a contaminated Gaussian of the length of an offset. segment_ends is empty then.
+  CandidatePlane plane = {};
   /// bayes_work_floats() floats, 64-byte aligned; any contents.
   float* work = nullptr;
 };
@@ -72,9 +75,11 @@ inline int bayes_work_margin(int prior_radius) {
   return (prior_radius + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
 }
 
-/// `segments`: of lanes, see BayesRow::segment_ends.
-inline int bayes_work_floats(int lanes, int prior_radius, int segments = 1) {
-  return bayes_work_columns(lanes) * (lanes + (segments + 1) * bayes_work_margin(prior_radius));
+/// `segments`: of lanes, see BayesRow::segment_ends. `plane`: of a search in two dimensions.
+inline int bayes_work_floats(int lanes, int prior_radius, int segments = 1,
+                             const CandidatePlane& plane = {}) {
+  return bayes_work_columns(lanes) * (lanes + (segments + 1) * bayes_work_margin(prior_radius)) +
+         (plane.is_given() ? plane.work_cells(bayes_work_margin(prior_radius)) : 0);
 }
 
 /// Before the first iteration: p = p0 normalised, and its state. Only star.source, columns and

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "kernels/bayes_step/bayes_step.h"
 
@@ -10,6 +11,26 @@ namespace {
 bool in_one_segment(const BayesRow& row, int a, int b) {
   return std::none_of(row.segment_ends.begin(), row.segment_ends.end(),
                       [a, b](int end) { return a < end && end <= b; });
+}
+
+double state_of(const BayesRow& row, double smoothed) {
+  return row.state == BayesState::kSmoothed ? smoothed : row.mu * std::log2(smoothed);
+}
+
+/// What the taps of both directions make of the candidates around the i-th one; 0 where that is
+/// none.
+template <class Probability>
+double plane_sum(const BayesRow& row, int i, Probability p) {
+  const CandidatePlane& plane = row.plane;
+  double sum = 0;
+  for (int j = 0; i < row.count && j < row.count; ++j) {
+    const int across = std::abs(j % plane.row_candidates - i % plane.row_candidates);
+    const int down = std::abs(j / plane.row_candidates - i / plane.row_candidates);
+    if (across <= row.prior.radius && down <= row.prior.radius) {
+      sum += double{row.prior.taps[across]} * row.prior.taps[down] / row.prior.taps[0] * p(j);
+    }
+  }
+  return sum;
 }
 
 /// p(lane) = p0 · weight(x, lane), normalised, smoothed along the column, written as the state.
@@ -28,14 +49,17 @@ void make_column(const BayesRow& row, int x, Weight weight) {
       continue;
     }
     double smoothed = row.prior.floor;
+    if (row.plane.is_given()) {
+      output[i] = static_cast<float>(state_of(row, smoothed + plane_sum(row, i, p)));
+      continue;
+    }
     for (int k = -row.prior.radius; k <= row.prior.radius; ++k) {
       if (i + k >= 0 && i + k < row.count &&
           in_one_segment(row, std::min(i, i + k), std::max(i, i + k))) {
         smoothed += row.prior.taps[std::abs(k)] * p(i + k);
       }
     }
-    output[i] = static_cast<float>(
-        row.state == BayesState::kSmoothed ? smoothed : row.mu * std::log2(smoothed));
+    output[i] = static_cast<float>(state_of(row, smoothed));
   }
 }
 

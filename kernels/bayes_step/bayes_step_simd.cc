@@ -174,6 +174,9 @@ class WorkColumns {
   HWY_INLINE void finish_segment(const float* p, FloatVec normalise, float* output,
                                  int lanes) const {
     const FloatTag df;
+    if (row_.plane.is_given() && row_.state != BayesState::kProbability) {
+      return smooth_plane(p, normalise, output);
+    }
     if (row_.state == BayesState::kProbability) {
       for (int lane = 0; lane < lanes; lane += kFloatLanes) {
         hn::Store(hn::Mul(hn::Load(df, p + lane), normalise), df, output + lane);
@@ -219,6 +222,54 @@ class WorkColumns {
       }
       hn::Store(state(hn::MulAdd(sum, normalise, floor)), df, output + lane);
     }
+  }
+
+  // The states of a column whose candidates are displacements in two dimensions: smoothed along the
+  // horizontal ones, then along the vertical ones.
+  HWY_NOINLINE void smooth_plane(const float* p, FloatVec normalise, float* output) const {
+    const FloatTag df;
+    const CandidatePlane& plane = row_.plane;
+    const float* const taps = row_.prior.taps;
+    const int row_lanes = plane.row_lanes();
+    const int spread_pitch = row_lanes + margin_;
+    float* const spread = row_.work + columns_ * pitch_ + margin_;
+    float* const across = spread + plane.rows * spread_pitch;
+    float* const states = across + plane.rows * row_lanes;
+    std::fill(spread - margin_, across, 0.0F);
+    for (int r = 0; r < plane.rows; ++r) {
+      std::copy_n(p + r * plane.row_candidates, plane.row_candidates, spread + r * spread_pitch);
+      for (int lane = 0; lane < row_lanes; lane += kFloatLanes) {
+        const float* const at = spread + r * spread_pitch + lane;
+        FloatVec sum = hn::Mul(hn::LoadU(df, at), hn::Set(df, taps[0]));
+        for (int k = 1; k <= row_.prior.radius; ++k) {
+          const FloatVec both = hn::Add(hn::LoadU(df, at - k), hn::LoadU(df, at + k));
+          sum = hn::MulAdd(both, hn::Set(df, taps[k]), sum);
+        }
+        hn::StoreU(sum, df, across + r * row_lanes + lane);
+      }
+    }
+    const FloatVec floor = hn::Set(df, row_.prior.floor);
+    const auto state = [&](FloatVec smoothed) HWY_ATTR {
+      return row_.state == BayesState::kSmoothed ? smoothed : logarithm_.of(smoothed);
+    };
+    for (int r = 0; r < plane.rows; ++r) {
+      for (int lane = 0; lane < row_lanes; lane += kFloatLanes) {
+        FloatVec sum = hn::LoadU(df, across + r * row_lanes + lane);
+        for (int k = 1; k <= row_.prior.radius; ++k) {
+          const FloatVec tap = hn::Set(df, taps[k] / taps[0]);
+          for (const int beside : {r - k, r + k}) {
+            if (beside >= 0 && beside < plane.rows) {
+              sum = hn::MulAdd(hn::LoadU(df, across + beside * row_lanes + lane), tap, sum);
+            }
+          }
+        }
+        // What is stored behind the candidates of a run is overwritten by those of the next one.
+        hn::StoreU(state(hn::MulAdd(sum, normalise, floor)), df,
+                   states + r * plane.row_candidates + lane);
+      }
+    }
+    std::fill(states + plane.count(), states + row_.star.lanes, hn::GetLane(state(floor)));
+    std::copy_n(states, row_.star.lanes, output);
   }
 
   const BayesRow& row_;

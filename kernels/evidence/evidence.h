@@ -37,6 +37,9 @@ struct EvidenceRow {
   int columns = 0;
 };
 
+/// Least σ with which differences of evidence over σ stay finite.
+inline constexpr double kLeastEvidenceSigma = 1e-30;
+
 /// In place: (1−ε) exp((E − max E) / σ) + ε, the maximum being over the column's candidates with a
 /// partner; ε for those without, 0 for the lanes behind. σ and ε in (0, ∞) and (0, 1).
 void likelihood_of_evidence(const EvidenceRow& row, float sigma, float epsilon, float* cells);

@@ -54,6 +54,9 @@ struct MaxProductRow {
   /// to the next. Multiples of kLaneMultiple, ascending, the last one star.lanes; empty: all lanes
   /// are one run.
   std::span<const int> segment_ends;
+  /// Where candidates are displacements in two dimensions: rises are those of the squared length of
+  /// an offset. segment_ends is empty then.
+  CandidatePlane plane = {};
   /// max_product_work_cells() cells, 64-byte aligned; any contents.
   FixedEnergy* work = nullptr;
 };
@@ -70,10 +73,12 @@ inline int max_product_work_margin(int prior_radius) {
   return (prior_radius + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
 }
 
-/// `segments`: of lanes, see MaxProductRow::segment_ends.
-inline int max_product_work_cells(int lanes, int prior_radius, int segments = 1) {
+/// `segments`: of lanes, see MaxProductRow::segment_ends. `plane`: of a search in two dimensions.
+inline int max_product_work_cells(int lanes, int prior_radius, int segments = 1,
+                                  const CandidatePlane& plane = {}) {
   return max_product_work_columns(lanes) *
-         (lanes + (segments + 1) * max_product_work_margin(prior_radius));
+             (lanes + (segments + 1) * max_product_work_margin(prior_radius)) +
+         (plane.is_given() ? plane.work_cells(max_product_work_margin(prior_radius)) : 0);
 }
 
 /// Before the first iteration: E = E0. Only star.source, columns and lanes are looked at.

@@ -1,11 +1,29 @@
 #include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <span>
 
 #include "kernels/max_product_step/max_product_step.h"
 
 namespace vantage::kernels {
 namespace {
+
+// ES of the i-th of the candidates that are displacements in two dimensions.
+FixedEnergy smoothed_in_plane(const MaxProductRow& row, std::span<const FixedEnergy> energies,
+                              int i) {
+  const CandidatePlane& plane = row.plane;
+  const auto rise = [&row](int offset) { return offset == 0 ? 0 : row.prior.rises[offset - 1]; };
+  int smoothed = row.prior.ceiling;
+  for (int j = 0; i < plane.count() && j < plane.count(); ++j) {
+    const int across = std::abs(j % plane.row_candidates - i % plane.row_candidates);
+    const int down = std::abs(j / plane.row_candidates - i / plane.row_candidates);
+    if (across <= row.prior.radius && down <= row.prior.radius) {
+      smoothed =
+          std::min(smoothed, energies[static_cast<std::size_t>(j)] + rise(across) + rise(down));
+    }
+  }
+  return static_cast<FixedEnergy>(smoothed);
+}
 
 // Subtracts the least of the column in work memory from all of it and leaves the row's kind of
 // result.
@@ -17,6 +35,12 @@ void finish_column(const MaxProductRow& row, FixedEnergy* output) {
   }
   if (!row.smooths) {
     std::copy(energies.begin(), energies.end(), output);
+    return;
+  }
+  if (row.plane.is_given()) {
+    for (int i = 0; i < row.star.lanes; ++i) {
+      output[i] = smoothed_in_plane(row, energies, i);
+    }
     return;
   }
   const int whole = row.star.lanes;

@@ -197,6 +197,12 @@ class EnergyWork {
     if (!row_.smooths) {
       return finish_columns<false, 0>(least, columns, output);
     }
+    if (row_.plane.is_given()) {
+      for (int j = 0; j < columns; ++j) {
+        finish_plane(energies(j), least[j], output + j * row_.output_pitch);
+      }
+      return;
+    }
     switch (row_.prior.radius) {
       case 1:
         return finish_columns<true, 1>(least, columns, output);
@@ -236,6 +242,54 @@ class EnergyWork {
     }
   }
 
+  // ES of a column whose candidates are displacements in two dimensions: the least along the
+  // horizontal ones, then along the vertical ones.
+  HWY_INLINE void finish_plane(const FixedEnergy* energies, EnergyVec least,
+                               FixedEnergy* output) const {
+    const EnergyTag d;
+    const CandidatePlane& plane = row_.plane;
+    const FixedEnergy* const rises = row_.prior.rises;
+    const int row_lanes = plane.row_lanes();
+    const int spread_pitch = row_lanes + margin_;
+    FixedEnergy* const spread = row_.work + columns_ * pitch_ + margin_;
+    FixedEnergy* const across = spread + plane.rows * spread_pitch;
+    FixedEnergy* const smoothed = across + plane.rows * row_lanes;
+    std::fill(spread - margin_, across, kMostEnergy);
+    for (int r = 0; r < plane.rows; ++r) {
+      std::copy_n(energies + r * plane.row_candidates, plane.row_candidates,
+                  spread + r * spread_pitch);
+      for (int lane = 0; lane < row_lanes; lane += kEnergyLanes) {
+        const FixedEnergy* const at = spread + r * spread_pitch + lane;
+        EnergyVec result = hn::LoadU(d, at);
+        for (int k = 1; k <= row_.prior.radius; ++k) {
+          const EnergyVec beside = hn::Min(hn::LoadU(d, at - k), hn::LoadU(d, at + k));
+          result = hn::Min(result, hn::SaturatedAdd(beside, hn::Set(d, rises[k - 1])));
+        }
+        hn::StoreU(result, d, across + r * row_lanes + lane);
+      }
+    }
+    const EnergyVec ceiling = hn::Set(d, row_.prior.ceiling);
+    for (int r = 0; r < plane.rows; ++r) {
+      for (int lane = 0; lane < row_lanes; lane += kEnergyLanes) {
+        EnergyVec result = hn::LoadU(d, across + r * row_lanes + lane);
+        for (int k = 1; k <= row_.prior.radius; ++k) {
+          const EnergyVec rise = hn::Set(d, rises[k - 1]);
+          for (const int beside : {r - k, r + k}) {
+            if (beside >= 0 && beside < plane.rows) {
+              const EnergyVec there = hn::LoadU(d, across + beside * row_lanes + lane);
+              result = hn::Min(result, hn::SaturatedAdd(there, rise));
+            }
+          }
+        }
+        // What is stored behind the candidates of a run is overwritten by those of the next one.
+        hn::StoreU(hn::Min(hn::Sub(result, least), ceiling), d,
+                   smoothed + r * plane.row_candidates + lane);
+      }
+    }
+    std::fill(smoothed + plane.count(), smoothed + row_.star.lanes, row_.prior.ceiling);
+    std::copy_n(smoothed, row_.star.lanes, output);
+  }
+
   const MaxProductRow& row_;
   int columns_;
   int margin_;
@@ -270,7 +324,8 @@ HWY_INLINE bool run_if_short(const MaxProductRow& row) {
 
 template <class Energies>
 HWY_INLINE void run_columns(const MaxProductRow& row) {
-  const int radius = row.smooths && row.segment_ends.size() <= 1 ? row.prior.radius : 0;
+  const int radius =
+      row.smooths && row.segment_ends.size() <= 1 && !row.plane.is_given() ? row.prior.radius : 0;
   if ((radius == 1 && run_if_short<Energies, 1>(row)) ||
       (radius == 2 && run_if_short<Energies, 2>(row))) {
     return;

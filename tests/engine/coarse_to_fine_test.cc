@@ -321,17 +321,18 @@ TEST(CoarseToFineMatcher, SeveralImagesGoToo) {
   EXPECT_TRUE(identical(of_one.left, maps_of(pair.left, pair.right, options).left));
 }
 
-TEST(CoarseToFineMatcher, VerticalSearchIsRefused) {
+TEST(CoarseToFineMatcher, PruningOfVerticalSearchIsRefused) {
   Execution execution({.threads = 1});
   MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 3, {0, 9});
   options.disparities_y = DisparityRange{-1, 1};
+  options.parameters.candidate_blocks = 2;
   try {
     const StereoMatcher matcher(options, execution);
     FAIL() << "no error";
   } catch (const UsageError& error) {
     EXPECT_STREQ(error.what(),
-                 "levels is 3, expected 1 with disparities-y: coarse to fine searches along rows "
-                 "only");
+                 "candidate-blocks is 2, expected 0 with disparities-y: blocks are of candidates "
+                 "along rows");
   }
 }
 

@@ -76,7 +76,7 @@ TEST(MethodParameters, OverridesGoBeforePresetsBeforeTheBook) {
   EXPECT_EQ(resolved.candidate_blocks, 0);  // which cannot be pruned
   EXPECT_EQ(complaint(options), "");
   options.disparities_y = DisparityRange{-1, 1};
-  EXPECT_EQ(options.resolved().levels, 1);  // nor go from coarse to fine in two dimensions
+  EXPECT_EQ(options.resolved().levels, *preset.parameters.levels);  // in two dimensions, too
   EXPECT_EQ(complaint(options), "");
   EXPECT_EQ(resolved.sigma_measurement, *preset.parameters.sigma_measurement);
   EXPECT_EQ(options.resolved_refinement().speckle_size_px, 3);

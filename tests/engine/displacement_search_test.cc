@@ -1,0 +1,500 @@
+// Searches in two dimensions: the candidates of a pixel are all pairs (u, v) of a horizontal and a
+// vertical disparity, compared with a plain transcription over those pairs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "engine/matching/stereo_matcher.h"
+#include "tests/engine/identical_maps.h"
+#include "tests/engine/oracle_comparison.h"
+#include "tests/engine/plain_column.h"
+#include "tests/engine/plain_cost_cells.h"
+#include "tests/test_sample.h"
+
+namespace vantage {
+namespace displacement_search_test {
+
+using test::identical;
+using test::name_of;
+using test::PhotographPair;
+using test::PixelKind;
+using test::PlainColumn;
+using test::textured_pair;
+using test::Volume;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Shows in the right image what the left one shows, moved by (u, v) with x_left − x_right = u and
+/// y_left − y_right = v.
+PhotographPair moved_pair(int width, int height, int u, int v, PixelKind kind, std::uint32_t seed) {
+  constexpr int kMargin = 12;
+  const PhotographPair large =
+      textured_pair(width + 2 * kMargin, height + 2 * kMargin, {0, 0}, kind, seed);
+  return {test::crop(large.left, kMargin, kMargin, width, height),
+          test::crop(large.left, kMargin + u, kMargin + v, width, height)};
+}
+
+/// All pairs of disparities of one reference.
+struct PlainGrid {
+  DisparityRange across;
+  DisparityRange down;
+  int direction = -1;
+  int width = 0;
+  int height = 0;
+
+  [[nodiscard]] int count() const { return across.count() * down.count(); }
+  [[nodiscard]] int u(int i) const { return across.min + i % across.count(); }
+  [[nodiscard]] int v(int i) const { return down.min + i / across.count(); }
+  [[nodiscard]] bool has_partner(int x, int y, int i) const {
+    const int column = x + direction * u(i);
+    const int row = y + direction * v(i);
+    return column >= 0 && column < width && row >= 0 && row < height;
+  }
+  /// In px².
+  [[nodiscard]] double squared_distance(int i, int j) const {
+    return std::pow(u(i) - u(j), 2) + std::pow(v(i) - v(j), 2);
+  }
+};
+
+/// E0 of all pairs: −log p0 for Bayes.
+Volume plain_pair_costs(const Photograph& reference, const Photograph& other, const PlainGrid& grid,
+                        const MethodParameters& parameters) {
+  const bool is_bayes = parameters.aggregation == Aggregation::kBayes;
+  const bool is_relative = is_bayes && parameters.cost == MatchCost::kGradient;
+  Volume costs(grid.width, grid.height, {0, grid.count() - 1}, Reference::kLeft);
+  costs.is_coarse = true;  // which candidates have partners is up to the grid
+  for (int v = grid.down.min; v <= grid.down.max; ++v) {
+    const test::PlainCostCells cells(
+        parameters, {grid.width, grid.across.min, grid.across.count(), grid.direction}, reference,
+        {{&other, 1, v}},
+        is_bayes && !is_relative ? CellMeaning::kLikelihood : CellMeaning::kEnergy);
+    for (int y = 0; y < grid.height; ++y) {
+      for (int x = 0; x < grid.width; ++x) {
+        const std::vector<double> column = cells.column(x, y);
+        for (int i = 0; i < grid.across.count(); ++i) {
+          const double cell = column[static_cast<std::size_t>(i)];
+          costs.at(x, y, (v - grid.down.min) * grid.across.count() + i) =
+              is_bayes && !is_relative ? -std::log(cell) : cell;
+        }
+      }
+    }
+  }
+  for (int y = 0; is_relative && y < grid.height; ++y) {
+    for (int x = 0; x < grid.width; ++x) {
+      double least = std::numeric_limits<double>::infinity();
+      for (int i = 0; i < grid.count(); ++i) {
+        least = grid.has_partner(x, y, i) ? std::min(least, costs.at(x, y, i)) : least;
+      }
+      for (int i = 0; i < grid.count(); ++i) {
+        const double epsilon = parameters.epsilon_measurement;
+        const double likeness =
+            std::exp((least - costs.at(x, y, i)) / parameters.sigma_measurement);
+        costs.at(x, y, i) =
+            -std::log(grid.has_partner(x, y, i) ? (1 - epsilon) * likeness + epsilon : epsilon);
+      }
+    }
+  }
+  return costs;
+}
+
+/// Means over the samples of a window that lie in both images.
+Volume plain_pair_boxes(const Volume& costs, const PlainGrid& grid, int radius) {
+  Volume result = costs;
+  test::for_each_cell(costs, [&](int x, int y, int i) {
+    double sum = 0;
+    int samples = 0;
+    for (int row = std::max(0, y - radius); row <= std::min(grid.height - 1, y + radius); ++row) {
+      for (int column = std::max(0, x - radius); column <= std::min(grid.width - 1, x + radius);
+           ++column) {
+        if (grid.has_partner(column, row, i)) {
+          sum += costs.at(column, row, i);
+          ++samples;
+        }
+      }
+    }
+    result.at(x, y, i) = samples > 0 ? sum / samples : kNan;
+  });
+  return result;
+}
+
+void normalise(Volume& energies) {
+  for (int y = 0; y < energies.height; ++y) {
+    for (int x = 0; x < energies.width; ++x) {
+      double least = std::numeric_limits<double>::infinity();
+      for (int i = 0; i < energies.count(); ++i) {
+        least = std::min(least, energies.at(x, y, i));
+      }
+      double sum = 0;
+      for (int i = 0; i < energies.count(); ++i) {
+        sum += std::exp(least - energies.at(x, y, i));
+      }
+      for (int i = 0; i < energies.count(); ++i) {
+        energies.at(x, y, i) += std::log(sum) - least;
+      }
+    }
+  }
+}
+
+/// (6.32)–(6.37) over pairs, in energies −log p: the prior is a contaminated Gaussian of the length
+/// of an offset, of whose sum all terms count, or the largest.
+Volume plain_pair_bayes(const Volume& first, const PlainGrid& grid,
+                        const MethodParameters& parameters) {
+  const double epsilon = parameters.epsilon_prior;
+  const bool is_maximum = parameters.prior_smoothing == PriorSmoothing::kMaximum;
+  Volume energies = first;
+  normalise(energies);
+  for (int n = 0; n < parameters.iterations; ++n) {
+    Volume smooth = energies;
+    for (int y = 0; y < first.height; ++y) {
+      for (int x = 0; x < first.width; ++x) {
+        double least = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < first.count(); ++i) {
+          least = std::min(least, energies.at(x, y, i));
+        }
+        for (int i = 0; i < first.count(); ++i) {
+          double sum = 0;
+          double smallest = std::log((1 - epsilon) / epsilon);
+          for (int j = 0; j < first.count(); ++j) {
+            const double exponent =
+                grid.squared_distance(i, j) / (2 * parameters.sigma_prior * parameters.sigma_prior);
+            sum +=
+                ((1 - epsilon) * std::exp(-exponent) + epsilon) * std::exp(-energies.at(x, y, j));
+            smallest = std::min(smallest, exponent + energies.at(x, y, j) - least);
+          }
+          smooth.at(x, y, i) = is_maximum ? smallest : -std::log(sum);
+        }
+      }
+    }
+    test::for_each_cell(first, [&](int x, int y, int i) {
+      double sum = smooth.at(x, y, i);
+      sum += x > 0 ? smooth.at(x - 1, y, i) : 0;
+      sum += x + 1 < first.width ? smooth.at(x + 1, y, i) : 0;
+      sum += y > 0 ? smooth.at(x, y - 1, i) : 0;
+      sum += y + 1 < first.height ? smooth.at(x, y + 1, i) : 0;
+      energies.at(x, y, i) = first.at(x, y, i) + parameters.mu * sum;
+    });
+    normalise(energies);
+  }
+  return energies;
+}
+
+Volume plain_pair_energies(const Volume& costs, const PlainGrid& grid,
+                           const MethodParameters& parameters) {
+  const int n = parameters.iterations;
+  switch (parameters.aggregation) {
+    case Aggregation::kNone:
+      return costs;
+    case Aggregation::kBox:
+      return plain_pair_boxes(costs, grid, parameters.window_px / 2);
+    case Aggregation::kGaussian:
+      return plain_convolution(costs, test::gaussian_taps(parameters.aggregation_sigma_px));
+    case Aggregation::kBoxCascade:
+      return plain_convolution(costs, test::box_cascade_taps(parameters.aggregation_sigma_px));
+    case Aggregation::kDiffusion:
+      return plain_diffusion(costs, parameters.lambda, n);
+    case Aggregation::kMembrane:
+      return plain_membrane(costs, parameters.lambda, parameters.beta, n);
+    case Aggregation::kLocalStopping:
+      return plain_local_stopping(costs, parameters.lambda, parameters.certainty,
+                                  test::entropy_scale(parameters), n);
+    case Aggregation::kBayes:
+      return plain_pair_bayes(costs, grid, parameters);
+  }
+  return costs;
+}
+
+/// Raw maps of one reference against the transcription. Winners that lead by little may differ.
+void expect_equals_pairs(const PhotographPair& pair, const MatchOptions& options,
+                         Reference reference, const DisparityMaps& maps) {
+  const bool is_left = reference == Reference::kLeft;
+  const MethodParameters parameters = options.resolved();
+  const PlainGrid grid{options.disparities, *options.disparities_y, is_left ? -1 : 1,
+                       pair.left.width(), pair.left.height()};
+  const Volume energies =
+      plain_pair_energies(plain_pair_costs(is_left ? pair.left : pair.right,
+                                           is_left ? pair.right : pair.left, grid, parameters),
+                          grid, parameters);
+  const DisparityMap& map_x = is_left ? maps.left : maps.right;
+  const DisparityMap& map_y = is_left ? maps.left_disparity_y : maps.right_disparity_y;
+  const Image<float>& confidence = is_left ? maps.left_confidence : maps.right_confidence;
+  const test::Tolerance tolerance = test::tolerance_of(parameters);
+  int distinct = 0;
+  int equal = 0;
+  int confident = 0;
+  std::string first;
+  for (int y = 0; y < grid.height; ++y) {
+    for (int x = 0; x < grid.width; ++x) {
+      std::vector<double> column;
+      std::vector<double> others;
+      for (int i = 0; i < grid.count(); ++i) {
+        column.push_back(grid.has_partner(x, y, i) ? energies.at(x, y, i) : kNan);
+      }
+      const PlainColumn plain(column);
+      ASSERT_EQ(plain.has_candidate(), !std::isnan(map_x.at(x, y))) << x << ", " << y;
+      ASSERT_EQ(plain.has_candidate(), !std::isnan(map_y.at(x, y))) << x << ", " << y;
+      if (!plain.has_candidate()) {
+        continue;
+      }
+      const int winner = plain.winner();
+      others = column;
+      others[static_cast<std::size_t>(winner)] = kNan;
+      const PlainColumn rest(others);
+      const double floor = parameters.aggregation == Aggregation::kBayes ? 1 : tolerance.floor;
+      const double magnitude = std::max(std::abs(plain.least()), floor);
+      if (rest.has_candidate() && rest.least() - plain.least() <= 10 * tolerance.tie * magnitude) {
+        continue;
+      }
+      ++distinct;
+      const auto refined = [&](int place, int count, int step) {
+        if (options.parameters.subpixel == Subpixel::kNone || place == 0 || place + 1 == count) {
+          return 0.0;
+        }
+        const double below = column[static_cast<std::size_t>(winner - step)];
+        const double above = column[static_cast<std::size_t>(winner + step)];
+        const double curvature = below - 2 * plain.least() + above;
+        return curvature > 0 ? (below - above) / (2 * curvature) : 0;
+      };
+      const int in_row = grid.across.count();
+      const double u = grid.u(winner) + refined(winner % in_row, in_row, 1);
+      const double v = grid.v(winner) + refined(winner / in_row, grid.down.count(), in_row);
+      const double off = std::max(std::abs(map_x.at(x, y) - u), std::abs(map_y.at(x, y) - v));
+      const double allowed_px = std::max(2e-3, 3 * tolerance.subpixel_px);
+      equal += off <= allowed_px ? 1 : 0;
+      const double sure = parameters.aggregation == Aggregation::kBayes ? std::exp(-plain.least())
+                          : parameters.aggregation == Aggregation::kLocalStopping &&
+                                  parameters.certainty == Certainty::kEntropy
+                              ? plain.entropy(test::entropy_scale(parameters))
+                          : is_evidence(parameters) ? -plain.least()
+                                                    : plain.margin();
+      const double unsure = std::abs(confidence.at(x, y) - sure) /
+                            std::max(std::abs(sure), tolerance.confidence_floor);
+      confident += unsure <= tolerance.confidence ? 1 : 0;
+      if ((off > allowed_px || unsure > tolerance.confidence) && first.empty()) {
+        first = "at " + std::to_string(x) + ", " + std::to_string(y) + ": " +
+                std::to_string(map_x.at(x, y)) + ", " + std::to_string(map_y.at(x, y)) +
+                ", expected " + std::to_string(u) + ", " + std::to_string(v) + "; confidence " +
+                std::to_string(confidence.at(x, y)) + ", expected " + std::to_string(sure);
+      }
+    }
+  }
+  // Single cells often tie.
+  const bool is_single = parameters.aggregation == Aggregation::kNone;
+  EXPECT_GT(distinct, is_single ? 0 : grid.width * grid.height / 3);
+  EXPECT_GE(equal, 0.98 * distinct - 2) << "of " << distinct << ", " << first;
+  EXPECT_GE(confident, 0.9 * distinct - 2) << "of " << distinct << ", " << first;
+}
+
+constexpr MatchCost kCosts[] = {MatchCost::kSquared,         MatchCost::kTruncated,
+                                MatchCost::kGradient,        MatchCost::kContaminated,
+                                MatchCost::kCensus,          MatchCost::kRayCensus,
+                                MatchCost::kBirchfieldTomasi};
+constexpr Aggregation kAggregations[] = {Aggregation::kNone,          Aggregation::kBox,
+                                         Aggregation::kGaussian,      Aggregation::kBoxCascade,
+                                         Aggregation::kDiffusion,     Aggregation::kMembrane,
+                                         Aggregation::kLocalStopping, Aggregation::kBayes};
+struct Ranges {
+  DisparityRange across;
+  DisparityRange down;
+};
+constexpr Ranges kRanges[] = {
+    {{-1, 4}, {-2, 2}}, {{0, 16}, {0, 2}}, {{0, 0}, {-4, 3}}, {{-2, 3}, {1, 1}}};
+
+MatchOptions options_of(MatchCost cost, Aggregation aggregation, const Ranges& ranges) {
+  MatchOptions options;
+  options.raw = true;
+  options.disparities = ranges.across;
+  options.disparities_y = ranges.down;
+  options.parameters.cost = cost;
+  options.parameters.aggregation = aggregation;
+  options.parameters.iterations = 3;
+  options.parameters.window_px = 5;
+  if (cost == MatchCost::kGradient) {
+    options.parameters.certainty = Certainty::kEntropy;  // there is no margin of evidence
+  }
+  return options;
+}
+
+DisparityMaps maps_of(const PhotographPair& pair, const MatchOptions& options,
+                      Execution& execution) {
+  DisparityMaps maps;
+  StereoMatcher(options, execution).match(pair.left, pair.right, {.confidence = true}, maps);
+  return maps;
+}
+
+class DisplacementSearch : public ::testing::TestWithParam<int> {};
+
+TEST_P(DisplacementSearch, EqualsAPlainSearchOverPairs) {
+  Execution execution({.threads = 2});
+  static const auto rows = test::sampled_rows({static_cast<int>(std::size(kAggregations)),
+                                               static_cast<int>(std::size(kCosts)),
+                                               static_cast<int>(std::size(kRanges)), 2, 2});
+  for (const test::SampleRow& row : test::rows_of(rows, GetParam())) {
+    const Ranges& ranges = kRanges[row[2]];
+    const bool is_left = row[4] == 0;
+    SCOPED_TRACE(name_of(kCosts[row[1]]) + ", ranges " + std::to_string(row[2]) + ", prior " +
+                 std::to_string(row[3]) + ", left " + std::to_string(is_left) + ", " +
+                 test::sample_name());
+    MatchOptions options = options_of(kCosts[row[1]], kAggregations[row[0]], ranges);
+    options.parameters.prior_smoothing =
+        row[3] == 0 ? PriorSmoothing::kSum : PriorSmoothing::kMaximum;
+    const PhotographPair pair =
+        textured_pair(31, 23, ranges.across, PixelKind::kGrey8, static_cast<unsigned>(row[1]) + 1);
+    expect_equals_pairs(pair, options, is_left ? Reference::kLeft : Reference::kRight,
+                        maps_of(pair, options, execution));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Aggregations, DisplacementSearch,
+                         ::testing::Range(0, static_cast<int>(std::size(kAggregations))),
+                         [](const auto& instance) {
+                           return name_of(kAggregations[instance.param]);
+                         });
+
+/// Of pixels so far from the borders that nothing there reaches them.
+double share_right(const DisparityMaps& maps, double u, double v) {
+  constexpr int kBorder = 12;
+  int right = 0;
+  int all = 0;
+  for (int y = kBorder; y < maps.left.height() - kBorder; ++y) {
+    for (int x = kBorder; x < maps.left.width() - kBorder; ++x) {
+      ++all;
+      right += std::abs(maps.left.at(x, y) - u) <= 0.5 &&
+                       std::abs(maps.left_disparity_y.at(x, y) - v) <= 0.5
+                   ? 1
+                   : 0;
+    }
+  }
+  return static_cast<double>(right) / all;
+}
+
+/// All methods, then all presets.
+MatchOptions method_or_preset(int number) {
+  constexpr MatchMethod kMethods[] = {MatchMethod::kSsd,           MatchMethod::kGradient,
+                                      MatchMethod::kDiffusion,     MatchMethod::kMembrane,
+                                      MatchMethod::kLocalStopping, MatchMethod::kBayes};
+  constexpr MatchPreset kPresets[] = {MatchPreset::kFast, MatchPreset::kBalanced,
+                                      MatchPreset::kQuality};
+  MatchOptions options;
+  options.raw = true;
+  if (number < 6) {
+    options.method = kMethods[number];
+  } else {
+    options.preset = kPresets[number - 6];
+  }
+  return options;
+}
+constexpr int kMethodsAndPresets = 9;
+
+TEST(DisplacementSearchOfMethods, FindsWholeShiftsEverywhere) {
+  Execution execution({.threads = 2});
+  struct Shift {
+    Ranges ranges;
+    int u;
+    int v;
+  };
+  constexpr Shift kShifts[] = {{{{0, 7}, {-2, 3}}, 3, 1}, {{{0, 0}, {-4, 4}}, 0, -2}};
+  for (const Shift& shift : kShifts) {
+    const PhotographPair pair = moved_pair(72, 56, shift.u, shift.v, PixelKind::kGrey8, 5);
+    for (int number = 0; number < kMethodsAndPresets; ++number) {
+      MatchOptions options = method_or_preset(number);
+      options.disparities = shift.ranges.across;
+      options.disparities_y = shift.ranges.down;
+      EXPECT_EQ(share_right(maps_of(pair, options, execution), shift.u, shift.v), 1)
+          << "method or preset " << number << ", vertical shift " << shift.v;
+    }
+  }
+}
+
+TEST(DisplacementSearchOfMethods, IsTheSameForAnyExecution) {
+  const PhotographPair pair = moved_pair(53, 47, 2, -1, PixelKind::kColour8, 7);
+  Execution plain({.threads = 1});
+  Execution cut(
+      {.threads = 4, .strip_width_px = 16, .band_height_px = 9, .iterations_per_pass = 2});
+  for (int number = 0; number < kMethodsAndPresets; ++number) {
+    MatchOptions options = method_or_preset(number);
+    options.raw = false;
+    options.disparities = {-1, 5};
+    options.disparities_y = {-2, 1};
+    const DisparityMaps expected = maps_of(pair, options, plain);
+    const DisparityMaps actual = maps_of(pair, options, cut);
+    EXPECT_TRUE(identical(expected.left, actual.left)) << number;
+    EXPECT_TRUE(identical(expected.right_disparity_y, actual.right_disparity_y)) << number;
+    EXPECT_TRUE(identical(expected.left_confidence, actual.left_confidence)) << number;
+  }
+}
+
+TEST(DisplacementSearchOfMethods, OfOneVerticalDisparityOf0IsASearchAlongRows) {
+  const PhotographPair pair = textured_pair(61, 37, {0, 11}, PixelKind::kGrey8, 3);
+  Execution execution({.threads = 2});
+  for (int number = 0; number < kMethodsAndPresets; ++number) {
+    MatchOptions options = method_or_preset(number);
+    options.disparities = {0, 11};
+    options.parameters.subpixel = Subpixel::kNone;
+    if (options.preset) {
+      options.parameters.candidate_blocks = 0;
+    }
+    const DisparityMaps expected = maps_of(pair, options, execution);
+    options.disparities_y = {0, 0};
+    EXPECT_TRUE(identical(expected.left, maps_of(pair, options, execution).left)) << number;
+  }
+}
+
+TEST(DisplacementSearchOfMethods, MovesBothComponentsBetweenPixels) {
+  // Rows and columns of means: the right image lies half a pixel between those of the left one.
+  const PhotographPair large = textured_pair(100, 90, {0, 0}, PixelKind::kGrey8, 11);
+  const Image<float> grey = [&] {
+    Image<float> sum(80, 70);
+    const Volume levels = test::plain_grey(large.left);
+    for (int y = 0; y < 70; ++y) {
+      for (int x = 0; x < 80; ++x) {
+        double smooth = 0;
+        for (int v = 0; v < 3; ++v) {
+          for (int u = 0; u < 3; ++u) {
+            smooth += levels.at(x + u, y + v, 0) / 9;
+          }
+        }
+        sum.at(x, y) = static_cast<float>(smooth / 255);
+      }
+    }
+    return sum;
+  }();
+  Image<float> left(70, 60);
+  Image<float> right(70, 60);
+  for (int y = 0; y < 60; ++y) {
+    for (int x = 0; x < 70; ++x) {
+      left.at(x, y) = grey.at(x, y);
+      right.at(x, y) = (grey.at(x + 2, y + 1) + grey.at(x + 3, y + 1) + grey.at(x + 2, y + 2) +
+                        grey.at(x + 3, y + 2)) /
+                       4;
+    }
+  }
+  const PhotographPair pair{Photograph({std::move(left)}), Photograph({std::move(right)})};
+  Execution execution({.threads = 2});
+  for (const MatchMethod method : {MatchMethod::kSsd, MatchMethod::kDiffusion}) {
+    MatchOptions options;
+    options.raw = true;
+    options.method = method;
+    options.parameters.window_px = 11;
+    options.parameters.iterations = 30;
+    options.disparities = {0, 5};
+    options.disparities_y = {-1, 4};
+    const DisparityMaps maps = maps_of(pair, options, execution);
+    double off = 0;
+    int pixels = 0;
+    for (int y = 12; y < 48; ++y) {
+      for (int x = 12; x < 58; ++x, ++pixels) {
+        off += std::abs(maps.left.at(x, y) - 2.5) + std::abs(maps.left_disparity_y.at(x, y) - 1.5);
+      }
+    }
+    // Whole pixels would be half a pixel off in each component.
+    EXPECT_LT(off / (2 * pixels), 0.15);
+  }
+}
+
+}  // namespace displacement_search_test
+}  // namespace vantage
