@@ -27,9 +27,11 @@ constexpr Shape kShapes[] = {{1, 1},  {2, 3},  {3, 16},  {5, 17},  {1, 33}, {4, 
 class BayesStep : public EveryTarget {
  protected:
   /// Compares a kernel with its reference on random rows; `low`, `high` bound the cells.
-  /// is_weighted: neighbours have weights.
+  /// is_weighted: neighbours have weights. is_in_plane: candidates are displacements in two
+  /// dimensions, if there are enough.
   static void compare(Kernel kernel, Kernel reference, float low, float high, float neutral,
-                      double bound, float floor = 0.01F, bool is_weighted = false) {
+                      double bound, float floor = 0.01F, bool is_weighted = false,
+                      bool is_in_plane = false) {
     const std::vector<float> taps{0.99F, 0.3F, 0.04F};
     unsigned seed = 1;
     for (const Shape shape : kShapes) {
@@ -54,7 +56,9 @@ class BayesStep : public EveryTarget {
           row.star.source = source.row(0);
           row.source_pitch = source_pitch;
           row.output_pitch = output_pitch;
-          const std::vector<int> ends = segment_ends(lanes, static_cast<int>(seed % 4));
+          const std::vector<int> ends =
+              segment_ends(lanes, is_in_plane ? 0 : static_cast<int>(seed % 4));
+          row.plane = is_in_plane ? plane_of(shape.count, seed) : CandidatePlane{};
           row.segment_ends = ends;
           row.prior = {taps.data(), radius, floor};
           row.state = state;
@@ -67,7 +71,9 @@ class BayesStep : public EveryTarget {
                            .below = weights.data() + 2 * shape.columns + 1};
           }
           Image<float> work(
-              bayes_work_floats(lanes, radius, std::max(1, static_cast<int>(ends.size()))), 1);
+              bayes_work_floats(lanes, radius, std::max(1, static_cast<int>(ends.size())),
+                                row.plane),
+              1);
           work.fill(-7);  // any contents
           row.work = work.row(0);
           Image<float> expected(output_pitch * shape.columns, 1);
@@ -116,6 +122,12 @@ TEST_P(BayesStep, GeneralEqualsReference) {
 TEST_P(BayesStep, WeightedEqualsReference) {
   compare(bayes_general_row, bayes_general_row_ref, -8, 0, 0, 1e-5, 0.01F, true);
   compare(bayes_general_row, bayes_general_row_ref, -10, 0, 0, 1e-5, 5e-6F, true);
+}
+
+TEST_P(BayesStep, InTwoDimensionsEqualsReference) {
+  compare(bayes_start_row, bayes_start_row_ref, 0.01F, 1, 1, 1e-6, 0.01F, false, true);
+  compare(bayes_half_row, bayes_half_row_ref, 0.01F, 1, 1, 2e-6, 0.01F, false, true);
+  compare(bayes_general_row, bayes_general_row_ref, -8, 0, 0, 1e-5, 0.01F, true, true);
 }
 
 TEST_P(BayesStep, WeightedSurvivesSumsFarBelowTheRangeOfExponentials) {

@@ -41,25 +41,27 @@ struct Case {
   int radius;
   bool smooths;
   bool weighted;
-  bool cuts;  ///< lanes into segments
+  bool cuts;         ///< lanes into segments
+  bool is_in_plane;  ///< candidates are displacements in two dimensions, if there are enough
   unsigned seed;
 
   [[nodiscard]] int lanes() const { return CandidateGeometry{.count = shape.count}.lanes(); }
   friend std::ostream& operator<<(std::ostream& out, const Case& c) {
     return out << c.shape.columns << " columns of " << c.shape.count << ", radius " << c.radius
                << ", smooths " << c.smooths << ", weighted " << c.weighted << ", cuts " << c.cuts
-               << ", seed " << c.seed;
+               << ", in plane " << c.is_in_plane << ", seed " << c.seed;
   }
 };
 
 template <typename Body>
 void for_each_case(const Body& body) {
   static const auto rows = test::sampled_rows(
-      {static_cast<int>(std::size(kShapes)), static_cast<int>(std::size(kRadii)), 2, 2, 2});
+      {static_cast<int>(std::size(kShapes)), static_cast<int>(std::size(kRadii)), 2, 2, 3});
   unsigned seed = 0;
   for (const test::SampleRow& row : rows) {
     if (!testing::Test::HasFatalFailure()) {
-      body(Case{kShapes[row[0]], kRadii[row[1]], row[2] == 1, row[3] == 1, row[4] == 1, ++seed});
+      body(Case{kShapes[row[0]], kRadii[row[1]], row[2] == 1, row[3] == 1, row[4] == 1, row[4] == 2,
+                ++seed});
     }
   }
 }
@@ -103,7 +105,7 @@ class MadeUpRow {
   [[nodiscard]] std::vector<FixedEnergy> result(Kernel kernel) const {
     const CellStarRow<FixedEnergy>& star = row_.star;
     const auto segments = static_cast<int>(std::max<std::size_t>(1, segment_ends_.size()));
-    GuardedCells work(max_product_work_cells(star.lanes, row_.prior.radius, segments));
+    GuardedCells work(max_product_work_cells(star.lanes, row_.prior.radius, segments, row_.plane));
     GuardedCells output(static_cast<int>(row_.output_pitch) * star.columns);
     MaxProductRow row = row_;
     row.work = work.data();
@@ -138,6 +140,7 @@ class MadeUpRow {
     row_.source_pitch = source_pitch_;
     row_.output_pitch = c.lanes() + one_of(random, {0, 16, 32});
     row_.segment_ends = segment_ends_;
+    row_.plane = c.is_in_plane ? plane_of(c.shape.count, c.seed) : CandidatePlane{};
     if (c.weighted) {
       for (int k = 0; k < 3 * c.shape.columns + 1; ++k) {
         const int weight = one_of(random, {0, 1, 32767, random_int(random, 0, 32767)});
@@ -214,6 +217,21 @@ std::vector<double> plain_smoothed(const std::vector<double>& energies, const Ma
   for (int i = 0; i < count; ++i) {
     double least = row.prior.ceiling;
     const int reach = row.prior.radius;
+    const int in_row = row.plane.row_candidates;
+    for (int j = 0; row.plane.is_given() && j < count; ++j) {
+      const auto rise = [&](int offset) {
+        return offset == 0 ? 0 : row.prior.rises[std::abs(offset) - 1];
+      };
+      const int across = i % in_row - j % in_row;
+      const int down = i / in_row - j / in_row;
+      if (std::abs(across) <= reach && std::abs(down) <= reach) {
+        least = std::min(least, energies[static_cast<std::size_t>(j)] + rise(across) + rise(down));
+      }
+    }
+    if (row.plane.is_given()) {
+      smoothed.push_back(least);
+      continue;
+    }
     for (int j = std::max(0, i - reach); j < std::min(count, i + reach + 1); ++j) {
       if (segment_of(i) == segment_of(j)) {
         const double rise = i == j ? 0 : row.prior.rises[std::abs(i - j) - 1];

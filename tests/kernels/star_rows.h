@@ -71,4 +71,16 @@ inline std::vector<int> segment_ends(int lanes, int kind) {
   return ends;
 }
 
+/// `count` candidates as displacements in two dimensions, in runs as `choice` says; not given where
+/// they cannot be.
+inline CandidatePlane plane_of(int count, unsigned choice) {
+  std::vector<CandidatePlane> planes;
+  for (int in_row = 2; 2 * in_row <= count; ++in_row) {
+    if (count % in_row == 0) {
+      planes.push_back({in_row, count / in_row});
+    }
+  }
+  return planes.empty() ? CandidatePlane{} : planes[choice % planes.size()];
+}
+
 }  // namespace vantage::kernels
