@@ -2,18 +2,24 @@
 // vertical disparity, compared with a plain transcription over those pairs.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <iterator>
 #include <limits>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
+#include "engine/io/photograph_io.h"
 #include "engine/matching/stereo_matcher.h"
 #include "tests/engine/identical_maps.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/engine/plain_column.h"
 #include "tests/engine/plain_cost_cells.h"
+#include "tests/test_paths.h"
 #include "tests/test_sample.h"
 
 namespace vantage {
@@ -355,9 +361,10 @@ INSTANTIATE_TEST_SUITE_P(Aggregations, DisplacementSearch,
                            return name_of(kAggregations[instance.param]);
                          });
 
-/// Of pixels so far from the borders that nothing there reaches them.
+/// Nothing at the borders reaches pixels that are so far from them.
+constexpr int kBorder = 12;
+
 double share_right(const DisparityMaps& maps, double u, double v) {
-  constexpr int kBorder = 12;
   int right = 0;
   int all = 0;
   for (int y = kBorder; y < maps.left.height() - kBorder; ++y) {
@@ -370,6 +377,16 @@ double share_right(const DisparityMaps& maps, double u, double v) {
     }
   }
   return static_cast<double>(right) / all;
+}
+
+double inner_median(const DisparityMap& map) {
+  std::vector<float> values;
+  for (int y = kBorder; y < map.height() - kBorder; ++y) {
+    values.insert(values.end(), map.row(y) + kBorder, map.row(y) + map.width() - kBorder);
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 /// All methods, then all presets.
@@ -407,6 +424,47 @@ TEST(DisplacementSearchOfMethods, FindsWholeShiftsEverywhere) {
       EXPECT_EQ(share_right(maps_of(pair, options, execution), shift.u, shift.v), 1)
           << "method or preset " << number << ", vertical shift " << shift.v;
     }
+  }
+}
+
+TEST(DisplacementSearchOfMethods, FindsWholeAndHalfShiftsOfAPhotograph) {
+  const std::filesystem::path folder = test_paths::shared_data("cones");
+  if (folder.empty()) {
+    GTEST_SKIP() << "no photographs in ../shared/data/cones";
+  }
+  const Photograph photograph = read_photograph(folder / "im2.png");
+  constexpr int kWidth = 90;
+  constexpr int kHeight = 60;
+  const auto part = [&](int x, int y) { return test::crop(photograph, x, y, kWidth, kHeight); };
+  // Means of neighbours in both directions: half a pixel on.
+  const auto half_way = [&](int x, int y) {
+    Image<std::uint8_t> means(kWidth, kHeight, 3);
+    std::vector<Photograph> parts;
+    for (const int step : {0, 1, 2, 3}) {
+      parts.push_back(part(x + step % 2, y + step / 2));
+    }
+    for (int row = 0; row < kHeight; ++row) {
+      for (int i = 0; i < 3 * kWidth; ++i) {
+        int sum = 0;
+        for (const Photograph& one : parts) {
+          sum += std::get<Image<std::uint8_t>>(one.pixels).row(row)[i];
+        }
+        means.row(row)[i] = static_cast<std::uint8_t>((sum + 2) / 4);
+      }
+    }
+    return Photograph{std::move(means)};
+  };
+  const PhotographPair whole{part(180, 160), part(183, 161)};
+  const PhotographPair half{part(180, 160), half_way(182, 161)};
+  Execution execution({.threads = 2});
+  for (int number = 0; number < kMethodsAndPresets; ++number) {
+    MatchOptions options = method_or_preset(number);
+    options.disparities = {0, 6};
+    options.disparities_y = {-1, 3};
+    EXPECT_GE(share_right(maps_of(whole, options, execution), 3, 1), 0.99) << number;
+    const DisparityMaps between = maps_of(half, options, execution);
+    EXPECT_NEAR(inner_median(between.left), 2.5, 0.25) << number;
+    EXPECT_NEAR(inner_median(between.left_disparity_y), 1.5, 0.25) << number;
   }
 }
 

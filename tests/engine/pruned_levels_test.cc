@@ -234,8 +234,9 @@ class PrunedLevel : public ::testing::Test {
                                                            level.geometry.lanes(),
                                                            Smoothing<Cell>::kImpossible);
     }
-    for (auto& stage : Smoothing<Cell>::kIterations(parameters, level.geometry, kExtent.rows,
-                                                    {.volume = &level.coarser}, edges, blocks)) {
+    for (auto& stage :
+         Smoothing<Cell>::kIterations(parameters, level.geometry, kExtent.rows,
+                                      {.volume = &level.coarser}, edges, blocks, {})) {
       stages.push_back(std::move(stage));
     }
     stages.push_back(std::make_unique<BlockSink<Cell>>(
