@@ -22,8 +22,8 @@ namespace vantage {
 /// must outlive the stages; the start is made of it instead of the first stage's energies, which
 /// then only the iterations look at.
 ///
-/// `edges`, `blocks`: as make_bayes_stages() takes them, prepared with the same parameters;
-/// candidates that are not looked at have the energy of the ceiling.
+/// `edges`, `blocks`, `plane`: as make_bayes_stages() takes them, prepared with the same
+/// parameters; candidates that are not looked at have the energy of the ceiling.
 std::vector<std::unique_ptr<scheduler::RowStage>> make_max_product_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
     const CoarserResult& coarser = {}, const EdgeWeights* edges = nullptr,

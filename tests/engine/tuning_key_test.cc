@@ -55,6 +55,12 @@ TEST_F(TuningKeyTest, NearlyEqualWorkSharesAKey) {
   EXPECT_EQ(key(), one);
 }
 
+TEST_F(TuningKeyTest, CountsDisplacementsInTwoDimensions) {
+  match_.disparities = {0, 63};
+  match_.disparities_y = {-2, 1};
+  EXPECT_EQ(key().size, "about 1448x1024 pixels, 256 displacements");
+}
+
 TEST_F(TuningKeyTest, DifferentWorkHasDifferentKeys) {
   std::set<std::string> texts;
   std::size_t count = 0;
