@@ -24,6 +24,7 @@ struct MergeJob {
   std::string folder;
   bool partial = false;
   bool verify = false;
+  bool no_sound = false;
   std::string report;
   bool quiet = false;
 };
@@ -32,6 +33,7 @@ void add_merge_settings(Settings& settings, MergeJob& job) {
   settings.positional("dir", job.folder, "Folder of the run").required = true;
   settings.flag("partial", job.partial,
                 "Join the frames there are, if they follow each other without a gap");
+  settings.flag("no-sound", job.no_sound, "Leave the sound of the input out of the videos");
   settings.flag("verify", job.verify,
                 "Read all results first and stop if one is not as it was written");
   settings.path("report", job.report, "FILE", "Write a JSON report to FILE");
@@ -54,6 +56,7 @@ int command_merge(const Arguments& arguments) {
   Settings run_settings("run", "");
   add_run_settings(run_settings, run);
   const RunIdentity identity = read_run(job.folder, run_settings, run);
+  run.sequence.sound = run.sequence.sound && !job.no_sound;
   const SequenceLayout layout(job.folder, run.sequence);
   add_run_outputs(layout, "DIR", files);
   if (job.verify) {
@@ -88,22 +91,26 @@ int command_merge(const Arguments& arguments) {
                     "--resume' makes them",
                     job.folder, count, identity.frame_count, to_string(missing), job.folder));
   }
+  std::string sound_problem;
   {
     // The part name keeps two merges, not merge and run, from working at once.
     RunJournal journal(layout.journal_folder(), identity, JournalOpening::kResume, "merge");
-    report.timed_file_access(
-        "join", [&] { join_segments(run.sequence, layout, identity, frames, true, journal); });
+    report.timed_file_access("join", [&] {
+      sound_problem = join_segments(run.sequence, layout, identity, frames, true, journal);
+    });
   }
   const std::vector<int> skipped = delivered.skipped(frames);
   SettingValue results = {{"frames", frames.count() - static_cast<int>(skipped.size())},
                           {"first_frame", frames.first},
-                          {"skipped", skipped}};
+                          {"skipped", skipped},
+                          {"sound_problem", sound_problem}};
   if (run.sequence.measure_flicker) {
     results["flicker"] = flicker_values(total_flicker(delivered));
   }
   report.set_results(std::move(results));
   report.write(job.report);
   if (!job.quiet) {
+    print_sound_problem("merge", sound_problem);
     tell("merge: {} holds {}{}\n", job.folder,
          frames == all ? fmt::format("all {} frames", all.count())
                        : fmt::format("frames {} of {}", to_string({frames}), all.count()),

@@ -55,17 +55,19 @@ std::optional<ShotTable> find_shots(const RunJob& job, RunSession& session,
   return keep_shot_table(path, *shots);
 }
 
-/// Joins videos once all frames are there that the folder is to have.
-void join_if_whole(const RunJob& job, const RunSession& session, const SequenceLayout& layout,
-                   const SequenceReport& sequence, RunJournal& journal, RunReport& report) {
+/// Joins videos once all frames are there that the folder is to have. Returns why they are without
+/// sound, as join_segments() does.
+std::string join_if_whole(const RunJob& job, const RunSession& session,
+                          const SequenceLayout& layout, const SequenceReport& sequence,
+                          RunJournal& journal, RunReport& report) {
   if (job.shard || sequence.interrupted || !layout.has_videos()) {
-    return;
+    return "";
   }
   const DeliveredFrames delivered(layout);
   const FrameRange frames = contiguous_frames(delivered, session.selection.frame_count);
-  report.timed_file_access("join", [&] {
-    join_segments(job.sequence, layout, session.identity, frames,
-                  sequence.frames + sequence.pictures_again > 0, journal);
+  return report.timed_file_access("join", [&] {
+    return join_segments(job.sequence, layout, session.identity, frames,
+                         sequence.frames + sequence.pictures_again > 0, journal);
   });
 }
 
@@ -125,10 +127,11 @@ int command_run(const Arguments& arguments) {
   }
   add_scratch_use(execution, sequence.memory);
   report.set_memory(sequence.memory);
-  join_if_whole(job, session, layout, sequence, journal, report);
-  fill_report(job, session, sequence, DeliveredFrames(layout), report);
+  const std::string sound_problem = join_if_whole(job, session, layout, sequence, journal, report);
+  fill_report(job, session, sequence, DeliveredFrames(layout), sound_problem, report);
   report.write(job.common.report);
   if (!job.common.quiet) {
+    print_sound_problem("run", sound_problem);
     print_summary(job, session, sequence, report.wall_seconds());
     report.print_summary();
   }

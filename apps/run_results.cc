@@ -52,7 +52,8 @@ SettingValue flicker_values(const FlickerSums& sums) {
 }
 
 void fill_report(const RunJob& job, const RunSession& session, const SequenceReport& sequence,
-                 const DeliveredFrames& delivered, RunReport& report) {
+                 const DeliveredFrames& delivered, const std::string& sound_problem,
+                 RunReport& report) {
   for (const SequenceStage& stage : sequence.stages) {
     report.add_stage(stage.name, stage.seconds);
   }
@@ -68,6 +69,7 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
                           {"skipped", remark_values(sequence.skipped)},
                           {"remarks", remark_values(sequence.remarks)},
                           {"pairing", session.pairs->remarks()},
+                          {"sound_problem", sound_problem},
                           {"in_flight", sequence.in_flight},
                           {"planned_memory_bytes", session.memory.total_bytes},
                           {"width_px", session.shape.source.width_px},
@@ -77,6 +79,12 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
     results["flicker"] = flicker_values(total_flicker(delivered));
   }
   report.set_results(std::move(results));
+}
+
+void print_sound_problem(const std::string& command, const std::string& problem) {
+  if (!problem.empty()) {
+    fmt::print(stderr, "{}: note: the videos are without sound: {}\n", command, problem);
+  }
 }
 
 void print_summary(const RunJob& job, const RunSession& session, const SequenceReport& sequence,

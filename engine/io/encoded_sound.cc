@@ -14,6 +14,7 @@ extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 #include <libavutil/audio_fifo.h>
+#include <libavutil/opt.h>
 #include <libswresample/swresample.h>
 }
 
@@ -40,6 +41,41 @@ bool encodes_sample_rate(const AVCodec& encoder, int rate) {
   return false;
 }
 
+/// What the samples of a frame are.
+struct SoundFormat {
+  AVChannelLayout layout{};
+  int sample_format = AV_SAMPLE_FMT_NONE;
+  int rate = 0;
+
+  SoundFormat() = default;
+  explicit SoundFormat(const AVFrame& frame)
+      : sample_format(frame.format), rate(frame.sample_rate) {
+    if (frame.ch_layout.order == AV_CHANNEL_ORDER_UNSPEC) {
+      av_channel_layout_default(&layout, frame.ch_layout.nb_channels);
+    } else if (av_channel_layout_copy(&layout, &frame.ch_layout) < 0) {
+      throw std::bad_alloc();
+    }
+  }
+  SoundFormat(SoundFormat&& other) noexcept { swap(other); }
+  SoundFormat& operator=(SoundFormat&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~SoundFormat() { av_channel_layout_uninit(&layout); }
+
+  [[nodiscard]] bool equals(const SoundFormat& other) const {
+    return sample_format == other.sample_format && rate == other.rate &&
+           av_channel_layout_compare(&layout, &other.layout) == 0;
+  }
+
+ private:
+  void swap(SoundFormat& other) noexcept {
+    std::swap(layout, other.layout);
+    std::swap(sample_format, other.sample_format);
+    std::swap(rate, other.rate);
+  }
+};
+
 class EncodedSound : public SoundPackets {
  public:
   explicit EncodedSound(SoundInput input);
@@ -52,19 +88,21 @@ class EncodedSound : public SoundPackets {
  private:
   void open_decoder();
   void open_encoder();
-  void open_resampler();
+  /// Makes the resampler fit `frame`: recordings of television change between stereo, mono and 5.1.
+  void follow_format(const AVFrame& frame);
   /// Gives the encoder its next frame, decoding what that takes, or tells it that there is none.
   void feed_encoder();
   /// Decodes the next samples into the queue; false after the last ones.
   bool decode_more();
   /// Converts `frame`, or what the resampler holds back when it is null, and queues what of it
-  /// lies inside the part.
+  /// lies inside the part. The frame has the format that the resampler was made for.
   void queue_samples(const AVFrame* frame);
 
   SoundInput input_;
   LibavCodec decoder_;
   LibavCodec encoder_;
-  LibavResampler resampler_;
+  LibavResampler resampler_;  ///< null before the first frame
+  SoundFormat resampled_;     ///< what it takes
   LibavSamples queue_;
   LibavPacket source_packet_ = make_libav_packet();
   LibavFrame decoded_ = make_libav_frame();
@@ -78,7 +116,6 @@ class EncodedSound : public SoundPackets {
 EncodedSound::EncodedSound(SoundInput input) : input_(std::move(input)) {
   open_decoder();
   open_encoder();
-  open_resampler();
 }
 
 void EncodedSound::open_decoder() {
@@ -126,25 +163,30 @@ void EncodedSound::open_encoder() {
   }
 }
 
-void EncodedSound::open_resampler() {
-  AVChannelLayout source{};
-  if (decoder_->ch_layout.order == AV_CHANNEL_ORDER_UNSPEC) {
-    av_channel_layout_default(&source, decoder_->ch_layout.nb_channels);
-  } else {
-    av_channel_layout_copy(&source, &decoder_->ch_layout);
+void EncodedSound::follow_format(const AVFrame& frame) {
+  SoundFormat format(frame);
+  if (resampler_ != nullptr && format.equals(resampled_)) {
+    return;
+  }
+  if (resampler_ != nullptr) {
+    queue_samples(nullptr);
   }
   SwrContext* resampler = nullptr;
-  int result = swr_alloc_set_opts2(&resampler, &encoder_->ch_layout, AV_SAMPLE_FMT_FLTP,
-                                   encoder_->sample_rate, &source, decoder_->sample_fmt,
-                                   decoder_->sample_rate, 0, nullptr);
+  int result = swr_alloc_set_opts2(
+      &resampler, &encoder_->ch_layout, AV_SAMPLE_FMT_FLTP, encoder_->sample_rate, &format.layout,
+      static_cast<AVSampleFormat>(format.sample_format), format.rate, 0, nullptr);
   resampler_.reset(resampler);
-  av_channel_layout_uninit(&source);
+  if (result >= 0 && encoder_->ch_layout.nb_channels == 1) {
+    // Two channels become one that is no louder.
+    result = av_opt_set_double(resampler, "rematrix_maxval", 1, 0);
+  }
   if (result >= 0) {
     result = swr_init(resampler_.get());
   }
   if (result < 0) {
     input_.fail(libav_message(result));
   }
+  resampled_ = std::move(format);
 }
 
 bool EncodedSound::next() {
@@ -192,11 +234,14 @@ bool EncodedSound::decode_more() {
   for (;;) {
     const int result = libav().avcodec_receive_frame(decoder_.get(), decoded_.get());
     if (result >= 0) {
+      follow_format(*decoded_);
       queue_samples(decoded_.get());
       return true;
     }
     if (result == AVERROR_EOF) {
-      queue_samples(nullptr);
+      if (resampler_ != nullptr) {
+        queue_samples(nullptr);
+      }
       return false;
     }
     if (result != AVERROR(EAGAIN)) {

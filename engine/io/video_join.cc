@@ -126,16 +126,9 @@ JoinPlan plan_join(std::span<const fs::path> paths, AVRational frame_unit) {
   return plan;
 }
 
-}  // namespace
-
-void join_videos(std::span<const fs::path> segments, FrameRate rate, const SoundTrack& sound,
-                 const fs::path& output) {
-  if (segments.empty()) {
-    throw Error(fmt::format("cannot write {}: no videos to join", output.string()));
-  }
-  const AVRational frame_unit = {static_cast<int>(rate.denominator),
-                                 static_cast<int>(rate.numerator)};
-  const JoinPlan plan = plan_join(segments, frame_unit);
+/// Writes what the segments hold together, with `sound`.
+void write_joined(std::span<const fs::path> segments, const JoinPlan& plan, AVRational frame_unit,
+                  const SoundTrack& sound, const fs::path& output) {
   const std::unique_ptr<SoundPackets> sound_packets = open_sound_packets(sound);
   bool sound_left = sound_packets != nullptr && sound_packets->next();
 
@@ -168,6 +161,41 @@ void join_videos(std::span<const fs::path> segments, FrameRate rate, const Sound
   }
   write_sound_before(sound.end_seconds - sound.begin_seconds);
   muxer.finish(plan.frames);
+}
+
+void require_sound_file(const SoundTrack& sound) {
+  std::error_code ignored;
+  if (!sound.video.empty() && !fs::exists(sound.video, ignored)) {
+    throw Error(
+        fmt::format("cannot read {}: no such file, expected the video whose sound is taken "
+                    "over; --no-sound does without",
+                    sound.video.string()));
+  }
+}
+
+}  // namespace
+
+std::string join_videos(std::span<const fs::path> segments, FrameRate rate, const SoundTrack& sound,
+                        const fs::path& output) {
+  if (segments.empty()) {
+    throw Error(fmt::format("cannot write {}: no videos to join", output.string()));
+  }
+  require_sound_file(sound);
+  const AVRational frame_unit = {static_cast<int>(rate.denominator),
+                                 static_cast<int>(rate.numerator)};
+  const JoinPlan plan = plan_join(segments, frame_unit);
+  std::string problem;
+  if (!sound.video.empty()) {
+    try {
+      write_joined(segments, plan, frame_unit, sound, output);
+      return "";
+    } catch (const Error& error) {
+      // The pictures alone tell whether it was the sound that failed.
+      problem = error.what();
+    }
+  }
+  write_joined(segments, plan, frame_unit, {}, output);
+  return problem;
 }
 
 }  // namespace vantage

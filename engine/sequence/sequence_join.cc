@@ -39,8 +39,10 @@ SoundTrack sound_of(const SequenceOptions& options, const RunIdentity& identity,
           (identity.sound_first_frame + frames.end) / rate};
 }
 
-void join_videos_of(const SequenceOptions& options, const SequenceLayout& layout,
-                    const SoundTrack& sound, const std::vector<FrameRange>& segments) {
+/// Returns why sound was left out, as join_videos() does.
+std::string join_videos_of(const SequenceOptions& options, const SequenceLayout& layout,
+                           const SoundTrack& sound, const std::vector<FrameRange>& segments) {
+  std::string sound_problem;
   for (const OutputStream& stream : layout.streams()) {
     if (!stream.as_video) {
       continue;
@@ -51,8 +53,10 @@ void join_videos_of(const SequenceOptions& options, const SequenceLayout& layout
       paths.push_back(layout.segment(stream, segment));
     }
     remove_temporary_files_of(layout.video(stream));
-    join_videos(paths, options.frame_rate, sound, layout.video(stream));
+    const std::string problem = join_videos(paths, options.frame_rate, sound, layout.video(stream));
+    sound_problem = sound_problem.empty() ? problem : sound_problem;
   }
+  return sound_problem;
 }
 
 }  // namespace
@@ -66,11 +70,11 @@ FrameRange contiguous_frames(const DeliveredFrames& delivered, int frame_count) 
   return delivered.missing(span).empty() ? span : FrameRange{};
 }
 
-void join_segments(const SequenceOptions& options, const SequenceLayout& layout,
-                   const RunIdentity& identity, FrameRange frames, bool made_segments,
-                   RunJournal& journal) {
+std::string join_segments(const SequenceOptions& options, const SequenceLayout& layout,
+                          const RunIdentity& identity, FrameRange frames, bool made_segments,
+                          RunJournal& journal) {
   if (!layout.has_videos() || frames.empty()) {
-    return;
+    return "";
   }
   // Several processes may find at one time that all frames are there.
   const FileLock lock(layout.journal_folder() / "run.json", FileLock::Wait::kYes);
@@ -79,8 +83,9 @@ void join_segments(const SequenceOptions& options, const SequenceLayout& layout,
   const int segments_end = segments.empty() ? frames.first : segments.back().end;
   const int end = delivered.input_end(frames);
   if (end == frames.first) {
-    return;
+    return "";
   }
+  std::string sound_problem;
   const std::vector<int> skipped = delivered.skipped(frames);
   const bool is_complete = frames == FrameRange{0, identity.frame_count} && skipped.empty();
   const bool stays = delivered.joined() == frames && delivered.joined_skipped() == skipped &&
@@ -93,7 +98,8 @@ void join_segments(const SequenceOptions& options, const SequenceLayout& layout,
                       "makes them",
                       segments_end, frames.first, end - 1));
     }
-    join_videos_of(options, layout, sound_of(options, identity, {frames.first, end}), segments);
+    sound_problem =
+        join_videos_of(options, layout, sound_of(options, identity, {frames.first, end}), segments);
     JoinRecord joined{frames, skipped};
     for (const std::string& name : layout.video_names()) {
       joined.files.push_back(record_of_file(layout.folder(), name));
@@ -105,6 +111,7 @@ void join_segments(const SequenceOptions& options, const SequenceLayout& layout,
     std::error_code ignored;  // they do no harm
     std::filesystem::remove_all(layout.journal_folder() / "segments", ignored);
   }
+  return sound_problem;
 }
 
 FlickerSums total_flicker(const DeliveredFrames& delivered) {

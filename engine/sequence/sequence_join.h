@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "engine/sequence/delivered_frames.h"
 #include "engine/sequence/flicker.h"
 #include "engine/sequence/frame_range.h"
@@ -20,10 +22,11 @@ FrameRange contiguous_frames(const DeliveredFrames& delivered, int frame_count);
 /// alone unless other frames are skipped now or segments may have been made since
 /// (`made_segments`): those of a complete run have the same pictures whenever they are made, so it
 /// takes all of them to join them anew. Processes
-/// wait for each other. Throws Error naming the first frame that no segment has.
-void join_segments(const SequenceOptions& options, const SequenceLayout& layout,
-                   const RunIdentity& identity, FrameRange frames, bool made_segments,
-                   RunJournal& journal);
+/// wait for each other. Returns why videos joined now are without the sound they should have, ""
+/// where they are not. Throws Error naming the first frame that no segment has.
+std::string join_segments(const SequenceOptions& options, const SequenceLayout& layout,
+                          const RunIdentity& identity, FrameRange frames, bool made_segments,
+                          RunJournal& journal);
 
 /// Flicker of all delivered frames.
 FlickerSums total_flicker(const DeliveredFrames& delivered);

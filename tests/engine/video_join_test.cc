@@ -156,6 +156,41 @@ TEST(VideoJoin, CopiesSoundThatMp4CanHoldFromItsMomentOn) {
   }
 }
 
+/// As recordings of television have it.
+TEST(VideoJoin, FollowsSoundThatChangesBetweenStereoAndMono) {
+  const TemporaryFolder folder;
+  const auto segments = put_segments(folder, {15});
+  for (const std::vector<int>& channels : {std::vector{2, 1}, {1, 2}, {2, 1, 2}}) {
+    const int parts = static_cast<int>(channels.size());
+    test::put_changing_sound(folder / "changing.mkv", channels);
+    EXPECT_EQ(join_videos(segments, kRate, {folder / "changing.mkv", 0, 0.48 * parts},
+                          folder / "joined.mp4"),
+              "");
+    EXPECT_EQ(sound_codec(folder / "joined.mp4"), "aac");
+    const Sound joined = read_sound(folder / "joined.mp4");
+    EXPECT_NEAR(static_cast<double>(joined.samples.size()), 0.48 * parts * 48000, 1500);
+    // The tone is as loud in all parts.
+    for (int part = 0; part < parts; ++part) {
+      double sum = 0;
+      for (int i = 0; i < 4800; ++i) {
+        const auto at = static_cast<std::size_t>(23040 * part + 8000 + i);
+        sum += joined.samples.at(at) * joined.samples.at(at);
+      }
+      EXPECT_NEAR(std::sqrt(sum / 4800), 0.5 / std::numbers::sqrt2, 0.12) << part;
+    }
+  }
+}
+
+TEST(VideoJoin, LeavesOutSoundThatCannotBeDecodedAndSaysWhy) {
+  const TemporaryFolder folder;
+  const auto segments = put_segments(folder, {8, 7});
+  test::put_changing_sound(folder / "a.mkv", {2}, true);
+  EXPECT_THAT(join_videos(segments, kRate, {folder / "a.mkv", 0, 0.4}, folder / "joined.mp4"),
+              AllOf(HasSubstr("a.mkv"), HasSubstr("sound")));
+  EXPECT_EQ(sound_codec(folder / "joined.mp4"), "");
+  EXPECT_EQ(frame_numbers(folder / "joined.mp4"), numbers_up_to(15));
+}
+
 TEST(VideoJoin, TakesWhatSoundThereIs) {
   const TemporaryFolder folder;
   const auto segments = put_segments(folder, {15});

@@ -189,6 +189,56 @@ void remux_video(const std::filesystem::path& from, const std::filesystem::path&
   require(av_write_trailer(output.get()));
 }
 
+void put_changing_sound(const std::filesystem::path& path, const std::vector<int>& channels,
+                        bool damaged) {
+  silence_libav();
+  AVFormatContext* opened = nullptr;
+  require(avformat_alloc_output_context2(&opened, nullptr, "matroska", nullptr));
+  const std::unique_ptr<AVFormatContext, Close> output(opened);
+  require(avio_open(&output->pb, path.c_str(), AVIO_FLAG_WRITE));
+  AVStream* stream = avformat_new_stream(output.get(), nullptr);
+  std::int64_t samples = 0;
+  for (const int count : channels) {
+    const LibavCodec encoder(avcodec_alloc_context3(avcodec_find_encoder(AV_CODEC_ID_MP2)));
+    encoder->sample_rate = 48000;
+    encoder->sample_fmt = AV_SAMPLE_FMT_S16;
+    encoder->bit_rate = 96000 * count;
+    encoder->time_base = {1, 48000};
+    av_channel_layout_default(&encoder->ch_layout, count);
+    require(avcodec_open2(encoder.get(), encoder->codec, nullptr));
+    if (samples == 0) {
+      require(avcodec_parameters_from_context(stream->codecpar, encoder.get()));
+      stream->time_base = {1, 48000};
+      require(avformat_write_header(output.get(), nullptr));
+    }
+    const std::int64_t end = samples + 20 * encoder->frame_size;
+    for (; samples < end; samples += encoder->frame_size) {
+      const LibavFrame frame = make_libav_frame();
+      frame->format = encoder->sample_fmt;
+      frame->nb_samples = encoder->frame_size;
+      frame->sample_rate = encoder->sample_rate;
+      frame->pts = samples;
+      require(av_channel_layout_copy(&frame->ch_layout, &encoder->ch_layout));
+      require(av_frame_get_buffer(frame.get(), 0));
+      auto* values = reinterpret_cast<std::int16_t*>(frame->data[0]);
+      for (int i = 0; i < encoder->frame_size * count; ++i) {
+        const double time = static_cast<double>(samples + i / count) / 48000;
+        values[i] = static_cast<std::int16_t>(16384 * std::sin(2765 * time));
+      }
+      require(avcodec_send_frame(encoder.get(), frame.get()));
+      const LibavPacket packet = make_libav_packet();
+      while (avcodec_receive_packet(encoder.get(), packet.get()) >= 0) {
+        if (damaged && samples > 5 * encoder->frame_size) {
+          std::fill_n(packet->data, packet->size, std::uint8_t{0x55});
+        }
+        av_packet_rescale_ts(packet.get(), {1, 48000}, stream->time_base);
+        require(av_interleaved_write_frame(output.get(), packet.get()));
+      }
+    }
+  }
+  require(av_write_trailer(output.get()));
+}
+
 std::string sound_codec(const std::filesystem::path& path) {
   const LibavInput input = open_media_file(path);
   const AVStream* stream = find_sound_stream(*input);

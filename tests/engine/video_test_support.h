@@ -119,6 +119,11 @@ void remux_video(
     const std::function<int(int)>& time_of = [](int frame) { return frame; },
     const std::function<bool(int)>& keeps = [](int) { return true; });
 
+/// Sound alone, MP2 in Matroska: a tone of 48 kHz, for 0.48 s with as many channels as each of
+/// `channels` says. `damaged`: packets in the middle are noise.
+void put_changing_sound(const std::filesystem::path& path, const std::vector<int>& channels,
+                        bool damaged = false);
+
 /// The name of the codec of the file's sound, "" without sound.
 std::string sound_codec(const std::filesystem::path& path);
 /// The sound of a file; without any, no samples.
