@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "apps/commands.h"
+#include "apps/input_limits.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
 #include "apps/run_report.h"
@@ -171,6 +172,7 @@ int command_eval(const Arguments& arguments) {
                     "Compares a disparity map or, with --views, a photograph with the truth.");
   add_eval_settings(settings, job);
   add_common_settings(settings, job.common, Work::kWithoutMatching);
+  add_input_limit_settings(settings, job.common.execution);
   if (!settings.read(arguments)) {
     return kExitDone;
   }

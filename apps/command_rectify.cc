@@ -6,6 +6,7 @@
 
 #include "apps/commands.h"
 #include "apps/generated_files.h"
+#include "apps/input_limits.h"
 #include "apps/interrupt.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
@@ -222,6 +223,7 @@ int command_rectify(const Arguments& arguments) {
                     "well they do.");
   add_rectify_settings(settings, job);
   add_common_settings(settings, job.common, Work::kWithoutMatching);
+  add_input_limit_settings(settings, job.common.execution);
   if (!settings.read(arguments)) {
     return kExitDone;
   }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "apps/commands.h"
+#include "apps/input_limits.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
 #include "apps/run_report.h"
@@ -210,6 +211,7 @@ int command_response(const Arguments& arguments) {
                     "image and its quadrants, and prints where it is largest.");
   add_response_settings(settings, job);
   add_common_settings(settings, job.common, Work::kWithoutMatching);
+  add_input_limit_settings(settings, job.common.execution);
   if (!settings.read(arguments)) {
     return kExitDone;
   }

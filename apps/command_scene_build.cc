@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "apps/commands.h"
+#include "apps/input_limits.h"
 #include "apps/interrupt.h"
 #include "apps/match_settings.h"
 #include "apps/option_groups.h"
@@ -93,6 +94,7 @@ int command_scene_build(const Arguments& arguments) {
   settings.begin_group("Check");
   add_rectification_check_setting(settings, job.check_rectification);
   add_common_settings(settings, job.common);
+  add_input_limit_settings(settings, job.common.execution);
   if (!settings.read(arguments)) {
     return kExitDone;
   }

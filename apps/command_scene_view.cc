@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/commands.h"
+#include "apps/input_limits.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
 #include "apps/run_report.h"
@@ -86,6 +87,7 @@ int command_scene_view(const Arguments& arguments) {
   Settings settings("scene view", "Renders new views among the images of a scene.");
   add_settings(settings, job);
   add_common_settings(settings, job.common, Work::kWithoutMatching);
+  add_input_limit_settings(settings, job.common.execution);
   if (!settings.read(arguments)) {
     return kExitDone;
   }

@@ -18,6 +18,8 @@
 #include "apps/slurm_scripts.h"
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
+#include "engine/io/json_text.h"
+#include "engine/quoted_text.h"
 #include "engine/sequence/run_journal.h"
 #include "engine/sequence/sequence_layout.h"
 #include "engine/simd.h"
@@ -118,10 +120,14 @@ void require_slurm() {
 
 /// Two arrays on one folder would make everything twice.
 void require_none_in_queue(const fs::path& folder) {
-  std::ifstream file(folder / "submitted.json");
-  const auto jobs = SettingValue::parse(file, nullptr, false);
-  if (!jobs.is_object()) {
+  const fs::path record = folder / "submitted.json";
+  std::error_code ignored;
+  if (!fs::exists(record, ignored)) {
     return;  // nothing has been submitted yet
+  }
+  const SettingValue jobs = read_json_file(record);
+  if (!jobs.is_object()) {
+    throw Error(fmt::format("{}: is damaged, expected the numbers of jobs", record.string()));
   }
   for (const char* const name : {"array_job", "merge_job"}) {
     const std::string job = jobs.value(name, "none");
@@ -146,8 +152,8 @@ std::string submit(const std::vector<std::string>& options, const fs::path& scri
   std::string job = result.out.substr(0, result.out.find_first_of(";\n"));
   if (job.empty() ||
       !std::ranges::all_of(job, [](char letter) { return letter >= '0' && letter <= '9'; })) {
-    throw Error(
-        fmt::format("sbatch printed '{}', expected the number of a job", message_of(result)));
+    throw Error(fmt::format("sbatch printed '{}', expected the number of a job",
+                            quotable(message_of(result))));
   }
   return job;
 }

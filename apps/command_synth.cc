@@ -7,6 +7,7 @@
 
 #include "apps/commands.h"
 #include "apps/empty_views.h"
+#include "apps/input_limits.h"
 #include "apps/matrix_rows.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
@@ -100,6 +101,7 @@ int command_synth(const Arguments& arguments) {
   add_synthesis_settings(settings, job.synthesis);
   add_match_settings(settings, job.pair.match);
   add_common_settings(settings, job.common);
+  add_input_limit_settings(settings, job.common.execution);
   if (!settings.read(arguments)) {
     return kExitDone;
   }

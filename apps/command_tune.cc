@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "apps/commands.h"
+#include "apps/input_limits.h"
 #include "apps/interrupt.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
@@ -197,6 +198,7 @@ int command_tune(const Arguments& arguments) {
   add_tune_settings(settings, job);
   add_match_settings(settings, job.match);
   add_common_settings(settings, job.common);
+  add_input_limit_settings(settings, job.common.execution);
   if (!settings.read(arguments)) {
     return kExitDone;
   }

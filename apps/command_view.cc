@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "apps/commands.h"
+#include "apps/input_limits.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
 #include "apps/pair_input.h"
@@ -81,6 +82,7 @@ int command_view(const Arguments& arguments) {
   add_page_settings(settings, job.page);
   add_match_settings(settings, job.pair.match);
   add_common_settings(settings, job.common);
+  add_input_limit_settings(settings, job.common.execution);
   if (!settings.read(arguments)) {
     return kExitDone;
   }

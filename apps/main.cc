@@ -10,12 +10,14 @@
 #include <system_error>
 
 #include "apps/commands.h"
+#include "apps/input_limits.h"
 #include "apps/process_setup.h"
 #include "apps/setting_value.h"
 #include "apps/suggestions.h"
 #include "apps/tell.h"
 #include "engine/build_info.h"
 #include "engine/error.h"
+#include "engine/quoted_text.h"
 
 namespace {
 
@@ -62,16 +64,14 @@ std::string unknown_command(const Arguments& arguments) {
     return fmt::format("'{}' is the first word of several commands, expected {}", arguments.front(),
                        kinds);
   }
-  return fmt::format("unknown command '{}'{}", arguments.front(),
+  return fmt::format("unknown command '{}'{}", vantage::quotable(arguments.front()),
                      vantage::apps::hint_for_command(arguments.front(), names));
 }
 
 /// One line on stderr, whatever the message holds.
-int fail(const std::string& command, std::string message, int exit_code) {
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  std::replace(message.begin(), message.end(), '\r', ' ');
-  const std::string line =
-      fmt::format("vantage{}{}: {}\n", command.empty() ? "" : " ", command, message);
+int fail(const std::string& command, const std::string& message, int exit_code) {
+  const std::string line = fmt::format("vantage{}{}: {}\n", command.empty() ? "" : " ", command,
+                                       vantage::printable(message));
   vantage::apps::tell_text(line);
   return exit_code;
 }
@@ -113,8 +113,8 @@ int main(int argc, char** argv) {
     exit_code = run(Arguments(argv + 1, argv + argc), command);
   } catch (const vantage::UsageError& error) {
     return fail(command, error.what(), vantage::apps::kExitUsage);
-  } catch (const std::bad_alloc&) {
-    return fail(command, "out of memory", vantage::apps::kExitFailed);
+  } catch (const std::bad_alloc& error) {
+    return fail(command, vantage::apps::memory_problem(error), vantage::apps::kExitFailed);
   } catch (const std::system_error& error) {
     return error.code() == std::errc::broken_pipe
                ? kExitUnread

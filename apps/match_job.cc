@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "apps/input_limits.h"
 #include "apps/outputs.h"
 #include "apps/rectification_check.h"
 #include "engine/error.h"
@@ -105,6 +106,7 @@ void add_match_job_settings(Settings& settings, MatchJob& job) {
   add_match_settings(settings, job.match);
   add_tuning_settings(settings, job.tuning);
   add_common_settings(settings, job.common);
+  add_input_limit_settings(settings, job.common.execution);
 }
 
 void require_files_hold_search(const MatchJob& job) {

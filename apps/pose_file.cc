@@ -14,6 +14,9 @@
 #include "apps/suggestions.h"
 #include "apps/toml_file.h"
 #include "engine/error.h"
+#include "engine/io/file_bytes.h"
+#include "engine/io/json_text.h"
+#include "engine/quoted_text.h"
 
 namespace vantage::apps {
 namespace {
@@ -21,15 +24,11 @@ namespace {
 const std::vector<std::string> kKeys = {"at", "K", "R", "t", "size", "frame"};
 
 SettingValue read_json(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  file.peek();  // a folder opens like a file and fails here
-  if (!file.is_open() || file.bad()) {
-    throw Error(fmt::format("{}: cannot be read, expected a file of poses", path));
-  }
+  const std::vector<std::uint8_t> bytes = read_file_bytes(path);
   try {
-    return SettingValue::parse(file);
-  } catch (const nlohmann::json::exception& error) {
-    throw UsageError(fmt::format("{}: not JSON: {}", path, error.what()));
+    return parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
+  } catch (const Error& error) {
+    throw UsageError(error.what());
   }
 }
 
@@ -46,7 +45,7 @@ std::vector<double> numbers_of(const SettingValue& value, std::size_t count,
   }
   if (!all_are_numbers || numbers.size() != count) {
     throw UsageError(
-        fmt::format("{} is {}, expected a list of {} numbers", what, value.dump(), count));
+        fmt::format("{} is {}, expected a list of {} numbers", what, quoted_json(value), count));
   }
   return numbers;
 }
@@ -90,18 +89,19 @@ PosedCamera camera_of(const SettingValue& entry, const std::string& where) {
 
 PoseEntry entry_of(const SettingValue& entry, const std::string& where) {
   if (!entry.is_object()) {
-    throw UsageError(fmt::format("{} is {}, expected a table", where, entry.dump()));
+    throw UsageError(fmt::format("{} is {}, expected a table", where, quoted_json(entry)));
   }
   for (const auto& [key, value] : entry.items()) {
     if (std::ranges::find(kKeys, key) == kKeys.end()) {
-      throw UsageError(fmt::format("{}: unknown key '{}'{}", where, key, hint_for_key(key, kKeys)));
+      throw UsageError(
+          fmt::format("{}: unknown key '{}'{}", where, quotable(key), hint_for_key(key, kKeys)));
     }
   }
   PoseEntry result;
   if (entry.contains("frame")) {
     if (!entry["frame"].is_number()) {
       throw UsageError(fmt::format("{}: frame is {}, expected a whole number from 0", where,
-                                   entry["frame"].dump()));
+                                   quoted_json(entry["frame"])));
     }
     result.frame = whole_number_of(entry["frame"].get<double>(), where + ": frame");
   }

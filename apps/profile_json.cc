@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "engine/error.h"
+#include "engine/io/json_text.h"
 
 namespace vantage::apps {
 namespace {
@@ -282,18 +283,13 @@ SettingValue as_json(const Profile& profile) {
 }
 
 Profile read_profile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  file.peek();  // a folder opens like a file and fails here
-  if (!file.is_open() || file.bad()) {
-    throw Error(fmt::format("{}: cannot be read, expected what 'profile --json' wrote", path));
-  }
-  const SettingValue document = SettingValue::parse(file, nullptr, false);
+  const SettingValue document = read_json_file(path);
   if (!document.is_object() || !document.contains(kSchemaKey)) {
     throw Error(fmt::format("{}: is no profile, expected what 'profile --json' wrote", path));
   }
   if (document.at(kSchemaKey) != kSchema) {
     throw Error(fmt::format("{}: {} is {}, expected {}: it is of another version of vantage", path,
-                            kSchemaKey, document.at(kSchemaKey).dump(), kSchema));
+                            kSchemaKey, quoted_json(document.at(kSchemaKey)), kSchema));
   }
   Profile profile;
   try {

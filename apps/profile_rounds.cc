@@ -9,6 +9,7 @@
 #include "apps/child_process.h"
 #include "apps/trace_file.h"
 #include "engine/io/atomic_file.h"
+#include "engine/io/json_text.h"
 #include "engine/profiling/timeline.h"
 #include "scheduler/hardware_counters.h"
 
@@ -20,11 +21,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-SettingValue read_report(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return SettingValue::parse(file);
 }
 
 std::map<std::string, RunMeasurement::Part> parts_in(const SettingValue& names) {
@@ -125,7 +121,7 @@ bool run_once(ProfiledCommand& command, const RunFiles& files, const std::string
   require_success(result, command, contestant.threads);
   RunMeasurement run;
   try {
-    const SettingValue report = read_report(files.report());
+    const SettingValue report = read_json_file(files.report());
     contestant.version = report.at("version");
     contestant.isa = report.at("isa");
     run = measurement_in(report);

@@ -8,6 +8,7 @@
 
 #include "apps/child_process.h"
 #include "engine/error.h"
+#include "engine/quoted_text.h"
 
 namespace vantage::apps {
 namespace {
@@ -33,8 +34,8 @@ void refuse_if(bool given, const char* option, const char* instead) {
 std::unique_ptr<ProfiledCommand> ProfiledCommand::read(const Arguments& words) {
   const std::string& name = words.front();
   if (name != "match" && name != "run") {
-    throw UsageError(
-        fmt::format("'{}' cannot be profiled, expected match or run with its arguments", name));
+    throw UsageError(fmt::format(
+        "'{}' cannot be profiled, expected match or run with its arguments", quotable(name)));
   }
   std::unique_ptr<ProfiledCommand> command(new ProfiledCommand(words, name == "match"));
   if (!command->settings_.read(Arguments(words.begin() + 1, words.end()))) {

@@ -83,7 +83,7 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
 
 void print_sound_problem(const std::string& command, const std::string& problem) {
   if (!problem.empty()) {
-    fmt::print(stderr, "{}: note: the videos are without sound: {}\n", command, problem);
+    tell("{}: note: the videos are without sound: {}\n", command, problem);
   }
 }
 

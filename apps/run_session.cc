@@ -11,6 +11,7 @@
 #include "apps/resumed_run.h"
 #include "engine/error.h"
 #include "engine/io/file_identity.h"
+#include "engine/io/json_text.h"
 #include "engine/sequence/delivered_frames.h"
 #include "engine/sequence/sequence_layout.h"
 #include "engine/sequence/sequence_range.h"
@@ -251,7 +252,7 @@ RunIdentity read_run(const std::string& folder, Settings& settings, RunJob& job)
   const fs::path journal = fs::path(folder) / ".vantage";
   RunIdentity identity = RunJournal::read_identity(journal);
   try {
-    settings.set_values(SettingValue::parse(identity.settings));
+    settings.set_values(parse_json(identity.settings, "settings"));
     job.output = folder;
     complete_sequence(job);
   } catch (const UsageError& error) {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "apps/frame_rate_setting.h"
+#include "apps/input_limits.h"
 #include "apps/match_settings.h"
 #include "apps/rectification_check.h"
 #include "apps/slurm_scripts.h"
@@ -75,37 +76,6 @@ std::optional<std::pair<int, int>> two_numbers(const std::string& text, char sep
     return std::nullopt;
   }
   return std::pair(static_cast<int>(*first), static_cast<int>(*second));
-}
-
-/// "512M", "4G", "1.5GiB", "800000000".
-std::size_t to_bytes(const SettingValue& value) {
-  const std::string text = value.is_number() ? value.dump() : to_text(value);
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  std::string unit(end, text.data() + text.size());
-  if (unit.ends_with("iB")) {
-    unit.resize(unit.size() - 2);
-  } else if (unit.ends_with("B")) {
-    unit.pop_back();
-  }
-  constexpr std::string_view kUnits = "KMGT";
-  const std::size_t power = unit.empty() ? 0 : kUnits.find(unit) + 1;
-  const double bytes = std::ldexp(number, 10 * static_cast<int>(power));
-  if (error != std::errc{} || unit.size() > 1 || (!unit.empty() && power == 0) ||
-      !(bytes >= 1 && bytes <= 0x1p50)) {
-    reject_value(value, "a size in bytes such as 800M or 4G (units of 1024)");
-  }
-  return static_cast<std::size_t>(bytes);
-}
-
-std::string bytes_text(std::size_t bytes) {
-  constexpr std::string_view kUnits = "KMGT";
-  std::size_t power = 0;
-  while (power < kUnits.size() && bytes % 1024 == 0 && bytes > 0) {
-    bytes /= 1024;
-    ++power;
-  }
-  return power == 0 ? fmt::format("{}", bytes) : fmt::format("{}{}", bytes, kUnits[power - 1]);
 }
 
 void add_packing(Settings& settings, std::string name, std::optional<StereoPacking>& field,
@@ -275,19 +245,8 @@ void add_pipeline_settings(Settings& settings, RunJob& job) {
   settings.begin_group("Pipeline", false);
   settings.integer("in-flight", job.in_flight, "N",
                    "Frames under way at once, 1 to 64; auto: threads + 2, less where memory is");
-  Setting& memory =
-      settings.add("memory", "SIZE", "Most memory to plan for, such as 800M or 4G; auto: no limit");
-  memory.set = [&job](const SettingValue& value) {
-    if (value == kAutomatic) {
-      job.memory_bytes.reset();
-    } else {
-      job.memory_bytes = to_bytes(value);
-    }
-  };
-  memory.get = [&job]() -> SettingValue {
-    return job.memory_bytes ? SettingValue(bytes_text(*job.memory_bytes))
-                            : SettingValue(kAutomatic);
-  };
+  add_size_setting(settings, "memory", job.memory_bytes,
+                   "Most memory to plan for, such as 800M or 4G; auto: no limit");
   settings.flag("dry-run", job.dry_run, "Print the plan and stop");
   settings.choice<ProgressStyle>("progress", job.progress,
                                  {{"auto", ProgressStyle::kAuto},
@@ -348,6 +307,7 @@ void add_run_settings(Settings& settings, RunJob& job) {
   add_synthesis_settings(settings, job.sequence.synthesis);
   add_tuning_settings(settings, job.tuning);
   add_common_settings(settings, job.common);
+  add_pixel_limit_setting(settings);
 }
 
 void complete_sequence(RunJob& job) {

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "engine/error.h"
+#include "engine/io/json_text.h"
 
 namespace vantage::apps {
 namespace {
@@ -29,8 +30,7 @@ std::optional<T> parse(std::string_view text) {
 }  // namespace
 
 void reject_value(const SettingValue& value, std::string_view expected) {
-  const std::string shown = value.is_string() ? "'" + value.get<std::string>() + "'" : value.dump();
-  throw UsageError(fmt::format("is {}, expected {}", shown, expected));
+  throw UsageError(fmt::format("is {}, expected {}", quoted_json(value), expected));
 }
 
 int to_integer(const SettingValue& value) {

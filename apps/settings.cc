@@ -11,6 +11,7 @@
 #include "apps/toml_file.h"
 #include "engine/error.h"
 #include "engine/io/stored_name.h"
+#include "engine/quoted_text.h"
 
 namespace vantage::apps {
 namespace {
@@ -80,7 +81,7 @@ CLI::Option* add_option(CLI::App& app, const Setting& setting) {
                                 const std::vector<std::string>& known) {
   const std::string name = argument.substr(0, argument.find('='));
   throw UsageError(
-      fmt::format("unknown option '{}'{}", name, hint_for_option(command, name, known)));
+      fmt::format("unknown option '{}'{}", quotable(name), hint_for_option(command, name, known)));
 }
 
 void require_known(const std::string& command, const std::vector<std::string>& leftovers,
@@ -91,7 +92,7 @@ void require_known(const std::string& command, const std::vector<std::string>& l
     }
   }
   if (!leftovers.empty()) {
-    throw UsageError(fmt::format("unexpected argument '{}'", leftovers.front()));
+    throw UsageError(fmt::format("unexpected argument '{}'", quotable(leftovers.front())));
   }
 }
 
@@ -276,7 +277,7 @@ void Settings::set_values(const SettingValue& values) {
   for (const auto& [key, value] : values.items()) {
     const auto setting = std::ranges::find(settings_, key, &Setting::name);
     if (setting == settings_.end()) {
-      throw UsageError(fmt::format("unknown setting '{}'", key));
+      throw UsageError(fmt::format("unknown setting '{}'", quotable(key)));
     }
     set_value(*setting,
               setting->path == PathRole::kNone ? value : with_texts(value, name_of_stored), key);
@@ -370,8 +371,8 @@ void Settings::apply_config(const std::string& path) {
   for (const auto& [key, value] : values.items()) {
     const auto setting = std::ranges::find(settings_, key, &Setting::name);
     if (setting == settings_.end()) {
-      throw UsageError(
-          fmt::format("{}: unknown key '{}'{}", path, key, hint_for_option(command_, key, names)));
+      throw UsageError(fmt::format("{}: unknown key '{}'{}", path, quotable(key),
+                                   hint_for_option(command_, key, names)));
     }
     const SettingValue before = setting->get();
     set_value(*setting,

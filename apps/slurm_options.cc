@@ -7,6 +7,7 @@
 #include <regex>
 
 #include "engine/error.h"
+#include "engine/quoted_text.h"
 
 namespace vantage::apps {
 namespace {
@@ -31,8 +32,8 @@ void require_name(const std::string& option, const std::string& name) {
            std::string("._-+,@").find(static_cast<char>(letter)) != std::string::npos;
   });
   if (!plain) {
-    throw UsageError(
-        fmt::format("{} is '{}', expected letters, digits and . _ - + , @", option, name));
+    throw UsageError(fmt::format("{} is '{}', expected letters, digits and . _ - + , @", option,
+                                 quotable(name)));
   }
 }
 
@@ -66,19 +67,22 @@ void SlurmOptions::validate() const {
   require_name("--partition", partition);
   require_name("--account", account);
   if (!time_limit.empty() && to_seconds(time_limit).value_or(0) < 1) {
-    throw UsageError(fmt::format(
-        "--time is '{}', expected MINUTES, HOURS:MINUTES:SECONDS or DAYS-HOURS", time_limit));
+    throw UsageError(
+        fmt::format("--time is '{}', expected MINUTES, HOURS:MINUTES:SECONDS or DAYS-HOURS",
+                    quotable(time_limit)));
   }
   if (!memory.empty() && !std::regex_match(memory, std::regex("[1-9][0-9]{0,9}[KMGT]"))) {
-    throw UsageError(fmt::format(
-        "--slurm-memory is '{}', expected a whole number with K, M, G or T, as in 8G", memory));
+    throw UsageError(
+        fmt::format("--slurm-memory is '{}', expected a whole number with K, M, G or T, as in 8G",
+                    quotable(memory)));
   }
   for (const std::string& option : sbatch_options) {
     if (!option.starts_with('-') || std::ranges::any_of(option, [](unsigned char letter) {
           return std::iscntrl(letter) != 0;
         })) {
-      throw UsageError(fmt::format(
-          "--sbatch-option is '{}', expected an option of sbatch, as in --qos=long", option));
+      throw UsageError(
+          fmt::format("--sbatch-option is '{}', expected an option of sbatch, as in --qos=long",
+                      quotable(option)));
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "engine/error.h"
+#include "engine/quoted_text.h"
 
 namespace vantage::apps {
 namespace {
@@ -44,7 +45,7 @@ SettingValue from_toml(const toml::node& node, const std::string& path, std::str
   }
   throw UsageError(fmt::format(
       "{}:{}: '{}' is a table or a date, expected a number, a text, true, false or a list of these",
-      path, node.source().begin.line, key));
+      path, node.source().begin.line, quotable(key)));
 }
 
 SettingValue read_file(const std::string& path, std::string_view expected, Tables tables) {
@@ -63,8 +64,8 @@ SettingValue read_file(const std::string& path, std::string_view expected, Table
     }
     return values;
   } catch (const toml::parse_error& error) {
-    throw UsageError(
-        fmt::format("{}:{}: not TOML: {}", path, error.source().begin.line, error.description()));
+    throw UsageError(fmt::format("{}:{}: not TOML: {}", path, error.source().begin.line,
+                                 quotable(error.description())));
   }
 }
 

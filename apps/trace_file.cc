@@ -11,6 +11,7 @@
 #include "engine/build_info.h"
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
+#include "engine/io/json_text.h"
 
 namespace vantage::apps {
 namespace {
@@ -148,12 +149,12 @@ StoredTrace read_trace(const std::string& path) {
   std::string line;
   try {
     std::getline(file, line);
-    const SettingValue head = SettingValue::parse(line + "]}");
+    const SettingValue head = parse_json(line + "]}", path);
     stored.trace.wall_ns = nanoseconds(head.at("otherData").at("wall_us"));
     stored.trace.dropped_spans = head.at("otherData").at("dropped_spans");
     while (std::getline(file, line) && line != "]}") {  // an event a line
       line.erase(line.find_last_not_of(',') + 1);
-      add_event(SettingValue::parse(line), stored);
+      add_event(parse_json(line, path), stored);
     }
   } catch (const SettingValue::exception&) {
     throw Error(fmt::format("{}: cannot be read, expected a trace of vantage", path));

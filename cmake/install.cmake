@@ -9,7 +9,9 @@ install(TARGETS vantage RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/kernels ${PROJECT_SOURCE_DIR}/scheduler
                   ${PROJECT_SOURCE_DIR}/engine
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vantage FILES_MATCHING PATTERN "*.h"
-  PATTERN libav_functions.h EXCLUDE)  # FFmpeg's headers are for .cc files
+  # FFmpeg's headers and those of the JSON library are for .cc files.
+  PATTERN libav_functions.h EXCLUDE
+  PATTERN json_text.h EXCLUDE)
 install(EXPORT VantageTargets NAMESPACE vantage:: DESTINATION ${package_dir})
 
 configure_package_config_file(

@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "engine/error.h"
+#include "engine/quoted_text.h"
 #include "kernels/simd_target.h"
 
 namespace vantage {
@@ -50,7 +51,7 @@ void force_instruction_set(const std::string& name) {
     }
   });
   if (chosen == 0 && !same_name(name, "best")) {
-    throw UsageError(fmt::format("isa is '{}', expected one of: best, {}", name,
+    throw UsageError(fmt::format("isa is '{}', expected one of: best, {}", quotable(name),
                                  fmt::join(available_instruction_sets(), ", ")));
   }
   kernels::force_target(chosen);

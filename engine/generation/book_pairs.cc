@@ -11,6 +11,7 @@
 #include "engine/error.h"
 #include "engine/generation/option_range.h"
 #include "engine/generation/portable_random.h"
+#include "engine/quoted_text.h"
 
 namespace vantage {
 namespace {
@@ -286,7 +287,7 @@ BookPairOptions book_pair_options(std::string_view name) {
       {.pattern = BookPattern::kGrass, .shape = BookShape::kBars}};
   const auto found = std::find(kBookPairNames.begin(), kBookPairNames.end(), name);
   if (found == kBookPairNames.end()) {
-    throw UsageError(fmt::format("pair '{}' is unknown, expected one of {}", name,
+    throw UsageError(fmt::format("pair '{}' is unknown, expected one of {}", quotable(name),
                                  fmt::join(kBookPairNames, ", ")));
   }
   return kPairs[found - kBookPairNames.begin()];

@@ -6,8 +6,11 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <string>
 #include <type_traits>
 #include <utility>
+
+#include "engine/out_of_memory.h"
 
 namespace vantage {
 
@@ -52,7 +55,7 @@ template <typename T>
 class Image {
  public:
   Image() = default;
-  /// Pixels are uninitialised. Dimensions ≥ 0, channels ≥ 1. Throws std::bad_alloc.
+  /// Pixels are uninitialised. Dimensions ≥ 0, channels ≥ 1. Throws OutOfMemory.
   Image(int width, int height, int channels = 1) { resize(width, height, channels); }
   Image(Image&& other) noexcept { *this = std::move(other); }
   Image& operator=(Image&& other) noexcept {
@@ -74,7 +77,12 @@ class Image {
     if (bytes > capacity_) {
       memory_.reset();
       capacity_ = 0;
-      memory_.reset(static_cast<T*>(::operator new (bytes, std::align_val_t{kAlignment})));
+      void* memory = ::operator new (bytes, std::align_val_t{kAlignment}, std::nothrow);
+      if (memory == nullptr) {
+        throw OutOfMemory("an image of " + std::to_string(width) + "x" + std::to_string(height) +
+                          " pixels (" + std::to_string(bytes >> 20U) + " MiB)");
+      }
+      memory_.reset(static_cast<T*>(memory));
       capacity_ = bytes;
     }
     view_ = ImageView<T>(memory_.get(), width, height, channels, pitch / sizeof(T));

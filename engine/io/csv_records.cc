@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/quoted_text.h"
 
 namespace vantage {
 namespace {
@@ -99,7 +100,8 @@ std::string CsvRecords::read_unquoted() {
     field.remove_suffix(1);
   }
   if (field.find('"') != std::string_view::npos) {
-    fail(line_, fmt::format("a quote inside of '{}', expected \"\" in a quoted name", field));
+    fail(line_,
+         fmt::format("a quote inside of '{}', expected \"\" in a quoted name", quotable(field)));
   }
   return std::string(field);
 }

@@ -83,7 +83,7 @@ DisparityMap read_disparity(const std::filesystem::path& path, double scale) {
     return with_unknown_as(decode_npy(file).view(), kUnknown);
   }
   const bool is_png = file.has_at(0, "\x89PNG");
-  const StoredImage stored = decode_image(file);
+  const DecodedImage stored = decode_image(file);
   if (stored.photograph.channels() != 1) {
     file.fail(fmt::format("has {} channels, expected a disparity map of 1",
                           stored.photograph.channels()));

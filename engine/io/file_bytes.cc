@@ -69,9 +69,9 @@ void FileBytes::check_dimensions(long long width, long long height) const {
   if (width < 1 || height < 1) {
     fail(fmt::format("its header says {}x{} pixels, expected at least 1x1", width, height));
   }
-  if (width > kMaxImageSide || height > kMaxImageSide || width * height > kMaxImagePixels) {
+  if (width > kMaxImageSide || height > kMaxImageSide || width * height > max_image_pixels()) {
     fail(fmt::format("its header says {}x{} pixels, expected at most {} a side and {} in all",
-                     width, height, kMaxImageSide, kMaxImagePixels));
+                     width, height, kMaxImageSide, max_image_pixels()));
   }
 }
 

@@ -56,7 +56,7 @@ class FileBytes {
   }
 
   /// Throws Error unless both sides are in 1..kMaxImageSide and their product is at most
-  /// kMaxImagePixels.
+  /// max_image_pixels().
   void check_dimensions(long long width, long long height) const;
 
  private:

@@ -17,6 +17,8 @@ struct NumberPattern {
   std::string suffix;
 
   [[nodiscard]] std::string name(int number) const;
+  /// The shell pattern that matches all names of this pattern.
+  [[nodiscard]] std::string wildcard() const { return prefix + "*" + suffix; }
   /// The number in `name`, if this pattern makes that name.
   [[nodiscard]] std::optional<int> number_in(const std::string& name) const;
 };

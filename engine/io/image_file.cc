@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <climits>
+#include <new>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -12,6 +13,7 @@
 
 #include "engine/error.h"
 #include "engine/io/image_header.h"
+#include "engine/io/jpeg_decoder.h"
 #include "engine/io/opencv_codecs.h"
 #include "engine/io/opencv_setup.h"
 #include "engine/io/pfm.h"
@@ -167,11 +169,9 @@ void check_capability(const std::filesystem::path& path, const std::string& exte
   }
 }
 
-}  // namespace
-
-StoredImage decode_image(const FileBytes& file, Photograph memory) {
+DecodedImage decode(const FileBytes& file, Photograph& memory) {
   const ImageFormat format = detect_image_format(file);
-  StoredImage result;
+  DecodedImage result;
   switch (format) {
     case ImageFormat::kPfm:
       result.photograph.pixels = decode_pfm(file);
@@ -184,9 +184,13 @@ StoredImage decode_image(const FileBytes& file, Photograph memory) {
       const PngStructure structure = check_png_structure(file);
       std::optional<Photograph> usual = decode_usual_png(structure, memory);
       result.photograph =
-          usual ? std::move(*usual) : decode_with_opencv(file, strip_png(structure), memory);
+          usual ? std::move(*usual) : decode_any_png(file, strip_png(structure), memory);
       break;
     }
+    case ImageFormat::kJpeg:
+      check_image_header(file, format);
+      result.photograph = decode_jpeg(file, memory);
+      return result;
     default:
       check_image_header(file, format);
       result.photograph = decode_with_opencv(file, file.all(), memory);
@@ -195,6 +199,18 @@ StoredImage decode_image(const FileBytes& file, Photograph memory) {
     result.max_value = 65535;
   }
   return result;
+}
+
+}  // namespace
+
+DecodedImage decode_image(const FileBytes& file, Photograph memory) {
+  try {
+    return decode(file, memory);
+  } catch (const OutOfMemory& error) {
+    file.fail(error.what());
+  } catch (const std::bad_alloc&) {
+    file.fail("out of memory for its pixels");
+  }
 }
 
 void encode_image(const std::filesystem::path& path, const Photograph& photograph,

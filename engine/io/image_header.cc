@@ -14,6 +14,20 @@ namespace {
 constexpr std::endian kLittle = std::endian::little;
 constexpr std::endian kBig = std::endian::big;
 
+/// Two bytes of a run are at most 255 pixels.
+constexpr long long kMostRunPixelsPerByte = 128;
+/// Each 8×8 block takes a bit of Huffman code. Twice that, as components may be subsampled.
+constexpr long long kMostJpegPixelsPerByte = 1024;
+
+/// Asked before memory is: a few bytes must not take gigabytes.
+void check_pixels_per_byte(const FileBytes& file, long long width, long long height,
+                           long long most) {
+  if (width * height / most > static_cast<long long>(file.size())) {
+    file.fail(fmt::format("is damaged, {} bytes cannot hold the {}x{} pixels that its header says",
+                          file.size(), width, height));
+  }
+}
+
 void check_bmp(const FileBytes& file) {
   const auto header_bytes = file.integer<std::uint32_t>(14, kLittle);
   if (header_bytes == 12) {
@@ -35,6 +49,8 @@ void check_bmp(const FileBytes& file) {
     const long long row_bytes = (width * bits + 31) / 32 * 4;
     (void)file.part(file.integer<std::uint32_t>(10, kLittle),
                     static_cast<std::size_t>(row_bytes * height));
+  } else {
+    check_pixels_per_byte(file, width, height, kMostRunPixelsPerByte);
   }
 }
 
@@ -42,7 +58,9 @@ bool is_start_of_frame(int marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }
 
-/// Decoders return grey for the part that a truncated JPEG lacks, so the end marker is looked for.
+bool is_huffman_frame(int marker) { return marker <= 0xC7; }
+
+/// Looks for the end marker first: "is truncated" tells more than what a decoder finds missing.
 /// Segments are stepped over: a thumbnail in one of them has markers of its own.
 void check_jpeg(const FileBytes& file) {
   const auto bytes = file.all();
@@ -65,8 +83,12 @@ void check_jpeg(const FileBytes& file) {
     const std::size_t length = file.integer<std::uint16_t>(offset + 1, kBig);
     (void)file.part(offset + 1, length);
     if (is_start_of_frame(marker)) {
-      file.check_dimensions(file.integer<std::uint16_t>(offset + 6, kBig),
-                            file.integer<std::uint16_t>(offset + 4, kBig));
+      const int width = file.integer<std::uint16_t>(offset + 6, kBig);
+      const int height = file.integer<std::uint16_t>(offset + 4, kBig);
+      file.check_dimensions(width, height);
+      if (is_huffman_frame(marker)) {
+        check_pixels_per_byte(file, width, height, kMostJpegPixelsPerByte);
+      }
       has_frame = true;
     }
     has_scan = has_scan || marker == 0xDA;

@@ -19,6 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::int64_t kMostMissingPerFile = 100;
+
 /// Names of the regular files in `folder` ("" is the current one) that `wanted` accepts.
 template <typename Wanted>
 std::vector<fs::path> list_names(const fs::path& folder, const Wanted& wanted) {
@@ -91,18 +93,29 @@ std::unique_ptr<FrameSource> open_image_pattern(const std::string& spec) {
   NumberPattern pattern = parse_number_pattern(path.filename().string(), spec);
   std::optional<int> smallest;
   int largest = 0;
+  std::int64_t present = 0;
   for (const fs::path& name : list_names(path.parent_path(), [&](const std::string& candidate) {
          return pattern.number_in(candidate).has_value();
        })) {
     const int number = *pattern.number_in(name.string());
     smallest = std::min(smallest.value_or(number), number);
     largest = std::max(largest, number);
+    ++present;
   }
   if (!smallest) {
     throw Error(fmt::format("{}: no file matches", spec));
   }
   if (largest == std::numeric_limits<int>::max()) {
     throw Error(fmt::format("{}: number {} is too large", spec, largest));
+  }
+  // Each missing number is a frame that is missing; names that are times have millions between
+  // them.
+  if (std::int64_t{largest} - *smallest + 1 - present > kMostMissingPerFile * present) {
+    throw Error(fmt::format(
+        "{}: {} files have numbers from {} to {}, expected at most {} missing for each that is "
+        "there; '{}' takes the files in order without gaps",
+        spec, present, *smallest, largest, kMostMissingPerFile,
+        (path.parent_path() / pattern.wildcard()).string()));
   }
   return std::make_unique<NumberedImages>(spec, path.parent_path(), std::move(pattern), *smallest,
                                           largest - *smallest + 1);

@@ -52,7 +52,7 @@ class ProbeOptions {
  public:
   explicit ProbeOptions(unsigned streams) : options_(streams, nullptr) {
     for (AVDictionary*& option : options_) {
-      av_dict_set_int(&option, "max_pixels", kMaxImagePixels, 0);
+      av_dict_set_int(&option, "max_pixels", max_image_pixels(), 0);
       av_dict_set_int(&option, "threads", 1, 0);
     }
   }
@@ -128,6 +128,7 @@ void silence_libav() {
 LibavInput open_media_file(const fs::path& path) {
   silence_libav();
   check_is_video_file(path);
+  check_video_tables(path);
   if (find_video_extent(path) == VideoExtent::kWithoutIndex) {
     throw Error(
         fmt::format("{}: is an MP4 without index (moov): truncated after {} bytes, or its "

@@ -1,4 +1,5 @@
 #include "engine/io/npy.h"
+#include "engine/quoted_text.h"
 
 #include <fmt/format.h>
 
@@ -48,14 +49,6 @@ std::string_view enclosed(const FileBytes& file, std::string_view value, char en
     file.fail("its NPY header is not a Python dictionary");
   }
   return value.substr(1, length - 1);
-}
-
-/// `text` as it may stand in a message of one line.
-std::string printable(std::string_view text) {
-  std::string result(text.substr(0, 40));
-  std::replace_if(
-      result.begin(), result.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return result;
 }
 
 struct Shape {
@@ -129,7 +122,7 @@ Image<float> decode_npy(const FileBytes& file) {
   const std::string_view type =
       is_plain_type ? enclosed(file, type_value, type_value[0]) : "record";
   if (type != "<f4" && type != "<f8") {
-    file.fail(fmt::format("holds values of type {}, expected <f4 or <f8", printable(type)));
+    file.fail(fmt::format("holds values of type {}, expected <f4 or <f8", quotable(type)));
   }
   if (!find_value(file, dictionary, "fortran_order").starts_with("False")) {
     file.fail("is in Fortran order, expected C order");
@@ -137,7 +130,7 @@ Image<float> decode_npy(const FileBytes& file) {
   const std::string_view shape_text = enclosed(file, find_value(file, dictionary, "shape"), ')');
   const std::optional<Shape> shape = parse_shape(shape_text);
   if (!shape) {
-    file.fail(fmt::format("has shape ({}), expected (height, width)", printable(shape_text)));
+    file.fail(fmt::format("has shape ({}), expected (height, width)", quotable(shape_text)));
   }
   const int height = shape->height;
   const int width = shape->width;

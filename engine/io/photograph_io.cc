@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <cmath>
 #include <type_traits>
 #include <utility>
@@ -12,6 +13,9 @@
 
 namespace vantage {
 namespace {
+
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
+std::atomic<long long> accepted_pixels = kMaxImagePixels;
 
 void check_finite(const FileBytes& file, const Image<float>& image) {
   for (int y = 0; y < image.height(); ++y) {
@@ -42,10 +46,19 @@ void stretch(Image<T>& image, unsigned max_value) {
 
 }  // namespace
 
+long long max_image_pixels() { return accepted_pixels; }
+
+void set_max_image_pixels(long long pixels) {
+  if (pixels < 1 || pixels > kMaxImagePixels) {
+    throw UsageError(fmt::format("max-pixels is {}, expected 1 to {}", pixels, kMaxImagePixels));
+  }
+  accepted_pixels = pixels;
+}
+
 Photograph read_photograph(const std::filesystem::path& path, Photograph memory) {
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
   const FileBytes file(bytes, path.string());
-  StoredImage stored = decode_image(file, std::move(memory));
+  DecodedImage stored = decode_image(file, std::move(memory));
   std::visit(
       [&]<typename T>(Image<T>& image) {
         if constexpr (std::is_same_v<T, float>) {

@@ -13,6 +13,12 @@ namespace vantage {
 inline constexpr int kMaxImageSide = 65500;
 inline constexpr long long kMaxImagePixels = 1LL << 28;
 
+/// The number of pixels that this process accepts, in images and videos: kMaxImagePixels unless it
+/// has been set to 1 to that many. Throws UsageError beyond. Thread rule: may be called
+/// concurrently; what is read meanwhile has the old limit or the new one.
+long long max_image_pixels();
+void set_max_image_pixels(long long pixels);
+
 /// Reads PNG, JPEG, TIFF, PNM, BMP, WebP, EXR (by OpenCV) and PFM. 8- and 16-bit and float, grey,
 /// RGB or RGBA, as the file's content says, whatever its name; PNM values are stretched from the
 /// file's largest value to the type's. EXIF orientation, gamma and colour profiles are ignored.

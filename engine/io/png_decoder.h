@@ -14,4 +14,11 @@ namespace vantage {
 /// has their depth and size.
 std::optional<Photograph> decode_usual_png(const PngStructure& structure, Photograph& memory);
 
+/// The pixels of any PNG file: palettes become RGB, a transparent colour alpha, and fewer than 8
+/// bits
+/// 8. `png` is the file with its essential chunks only. Throws Error naming `file` when libpng
+/// finds it damaged.
+Photograph decode_any_png(const FileBytes& file, std::span<const std::uint8_t> png,
+                          Photograph& memory);
+
 }  // namespace vantage

@@ -2,26 +2,32 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/error.h"
 
 namespace vantage {
 namespace {
 
-/// Reads a few bytes here and there of a file too large to load.
+constexpr std::uint64_t kTransportPacketBytes = 188;
+
+/// Reads a few bytes here and there of a file too large to load, and their neighbours with them.
 class SparseFile {
  public:
   explicit SparseFile(const std::filesystem::path& path)
       : path_(path), stream_(path, std::ios::binary), size_(std::filesystem::file_size(path)) {}
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw Error(fmt::format("{}: {}", path_.string(), problem));
+  }
 
   [[nodiscard]] bool holds(std::uint64_t offset, std::uint64_t bytes) const {
     return offset <= size_ && bytes <= size_ - offset;
@@ -38,22 +44,40 @@ class SparseFile {
 
   /// `count` ≤ 8 bytes that the file holds.
   std::string_view text(std::uint64_t offset, int count) {
-    stream_.seekg(static_cast<std::streamoff>(offset));
-    if (!stream_.read(buffer_.data(), count)) {
-      throw Error(fmt::format("cannot read {}", path_.string()));
+    const auto bytes = static_cast<std::size_t>(count);
+    if (offset < begin_ || offset + bytes > begin_ + buffer_.size()) {
+      load(offset);
     }
-    return {buffer_.data(), static_cast<std::size_t>(count)};
+    return {buffer_.data() + (offset - begin_), bytes};
   }
 
  private:
+  void load(std::uint64_t offset) {
+    constexpr std::uint64_t kMostBytes = 4096;
+    begin_ = offset;
+    buffer_.resize(static_cast<std::size_t>(std::min(kMostBytes, size_ - offset)));
+    stream_.seekg(static_cast<std::streamoff>(offset));
+    if (!stream_.read(buffer_.data(), static_cast<std::streamsize>(buffer_.size()))) {
+      throw Error(fmt::format("cannot read {}", path_.string()));
+    }
+  }
+
   std::filesystem::path path_;
   std::ifstream stream_;
   std::uint64_t size_;
-  std::array<char, 8> buffer_{};
+  std::vector<char> buffer_;  ///< bytes from begin_ on
+  std::uint64_t begin_ = 0;
 };
 
-/// Length of the box at `offset`; empty when it is not there to its end.
-std::optional<std::uint64_t> whole_box(SparseFile& file, std::uint64_t offset) {
+/// A box of an MP4, from its head on.
+struct Box {
+  std::string type;
+  std::uint64_t begin = 0;  ///< of its contents
+  std::uint64_t end = 0;
+};
+
+/// The box at `offset`; empty when it is not there to its end.
+std::optional<Box> whole_box(SparseFile& file, std::uint64_t offset) {
   if (!file.holds(offset, 8)) {
     return std::nullopt;
   }
@@ -68,18 +92,66 @@ std::optional<std::uint64_t> whole_box(SparseFile& file, std::uint64_t offset) {
     }
     length = file.big_endian(offset + 8, 8);
   }
-  return length >= header && file.holds(offset, length) ? std::optional(length) : std::nullopt;
+  if (length < header || !file.holds(offset, length)) {
+    return std::nullopt;
+  }
+  return Box{std::string(file.text(offset + 4, 4)), offset + header, offset + length};
+}
+
+bool holds_boxes(const std::string& type) {
+  for (const char* container : {"moov", "trak", "mdia", "minf", "stbl", "moof", "traf"}) {
+    if (type == container) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Samples that a table promises without an entry for each; 0 in other boxes.
+std::uint64_t samples_without_entries(SparseFile& file, const Box& box) {
+  if (box.type == "stsz" && box.end - box.begin >= 12) {
+    return file.big_endian(box.begin + 4, 4) != 0 ? file.big_endian(box.begin + 8, 4) : 0;
+  }
+  constexpr std::uint64_t kFieldsOfASample = 0xF00;
+  if (box.type == "trun" && box.end - box.begin >= 8) {
+    return (file.big_endian(box.begin, 4) & kFieldsOfASample) == 0
+               ? file.big_endian(box.begin + 4, 4)
+               : 0;
+  }
+  return 0;
+}
+
+/// Readers make an entry in memory for each sample that a table promises. One takes a byte of the
+/// file at least; those of compressed sound may be counted as what they become.
+void check_sample_tables(SparseFile& file, std::uint64_t begin, std::uint64_t end, int level = 0) {
+  constexpr int kMostLevels = 6;  // moov, trak, mdia, minf, stbl, stsz
+  constexpr std::uint64_t kMostSamplesPerByte = 16;
+  for (std::uint64_t offset = begin; offset < end;) {
+    const std::optional<Box> box = whole_box(file, offset);
+    if (!box) {
+      return;
+    }
+    if (const std::uint64_t samples = samples_without_entries(file, *box);
+        samples / kMostSamplesPerByte > file.size()) {
+      file.fail(fmt::format("is damaged, {} bytes cannot hold the {} samples that its index says",
+                            file.size(), samples));
+    }
+    if (level + 1 < kMostLevels && holds_boxes(box->type)) {
+      check_sample_tables(file, box->begin, std::min(box->end, end), level + 1);
+    }
+    offset = box->end;
+  }
 }
 
 VideoExtent extent_of_boxes(SparseFile& file) {
   bool has_index = false;
   for (std::uint64_t offset = 0; offset < file.size();) {
-    const std::optional<std::uint64_t> length = whole_box(file, offset);
-    if (!length) {
+    const std::optional<Box> box = whole_box(file, offset);
+    if (!box) {
       return has_index ? VideoExtent::kCutOff : VideoExtent::kWithoutIndex;
     }
-    has_index = has_index || file.text(offset + 4, 4) == "moov";
-    offset += *length;
+    has_index = has_index || box->type == "moov";
+    offset = box->end;
   }
   return has_index ? VideoExtent::kWhole : VideoExtent::kWithoutIndex;
 }
@@ -158,6 +230,27 @@ bool has_whole_movie(SparseFile& file) {
   return false;
 }
 
+/// Of MPEG-TS, which is packets of one length. A recording may begin in the middle of one.
+bool has_whole_packets(SparseFile& file, std::uint64_t first) {
+  return (file.size() - first) % kTransportPacketBytes == 0;
+}
+
+/// Where the first packet of an MPEG-TS begins; empty when the file is none.
+std::optional<std::uint64_t> find_transport_packet(SparseFile& file) {
+  constexpr std::uint64_t kPacketsLookedAt = 5;
+  for (std::uint64_t first = 0; first < kTransportPacketBytes; ++first) {
+    std::uint64_t packets = 0;
+    while (packets < kPacketsLookedAt && file.holds(first + packets * kTransportPacketBytes, 1) &&
+           file.text(first + packets * kTransportPacketBytes, 1) == "G") {
+      ++packets;
+    }
+    if (packets == kPacketsLookedAt) {
+      return first;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 VideoExtent find_video_extent(const std::filesystem::path& path) {
@@ -177,7 +270,24 @@ VideoExtent find_video_extent(const std::filesystem::path& path) {
   if (file.text(0, 4) == "RIFF" && file.text(8, 4) == "AVI ") {
     return extent(has_whole_movie(file));
   }
+  if (const auto first = find_transport_packet(file)) {
+    return extent(has_whole_packets(file, *first));
+  }
   return VideoExtent::kWhole;
+}
+
+void check_video_tables(const std::filesystem::path& path) {
+  SparseFile file(path);
+  if (!file.holds(0, 8)) {
+    return;
+  }
+  for (const char* first :
+       {"ftyp", "moov", "mdat", "wide", "free", "skip", "styp", "sidx", "moof"}) {
+    if (file.text(4, 4) == first) {
+      check_sample_tables(file, 0, file.size());
+      return;
+    }
+  }
 }
 
 void check_video_is_whole(const std::filesystem::path& path) {

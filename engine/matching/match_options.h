@@ -83,8 +83,8 @@ struct MatchOptions {
   RefinementOverrides refinement;
 
   /// Without method and preset it is `balanced`, whatever the cost. None with an aggregation, which
-  /// starts from SSD: most of a preset is about its own. None with `disparities_y`, whose columns are
-  /// long.
+  /// starts from SSD: most of a preset is about its own. None with `disparities_y`, whose columns
+  /// are long.
   [[nodiscard]] std::optional<MatchPreset> preset_in_force() const;
   /// What maps are made by, in words: "preset balanced", "method ssd with aggregation gaussian",
   /// "preset balanced with cost census".

@@ -10,6 +10,7 @@
 #include "engine/error.h"
 #include "engine/io/csv_records.h"
 #include "engine/io/file_bytes.h"
+#include "engine/quoted_text.h"
 
 namespace vantage {
 namespace {
@@ -45,8 +46,9 @@ std::vector<SceneImage> parse_position_list(std::string_view text, const fs::pat
     const auto coordinate = [&](std::size_t field) {
       const std::optional<double> value = number_in(fields[field]);
       if (!value) {
-        records.fail(records.record_line(), fmt::format("{} is '{}', expected a finite number",
-                                                        field == 1 ? "x" : "y", fields[field]));
+        records.fail(records.record_line(),
+                     fmt::format("{} is '{}', expected a finite number", field == 1 ? "x" : "y",
+                                 quotable(fields[field])));
       }
       return *value;
     };

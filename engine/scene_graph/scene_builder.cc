@@ -18,6 +18,7 @@
 #include "engine/io/atomic_file.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/file_bytes.h"
+#include "engine/io/json_text.h"
 #include "engine/io/photograph_io.h"
 #include "engine/io/temporary_name.h"
 #include "engine/matching/disparity_range.h"
@@ -141,7 +142,7 @@ SceneBuilder::SceneBuilder(fs::path folder, std::vector<SceneImage> images,
     throw Error(
         fmt::format("{}: another process builds this scene, expected none", folder_.string()));
   }
-  scene_.settings = nlohmann::ordered_json::parse(options_.settings).dump();
+  scene_.settings = parse_json(options_.settings, "settings").dump();
   scene_.unit_length = layout_.unit_length();
   if (options_.copy_images) {
     make_folder(folder_ / "images");

@@ -15,6 +15,7 @@
 #include "engine/io/disparity_io.h"
 #include "engine/io/file_bytes.h"
 #include "engine/io/file_identity.h"
+#include "engine/io/json_text.h"
 #include "engine/io/photograph_io.h"
 #include "engine/io/stored_name.h"
 
@@ -52,7 +53,7 @@ Json json_of(const StoredEdge& stored) {
           {"unmatched", {json_of(stored.unmatched[0]), json_of(stored.unmatched[1])}}};
 }
 
-StoredEdge edge_of(const Json& json, int vertices) {
+StoredEdge edge_of(const Json& json, int vertices, const std::string& name) {
   StoredEdge stored;
   stored.edge = {.first = json.at("first").get<int>(),
                  .second = json.at("second").get<int>(),
@@ -62,7 +63,7 @@ StoredEdge edge_of(const Json& json, int vertices) {
   const auto is_vertex = [&](int number) { return number >= 0 && number < vertices; };
   if (!is_vertex(stored.edge.first) || !is_vertex(stored.edge.second) ||
       !(stored.edge.length > 0) || !(std::abs(stored.edge.slope) <= 1)) {
-    throw Error("an edge is out of range");
+    throw Error(fmt::format("{}: an edge is out of range", name));
   }
   stored.disparities = {.min = json.at("disparities").at(0).get<int>(),
                         .max = json.at("disparities").at(1).get<int>()};
@@ -77,11 +78,11 @@ StoredEdge edge_of(const Json& json, int vertices) {
   return stored;
 }
 
-StoredScene scene_of(const std::string& text) {
-  const Json json = Json::parse(text);
+StoredScene scene_of(std::string_view text, const std::string& name) {
+  const Json json = parse_json(text, name);
   if (json.at("format").get<int>() != kSceneFormat) {
-    throw Error(
-        fmt::format("is of format {}, expected {}", json.at("format").dump(), kSceneFormat));
+    throw Error(fmt::format("{}: is of format {}, expected {}", name,
+                            quoted_json(json.at("format")), kSceneFormat));
   }
   StoredScene scene;
   scene.settings = json.at("settings").dump();
@@ -95,10 +96,10 @@ StoredScene scene_of(const std::string& text) {
          .position = {image.at("x").get<double>(), image.at("y").get<double>()}});
   }
   for (const Json& edge : json.at("edges")) {
-    scene.edges.push_back(edge_of(edge, static_cast<int>(scene.images.size())));
+    scene.edges.push_back(edge_of(edge, static_cast<int>(scene.images.size()), name));
   }
   if (!(scene.unit_length > 0) || !std::isfinite(scene.unit_length)) {
-    throw Error("unit_length is not above 0");
+    throw Error(fmt::format("{}: unit_length is not above 0", name));
   }
   return scene;
 }
@@ -186,11 +187,9 @@ std::optional<StoredScene> find_scene(const fs::path& folder) {
   const std::string name = file_of(folder).string();
   const std::vector<std::uint8_t> bytes = read_file_bytes(file_of(folder));
   try {
-    return scene_of(std::string(as_text(bytes)));
+    return scene_of(as_text(bytes), name);
   } catch (const nlohmann::json::exception&) {
     throw Error(fmt::format("{}: is damaged, or not what 'vantage scene build' writes", name));
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", name, error.what()));
   }
 }
 
@@ -217,7 +216,7 @@ void write_scene(const fs::path& folder, const StoredScene& scene) {
   }
   const Json json = {{"format", kSceneFormat},
                      {"version", build_info().version},
-                     {"settings", Json::parse(scene.settings)},
+                     {"settings", parse_json(scene.settings, "settings")},
                      {"unit_length", scene.unit_length},
                      {"size", {scene.width_px, scene.height_px}},
                      {"images", images},

@@ -13,6 +13,7 @@
 #include "engine/build_info.h"
 #include "engine/error.h"
 #include "engine/io/checksum.h"
+#include "engine/io/json_text.h"
 #include "engine/io/stored_name.h"
 
 namespace vantage {
@@ -157,6 +158,12 @@ std::string change_of(const std::string& key, const std::string& before, const s
              : fmt::format("{} was {}, now {}", key, before, now);
 }
 
+/// Whether a run may go on with this setting: sound that makes trouble may be left out of videos
+/// that are yet to be joined.
+bool may_become(const std::string& key, const Json& now) {
+  return key == "no-sound" && now == true;
+}
+
 }  // namespace
 
 std::string line_of(const JournalRecord& record) {
@@ -170,7 +177,9 @@ std::optional<JournalRecord> record_of(const std::string& line) {
     return std::nullopt;
   }
   try {
-    return record_in(Json::parse(line));
+    return record_in(parse_json(line, "journal"));
+  } catch (const Error&) {
+    return std::nullopt;
   } catch (const nlohmann::json::exception&) {
     return std::nullopt;
   }
@@ -185,19 +194,20 @@ std::string text_of(const RunIdentity& identity) {
                       {{"file", stored_name(identity.sound_file.string())},
                        {"first_frame", identity.sound_first_frame},
                        {"rate", to_string(identity.sound_rate)}}},
-                     {"sources", Json::parse(identity.sources)},
-                     {"settings", Json::parse(identity.settings)}};
+                     {"sources", parse_json(identity.sources, "sources")},
+                     {"settings", parse_json(identity.settings, "settings")}};
   return with_checksum(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 RunIdentity identity_of(const std::string& text, const std::filesystem::path& file) {
   try {
-    const Json json = Json::parse(text);
+    const Json json = parse_json(text, file.string());
     if (json.at("format").get<int>() != kJournalFormat) {
       throw Error(fmt::format(
           "{}: is of format {} (written by Vantage {}), expected {}: that version finishes the "
           "run, or --overwrite begins it anew",
-          file.string(), json.at("format").dump(), json.value("version", "?"), kJournalFormat));
+          file.string(), quoted_json(json.at("format")), json.value("version", "?"),
+          kJournalFormat));
     }
     if (!has_valid_checksum(text)) {
       throw Error(
@@ -220,13 +230,13 @@ RunIdentity identity_of(const std::string& text, const std::filesystem::path& fi
 }
 
 std::string difference(const RunIdentity& then, const RunIdentity& now) {
-  const Json old_settings = Json::parse(then.settings);
+  const Json old_settings = parse_json(then.settings, "settings");
   // Through text and back, so that numbers compare as they are stored.
-  const Json new_settings = Json::parse(now.settings);
+  const Json new_settings = parse_json(now.settings, "settings");
   std::vector<std::string> found;
   for (const auto& [key, value] : new_settings.items()) {
     const Json before = old_settings.value(key, Json());
-    if (before != value) {
+    if (before != value && !may_become(key, value)) {
       found.push_back(change_of(key, before.dump(), value.dump()));
     }
   }

@@ -8,6 +8,7 @@
 
 #include "engine/error.h"
 #include "engine/io/disparity_io.h"
+#include "engine/quoted_text.h"
 
 namespace vantage {
 namespace {
@@ -87,8 +88,8 @@ void check_views(const SequenceOptions& options) {
 
 void check_formats(const SequenceOptions& options) {
   if (!is_disparity_extension("map." + options.map_format)) {
-    throw UsageError(
-        fmt::format("format is '{}', expected pfm, png, tiff, exr or npy", options.map_format));
+    throw UsageError(fmt::format("format is '{}', expected pfm, png, tiff, exr or npy",
+                                 quotable(options.map_format)));
   }
   const bool saves_maps =
       options.saves(SequenceOutput::kDisparity) || options.saves(SequenceOutput::kRightDisparity);

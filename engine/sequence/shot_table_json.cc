@@ -6,6 +6,7 @@
 #include "engine/io/atomic_file.h"
 #include "engine/io/checksum.h"
 #include "engine/io/file_bytes.h"
+#include "engine/io/json_text.h"
 #include "engine/sequence/shots.h"
 
 namespace vantage {
@@ -84,12 +85,12 @@ std::string to_json(const ShotTable& table) {
 ShotTable shot_table_from_json(const std::string& text) {
   ShotTable table;
   try {
-    const Json json = Json::parse(text);
+    const Json json = parse_json(text, "shots");
     for (const Json& shot : json.at("shots")) {
       table.shots.push_back(shot_of_json(shot));
     }
-  } catch (const nlohmann::json::exception& error) {
-    throw Error(fmt::format("shots: cannot be read: {}", error.what()));
+  } catch (const nlohmann::json::exception&) {
+    throw Error("shots: an entry is missing or of a wrong kind, expected those that a run writes");
   }
   check(table);
   return table;

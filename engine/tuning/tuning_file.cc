@@ -17,6 +17,8 @@
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
 #include "engine/io/file_descriptor.h"
+#include "engine/io/json_text.h"
+#include "engine/quoted_text.h"
 
 namespace vantage {
 namespace {
@@ -72,7 +74,7 @@ std::string text_of(const std::vector<TuningEntry>& entries) {
 /// A whole number of `field`; not a fraction, a truth value or a text.
 int whole_number(const Json& json, const std::string& field) {
   if (!json.is_number_integer() || json.get<double>() < 0 || json.get<double>() > 1e9) {
-    throw UsageError(fmt::format("{} is {}, expected a whole number", field, json.dump()));
+    throw UsageError(fmt::format("{} is {}, expected a whole number", field, quoted_json(json)));
   }
   return json.get<int>();
 }
@@ -81,7 +83,7 @@ double number(const Json& json, const std::string& field, double least) {
   const double value = json.is_number() ? json.get<double>() : std::nan("");
   if (!(std::isfinite(value) && value >= least)) {
     throw UsageError(
-        fmt::format("{} is {}, expected a number of at least {}", field, json.dump(), least));
+        fmt::format("{} is {}, expected a number of at least {}", field, quoted_json(json), least));
   }
   return value;
 }
@@ -92,7 +94,7 @@ TunedPlan plan_of(const Json& json) {
   for (const auto& [name, value] : json.at("settings").items()) {
     const auto coordinate = std::ranges::find(kTuningCoordinates, name, &TuningCoordinate::name);
     if (coordinate == kTuningCoordinates.end()) {
-      throw UsageError(fmt::format("'{}' is not a setting", name));
+      throw UsageError(fmt::format("'{}' is not a setting", quotable(name)));
     }
     plan.settings.*coordinate->field = whole_number(value, name);
   }
@@ -130,36 +132,34 @@ std::optional<std::string> text_of_file(const fs::path& path) {
     return std::nullopt;
   }
   if (error) {
-    throw Error(error.message());
+    throw Error(fmt::format("{}: {}", path.string(), error.message()));
   }
   if (!fs::is_regular_file(status)) {
-    throw Error("it is not a regular file");
+    throw Error(fmt::format("{}: it is not a regular file", path.string()));
   }
   if (fs::file_size(path, error) > kMostBytes) {
-    throw Error("it is larger than any tuning file");
+    throw Error(fmt::format("{}: it is larger than any tuning file", path.string()));
   }
   std::ifstream stream(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), {});
   if (!stream.is_open() || stream.bad()) {
-    throw Error(std::generic_category().message(errno));
+    throw Error(fmt::format("{}: {}", path.string(), std::generic_category().message(errno)));
   }
   return text;
 }
 
 /// The list of entries; throws Error where the document is none of this format.
-Json entries_of(const std::string& text) {
-  const Json document = Json::parse(text, nullptr, false);
-  if (document.is_discarded()) {
-    throw Error("it is damaged: not JSON");
-  }
+Json entries_of(const std::string& text, const std::string& name) {
+  const Json document = parse_json(text, name);
   if (!document.is_object() || document.value("kind", Json()) != kKind) {
-    throw Error(fmt::format("it is no tuning file, expected \"kind\": \"{}\"", kKind));
+    throw Error(fmt::format("{}: it is no tuning file, expected \"kind\": \"{}\"", name, kKind));
   }
   if (const Json format = document.value("format", Json()); format != kTuningFormat) {
-    throw Error(fmt::format("its format is {}, expected {}", format.dump(), kTuningFormat));
+    throw Error(
+        fmt::format("{}: its format is {}, expected {}", name, quoted_json(format), kTuningFormat));
   }
   if (!document.contains("entries") || !document["entries"].is_array()) {
-    throw Error("it is damaged: there is no list of entries");
+    throw Error(fmt::format("{}: it is damaged: there is no list of entries", name));
   }
   return document["entries"];
 }
@@ -229,9 +229,9 @@ TuningFileContent read_tuning_file(const fs::path& path) {
     if (!text) {
       return content;
     }
-    entries = entries_of(*text);
+    entries = entries_of(*text, path.string());
   } catch (const Error& error) {
-    content.warnings.push_back(fmt::format("{}: {}", path.string(), error.what()));
+    content.warnings.push_back(error.what());
     content.is_foreign = true;
     return content;
   }
@@ -243,8 +243,8 @@ TuningFileContent read_tuning_file(const fs::path& path) {
       content.entries.push_back(entry_of(entries[i]));
     } catch (const Error& error) {
       warn(error.what());
-    } catch (const Json::exception& error) {
-      warn(fmt::format("it is damaged: {}", error.what()));
+    } catch (const Json::exception&) {
+      warn("it is damaged: a field is missing or of a wrong kind");
     }
   }
   return content;

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "engine/error.h"
+#include "engine/quoted_text.h"
 
 namespace vantage {
 namespace {
@@ -70,7 +71,7 @@ ViewPath parse_view_path(std::string_view text) {
     if (!is_read) {
       throw UsageError(
           fmt::format("is '{}', expected keys FRAME=XS or FRAME=XS,YS like 0=0,48=1,96=0 (at '{}')",
-                      text, part));
+                      quotable(text), quotable(part)));
     }
     if (end == std::string_view::npos) {
       return path;

@@ -53,6 +53,66 @@ TEST_F(InputBadFiles, ImagesThatCannotBeMatched) {
   }
 }
 
+TEST_F(InputBadFiles, JsonNestedToAnyDepth) {
+  const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+  write_file(folder_ / "poses.json", "{\"view\":" + deep + "}");
+  write_file(folder_ / "profile.json", "{\"profile_schema\":" + deep + "}");
+  std::filesystem::create_directories(folder_ / "run/.vantage");
+  write_file(folder_ / "run/.vantage/run.json", "{\"format\":" + deep + "}");
+  write_file(folder_ / "run/scene.json", "{\"format\":" + deep + "}");
+  const std::vector<std::pair<std::vector<std::string>, int>> cases = {
+      {{"synth", left_, right_, "--disparities=0:9", "--pose", folder_ / "poses.json", "-o",
+        folder_ / "view.png"},
+       2},
+      {{"profile", "--compare", folder_ / "profile.json", folder_ / "profile.json"}, 1},
+      {{"merge", folder_ / "run"}, 1},
+      {{"scene info", folder_ / "run"}, 1}};
+  for (const auto& [arguments, exit_code] : cases) {
+    std::vector<std::string> words = arguments;
+    if (words.front() == "scene info") {
+      words.front() = "scene";
+      words.insert(words.begin() + 1, "info");
+    }
+    const ProcessResult result = run_vantage(words);
+    EXPECT_EQ(result.exit_code, exit_code) << arguments.front();
+    EXPECT_TRUE(is_one_line(result, arguments.front())) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("nested too deep"));
+  }
+  write_file(folder_ / "tuning.json", "{\"kind\":" + deep + "}");
+  const ProcessResult result =
+      match(folder_ / "map.pfm", {"--tuning", folder_ / "tuning.json", "--method=ssd"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, HasSubstr("nested too deep"));
+}
+
+/// libpng and libjpeg would print lines of their own.
+TEST_F(InputBadFiles, DamagedPixelsAndOddNamesAreOneLine) {
+  write_photograph(folder_ / "whole.jpg", pair_.left);
+  std::string jpeg = read_file(folder_ / "whole.jpg");
+  jpeg.erase(jpeg.size() / 2, jpeg.size() / 4);
+  const std::string odd = "odd\n\x1B[31m.jpg";
+  write_file(folder_ / odd, jpeg);
+  const ProcessResult result =
+      run_vantage({"match", folder_ / odd, right_, "--disparities=0:9", "-o", folder_ / "map.pfm"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(is_one_line(result, "match")) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("odd\\n\\x1B[31m.jpg: is damaged"));
+  const ProcessResult option =
+      match(folder_ / "map.pfm", {"--method=" + std::string(3000, 'x') + "\x1B"});
+  EXPECT_EQ(option.exit_code, 2);
+  EXPECT_LT(option.err.size(), 500U);
+  EXPECT_EQ(option.err.find('\x1B'), std::string::npos);
+}
+
+TEST_F(InputBadFiles, LimitsOfPixelsAndMemory) {
+  const ProcessResult large = match(folder_ / "map.pfm", {"--max-pixels=3000"});
+  EXPECT_EQ(large.exit_code, 1);
+  EXPECT_THAT(large.err, HasSubstr("71x53 pixels, expected at most 65500 a side and 3000 in all"));
+  EXPECT_EQ(match(folder_ / "map.pfm", {"--max-pixels=3763", "--memory=1G"}).exit_code, 0);
+  EXPECT_EQ(match(folder_ / "map.pfm", {"--max-pixels=0"}).exit_code, 2);
+  EXPECT_EQ(match(folder_ / "map.pfm", {"--memory=0"}).exit_code, 2);
+}
+
 TEST_F(InputBadFiles, PairsThatDoNotGoTogether) {
   write_photograph(folder_ / "small.png", {Image<std::uint8_t>(3, 3)});
   const std::vector<std::vector<std::string>> cases = {

@@ -74,11 +74,17 @@ TEST_F(OpenedLibraries, NoneThatTakeLongForPngThatIsWritten) {
       {"synth", left_, right_, "--disparities=0:9", "--view=0.5", "-o", folder_ / "view.png"}));
 }
 
-TEST_F(OpenedLibraries, ImageCodecsButNoVideoCodecsForJpeg) {
-  const std::string jpeg = folder_ / "left.jpg";
-  write_photograph(jpeg, pair_.left);
+TEST_F(OpenedLibraries, NoneThatTakeLongForMapsOfJpeg) {
+  write_photograph(folder_ / "left.jpg", pair_.left);
+  expect_only_quick_ones(opened_by(
+      {"match", folder_ / "left.jpg", right_, "-o", folder_ / "map.pfm", "--disparities=0:9"}));
+}
+
+TEST_F(OpenedLibraries, ImageCodecsButNoVideoCodecsForTiff) {
+  const std::string tiff = folder_ / "left.tiff";
+  write_photograph(tiff, pair_.left);
   const std::set<std::string> names =
-      opened_by({"match", jpeg, right_, "-o", folder_ / "map.pfm", "--disparities=0:9"});
+      opened_by({"match", tiff, right_, "-o", folder_ / "map.pfm", "--disparities=0:9"});
   EXPECT_THAT(names, Contains(StartsWith("libopencv_imgcodecs.so")));
   EXPECT_THAT(names, Each(Not(StartsWith("libavcodec.so"))));
 }

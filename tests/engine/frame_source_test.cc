@@ -70,6 +70,21 @@ TEST(FrameSource, APatternWithoutWidthAndWithAPercentSign) {
   EXPECT_EQ(values_of(*source), (std::vector<int>{9, 10}));
 }
 
+/// As many as there are seconds, say, or nanoseconds, between two names.
+TEST(FrameSource, RefusesPatternsOfWhichHardlyANumberIsThere) {
+  const TemporaryFolder folder;
+  put_image(folder / "p_0.png", 50);
+  put_image(folder / "p_201.png", 51);
+  EXPECT_EQ(open_frame_source(folder / "p_%d.png")->frame_count(), 202);
+  for (const char* far : {"p_203.png", "p_2000000000.png"}) {
+    put_image(folder / far, 52);
+    std::filesystem::remove(folder / "p_201.png");
+    EXPECT_THAT(error_of([&] { open_frame_source(folder / "p_%d.png"); }),
+                testing::AllOf(HasSubstr("p_%d.png"), HasSubstr(folder / "p_*.png")));
+  }
+  EXPECT_EQ(open_frame_source(folder / "p_*.png")->frame_count(), 3);
+}
+
 TEST(FrameSource, AMissingNumberIsABadFrameAndTheNextOneFollows) {
   const TemporaryFolder folder;
   put_image(folder / "0.png", 50);

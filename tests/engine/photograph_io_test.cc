@@ -276,6 +276,30 @@ TEST(PhotographIo, RefusesAbsurdSizesBeforeDecoding) {
   EXPECT_THAT(error_of([&] { read_photograph(folder / "b.jpg"); }), HasSubstr("3x0 pixels"));
 }
 
+TEST(PhotographIo, RefusesRunLengthsTooFewForThePixels) {
+  const TemporaryFolder folder;
+  write_photograph(folder / "a.bmp", noise<std::uint8_t>(8, 8, 1));
+  auto bytes = bytes_of(folder / "a.bmp");
+  bytes[30] = 1;  // runs of bytes
+  for (const std::size_t side : {18U, 22U}) {
+    bytes[side] = 0;
+    bytes[side + 1] = 16384 >> 8;
+  }
+  put_bytes(folder / "a.bmp", bytes);
+  EXPECT_THAT(error_of([&] { read_photograph(folder / "a.bmp"); }), HasSubstr("cannot hold"));
+}
+
+TEST(PhotographIo, RefusesMorePixelsThanTheProcessAccepts) {
+  const TemporaryFolder folder;
+  write_photograph(folder / "a.png", noise<std::uint8_t>(10, 10, 1));
+  set_max_image_pixels(99);
+  EXPECT_THAT(error_of([&] { read_photograph(folder / "a.png"); }), HasSubstr("99 in all"));
+  set_max_image_pixels(kMaxImagePixels);
+  EXPECT_NO_THROW(read_photograph(folder / "a.png"));
+  EXPECT_THROW(set_max_image_pixels(0), UsageError);
+  EXPECT_THROW(set_max_image_pixels(kMaxImagePixels + 1), UsageError);
+}
+
 TEST(PhotographIo, RefusesTruncatedFilesOfEveryFormat) {
   const TemporaryFolder folder;
   for (const char* name : {"a.png", "a.jpg", "a.tiff", "a.bmp", "a.ppm", "a.webp"}) {

@@ -19,6 +19,7 @@ using test::bytes_of;
 using test::error_of;
 using test::number_of_frame;
 using test::put_bytes;
+using test::put_closed_groups_video;
 using test::put_numbered_video;
 using test::put_open_groups_video;
 using test::put_raw_video;
@@ -139,6 +140,89 @@ TEST(TruncatedVideo, AviTellsByItsChunks) {
               size + index.size() < whole.size() ? VideoExtent::kCutOff : VideoExtent::kWhole)
         << size;
   }
+}
+
+/// Their frames that are missing would be shown before the last ones, or the last packet is cut.
+TEST(TruncatedVideo, TransportStreamsTellByPacketsAndByFramesThatWereToCome) {
+  const TemporaryFolder folder;
+  put_closed_groups_video(folder / "a.mp4", 24, kRate, 8);
+  remux_video(folder / "a.mp4", folder / "whole.ts", "mpegts", kRate);
+  EXPECT_EQ(test::frame_numbers(folder / "whole.ts").size(), 24U);
+  const auto whole = bytes_of(folder / "whole.ts");
+  ASSERT_EQ(whole.size() % 188, 0U);
+  int errors = 0;
+  int cuts = 0;
+  const auto packets = video_packets(folder / "whole.ts");
+  for (std::size_t i = packets.size() / 2; i < packets.size() / 2 + 4; ++i, ++cuts) {
+    // Behind the packets of a frame, where no packet tells.
+    put_bytes(folder / "cut.ts", first_bytes(whole, packets[i].offset));
+    int last_in_order = -1;
+    std::vector<int> there;
+    for (std::size_t k = 0; k < i; ++k) {
+      there.push_back(packets[k].frame);
+    }
+    std::sort(there.begin(), there.end());
+    while (last_in_order + 1 < static_cast<int>(there.size()) &&
+           there[static_cast<std::size_t>(last_in_order + 1)] == last_in_order + 1) {
+      ++last_in_order;
+    }
+    const bool lacks_some = last_in_order + 1 < static_cast<int>(there.size());
+    const std::string problem = error_of([&] {
+      VideoReader reader(folder / "cut.ts");
+      for (int frame = 0; frame < reader.frame_count() && reader.skip(); ++frame) {
+      }
+    });
+    errors += lacks_some ? 1 : 0;
+    EXPECT_EQ(!problem.empty(), lacks_some) << i << " " << problem;
+    // In the middle of a packet.
+    put_bytes(folder / "cut.ts", first_bytes(whole, packets[i].offset + 90));
+    EXPECT_EQ(find_video_extent(folder / "cut.ts"), VideoExtent::kCutOff);
+    EXPECT_THAT(error_of([&] { test::frame_numbers(folder / "cut.ts"); }), HasSubstr("cut off"));
+  }
+  EXPECT_GT(errors, 0);
+  // A recording that begins anywhere.
+  put_bytes(folder / "middle.ts", {whole.begin() + 100, whole.end()});
+  EXPECT_EQ(find_video_extent(folder / "middle.ts"), VideoExtent::kWhole);
+}
+
+std::string big_endian(std::uint32_t value) {
+  std::string bytes;
+  for (int shift = 24; shift >= 0; shift -= 8) {
+    bytes.push_back(static_cast<char>(value >> shift & 255));
+  }
+  return bytes;
+}
+
+std::string box(const std::string& type, const std::string& contents) {
+  return big_endian(static_cast<std::uint32_t>(contents.size() + 8)) + type + contents;
+}
+
+TEST(VideoTables, MustNotPromiseMoreSamplesThanTheFileCanHold) {
+  const TemporaryFolder folder;
+  const auto problem = [&](const std::string& table) {
+    test::put_text(folder / "a.mp4",
+                   box("ftyp", "isom....") +
+                       box("moov", box("trak", box("mdia", box("minf", box("stbl", table))))));
+    return error_of([&] { check_video_tables(folder / "a.mp4"); });
+  };
+  const auto sizes = [](std::uint32_t bytes, std::uint32_t samples) {
+    return box("stsz", std::string(4, '\0') + big_endian(bytes) + big_endian(samples));
+  };
+  EXPECT_EQ(problem(sizes(4, 100)), "");
+  EXPECT_EQ(problem(sizes(0, 50'000'000)), "");  // with a table, whose length readers look at
+  EXPECT_THAT(problem(sizes(1, 50'000'000)),
+              AllOf(HasSubstr("a.mp4"), HasSubstr("cannot hold the 50000000 samples")));
+  test::put_text(folder / "b.mp4",
+                 box("ftyp", "isom....") +
+                     box("moof", box("traf", box("trun", big_endian(1) + big_endian(50'000'000)))));
+  EXPECT_THAT(error_of([&] { VideoReader(folder / "b.mp4"); }), HasSubstr("cannot hold"));
+  // Boxes within boxes to any depth are no matter of ours.
+  std::string nested;
+  for (int i = 0; i < 2000; ++i) {
+    nested = box("moov", nested);
+  }
+  test::put_text(folder / "c.mp4", nested);
+  EXPECT_EQ(error_of([&] { check_video_tables(folder / "c.mp4"); }), "");
 }
 
 /// So that the frames before the cut can be joined with it, wherever the cut is.

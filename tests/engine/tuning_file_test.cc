@@ -124,7 +124,7 @@ TEST_F(TuningFileTest, WarnsOfFilesThatAreNone) {
             "its format is 2, expected 1"},
            {"{\"kind\": \"vantage tuning\", \"format\": \"1\", \"entries\": []}", "its format is"},
            {"{\"kind\": \"vantage tuning\", \"format\": 1, \"entries\": 7}", "no list of entries"},
-           {std::string(100000, '['), "not JSON"}}) {
+           {std::string(100000, '['), "too deep"}}) {
     write(content);
     const TuningFileContent read = read_tuning_file(path_);
     EXPECT_THAT(read.entries, IsEmpty());
@@ -146,7 +146,7 @@ TEST_F(TuningFileTest, WarnsOfDamagedEntriesAndKeepsTheOthers) {
            {"\"threads\": 2", "\"threads\": -1", "threads is -1"},
            {"\"threads\": 2", "\"threads\": 2.5", "threads is 2.5"},
            {"\"threads\": 2", "\"threads\": true", "threads is true"},
-           {"\"threads\": 2", "\"threads\": \"2\"", "threads is \"2\""},
+           {"\"threads\": 2", "\"threads\": \"2\"", "threads is '2'"},
            {"\"threads\": 2", "\"threads\": 1e300", "threads is 1e+300"},
            {"\"threads\": 2", "\"thraeds\": 2", "'thraeds' is not a setting"},
            {"\"frame_seconds\": 0.25", "\"frame_seconds\": -1", "frame_seconds is -1"},
