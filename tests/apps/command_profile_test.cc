@@ -261,7 +261,7 @@ TEST_F(InputComparedProfiles, MustBeProfiles) {
   const ProcessResult missing =
       run_vantage({"profile", "--compare", folder_ / "a.json", folder_ / "none.json"});
   EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_THAT(missing.err, HasSubstr("none.json: cannot be read"));
+  EXPECT_THAT(missing.err, HasSubstr("none.json: no such file"));
 }
 
 /// Of a sequence, in a folder that holds a finished run.
