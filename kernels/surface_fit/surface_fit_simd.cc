@@ -28,11 +28,11 @@ struct Sums {
 };
 
 // How much samples count, and that times their distance from the planes.
-struct Samples {
+struct WeighedSamples {
   Vec w, we;
 };
 
-HWY_INLINE Samples weigh(const float* disparity_px, Vec plane_px) {
+HWY_INLINE WeighedSamples weigh(const float* disparity_px, Vec plane_px) {
   const TagF d;
   const Vec per_reach = hn::Set(d, 1 / (kSurfaceReachPx * kSurfaceReachPx));
   const Vec e = hn::Sub(hn::LoadU(d, disparity_px), plane_px);
@@ -68,7 +68,7 @@ HWY_INLINE Sums sum_samples(const float* disparity_px, const Places<kSteps>& pla
     const std::ptrdiff_t* place = places.of[j + kSteps] + kSteps;
     const Vec v = hn::Set(d, static_cast<float>(j) / kStepsF);
     const Vec middle_px = hn::Add(own, hn::Add(planes.height, hn::Mul(planes.slope_v, v)));
-    const Samples middle = weigh(disparity_px + place[0], middle_px);
+    const WeighedSamples middle = weigh(disparity_px + place[0], middle_px);
     Vec line_w = middle.w;
     Vec line_wu = zero;
     Vec line_wuu = zero;
@@ -79,8 +79,8 @@ HWY_INLINE Sums sum_samples(const float* disparity_px, const Places<kSteps>& pla
       const float step = static_cast<float>(i) / kStepsF;
       const Vec u = hn::Set(d, step);
       const Vec rise_px = hn::Mul(planes.slope_u, u);
-      const Samples above = weigh(disparity_px + place[i], hn::Add(middle_px, rise_px));
-      const Samples below = weigh(disparity_px + place[-i], hn::Sub(middle_px, rise_px));
+      const WeighedSamples above = weigh(disparity_px + place[i], hn::Add(middle_px, rise_px));
+      const WeighedSamples below = weigh(disparity_px + place[-i], hn::Sub(middle_px, rise_px));
       const Vec w = hn::Add(above.w, below.w);
       line_w = hn::Add(line_w, w);
       line_wu = hn::Add(line_wu, hn::Mul(hn::Sub(above.w, below.w), u));
