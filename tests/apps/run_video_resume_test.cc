@@ -77,7 +77,7 @@ TEST_F(VideosResumed, FilesAreKeptAndReadBackWhereTheyHoldWhatVideosShow) {
         "views,stereo", "--stereo-views", "0.25,1", "--format", "npy"},
        true}};
   SCOPED_TRACE(test::sample_name());
-  for (const auto& [outputs, reads_maps] : sampled(cases, test_paths::is_sanitized() ? 0 : 2, 40)) {
+  for (const auto& [outputs, reads_maps] : sampled(cases, test_paths::is_sanitized() ? 0 : 1, 40)) {
     SCOPED_TRACE(testing::PrintToString(outputs));
     ASSERT_EQ(run(out_, joined(outputs, {"--report", report_})).exit_code, 0);
     const FolderContent expected = results_in(out_);
