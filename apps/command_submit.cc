@@ -89,16 +89,40 @@ JournalOpening take_opening(RunJob& job) {
                    : JournalOpening::kResume;
 }
 
+/// How many pieces there are that are never divided.
+int chunk_count(const FrameSelection& selection) {
+  const FrameRange frames = selection.all();
+  return frames.empty() ? 0
+                        : (frames.end - 1) / selection.chunk_frames -
+                              frames.first / selection.chunk_frames + 1;
+}
+
 void require_work_for_all(const SlurmOptions& slurm, const FrameSelection& selection) {
   const FrameRange frames = selection.all();
-  const int chunks = frames.empty() ? 0
-                                    : (frames.end - 1) / selection.chunk_frames -
-                                          frames.first / selection.chunk_frames + 1;
+  const int chunks = chunk_count(selection);
   if (slurm.shards > chunks) {
     throw UsageError(
         fmt::format("--shards is {}, expected at most {}: there are {} frames and {} of them stay "
                     "together (--chunk-frames)",
                     slurm.shards, chunks, frames.count(), selection.chunk_frames));
+  }
+}
+
+/// Unless --chunk-frames is given: chunks small enough that every task has one.
+void divide_for_all(const Settings& settings, SubmitJob& job) {
+  FrameSelection selection;
+  selection.frame_count = open_pair_source(job.run.input)->pair_count();
+  selection.frames = job.run.frames;
+  selection.chunk_frames = job.run.sequence.chunk_frames;
+  const int share = selection.all().empty() ? 0 : selection.all().count() / job.slurm.shards;
+  if (settings.given_on_command_line("chunk-frames") || share < 1 ||
+      chunk_count(selection) >= job.slurm.shards) {
+    return;
+  }
+  job.run.sequence.chunk_frames = share;
+  if (!job.run.common.quiet) {
+    fmt::print(stderr, "submit: --chunk-frames is {}, so that each of {} tasks has frames\n", share,
+               job.slurm.shards);
   }
 }
 
@@ -227,6 +251,7 @@ int command_submit(const Arguments& arguments) {
   check(job);
   complete(job.run, settings);
   make_paths_absolute(job);
+  divide_for_all(settings, job);
   require_folder_for_scripts(job.run.output);
   const fs::path folder = slurm_folder(job.run.output);
   const JournalOpening opening = take_opening(job.run);

@@ -36,18 +36,13 @@ void tell_of(const Look& look, const Settings& settings, const CommonOptions& co
   }
   const VerticalError& error = *look.error;
   SettingValue values = vertical_error_values(error);
-  const bool is_rectified = error.systematic_px <= kRectificationLimit_px;
-  values["limit_px"] = kRectificationLimit_px;
-  values["is_rectified"] = is_rectified;
+  values["is_rectified"] = is_rectified(error);
   const bool looks_exchanged = error.looks_exchanged() && !expects_negative;
   values["looks_exchanged"] = looks_exchanged;
   report.add_result("rectification", std::move(values));
-  if (!is_rectified && !common.quiet) {
-    tell(
-        "{}: warning: the pair is not rectified: rows are off by {:.2f} px (limit {}), {}; "
-        "see 'vantage rectify'\n",
-        settings.command(), error.systematic_px, kRectificationLimit_px,
-        vertical_error_text(error));
+  if (!is_rectified(error) && !common.quiet) {
+    tell("{}: warning: the pair is not rectified: {}; {}; see 'vantage rectify'\n",
+         settings.command(), cost_text(error, "rows"), vertical_error_text(error));
   }
   if (looks_exchanged && !common.quiet) {
     tell("{}: warning: {}\n", settings.command(), exchanged_text(error));
@@ -63,8 +58,8 @@ bool expects_negative_disparities(const MatchOptions& options) {
 void add_rectification_check_setting(Settings& settings, bool& wanted) {
   Setting& setting =
       settings.add("no-rectification-check", "",
-                   "Do not look whether rows correspond, nor warn when they are off by more than "
-                   "0.25 pixels or when left and right look exchanged");
+                   "Do not look whether rows correspond, nor warn when matching suffers from "
+                   "rows that do not or when left and right look exchanged");
   setting.flag = true;
   setting.changes_results = false;
   setting.set = [&wanted](const SettingValue& value) { wanted = !to_truth(value); };

@@ -10,10 +10,6 @@
 
 namespace vantage::apps {
 
-/// Pairs of good calibrations are within a fifth of a pixel; from here on sub-pixel matching
-/// suffers.
-inline constexpr double kRectificationLimit_px = 0.25;
-
 /// --no-rectification-check; `wanted` is true without it.
 void add_rectification_check_setting(Settings& settings, bool& wanted);
 
@@ -22,11 +18,11 @@ void add_rectification_check_setting(Settings& settings, bool& wanted);
 bool expects_negative_disparities(const MatchOptions& options);
 
 /// Looks whether the rows of a pair that ought to be rectified correspond. The report gets the
-/// numbers as `results.rectification`; where rows are off by more than 0.25 pixels (the systematic
-/// part of the error, RMS) a warning on stderr says by how much. Another one says when nearly all
-/// disparities are negative, unless `expects_negative`. Results and exit codes do not depend on it.
-/// Its time is a stage of its own ("check"), not compute time. Says nothing about pairs with too
-/// few points in common to tell.
+/// numbers as `results.rectification`; where rows are off (the systematic part of the error, RMS)
+/// so far that it costs more than kMostMoreBad_percent of the pixels, a warning on stderr says by
+/// how much. Another one says when nearly all disparities are negative, unless `expects_negative`.
+/// Results and exit codes do not depend on it. Its time is a stage of its own ("check"), not
+/// compute time. Says nothing about pairs with too few points in common to tell.
 void warn_unless_rectified(const Settings& settings, const CommonOptions& common,
                            bool expects_negative, const Photograph& left, const Photograph& right,
                            RunReport& report);

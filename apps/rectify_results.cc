@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "apps/matrix_rows.h"
-#include "apps/rectification_check.h"
 #include "apps/tell.h"
 #include "apps/vertical_error_report.h"
 
@@ -54,12 +53,9 @@ void print_results(const Rectification& rectification, const RectifiedPair& pair
   if (rectification.remaining) {
     tell("rectify: rows are off by {}; disparities {}\n",
          vertical_error_text(*rectification.remaining), disparities_text(*rectification.remaining));
-    if (!rectification.estimate &&
-        rectification.remaining->systematic_px > kRectificationLimit_px) {
-      tell(
-          "rectify: warning: rows are still off by {:.2f} px (limit {}): the calibration "
-          "does not fit the images\n",
-          rectification.remaining->systematic_px, kRectificationLimit_px);
+    if (!rectification.estimate && !is_rectified(*rectification.remaining)) {
+      tell("rectify: warning: the calibration does not fit the images: {}\n",
+           cost_text(*rectification.remaining, "rows"));
     }
     if (rectification.remaining->looks_exchanged()) {
       tell("rectify: warning: {}\n", exchanged_text(*rectification.remaining));

@@ -36,13 +36,11 @@ SettingValue SceneRectification::add(const SceneBuilder::BuiltEdge& edge) {
   const std::string name = fmt::format("edge {}-{} ({}, {})", ends.first, ends.second,
                                        builder_.image_file(ends.first).filename().string(),
                                        builder_.image_file(ends.second).filename().string());
-  const bool is_rectified = error.systematic_px <= kRectificationLimit_px;
   const bool looks_exchanged = !expects_negative_disparities_ && error.looks_exchanged();
-  if (!is_rectified) {
+  if (!is_rectified(error)) {
     warnings_.push_back(
-        {error.systematic_px,
-         fmt::format("{}: {} are off by {:.2f} px (limit {}), {}", name, line_of(ends),
-                     error.systematic_px, kRectificationLimit_px, vertical_error_text(error))});
+        {error.systematic_px, fmt::format("{}: {}; {}", name, cost_text(error, line_of(ends)),
+                                          vertical_error_text(error))});
   }
   if (looks_exchanged) {
     warnings_.push_back(
@@ -52,7 +50,7 @@ SettingValue SceneRectification::add(const SceneBuilder::BuiltEdge& edge) {
                      name, 100 * error.negative_share, error.inliers)});
   }
   SettingValue values = vertical_error_values(error);
-  values["is_rectified"] = is_rectified;
+  values["is_rectified"] = is_rectified(error);
   values["looks_exchanged"] = looks_exchanged;
   return values;
 }

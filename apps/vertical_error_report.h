@@ -7,6 +7,18 @@
 
 namespace vantage::apps {
 
+/// How many more of 100 pixels are wrong by more than a pixel where rows are off by this much, by
+/// what was measured (see the .cc file).
+double more_bad_percent(double rows_off_px);
+/// Of that, what is worth a warning.
+inline constexpr double kMostMoreBad_percent = 5;
+
+/// Whether rows correspond well enough that matching hardly suffers.
+bool is_rectified(const VerticalError& error);
+
+/// "rows are off by 0.52 px, which makes about 7 % more of the pixels wrong".
+std::string cost_text(const VerticalError& error, const std::string& lines);
+
 /// The numbers by name, for reports.
 SettingValue vertical_error_values(const VerticalError& error);
 

@@ -129,6 +129,18 @@ TEST_F(SubmitCommand, TheJobFileHoldsTheWholeRunWithAbsolutePaths) {
   EXPECT_THAT(result.out, HasSubstr("sbatch --parsable " + slurm(out, "array.sh")));
 }
 
+TEST_F(SubmitCommand, FewFramesAreDividedAmongAllTasks) {
+  const std::string out = folder_ / "out";
+  const ProcessResult result =
+      run_vantage({"submit", "--engine", "slurm", "--shards", "3", "--no-submit", "--left", left_,
+                   "--right", right_, "--disparities=0:9", "-o", out});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("--chunk-frames is "));
+  for (const char* file : {"job.toml", "submit.toml"}) {
+    EXPECT_THAT(read_file(slurm(out, file)), testing::Not(HasSubstr("chunk-frames = 50")));
+  }
+}
+
 TEST_F(SubmitCommand, OptionsBecomeDirectives) {
   const std::string out = folder_ / "an 'odd' 50% folder";
   const ProcessResult result = submit(
