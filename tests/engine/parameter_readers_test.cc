@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <deque>
 #include <functional>
 #include <iterator>
 #include <map>
@@ -111,7 +112,7 @@ class Maps {
 
   Execution execution_{{.threads = 1}};
   test::PhotographPair pair_;
-  std::vector<std::pair<MethodParameters, Bytes>> known_;
+  std::deque<std::pair<MethodParameters, Bytes>> known_;  // deque: of() hands out references
 };
 
 bool are_equal(const Bytes& a, const Bytes& b) {
