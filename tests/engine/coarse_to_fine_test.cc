@@ -149,9 +149,11 @@ TEST(CoarseToFineOfEdges, EqualsTheOracle) {
       options.parameters.census_thresholds = levels == 2 ? 3 : 1;
     }
     options.parameters.epsilon_prior = prior.epsilon;
-    options.parameters.final_iterations = prior.final_iterations;
-    options.parameters.prior_growth = 1.2;
-    options.parameters.level_weight = 0.6;
+    if (levels > 1) {
+      options.parameters.final_iterations = prior.final_iterations;
+      options.parameters.prior_growth = 1.2;
+      options.parameters.level_weight = 0.6;
+    }
     options.parameters.edge_weight = 0.2;
     options.parameters.prior_smoothing = prior.smoothing;
     Tolerance tolerance = tolerance_with_levels(options.resolved());

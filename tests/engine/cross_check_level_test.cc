@@ -247,6 +247,7 @@ TEST(CrossCheckLevelOption, SavesTheOtherMapsFinestLevel) {
   // Nor is a map made for a check that is not wanted.
   options.refinement.cross_check_level = 0;
   options.refinement.cross_check = false;
+  options.refinement.cross_check_px.reset();
   MatchReport unchecked;
   matched(pair, options, left_only, 2, &unchecked);
   EXPECT_EQ(unchecked.cells * 2, whole.cells);

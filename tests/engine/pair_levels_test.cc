@@ -245,15 +245,17 @@ TEST(PairLevels, MatchersSeeThroughExposure) {
     MatchOptions options = exposure_options(Reference::kLeft, cost);
     if (cost == MatchCost::kCombined) {
       options.parameters.sigma_census = 0;
+      options.parameters.estimate_sigma_measurement = false;
     }
-    options.parameters.estimate_sigma_measurement = false;
     DisparityMaps maps;
     MatchReport report;
     StereoMatcher(options, execution).match(scene.left, scene.right, {}, maps, &report);
     EXPECT_FALSE(report.levels);
     const double without = share_of_right(maps.left, scene);
     options.parameters.match_exposure = true;
-    options.parameters.estimate_sigma_measurement = true;
+    if (cost == MatchCost::kCombined) {
+      options.parameters.estimate_sigma_measurement = true;
+    }
     StereoMatcher(options, execution).match(scene.left, scene.right, {}, maps, &report);
     ASSERT_TRUE(report.levels);
     EXPECT_TRUE(report.levels->has_levels);
