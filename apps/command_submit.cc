@@ -16,6 +16,7 @@
 #include "apps/setting_value.h"
 #include "apps/settings.h"
 #include "apps/slurm_scripts.h"
+#include "apps/tell.h"
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
 #include "engine/io/json_text.h"
@@ -115,14 +116,13 @@ void divide_for_all(const Settings& settings, SubmitJob& job) {
   selection.frames = job.run.frames;
   selection.chunk_frames = job.run.sequence.chunk_frames;
   const int share = selection.all().empty() ? 0 : selection.all().count() / job.slurm.shards;
-  if (settings.given_on_command_line("chunk-frames") || share < 1 ||
-      chunk_count(selection) >= job.slurm.shards) {
+  if (settings.is_set("chunk-frames") || share < 1 || chunk_count(selection) >= job.slurm.shards) {
     return;
   }
   job.run.sequence.chunk_frames = share;
   if (!job.run.common.quiet) {
-    fmt::print(stderr, "submit: --chunk-frames is {}, so that each of {} tasks has frames\n", share,
-               job.slurm.shards);
+    tell("submit: --chunk-frames is {}, so that each of {} tasks has frames\n", share,
+         job.slurm.shards);
   }
 }
 
