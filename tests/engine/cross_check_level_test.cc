@@ -148,6 +148,7 @@ TEST_P(CrossCheckLevel, MapsAreCheckedAgainstIt) {
     checked.refinement.cross_check_level = level;
     MatchOptions raw = options();
     raw.raw = true;
+    raw.refinement = {};
     const DisparityMaps winners = matched(pair, raw);
     const DisparityMaps maps = matched(pair, checked);
     Execution execution({.threads = 1});
