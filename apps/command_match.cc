@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <utility>
 
 #include "apps/applied_tuning.h"
 #include "apps/automatic_disparities.h"
@@ -11,6 +12,7 @@
 #include "apps/settings.h"
 #include "apps/tell.h"
 #include "engine/error.h"
+#include "engine/image/transposed.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/displacement_io.h"
 #include "engine/io/photograph_io.h"
@@ -55,6 +57,28 @@ void write_results(const MatchJob& job, const DisparityMaps& maps) {
     const PreviewRange range = preview_range_of(job.match.disparities);
     const DisparityMap& map = is_left ? maps.left : maps.right;
     write_photograph(job.preview, {colour_preview(map.view(), range.min_px, range.max_px)});
+  }
+}
+
+/// Of cameras one above the other: columns are matched as rows of transposed images.
+void transpose(std::vector<Photograph>& images) {
+  for (Photograph& image : images) {
+    image = transposed(image);
+  }
+}
+
+/// Those that are there.
+void transpose(DisparityMaps& maps) {
+  for (DisparityMap* map :
+       {&maps.left, &maps.right, &maps.left_confidence, &maps.right_confidence}) {
+    if (!map->empty()) {
+      *map = transposed(std::as_const(*map).view());
+    }
+  }
+  for (Mask* mask : {&maps.left_unmatched, &maps.right_unmatched}) {
+    if (!mask->empty()) {
+      *mask = transposed(std::as_const(*mask).view());
+    }
   }
 }
 
@@ -141,6 +165,10 @@ int command_match(const Arguments& arguments) {
     images.push_back(report.timed_file_access("read", [&] { return read_photograph(input); }));
   }
   require_equal_sizes(job, images);
+  const scheduler::Extent size{images[0].width(), images[0].height()};
+  if (job.vertical) {
+    transpose(images);
+  }
   const bool first_is_left = !job.has_several() || job.is_left();
   const Photograph& left = images[first_is_left ? 0 : 1];
   const Photograph& right = images[first_is_left ? 1 : 0];
@@ -169,10 +197,13 @@ int command_match(const Arguments& arguments) {
     report.timed_compute([&] { match_images(job, matcher, images, maps, match); });
   };
   if (job.check_rectification && !job.match.disparities_y) {
-    warn_unless_rectified_beside(compute, settings, job.common, expects_negative, left, right,
-                                 chosen, report);
+    warn_unless_rectified_beside(compute, settings, job.common, expects_negative,
+                                 job.vertical ? "columns" : "rows", left, right, chosen, report);
   } else {
     compute();
+  }
+  if (job.vertical) {
+    transpose(maps);
   }
   report.add_match(match);
   report.set_memory(memory_use(images, maps, matcher, chosen));
@@ -181,8 +212,8 @@ int command_match(const Arguments& arguments) {
   report.write(job.common.report);
   if (!job.common.quiet) {
     tell("match: {} ({}), {}x{} pixels, disparities {}:{}, {} -> {}\n", job.match.chosen(),
-         summary_of(job.match.resolved()), images[0].width(), images[0].height(),
-         job.match.disparities.min, job.match.disparities.max, job.left, job.output);
+         summary_of(job.match.resolved()), size.columns, size.rows, job.match.disparities.min,
+         job.match.disparities.max, job.left, job.output);
     print_levels(match);
     report.print_summary();
   }

@@ -26,6 +26,8 @@ struct MatchJob {
   std::string unmatched;
   std::string unmatched_right;
   std::string preview;
+  /// Cameras stand one above the other, the left image's above: columns are searched.
+  bool vertical = false;
   bool check_rectification = true;
 
   [[nodiscard]] bool has_several() const { return !baselines.empty() || !more.empty(); }

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <optional>
+#include <string_view>
 
 #include "apps/tell.h"
 #include "apps/vertical_error_report.h"
@@ -13,6 +14,8 @@
 
 namespace vantage::apps {
 namespace {
+
+constexpr std::string_view kRows = "rows";
 
 struct Look {
   std::optional<VerticalError> error;
@@ -29,7 +32,7 @@ Look look_at_rows(const Photograph& left, const Photograph& right) {
 }
 
 void tell_of(const Look& look, const Settings& settings, const CommonOptions& common,
-             bool expects_negative, RunReport& report) {
+             bool expects_negative, std::string_view lines, RunReport& report) {
   report.add_stage("check", look.seconds);
   if (!look.error) {
     return;
@@ -41,8 +44,9 @@ void tell_of(const Look& look, const Settings& settings, const CommonOptions& co
   values["looks_exchanged"] = looks_exchanged;
   report.add_result("rectification", std::move(values));
   if (!is_rectified(error) && !common.quiet) {
-    tell("{}: warning: the pair is not rectified: {}; {}; see 'vantage rectify'\n",
-         settings.command(), cost_text(error, "rows"), vertical_error_text(error));
+    tell("{}: warning: the pair is not rectified: {}; {}{}\n", settings.command(),
+         cost_text(error, lines), vertical_error_text(error),
+         lines == kRows ? "; see 'vantage rectify'" : "");
   }
   if (looks_exchanged && !common.quiet) {
     tell("{}: warning: {}\n", settings.command(), exchanged_text(error));
@@ -71,14 +75,15 @@ void warn_unless_rectified(const Settings& settings, const CommonOptions& common
                            RunReport& report) {
   // Of images that differ in size whoever uses the pair will say so.
   if (left.width() == right.width() && left.height() == right.height()) {
-    tell_of(look_at_rows(left, right), settings, common, expects_negative, report);
+    tell_of(look_at_rows(left, right), settings, common, expects_negative, kRows, report);
   }
 }
 
 void warn_unless_rectified_beside(const std::function<void()>& work, const Settings& settings,
                                   const CommonOptions& common, bool expects_negative,
-                                  const Photograph& left, const Photograph& right,
-                                  Execution& execution, RunReport& report) {
+                                  std::string_view lines, const Photograph& left,
+                                  const Photograph& right, Execution& execution,
+                                  RunReport& report) {
   Look look;
   execution.executor().parallel_for(2, [&](int task) {
     if (task == 0) {
@@ -87,7 +92,7 @@ void warn_unless_rectified_beside(const std::function<void()>& work, const Setti
       look = look_at_rows(left, right);
     }
   });
-  tell_of(look, settings, common, expects_negative, report);
+  tell_of(look, settings, common, expects_negative, lines, report);
 }
 
 }  // namespace vantage::apps

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string_view>
 
 #include "apps/option_groups.h"
 #include "apps/run_report.h"
@@ -27,10 +28,11 @@ void warn_unless_rectified(const Settings& settings, const CommonOptions& common
                            bool expects_negative, const Photograph& left, const Photograph& right,
                            RunReport& report);
 /// The same while `work` is done with the same pair, as looking keeps but one thread busy. What
-/// there is to say is said when both are done; `work` may throw.
+/// there is to say is said when both are done; `work` may throw. `lines`: "rows", or "columns" of a
+/// transposed pair.
 void warn_unless_rectified_beside(const std::function<void()>& work, const Settings& settings,
                                   const CommonOptions& common, bool expects_negative,
-                                  const Photograph& left, const Photograph& right,
-                                  Execution& execution, RunReport& report);
+                                  std::string_view lines, const Photograph& left,
+                                  const Photograph& right, Execution& execution, RunReport& report);
 
 }  // namespace vantage::apps

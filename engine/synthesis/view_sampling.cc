@@ -20,7 +20,7 @@ constexpr int kLargestSide = 65500;
 // Up to this much above a whole number the next one is not needed: little would alias.
 constexpr double kToleratedReduction = 0.2;
 
-// Every so manieth pixel along both axes tells how much a view reduces an image.
+// Pixels this far apart along both axes tell how much a view reduces an image.
 constexpr int kGridPx = 32;
 
 // Disparities that are planned for, as a share of the image's width.

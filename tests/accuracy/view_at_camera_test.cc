@@ -133,8 +133,8 @@ TEST_F(ViewAtCamera, IsThePhotographResampledAndNoWorseThanThreeSteps) {
   for (std::size_t n = 0; n < kTurns.size(); ++n) {
     const Turn& turn = kTurns[n];
     const std::size_t side = n % 2;
-    const PosedCamera camera =
-        posed(pair.left.matrix, Eigen::Matrix3d::Identity(), {1.0 * side, 0, 0}, turn);
+    const PosedCamera camera = posed(pair.left.matrix, Eigen::Matrix3d::Identity(),
+                                     {static_cast<double>(side), 0, 0}, turn);
     const Eigen::Matrix3d homography = camera.matrix * camera.rotation * pair.left.matrix.inverse();
     const Photograph truth = resampled(images[side].image, homography, turn.zoom < 1);
     const Mask mask = inside(homography);

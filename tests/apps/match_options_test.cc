@@ -7,6 +7,7 @@
 #include <regex>
 #include <sstream>
 
+#include "engine/image/transposed.h"
 #include "engine/matching/parameter_readers.h"
 #include "tests/apps/pair_fixture.h"
 #include "tests/apps/sampling.h"
@@ -109,7 +110,8 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{right_, "--baselines", "2,2"}, "are both 2, expected different ones"},
       {{"--baselines", "1", "--output-right", folder_ / "r.pfm"}, "--output-right cannot go with"},
       {{"--baselines", "1", "--reference", "right"}, "--reference right cannot go with"},
-      {{"--baselines", "1", "--disparities-y", "0:1"}, "--disparities-y cannot go with"}};
+      {{"--baselines", "1", "--disparities-y", "0:1"}, "--disparities-y cannot go with"},
+      {{"--vertical", "--disparities-y", "0:1"}, "--disparities-y cannot go with --vertical"}};
   const auto before = files_below(folder_.path());
   SCOPED_TRACE(test::sample_name());
   for (const Refused& refused :
@@ -329,6 +331,51 @@ TEST_F(MatchCommandOptions, FillNoneLeavesTheUnmatchedUnknown) {
     }
     EXPECT_GT(unmatched, 0);
   }
+}
+
+/// Columns of a transposed pair are the rows of the pair itself: maps are transposed, and no more.
+TEST_F(MatchCommandOptions, CamerasOneAboveTheOtherAreMatchedAlongColumns) {
+  write_photograph(folder_ / "upper.png", transposed(read_photograph(left_)));
+  write_photograph(folder_ / "lower.png", transposed(read_photograph(right_)));
+  const auto match = [&](const std::string& left, const std::string& right, const std::string& name,
+                         std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"match",
+                                          left,
+                                          right,
+                                          "-o",
+                                          folder_ / (name + ".pfm"),
+                                          "--confidence",
+                                          folder_ / (name + "-c.pfm"),
+                                          "--disparities=0:9",
+                                          "--fill",
+                                          "none"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProcessResult result = run_vantage(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+  };
+  const auto expect_transposed = [&] {
+    for (const std::string kind : {".pfm", "-c.pfm"}) {
+      const DisparityMap map = read_disparity(folder_ / ("columns" + kind));
+      const DisparityMap rows = read_disparity(folder_ / ("rows" + kind));
+      const DisparityMap expected = transposed(rows.view());
+      ASSERT_EQ(map.width(), expected.width());
+      for (int y = 0; y < map.height(); ++y) {
+        ASSERT_EQ(std::memcmp(map.row(y), expected.row(y),
+                              sizeof(float) * static_cast<std::size_t>(map.width())),
+                  0)
+            << kind << ", row " << y;
+      }
+    }
+  };
+  const std::string upper = folder_ / "upper.png";
+  const std::string lower = folder_ / "lower.png";
+  match(left_, right_, "rows", {"--output-right", folder_ / "rows-r.pfm"});
+  match(upper, lower, "columns", {"--vertical", "--output-right", folder_ / "columns-r.pfm"});
+  expect_transposed();
+  EXPECT_EQ(read_disparity(folder_ / "columns-r.pfm").width(), 53);
+  match(left_, right_, "rows", {"--baselines", "2"});
+  match(upper, lower, "columns", {"--baselines", "2", "--vertical"});
+  expect_transposed();
 }
 
 TEST_F(MatchCommandOptions, TwoComponentsAreWrittenAsFlow) {
