@@ -40,7 +40,7 @@ bool is_rectified(const VerticalError& error) {
   return more_bad_percent(error.systematic_px) <= kMostMoreBad_percent;
 }
 
-std::string cost_text(const VerticalError& error, const std::string& lines) {
+std::string cost_text(const VerticalError& error, std::string_view lines) {
   return fmt::format("{} are off by {:.2f} px, which makes about {:.0f} % more of the pixels wrong",
                      lines, error.systematic_px, more_bad_percent(error.systematic_px));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "apps/setting_value.h"
 #include "engine/rectification/vertical_error.h"
@@ -17,7 +18,7 @@ inline constexpr double kMostMoreBad_percent = 5;
 bool is_rectified(const VerticalError& error);
 
 /// "rows are off by 0.52 px, which makes about 7 % more of the pixels wrong".
-std::string cost_text(const VerticalError& error, const std::string& lines);
+std::string cost_text(const VerticalError& error, std::string_view lines);
 
 /// The numbers by name, for reports.
 SettingValue vertical_error_values(const VerticalError& error);

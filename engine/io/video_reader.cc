@@ -152,7 +152,10 @@ bool VideoReader::State::advance() {
                      frame.height, width, height));
   }
   note_time();
-  if (timing.cut_time && frame.best_effort_timestamp >= *timing.cut_time && frames_missing > 0) {
+  const std::int64_t time = frame.best_effort_timestamp;
+  const bool is_behind_cut = (timing.cut_time && time >= *timing.cut_time) ||
+                             (timing.last_decoded && time > *timing.last_decoded);
+  if (is_behind_cut && frames_missing > 0) {
     fail_cut_off();
   }
   ++frames_read;

@@ -27,6 +27,8 @@ struct PacketTimes {
   std::size_t packets = 0;          ///< that show a frame
   /// When the first packet that is cut off is decoded, at the earliest; it is shown later.
   std::optional<std::int64_t> cut_time;
+  /// When the last packet of a stream that does not say where it ends is decoded.
+  std::optional<std::int64_t> last_decoded;
 
   void add(std::int64_t time) {
     ++packets;
@@ -93,39 +95,9 @@ bool is_cut_raw_video(const AVFormatContext& input, std::int64_t frames_end,
          file_bytes > static_cast<std::uint64_t>(frames_end);
 }
 
-/// The middle one of the steps between times; 0 when there is none.
-double usual_step(std::vector<std::int64_t> times) {
-  std::sort(times.begin(), times.end());
-  std::vector<std::int64_t> steps;
-  for (std::size_t i = 1; i < times.size(); ++i) {
-    if (times[i] > times[i - 1]) {
-      steps.push_back(times[i] - times[i - 1]);
-    }
-  }
-  if (steps.empty()) {
-    return 0;
-  }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return static_cast<double>(*middle);
-}
-
-/// The time of the first frame that is missing because the file ends before it is decoded, as a
-/// transport stream that was cut does not tell: frames shown later are there.
-std::optional<std::int64_t> first_missing_at_end(std::vector<std::int64_t> times,
-                                                 std::int64_t last_decoded) {
-  const double step = usual_step(times);
-  if (last_decoded == AV_NOPTS_VALUE || step <= 0) {
-    return std::nullopt;
-  }
-  std::sort(times.begin(), times.end());
-  for (std::size_t i = 1; i < times.size(); ++i) {
-    const auto missing = times[i - 1] + static_cast<std::int64_t>(step);
-    if (missing > last_decoded && static_cast<double>(times[i] - times[i - 1]) > 1.5 * step) {
-      return missing;
-    }
-  }
-  return std::nullopt;
+bool is_mpeg_stream(const AVFormatContext& input) {
+  const std::string_view container = input.iformat->name;
+  return container == "mpegts" || container == "mpeg";
 }
 
 PacketTimes read_packets(const std::filesystem::path& path, int stream_index, bool is_whole) {
@@ -159,11 +131,28 @@ PacketTimes read_packets(const std::filesystem::path& path, int stream_index, bo
   if (!is_whole || is_cut_raw_video(*input, frames_end, std::filesystem::file_size(path))) {
     result.cut_time = last_decoded == AV_NOPTS_VALUE ? last_decoded : last_decoded + 1;
     ++result.packets;
-  } else if (std::string_view(input->iformat->name).starts_with("mpeg")) {
-    result.cut_time = first_missing_at_end(result.times, last_decoded);
-    result.packets += result.cut_time ? 1 : 0;
+  }
+  if (is_mpeg_stream(*input) && last_decoded != AV_NOPTS_VALUE) {
+    result.last_decoded = last_decoded;
   }
   return result;
+}
+
+/// The middle one of the steps between times; 0 when there is none.
+double usual_step(std::vector<std::int64_t> times) {
+  std::sort(times.begin(), times.end());
+  std::vector<std::int64_t> steps;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (times[i] > times[i - 1]) {
+      steps.push_back(times[i] - times[i - 1]);
+    }
+  }
+  if (steps.empty()) {
+    return 0;
+  }
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return static_cast<double>(*middle);
 }
 
 std::optional<FrameRate> to_frame_rate(AVRational rate) {
@@ -221,6 +210,7 @@ VideoTiming examine_video_timing(AVFormatContext& input, AVStream& stream,
     timing.starts = find_starts(stream);
   }
   timing.cut_time = packets.cut_time;
+  timing.last_decoded = packets.last_decoded;
   timing.rate =
       choose_rate(stream, usual_step(std::move(packets.times)) * av_q2d(stream.time_base));
   return timing;

@@ -30,6 +30,9 @@ struct VideoTiming {
   /// Set when the file is cut off: frames shown before this time, in the stream's unit, are all
   /// there; of those behind it, some may be missing between others.
   std::optional<std::int64_t> cut_time;
+  /// When the last packet is decoded; set where the container does not say where the file ends, as
+  /// in MPEG streams. Frames missing before one that is shown later were to follow it.
+  std::optional<std::int64_t> last_decoded;
   /// Behind the first frame, in order; none where the file has no index of all its frames.
   std::vector<PossibleStart> starts;
 };

@@ -185,6 +185,36 @@ TEST(TruncatedVideo, TransportStreamsTellByPacketsAndByFramesThatWereToCome) {
   EXPECT_EQ(find_video_extent(folder / "middle.ts"), VideoExtent::kWhole);
 }
 
+/// Wherever the file ends: frames follow each other, or an error names the one that is missing.
+/// Lost are those that others were decoded before, and what is torn.
+TEST(TruncatedVideo, TransportStreamsHaveNoGaps) {
+  const TemporaryFolder folder;
+  put_numbered_video(folder / "a.mp4", 20, kRate);
+  remux_video(folder / "a.mp4", folder / "whole.ts", "mpegts", kRate);
+  const auto whole = bytes_of(folder / "whole.ts");
+  int errors = 0;
+  for (std::size_t packets = 30; packets < whole.size() / 188; packets += 5) {
+    const bool is_torn = packets % 2 == 0;
+    const std::size_t size = 188 * packets + (is_torn ? 100 : 0);
+    put_bytes(folder / "cut.ts", first_bytes(whole, static_cast<std::int64_t>(size)));
+    VideoReader reader(folder / "cut.ts");
+    Photograph frame;
+    int count = 0;
+    const std::string error = error_of([&] {
+      for (; reader.read(frame); ++count) {
+        EXPECT_EQ(number_of_frame(frame), count) << size;
+      }
+    });
+    EXPECT_LT(count, 20) << size;
+    EXPECT_TRUE(!is_torn || !error.empty()) << size;
+    if (!error.empty()) {
+      EXPECT_THAT(error, HasSubstr("cut.ts: frame " + std::to_string(count) + " ")) << size;
+      ++errors;
+    }
+  }
+  EXPECT_GT(errors, 2);
+}
+
 std::string big_endian(std::uint32_t value) {
   std::string bytes;
   for (int shift = 24; shift >= 0; shift -= 8) {
