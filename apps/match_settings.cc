@@ -16,7 +16,7 @@ constexpr double kNoThreshold = -std::numeric_limits<double>::infinity();
 /// "auto: squared; gradient for gradient, …": a default that depends on the method. The rule is
 /// what most methods have.
 template <typename Enum>
-std::string by_method(const EnumNames<Enum>& names, Enum MethodParameters::*field, Enum rule) {
+std::string by_method(Enum MethodParameters::*field, Enum rule) {
   std::string text = fmt::format("auto: {}", name_of(rule));
   std::string separator = "; ";
   for (const auto& [method_name, method] : method_names()) {
@@ -70,7 +70,7 @@ void add_cost_settings(Settings& settings, MethodOverrides& parameters) {
   settings.begin_group("Matching: cost");
   settings.choice("cost", parameters.cost, cost_names(),
                   "How unlike a pixel and its partner are; " +
-                      by_method(cost_names(), &MethodParameters::cost, MatchCost::kSquared));
+                      by_method(&MethodParameters::cost, MatchCost::kSquared));
   settings.choice<ColourUse>("colour", parameters.colour,
                              {{"luma", ColourUse::kLuma}, {"channels", ColourUse::kChannels}},
                              "What is compared of colour images: their luma, or each channel, of "
@@ -103,10 +103,9 @@ void add_cost_settings(Settings& settings, MethodOverrides& parameters) {
 void add_aggregation_settings(Settings& settings, MethodOverrides& parameters) {
   const MethodParameters book = book_parameters(MatchMethod::kSsd);
   settings.begin_group("Matching: aggregation");
-  settings.choice(
-      "aggregate", parameters.aggregation, aggregation_names(),
-      "How costs gather support from their neighbours; " +
-          by_method(aggregation_names(), &MethodParameters::aggregation, Aggregation::kBox));
+  settings.choice("aggregate", parameters.aggregation, aggregation_names(),
+                  "How costs gather support from their neighbours; " +
+                      by_method(&MethodParameters::aggregation, Aggregation::kBox));
   settings.integer("window", parameters.window_px, "PX",
                    "box: side of the square window, odd, 1 to 181; " + shared(book.window_px));
   settings.choice<Border>("border", parameters.border,
