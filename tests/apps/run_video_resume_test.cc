@@ -120,8 +120,8 @@ TEST_F(VideosResumed, AFileThatWasDamagedIsMadeAnew) {
 TEST_F(ResumedByFolder, SettingsAndInputsAreThoseOfTheRun) {
   const std::string poses = folder_ / "poses.toml";
   write_file(poses, "[[view]]\nat = [0.25, 0]\n[[view]]\nat = [0.5, 0.1]\n");
-  const Words settings = {"--save", "disparity,views", "--pose", poses, "--window", "7", "--offset",
-                          "1",      "--keep-going",    "--fps",  "30"};
+  const Words settings = {"--save", "disparity,views", "--pose", poses,         "--window",
+                          "7",      "--offset",        "1",      "--keep-going"};
   const FolderContent expected = undisturbed(settings);
   const std::string good = frame_bytes("left", 4);
   ASSERT_EQ(run(out_, settings).exit_code, 0);
