@@ -416,8 +416,8 @@ TEST_F(SceneBuilderTest, SaysWhatIsWrong) {
         R"({"format":1,"settings":{},"unit_length":1,"images":[],"edges":[{"first":0,"second":1,)"
         R"("direction":"x","length":1}]})"}) {
     put_text(place_ / "scene.json", damage);
-    EXPECT_THAT(error_of([&] { read_scene(place_); }), HasSubstr("scene.json: ")) << damage;
-    EXPECT_THAT(error_of([&] { builder(images); }), HasSubstr("scene.json: ")) << damage;
+    EXPECT_THAT(error_of([&] { read_scene(place_); }), HasSubstr("scene.json:")) << damage;
+    EXPECT_THAT(error_of([&] { builder(images); }), HasSubstr("scene.json:")) << damage;
   }
   fs::remove_all(place_);
 

@@ -270,7 +270,7 @@ TEST(ShotTableFile, IsThatOfTheFirstWhoKeepsOne) {
   EXPECT_THAT(test::error_of([&] { read_shot_table(file); }), HasSubstr("checksum does not fit"));
   test::put_text(file, to_json(first).substr(0, 40));
   EXPECT_THAT(test::error_of([&] { read_shot_table(file); }),
-              HasSubstr(file.string() + ": is damaged (shots: "));
+              HasSubstr(file.string() + ": is damaged (shots:"));
   test::put_text(file, "");
   EXPECT_THAT(test::error_of([&] { read_shot_table(file); }), HasSubstr(file.string()));
   EXPECT_THAT(test::error_of([&] { keep_shot_table(folder / "none/shots.json", first); }),
@@ -291,11 +291,11 @@ TEST(ShotTableJson, MalformedTextIsRefused) {
   };
   const std::string text = to_json(table);
   for (std::size_t size = 0; size + 2 < text.size(); size += 7) {
-    EXPECT_THAT(error_of(text.substr(0, size)), HasSubstr("shots: ")) << size;
+    EXPECT_THAT(error_of(text.substr(0, size)), HasSubstr("shots:")) << size;
   }
-  EXPECT_THAT(error_of("[]"), HasSubstr("shots: "));
+  EXPECT_THAT(error_of("[]"), HasSubstr("shots:"));
   EXPECT_THAT(error_of(R"({"shots": []})"), HasSubstr("expected at least one"));
-  EXPECT_THAT(error_of(R"({"shots": [1]})"), HasSubstr("shots: "));
+  EXPECT_THAT(error_of(R"({"shots": [1]})"), HasSubstr("shots:"));
   const auto with = [&](void (*change)(ShotTable & changed)) {
     ShotTable changed = table;
     change(changed);
