@@ -317,9 +317,12 @@ MatchOptions options_of(MatchCost cost, Aggregation aggregation, const Ranges& r
   options.disparities_y = ranges.down;
   options.parameters.cost = cost;
   options.parameters.aggregation = aggregation;
-  options.parameters.iterations = 3;
-  options.parameters.window_px = 5;
-  if (cost == MatchCost::kGradient) {
+  if (aggregation == Aggregation::kBox) {
+    options.parameters.window_px = 5;
+  } else if (aggregation >= Aggregation::kDiffusion) {
+    options.parameters.iterations = 3;
+  }
+  if (cost == MatchCost::kGradient && aggregation == Aggregation::kLocalStopping) {
     options.parameters.certainty = Certainty::kEntropy;  // there is no margin of evidence
   }
   return options;
@@ -346,8 +349,10 @@ TEST_P(DisplacementSearch, EqualsAPlainSearchOverPairs) {
                  std::to_string(row[3]) + ", left " + std::to_string(is_left) + ", " +
                  test::sample_name());
     MatchOptions options = options_of(kCosts[row[1]], kAggregations[row[0]], ranges);
-    options.parameters.prior_smoothing =
-        row[3] == 0 ? PriorSmoothing::kSum : PriorSmoothing::kMaximum;
+    if (kAggregations[row[0]] == Aggregation::kBayes) {
+      options.parameters.prior_smoothing =
+          row[3] == 0 ? PriorSmoothing::kSum : PriorSmoothing::kMaximum;
+    }
     const PhotographPair pair =
         textured_pair(31, 23, ranges.across, PixelKind::kGrey8, static_cast<unsigned>(row[1]) + 1);
     expect_equals_pairs(pair, options, is_left ? Reference::kLeft : Reference::kRight,
@@ -537,8 +542,11 @@ TEST(DisplacementSearchOfMethods, MovesBothComponentsBetweenPixels) {
     MatchOptions options;
     options.raw = true;
     options.method = method;
-    options.parameters.window_px = 11;
-    options.parameters.iterations = 30;
+    if (method == MatchMethod::kSsd) {
+      options.parameters.window_px = 11;
+    } else {
+      options.parameters.iterations = 30;
+    }
     options.disparities = {0, 5};
     options.disparities_y = {-1, 4};
     const DisparityMaps maps = maps_of(pair, options, execution);
