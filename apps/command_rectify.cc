@@ -187,7 +187,7 @@ void improve(Rectification& rectification, Rectifier& rectifier,
     const auto remaining = vertical_error(rectified);
     if (remaining &&
         (!rectification.remaining || remaining->rms_px < rectification.remaining->rms_px)) {
-      rectification.matches = static_cast<int>(near.size());
+      rectification.matches = std::move(near);
       rectification.calibration = rig.calibration;
       rectification.estimate = std::move(rig);
       rectification.remaining = remaining;
@@ -246,13 +246,13 @@ int command_rectify(const Arguments& arguments) {
 
   Rectification rectification;
   if (job.calibration.empty()) {
-    const std::vector<PointMatch> matches =
+    rectification.matches =
         gather_matches(*pairs, sample, size, execution, report,
                        [](FramePair& one) { return match_features(one.left, one.right); });
-    rectification.matches = static_cast<int>(matches.size());
     rectification.estimate = about(inputs, [&] {
-      return report.timed_compute(
-          "estimate", [&] { return estimate_rig(matches, size.width_px, size.height_px); });
+      return report.timed_compute("estimate", [&] {
+        return estimate_rig(rectification.matches, size.width_px, size.height_px);
+      });
     });
     rectification.calibration = rectification.estimate->calibration;
   } else {
@@ -276,8 +276,12 @@ int command_rectify(const Arguments& arguments) {
     report.timed_compute("estimate",
                          [&] { improve(rectification, rectifier, found, job.rectification); });
     require_success(rectification, found.size(), inputs);
+    report.timed_compute("validate", [&] {
+      rectification.validation = validate_rig(*rectification.estimate, rectification.matches,
+                                              size.width_px, size.height_px, job.rectification);
+    });
   } else {
-    rectification.matches = static_cast<int>(found.size());
+    rectification.matches = found;
   }
 
   report.timed_file_access("write", [&] {

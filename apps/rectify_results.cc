@@ -9,16 +9,44 @@
 #include "apps/vertical_error_report.h"
 
 namespace vantage::apps {
+namespace {
+
+/// Less than this of the photograph near points leaves much to guess.
+constexpr double kLeastCovered = 0.5;
+
+void print_validation(const RigValidation& validation) {
+  if (validation.held_out) {
+    tell("rectify: at points left out of the estimate they are off by {}\n",
+         vertical_error_text(*validation.held_out));
+    if (!is_rectified(*validation.held_out)) {
+      tell(
+          "rectify: warning: where no points are, {}; more pairs of the rig, or a calibration, "
+          "give better cameras\n",
+          cost_text(*validation.held_out, "rows"));
+    }
+  }
+  if (validation.covered_share < kLeastCovered) {
+    tell(
+        "rectify: warning: points cover {:.0f} % of the image, expected at least {:.0f} %: "
+        "elsewhere "
+        "rows may be off by more\n",
+        100 * validation.covered_share, 100 * kLeastCovered);
+  }
+}
+
+}  // namespace
 
 SettingValue results_of(const Rectification& rectification, const RectifiedPair& pair,
                         int pair_count) {
   SettingValue results = {
       {"pairs", pair_count},
       {"cameras", rectification.calibration.format},
-      {"matches", rectification.matches},
+      {"matches", rectification.matches.size()},
       {"inliers", nullptr},
       {"epipolar_rms_px", nullptr},
       {"vertical_error", nullptr},
+      {"held_out_vertical_error", nullptr},
+      {"covered_share", nullptr},
       {"disparities", nullptr},
       {"looks_exchanged", nullptr},
       {"valid",
@@ -34,6 +62,13 @@ SettingValue results_of(const Rectification& rectification, const RectifiedPair&
     results["inliers"] = rectification.estimate->inliers;
     results["epipolar_rms_px"] = rectification.estimate->rms_px;
   }
+  if (rectification.validation) {
+    results["covered_share"] = rectification.validation->covered_share;
+    if (rectification.validation->held_out) {
+      results["held_out_vertical_error"] =
+          vertical_error_values(*rectification.validation->held_out);
+    }
+  }
   if (rectification.remaining) {
     results["vertical_error"] = vertical_error_values(*rectification.remaining);
     results["disparities"] = disparities_text(*rectification.remaining);
@@ -48,11 +83,14 @@ void print_results(const Rectification& rectification, const RectifiedPair& pair
        pair.width_px, pair.height_px,
        rectification.estimate
            ? fmt::format("cameras estimated from {} of {} points", rectification.estimate->inliers,
-                         rectification.matches)
+                         rectification.matches.size())
            : fmt::format("cameras from {} ({})", calibration, rectification.calibration.format));
   if (rectification.remaining) {
     tell("rectify: rows are off by {}; disparities {}\n",
          vertical_error_text(*rectification.remaining), disparities_text(*rectification.remaining));
+    if (rectification.validation) {
+      print_validation(*rectification.validation);
+    }
     if (!rectification.estimate && !is_rectified(*rectification.remaining)) {
       tell("rectify: warning: the calibration does not fit the images: {}\n",
            cost_text(*rectification.remaining, "rows"));

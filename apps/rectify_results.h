@@ -2,9 +2,11 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/setting_value.h"
 #include "engine/rectification/rectified_pair.h"
+#include "engine/rectification/rig_validation.h"
 #include "engine/rectification/uncalibrated_rig.h"
 #include "engine/rectification/vertical_error.h"
 
@@ -14,8 +16,9 @@ namespace vantage::apps {
 struct Rectification {
   StereoCalibration calibration;
   std::optional<UncalibratedRig> estimate;  ///< without a calibration file
-  int matches = 0;                          ///< that the estimate is made from
+  std::vector<PointMatch> matches = {};     ///< in the photographs, that the estimate is made from
   std::optional<VerticalError> remaining;
+  std::optional<RigValidation> validation;  ///< of the estimate
 };
 
 /// What the report of 'rectify' says under `results`.

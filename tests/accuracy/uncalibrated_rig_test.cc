@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "engine/rectification/rectifier.h"
+#include "engine/rectification/rig_validation.h"
 #include "tests/engine/io_test_support.h"
 #include "tests/engine/match_cases.h"
 #include "tests/test_paths.h"
@@ -291,6 +292,41 @@ TEST(UncalibratedRig, RectifiesTheChessboardFromItsCorners) {
     }
     EXPECT_LT(rows_of(single.calibration, inliers).rms_px, 0.3) << image;
   }
+}
+
+RigValidation validation_of(const std::vector<PointMatch>& matches) {
+  return validate_rig(estimate_rig(matches, kWidth, kHeight), matches, kWidth, kHeight, {});
+}
+
+TEST(RigValidation, ExactMatchesEverywhereHoldWhereTheyAreLeftOut) {
+  std::mt19937 random(4);
+  const StereoCalibration truth = random_calibration(random, kWidth, kHeight, 0);
+  const RigValidation found = validation_of(exact_matches(truth, kWidth, kHeight, 600, random));
+  ASSERT_TRUE(found.held_out);
+  EXPECT_LT(found.held_out->rms_px, 1e-3);
+  EXPECT_GT(found.held_out->inliers, 550);
+  EXPECT_GT(found.covered_share, 0.9);
+}
+
+TEST(RigValidation, TellsOfFewInexactMatchesAndOfPartsWithoutAny) {
+  std::mt19937 random(5);
+  const StereoCalibration truth = random_calibration(random, kWidth, kHeight, 0);
+  std::vector<PointMatch> matches;
+  std::normal_distribution<double> noise_px(0, 0.3);
+  for (PointMatch match : exact_matches(truth, kWidth, kHeight, 1000, random)) {
+    if (match.left.x() < 0.5 * kWidth - 0.5 && match.left.y() < 0.5 * kHeight - 0.5) {
+      match.right.y() += noise_px(random);
+      matches.push_back(match);
+    }
+  }
+  const UncalibratedRig rig = estimate_rig(matches, kWidth, kHeight);
+  const RigValidation found = validate_rig(rig, matches, kWidth, kHeight, {});
+  EXPECT_LE(found.covered_share, 0.25);
+  EXPECT_GT(found.covered_share, 0.2);
+  ASSERT_TRUE(found.held_out);
+  EXPECT_GT(found.held_out->rms_px, rows_of(rig.calibration, matches).rms_px);
+  matches.resize(30);  // half of them are too few
+  EXPECT_FALSE(validation_of(matches).held_out);
 }
 
 }  // namespace uncalibrated_rig_test

@@ -70,6 +70,9 @@ TEST_F(RectifyTest, FromTheImagesAlone) {
   EXPECT_GE(results["inliers"].get<int>(), 60);
   EXPECT_LT(results["vertical_error"]["rms_px"].get<double>(), 0.5);
   EXPECT_LT(results["vertical_error"]["systematic_px"].get<double>(), 0.2);
+  EXPECT_THAT(result.err, HasSubstr("at points left out of the estimate they are off by"));
+  EXPECT_LT(results["held_out_vertical_error"]["systematic_px"].get<double>(), 0.5);
+  EXPECT_GT(results["covered_share"].get<double>(), 0.5);
   EXPECT_LT(results["valid"]["width"].get<int>(), 320);
   EXPECT_EQ(results["homographies"]["left"].size(), 3U);
 
