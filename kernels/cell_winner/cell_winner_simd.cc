@@ -26,7 +26,7 @@ constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr float kNowhere = 1 << 24;
 
 // 0, 1, … per lane. (Highway's Iota of floats goes through memory, value by value.)
-HWY_INLINE VecF lane_numbers() {
+HWY_INLINE VecF cell_lane_numbers() {
   alignas(64) static constexpr float numbers[kLaneMultiple] = {0, 1, 2,  3,  4,  5,  6,  7,
                                                                8, 9, 10, 11, 12, 13, 14, 15};
   return hn::Load(TagF(), numbers);
@@ -56,7 +56,7 @@ class SomeLanes {
 
  private:
   static HWY_INLINE MaskF within(const LaneRange& candidates, int first) {
-    const VecF lane = hn::Add(lane_numbers(), hn::Set(TagF(), static_cast<float>(first)));
+    const VecF lane = hn::Add(cell_lane_numbers(), hn::Set(TagF(), static_cast<float>(first)));
     return hn::And(hn::Ge(lane, candidates.begin), hn::Lt(lane, candidates.end));
   }
   MaskF is_candidate_;
@@ -130,7 +130,7 @@ class Places {
     }
   }
   HWY_INLINE void store(float* places) const {
-    hn::Store(hn::Add(first_, lane_numbers()), TagF(), places);
+    hn::Store(hn::Add(first_, cell_lane_numbers()), TagF(), places);
   }
 
  private:

@@ -24,7 +24,7 @@ void winners(const EnergyRow& row, std::int32_t* indices, FixedEnergy* least) {
 #else
 
 // 0, 1, … per lane.
-HWY_INLINE EnergyVec lane_numbers() {
+HWY_INLINE EnergyVec energy_lane_numbers() {
   alignas(32) static constexpr FixedEnergy numbers[kLaneMultiple] = {0, 1, 2,  3,  4,  5,  6,  7,
                                                                      8, 9, 10, 11, 12, 13, 14, 15};
   return hn::Load(EnergyTag(), numbers);
@@ -44,7 +44,8 @@ HWY_INLINE void select(const FixedEnergy* cells, int lanes, CandidateRange candi
     if constexpr (kAll) {
       return energies;
     } else {
-      const EnergyVec number = hn::Add(lane_numbers(), hn::Set(d, static_cast<FixedEnergy>(lane)));
+      const EnergyVec number =
+          hn::Add(energy_lane_numbers(), hn::Set(d, static_cast<FixedEnergy>(lane)));
       const auto counts = hn::And(hn::Gt(number, before), hn::Lt(number, end));
       return hn::IfThenElse(counts, energies, most);
     }
@@ -57,7 +58,7 @@ HWY_INLINE void select(const FixedEnergy* cells, int lanes, CandidateRange candi
   // Looks at all: where the winner is, is as good as random, and a wrongly predicted branch costs
   // more than the vectors.
   EnergyVec place = most;
-  EnergyVec number = lane_numbers();
+  EnergyVec number = energy_lane_numbers();
   for (int lane = 0; lane < lanes; lane += kEnergyLanes) {
     place = hn::Min(place, hn::IfThenElse(hn::Eq(load(lane), lowest), number, most));
     number = hn::Add(number, hn::Set(d, kEnergyLanes));
