@@ -60,7 +60,7 @@ void write_results(const MatchJob& job, const DisparityMaps& maps) {
   }
 }
 
-/// Of cameras one above the other: columns are matched as rows of transposed images.
+/// Turns columns into rows, for cameras that stand one above the other.
 void transpose(std::vector<Photograph>& images) {
   for (Photograph& image : images) {
     image = transposed(image);

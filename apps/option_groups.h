@@ -36,7 +36,7 @@ void add_soft_edges_setting(Settings& settings, bool& soft_edges);
 void add_combining_settings(Settings& settings, SynthesisOptions& options);
 /// Refuses a gamma that nothing reads.
 void check_combining(const Settings& settings, const SynthesisOptions& options);
-/// The same settings without gamma.
+/// What add_combining_settings() adds, without --gamma.
 void add_surface_settings(Settings& settings, SynthesisOptions& options);
 
 /// --seed, a whole number of at least 0.
