@@ -53,12 +53,9 @@ int command_merge(const Arguments& arguments) {
   files.add_output(job.report, "--report", OutputKind::kText);
   RunReport report(settings.command(), settings.values());
   RunJob run;
-  Settings run_settings("run", "");
-  add_run_settings(run_settings, run);
-  const RunIdentity identity = read_run(job.folder, run_settings, run);
+  const RunIdentity identity = read_run(job.folder, run, files);
   run.sequence.sound = run.sequence.sound && !job.no_sound;
   const SequenceLayout layout(job.folder, run.sequence);
-  add_run_outputs(layout, "DIR", files);
   if (job.verify) {
     const RunVerification verification = report.timed_file_access("verify", [&] {
       return verify_with_progress(layout, settings.command(),

@@ -56,11 +56,8 @@ int command_verify(const Arguments& arguments) {
   files.add_output(job.report, "--report", OutputKind::kText);
   RunReport report(settings.command(), settings.values());
   RunJob run;
-  Settings run_settings("run", "");
-  add_run_settings(run_settings, run);
-  const RunIdentity identity = read_run(job.folder, run_settings, run);
+  const RunIdentity identity = read_run(job.folder, run, files);
   const SequenceLayout layout(job.folder, run.sequence);
-  add_run_outputs(layout, "DIR", files);
 
   const RunVerification verification = report.timed_file_access("verify", [&] {
     return verify_with_progress(layout, settings.command(),

@@ -248,7 +248,9 @@ std::string describe_plan(const RunJob& job, const RunSession& session) {
   return text;
 }
 
-RunIdentity read_run(const std::string& folder, Settings& settings, RunJob& job) {
+RunIdentity read_run(const std::string& folder, RunJob& job, FileChecks& files) {
+  Settings settings("run", "");
+  add_run_settings(settings, job);
   const fs::path journal = fs::path(folder) / ".vantage";
   RunIdentity identity = RunJournal::read_identity(journal);
   try {
@@ -260,6 +262,7 @@ RunIdentity read_run(const std::string& folder, Settings& settings, RunJob& job)
                             (journal / "run.json").string(), error.what()));
   }
   job.sequence.frame_rate = job.frame_rate.value_or(FrameRate());
+  add_run_outputs(SequenceLayout(folder, job.sequence), "DIR", files);
   return identity;
 }
 

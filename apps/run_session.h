@@ -42,7 +42,8 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report);
 /// What is going to be done, for people; several lines.
 std::string describe_plan(const RunJob& job, const RunSession& session);
 
-/// The settings of a run that its folder tells of, set into `job`, for commands that go on with it.
-RunIdentity read_run(const std::string& folder, Settings& settings, RunJob& job);
+/// Reads the settings of the run in `folder` into `job` and tells `files` what the run writes
+/// there.
+RunIdentity read_run(const std::string& folder, RunJob& job, FileChecks& files);
 
 }  // namespace vantage::apps
