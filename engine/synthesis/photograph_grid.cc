@@ -86,7 +86,9 @@ class PatchRow {
 PhotographGrid::PhotographGrid(const Rectifier& rectifier, Execution& execution)
     : rectifier_(rectifier),
       execution_(execution),
-      nearest_{find_nearest_pixels(Side::kLeft), find_nearest_pixels(Side::kRight)} {}
+      nearest_{find_nearest_pixels(Side::kLeft), find_nearest_pixels(Side::kRight)},
+      whole_{WholePhotograph(rectifier, Side::kLeft, execution),
+             WholePhotograph(rectifier, Side::kRight, execution)} {}
 
 std::size_t PhotographGrid::held_bytes(int width, int height) {
   return 2 * sizeof(kernels::PixelPlace) * static_cast<std::size_t>(width) *
@@ -146,9 +148,11 @@ UnrectifiedPair PhotographGrid::pair_of(const Photograph& left, const Photograph
   return {.left = left,
           .right = right,
           .left_geometry = {.positions = rectifier_.source_positions(Side::kLeft),
-                            .disparity_px = photograph_maps[0].view()},
+                            .disparity_px = photograph_maps[0].view(),
+                            .whole = &whole_[0]},
           .right_geometry = {.positions = rectifier_.source_positions(Side::kRight),
-                             .disparity_px = photograph_maps[1].view()}};
+                             .disparity_px = photograph_maps[1].view(),
+                             .whole = &whole_[1]}};
 }
 
 }  // namespace vantage

@@ -21,12 +21,13 @@ namespace vantage {
 /// Identical for any execution.
 class PhotographGrid {
  public:
-  /// 4 bytes per pixel and image; rectified positions are interpolated between every eighth
+  /// 4 bytes per pixel and image, and some 12 after a view from the image's camera has looked
+  /// beyond the rectified image; rectified positions are interpolated between every eighth
   /// pixel where the lens allows it. `rectifier` needs rectification; it and `execution` outlive
   /// the grid.
   PhotographGrid(const Rectifier& rectifier, Execution& execution);
 
-  /// Memory that it holds for images of this size.
+  /// Memory that it holds for images of this size, without whole photographs.
   static std::size_t held_bytes(int width, int height);
 
   /// `map`, a disparity map of the rectified image of that side, as seen by the photograph's
@@ -38,7 +39,8 @@ class PhotographGrid {
   /// The same of both maps of a pair; `results` are the left and the right one's.
   void bring(const DisparityMaps& maps, std::array<Image<float>, 2>& results) const;
 
-  /// What views are made from: photographs, and their maps from bring(), which outlive it.
+  /// What views are made from: photographs, and their maps from bring(), which outlive it, as the
+  /// grid does.
   [[nodiscard]] UnrectifiedPair pair_of(const Photograph& left, const Photograph& right,
                                         const std::array<Image<float>, 2>& photograph_maps) const;
 
@@ -48,7 +50,9 @@ class PhotographGrid {
 
   const Rectifier& rectifier_;
   Execution& execution_;
-  std::array<std::vector<kernels::PixelPlace>, 2> nearest_;  // left, right
+  // Left, right.
+  std::array<std::vector<kernels::PixelPlace>, 2> nearest_;
+  std::array<WholePhotograph, 2> whole_;
 };
 
 }  // namespace vantage

@@ -1,9 +1,9 @@
 #include "engine/synthesis/pose_renderer.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 #include <variant>
 
 namespace vantage {
@@ -11,31 +11,64 @@ namespace {
 
 bool is_known(float disparity_px) { return std::isfinite(disparity_px); }
 
-/// The maps of a view at the place of a camera. What that camera's photograph shows is seen
-/// wherever it looks, so unknown pixels of its map count as infinitely far away.
-class MapsAtCamera {
- public:
-  MapsAtCamera(const NewView& view, ViewSource source, Execution& execution)
-      : far_(static_cast<float>(view.infinity_disparity_px)),
-        execution_(execution),
-        source_(std::move(source)) {
-    if (view.distance_from_left < kSamePlace) {
-      complete(source_.left_disparity_px, 0);
-      if (source_.photographs) {
-        complete(source_.photographs->left_geometry.disparity_px, 1);
-      }
-    } else if (view.distance_from_right < kSamePlace) {
-      complete(source_.right_disparity_px, 0);
-      if (source_.photographs) {
-        complete(source_.photographs->right_geometry.disparity_px, 1);
+/// Whether a view at the place of a camera, whose `homography` (view pixel ← image pixel) is given,
+/// shows nothing but the image of this size.
+bool is_within(const Eigen::Matrix3d& homography, const NewView& view,
+               ImageView<const float> image) {
+  constexpr double kBeyondPx = 0.5 + 1e-3;  // cameras are computed, with rounding
+  const Eigen::Matrix3d back = homography.inverse();
+  for (const double u : {-0.5, view.width_px - 0.5}) {
+    for (const double v : {-0.5, view.height_px - 0.5}) {
+      const Eigen::Vector3d at = back * Eigen::Vector3d(u, v, 1);
+      const Eigen::Vector2d place = at.hnormalized();
+      if (!(at.z() > 0 && (place.array() >= -kBeyondPx).all() &&
+            place.x() <= image.width() - 1 + kBeyondPx &&
+            place.y() <= image.height() - 1 + kBeyondPx)) {
+        return false;
       }
     }
   }
+  return true;
+}
 
+/// What a view at the place of a camera is made from. All that the camera's photograph shows is
+/// seen there: unknown pixels of its map count as infinitely far away, and where the view looks
+/// beyond the rectified image, the photograph goes on (WholePhotograph). Any other view is left as
+/// it is.
+class SourceAtCamera {
+ public:
+  SourceAtCamera(const NewView& view, const ViewSource& source, Execution& execution)
+      : execution_(execution), view_(view), source_(source) {
+    if (view.distance_from_left < kSamePlace) {
+      complete(view_.from_left, source_.left_disparity_px,
+               source_.photographs ? &source_.photographs->left_geometry : nullptr);
+    } else if (view.distance_from_right < kSamePlace) {
+      complete(view_.from_right, source_.right_disparity_px,
+               source_.photographs ? &source_.photographs->right_geometry : nullptr);
+    }
+  }
+
+  [[nodiscard]] const NewView& view() const { return view_; }
   [[nodiscard]] const ViewSource& source() const { return source_; }
 
  private:
-  void complete(ImageView<const float>& map_px, std::size_t which) {
+  void complete(ViewWarp& warp, ImageView<const float>& map_px, PhotographGeometry* photograph) {
+    if (photograph != nullptr && photograph->whole != nullptr &&
+        !is_within(warp.homography, view_, map_px)) {
+      const WholePhotograph::Window& window = photograph->whole->window();
+      map_px = window.disparity_px;
+      photograph->positions = window.positions;
+      photograph->disparity_px = window.photograph_disparity_px;
+      warp.homography.col(2) += warp.homography.leftCols<2>() * window.first_px;
+      return;
+    }
+    fill_unknown(map_px, 0);
+    if (photograph != nullptr) {
+      fill_unknown(photograph->disparity_px, 1);
+    }
+  }
+
+  void fill_unknown(ImageView<const float>& map_px, std::size_t which) {
     const int width = map_px.width();
     const auto is_complete = [&](int y) {
       return std::all_of(map_px.row(y), map_px.row(y) + width, is_known);
@@ -47,19 +80,20 @@ class MapsAtCamera {
     if (y == map_px.height()) {
       return;
     }
-    Image<float>& complete = maps_[which];
-    complete.resize(width, map_px.height());
+    const auto far_px = static_cast<float>(view_.infinity_disparity_px);
+    Image<float>& filled = maps_[which];
+    filled.resize(width, map_px.height());
     execution_.for_each_band(map_px.height(), [&](int first_row, int end_row) {
       for (int row = first_row; row < end_row; ++row) {
-        std::transform(map_px.row(row), map_px.row(row) + width, complete.row(row),
-                       [this](float d) { return is_known(d) ? d : far_; });
+        std::transform(map_px.row(row), map_px.row(row) + width, filled.row(row),
+                       [far_px](float d) { return is_known(d) ? d : far_px; });
       }
     });
-    map_px = complete.view();
+    map_px = filled.view();
   }
 
-  float far_;
   Execution& execution_;
+  NewView view_;
   ViewSource source_;
   std::array<Image<float>, 2> maps_;  // of the image, of its photograph; empty where not needed
 };
@@ -95,15 +129,15 @@ void PoseRenderer::render(const ViewSource& source, const ViewPose& pose, Synthe
     return;
   }
   const NewView geometry = new_view(pose, cameras_, source.left.width(), source.left.height());
-  const MapsAtCamera maps(geometry, source, execution_);
-  const ViewSource& known = maps.source();
-  if (known.photographs) {
-    synthesizer_.synthesize(*known.photographs, known.left_disparity_px, known.right_disparity_px,
-                            geometry, view, given_fit);
+  const SourceAtCamera seen(geometry, source, execution_);
+  const ViewSource& from = seen.source();
+  if (from.photographs) {
+    synthesizer_.synthesize(*from.photographs, from.left_disparity_px, from.right_disparity_px,
+                            seen.view(), view, given_fit);
     return;
   }
-  synthesizer_.synthesize(known.left, known.right, known.left_disparity_px,
-                          known.right_disparity_px, geometry, view, given_fit);
+  synthesizer_.synthesize(from.left, from.right, from.left_disparity_px, from.right_disparity_px,
+                          seen.view(), view, given_fit);
 }
 
 kernels::IntensitySums PoseRenderer::intensity_sums(const ViewSource& source) const {

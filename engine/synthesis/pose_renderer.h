@@ -30,8 +30,8 @@ struct ViewSource {
 /// Renders a pair from wherever a pose says, in the way that suits the pose and the options: with
 /// WarpColour::kForward cameras take the book's three steps, everything else is one pass, from the
 /// photographs where the source has them. At the place of a camera a view is that camera's
-/// photograph, resampled by the view's homography alone, also where its map is unknown (with γ = α;
-/// forward warps of cameras aside).
+/// photograph, resampled by the view's homography alone, also where its map is unknown and outside
+/// the rectified image (with γ = α; forward warps of cameras aside).
 ///
 /// Thread rule: everything may be called concurrently for different results. Identical for any
 /// ExecutionOptions.

@@ -29,21 +29,18 @@ constexpr double kFarthestView = 16;  // baselines
 /// of them: more would take several times the memory of all inputs, and as long as warping again.
 constexpr std::size_t kMostKeptBytes = std::size_t{32} << 20;
 
-void require_same_shape(const Photograph& left, const Photograph& right,
-                        ImageView<const float> left_disparity,
-                        ImageView<const float> right_disparity) {
-  const auto require_size = [&](const char* what, int width, int height) {
-    if (width != left.width() || height != left.height()) {
-      throw Error(fmt::format("{} is {}×{}, expected {}×{} as the left image", what, width, height,
-                              left.width(), left.height()));
-    }
-  };
+void require_size_of_left(const Photograph& left, const char* what, int width, int height) {
+  if (width != left.width() || height != left.height()) {
+    throw Error(fmt::format("{} is {}×{}, expected {}×{} as the left image", what, width, height,
+                            left.width(), left.height()));
+  }
+}
+
+void require_same_shape(const Photograph& left, const Photograph& right) {
   if (left.width() < 1 || left.height() < 1) {
     throw Error("left image is empty, expected at least one pixel");
   }
-  require_size("right image", right.width(), right.height());
-  require_size("left disparity map", left_disparity.width(), left_disparity.height());
-  require_size("right disparity map", right_disparity.width(), right_disparity.height());
+  require_size_of_left(left, "right image", right.width(), right.height());
   if (left.channels() != right.channels()) {
     throw Error(fmt::format("right image has {} channels, expected {} as the left image",
                             right.channels(), left.channels()));
@@ -54,7 +51,12 @@ void require_same_shape(const Photograph& left, const Photograph& right,
   if (left.channels() != 1 && left.channels() != 3 && left.channels() != 4) {
     throw Error(fmt::format("left image has {} channels, expected 1, 3 or 4", left.channels()));
   }
-  if (left_disparity.channels() != 1 || right_disparity.channels() != 1) {
+}
+
+/// `map_px` is that of an image of the size of `left`.
+void require_map(const Photograph& left, const char* what, ImageView<const float> map_px) {
+  require_size_of_left(left, what, map_px.width(), map_px.height());
+  if (map_px.channels() != 1) {
     throw Error("disparity map has several channels, expected one");
   }
 }
@@ -269,19 +271,20 @@ PairOfMaps pair_of(const UnrectifiedPair& photographs, ImageView<const float> le
   if (options.warp != WarpColour::kOnePass) {
     throw Error("colours come from photographs that are not rectified, expected warp one-pass");
   }
-  const auto require_size = [&](const PhotographGeometry& geometry,
-                                ImageView<const float> disparity_px) {
-    for (const ImageView<const float>& image :
-         {geometry.positions.x_px, geometry.positions.y_px, geometry.disparity_px}) {
-      if (image.width() != disparity_px.width() || image.height() != disparity_px.height()) {
-        throw Error(fmt::format("geometry of a photograph is {}×{}, expected {}×{} as its map",
-                                image.width(), image.height(), disparity_px.width(),
-                                disparity_px.height()));
-      }
+  const auto require_size = [](ImageView<const float> image, int width, int height) {
+    if (image.width() != width || image.height() != height) {
+      throw Error(fmt::format("geometry of a photograph is {}×{}, expected {}×{}", image.width(),
+                              image.height(), width, height));
     }
   };
-  require_size(photographs.left_geometry, left_disparity);
-  require_size(photographs.right_geometry, right_disparity);
+  const auto check_geometry = [&](const Photograph& photograph, const PhotographGeometry& geometry,
+                                  ImageView<const float> map_px) {
+    require_size(geometry.positions.x_px, map_px.width(), map_px.height());
+    require_size(geometry.positions.y_px, map_px.width(), map_px.height());
+    require_size(geometry.disparity_px, photograph.width(), photograph.height());
+  };
+  check_geometry(photographs.left, photographs.left_geometry, left_disparity);
+  check_geometry(photographs.right, photographs.right_geometry, right_disparity);
   return {photographs.left, photographs.right,         left_disparity,
           right_disparity,  photographs.left_geometry, photographs.right_geometry};
 }
@@ -317,7 +320,14 @@ std::optional<double> scanline_position(const NewView& view, const PairOfMaps& p
 /// Checks the pair, then calls body(source) with its images of their pixel type.
 template <typename Body>
 void with_source(const PairOfMaps& pair, const Body& body) {
-  require_same_shape(pair.left, pair.right, pair.left_disparity, pair.right_disparity);
+  require_same_shape(pair.left, pair.right);
+  // Geometries of photographs have been checked with their maps.
+  if (pair.left_geometry.empty()) {
+    require_map(pair.left, "left disparity map", pair.left_disparity);
+  }
+  if (pair.right_geometry.empty()) {
+    require_map(pair.left, "right disparity map", pair.right_disparity);
+  }
   std::visit(
       [&]<typename T>(const Image<T>& left_image) {
         body(StereoSource<T>{.left = left_image.view(),
@@ -364,8 +374,10 @@ void with_synthesis(const PhotographTriple& triple, const SynthesisOptions& opti
                     const TripleView& view, const std::array<IntensityFit, 4>& second_on_first,
                     Execution& execution, const Body& body) {
   const Photograph& first = *triple.images[0];
-  for (std::size_t k = 1; k < triple.images.size(); ++k) {
-    require_same_shape(first, *triple.images[k], triple.disparity_px[0], triple.disparity_px[k]);
+  for (std::size_t k = 0; k < triple.images.size(); ++k) {
+    require_same_shape(first, *triple.images[k]);
+    require_map(first, k == 0 ? "left disparity map" : "right disparity map",
+                triple.disparity_px[k]);
   }
   std::visit(
       [&]<typename T>(const Image<T>& /*image*/) {

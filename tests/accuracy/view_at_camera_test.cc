@@ -199,28 +199,23 @@ TEST_F(ViewAtCamera, OfAnOriginalIsTheOriginal) {
   }
   std::array<Image<float>, 2> photograph_maps;
   grid.bring(maps, photograph_maps);
-  const UnrectifiedPair photographs = grid.pair_of(raw.left, raw.right, photograph_maps);
+  // The rectified images are not looked at.
+  const ViewSource source{raw.left, raw.right, maps.left.view(), maps.right.view(),
+                          grid.pair_of(raw.left, raw.right, photograph_maps)};
+  const PoseRenderer renderer({}, &cameras, execution_);
   for (const Side side : {Side::kLeft, Side::kRight}) {
     const Photograph& original = side == Side::kLeft ? raw.left : raw.right;
     const Eigen::Matrix3d rotation = cameras.camera(side).rotation.transpose();
     const Eigen::Vector3d centre(side == Side::kLeft ? 0.0 : cameras.baseline, 0, 0);
-    for (const Turn& turn : {Turn{}, Turn{.zoom = 2}, Turn{.roll = 10, .yaw = 20, .zoom = 0.5}}) {
+    for (const Turn& turn :
+         {Turn{}, Turn{.zoom = 2}, Turn{.zoom = 0.5}, Turn{.roll = 10, .yaw = 20, .zoom = 0.5}}) {
       const Eigen::Matrix3d& matrix = raw.calibration.left.matrix;
       const PosedCamera camera = posed(matrix, rotation, centre, turn);
       SynthesizedView view;
-      ViewSynthesizer({}, execution_)
-          .synthesize(photographs, maps.left.view(), maps.right.view(),
-                      camera_view(cameras, camera), view);
+      renderer.render(source, camera, view, nullptr);
+      // Inside the original, also where the rectified image, to which the map belongs, ends before.
       const Eigen::Matrix3d homography = camera.matrix * turn.rotation() * matrix.inverse();
-      // Inside both the original and the rectified image that the map belongs to.
-      Mask mask = inside(homography);
-      const Mask rectified =
-          inside(camera.matrix * camera.rotation * cameras.left.matrix.inverse());
-      for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
-          mask.at(x, y) = static_cast<std::uint8_t>(mask.at(x, y) & rectified.at(x, y));
-        }
-      }
+      const Mask mask = inside(homography);
       EXPECT_GE(psnr(view.image, resampled(original, homography, turn.zoom < 1), mask, execution_),
                 turn.zoom == 1 ? 90 : 47)
           << turn.text();
