@@ -141,52 +141,59 @@ struct Scene {
 };
 
 /// The wall with its exact maps.
-Scene wall_scene() {
-  const StereoCalibration rig = distorting_rig();
-  Scene scene(rig);
-  const RectifiedPair& pair = scene.rectifier.pair();
-  const Wall wall(pair);
-  for (const Side side : {Side::kLeft, Side::kRight}) {
-    const std::size_t index = side == Side::kLeft ? 0 : 1;
-    const Eigen::Vector3d centre(static_cast<double>(index), 0, 0);
-    const RectifiedCamera& camera = pair.camera(side);
-    const LensModel lens(index == 0 ? rig.left : rig.right);
-    Image<float> photograph(kWidth, kHeight);
-    DisparityMap map(kWidth, kHeight);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        const Eigen::Vector3d seen = camera.rotation * lens.ray_of({x, y})->homogeneous();
-        photograph.at(x, y) = static_cast<float>(wall.look(centre, seen).colour);
-        const Eigen::Vector3d ray = camera.matrix.inverse() * Eigen::Vector3d(x, y, 1);
-        map.at(x, y) = static_cast<float>(wall.disparity_px(wall.look(centre, ray).depth));
+struct WallScene : Scene {
+  WallScene() : WallScene(distorting_rig()) {}
+
+ private:
+  explicit WallScene(const StereoCalibration& rig) : Scene(rig) {
+    const RectifiedPair& pair = rectifier.pair();
+    const Wall wall(pair);
+    for (const Side side : {Side::kLeft, Side::kRight}) {
+      const std::size_t index = side == Side::kLeft ? 0 : 1;
+      const Eigen::Vector3d centre(static_cast<double>(index), 0, 0);
+      const RectifiedCamera& camera = pair.camera(side);
+      const LensModel lens(index == 0 ? rig.left : rig.right);
+      Image<float> photograph(kWidth, kHeight);
+      DisparityMap map(kWidth, kHeight);
+      for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+          const Eigen::Vector3d seen = camera.rotation * lens.ray_of({x, y})->homogeneous();
+          photograph.at(x, y) = static_cast<float>(wall.look(centre, seen).colour);
+          const Eigen::Vector3d ray = camera.matrix.inverse() * Eigen::Vector3d(x, y, 1);
+          map.at(x, y) = static_cast<float>(wall.disparity_px(wall.look(centre, ray).depth));
+        }
       }
+      photographs[index].pixels = std::move(photograph);
+      (index == 0 ? maps.left : maps.right) = std::move(map);
     }
-    scene.photographs[index].pixels = std::move(photograph);
-    (index == 0 ? scene.maps.left : scene.maps.right) = std::move(map);
+    rectify();
   }
-  scene.rectify();
-  return scene;
-}
+};
 
 /// Noise and maps with jumps, for comparisons.
 template <typename T>
-Scene noise_scene(int width, int height, int channels, Execution& on, double kept_outline = 0) {
-  std::mt19937 random(7);
-  Scene scene(test::random_calibration(random, width, height, 5, 0.03), width, height, on,
-              kept_outline);
-  scene.photographs = {noise<T>(width, height, channels, 1), noise<T>(width, height, channels, 2)};
-  for (DisparityMap* map : {&scene.maps.left, &scene.maps.right}) {
-    map->resize(width, height);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        map->at(x, y) = static_cast<float>((x / 9 + y / 7) % 3 * 4) + 0.3F;
+struct NoiseScene : Scene {
+  NoiseScene(int width, int height, int channels, Execution& on, double kept_outline = 0)
+      : Scene(random_rig(width, height), width, height, on, kept_outline) {
+    photographs = {noise<T>(width, height, channels, 1), noise<T>(width, height, channels, 2)};
+    for (DisparityMap* map : {&maps.left, &maps.right}) {
+      map->resize(width, height);
+      for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+          map->at(x, y) = static_cast<float>((x / 9 + y / 7) % 3 * 4) + 0.3F;
+        }
       }
+      map->at(width / 2, height / 2) = std::numeric_limits<float>::quiet_NaN();
     }
-    map->at(width / 2, height / 2) = std::numeric_limits<float>::quiet_NaN();
+    rectify();
   }
-  scene.rectify();
-  return scene;
-}
+
+ private:
+  static StereoCalibration random_rig(int width, int height) {
+    std::mt19937 random(7);
+    return test::random_calibration(random, width, height, 5, 0.03);
+  }
+};
 
 PosedCamera turned_camera(const RectifiedPair& pair) {
   PosedCamera camera;
@@ -227,7 +234,7 @@ double psnr_db(const SynthesizedView& view, const Image<float>& truth, const Ima
 // What one interpolation is for: a texture near the limit of what pixels can hold comes out nearer
 // to what a camera there would see than after two.
 TEST(SurfaceColours, OneInterpolationIsNearerToTheTruthThanTwo) {
-  Scene scene = wall_scene();
+  WallScene scene;
   const RectifiedPair& pair = scene.rectifier.pair();
   const Wall wall(pair);
   struct Case {
@@ -267,7 +274,7 @@ TEST(SurfaceColours, OneInterpolationIsNearerToTheTruthThanTwo) {
 // Pixels at the sides of the rectified image have neighbours in the photograph that it does not
 // show; they count all the same.
 TEST(SurfaceColours, AtACameraTheViewIsTheRectifiedImage) {
-  const auto expect_equal = [](Scene scene, int width, int height) {
+  const auto expect_equal = [](Scene&& scene, int width, int height) {
     for (DisparityMap* map : {&scene.maps.left, &scene.maps.right}) {
       map->fill(2);
     }
@@ -295,11 +302,11 @@ TEST(SurfaceColours, AtACameraTheViewIsTheRectifiedImage) {
           view.image.pixels);
     }
   };
-  expect_equal(noise_scene<std::uint8_t>(67, 41, 3, execution()), 67, 41);
-  expect_equal(noise_scene<std::uint16_t>(61, 37, 1, execution()), 61, 37);
-  expect_equal(noise_scene<float>(53, 64, 4, execution()), 53, 64);
+  expect_equal(NoiseScene<std::uint8_t>(67, 41, 3, execution()), 67, 41);
+  expect_equal(NoiseScene<std::uint16_t>(61, 37, 1, execution()), 61, 37);
+  expect_equal(NoiseScene<float>(53, 64, 4, execution()), 53, 64);
   // Black where the photographs end.
-  expect_equal(noise_scene<std::uint8_t>(67, 41, 3, execution(), 1), 67, 41);
+  expect_equal(NoiseScene<std::uint8_t>(67, 41, 3, execution(), 1), 67, 41);
 }
 
 // Between the entries of its tables, too, a place lies where the rectifier has it.
@@ -345,7 +352,7 @@ TEST(SurfaceColours, AreFetchedAtTheRectifiersPositions) {
 
 // Nothing of the plate comes into the wall beside it, however the lens bends its outline.
 TEST(SurfaceColours, DoNotMixAcrossOutlines) {
-  Scene scene = wall_scene();
+  WallScene scene;
   for (std::size_t k = 0; k < 2; ++k) {
     // Black wall, white plate, told apart by the disparity that the photograph's pixels have.
     auto& photograph = std::get<Image<float>>(scene.photographs[k].pixels);
@@ -392,19 +399,19 @@ TEST(SurfaceColours, SameBitsForEveryExecutorAndInstructionSet) {
        {baseline_view(0.37, 0, 83, 59), baseline_view(0.6, -0.4, 83, 59), turned}) {
     Execution serial({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
     const SynthesizedView expected =
-        noise_scene<std::uint8_t>(83, 59, 3, serial).from_photographs(view, serial);
+        NoiseScene<std::uint8_t>(83, 59, 3, serial).from_photographs(view, serial);
     for (const auto kind : {scheduler::ExecutorKind::kTbb, scheduler::ExecutorKind::kOpenMp}) {
       for (const int threads : {1, 3}) {
         Execution other({.threads = threads, .executor = kind});
         EXPECT_TRUE(
-            same(noise_scene<std::uint8_t>(83, 59, 3, other).from_photographs(view, other).image,
+            same(NoiseScene<std::uint8_t>(83, 59, 3, other).from_photographs(view, other).image,
                  expected.image));
       }
     }
     for (const std::string& isa : available_instruction_sets()) {
       force_instruction_set(isa);
       EXPECT_TRUE(
-          same(noise_scene<std::uint8_t>(83, 59, 3, serial).from_photographs(view, serial).image,
+          same(NoiseScene<std::uint8_t>(83, 59, 3, serial).from_photographs(view, serial).image,
                expected.image))
           << isa;
       force_instruction_set("best");
@@ -419,7 +426,7 @@ TEST(SurfaceColours, OfAPairWithoutLensAreThoseOfTheRectifiedImages) {
   rig.translation = {-1, 0, 0};
   Scene scene(rig, 81, 59);
   ASSERT_TRUE(scene.rectifier.needs_rectification());
-  Scene other = noise_scene<std::uint8_t>(81, 59, 3, execution());
+  NoiseScene<std::uint8_t> other(81, 59, 3, execution());
   scene.photographs = std::move(other.photographs);
   scene.maps = std::move(other.maps);
   scene.rectify();
@@ -439,7 +446,7 @@ TEST(SurfaceColours, OfAPairWithoutLensAreThoseOfTheRectifiedImages) {
 }
 
 TEST(SurfaceColours, RegressionSeesThePhotographs) {
-  Scene scene = wall_scene();
+  WallScene scene;
   auto& left = std::get<Image<float>>(scene.photographs[0].pixels);
   for (int y = 0; y < kHeight; ++y) {
     std::for_each(left.row(y), left.row(y) + kWidth,
@@ -455,7 +462,7 @@ TEST(SurfaceColours, RegressionSeesThePhotographs) {
 }
 
 TEST(SurfaceColours, RefuseTheBooksWarpAndGeometryOfAnotherSize) {
-  Scene scene = noise_scene<std::uint8_t>(40, 30, 1, execution());
+  NoiseScene<std::uint8_t> scene(40, 30, 1, execution());
   SynthesisOptions forward;
   forward.warp = WarpColour::kForward;
   const NewView view = baseline_view(0.5, 0, 40, 30);
