@@ -30,7 +30,7 @@ Volume plain_membrane(const Volume& first, double lambda, double beta, int itera
 double plain_margin(const std::vector<double>& column);
 double plain_negative_entropy(const std::vector<double>& column, double scale);
 
-/// §6.4: diffusion that restores the columns whose certainty it would reduce.
+/// Local stopping (EQUATIONS §3.4): restores the columns whose certainty diffusion would reduce.
 Volume plain_local_stopping(const Volume& first, double lambda, Certainty certainty, double scale,
                             int iterations);
 

@@ -1,0 +1,73 @@
+"""Plants one violation at a time in a small tree and expects check_documents to name it."""
+
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+CHECK_DOCUMENTS = Path(__file__).parent / "check_documents"
+
+EQUATIONS = "# The equations\n\n## 0. Conventions\n\n## 1. SSD\n\n### 1.2 Borders\n\nSee §0.\n"
+CLEAN_TREE = {
+    "docs/EQUATIONS.md": EQUATIONS,
+    "README.md": "# Name\n\n[a](docs/EQUATIONS.md#1-ssd) [b](#name) [c](https://example.org/x)\n"
+                 "![picture](docs/picture.png)\n```sh\nls [d](nowhere)\n```\n`[e](nowhere)`\n",
+    "docs/picture.png": "",
+    "kernels/box.h": "/// Sums (EQUATIONS §0, §1.2), as docs/EQUATIONS.md says.\n",
+    "tests/box_test.cc": "/// §1 once more.\n",
+}
+
+
+def run(tree):
+    with tempfile.TemporaryDirectory() as root:
+        for name, text in tree.items():
+            file = Path(root) / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text, encoding="utf-8")
+        return subprocess.run([sys.executable, "-B", str(CHECK_DOCUMENTS), root],
+                              capture_output=True, text=True, check=False)
+
+
+class CheckDocumentsTest(unittest.TestCase):
+    def expect_violation(self, name, text, expected_line):
+        result = run({**CLEAN_TREE, name: text})
+        self.assertEqual(result.returncode, 1, result.stdout)
+        self.assertEqual(len(result.stdout.splitlines()), 2, result.stdout)
+        self.assertIn(expected_line, result.stdout)
+
+    def test_accepts_a_clean_tree(self):
+        result = run(CLEAN_TREE)
+        self.assertEqual(result.returncode, 0, result.stdout)
+
+    def test_rejects_a_tree_without_equations(self):
+        self.assertNotEqual(run({"README.md": "# Name\n"}).returncode, 0)
+
+    def test_sections_that_do_not_exist(self):
+        for name, text, section in [
+                ("kernels/a.h", "// one line\n/// EQUATIONS §2", "§2"),
+                ("engine/a.cc", "//\n// (EQUATIONS §1, §1.3)", "§1.3"),
+                ("tests/a_test.cc", "\n/// EQUATIONS\n/// §7, wrapped", "§7"),
+                ("docs/EQUATIONS.md", EQUATIONS + "See §3.", "§3")]:
+            with self.subTest(name=name):
+                self.expect_violation(name, text, f"{section}, expected a section")
+
+    def test_a_section_that_is_removed(self):
+        result = run({**CLEAN_TREE,
+                      "docs/EQUATIONS.md": EQUATIONS.replace("### 1.2 Borders", "Borders")})
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("kernels/box.h:1: §1.2", result.stdout)
+
+    def test_documents_that_do_not_exist(self):
+        self.expect_violation("apps/a.cc", "\n// docs/GONE.md\n", "apps/a.cc:2: there is no docs/GONE.md")
+        self.expect_violation("docs/a.md", "See `perf/GONE.md`.", "docs/a.md:1: there is no perf/GONE.md")
+
+    def test_links_that_lead_nowhere(self):
+        self.expect_violation("docs/a.md", "\n[x](GONE.md)\n", "docs/a.md:2: link to 'GONE.md'")
+        self.expect_violation("docs/a.md", "[x](../docs/EQUATIONS.md#2-gone)", "no such heading")
+        self.expect_violation("perf/a.md", "# A\n[x](#b)", "perf/a.md:2: link to '#b'")
+        self.expect_violation("docs/a.md", "![x](gone.png)", "docs/a.md:1: link to 'gone.png'")
+
+
+if __name__ == "__main__":
+    unittest.main()
