@@ -8,7 +8,7 @@
 #include "apps/settings.h"
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 
 namespace vantage::apps {
 

@@ -16,7 +16,7 @@
 #include "engine/io/disparity_io.h"
 #include "engine/io/displacement_io.h"
 #include "engine/io/photograph_io.h"
-#include "engine/matching/method_names.h"
+#include "engine/matching/options/method_names.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/memory_use.h"
 #include "engine/sequence/preview_range.h"

@@ -7,7 +7,7 @@
 #include "apps/match_settings.h"
 #include "apps/option_groups.h"
 #include "apps/settings.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 
 namespace vantage::apps {
 

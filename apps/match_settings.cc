@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "engine/error.h"
-#include "engine/matching/match_presets.h"
-#include "engine/matching/method_names.h"
+#include "engine/matching/options/match_presets.h"
+#include "engine/matching/options/method_names.h"
 
 namespace vantage::apps {
 namespace {

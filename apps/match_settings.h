@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "apps/settings.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 
 namespace vantage::apps {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/setting_value.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 #include "engine/scene_graph/scene_builder.h"
 
 namespace vantage::apps {

@@ -10,7 +10,7 @@
 
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 
 namespace vantage::perf {
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 
 namespace vantage::perf {
 

@@ -9,7 +9,7 @@
 
 #include "engine/io/disparity_io.h"
 #include "engine/io/photograph_io.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/refinement/refinement.h"
 

@@ -7,8 +7,8 @@
 
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/evidence_pair.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/estimation/evidence_pair.h"
+#include "engine/matching/options/match_options.h"
 
 namespace vantage {
 

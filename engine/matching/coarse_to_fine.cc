@@ -5,9 +5,9 @@
 #include <string_view>
 #include <utility>
 
-#include "engine/matching/level_stages.h"
-#include "engine/matching/stage_level_energies.h"
-#include "engine/matching/stage_level_likelihoods.h"
+#include "engine/matching/levels/level_stages.h"
+#include "engine/matching/levels/stage_level_energies.h"
+#include "engine/matching/levels/stage_level_likelihoods.h"
 #include "scheduler/trace.h"
 
 namespace vantage {

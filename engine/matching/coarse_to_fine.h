@@ -8,8 +8,8 @@
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
-#include "engine/matching/candidate_blocks.h"
-#include "engine/matching/level_volume.h"
+#include "engine/matching/levels/candidate_blocks.h"
+#include "engine/matching/levels/level_volume.h"
 #include "engine/matching/match_chain.h"
 #include "kernels/candidates.h"
 #include "scheduler/range.h"

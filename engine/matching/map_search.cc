@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "engine/matching/displacement_grid.h"
+#include "engine/matching/costs/displacement_grid.h"
 #include "scheduler/strip_pipeline.h"
 
 namespace vantage {

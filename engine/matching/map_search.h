@@ -4,8 +4,8 @@
 #include "engine/image/image.h"
 #include "engine/matching/coarse_to_fine.h"
 #include "engine/matching/match_chain.h"
-#include "engine/matching/match_options.h"
 #include "engine/matching/match_report.h"
+#include "engine/matching/options/match_options.h"
 #include "scheduler/strip_plan.h"
 
 namespace vantage {

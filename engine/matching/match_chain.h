@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "engine/image/image.h"
-#include "engine/matching/candidate_blocks.h"
-#include "engine/matching/displacement_grid.h"
-#include "engine/matching/edge_weights.h"
-#include "engine/matching/intensity_planes.h"
-#include "engine/matching/level_volume.h"
-#include "engine/matching/match_options.h"
-#include "engine/matching/stage_cell_selection.h"
-#include "engine/matching/stage_cost.h"
+#include "engine/matching/aggregation/edge_weights.h"
+#include "engine/matching/costs/displacement_grid.h"
+#include "engine/matching/costs/intensity_planes.h"
+#include "engine/matching/costs/stage_cost.h"
+#include "engine/matching/levels/candidate_blocks.h"
+#include "engine/matching/levels/level_volume.h"
+#include "engine/matching/options/match_options.h"
+#include "engine/matching/selection/stage_cell_selection.h"
 #include "scheduler/strip_plan.h"
 
 namespace vantage {

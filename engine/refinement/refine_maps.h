@@ -7,7 +7,7 @@
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 #include "engine/refinement/edge_snapping.h"
 #include "engine/refinement/filled_medians.h"
 #include "engine/refinement/refinement.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 #include "engine/scene_graph/scene_layout.h"
 #include "engine/scene_graph/scene_viewer.h"
 

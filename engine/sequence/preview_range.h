@@ -1,7 +1,7 @@
 #pragma once
 
 #include "engine/io/preview.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 
 namespace vantage {
 

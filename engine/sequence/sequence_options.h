@@ -9,7 +9,7 @@
 
 #include "engine/image/stereo_display.h"
 #include "engine/io/frame_rate.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 #include "engine/sequence/temporal_options.h"
 #include "engine/synthesis/synthesis_options.h"
 #include "engine/view_geometry/view_path.h"

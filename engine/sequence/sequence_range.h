@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "engine/execution.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 #include "engine/sequence/pair_source.h"
 
 namespace vantage {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/sequence/run_journal.h"
 #include "engine/sequence/sequence_layout.h"

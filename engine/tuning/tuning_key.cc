@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "engine/build_info.h"
-#include "engine/matching/energy_format.h"
+#include "engine/matching/levels/energy_format.h"
 #include "engine/matching/match_chain.h"
-#include "engine/matching/method_names.h"
+#include "engine/matching/options/method_names.h"
 #include "engine/simd.h"
 #include "engine/thread_placement.h"
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "engine/execution.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 #include "scheduler/machine.h"
 
 namespace vantage {

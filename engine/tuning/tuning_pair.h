@@ -2,7 +2,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 
 namespace vantage {
 

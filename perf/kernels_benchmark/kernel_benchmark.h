@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/matching/column_work.h"
+#include "engine/column_work.h"
 
 namespace vantage::perf {
 

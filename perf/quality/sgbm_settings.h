@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/execution.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 #include "engine/matching/stereo_matcher.h"
 #include "perf/peers.h"
 #include "perf/quality/true_scenes.h"

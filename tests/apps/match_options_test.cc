@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "engine/image/transposed.h"
-#include "engine/matching/parameter_readers.h"
+#include "engine/matching/options/parameter_readers.h"
 #include "tests/apps/pair_fixture.h"
 #include "tests/apps/sampling.h"
 

@@ -1,4 +1,4 @@
-#include "engine/matching/candidate_blocks.h"
+#include "engine/matching/levels/candidate_blocks.h"
 
 #include <gtest/gtest.h>
 

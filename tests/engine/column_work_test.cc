@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/matching/level_stages.h"
+#include "engine/matching/levels/level_stages.h"
 #include "engine/matching/match_chain.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"

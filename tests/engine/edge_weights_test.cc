@@ -1,4 +1,4 @@
-#include "engine/matching/edge_weights.h"
+#include "engine/matching/aggregation/edge_weights.h"
 
 #include <gtest/gtest.h>
 

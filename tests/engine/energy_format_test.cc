@@ -1,4 +1,4 @@
-#include "engine/matching/energy_format.h"
+#include "engine/matching/levels/energy_format.h"
 
 #include <gtest/gtest.h>
 

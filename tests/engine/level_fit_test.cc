@@ -1,4 +1,4 @@
-#include "engine/matching/level_fit.h"
+#include "engine/matching/estimation/level_fit.h"
 
 #include <gtest/gtest.h>
 

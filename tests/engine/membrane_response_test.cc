@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/execution.h"
-#include "engine/matching/stage_diffusion.h"
+#include "engine/matching/aggregation/stage_diffusion.h"
 #include "scheduler/strip_pipeline.h"
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/plain_aggregation.h"

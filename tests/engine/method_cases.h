@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 
 namespace vantage::test {
 

@@ -1,4 +1,4 @@
-#include "engine/matching/method_parameters.h"
+#include "engine/matching/options/method_parameters.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/matching/match_options.h"
-#include "engine/matching/match_presets.h"
+#include "engine/matching/options/match_options.h"
+#include "engine/matching/options/match_presets.h"
 
 namespace vantage {
 namespace method_parameters_test {

@@ -1,4 +1,4 @@
-#include "engine/matching/pair_levels.h"
+#include "engine/matching/estimation/pair_levels.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "engine/io/photograph_io.h"
-#include "engine/matching/level_fit.h"
+#include "engine/matching/estimation/level_fit.h"
 #include "engine/matching/stereo_matcher.h"
 #include "tests/test_paths.h"
 

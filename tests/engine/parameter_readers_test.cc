@@ -1,6 +1,6 @@
 // What the table says reads a parameter, against what changes when the parameter is changed: maps
 // that the matching code makes of given parameters, without the validation that uses the table.
-#include "engine/matching/parameter_readers.h"
+#include "engine/matching/options/parameter_readers.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,12 +16,12 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/matching/cost_planes.h"
-#include "engine/matching/edge_weights.h"
+#include "engine/matching/aggregation/edge_weights.h"
+#include "engine/matching/costs/cost_planes.h"
+#include "engine/matching/estimation/pair_levels.h"
 #include "engine/matching/map_search.h"
-#include "engine/matching/match_options.h"
-#include "engine/matching/method_names.h"
-#include "engine/matching/pair_levels.h"
+#include "engine/matching/options/match_options.h"
+#include "engine/matching/options/method_names.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/test_sample.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/image/photograph.h"
-#include "engine/matching/stage_cost.h"
+#include "engine/matching/costs/stage_cost.h"
 #include "tests/engine/plain_costs.h"
 
 namespace vantage::test {

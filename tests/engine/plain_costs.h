@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/image/photograph.h"
-#include "engine/matching/match_options.h"
+#include "engine/matching/options/match_options.h"
 
 namespace vantage::test {
 

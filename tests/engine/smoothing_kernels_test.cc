@@ -1,4 +1,4 @@
-#include "engine/matching/smoothing_kernels.h"
+#include "engine/matching/aggregation/smoothing_kernels.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "engine/matching/stage_cell_selection.h"
+#include "engine/matching/selection/stage_cell_selection.h"
 
 #include <gtest/gtest.h>
 

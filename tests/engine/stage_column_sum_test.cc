@@ -1,4 +1,4 @@
-#include "engine/matching/stage_column_sum.h"
+#include "engine/matching/aggregation/stage_column_sum.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "engine/image/image.h"
-#include "engine/matching/stage_window_selection.h"
+#include "engine/matching/selection/stage_window_selection.h"
 #include "tests/engine/cell_stages.h"
 
 namespace vantage {

@@ -1,4 +1,4 @@
-#include "engine/matching/stage_cost.h"
+#include "engine/matching/costs/stage_cost.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

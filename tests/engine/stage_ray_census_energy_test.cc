@@ -1,5 +1,5 @@
 // Bytes of energies against the logarithms of the likelihoods that the same costs give.
-#include "engine/matching/stage_ray_census_energy.h"
+#include "engine/matching/costs/stage_ray_census_energy.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/matching/ray_census_tables.h"
-#include "engine/matching/stage_cost.h"
+#include "engine/matching/costs/ray_census_tables.h"
+#include "engine/matching/costs/stage_cost.h"
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/cell_stages.h"
 #include "tests/engine/oracle_comparison.h"

@@ -1,4 +1,4 @@
-#include "engine/matching/stage_smoothing.h"
+#include "engine/matching/aggregation/stage_smoothing.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/matching/stage_window_selection.h"
+#include "engine/matching/selection/stage_window_selection.h"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@
 
 #include "engine/error.h"
 #include "engine/image/image.h"
-#include "engine/matching/intensity_planes.h"
-#include "engine/matching/stage_column_ssd.h"
+#include "engine/matching/aggregation/stage_column_ssd.h"
+#include "engine/matching/costs/intensity_planes.h"
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/cell_stages.h"
 #include "tests/engine/plain_aggregation.h"

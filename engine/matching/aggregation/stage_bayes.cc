@@ -1,0 +1,227 @@
+#include "engine/matching/aggregation/stage_bayes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+#include "engine/column_work.h"
+#include "engine/matching/aggregation/bayes_step_stage.h"
+#include "kernels/bayes_step/bayes_step.h"
+#include "kernels/compact_likelihoods/compact_likelihoods.h"
+
+namespace vantage {
+namespace {
+
+using kernels::BayesState;
+
+// Below this the product of five floors of the prior is no normal float.
+constexpr double kLeastEpsilonOfProductForm = 1e-7;
+// Taps of the prior this much smaller than its floor are left out: σP = 0.1 needs none beside the
+// centre, 0.4 one on each side.
+constexpr double kNegligibleTap = 1e-3;
+
+/// Taps (1−ε) exp(−k²/2σ²) of the prior, as many as matter.
+std::vector<float> prior_taps(const MethodParameters& parameters, int count) {
+  std::vector<float> taps;
+  for (int k = 0; k < count; ++k) {
+    const double tap = (1 - parameters.epsilon_prior) *
+                       std::exp(-k * k / (2 * parameters.sigma_prior * parameters.sigma_prior));
+    if (k > 0 && tap < kNegligibleTap * parameters.epsilon_prior) {
+      break;
+    }
+    taps.push_back(static_cast<float>(tap));
+  }
+  return taps;
+}
+
+/// Of smoothing along lanes that takes as many operations: in two dimensions there are two passes.
+int radius_of_work(int radius, const kernels::CandidatePlane& plane) {
+  return plane.is_given() ? 2 * radius : radius;
+}
+
+enum class Form { kStart, kHalf, kGeneral };
+
+/// What stands for neighbours outside the image: factors of 1, or logarithms of those.
+float neutral_state(Form form) { return form == Form::kHalf ? 1 : 0; }
+
+/// What neighbours have in place of candidates that were not looked at: the state of p = 0.
+float absent_state(const MethodParameters& parameters, Form form) {
+  const auto floor = static_cast<float>(parameters.epsilon_prior);
+  return form == Form::kHalf ? floor : static_cast<float>(parameters.mu) * std::log2(floor);
+}
+
+class BayesStage final : public BayesStepStage<float> {
+ public:
+  BayesStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
+             int height, Form form, BayesState state, const EdgeWeights* edges,
+             const CandidateBlocks* blocks, const kernels::CandidatePlane& plane)
+      : BayesStepStage(geometry, height, form == Form::kStart, neutral_state(form),
+                       absent_state(parameters, form), blocks),
+        form_(form),
+        state_(state),
+        mu_(static_cast<float>(parameters.mu)),
+        taps_(prior_taps(parameters, geometry.count)),
+        floor_(static_cast<float>(parameters.epsilon_prior)),
+        edges_(edges),
+        plane_(plane) {}
+
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    return vantage::column_work(kernel_work(), candidates());
+  }
+
+ protected:
+  [[nodiscard]] std::size_t work_cells() const override {
+    return static_cast<std::size_t>(
+        kernels::bayes_work_floats(lanes(), radius(), most_segments(), plane_));
+  }
+
+  void make_columns(const Columns& columns) const override {
+    kernels::BayesRow row;
+    row.star = columns.star;
+    row.prior = {taps_.data(), radius(), floor_};
+    row.state = state_;
+    row.mu = mu_;
+    row.weights = weights(columns.x, columns.y);
+    row.count = columns.candidates;
+    row.segment_ends = columns.segment_ends;
+    row.plane = plane_;
+    row.output = columns.output;
+    row.source_pitch = row.output_pitch = lanes();
+    row.work = columns.work;
+    switch (form_) {
+      case Form::kStart:
+        kernels::bayes_start_row(row);
+        break;
+      case Form::kHalf:
+        kernels::bayes_half_row(row);
+        break;
+      case Form::kGeneral:
+        kernels::bayes_general_row(row);
+        break;
+    }
+  }
+
+ private:
+  [[nodiscard]] int radius() const { return static_cast<int>(taps_.size()) - 1; }
+  /// From column x on.
+  [[nodiscard]] kernels::StarWeights weights(int x, int y) const {
+    if (edges_ == nullptr) {
+      return {};
+    }
+    return {.beside = edges_->beside(y) + x,
+            .above = edges_->above(y) + x,
+            .below = edges_->above(y + 1) + x};
+  }
+  [[nodiscard]] kernels::KernelWork kernel_work() const {
+    const int radius = radius_of_work(this->radius(), plane_);
+    switch (form_) {
+      case Form::kStart:
+        return kernels::bayes_start_work(state_, radius);
+      case Form::kHalf:
+        return kernels::bayes_half_work(state_, radius);
+      case Form::kGeneral:
+        break;
+    }
+    return kernels::bayes_general_work(state_, radius, kernels::bayes_scales_sums(mu_, floor_),
+                                       edges_ != nullptr);
+  }
+
+  Form form_;
+  BayesState state_;
+  float mu_;
+  std::vector<float> taps_;
+  float floor_;
+  const EdgeWeights* edges_;
+  kernels::CandidatePlane plane_;
+};
+
+/// The state before the first iteration of a level, from the probabilities that the next coarser
+/// one ended with.
+class BayesFromCoarserStage final : public FromCoarserStage<float> {
+ public:
+  BayesFromCoarserStage(const MethodParameters& parameters,
+                        const kernels::CandidateGeometry& geometry, int height, BayesState state,
+                        const CoarserResult& coarser, const CandidateBlocks* blocks,
+                        const kernels::CandidatePlane& plane)
+      : FromCoarserStage(geometry, height, coarser, blocks),
+        state_(state),
+        mu_(static_cast<float>(parameters.mu)),
+        taps_(prior_taps(parameters, geometry.count)),
+        floor_(static_cast<float>(parameters.epsilon_prior)),
+        plane_(plane) {}
+
+  [[nodiscard]] std::string_view name() const override { return "Bayes start from coarser"; }
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    return vantage::column_work(
+        kernels::bayes_start_from_coarser_work(state_, radius_of_work(radius(), plane_)),
+        candidates());
+  }
+
+ protected:
+  /// Probabilities, and what smoothing needs.
+  [[nodiscard]] std::size_t work_cells() const override {
+    return kCoarserColumns * static_cast<std::size_t>(lanes()) +
+           static_cast<std::size_t>(kernels::bayes_work_floats(
+               lanes(), radius(), most_segments(lanes(), blocks()), plane_));
+  }
+
+  void make_states(const kernels::CompactRow& coarser, std::span<const int> segment_ends,
+                   float* states, float* work) const override {
+    float* const probabilities = work;
+    kernels::probabilities_of_compact_row(coarser, probabilities);
+    kernels::BayesRow row;
+    row.star.centre = row.star.up = row.star.down = row.star.source = probabilities;
+    row.star.left_of_first = row.star.right_of_last = probabilities;
+    row.star.columns = coarser.columns;
+    row.star.lanes = coarser.lanes;
+    row.prior = {taps_.data(), radius(), floor_};
+    row.state = state_;
+    row.mu = mu_;
+    row.count = coarser.count;
+    row.output = states;
+    row.source_pitch = row.output_pitch = coarser.lanes;
+    if (plane_.is_given()) {
+      row.plane = plane_;
+    } else {
+      row.segment_ends = segment_ends;
+    }
+    row.work = work + kCoarserColumns * static_cast<std::size_t>(lanes());
+    kernels::bayes_start_row(row);
+  }
+
+ private:
+  [[nodiscard]] int radius() const { return static_cast<int>(taps_.size()) - 1; }
+
+  BayesState state_;
+  float mu_;
+  std::vector<float> taps_;
+  float floor_;
+  kernels::CandidatePlane plane_;
+};
+
+}  // namespace
+
+std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
+    const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
+    const CoarserResult& coarser, const EdgeWeights* edges, const CandidateBlocks* blocks,
+    const kernels::CandidatePlane& plane) {
+  const bool half = parameters.mu == 0.5 && edges == nullptr &&
+                    parameters.epsilon_prior >= kLeastEpsilonOfProductForm;
+  const BayesState between = half ? BayesState::kSmoothed : BayesState::kLogSmoothed;
+  std::vector<std::unique_ptr<scheduler::RowStage>> stages;
+  for (int i = 0; i <= parameters.iterations; ++i) {
+    const Form form = i == 0 ? Form::kStart : half ? Form::kHalf : Form::kGeneral;
+    const BayesState state = i == parameters.iterations ? BayesState::kProbability : between;
+    if (i == 0 && coarser.volume != nullptr) {
+      stages.push_back(std::make_unique<BayesFromCoarserStage>(parameters, geometry, height, state,
+                                                               coarser, blocks, plane));
+      continue;
+    }
+    stages.push_back(std::make_unique<BayesStage>(parameters, geometry, height, form, state, edges,
+                                                  blocks, plane));
+  }
+  return stages;
+}
+
+}  // namespace vantage

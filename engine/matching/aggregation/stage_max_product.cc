@@ -1,0 +1,171 @@
+#include "engine/matching/aggregation/stage_max_product.h"
+
+#include <cstddef>
+#include <span>
+
+#include "engine/column_work.h"
+#include "engine/matching/aggregation/bayes_step_stage.h"
+#include "engine/matching/levels/energy_format.h"
+#include "kernels/max_product_step/max_product_step.h"
+
+namespace vantage {
+namespace {
+
+using kernels::FixedEnergy;
+using kernels::FixedWeight;
+
+/// What all stages know of the prior.
+class PriorRises {
+ public:
+  PriorRises(const MethodParameters& parameters, int count, const kernels::CandidatePlane& plane)
+      : plane_(plane),
+        rises_(EnergyFormat(parameters).prior_rises(parameters.sigma_prior, count)),
+        ceiling_(EnergyFormat(parameters).ceiling()) {}
+
+  [[nodiscard]] int radius() const { return static_cast<int>(rises_.size()); }
+  [[nodiscard]] kernels::EnergyPrior prior() const { return {rises_.data(), radius(), ceiling_}; }
+  [[nodiscard]] const kernels::CandidatePlane& plane() const { return plane_; }
+  /// Of smoothing along lanes that takes as many operations: in two dimensions there are two
+  /// passes.
+  [[nodiscard]] int radius_of_work() const { return plane_.is_given() ? 2 * radius() : radius(); }
+
+ private:
+  kernels::CandidatePlane plane_;
+  std::vector<FixedEnergy> rises_;
+  FixedEnergy ceiling_;
+};
+
+class MaxProductStage final : public BayesStepStage<FixedEnergy> {
+ public:
+  /// is_start: the state before the first iteration. smooths: iterations follow.
+  MaxProductStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
+                  int height, bool is_start, bool smooths, const EdgeWeights* edges,
+                  const CandidateBlocks* blocks, const kernels::CandidatePlane& plane)
+      : BayesStepStage(geometry, height, is_start, 0, EnergyFormat(parameters).ceiling(), blocks),
+        smooths_(smooths),
+        mu_(kernels::fixed_weight(static_cast<float>(parameters.mu))),
+        rises_(parameters, geometry.count, plane),
+        edges_(edges) {}
+
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    const kernels::KernelWork work =
+        is_start()
+            ? kernels::max_product_start_work(rises_.radius_of_work())
+            : kernels::max_product_work(rises_.radius_of_work(), smooths_, edges_ != nullptr);
+    return vantage::column_work(work, candidates());
+  }
+
+ protected:
+  [[nodiscard]] std::size_t work_cells() const override {
+    return static_cast<std::size_t>(
+        kernels::max_product_work_cells(lanes(), rises_.radius(), most_segments(), rises_.plane()));
+  }
+
+  void make_columns(const Columns& columns) const override {
+    kernels::MaxProductRow row;
+    row.star = columns.star;
+    row.prior = rises_.prior();
+    row.mu = mu_;
+    row.smooths = smooths_;
+    row.segment_ends = columns.segment_ends;
+    row.plane = rises_.plane();
+    row.output = columns.output;
+    row.source_pitch = row.output_pitch = lanes();
+    row.work = columns.work;
+    if (is_start()) {
+      kernels::max_product_start_row(row);
+      return;
+    }
+    if (edges_ != nullptr) {
+      row.weights = {.beside = edges_->fixed_beside(columns.y) + columns.x,
+                     .above = edges_->fixed_above(columns.y) + columns.x,
+                     .below = edges_->fixed_above(columns.y + 1) + columns.x};
+    }
+    kernels::max_product_row(row);
+  }
+
+ private:
+  bool smooths_;
+  FixedWeight mu_;
+  PriorRises rises_;
+  const EdgeWeights* edges_;
+};
+
+class MaxProductFromCoarserStage final : public FromCoarserStage<FixedEnergy> {
+ public:
+  MaxProductFromCoarserStage(const MethodParameters& parameters,
+                             const kernels::CandidateGeometry& geometry, int height, bool smooths,
+                             const CoarserResult& coarser, const CandidateBlocks* blocks,
+                             const kernels::CandidatePlane& plane)
+      : FromCoarserStage(geometry, height, coarser, blocks),
+        smooths_(smooths),
+        rises_(parameters, geometry.count, plane),
+        byte_steps_(EnergyFormat(parameters).of_result()) {}
+
+  [[nodiscard]] std::string_view name() const override { return "Bayes start from coarser"; }
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    return vantage::column_work(
+        kernels::max_product_start_from_coarser_work(rises_.radius_of_work()), candidates());
+  }
+
+ protected:
+  /// Energies, and what smoothing needs.
+  [[nodiscard]] std::size_t work_cells() const override {
+    return energy_cells() +
+           static_cast<std::size_t>(kernels::max_product_work_cells(
+               lanes(), rises_.radius(), most_segments(lanes(), blocks()), rises_.plane()));
+  }
+
+  void make_states(const kernels::CompactRow& coarser, std::span<const int> segment_ends,
+                   FixedEnergy* states, FixedEnergy* work) const override {
+    kernels::fixed_energies_of_bytes_row(coarser, byte_steps_, work);
+    kernels::MaxProductRow row;
+    row.star.centre = row.star.up = row.star.down = row.star.source = work;
+    row.star.left_of_first = row.star.right_of_last = work;
+    row.star.columns = coarser.columns;
+    row.star.lanes = coarser.lanes;
+    row.prior = rises_.prior();
+    row.smooths = smooths_;
+    row.output = states;
+    row.source_pitch = row.output_pitch = coarser.lanes;
+    if (rises_.plane().is_given()) {
+      row.plane = rises_.plane();
+    } else {
+      row.segment_ends = segment_ends;
+    }
+    row.work = work + energy_cells();
+    kernels::max_product_start_row(row);
+  }
+
+ private:
+  [[nodiscard]] std::size_t energy_cells() const {
+    return kCoarserColumns * static_cast<std::size_t>(lanes());
+  }
+
+  bool smooths_;
+  PriorRises rises_;
+  kernels::ByteSteps byte_steps_;
+};
+
+}  // namespace
+
+std::vector<std::unique_ptr<scheduler::RowStage>> make_max_product_stages(
+    const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
+    const CoarserResult& coarser, const EdgeWeights* edges, const CandidateBlocks* blocks,
+    const kernels::CandidatePlane& plane) {
+  std::vector<std::unique_ptr<scheduler::RowStage>> stages;
+  for (int i = 0; i <= parameters.iterations; ++i) {
+    const bool is_start = i == 0;
+    const bool smooths = i < parameters.iterations;
+    if (is_start && coarser.volume != nullptr) {
+      stages.push_back(std::make_unique<MaxProductFromCoarserStage>(
+          parameters, geometry, height, smooths, coarser, blocks, plane));
+      continue;
+    }
+    stages.push_back(std::make_unique<MaxProductStage>(parameters, geometry, height, is_start,
+                                                       smooths, edges, blocks, plane));
+  }
+  return stages;
+}
+
+}  // namespace vantage

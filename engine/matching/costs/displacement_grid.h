@@ -1,0 +1,50 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+#include "engine/matching/options/match_options.h"
+#include "kernels/candidates.h"
+
+namespace vantage {
+
+/// The candidates of a search in two dimensions (5.5.3): all pairs of a horizontal and a vertical
+/// disparity. Together they are one column of cells, so that whatever compares or normalises the
+/// candidates of a pixel sees all of them: the candidates of the least vertical disparity first,
+/// then those of the next one, without gaps.
+struct DisplacementGrid {
+  kernels::CandidateGeometry along_rows;  ///< horizontal disparities
+  int disparity_y_min = 0;
+  int rows = 1;    ///< vertical disparities
+  int height = 0;  ///< of both images
+
+  [[nodiscard]] int count() const { return rows * along_rows.count; }
+  /// As stages see columns of cells: only width, count and lanes mean anything.
+  [[nodiscard]] kernels::CandidateGeometry columns() const {
+    return {along_rows.width, 0, count(), along_rows.direction};
+  }
+  /// Which candidates are neighbours. Not given where disparities of one direction only differ:
+  /// then those are that follow each other.
+  [[nodiscard]] kernels::CandidatePlane plane() const {
+    return rows > 1 && along_rows.count > 1 ? kernels::CandidatePlane{along_rows.count, rows}
+                                            : kernels::CandidatePlane{};
+  }
+  /// The row of the other image that row y is compared with.
+  [[nodiscard]] int partner_row(int y, int row) const {
+    return y + along_rows.direction * (disparity_y_min + row);
+  }
+  /// Vertical disparities of row y whose partner lies in rows [margin, height − margin) of the
+  /// other image.
+  [[nodiscard]] kernels::CandidateRange rows_with_partner(int y, int margin = 0) const {
+    // As for columns of images of this height.
+    return kernels::CandidateGeometry{height, disparity_y_min, rows, along_rows.direction}
+        .with_partner(y, margin);
+  }
+};
+
+/// The grid that `options` ask for on images of this size; empty: a search along rows only. Leaves
+/// out what no pixel can have. Throws Error when no pixel has a candidate.
+std::optional<DisplacementGrid> displacement_grid(const MatchOptions& options, Reference reference,
+                                                  int width, int height);
+
+}  // namespace vantage

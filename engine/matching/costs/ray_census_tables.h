@@ -1,0 +1,64 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "engine/matching/options/method_parameters.h"
+#include "kernels/compact_likelihoods/compact_likelihoods.h"
+#include "kernels/pixel_cost/pixel_cost.h"
+#include "kernels/ray_census/ray_census.h"
+
+namespace vantage {
+
+/// The measurement model (6.26 ff.) at each distance of ray census codes, bit for bit what
+/// likelihood_of_costs() makes of it. thresholds: 1 or 3.
+inline kernels::LikelihoodByDistance ray_census_likelihoods(
+    const kernels::ContaminatedGaussian& model, int thresholds) {
+  std::array<float, kernels::kRayCensusTableBytes> cells{};
+  for (std::size_t distance = 0; distance < cells.size(); ++distance) {
+    const auto bits = static_cast<float>(distance);
+    cells[distance] = thresholds > 1 ? bits * (1.0F / static_cast<float>(thresholds)) : bits;
+  }
+  constexpr auto kLanes = static_cast<int>(cells.size());
+  kernels::likelihood_of_costs({.columns = 1, .lanes = kLanes, .count = kLanes}, model,
+                               cells.data());
+  std::array<float, kernels::kMostRayCensusDistances> likelihoods{};
+  std::copy_n(cells.begin(), likelihoods.size(), likelihoods.begin());
+  return kernels::LikelihoodByDistance(likelihoods);
+}
+
+/// −ln of the measurement model by distance, in steps of a byte.
+struct RayCensusEnergies {
+  kernels::EnergyByDistance by_distance;
+  std::uint8_t without_partner = 0;  ///< −ln ε, which no distance exceeds
+  float step = kernels::kEnergyStep;
+};
+
+/// Steps are as small as bytes have room for, powers of two from 1/8, those of compact energies, to
+/// 1/128: sums of four are then as good as those of floats. Energies from 31.9 on count as that.
+inline RayCensusEnergies ray_census_energies(const MethodParameters& parameters) {
+  constexpr float kLeastStep = 1.0F / 128;
+  const double sigma = parameters.sigma_measurement;
+  const double epsilon = parameters.epsilon_measurement;
+  RayCensusEnergies energies;
+  while (energies.step > kLeastStep &&
+         -std::log(epsilon) <= kernels::kMostCompact * (energies.step / 2)) {
+    energies.step /= 2;
+  }
+  const auto in_steps = [&energies](double likelihood) {
+    return static_cast<std::uint8_t>(std::min<double>(
+        kernels::kMostCompact, std::nearbyint(-std::log(likelihood) / energies.step)));
+  };
+  const int distances = kernels::ray_census_distances(parameters.census_thresholds);
+  for (int distance = 0; distance < distances; ++distance) {
+    const double deviations = distance / (sigma * parameters.census_thresholds);
+    energies.by_distance.steps[static_cast<std::size_t>(distance)] =
+        in_steps((1 - epsilon) * std::exp(-deviations * deviations / 2) + epsilon);
+  }
+  energies.without_partner = in_steps(epsilon);
+  return energies;
+}
+
+}  // namespace vantage

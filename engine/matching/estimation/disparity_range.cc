@@ -1,0 +1,195 @@
+#include "engine/matching/estimation/disparity_range.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/image/grey_levels.h"
+#include "engine/matching/stereo_matcher.h"
+
+namespace vantage {
+namespace {
+
+/// Images are reduced by at most this factor while they stay at least kLeastWidthPx wide, and by
+/// more where they would stay wider than kMostWidthPx. A search takes 1/factor³ of the time that it
+/// takes on whole images, so these are what the range costs.
+constexpr int kUsualFactor = 4;
+constexpr int kLeastWidthPx = 128;
+constexpr int kMostWidthPx = 320;
+
+// In pixels of the reduced images.
+constexpr int kLeastRegionPixels = 10;
+/// Winners of less certain pixels say nothing: of uniform areas all disparities are as likely.
+constexpr double kLeastConfidence = 0.3;
+/// Disparities with no others this near, plus this part of them, stand apart.
+constexpr float kGapPx = 2;
+constexpr float kGapRatio = 0.1F;
+/// Winners of surfaces at infinity are this near to 0.
+constexpr float kExactnessPx = 0.4F;
+
+// Shares of what is matched in both images.
+/// So many at either end may be wrong.
+constexpr double kStrayShare = 0.0002;
+/// What stands apart counts from here on: repeated texture matches elsewhere in small areas. What
+/// is far behind everything, but not behind infinity, is a background of which little is seen.
+constexpr double kApartShare = 0.0025;
+constexpr double kBehindShare = 0.0003;
+/// Of an untextured sky a little may be found at any disparity.
+constexpr double kNegativeShare = 0.02;
+/// Share of both images: unrelated ones agree by chance.
+constexpr double kLeastMatchedShare = 0.05;
+
+/// Winners that are spread over a larger part of the search are everywhere, as those of texture
+/// that repeats itself.
+constexpr double kMostSpread = 0.75;
+
+/// The range is widened by this and this part of it: winners are as exact as reduced pixels.
+constexpr double kMarginReducedPx = 0.5;
+constexpr double kMarginPx = 1;
+constexpr double kMarginRatio = 0.03;
+
+int reduction_of(int width) {
+  const auto parts = [width](int part) { return (width + part - 1) / part; };
+  return std::max({1, std::min(kUsualFactor, parts(kLeastWidthPx)), parts(kMostWidthPx)});
+}
+
+/// Grey levels, averaged over squares of `factor` pixels a side; what is left over at the right and
+/// lower sides is dropped.
+Photograph reduced(const Photograph& photograph, int factor, Execution& execution) {
+  const int width = photograph.width() / factor;
+  const int height = std::max(1, photograph.height() / factor);
+  const int rows = std::min(factor, photograph.height());
+  const float scale =
+      1 / (kGreyLevelsPerUnit<float> * static_cast<float>(factor) * static_cast<float>(rows));
+  Image<float> result(width, height);
+  execution.for_each_band(height, [&](int first_row, int end_row) {
+    std::vector<float> grey(static_cast<std::size_t>(photograph.width()));
+    for (int y = first_row; y < end_row; ++y) {
+      float* sums = result.row(y);
+      std::fill_n(sums, width, 0.0F);
+      for (int row = 0; row < rows; ++row) {
+        grey_levels_row(photograph, y * factor + row, grey.data());
+        const float* block = grey.data();
+        for (int x = 0; x < width; ++x, block += factor) {
+          for (int column = 0; column < factor; ++column) {
+            sums[x] += block[column];
+          }
+        }
+      }
+      std::transform(sums, sums + width, sums, [&](float sum) { return sum * scale; });
+    }
+  });
+  return {std::move(result)};
+}
+
+/// What is searched in images of this width.
+DisparityRange search_in(int width) { return {-width / 8, width / 3}; }
+
+/// The disparities that both images agree on, in pixels of `left` and `right`, sorted.
+std::vector<float> agreed_disparities(const Photograph& left, const Photograph& right,
+                                      Execution& execution) {
+  MatchOptions options;
+  options.preset = MatchPreset::kBalanced;
+  options.disparities = search_in(left.width());
+  if (options.disparities.count() == 1) {
+    return {};  // winners without others say nothing
+  }
+  options.parameters.levels = 4;  // more would be for larger images
+  options.refinement.cross_check_level = 0;
+  options.refinement.confidence_threshold = kLeastConfidence;
+  options.refinement.speckle_size_px = kLeastRegionPixels;
+  options.refinement.surface_fit_px = 0;
+  options.refinement.fill = Fill::kNone;
+  DisparityMaps maps;
+  StereoMatcher(options, execution).match(left, right, {}, maps);
+  std::vector<float> values;
+  for (const DisparityMap* map : {&maps.left, &maps.right}) {
+    for (int y = 0; y < map->height(); ++y) {
+      std::copy_if(map->row(y), map->row(y) + map->width(), std::back_inserter(values),
+                   [](float d) { return std::isfinite(d); });
+    }
+  }
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+struct Span {
+  float least = 0;
+  float most = 0;
+};
+
+/// What holds the values, sorted and at least one, but for stray ones and for few that stand apart.
+Span span_of(const std::vector<float>& values) {
+  const auto count = static_cast<double>(values.size());
+  const auto stray = static_cast<std::size_t>(kStrayShare * count);
+  std::optional<Span> span;
+  for (std::size_t begin = stray; begin + stray < values.size();) {
+    std::size_t end = begin + 1;
+    while (end + stray < values.size() &&
+           values[end] - values[end - 1] <= kGapPx + kGapRatio * std::abs(values[end])) {
+      ++end;
+    }
+    const bool is_behind = !span && values[begin] >= -kExactnessPx;
+    if (static_cast<double>(end - begin) >= (is_behind ? kBehindShare : kApartShare) * count) {
+      span = Span{span ? span->least : values[begin], values[end - 1]};
+    }
+    begin = end;
+  }
+  return span.value_or(Span{values.front(), values.back()});
+}
+
+}  // namespace
+
+std::optional<DisparityRange> find_disparity_range(const Photograph& left, const Photograph& right,
+                                                   Execution& execution) {
+  if (left.width() != right.width() || left.height() != right.height()) {
+    throw Error(fmt::format("left image is {}x{} but right image is {}x{}, expected equal sizes",
+                            left.width(), left.height(), right.width(), right.height()));
+  }
+  const int factor = reduction_of(left.width());
+  const std::vector<float> values = agreed_disparities(
+      reduced(left, factor, execution), reduced(right, factor, execution), execution);
+  const double pixels = 2.0 * (left.width() / factor) * std::max(1, left.height() / factor);
+  if (static_cast<double>(values.size()) < std::max(1.0, kLeastMatchedShare * pixels)) {
+    return std::nullopt;
+  }
+  const Span span = span_of(values);
+  const DisparityRange search = search_in(left.width() / factor);
+  if (span.most - span.least > kMostSpread * search.count()) {
+    return std::nullopt;
+  }
+  const double least_px = factor * static_cast<double>(span.least);
+  const double most_px = factor * static_cast<double>(span.most);
+  const double margin_px =
+      kMarginPx + kMarginReducedPx * factor + kMarginRatio * (most_px - least_px);
+  const int farthest = left.width() - 1;
+  DisparityRange range{
+      std::clamp(static_cast<int>(std::floor(least_px - margin_px)), -farthest, farthest),
+      std::clamp(static_cast<int>(std::ceil(most_px + margin_px)), -farthest, farthest)};
+  // Infinity is at 0 in rectified pairs, so what is below is to be believed where it is not little.
+  const auto negative = std::lower_bound(values.begin(), values.end(), -kExactnessPx);
+  if (static_cast<double>(negative - values.begin()) <
+      kNegativeShare * static_cast<double>(values.size())) {
+    range.min = std::max(range.min, 0);
+  }
+  return range;
+}
+
+DisparityRange estimate_disparity_range(const Photograph& left, const Photograph& right,
+                                        Execution& execution) {
+  const std::optional<DisparityRange> range = find_disparity_range(left, right, execution);
+  if (!range) {
+    throw Error(
+        "the images give no evidence for any range of disparities, expected texture that both of "
+        "them show; give --disparities MIN:MAX");
+  }
+  return *range;
+}
+
+}  // namespace vantage

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "engine/execution.h"
+#include "engine/image/photograph.h"
+#include "engine/matching/costs/stage_cost.h"
+#include "engine/matching/options/match_options.h"
+#include "kernels/evidence_sum/evidence_sum.h"
+
+namespace vantage {
+
+/// A rectangle of pixels, half-open.
+struct PixelBlock {
+  int x_begin = 0;
+  int x_end = 0;
+  int y_begin = 0;
+  int y_end = 0;
+};
+
+/// By how much things are displaced between the images of a pair: position in the left image minus
+/// position in the right one, pixels. x is the disparity.
+struct Displacement {
+  int x_px = 0;
+  int y_px = 0;
+  friend bool operator==(Displacement, Displacement) = default;
+};
+
+/// Gradients of both images of a pair, from which the evidence for displacements (5.5) is summed.
+/// Thread rule: sums may be asked for concurrently.
+class EvidencePair {
+ public:
+  /// Luma, and the gradient parameters of `parameters`. Throws UsageError when these are invalid,
+  /// Error when sizes differ. Identical for any `execution`.
+  EvidencePair(const Photograph& left, const Photograph& right, MethodParameters parameters,
+               Execution& execution);
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+
+  /// Σ E over those pixels of a block of the reference image whose partner lies inside the other
+  /// one; others count 0. Added in an order that depends on the block alone.
+  [[nodiscard]] double evidence(Reference reference, const PixelBlock& block,
+                                Displacement displacement) const;
+  /// Σ |g| over a block: what evidence() reaches for a perfect match.
+  [[nodiscard]] double contrast(Reference reference, const PixelBlock& block) const;
+
+ private:
+  [[nodiscard]] double sum(const CostImage& reference, const CostImage& partner,
+                           const PixelBlock& block, int partner_dx, int partner_dy) const;
+
+  int width_;
+  int height_;
+  bool octagon_;
+  CostImage left_;
+  CostImage right_;
+};
+
+}  // namespace vantage

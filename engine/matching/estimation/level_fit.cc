@@ -1,0 +1,117 @@
+#include "engine/matching/estimation/level_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vantage {
+namespace {
+
+constexpr int kRounds = 20;
+/// Residuals beyond this many σ have no weight (95 % efficiency for Gaussian noise).
+constexpr double kBiweightReach = 4.685;
+constexpr double kLeastResidualSigma = 1;
+constexpr double kLeastContrast = 2;  ///< standard deviation, grey levels
+constexpr double kLargestGain = 4;
+constexpr double kLeastShare = 0.5;  ///< of the pairs: weight on the line
+constexpr double kLeastCorrelation = 0.7;
+
+/// Weighted moments.
+struct Moments {
+  double weight = 0;
+  double mean_reference = 0;
+  double mean_other = 0;
+  double reference_reference = 0;  ///< about the means
+  double other_other = 0;
+  double reference_other = 0;
+};
+
+/// weight_of(pair) ≥ 0.
+template <typename Weight>
+Moments moments_of(std::span<const LevelPair> pairs, const Weight& weight_of) {
+  Moments sums;
+  for (const LevelPair& pair : pairs) {
+    const double weight = weight_of(pair);
+    const double a = pair.reference;
+    const double b = pair.other;
+    sums.weight += weight;
+    sums.mean_reference += weight * a;
+    sums.mean_other += weight * b;
+    sums.reference_reference += weight * a * a;
+    sums.other_other += weight * b * b;
+    sums.reference_other += weight * a * b;
+  }
+  if (sums.weight > 0) {
+    sums.mean_reference /= sums.weight;
+    sums.mean_other /= sums.weight;
+    sums.reference_reference =
+        sums.reference_reference / sums.weight - sums.mean_reference * sums.mean_reference;
+    sums.other_other = sums.other_other / sums.weight - sums.mean_other * sums.mean_other;
+    sums.reference_other =
+        sums.reference_other / sums.weight - sums.mean_reference * sums.mean_other;
+  }
+  return sums;
+}
+
+std::optional<LevelChange> line_of(const Moments& moments) {
+  const double contrast = kLeastContrast * kLeastContrast;
+  if (!(moments.reference_reference >= contrast && moments.other_other >= contrast)) {
+    return std::nullopt;
+  }
+  const double gain = std::sqrt(moments.reference_reference / moments.other_other);
+  return LevelChange{.gain = gain, .offset = moments.mean_reference - gain * moments.mean_other};
+}
+
+double residual(const LevelPair& pair, const LevelChange& line) {
+  return pair.reference - (line.gain * pair.other + line.offset);
+}
+
+/// The value that a share `kTenths` / 10 of the residuals is below.
+template <std::size_t kTenths>
+double quantile(std::span<float> residuals) {
+  const auto at = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() * kTenths / 10);
+  std::nth_element(residuals.begin(), at, residuals.end());
+  return *at;
+}
+
+}  // namespace
+
+double robust_sigma(std::span<float> residuals) {
+  constexpr double kOfMedian = 1.4826;
+  return kOfMedian * quantile<5>(residuals);
+}
+
+double noise_sigma(std::span<float> residuals) {
+  constexpr double kSigmas = 1.6449;  // that 90 % of a Gaussian's magnitudes are within
+  return quantile<9>(residuals) / kSigmas;
+}
+
+std::optional<LevelChange> fit_levels(std::span<const LevelPair> pairs) {
+  if (pairs.size() < kLeastLevelPairs) {
+    return std::nullopt;
+  }
+  std::optional<LevelChange> line =
+      line_of(moments_of(pairs, [](const LevelPair& /*pair*/) { return 1.0; }));
+  std::vector<float> residuals(pairs.size());
+  Moments moments;
+  for (int round = 0; round < kRounds && line; ++round) {
+    std::ranges::transform(pairs, residuals.begin(), [&](const LevelPair& pair) {
+      return static_cast<float>(std::abs(residual(pair, *line)));
+    });
+    const double reach = kBiweightReach * std::max(kLeastResidualSigma, robust_sigma(residuals));
+    moments = moments_of(pairs, [&](const LevelPair& pair) {
+      const double share = residual(pair, *line) / reach;
+      const double left = std::max(0.0, 1 - share * share);
+      return left * left;
+    });
+    line = line_of(moments);
+  }
+  if (!line || !(line->gain >= 1 / kLargestGain && line->gain <= kLargestGain) ||
+      moments.weight < kLeastShare * static_cast<double>(pairs.size()) ||
+      moments.reference_other <
+          kLeastCorrelation * std::sqrt(moments.reference_reference * moments.other_other)) {
+    return std::nullopt;
+  }
+  return line;
+}
+
+}  // namespace vantage

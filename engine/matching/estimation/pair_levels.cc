@@ -1,0 +1,227 @@
+#include "engine/matching/estimation/pair_levels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "engine/image/grey_levels.h"
+#include "engine/matching/estimation/level_fit.h"
+#include "engine/matching/stereo_matcher.h"
+
+namespace vantage {
+namespace {
+
+/// Rows of a band, and those at its ends whose windows and codes reach beyond it.
+constexpr int kBandRows = 24;
+constexpr int kBandMarginRows = 6;
+constexpr int kLeastBands = 4;
+/// Of the image's rows one in so many is matched, unless there are few.
+constexpr int kRowsPerMatchedRow = 8;
+constexpr std::size_t kMostMatches = 65536;
+/// Levels nearer to black or white than this may have been cut off.
+constexpr float kUnclippedMargin = 2;
+constexpr float kWhite = 255;
+/// What matches of even the cleanest photographs need: reflections, edges and slanted surfaces are
+/// not what sure matches are made of.
+constexpr double kLeastNoiseSigma = 4;
+
+/// Rows that are matched, as one image.
+struct Bands {
+  std::vector<int> rows;        ///< of the image, for each row of the bands' image
+  std::vector<bool> is_inside;  ///< whether windows lie in the band, for each
+};
+
+Bands bands_of(int height) {
+  Bands bands;
+  const int count = std::max(kLeastBands, height / (kRowsPerMatchedRow * kBandRows));
+  if (count * kBandRows >= height) {
+    for (int y = 0; y < height; ++y) {
+      bands.rows.push_back(y);
+      bands.is_inside.push_back(true);
+    }
+    return bands;
+  }
+  for (int band = 0; band < count; ++band) {
+    const int first = (height - kBandRows) * band / (count - 1);
+    for (int row = 0; row < kBandRows; ++row) {
+      bands.rows.push_back(first + row);
+      bands.is_inside.push_back(row >= kBandMarginRows && row < kBandRows - kBandMarginRows);
+    }
+  }
+  return bands;
+}
+
+/// Grey levels of the bands' rows: luma, then the channels where they are compared.
+class BandLevels {
+ public:
+  BandLevels(const Photograph& photograph, const Bands& bands, int planes)
+      : width_(photograph.width()) {
+    const int height = static_cast<int>(bands.rows.size());
+    for (int plane = 0; plane < planes; ++plane) {
+      Image<float>& levels = planes_.emplace_back(width_, height);
+      for (int row = 0; row < height; ++row) {
+        const int y = bands.rows[static_cast<std::size_t>(row)];
+        if (plane == 0) {
+          grey_levels_row(photograph, y, levels.row(row));
+        } else {
+          channel_levels_row(photograph, plane - 1, y, levels.row(row));
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] float at(std::size_t plane, int x, int row) const {
+    return planes_[plane].at(std::clamp(x, 0, width_ - 1), row);
+  }
+  [[nodiscard]] std::size_t planes() const { return planes_.size(); }
+  /// The luma as an image to match.
+  [[nodiscard]] Photograph photograph() const {
+    Image<float> image(width_, planes_.front().height());
+    for (int y = 0; y < image.height(); ++y) {
+      std::transform(planes_.front().row(y), planes_.front().row(y) + width_, image.row(y),
+                     [](float level) { return level / kWhite; });
+    }
+    return {std::move(image)};
+  }
+
+ private:
+  int width_;
+  std::vector<Image<float>> planes_;
+};
+
+/// A pixel of the left bands and its match.
+struct Match {
+  int row = 0;
+  int left_x = 0;
+  int right_x = 0;
+};
+
+std::vector<Match> matches_of(const DisparityMap& left_map, const Bands& bands) {
+  std::vector<Match> matches;
+  for (int row = 0; row < left_map.height(); ++row) {
+    if (!bands.is_inside[static_cast<std::size_t>(row)]) {
+      continue;
+    }
+    for (int x = 0; x < left_map.width(); ++x) {
+      if (const float disparity = left_map.at(x, row); std::isfinite(disparity)) {
+        matches.push_back({row, x, x - static_cast<int>(std::lround(disparity))});
+      }
+    }
+  }
+  const std::size_t step = matches.size() / kMostMatches + 1;
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < matches.size(); k += step) {
+    matches[kept++] = matches[k];
+  }
+  matches.resize(kept);
+  return matches;
+}
+
+bool is_unclipped(float level) {
+  return level > kUnclippedMargin && level < kWhite - kUnclippedMargin;
+}
+
+std::optional<LevelChange> change_of(const BandLevels& left, const BandLevels& right,
+                                     std::span<const Match> matches, std::size_t plane) {
+  std::vector<LevelPair> pairs;
+  for (const Match& match : matches) {
+    const LevelPair pair{left.at(plane, match.left_x, match.row),
+                         right.at(plane, match.right_x, match.row)};
+    if (is_unclipped(pair.reference) && is_unclipped(pair.other)) {
+      pairs.push_back(pair);
+    }
+  }
+  return fit_levels(pairs);
+}
+
+/// How far `value` lies outside what `levels`, changed, takes within half a pixel of x.
+template <typename Level>
+float outside(float value, const Level& level_at, int x) {
+  const float here = level_at(x);
+  const float before = (level_at(x - 1) + here) / 2;
+  const float after = (level_at(x + 1) + here) / 2;
+  return std::max(
+      {0.0F, value - std::max({before, here, after}), std::min({before, here, after}) - value});
+}
+
+/// Birchfield and Tomasi's difference, the mean of the planes from `first_plane` on.
+float residual(const BandLevels& left, const BandLevels& right, const Match& match,
+               std::size_t first_plane, std::span<const LevelChange> changes) {
+  float sum = 0;
+  for (std::size_t plane = first_plane; plane < left.planes(); ++plane) {
+    const auto gain = static_cast<float>(changes[plane].gain);
+    const auto offset = static_cast<float>(changes[plane].offset);
+    const auto of_left = [&](int x) { return left.at(plane, x, match.row); };
+    const auto of_right = [&](int x) { return gain * right.at(plane, x, match.row) + offset; };
+    sum += std::min(outside(of_left(match.left_x), of_right, match.right_x),
+                    outside(of_right(match.right_x), of_left, match.left_x));
+  }
+  return sum / static_cast<float>(left.planes() - first_plane);
+}
+
+/// Cheap, and sure where it gives anything.
+MatchOptions band_options(DisparityRange range) {
+  MatchOptions options;
+  options.method = MatchMethod::kSsd;
+  options.disparities = range;
+  options.parameters.cost = MatchCost::kCensus;
+  options.parameters.window_px = 7;
+  options.parameters.subpixel = Subpixel::kNone;
+  options.refinement.cross_check_px = 1;
+  options.refinement.fill = Fill::kNone;
+  return options;
+}
+
+}  // namespace
+
+PairLevelsEstimator::PairLevelsEstimator(DisparityRange range, Execution& execution)
+    : execution_(execution),
+      matcher_(std::make_unique<StereoMatcher>(band_options(range), execution)) {}
+
+PairLevelsEstimator::~PairLevelsEstimator() = default;
+
+void PairLevelsEstimator::add_memory_use(MemoryUse& use) const { matcher_->add_memory_use(use); }
+
+PairLevels PairLevelsEstimator::estimate(const Photograph& left, const Photograph& right,
+                                         ColourUse colour, bool change_levels) const {
+  const Bands bands = bands_of(left.height());
+  const bool has_channels =
+      colour == ColourUse::kChannels && left.channels() >= 3 && right.channels() >= 3;
+  const int planes = has_channels ? 4 : 1;
+  const BandLevels of_left(left, bands, planes);
+  const BandLevels of_right(right, bands, planes);
+  DisparityMaps maps;
+  matcher_->match(of_left.photograph(), of_right.photograph(),
+                  {.left = true, .right = false, .unmatched = false}, maps);
+  const std::vector<Match> matches = matches_of(maps.left, bands);
+
+  PairLevels result;
+  result.matches = static_cast<int>(matches.size());
+  std::array<LevelChange, 4> changes;
+  if (change_levels) {
+    std::vector<std::optional<LevelChange>> found;
+    for (std::size_t plane = 0; plane < of_left.planes(); ++plane) {
+      found.push_back(change_of(of_left, of_right, matches, plane));
+    }
+    result.has_levels =
+        std::ranges::all_of(found, [](const auto& change) { return change.has_value(); });
+    for (std::size_t plane = 0; result.has_levels && plane < found.size(); ++plane) {
+      changes[plane] = *found[plane];
+    }
+    result.of_right = {changes[0], {changes[1], changes[2], changes[3]}};
+  }
+  if (matches.size() >= kLeastLevelPairs) {
+    std::vector<float> residuals;
+    for (const Match& match : matches) {
+      residuals.push_back(residual(of_left, of_right, match, has_channels ? 1 : 0, changes));
+    }
+    result.sigma_measurement = std::max(kLeastNoiseSigma, noise_sigma(residuals));
+  }
+  return result;
+}
+
+}  // namespace vantage

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+
+#include "engine/matching/levels/candidate_blocks.h"
+#include "kernels/star_row.h"
+#include "scheduler/row_stage.h"
+
+namespace vantage {
+
+/// Stars of runs of columns of a level of which only some candidates are looked at. Neighbours in
+/// tiles with other blocks are brought to the blocks of the run; a cell that such a neighbour lacks
+/// is `absent`. Cell: float or kernels::FixedEnergy.
+template <typename Cell>
+class BlockStars {
+ public:
+  /// `blocks` must outlive the stars.
+  BlockStars(const CandidateBlocks& blocks, Cell absent) : blocks_(blocks), absent_(absent) {}
+
+  /// Of working memory, for one star at a time.
+  [[nodiscard]] std::size_t work_cells() const {
+    return static_cast<std::size_t>(2 * CandidateBlocks::kMostRunColumns + 2) *
+           static_cast<std::size_t>(blocks_.lanes());
+  }
+  /// The star of `run` in row task.y, its source as far as the task has one. `neutral`: the column
+  /// that stands for neighbours outside the image. `work`: work_cells(), 64-byte aligned; the star
+  /// may point there.
+  [[nodiscard]] kernels::CellStarRow<Cell> star(const scheduler::RowTask& task,
+                                                const CandidateBlocks::Run& run,
+                                                const Cell* neutral, Cell* work) const;
+
+ private:
+  [[nodiscard]] const Cell* column(const scheduler::InputRows& rows, int x, int y) const {
+    return rows.row<Cell>(y) +
+           static_cast<std::ptrdiff_t>(x - rows.columns().begin) * blocks_.lanes();
+  }
+  const Cell* beside(const scheduler::RowTask& task, const CandidateBlocks::Run& run, int x,
+                     Cell* work) const;
+
+  const CandidateBlocks& blocks_;
+  Cell absent_;
+};
+
+}  // namespace vantage

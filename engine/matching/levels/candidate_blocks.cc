@@ -1,0 +1,185 @@
+#include "engine/matching/levels/candidate_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vantage {
+namespace {
+
+using kernels::kLaneMultiple;
+using scheduler::Range;
+
+/// Candidates on both sides of a coarse winner that belong to it: the finer level is to find the
+/// best one between them.
+constexpr int kReach = 2;
+
+/// Blocks in which every one of `columns` that has candidates with partners at all has one.
+Range blocks_with_partners(const kernels::CandidateGeometry& geometry, Range columns, int blocks) {
+  Range allowed{0, blocks};
+  for (int x = columns.begin; x < columns.end; ++x) {
+    const kernels::CandidateRange inside = geometry.with_partner(x);
+    if (!inside.empty()) {
+      allowed.begin = std::max(allowed.begin, inside.begin / kLaneMultiple);
+      allowed.end = std::min(allowed.end, (inside.end - 1) / kLaneMultiple + 1);
+    }
+  }
+  return allowed;
+}
+
+}  // namespace
+
+void CandidateBlocks::resize(scheduler::Extent extent, int candidates, int most) {
+  extent_ = extent;
+  candidates_ = candidates;
+  most_ = std::min(most, block_count());
+  tile_columns_ = (extent.columns + kTilePx - 1) / kTilePx;
+  tile_rows_ = (extent.rows + kTilePx - 1) / kTilePx;
+  const std::size_t tiles =
+      static_cast<std::size_t>(tile_columns_) * static_cast<std::size_t>(tile_rows_);
+  blocks_.resize(tiles * static_cast<std::size_t>(most_));
+  counts_.resize(tiles);
+  run_ends_.resize(tiles);
+  is_as_above_.resize(tiles);
+}
+
+void CandidateBlocks::choose(ImageView<const std::int32_t> winners,
+                             const std::optional<kernels::CandidateGeometry>& selected,
+                             Execution& execution) {
+  std::vector<Range> allowed(static_cast<std::size_t>(tile_columns_), Range{0, block_count()});
+  for (int tile = 0; selected && tile < tile_columns_; ++tile) {
+    const Range columns = Range{tile * kTilePx, (tile + 1) * kTilePx};
+    allowed[static_cast<std::size_t>(tile)] =
+        blocks_with_partners(*selected, columns.widened(0, extent_.all_columns()), block_count());
+  }
+  execution.for_each_band(tile_rows_, [&](int first_row, int end_row) {
+    std::vector<int> votes(static_cast<std::size_t>(block_count()));
+    for (int tile_y = first_row; tile_y < end_row; ++tile_y) {
+      for (int tile_x = 0; tile_x < tile_columns_; ++tile_x) {
+        choose_tile(winners, allowed[static_cast<std::size_t>(tile_x)], tile_x, tile_y, votes);
+      }
+    }
+  });
+  execution.for_each_band(tile_rows_, [&](int first_row, int end_row) {
+    for (int tile_y = first_row; tile_y < end_row; ++tile_y) {
+      compare_tiles(tile_y);
+    }
+  });
+}
+
+void CandidateBlocks::compare_tiles(int tile_y) {
+  for (int tile_x = tile_columns_ - 1; tile_x >= 0; --tile_x) {
+    const std::size_t tile = tile_at(tile_x, tile_y);
+    const BlockList blocks = of_tile(tile);
+    const bool goes_on =
+        tile_x + 1 < tile_columns_ && std::ranges::equal(of_tile(tile + 1), blocks);
+    run_ends_[tile] = goes_on ? run_ends_[tile + 1] : tile_x + 1;
+    const bool is_as_above =
+        tile_y > 0 && std::ranges::equal(of_tile(tile_at(tile_x, tile_y - 1)), blocks);
+    is_as_above_[tile] = is_as_above ? 1 : 0;
+  }
+}
+
+bool CandidateBlocks::has_blocks_of(const Run& run, int run_y, int y) const {
+  const int tile_y = std::max(run_y, y) / kTilePx;
+  if (tile_y == std::min(run_y, y) / kTilePx) {
+    return true;
+  }
+  const std::size_t first = tile_at(run.columns.begin / kTilePx, tile_y);
+  const std::size_t last = tile_at((run.columns.end - 1) / kTilePx, tile_y);
+  return std::all_of(is_as_above_.begin() + static_cast<std::ptrdiff_t>(first),
+                     is_as_above_.begin() + static_cast<std::ptrdiff_t>(last) + 1,
+                     [](std::uint8_t is_as_above) { return is_as_above != 0; });
+}
+
+void CandidateBlocks::choose_tile(ImageView<const std::int32_t> winners, Range allowed, int tile_x,
+                                  int tile_y, std::vector<int>& votes) {
+  std::fill(votes.begin(), votes.end(), 0);
+  constexpr int kCoarsePx = kTilePx / 2;
+  const Range columns =
+      Range{tile_x * kCoarsePx, (tile_x + 1) * kCoarsePx}.widened(1, {0, winners.width()});
+  const Range rows =
+      Range{tile_y * kCoarsePx, (tile_y + 1) * kCoarsePx}.widened(1, {0, winners.height()});
+  const auto block_of = [&](int candidate) {
+    const int block = std::clamp(candidate, 0, candidates_ - 1) / kLaneMultiple;
+    return std::clamp(block, allowed.begin, allowed.end - 1);
+  };
+  for (int y = rows.begin; y < rows.end; ++y) {
+    for (int x = columns.begin; x < columns.end; ++x) {
+      const int winner = winners.at(x, y);
+      for (int b = block_of(winner - kReach); b <= block_of(winner + kReach); ++b) {
+        ++votes[static_cast<std::size_t>(b)];
+      }
+    }
+  }
+  const std::size_t tile = tile_at(tile_x, tile_y);
+  std::uint16_t* const chosen = blocks_.data() + tile * static_cast<std::size_t>(most_);
+  int count = 0;
+  for (; count < most_; ++count) {
+    // The first of the largest.
+    const auto best = std::max_element(votes.begin(), votes.end());
+    if (*best == 0) {
+      break;
+    }
+    chosen[count] = static_cast<std::uint16_t>(best - votes.begin());
+    *best = 0;
+  }
+  std::sort(chosen, chosen + count);
+  counts_[tile] = static_cast<std::uint8_t>(count);
+}
+
+int CandidateBlocks::count(BlockList blocks) const {
+  const int lanes = static_cast<int>(blocks.size()) * kLaneMultiple;
+  // Only the last block of all can lack candidates.
+  const int behind = (blocks.back() + 1) * kLaneMultiple - candidates_;
+  return lanes - std::max(0, behind);
+}
+
+double CandidateBlocks::cells() const {
+  double cells = 0;
+  for (int tile_y = 0; tile_y < tile_rows_; ++tile_y) {
+    const int rows = std::min(kTilePx, extent_.rows - tile_y * kTilePx);
+    for (int tile_x = 0; tile_x < tile_columns_; ++tile_x) {
+      const int columns = std::min(kTilePx, extent_.columns - tile_x * kTilePx);
+      cells += static_cast<double>(rows) * columns * count(of_tile(tile_at(tile_x, tile_y)));
+    }
+  }
+  return cells;
+}
+
+std::size_t CandidateBlocks::held_bytes() const {
+  return blocks_.capacity() * sizeof(std::uint16_t) + counts_.capacity() +
+         run_ends_.capacity() * sizeof(int) + is_as_above_.capacity();
+}
+
+int candidates_in(const CandidateBlocks* blocks, int count) {
+  return blocks == nullptr ? count : static_cast<int>(std::lround(blocks->cells_per_pixel()));
+}
+
+BlockSegments::BlockSegments(BlockList blocks) {
+  for (std::size_t k = 1; k <= blocks.size(); ++k) {
+    if (k == blocks.size() || blocks[k] != blocks[k - 1] + 1) {
+      ends_[static_cast<std::size_t>(count_++)] = static_cast<int>(k) * kLaneMultiple;
+    }
+  }
+}
+
+template <typename Cell>
+void copy_blocks(const Cell* source, BlockList from, BlockList to, Cell absent, Cell* target) {
+  std::size_t k = 0;
+  for (const std::uint16_t block : to) {
+    while (k < from.size() && from[k] < block) {
+      ++k;
+    }
+    if (k < from.size() && from[k] == block) {
+      std::copy_n(source + k * kLaneMultiple, kLaneMultiple, target);
+    } else {
+      std::fill_n(target, kLaneMultiple, absent);
+    }
+    target += kLaneMultiple;
+  }
+}
+template void copy_blocks(const float*, BlockList, BlockList, float, float*);
+template void copy_blocks(const std::uint8_t*, BlockList, BlockList, std::uint8_t, std::uint8_t*);
+template void copy_blocks(const std::int16_t*, BlockList, BlockList, std::int16_t, std::int16_t*);
+
+}  // namespace vantage

@@ -1,0 +1,229 @@
+#include "engine/matching/levels/stage_fixed_energies.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "engine/column_work.h"
+#include "engine/matching/levels/level_stages.h"
+#include "kernels/energy_winner/energy_winner.h"
+#include "kernels/fixed_energies/fixed_energies.h"
+
+namespace vantage {
+namespace {
+
+using kernels::FixedEnergy;
+
+class FixedEnergyStage final : public scheduler::RowStage {
+ public:
+  FixedEnergyStage(std::unique_ptr<scheduler::RowStage> costs, EnergySource source, int count,
+                   const EnergyFormat& format, float byte_nats)
+      : RowStage(costs->extent()),
+        costs_(std::move(costs)),
+        source_(source),
+        lanes_(kernels::CandidateGeometry{.count = count}.lanes()),
+        count_(count),
+        steps_per_nat_(format.steps_per_nat()),
+        byte_steps_(format.of_bytes(byte_nats)) {}
+
+  [[nodiscard]] std::string_view name() const override { return costs_->name(); }
+  [[nodiscard]] std::size_t bytes_per_column() const override {
+    return sizeof(FixedEnergy) * static_cast<std::size_t>(lanes_);
+  }
+  /// The costs of a few columns, and what making them needs.
+  [[nodiscard]] std::size_t state_bytes(scheduler::Range columns,
+                                        scheduler::Extent input) const override {
+    return cost_bytes() + costs_->state_bytes(columns, input);
+  }
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    scheduler::ColumnWork work = costs_->column_work();
+    const scheduler::ColumnWork own = vantage::column_work(
+        source_ == EnergySource::kBytes ? kernels::kFixedEnergiesOfBytesWork
+                                        : kernels::kFixedEnergiesOfLikelihoodsWork,
+        count_);
+    work.operations += own.operations;
+    work.bytes += own.bytes;
+    return work;
+  }
+
+  void make_row(const scheduler::RowTask& task) const override {
+    scheduler::RowTask part = task;
+    part.output = task.state;
+    part.state = task.state + cost_bytes();
+    auto* energies = reinterpret_cast<FixedEnergy*>(task.output);
+    for (int x = task.columns.begin; x < task.columns.end; x = part.columns.end) {
+      part.columns = {x, std::min(x + part_columns(), task.columns.end)};
+      costs_->make_row(part);
+      convert(part, energies);
+      energies += static_cast<std::ptrdiff_t>(part.columns.size()) * lanes_;
+    }
+  }
+
+ private:
+  /// Columns that are still in the level-1 cache when they are looked at again.
+  [[nodiscard]] int part_columns() const {
+    constexpr std::size_t kPartBytes = 16384;
+    constexpr std::size_t kMostColumns = 32;
+    return static_cast<int>(
+        std::clamp<std::size_t>(kPartBytes / costs_->bytes_per_column(), 1, kMostColumns));
+  }
+  [[nodiscard]] std::size_t cost_bytes() const {
+    constexpr std::size_t kAlignment = 64;
+    const std::size_t bytes = costs_->bytes_per_column() * static_cast<std::size_t>(part_columns());
+    return (bytes + kAlignment - 1) / kAlignment * kAlignment;
+  }
+  void convert(const scheduler::RowTask& part, FixedEnergy* energies) const {
+    if (source_ == EnergySource::kBytes) {
+      kernels::fixed_energies_of_bytes_row({.cells = reinterpret_cast<std::uint8_t*>(part.output),
+                                            .columns = part.columns.size(),
+                                            .lanes = lanes_,
+                                            .count = count_},
+                                           byte_steps_, energies);
+    } else {
+      kernels::fixed_energies_of_likelihoods_row({.cells = reinterpret_cast<float*>(part.output),
+                                                  .columns = part.columns.size(),
+                                                  .lanes = lanes_,
+                                                  .count = count_},
+                                                 steps_per_nat_, energies);
+    }
+  }
+
+  std::unique_ptr<scheduler::RowStage> costs_;
+  EnergySource source_;
+  int lanes_;
+  int count_;
+  float steps_per_nat_;
+  kernels::ByteSteps byte_steps_;
+};
+
+class LevelFixedEnergyStage final : public LevelSourceStage {
+ public:
+  LevelFixedEnergyStage(const kernels::CandidateGeometry& geometry, const LevelVolume& energies,
+                        const EnergyFormat& format, const CandidateBlocks* blocks)
+      : LevelSourceStage(geometry, energies),
+        steps_(format.of_bytes(kernels::kEnergyStep)),
+        blocks_(blocks) {}
+
+  [[nodiscard]] std::size_t bytes_per_column() const override {
+    return sizeof(FixedEnergy) *
+           static_cast<std::size_t>(blocks_ == nullptr ? lanes() : blocks_->lanes());
+  }
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    return vantage::column_work(kernels::kFixedEnergiesOfBytesWork,
+                                candidates_in(blocks_, count()));
+  }
+
+  void make_row(const scheduler::RowTask& task) const override {
+    auto* energies = reinterpret_cast<FixedEnergy*>(task.output);
+    if (blocks_ == nullptr) {
+      convert(volume().column<std::uint8_t>(task.columns.begin, task.y), task.columns.size(),
+              lanes(), count(), energies);
+      return;
+    }
+    for (int x = task.columns.begin; x < task.columns.end; ++x, energies += blocks_->lanes()) {
+      const std::uint8_t* const bytes = volume().column<std::uint8_t>(x, task.y);
+      FixedEnergy* target = energies;
+      for (const std::uint16_t block : blocks_->at(x, task.y)) {
+        const int first = block * kernels::kLaneMultiple;
+        convert(bytes + first, 1, kernels::kLaneMultiple,
+                std::min(kernels::kLaneMultiple, count() - first), target);
+        target += kernels::kLaneMultiple;
+      }
+    }
+  }
+
+ private:
+  void convert(const std::uint8_t* bytes, int columns, int lanes, int count,
+               FixedEnergy* energies) const {
+    kernels::fixed_energies_of_bytes_row(
+        {.cells = bytes, .columns = columns, .lanes = lanes, .count = count}, steps_, energies);
+  }
+
+  kernels::ByteSteps steps_;
+  const CandidateBlocks* blocks_;
+};
+
+class LevelEnergyResultStage final : public LevelStoreStage {
+ public:
+  LevelEnergyResultStage(const kernels::CandidateGeometry& geometry, const LevelResult& result,
+                         const EnergyFormat& format, const CandidateBlocks* blocks)
+      : LevelStoreStage(geometry, *result.cells),
+        bytes_per_step_(format.result_bytes_per_step()),
+        winners_(result.winners),
+        blocks_(blocks) {}
+
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    kernels::KernelWork work = kernels::kBytesOfFixedEnergiesWork;
+    if (winners_ != nullptr) {
+      work = work + kernels::energy_winner_work();
+    }
+    return vantage::column_work(work, candidates_in(blocks_, count()));
+  }
+
+  void make_row(const scheduler::RowTask& task) const override {
+    kernels::bytes_of_fixed_energies_row(cells<FixedEnergy>(task, task.columns.begin),
+                                         cell_count(task), bytes_per_step_,
+                                         volume().column<std::uint8_t>(task.columns.begin, task.y));
+    if (winners_ == nullptr) {
+      return;
+    }
+    if (blocks_ == nullptr) {
+      write_winners(task, task.columns, count());
+      return;
+    }
+    for (int x = task.columns.begin; x < task.columns.end;) {
+      const CandidateBlocks::Run run = blocks_->run_at(x, task.y, task.columns.end);
+      std::int32_t* const winners = write_winners(task, run.columns, blocks_->count(run.blocks));
+      std::transform(winners, winners + run.columns.size(), winners,
+                     [&run](std::int32_t lane) { return candidate_of(run.blocks, lane); });
+      x = run.columns.end;
+    }
+  }
+
+ private:
+  /// The lanes with the least energies: all `count` candidates may win, whatever partners they
+  /// have.
+  std::int32_t* write_winners(const scheduler::RowTask& task, scheduler::Range columns,
+                              int count) const {
+    kernels::EnergyRow row;
+    row.geometry = {.width = columns.size() + 2 * count, .disparity_min = 0, .count = count};
+    row.first_column = count;
+    row.pitch = volume().lanes();
+    std::int32_t* const winners = winners_->row(task.y) + columns.begin;
+    std::array<FixedEnergy, CandidateBlocks::kMostRunColumns> least;
+    for (int x = columns.begin; x < columns.end; x += row.columns) {
+      row.cells = cells<FixedEnergy>(task, x);
+      row.columns = std::min(CandidateBlocks::kMostRunColumns, columns.end - x);
+      kernels::select_energy_winners_row(row, winners + (x - columns.begin), least.data());
+    }
+    return winners;
+  }
+
+  kernels::FixedWeight bytes_per_step_;
+  Image<std::int32_t>* winners_;
+  const CandidateBlocks* blocks_;
+};
+
+}  // namespace
+
+std::unique_ptr<scheduler::RowStage> make_fixed_energy_stage(
+    std::unique_ptr<scheduler::RowStage> costs, EnergySource source, int count,
+    const EnergyFormat& format, float byte_nats) {
+  return std::make_unique<FixedEnergyStage>(std::move(costs), source, count, format, byte_nats);
+}
+
+std::unique_ptr<scheduler::RowStage> make_level_fixed_energy_stage(
+    const kernels::CandidateGeometry& geometry, const LevelVolume& energies,
+    const EnergyFormat& format, const CandidateBlocks* blocks) {
+  return std::make_unique<LevelFixedEnergyStage>(geometry, energies, format, blocks);
+}
+
+std::unique_ptr<scheduler::RowStage> make_level_energy_result_stage(
+    const kernels::CandidateGeometry& geometry, const LevelResult& result,
+    const EnergyFormat& format, const CandidateBlocks* blocks) {
+  return std::make_unique<LevelEnergyResultStage>(geometry, result, format, blocks);
+}
+
+}  // namespace vantage

@@ -1,0 +1,152 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "engine/matching/levels/candidate_blocks.h"
+#include "engine/matching/levels/level_volume.h"
+#include "kernels/candidates.h"
+#include "kernels/compact_likelihoods/compact_likelihoods.h"
+#include "scheduler/row_stage.h"
+
+namespace vantage {
+
+/// What the next coarser level ended with, a byte a cell, large where a candidate is unlikely.
+struct CoarserResult {
+  const LevelVolume* volume = nullptr;  ///< null: there is no coarser level
+  /// The candidates that were looked at there, in whose lanes they lie; null: all.
+  const CandidateBlocks* blocks = nullptr;
+};
+
+/// As many candidates as columns of cells have room for.
+inline kernels::CandidateGeometry cell_geometry(const kernels::CandidateGeometry& geometry,
+                                                const CandidateBlocks* blocks) {
+  kernels::CandidateGeometry cells = geometry;
+  if (blocks != nullptr) {
+    cells.count = blocks->lanes();
+  }
+  return cells;
+}
+
+/// Runs of neighbouring candidates that columns of so many lanes can consist of.
+inline int most_segments(int lanes, const CandidateBlocks* blocks) {
+  return blocks == nullptr ? 1 : lanes / kernels::kLaneMultiple;
+}
+
+/// The state before the first iteration of a level, from what the next coarser one ended with:
+/// column x of row y lies in column x/2 of row y/2 there. Takes part in the chain like the start
+/// from likelihoods, so that iterations find their source, but looks at no input. `blocks`: the
+/// candidates that are looked at, in whose lanes cells lie; null: all. Volumes and blocks must
+/// outlive the stage.
+template <typename Cell>
+class FromCoarserStage : public scheduler::RowStage {
+ public:
+  FromCoarserStage(const kernels::CandidateGeometry& geometry, int height,
+                   const CoarserResult& coarser, const CandidateBlocks* blocks)
+      : RowStage({geometry.width, height}),
+        lanes_(cell_geometry(geometry, blocks).lanes()),
+        count_(geometry.count),
+        coarser_(coarser),
+        blocks_(blocks),
+        all_blocks_(static_cast<std::size_t>(geometry.lanes() / kernels::kLaneMultiple)) {
+    std::iota(all_blocks_.begin(), all_blocks_.end(), std::uint16_t{0});
+  }
+
+  [[nodiscard]] std::size_t bytes_per_column() const override {
+    return sizeof(Cell) * static_cast<std::size_t>(lanes_);
+  }
+  /// Of a few coarser columns: states, what making them needs, and their bytes.
+  [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
+                                        scheduler::Extent /*input*/) const override {
+    return kCoarserColumns * bytes_per_column() + sizeof(Cell) * work_cells() +
+           kCoarserColumns * static_cast<std::size_t>(lanes_);
+  }
+
+  void make_row(const scheduler::RowTask& task) const override {
+    if (task.y % 2 == 1 && task.previous != nullptr) {
+      // Both rows are the same one of the coarser level.
+      if (task.previous != task.output) {
+        std::memcpy(task.output, task.previous,
+                    bytes_per_column() * static_cast<std::size_t>(task.columns.size()));
+      }
+      return;
+    }
+    if (blocks_ == nullptr) {
+      make_columns(task, {task.columns, all_blocks_}, count_);
+      return;
+    }
+    for (int x = task.columns.begin; x < task.columns.end;) {
+      const CandidateBlocks::Run run = blocks_->run_at(x, task.y, task.columns.end);
+      make_columns(task, run, blocks_->count(run.blocks));
+      x = run.columns.end;
+    }
+  }
+
+ protected:
+  static constexpr int kCoarserColumns = 8;
+
+  [[nodiscard]] int lanes() const { return lanes_; }
+  [[nodiscard]] const CandidateBlocks* blocks() const { return blocks_; }
+  /// That a pixel has on average.
+  [[nodiscard]] int candidates() const { return candidates_in(blocks_, count_); }
+
+  /// What make_states() needs of `work`.
+  [[nodiscard]] virtual std::size_t work_cells() const = 0;
+  /// States of at most kCoarserColumns columns, one behind the other. segment_ends: where runs of
+  /// lanes end whose candidates follow each other.
+  virtual void make_states(const kernels::CompactRow& coarser, std::span<const int> segment_ends,
+                           Cell* states, Cell* work) const = 0;
+
+ private:
+  /// count: candidates in the lanes of the run.
+  void make_columns(const scheduler::RowTask& task, const CandidateBlocks::Run& run,
+                    int count) const {
+    const std::size_t run_lanes = run.blocks.size() * kernels::kLaneMultiple;
+    auto* const output = reinterpret_cast<Cell*>(task.output);
+    auto* const states = reinterpret_cast<Cell*>(task.state);
+    Cell* const work = states + kCoarserColumns * lanes_;
+    auto* const bytes = reinterpret_cast<std::uint8_t*>(work + work_cells());
+    const BlockSegments segments(run.blocks);
+    const int end = (run.columns.end + 1) / 2;
+    for (int first = run.columns.begin / 2; first < end; first += kCoarserColumns) {
+      const int columns = std::min(kCoarserColumns, end - first);
+      fetch(task.y / 2, run.blocks, {first, first + columns}, bytes);
+      make_states({.cells = bytes,
+                   .columns = columns,
+                   .lanes = static_cast<int>(run_lanes),
+                   .count = count},
+                  segments.ends(), states, work);
+      for (int x = std::max(2 * first, run.columns.begin);
+           x < std::min(2 * (first + columns), run.columns.end); ++x) {
+        std::copy_n(states + run_lanes * static_cast<std::size_t>(x / 2 - first), run_lanes,
+                    output + static_cast<std::size_t>(lanes_) *
+                                 static_cast<std::size_t>(x - task.columns.begin));
+      }
+    }
+  }
+
+  /// Columns of the coarser level, brought to the lanes of `blocks`.
+  void fetch(int coarser_y, BlockList blocks, scheduler::Range coarser_columns,
+             std::uint8_t* bytes) const {
+    for (int x = coarser_columns.begin; x < coarser_columns.end; ++x) {
+      const BlockList own =
+          coarser_.blocks == nullptr ? all_blocks_ : coarser_.blocks->at(x, coarser_y);
+      copy_blocks<std::uint8_t>(coarser_.volume->column<std::uint8_t>(x, coarser_y), own, blocks,
+                                kernels::kMostCompact, bytes);
+      bytes += blocks.size() * kernels::kLaneMultiple;
+    }
+  }
+
+  int lanes_;
+  int count_;
+  CoarserResult coarser_;
+  const CandidateBlocks* blocks_;
+  std::vector<std::uint16_t> all_blocks_;
+};
+
+}  // namespace vantage

@@ -1,0 +1,252 @@
+#include "engine/matching/options/match_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "engine/error.h"
+#include "engine/matching/options/match_presets.h"
+#include "engine/matching/options/method_names.h"
+#include "engine/matching/options/parameter_readers.h"
+#include "kernels/surface_fit/surface_fit.h"
+
+namespace vantage {
+namespace {
+
+constexpr int kMaxCandidates = 4096;
+constexpr int kMaxDisparity = 65535;
+constexpr int kMaxEdgeSnapping = 16;
+constexpr int kMaxCheckLevel = 9;
+constexpr double kNoThreshold = -std::numeric_limits<double>::infinity();
+
+PresetSettings settings_of(const std::optional<MatchPreset>& preset) {
+  return preset ? preset_settings(*preset) : PresetSettings{};
+}
+
+/// Gives `target` the fields that `overrides` have.
+void take_over(const RefinementOverrides& overrides, RefinementOptions& target) {
+  const auto take = [](const auto& override_value, auto& field) {
+    if (override_value) {
+      field = *override_value;
+    }
+  };
+  take(overrides.edge_snapping_px, target.edge_snapping_px);
+  take(overrides.cross_check, target.cross_check);
+  take(overrides.cross_check_px, target.cross_check_px);
+  take(overrides.cross_check_level, target.cross_check_level);
+  take(overrides.confidence_threshold, target.confidence_threshold);
+  take(overrides.speckle_size_px, target.speckle_size_px);
+  take(overrides.surface_fit_px, target.surface_fit_px);
+  take(overrides.fill, target.fill);
+}
+
+void validate_range(std::string_view field, DisparityRange range) {
+  if (range.max < range.min) {
+    throw UsageError(
+        fmt::format("{} is {}:{}, expected MIN:MAX with MIN <= MAX", field, range.min, range.max));
+  }
+  if (range.min < -kMaxDisparity || range.max > kMaxDisparity) {
+    throw UsageError(fmt::format("{} is {}:{}, expected values within ±{}", field, range.min,
+                                 range.max, kMaxDisparity));
+  }
+}
+
+void validate_candidates(DisparityRange x, const std::optional<DisparityRange>& y) {
+  validate_range("disparities", x);
+  if (x.count() > kMaxCandidates) {
+    throw UsageError(fmt::format("disparities is {}:{} ({} candidates), expected at most {}", x.min,
+                                 x.max, x.count(), kMaxCandidates));
+  }
+  if (!y) {
+    return;
+  }
+  validate_range("disparities-y", *y);
+  const long long pairs = static_cast<long long>(x.count()) * y->count();
+  if (pairs > kMaxCandidates) {
+    throw UsageError(fmt::format(
+        "disparities-y is {}:{} ({} candidates with disparities {}:{}), expected at most {}",
+        y->min, y->max, pairs, x.min, x.max, kMaxCandidates));
+  }
+}
+
+void validate_refinement(const RefinementOptions& refinement, bool is_two_dimensional) {
+  if (refinement.edge_snapping_px < 0 || refinement.edge_snapping_px > kMaxEdgeSnapping) {
+    throw UsageError(fmt::format("edge-snapping is {}, expected a number of pixels from 0 to {}",
+                                 refinement.edge_snapping_px, kMaxEdgeSnapping));
+  }
+  if (refinement.edge_snapping_px > 0 && is_two_dimensional) {
+    throw UsageError(fmt::format(
+        "edge-snapping is {}, expected 0 with disparities-y: it moves discontinuities of "
+        "horizontal disparities only",
+        refinement.edge_snapping_px));
+  }
+  if (!(refinement.cross_check_px >= 1 && std::isfinite(refinement.cross_check_px))) {
+    throw UsageError(fmt::format("cross-check is {}, expected a number of at least 1",
+                                 refinement.cross_check_px));
+  }
+  if (refinement.cross_check_level < 0 || refinement.cross_check_level > kMaxCheckLevel) {
+    throw UsageError(fmt::format("cross-check-level is {}, expected a level from 0 to {}",
+                                 refinement.cross_check_level, kMaxCheckLevel));
+  }
+  if (!(refinement.confidence_threshold < std::numeric_limits<double>::infinity())) {
+    throw UsageError(fmt::format("confidence-threshold is {}, expected a finite number",
+                                 refinement.confidence_threshold));
+  }
+  if (refinement.speckle_size_px < 0) {
+    throw UsageError(fmt::format("speckle-size is {}, expected a number of pixels, at least 0",
+                                 refinement.speckle_size_px));
+  }
+  if (refinement.surface_fit_px < 0 || refinement.surface_fit_px > kernels::kMaxSurfaceRadiusPx) {
+    throw UsageError(fmt::format("surface-fit is {}, expected a number of pixels from 0 to {}",
+                                 refinement.surface_fit_px, kernels::kMaxSurfaceRadiusPx));
+  }
+}
+
+/// Throws UsageError for the first field that is set although refinement does not look at it.
+void require_read(const RefinementOverrides& set, const RefinementOptions& in_force, bool raw) {
+  const auto refuse_if = [](bool is_unread, std::string_view field, std::string_view why) {
+    if (is_unread) {
+      throw UsageError(fmt::format("{} is set but has no effect with {}", field, why));
+    }
+  };
+  constexpr std::string_view kWithRaw = "raw, which leaves all refinement out";
+  refuse_if(raw && set.edge_snapping_px, "edge-snapping", kWithRaw);
+  refuse_if(raw && (set.cross_check || set.cross_check_px), "cross-check", kWithRaw);
+  refuse_if(raw && set.cross_check_level, "cross-check-level", kWithRaw);
+  refuse_if(raw && set.confidence_threshold, "confidence-threshold", kWithRaw);
+  refuse_if(raw && set.speckle_size_px, "speckle-size", kWithRaw);
+  refuse_if(raw && set.surface_fit_px, "surface-fit", kWithRaw);
+  refuse_if(raw && set.fill, "fill", kWithRaw);
+  constexpr std::string_view kUnchecked = "cross-check none";
+  refuse_if(!in_force.cross_check && set.cross_check_px, "a number of pixels for cross-check",
+            kUnchecked);
+  refuse_if(!in_force.cross_check && set.cross_check_level.value_or(0) > 0, "cross-check-level",
+            kUnchecked);
+}
+
+}  // namespace
+
+bool uses_confidence(const RefinementOptions& refinement) {
+  return refinement.confidence_threshold > kNoThreshold;
+}
+
+bool can_check_levels(const MethodParameters& parameters) {
+  return parameters.levels > 1 && parameters.aggregation == Aggregation::kBayes;
+}
+
+void MatchOptions::validate() const {
+  if (method && preset) {
+    throw UsageError("method and preset are both set, expected one of them: a preset has a method");
+  }
+  if (disparities_auto && disparities_y) {
+    throw UsageError(
+        "disparities is auto, expected MIN:MAX beside disparities-y: the range is estimated for "
+        "rectified pairs only");
+  }
+  validate_candidates(disparities, disparities_y);
+  const MethodParameters in_force = resolved();
+  vantage::validate(in_force);
+  if (in_force.candidate_blocks > 0 && disparities_y) {
+    throw UsageError(fmt::format(
+        "candidate-blocks is {}, expected 0 with disparities-y: blocks are of candidates along "
+        "rows",
+        in_force.candidate_blocks));
+  }
+  const RefinementOptions of_maps = resolved_refinement();
+  validate_refinement(of_maps, disparities_y.has_value());
+  if (of_maps.cross_check_level > 0 && disparities_y) {
+    throw UsageError(fmt::format(
+        "cross-check-level is {}, expected 0 with disparities-y: winners of coarse levels are kept "
+        "of searches along rows only",
+        of_maps.cross_check_level));
+  }
+  if (of_maps.cross_check_level > 0 && !can_check_levels(in_force)) {
+    throw UsageError(fmt::format(
+        "cross-check-level is {}, expected 0: only aggregation bayes with levels above 1 has maps "
+        "of coarse levels",
+        of_maps.cross_check_level));
+  }
+  require_read(parameters, in_force, chosen());
+  require_read(refinement, of_maps, raw);
+}
+
+std::optional<MatchPreset> MatchOptions::preset_in_force() const {
+  if (preset || method || parameters.aggregation || disparities_y) {
+    return preset;
+  }
+  return MatchPreset::kBalanced;
+}
+
+std::string MatchOptions::chosen() const {
+  const std::optional<MatchPreset> in_force = preset_in_force();
+  std::string text = in_force
+                         ? fmt::format("preset {}", name_of(*in_force))
+                         : fmt::format("method {}", name_of(method.value_or(MatchMethod::kSsd)));
+  std::string_view separator = " with ";
+  if (parameters.cost) {
+    text += fmt::format("{}cost {}", separator, name_of(*parameters.cost));
+    separator = " and ";
+  }
+  if (parameters.aggregation) {
+    text += fmt::format("{}aggregation {}", separator, name_of(*parameters.aggregation));
+  }
+  return text;
+}
+
+MethodParameters MatchOptions::resolved() const {
+  PresetSettings settings = settings_of(preset_in_force());
+  if (parameters.cost && parameters.cost != settings.parameters.cost) {
+    settings.parameters.sigma_measurement.reset();  // it is in units of the preset's cost
+  }
+  MethodParameters result =
+      resolve(method.value_or(settings.method), merge(settings.parameters, parameters));
+  // A preset's pruning holds where it can: what else the user chose goes before it.
+  if (!parameters.candidate_blocks && (disparities_y || !can_prune(result))) {
+    result.candidate_blocks = 0;
+  }
+  return result;
+}
+
+RefinementOptions MatchOptions::resolved_refinement() const {
+  RefinementOptions result{
+      .edge_snapping_px = 0,
+      .cross_check = true,
+      .cross_check_px = std::max(1.0, disparities.count() / 15.0),
+      .cross_check_level = 0,
+      .confidence_threshold = is_evidence(resolved()) ? 0 : kNoThreshold,
+      .speckle_size_px = 0,
+      .surface_fit_px = 0,
+      .fill = Fill::kConstant,
+  };
+  take_over(settings_of(preset_in_force()).refinement, result);
+  take_over(refinement, result);
+  // As with pruning: a preset's level holds where there can be one.
+  if (!refinement.cross_check_level && (disparities_y || !can_check_levels(resolved()))) {
+    result.cross_check_level = 0;
+  }
+  return result;
+}
+
+MatchOptions MatchOptions::spelled_out() const {
+  MatchOptions result = *this;
+  result.method = method.value_or(settings_of(preset_in_force()).method);
+  result.preset.reset();
+  result.parameters = as_overrides(resolved());
+  const RefinementOptions in_force = resolved_refinement();
+  result.refinement = {
+      .edge_snapping_px = in_force.edge_snapping_px,
+      .cross_check = in_force.cross_check,
+      .cross_check_px = in_force.cross_check_px,
+      .cross_check_level = in_force.cross_check_level,
+      .confidence_threshold = in_force.confidence_threshold,
+      .speckle_size_px = in_force.speckle_size_px,
+      .surface_fit_px = in_force.surface_fit_px,
+      .fill = in_force.fill,
+  };
+  return result;
+}
+
+}  // namespace vantage

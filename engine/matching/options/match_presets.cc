@@ -1,0 +1,61 @@
+#include "engine/matching/options/match_presets.h"
+
+namespace vantage {
+namespace {
+
+/// Bayesian diffusion from coarse to fine, as docs/COARSE_TO_FINE.md found it: census codes,
+/// weights from intensity edges, candidates around what coarser levels found.
+MethodOverrides coarse_to_fine() {
+  MethodOverrides parameters;
+  parameters.cost = MatchCost::kRayCensus;
+  parameters.sigma_measurement = 3;  // of 24 neighbours
+  parameters.epsilon_measurement = 0.2;
+  parameters.levels = 7;
+  parameters.level_weight = 0.6;
+  parameters.epsilon_prior = 5e-6;
+  parameters.prior_growth = 1.2;
+  parameters.prior_smoothing = PriorSmoothing::kMaximum;
+  parameters.edge_weight = 0.2;
+  parameters.candidate_blocks = 3;
+  return parameters;
+}
+
+}  // namespace
+
+PresetSettings preset_settings(MatchPreset preset) {
+  PresetSettings settings;
+  settings.refinement.cross_check_px = 1;
+  settings.refinement.speckle_size_px = 100;
+  settings.refinement.surface_fit_px = 10;
+  switch (preset) {
+    case MatchPreset::kFast:
+      settings.method = MatchMethod::kBayes;
+      settings.parameters = coarse_to_fine();
+      settings.parameters.mu = 0.28;
+      settings.parameters.iterations = 2;
+      settings.parameters.final_iterations = 0;
+      settings.refinement.cross_check_level = 1;
+      break;
+    case MatchPreset::kBalanced:
+      settings.method = MatchMethod::kBayes;
+      settings.parameters = coarse_to_fine();
+      settings.parameters.census_thresholds = 3;
+      settings.parameters.mu = 0.28;
+      settings.parameters.iterations = 3;
+      settings.parameters.final_iterations = 1;
+      settings.refinement.fill = Fill::kMedian;
+      break;
+    case MatchPreset::kQuality:
+      settings.method = MatchMethod::kBayes;
+      settings.parameters = coarse_to_fine();
+      settings.parameters.census_thresholds = 3;
+      settings.parameters.mu = 0.33;
+      settings.parameters.iterations = 10;
+      settings.parameters.final_iterations = 5;
+      settings.refinement.fill = Fill::kMedian;
+      break;
+  }
+  return settings;
+}
+
+}  // namespace vantage

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/matching/options/method_parameters.h"
+
+namespace vantage {
+
+/// Names of the values of an enumeration, as options and messages have them, in the order of help
+/// texts.
+template <typename Enum>
+using EnumNames = std::vector<std::pair<std::string_view, Enum>>;
+
+const EnumNames<MatchMethod>& method_names();
+const EnumNames<MatchPreset>& preset_names();
+const EnumNames<MatchCost>& cost_names();
+const EnumNames<Aggregation>& aggregation_names();
+
+std::string_view name_of(MatchMethod method);
+std::string_view name_of(MatchPreset preset);
+std::string_view name_of(MatchCost cost);
+std::string_view name_of(Aggregation aggregation);
+
+/// What a method does in short: "cost census-rays, aggregation bayes, 7 levels".
+std::string summary_of(const MethodParameters& parameters);
+
+}  // namespace vantage
