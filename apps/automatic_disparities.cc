@@ -7,7 +7,7 @@
 #include "apps/match_settings.h"
 #include "apps/tell.h"
 #include "engine/error.h"
-#include "engine/matching/estimation/disparity_range.h"
+#include "engine/matching/range_estimation.h"
 
 namespace vantage::apps {
 

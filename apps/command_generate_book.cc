@@ -63,9 +63,9 @@ void add_book_settings(Settings& settings, BookJob& job) {
   settings.number("noise", pair.noise_sigma, "SIGMA",
                   "Noise in both images, grey levels; gives float images");
   settings.flag("float", pair.float_pixels, "Write float images (PFM) without noise too");
-  settings.choice<Reference>("reference", pair.reference,
-                             {{"left", Reference::kLeft}, {"right", Reference::kRight}},
-                             "Image on whose grid the shapes are placed");
+  settings.choice<Side>("reference", pair.reference,
+                        {{"left", Side::kLeft}, {"right", Side::kRight}},
+                        "Image on whose grid the shapes are placed");
   add_seed_setting(settings, pair.seed);
 }
 

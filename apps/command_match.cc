@@ -12,22 +12,21 @@
 #include "apps/settings.h"
 #include "apps/tell.h"
 #include "engine/error.h"
+#include "engine/image/memory_use.h"
 #include "engine/image/transposed.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/displacement_io.h"
 #include "engine/io/photograph_io.h"
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/stereo_matcher.h"
-#include "engine/memory_use.h"
 #include "engine/sequence/preview_range.h"
 #include "engine/simd.h"
 
 namespace vantage::apps {
 namespace {
 
-void write_map(const MatchJob& job, const std::string& path, const DisparityMaps& maps,
-               MapSide side) {
-  const bool is_left = side == MapSide::kLeft;
+void write_map(const MatchJob& job, const std::string& path, const DisparityMaps& maps, Side side) {
+  const bool is_left = side == Side::kLeft;
   const DisparityMap& map = is_left ? maps.left : maps.right;
   if (!job.match.disparities_y) {
     write_disparity(path, map.view());
@@ -39,9 +38,9 @@ void write_map(const MatchJob& job, const std::string& path, const DisparityMaps
 
 void write_results(const MatchJob& job, const DisparityMaps& maps) {
   const bool is_left = job.is_left();
-  write_map(job, job.output, maps, is_left ? MapSide::kLeft : MapSide::kRight);
+  write_map(job, job.output, maps, is_left ? Side::kLeft : Side::kRight);
   if (!job.output_right.empty()) {
-    write_map(job, job.output_right, maps, MapSide::kRight);
+    write_map(job, job.output_right, maps, Side::kRight);
   }
   if (!job.confidence.empty()) {
     write_disparity(job.confidence,

@@ -13,7 +13,7 @@
 #include "apps/run_settings.h"
 #include "apps/tell.h"
 #include "engine/error.h"
-#include "engine/memory_use.h"
+#include "engine/image/memory_use.h"
 #include "engine/sequence/sequence_join.h"
 #include "engine/simd.h"
 

@@ -19,7 +19,7 @@
 #include "apps/view_pipeline.h"
 #include "apps/view_renderer.h"
 #include "apps/wanted_views.h"
-#include "engine/memory_use.h"
+#include "engine/image/memory_use.h"
 #include "engine/simd.h"
 #include "engine/view_geometry/view_pose.h"
 

@@ -92,7 +92,7 @@ void check_several(const MatchJob& job, const Settings& settings) {
         fmt::format("--baselines has {} number{}, expected {}: one for each image but the first",
                     job.baselines.size(), job.baselines.size() == 1 ? "" : "s", others));
   }
-  if (job.match.reference == Reference::kRight) {
+  if (job.match.reference == Side::kRight) {
     throw UsageError(
         "--reference right cannot go with --baselines: the first image is the reference");
   }
@@ -136,7 +136,7 @@ void check(const MatchJob& job, const Settings& settings) {
   }
   if (job.has_several()) {
     check_several(job, settings);
-  } else if (job.match.reference == Reference::kRight &&
+  } else if (job.match.reference == Side::kRight &&
              !(job.output_right.empty() && job.unmatched_right.empty())) {
     throw UsageError(fmt::format("--{} cannot go with --reference right: {} is of the right map",
                                  job.output_right.empty() ? "unmatched-right" : "output-right",

@@ -38,7 +38,7 @@ struct MatchJob {
   }
   /// Whether the map of the first image is one of a left image.
   [[nodiscard]] bool is_left() const {
-    return has_several() ? baselines.front() > 0 : match.reference == Reference::kLeft;
+    return has_several() ? baselines.front() > 0 : match.reference == Side::kLeft;
   }
   [[nodiscard]] bool wants_right() const {
     return !is_left() || !output_right.empty() || !unmatched_right.empty();

@@ -390,9 +390,9 @@ void add_match_settings(Settings& settings, MatchOptions& options) {
 
 void add_reference_setting(Settings& settings, MatchOptions& options) {
   settings.begin_group("Matching");
-  settings.choice<Reference>("reference", options.reference,
-                             {{"left", Reference::kLeft}, {"right", Reference::kRight}},
-                             "The image whose grid the disparity map is on");
+  settings.choice<Side>("reference", options.reference,
+                        {{"left", Side::kLeft}, {"right", Side::kRight}},
+                        "The image whose grid the disparity map is on");
 }
 
 SettingValue reported_settings(const Settings& settings, const MatchOptions& options) {

@@ -12,8 +12,8 @@
 
 #include "apps/setting_value.h"
 #include "engine/execution.h"
+#include "engine/image/memory_use.h"
 #include "engine/matching/stereo_matcher.h"
-#include "engine/memory_use.h"
 #include "scheduler/strip_plan.h"
 #include "scheduler/trace.h"
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/matching/costs/candidate_geometry.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/simd.h"
 #include "perf/bench_pair.h"
@@ -70,7 +71,7 @@ std::vector<Method> all_methods() {
 /// The chain by the whole-image executor: every row of every stage stored, one thread.
 void run_whole_image_chain(const Method& method, const Pair& pair, Execution& execution) {
   const MethodParameters parameters = method.options.resolved();
-  const auto geometry = candidate_geometry(method.options, Reference::kLeft, kWidth, kHeight);
+  const auto geometry = candidate_geometry(method.options, Side::kLeft, kWidth, kHeight);
   CostImage left;
   CostImage right;
   left.prepare(pair.left_grey, parameters, geometry, {true, false, false}, execution);

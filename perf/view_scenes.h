@@ -115,9 +115,9 @@ inline DisparityMaps true_maps(const ViewScene& scene, const std::filesystem::pa
   }
   Mask unknown;
   mark_unknown(maps.left.view(), execution, unknown);
-  fill_unmatched(unknown, MapSide::kLeft, Fill::kConstant, execution, maps.left);
+  fill_unmatched(unknown, Side::kLeft, Fill::kConstant, execution, maps.left);
   mark_unknown(maps.right.view(), execution, unknown);
-  fill_unmatched(unknown, MapSide::kRight, Fill::kConstant, execution, maps.right);
+  fill_unmatched(unknown, Side::kRight, Fill::kConstant, execution, maps.right);
   return maps;
 }
 

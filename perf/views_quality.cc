@@ -75,10 +75,10 @@ DisparityMaps opencv_maps(const LoadedPair& pair, Execution& execution) {
   maps.right = std::move(sgbm.right);
   Mask left;
   Mask right;
-  cross_check(maps.left.view(), maps.right.view(), MapSide::kLeft, 1, execution, left);
-  cross_check(maps.right.view(), maps.left.view(), MapSide::kRight, 1, execution, right);
-  fill_unmatched(left, MapSide::kLeft, Fill::kConstant, execution, maps.left);
-  fill_unmatched(right, MapSide::kRight, Fill::kConstant, execution, maps.right);
+  cross_check(maps.left.view(), maps.right.view(), Side::kLeft, 1, execution, left);
+  cross_check(maps.right.view(), maps.left.view(), Side::kRight, 1, execution, right);
+  fill_unmatched(left, Side::kLeft, Fill::kConstant, execution, maps.left);
+  fill_unmatched(right, Side::kRight, Fill::kConstant, execution, maps.right);
   return maps;
 }
 

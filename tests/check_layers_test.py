@@ -75,6 +75,18 @@ class CheckLayersTest(unittest.TestCase):
                               "engine/a.h:2: ")
         self.expect_violation("apps/a.cc", "#include <libavcodec/avcodec.h>\n", "apps/a.cc:1: ")
 
+    def test_folders_that_include_each_other(self):
+        tree = {**CLEAN_TREE, "engine/a/x.cc": '#include "engine/b/deep/x.h"\n',
+                "engine/b/deep/x.h": '#pragma once\n#include "engine/c/x.h"\n',
+                "engine/b/deep/y.cc": '#include "engine/b/deep/x.h"\n',
+                "engine/c/x.h": '#pragma once\n#include "kernels/box.h"\n'}
+        self.assertEqual(run(tree).returncode, 0)
+        for name in ["engine/c/y.cc", "engine/b/deep/z.cc"]:
+            result = run({**tree, name: '#include "engine/a/x.h"\n'})
+            self.assertEqual(result.returncode, 1, result.stdout)
+            self.assertIn("engine/a/x.cc:1: folders include each other: engine/a -> engine/b/deep",
+                          result.stdout)
+
     def test_private_header_in_a_public_one(self):
         self.expect_violation("engine/a.h", '#pragma once\n#include "engine/io/libav_functions.h"\n',
                               "engine/a.h:2: ")

@@ -100,7 +100,7 @@ void compute(const BookExperimentOptions& options, Execution& execution, Experim
   pair_options.seed = options.seed;
   const BookPair pair = make_book_pair(pair_options);
 
-  const bool left = pair_options.reference == Reference::kLeft;
+  const bool left = pair_options.reference == Side::kLeft;
   const StereoMatcher matcher(match_options(run, pair_options, pair.search), execution);
   DisparityMaps maps;
   matcher.match(pair.left, pair.right, {.left = left, .right = !left, .unmatched = false}, maps);

@@ -69,7 +69,7 @@ void add_evidence(const EvidencePair& pair, const PixelBlock& block,
       const PixelBlock tile{x, std::min(x + kTileColumns, block.x_end), y,
                             std::min(y + kTileRows, block.y_end)};
       for (std::size_t i = 0; i < displacements.size(); ++i) {
-        sums[i] += pair.evidence(Reference::kLeft, tile, displacements[i]);
+        sums[i] += pair.evidence(Side::kLeft, tile, displacements[i]);
       }
     }
   }

@@ -66,16 +66,16 @@ std::vector<Layer> make_layers(const BookPairOptions& options) {
 
 // Position x of the left (right) grid holds the point of a layer that is at x + shift on the grid
 // of the reference image.
-int shift_to_reference(const Layer& layer, Reference grid, Reference reference) {
+int shift_to_reference(const Layer& layer, Side grid, Side reference) {
   if (grid == reference) {
     return 0;
   }
-  return reference == Reference::kLeft ? layer.disparity_px : -layer.disparity_px;
+  return reference == Side::kLeft ? layer.disparity_px : -layer.disparity_px;
 }
 
 // Index of the nearest layer at each pixel of `grid`.
 Image<std::uint8_t> visible_layers(const std::vector<Layer>& layers, const BookPairOptions& options,
-                                   Reference grid) {
+                                   Side grid) {
   Image<std::uint8_t> visible(options.width_px, options.height_px);
   for (int y = 0; y < options.height_px; ++y) {
     for (int x = 0; x < options.width_px; ++x) {
@@ -181,7 +181,7 @@ struct Intensities {
 // other one, where the ramp is unbroken.
 Intensities make_ramp(const BookPairOptions& options, const std::vector<Layer>& layers,
                       const Image<std::uint8_t>& visible_in_reference) {
-  const int step = options.reference == Reference::kLeft ? -1 : 1;
+  const int step = direction_of(options.reference);
   const auto partner_of = [&](int x, int y) {
     return x + step * layers[visible_in_reference.at(x, y)].disparity_px;
   };
@@ -206,7 +206,7 @@ Intensities make_ramp(const BookPairOptions& options, const std::vector<Layer>& 
       broken.at(x, y) = ramp(partner_of(x, y));
     }
   }
-  if (options.reference == Reference::kLeft) {
+  if (options.reference == Side::kLeft) {
     return {std::move(broken), std::move(unbroken)};
   }
   return {std::move(unbroken), std::move(broken)};
@@ -214,7 +214,7 @@ Intensities make_ramp(const BookPairOptions& options, const std::vector<Layer>& 
 
 Image<float> paint(const BookPairOptions& options, const std::vector<Layer>& layers,
                    const std::vector<Texture>& textures, const Image<std::uint8_t>& visible,
-                   Reference grid) {
+                   Side grid) {
   Image<float> image(options.width_px, options.height_px);
   for (int y = 0; y < image.height(); ++y) {
     for (int x = 0; x < image.width(); ++x) {
@@ -296,23 +296,22 @@ BookPairOptions book_pair_options(std::string_view name) {
 BookPair make_book_pair(const BookPairOptions& options) {
   options.validate();
   const std::vector<Layer> layers = make_layers(options);
-  const Image<std::uint8_t> in_left = visible_layers(layers, options, Reference::kLeft);
-  const Image<std::uint8_t> in_right = visible_layers(layers, options, Reference::kRight);
+  const Image<std::uint8_t> in_left = visible_layers(layers, options, Side::kLeft);
+  const Image<std::uint8_t> in_right = visible_layers(layers, options, Side::kRight);
 
   Intensities grey;
   if (options.pattern == BookPattern::kRamp) {
-    grey = make_ramp(options, layers, options.reference == Reference::kLeft ? in_left : in_right);
+    grey = make_ramp(options, layers, options.reference == Side::kLeft ? in_left : in_right);
   } else {
     std::vector<Texture> textures;
     for (const Layer& layer : layers) {
-      const Reference other =
-          options.reference == Reference::kLeft ? Reference::kRight : Reference::kLeft;
+      const Side other = other_side(options.reference);
       const int shift = shift_to_reference(layer, other, options.reference);
       textures.emplace_back(options, std::min(0, shift), options.width_px + std::max(0, shift),
                             kTextureStream + textures.size());
     }
-    grey.left = paint(options, layers, textures, in_left, Reference::kLeft);
-    grey.right = paint(options, layers, textures, in_right, Reference::kRight);
+    grey.left = paint(options, layers, textures, in_left, Side::kLeft);
+    grey.right = paint(options, layers, textures, in_right, Side::kRight);
   }
 
   const int nearest = layers.front().disparity_px;

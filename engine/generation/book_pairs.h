@@ -37,7 +37,7 @@ struct BookPairOptions {
   double noise_sigma = 0;     ///< grey levels, Gaussian, independent in both images; 0..255
   bool float_pixels = false;  ///< float pixels without noise too (noise always gives them)
   /// The image on whose grid the shapes are placed. For kRamp the other one is the unbroken ramp.
-  Reference reference = Reference::kLeft;
+  Side reference = Side::kLeft;
   std::uint64_t seed = 1;
 
   /// Throws UsageError naming the field, its value and its limit.

@@ -25,8 +25,8 @@ static_assert(std::endian::native == std::endian::little);
 constexpr float kFloUnknown = 1e10F;
 
 /// (u, v) interleaved; both `unknown` where one of them is not finite.
-Image<float> interleaved(const DisplacementView& displacements, MapSide side, float unknown) {
-  const float sign = side == MapSide::kLeft ? -1.0F : 1.0F;
+Image<float> interleaved(const DisplacementView& displacements, Side side, float unknown) {
+  const float sign = side == Side::kLeft ? -1.0F : 1.0F;
   const int width = displacements.x_px.width();
   Image<float> result(width, displacements.x_px.height(), 2);
   for (int y = 0; y < result.height(); ++y) {
@@ -75,7 +75,7 @@ Image<float> with_validity(const Image<float>& interleaved) {
 }  // namespace
 
 void write_displacements(const std::filesystem::path& path, const DisplacementView& displacements,
-                         MapSide side) {
+                         Side side) {
   if (!is_displacement_extension(path)) {
     throw UsageError(fmt::format(
         "cannot write {}: '{}' cannot hold displacements of two components, expected .flo .npy "

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "engine/image/image.h"
-#include "engine/refinement/refinement.h"
+#include "engine/image/displacement_view.h"
+#include "engine/image/side.h"
 
 namespace vantage {
 
@@ -17,7 +17,7 @@ namespace vantage {
 /// B = 1 where known; unknown = 0, 0, 0). NaN and ±inf in either component are unknown. Whole or
 /// not at all. Throws UsageError for another extension, Error when the file cannot be written.
 void write_displacements(const std::filesystem::path& path, const DisplacementView& displacements,
-                         MapSide side);
+                         Side side);
 
 /// True when write_displacements() knows the extension.
 bool is_displacement_extension(const std::filesystem::path& path);

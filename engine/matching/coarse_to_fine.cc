@@ -1,4 +1,5 @@
 #include "engine/matching/coarse_to_fine.h"
+#include "engine/matching/levels/level_extents.h"
 
 #include <algorithm>
 #include <optional>
@@ -62,18 +63,6 @@ void expand_winners(ImageView<const std::int32_t> winners, int level, int dispar
 }
 
 }  // namespace
-
-std::vector<scheduler::Extent> level_extents(scheduler::Extent extent, int levels) {
-  std::vector<scheduler::Extent> extents = {extent};
-  while (static_cast<int>(extents.size()) < levels) {
-    const scheduler::Extent next = coarser_extent(extents.back());
-    if (next.columns <= 1 && next.rows <= 1) {
-      break;
-    }
-    extents.push_back(next);
-  }
-  return extents;
-}
 
 void CoarseLevels::resize(const MethodParameters& parameters,
                           const std::vector<scheduler::Extent>& extents, int candidates) {

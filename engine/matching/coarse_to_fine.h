@@ -16,10 +16,6 @@
 
 namespace vantage {
 
-/// The grids of an image of `extent` and of its coarser levels, half as many columns and rows each,
-/// rounded up: `levels` of them, or fewer where a level would be a single pixel.
-std::vector<scheduler::Extent> level_extents(scheduler::Extent extent, int levels);
-
 /// What is stored of coarse levels while one map is computed: costs of each, results of two, and
 /// which candidates are looked at on levels that do not look at all.
 /// Working memory, reused from map to map without allocating.

@@ -1,4 +1,5 @@
 #include "engine/matching/map_search.h"
+#include "engine/matching/costs/candidate_geometry.h"
 
 #include <utility>
 
@@ -20,7 +21,7 @@ scheduler::ChainPlan chain_plan(const MatchChain& chain, const ExecutionOptions&
   return scheduler::plan_chain(chain.stages(), machine, request);
 }
 
-void MapSearch::compute(Reference reference, const ChainInput& input, const MapResult& result) {
+void MapSearch::compute(Side reference, const ChainInput& input, const MapResult& result) {
   const int width = result.disparity_px->width();
   const int height = result.disparity_px->height();
   MapOutputs outputs{.disparity_px = result.disparity_px->view()};

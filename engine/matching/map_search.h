@@ -41,7 +41,7 @@ class MapSearch {
         report_(report) {}
 
   /// Throws Error when no pixel has a candidate.
-  void compute(Reference reference, const ChainInput& input, const MapResult& result);
+  void compute(Side reference, const ChainInput& input, const MapResult& result);
 
  private:
   void run_chain(const MatchChain& chain);

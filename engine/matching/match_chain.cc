@@ -1,4 +1,5 @@
 #include "engine/matching/match_chain.h"
+#include "engine/matching/levels/level_extents.h"
 
 #include <fmt/format.h>
 
@@ -33,28 +34,6 @@
 #include "engine/matching/selection/stage_window_selection.h"
 
 namespace vantage {
-
-kernels::CandidateGeometry candidate_geometry(const MatchOptions& options, Reference reference,
-                                              int width, int height) {
-  // Whole windows need room: with border `valid` they shorten the largest shift that can match.
-  const MethodParameters parameters = options.resolved();
-  const bool has_whole_windows =
-      parameters.aggregation == Aggregation::kBox && parameters.border == Border::kValid;
-  const int margin = has_whole_windows ? parameters.window_px - 1 : 0;
-  const int most_shift = width - 1 - margin;
-  const int least = std::max(options.disparities.min, -most_shift);
-  const int most = std::min(options.disparities.max, most_shift);
-  if (most < least || height <= margin) {
-    throw Error(fmt::format(
-        "no pixel has a candidate: disparities {}:{}{} on images of {}x{}, expected a range that "
-        "reaches into {}:{}",
-        options.disparities.min, options.disparities.max,
-        margin > 0 ? fmt::format(" with whole {0}x{0} windows (border valid)", parameters.window_px)
-                   : "",
-        width, height, -std::max(0, most_shift), std::max(0, most_shift)));
-  }
-  return {width, least, most - least + 1, reference == Reference::kLeft ? -1 : 1};
-}
 
 bool uses_column_ssd(const MethodParameters& parameters) {
   return parameters.cost == MatchCost::kSquared && parameters.aggregation == Aggregation::kBox &&

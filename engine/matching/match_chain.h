@@ -19,11 +19,6 @@
 
 namespace vantage {
 
-/// The candidates of `options` that some pixel of an image `width` columns wide can have.
-/// `reference` is the image whose grid the map is on. Throws Error when there is none.
-kernels::CandidateGeometry candidate_geometry(const MatchOptions& options, Reference reference,
-                                              int width, int height);
-
 /// Whether box sums of squared differences of luma can be made by the column SSD stage, which is
 /// faster than making costs first and summing them: the maps are the same. Levels need the costs.
 bool uses_column_ssd(const MethodParameters& parameters);

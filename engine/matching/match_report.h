@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/matching/estimation/pair_levels.h"
+#include "engine/matching/pair_levels.h"
 #include "scheduler/strip_plan.h"
 
 namespace vantage {

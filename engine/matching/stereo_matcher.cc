@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/matching/costs/candidate_geometry.h"
+#include "engine/matching/levels/level_extents.h"
 #include "engine/matching/stage_clock.h"
 
 namespace vantage {
@@ -65,7 +67,7 @@ bool StereoMatcher::wants_confidence(const MatchRequest& request) const {
 void StereoMatcher::settle_levels(const Photograph& left, const Photograph& right,
                                   Prepared& prepared, MatchReport& report) const {
   // Throws for the whole images, where bands of them would be named otherwise.
-  candidate_geometry(options_, Reference::kLeft, left.width(), left.height());
+  candidate_geometry(options_, Side::kLeft, left.width(), left.height());
   const PairLevels levels =
       levels_->estimate(left, right, parameters_.colour, parameters_.match_exposure);
   prepared.of_right = levels.of_right;
@@ -107,13 +109,13 @@ std::vector<LevelChanges> StereoMatcher::settle_levels(const Photograph& referen
 }
 
 /// What the chains of both maps read.
-void StereoMatcher::prepare_inputs(Side& left, Side& right, bool uses_prior,
+void StereoMatcher::prepare_inputs(MapTask& left, MapTask& right, bool uses_prior,
                                    Prepared& prepared) const {
-  const auto is_needed = [](const Side& side) { return side.need.whole || side.need.coarse; };
+  const auto is_needed = [](const MapTask& side) { return side.need.whole || side.need.coarse; };
   const bool needs_left = is_needed(left);
   const bool needs_right = is_needed(right);
   const auto geometry =
-      candidate_geometry(options_, Reference::kLeft, left.image->width(), left.image->height());
+      candidate_geometry(options_, Side::kLeft, left.image->width(), left.image->height());
   if (uses_column_ssd(parameters_) && !options_.disparities_y && !uses_prior) {
     prepare_pair(*left.image, *right.image, geometry, parameters_.window_px * parameters_.window_px,
                  {needs_left, needs_right}, execution_, prepared.pair);
@@ -143,13 +145,13 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
   prepared->parameters = parameters_;
   prepared->of_right = {};
   DisparityMaps maps;  // nobody looks into them
-  Side of_left = left_side(left, maps);
-  Side of_right = right_side(right, maps);
+  MapTask of_left = left_task(left, maps);
+  MapTask of_right = right_task(right, maps);
   of_left.need = {.whole = true};
   prepare_inputs(of_left, of_right, false, *prepared);
-  auto geometry = candidate_geometry(options_, Reference::kLeft, left.width(), left.height());
+  auto geometry = candidate_geometry(options_, Side::kLeft, left.width(), left.height());
   maps.left.resize(left.width(), left.height());
-  const auto grid = displacement_grid(options_, Reference::kLeft, left.width(), left.height());
+  const auto grid = displacement_grid(options_, Side::kLeft, left.width(), left.height());
   if (grid) {
     of_left.input.grid = &*grid;
     geometry = grid->columns();
@@ -184,8 +186,8 @@ std::pair<StereoMatcher::MapNeed, StereoMatcher::MapNeed> StereoMatcher::needs(
   return {need(request.left, request.right), need(request.right, request.left)};
 }
 
-StereoMatcher::Side StereoMatcher::left_side(const Photograph& image, DisparityMaps& maps) {
-  return {.reference = Reference::kLeft,
+StereoMatcher::MapTask StereoMatcher::left_task(const Photograph& image, DisparityMaps& maps) {
+  return {.reference = Side::kLeft,
           .image = &image,
           .px = &maps.left,
           .confidence = &maps.left_confidence,
@@ -193,8 +195,8 @@ StereoMatcher::Side StereoMatcher::left_side(const Photograph& image, DisparityM
           .unmatched = &maps.left_unmatched};
 }
 
-StereoMatcher::Side StereoMatcher::right_side(const Photograph& image, DisparityMaps& maps) {
-  return {.reference = Reference::kRight,
+StereoMatcher::MapTask StereoMatcher::right_task(const Photograph& image, DisparityMaps& maps) {
+  return {.reference = Side::kRight,
           .image = &image,
           .px = &maps.right,
           .confidence = &maps.right_confidence,
@@ -203,7 +205,7 @@ StereoMatcher::Side StereoMatcher::right_side(const Photograph& image, Disparity
 }
 
 /// Gives the side's images their sizes and computes what it needs of its map.
-void StereoMatcher::compute(Side& side, std::string_view name, bool wants_confidence,
+void StereoMatcher::compute(MapTask& side, std::string_view name, bool wants_confidence,
                             int check_level, Prepared& prepared, StageClock& clock,
                             MatchReport& report) const {
   const auto resize = [&](Image<float>& image, bool is_wanted) {
@@ -211,7 +213,7 @@ void StereoMatcher::compute(Side& side, std::string_view name, bool wants_confid
   };
   const bool has_confidence = side.need.whole && wants_confidence;
   const bool has_disparity_y = side.need.whole && options_.disparities_y;
-  DisparityMap& coarse_px = prepared.coarse_px[side.reference == Reference::kLeft ? 0 : 1];
+  DisparityMap& coarse_px = prepared.coarse_px[index_of(side.reference)];
   resize(*side.px, side.need.whole);
   resize(*side.confidence, has_confidence);
   resize(*side.disparity_y, has_disparity_y);
@@ -233,8 +235,8 @@ void StereoMatcher::compute(Side& side, std::string_view name, bool wants_confid
       .compute(side.reference, side.input, result);
 }
 
-MapToRefine StereoMatcher::to_refine(const Side& side, bool is_result) const {
-  return {.side = side.reference == Reference::kLeft ? MapSide::kLeft : MapSide::kRight,
+MapToRefine StereoMatcher::to_refine(const MapTask& side, bool is_result) const {
+  return {.side = side.reference,
           .image = side.image,
           .disparity_px = side.need.whole ? side.px : nullptr,
           .disparity_y_px = options_.disparities_y ? side.disparity_y : nullptr,
@@ -262,8 +264,8 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   clock.begin("prepare");
   const RefinementOptions refinement = options_.resolved_refinement();
   const int check_level = this->check_level(refinement, {left.width(), left.height()});
-  Side of_left = left_side(left, maps);
-  Side of_right = right_side(right, maps);
+  MapTask of_left = left_task(left, maps);
+  MapTask of_right = right_task(right, maps);
   std::tie(of_left.need, of_right.need) = needs(request, refinement, check_level);
   const auto prepared = prepared_.borrow();
   prepared->parameters = parameters_;
@@ -311,7 +313,7 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
   StageClock clock(times);
   clock.begin("prepare");
   const auto geometry =
-      candidate_geometry(options_, Reference::kLeft, reference.width(), reference.height());
+      candidate_geometry(options_, Side::kLeft, reference.width(), reference.height());
   const auto prepared = prepared_.borrow();
   prepared->parameters = parameters_;
   std::vector<LevelChanges> changes(others.size());
@@ -324,8 +326,8 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
   prepared->images[0].prepare(reference, prepared->parameters, geometry, {true, false, false},
                               execution_);
   maps = {};
-  Side side =
-      others.front().baseline > 0 ? left_side(reference, maps) : right_side(reference, maps);
+  MapTask side =
+      others.front().baseline > 0 ? left_task(reference, maps) : right_task(reference, maps);
   side.need = {.whole = true};
   side.input = {nullptr, prepared->images.data(), {}};
   for (std::size_t k = 0; k < others.size(); ++k) {

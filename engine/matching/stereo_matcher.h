@@ -9,13 +9,13 @@
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
+#include "engine/image/memory_use.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/estimation/pair_levels.h"
 #include "engine/matching/map_search.h"
 #include "engine/matching/match_inputs.h"
 #include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
-#include "engine/memory_use.h"
+#include "engine/matching/pair_levels.h"
 #include "engine/object_pool.h"
 #include "engine/refinement/refine_maps.h"
 #include "scheduler/strip_plan.h"
@@ -113,8 +113,8 @@ class StereoMatcher {
     bool coarse = false;
   };
   /// One image on the way to its map.
-  struct Side {
-    Reference reference;
+  struct MapTask {
+    Side reference;
     const Photograph* image;
     MapNeed need = {};
     ChainInput input = {};
@@ -125,24 +125,24 @@ class StereoMatcher {
     ImageView<const float> check_px = {};  ///< of the coarse level; empty: not needed
   };
 
-  [[nodiscard]] static Side left_side(const Photograph& image, DisparityMaps& maps);
-  [[nodiscard]] static Side right_side(const Photograph& image, DisparityMaps& maps);
+  [[nodiscard]] static MapTask left_task(const Photograph& image, DisparityMaps& maps);
+  [[nodiscard]] static MapTask right_task(const Photograph& image, DisparityMaps& maps);
   /// The level that maps are checked against, 0: maps themselves.
   [[nodiscard]] int check_level(const RefinementOptions& refinement, scheduler::Extent image) const;
   [[nodiscard]] std::pair<MapNeed, MapNeed> needs(const MatchRequest& request,
                                                   const RefinementOptions& refinement,
                                                   int check_level) const;
   [[nodiscard]] bool wants_confidence(const MatchRequest& request) const;
-  void prepare_inputs(Side& left, Side& right, bool uses_prior, Prepared& prepared) const;
+  void prepare_inputs(MapTask& left, MapTask& right, bool uses_prior, Prepared& prepared) const;
   void settle_levels(const Photograph& left, const Photograph& right, Prepared& prepared,
                      MatchReport& report) const;
   [[nodiscard]] std::vector<LevelChanges> settle_levels(const Photograph& reference,
                                                         std::span<const OtherView> others,
                                                         Prepared& prepared,
                                                         MatchReport& report) const;
-  void compute(Side& side, std::string_view name, bool wants_confidence, int check_level,
+  void compute(MapTask& side, std::string_view name, bool wants_confidence, int check_level,
                Prepared& prepared, StageClock& clock, MatchReport& report) const;
-  [[nodiscard]] MapToRefine to_refine(const Side& side, bool is_result) const;
+  [[nodiscard]] MapToRefine to_refine(const MapTask& side, bool is_result) const;
 
   MatchOptions options_;
   MethodParameters parameters_;

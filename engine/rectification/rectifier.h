@@ -67,7 +67,7 @@ class Rectifier {
   [[nodiscard]] View make_view(const Camera& camera, Side side) const;
   [[nodiscard]] static std::optional<Eigen::Vector2d> source_position(
       const View& view, const Eigen::Vector2d& rectified_px);
-  [[nodiscard]] const View& view(Side side) const { return views_[side == Side::kLeft ? 0 : 1]; }
+  [[nodiscard]] const View& view(Side side) const { return views_[index_of(side)]; }
 
   RectifiedPair pair_;
   bool needs_rectification_;

@@ -5,12 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "engine/image/side.h"
 #include "engine/rectification/camera.h"
 
 namespace vantage {
-
-/// One image of a pair.
-enum class Side { kLeft, kRight };
 
 struct ImageSize {
   int width_px = 0;

@@ -5,12 +5,13 @@
 #include <string_view>
 
 #include "engine/execution.h"
+#include "engine/image/disparity_range.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/options/match_options.h"
 #include "engine/refinement/edge_snapping.h"
 #include "engine/refinement/filled_medians.h"
 #include "engine/refinement/refinement.h"
+#include "engine/refinement/refinement_options.h"
 #include "engine/refinement/speckles.h"
 #include "engine/refinement/surface_fit.h"
 
@@ -21,7 +22,7 @@ inline constexpr DisparityRange kAnyDisparity{-(1 << 20), 1 << 20};
 
 /// One map on its way through refinement; all images have one size.
 struct MapToRefine {
-  MapSide side = MapSide::kLeft;
+  Side side = Side::kLeft;
   const Photograph* image = nullptr;  ///< the map's own; for edge snapping and medians
   /// Winners, NaN = unknown; null: there is none to be made, only the other map to be checked.
   DisparityMap* disparity_px = nullptr;

@@ -14,9 +14,6 @@ namespace {
 // Neighbours whose disparities differ by no more are one surface (EQUATIONS §6).
 constexpr float kFillSurfaceStepPx = 1;
 
-/// To the partners of a map's pixels.
-int direction_of(MapSide side) { return side == MapSide::kLeft ? -1 : +1; }
-
 /// Whether the displacement of (x, y) leads to a pixel of `other` that has nearly the same.
 /// `direction` is −1 from the left map to the right one, +1 from right to left.
 bool agrees(const DisplacementView& own, const DisplacementView& other, int direction,
@@ -50,7 +47,7 @@ void erase_unmatched(const Mask& unmatched, Execution& execution, DisparityMap& 
 
 }  // namespace
 
-void cross_check(ImageView<const float> map_px, ImageView<const float> other_px, MapSide side,
+void cross_check(ImageView<const float> map_px, ImageView<const float> other_px, Side side,
                  double tolerance_px, Execution& execution, Mask& unmatched) {
   unmatched.resize(map_px.width(), map_px.height());
   execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
@@ -61,7 +58,7 @@ void cross_check(ImageView<const float> map_px, ImageView<const float> other_px,
   });
 }
 
-void cross_check(const DisplacementView& map, const DisplacementView& other, MapSide side,
+void cross_check(const DisplacementView& map, const DisplacementView& other, Side side,
                  double tolerance_px, Execution& execution, Mask& unmatched) {
   unmatched.resize(map.x_px.width(), map.x_px.height());
   execution.for_each_band(map.x_px.height(), [&](int first_row, int end_row) {
@@ -99,7 +96,7 @@ void mark_unsure(ImageView<const float> confidence, double threshold, Execution&
   });
 }
 
-void fill_unmatched(const Mask& unmatched, MapSide side, Fill fill, Execution& execution,
+void fill_unmatched(const Mask& unmatched, Side side, Fill fill, Execution& execution,
                     DisparityMap& map_px) {
   if (fill == Fill::kNone) {
     erase_unmatched(unmatched, execution, map_px);
@@ -107,7 +104,7 @@ void fill_unmatched(const Mask& unmatched, MapSide side, Fill fill, Execution& e
   }
   const int height = map_px.height();
   const auto background =
-      side == MapSide::kLeft ? kernels::BackgroundSide::kLeft : kernels::BackgroundSide::kRight;
+      side == Side::kLeft ? kernels::BackgroundSide::kLeft : kernels::BackgroundSide::kRight;
   std::vector<char> has_match(static_cast<std::size_t>(height));
   execution.for_each_band(height, [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {

@@ -1,29 +1,22 @@
 #pragma once
 
 #include "engine/execution.h"
+#include "engine/image/displacement_view.h"
 #include "engine/image/image.h"
-#include "engine/matching/options/match_options.h"
+#include "engine/image/side.h"
+#include "engine/refinement/refinement_options.h"
 
 namespace vantage {
-
-/// Which camera a map belongs to: the side of an occlusion on which the background lies.
-enum class MapSide { kLeft, kRight };
 
 /// Marks the pixels of one map that the other image's map contradicts (EQUATIONS §5.2, (5.13)).
 /// Maps of equal size, NaN = unknown; tolerance_px ≥ 1. The mask is resized to the map. Identical
 /// for any `execution`.
-void cross_check(ImageView<const float> map_px, ImageView<const float> other_px, MapSide side,
+void cross_check(ImageView<const float> map_px, ImageView<const float> other_px, Side side,
                  double tolerance_px, Execution& execution, Mask& unmatched);
-
-/// Both components of the displacements of a two-dimensional search, on one image's grid.
-struct DisplacementView {
-  ImageView<const float> x_px;  ///< d = x_left − x_right
-  ImageView<const float> y_px;  ///< y_left − y_right
-};
 
 /// The same for two components: a pixel is matched if its partner in both directions (rounded) is
 /// inside, known, and both components agree.
-void cross_check(const DisplacementView& map, const DisplacementView& other, MapSide side,
+void cross_check(const DisplacementView& map, const DisplacementView& other, Side side,
                  double tolerance_px, Execution& execution, Mask& unmatched);
 
 /// Marks the pixels without a disparity.
@@ -39,7 +32,7 @@ void mark_unsure(ImageView<const float> confidence, double threshold, Execution&
 /// (NaN). Fill::kMedian is constant depth here, which take_filled_medians() goes on from. Unless
 /// none, a row without any matched pixel copies the nearest row that has one, the upper of two as
 /// near; a map without any keeps its values. Identical for any `execution`.
-void fill_unmatched(const Mask& unmatched, MapSide side, Fill fill, Execution& execution,
+void fill_unmatched(const Mask& unmatched, Side side, Fill fill, Execution& execution,
                     DisparityMap& map_px);
 
 }  // namespace vantage

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "engine/execution.h"
+#include "engine/image/disparity_range.h"
 #include "engine/image/image.h"
-#include "engine/matching/options/match_options.h"
 
 namespace vantage {
 

@@ -21,7 +21,7 @@
 #include "engine/io/json_text.h"
 #include "engine/io/photograph_io.h"
 #include "engine/io/temporary_name.h"
-#include "engine/matching/estimation/disparity_range.h"
+#include "engine/matching/range_estimation.h"
 #include "engine/scene_graph/sheared_images.h"
 
 namespace vantage {

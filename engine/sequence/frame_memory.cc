@@ -1,6 +1,6 @@
 #include "engine/sequence/frame_memory.h"
 
-#include "engine/memory_use.h"
+#include "engine/image/memory_use.h"
 
 namespace vantage {
 

@@ -161,7 +161,7 @@ bool FrameWorker::needs_views(const FrameSlot& slot) const {
 }
 
 void FrameWorker::match(FrameSlot& slot) {
-  const bool right_is_primary = options_.match.reference == Reference::kRight;
+  const bool right_is_primary = options_.match.reference == Side::kRight;
   const bool both = !options_.views.empty() || options_.saves(SequenceOutput::kStereo) ||
                     options_.saves(SequenceOutput::kRightDisparity) ||
                     options_.saves(SequenceOutput::kRightUnmatched);
@@ -250,7 +250,7 @@ void FrameWorker::pack_stereo_picture(FrameSlot& slot) const {
 }
 
 const DisparityMap& FrameWorker::primary_map(const FrameSlot& slot) const {
-  return options_.match.reference == Reference::kLeft ? slot.maps.left : slot.maps.right;
+  return options_.match.reference == Side::kLeft ? slot.maps.left : slot.maps.right;
 }
 
 const Mask& FrameWorker::mask_of(const FrameSlot& slot, const OutputStream& stream) const {
@@ -261,7 +261,7 @@ const Mask& FrameWorker::mask_of(const FrameSlot& slot, const OutputStream& stre
     return slot.views[static_cast<std::size_t>(stream.view)].sources;
   }
   const bool left =
-      options_.match.reference == Reference::kLeft && stream.output == SequenceOutput::kUnmatched;
+      options_.match.reference == Side::kLeft && stream.output == SequenceOutput::kUnmatched;
   return left ? slot.maps.left_unmatched : slot.maps.right_unmatched;
 }
 
@@ -316,9 +316,8 @@ void FrameWorker::encode_stream(FrameSlot& slot, const OutputStream& stream,
       return;
     case SequenceOutput::kConfidence:
       encode_disparity(path,
-                       options_.match.reference == Reference::kLeft
-                           ? slot.maps.left_confidence.view()
-                           : slot.maps.right_confidence.view(),
+                       options_.match.reference == Side::kLeft ? slot.maps.left_confidence.view()
+                                                               : slot.maps.right_confidence.view(),
                        slot.encoded);
       return;
     default:

@@ -156,7 +156,7 @@ void SequenceOptions::validate() const {
   if (save.empty()) {
     throw UsageError("save is empty, expected at least one output");
   }
-  if (match.reference == Reference::kRight) {
+  if (match.reference == Side::kRight) {
     for (const SequenceOutput output :
          {SequenceOutput::kRightDisparity, SequenceOutput::kRightUnmatched}) {
       if (saves(output)) {

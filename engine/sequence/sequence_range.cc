@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/error.h"
-#include "engine/matching/estimation/disparity_range.h"
+#include "engine/matching/range_estimation.h"
 
 namespace vantage {
 namespace {

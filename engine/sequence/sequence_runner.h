@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "engine/execution.h"
+#include "engine/image/memory_use.h"
 #include "engine/matching/stereo_matcher.h"
-#include "engine/memory_use.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/sequence/flicker.h"
 #include "engine/sequence/frame_worker.h"

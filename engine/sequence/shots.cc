@@ -209,7 +209,7 @@ class Survey {
       hooks_.prepare(pair_);
     }
     matcher_.match(pair_.left, pair_.right, {}, maps_);
-    const bool is_left = options_.match.reference == Reference::kLeft;
+    const bool is_left = options_.match.reference == Side::kLeft;
     disparities_.add(is_left ? maps_.left.view() : maps_.right.view());
     sums.add(synthesizer_.intensity_sums(pair_.left, pair_.right, maps_.left.view(),
                                          maps_.right.view(), kViewOfFit));

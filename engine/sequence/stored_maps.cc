@@ -21,13 +21,13 @@ bool maps_are_stored(const SequenceOptions& options) {
   const bool needs_both =
       videos_show_views(options) || (options.measure_flicker && !options.views.empty());
   const bool has_both =
-      options.match.reference == Reference::kLeft && options.saves(SequenceOutput::kRightDisparity);
+      options.match.reference == Side::kLeft && options.saves(SequenceOutput::kRightDisparity);
   // PNG rounds.
   return options.map_format != "png" && options.saves(SequenceOutput::kDisparity) && !needs_masks &&
          (has_both || !needs_both);
 }
 
-bool read_stored_maps(const SequenceLayout& layout, const FrameRecord& record, Reference reference,
+bool read_stored_maps(const SequenceLayout& layout, const FrameRecord& record, Side reference,
                       bool needs_both, DisparityMaps& maps) {
   for (const OutputStream& stream : layout.streams()) {
     const bool is_primary = stream.output == SequenceOutput::kDisparity;
@@ -40,7 +40,7 @@ bool read_stored_maps(const SequenceLayout& layout, const FrameRecord& record, R
     if (file == record.files.end() || file_content(layout.folder() / file->name) != file->content) {
       return false;
     }
-    const bool is_left = is_primary && reference == Reference::kLeft;
+    const bool is_left = is_primary && reference == Side::kLeft;
     (is_left ? maps.left : maps.right) = read_disparity(layout.folder() / file->name);
   }
   return true;

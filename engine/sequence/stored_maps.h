@@ -17,7 +17,7 @@ bool maps_are_stored(const SequenceOptions& options);
 
 /// Reads the reference's map, and with `needs_both` the right one beside it, from the files of
 /// `record`. False when one is not as it was written.
-bool read_stored_maps(const SequenceLayout& layout, const FrameRecord& record, Reference reference,
+bool read_stored_maps(const SequenceLayout& layout, const FrameRecord& record, Side reference,
                       bool needs_both, DisparityMaps& maps);
 
 }  // namespace vantage

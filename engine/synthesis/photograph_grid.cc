@@ -17,8 +17,6 @@ constexpr int kPatchPx = 8;
 /// Up to which a patch counts as bilinear: half a pixel decides.
 constexpr double kLargestBend = 0.03;  // px
 
-std::size_t index_of(Side side) { return side == Side::kLeft ? 0 : 1; }
-
 /// The rectified positions of a photograph's pixels. Lenses are smooth: between the corners of
 /// small patches they are interpolated, except where the lens bends even those.
 class PatchRow {

@@ -57,10 +57,10 @@ void refine_peer_maps(const SgbmPostProcessing& post, const ScenePair& pair,
   options.speckle_size_px = post.speckle_size_px;
   options.fill = Fill::kMedian;
   RefinementWork work;
-  const MapToRefine left{MapSide::kLeft, &pair.left, &refined.left,
-                         nullptr,        nullptr,    &refined.left_unmatched};
-  const MapToRefine right{MapSide::kRight, &pair.right, &refined.right,
-                          nullptr,         nullptr,     &refined.right_unmatched};
+  const MapToRefine left{Side::kLeft, &pair.left, &refined.left,
+                         nullptr,     nullptr,    &refined.left_unmatched};
+  const MapToRefine right{Side::kRight, &pair.right, &refined.right,
+                          nullptr,      nullptr,     &refined.right_unmatched};
   refine_maps(options, left, &right, execution, work, [](std::string_view) {});
 }
 

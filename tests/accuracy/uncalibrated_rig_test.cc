@@ -161,7 +161,7 @@ TEST(UncalibratedRig, HardlyStretchesTheImages) {
       const double stretch = largest_stretch(pair.camera(side).homography);
       EXPECT_LT(stretch, 1.25) << "trial " << trial;
       sum += stretch;
-      const cv::Mat& other = homographies[side == Side::kLeft ? 0 : 1];
+      const cv::Mat& other = homographies[index_of(side)];
       Eigen::Matrix3d matrix;
       for (int i = 0; i < 9; ++i) {
         matrix(i / 3, i % 3) = other.at<double>(i / 3, i % 3);

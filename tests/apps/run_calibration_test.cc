@@ -75,8 +75,7 @@ TEST_F(RunCalibration, MatchesRectifiedFramesAndKeepsAsMuchOfThemAsIsAskedFor) {
       Photograph expected;
       rectifier.apply(read_photograph(folder + "/" + frame_file(kFrame)), side, expected,
                       execution);
-      EXPECT_TRUE(same_pixels(seen[side == Side::kLeft ? 0 : 1],
-                              std::get<Image<std::uint8_t>>(expected.pixels)))
+      EXPECT_TRUE(same_pixels(seen[index_of(side)], std::get<Image<std::uint8_t>>(expected.pixels)))
           << "kept-outline " << kept;
     }
   }

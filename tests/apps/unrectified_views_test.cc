@@ -33,7 +33,7 @@ class UnrectifiedViews : public RunTest {
     const Rectifier rectifier(read_stereo_calibration(rig_), kWidth, kHeight);
     Execution execution(ExecutionOptions{});
     for (const Side side : {Side::kLeft, Side::kRight}) {
-      const std::size_t index = side == Side::kLeft ? 0 : 1;
+      const std::size_t index = index_of(side);
       rectifier.apply(read_photograph(photographs_[index]), side, rectified_[index], execution);
       write_photograph(rectified_files_[index], rectified_[index]);
     }

@@ -90,7 +90,7 @@ TEST(BookPairs, PartnersHaveEqualIntensityAndTruthAtAnySize) {
   };
   for (const std::string_view name : kBookPairNames) {
     for (const Size size : {Size{1, 1}, {3, 2}, {17, 5}, {5, 17}, {37, 23}, {100, 100}}) {
-      for (const Reference reference : {Reference::kLeft, Reference::kRight}) {
+      for (const Side reference : {Side::kLeft, Side::kRight}) {
         for (const int background : {2, -3}) {
           BookPairOptions options = book_pair_options(name);
           options.width_px = size.width;
@@ -119,12 +119,12 @@ TEST(BookPairs, PartnersHaveEqualIntensityAndTruthAtAnySize) {
 }
 
 TEST(BookPairs, OtherImageHoldsTheUnbrokenRamp) {
-  for (const Reference reference : {Reference::kLeft, Reference::kRight}) {
+  for (const Side reference : {Side::kLeft, Side::kRight}) {
     BookPairOptions options = book_pair_options("ramp-square");
     options.float_pixels = true;
     options.reference = reference;
     const BookPair pair = make_book_pair(options);
-    const bool left = reference == Reference::kLeft;
+    const bool left = reference == Side::kLeft;
     const Image<float>& unbroken = floats_of(left ? pair.right : pair.left);
     const Image<float>& broken = floats_of(left ? pair.left : pair.right);
     float steepest = 0;

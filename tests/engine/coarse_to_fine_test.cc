@@ -1,5 +1,7 @@
 // Matching with several levels: against the plain transcription, and what it must not depend on.
 #include "engine/matching/coarse_to_fine.h"
+#include "engine/matching/costs/candidate_geometry.h"
+#include "engine/matching/levels/level_extents.h"
 
 #include <gtest/gtest.h>
 
@@ -177,7 +179,7 @@ TEST_P(CoarseToFine, StoredCellsAreExactEnough) {
   const auto pair = textured_pair(61, 43, range, PixelKind::kGrey8, 4);
   const MethodParameters parameters = options_of(aggregation, cost, 4, range).resolved();
   const auto map_of = [&](StoredCells stored) {
-    return plain_match(pair.left, pair.right, Reference::kLeft, range, parameters, stored);
+    return plain_match(pair.left, pair.right, Side::kLeft, range, parameters, stored);
   };
   const PlainMap exact = map_of(StoredCells::kExact);
   const PlainMap compact = map_of(StoredCells::kCompact);
@@ -197,7 +199,7 @@ TEST_P(CoarseToFine, WholeImageExecutorGivesTheSame) {
   options.raw = true;
   const MethodParameters parameters = options.resolved();
   Execution execution({.threads = 2});
-  const auto geometry = candidate_geometry(options, Reference::kLeft, 37, 29);
+  const auto geometry = candidate_geometry(options, Side::kLeft, 37, 29);
   CostImage left;
   CostImage right;
   left.prepare(pair.left, parameters, geometry, {true, false, false}, execution);

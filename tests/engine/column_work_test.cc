@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/matching/costs/candidate_geometry.h"
 #include "engine/matching/levels/level_stages.h"
 #include "engine/matching/match_chain.h"
 #include "tests/engine/method_cases.h"
@@ -48,7 +49,7 @@ std::vector<StageWork> works_of(const MatchOptions& method, const ChainCase& mad
   const MethodParameters parameters = options.resolved();
   Execution execution({.threads = 1});
   const auto photographs = textured_pair(kWidth, kHeight, kRange, made.pixels, 3);
-  const auto geometry = candidate_geometry(options, Reference::kLeft, kWidth, kHeight);
+  const auto geometry = candidate_geometry(options, Side::kLeft, kWidth, kHeight);
   PreparedPair pair;
   CostImage reference;
   CostImage partner;

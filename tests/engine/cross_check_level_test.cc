@@ -8,6 +8,7 @@
 
 #include "engine/error.h"
 #include "engine/matching/coarse_to_fine.h"
+#include "engine/matching/costs/candidate_geometry.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/refinement/refinement.h"
 #include "scheduler/whole_image_pipeline.h"
@@ -44,11 +45,11 @@ struct BothMaps {
   DisparityMap coarse;
 };
 
-BothMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options, Reference reference,
+BothMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options, Side reference,
                  int level, bool is_all) {
   const MethodParameters parameters = options.resolved();
   Execution execution({.threads = 2});
-  const bool is_left = reference == Reference::kLeft;
+  const bool is_left = reference == Side::kLeft;
   const Photograph& own = is_left ? pair.left : pair.right;
   const auto geometry = candidate_geometry(options, reference, own.width(), own.height());
   CostImage left;
@@ -97,7 +98,7 @@ class CrossCheckLevel : public ::testing::TestWithParam<Kind> {
 
 TEST_P(CrossCheckLevel, CoarseMapsDoNotDependOnFinerLevels) {
   const auto pair = textured_pair(61, 47, kRange, PixelKind::kColour8, 3);
-  for (const Reference reference : {Reference::kLeft, Reference::kRight}) {
+  for (const Side reference : {Side::kLeft, Side::kRight}) {
     const DisparityMap whole = maps_of(pair, options(), reference, 0, false).whole;
     for (const int level : {1, 2, 3}) {
       const BothMaps both = maps_of(pair, options(), reference, level, false);
@@ -129,7 +130,7 @@ TEST_P(CrossCheckLevel, CoarseMapsShowTheScene) {
   }
   const test::PhotographPair pair{Photograph{std::move(left)}, Photograph{std::move(right)}};
   for (const int level : {1, 2}) {
-    const DisparityMap map = maps_of(pair, options(), Reference::kRight, level, true).coarse;
+    const DisparityMap map = maps_of(pair, options(), Side::kRight, level, true).coarse;
     int wrong = 0;
     for (int y = 0; y < 64; ++y) {
       for (int x = 0; x < 97 - kDisparity; ++x) {
@@ -154,12 +155,10 @@ TEST_P(CrossCheckLevel, MapsAreCheckedAgainstIt) {
     Execution execution({.threads = 1});
     Mask left;
     Mask right;
-    cross_check(winners.left.view(),
-                maps_of(pair, raw, Reference::kRight, level, true).coarse.view(), MapSide::kLeft, 1,
-                execution, left);
-    cross_check(winners.right.view(),
-                maps_of(pair, raw, Reference::kLeft, level, true).coarse.view(), MapSide::kRight, 1,
-                execution, right);
+    cross_check(winners.left.view(), maps_of(pair, raw, Side::kRight, level, true).coarse.view(),
+                Side::kLeft, 1, execution, left);
+    cross_check(winners.right.view(), maps_of(pair, raw, Side::kLeft, level, true).coarse.view(),
+                Side::kRight, 1, execution, right);
     EXPECT_TRUE(identical(maps.left_unmatched, left)) << level;
     EXPECT_TRUE(identical(maps.right_unmatched, right)) << level;
     MatchOptions whole = options();

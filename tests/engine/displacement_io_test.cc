@@ -48,7 +48,7 @@ std::vector<float> floats_from(const std::vector<std::uint8_t>& bytes, std::size
 TEST(DisplacementIo, FloIsTheFlowToThePartner) {
   const TemporaryFolder folder;
   const Displacements displacements;
-  write_displacements(folder / "d.flo", displacements.view(), MapSide::kLeft);
+  write_displacements(folder / "d.flo", displacements.view(), Side::kLeft);
   const std::vector<std::uint8_t> bytes = bytes_of(folder / "d.flo");
   ASSERT_EQ(bytes.size(), 12U + 3 * 2 * 8);
   EXPECT_EQ(std::string(bytes.begin(), bytes.begin() + 4), "PIEH");
@@ -60,7 +60,7 @@ TEST(DisplacementIo, FloIsTheFlowToThePartner) {
   EXPECT_EQ(values, (std::vector<float>{0, -1, -1.5F, 2, none, none,  //
                                         none, none, 3, -0.25F, -4, 1}));
   EXPECT_FALSE(std::signbit(values[0]));
-  write_displacements(folder / "r.flo", displacements.view(), MapSide::kRight);
+  write_displacements(folder / "r.flo", displacements.view(), Side::kRight);
   EXPECT_EQ(floats_from(bytes_of(folder / "r.flo"), 12),
             (std::vector<float>{0, 1, 1.5F, -2, none, none,  //
                                 none, none, -3, 0.25F, 4, -1}));
@@ -68,7 +68,7 @@ TEST(DisplacementIo, FloIsTheFlowToThePartner) {
 
 TEST(DisplacementIo, NpyHasTwoChannels) {
   const TemporaryFolder folder;
-  write_displacements(folder / "d.npy", Displacements().view(), MapSide::kLeft);
+  write_displacements(folder / "d.npy", Displacements().view(), Side::kLeft);
   const std::vector<std::uint8_t> bytes = bytes_of(folder / "d.npy");
   const std::string text(bytes.begin(), bytes.end());
   EXPECT_THAT(text, HasSubstr("'shape': (2, 3, 2), "));
@@ -85,7 +85,7 @@ TEST(DisplacementIo, NpyHasTwoChannels) {
 TEST(DisplacementIo, PicturesHaveAThirdChannelOfValidity) {
   const TemporaryFolder folder;
   for (const char* name : {"d.tiff", "d.exr"}) {
-    write_displacements(folder / name, Displacements().view(), MapSide::kLeft);
+    write_displacements(folder / name, Displacements().view(), Side::kLeft);
     const Photograph picture = read_photograph(folder / name);
     const auto& values = std::get<Image<float>>(picture.pixels);
     ASSERT_EQ(values.channels(), 3);
@@ -104,16 +104,15 @@ TEST(DisplacementIo, RefusesWhatHoldsOneComponent) {
   const Displacements displacements;
   for (const char* name : {"d.pfm", "d.png", "d"}) {
     EXPECT_FALSE(is_displacement_extension(name));
-    EXPECT_THROW(write_displacements(folder / name, displacements.view(), MapSide::kLeft),
-                 UsageError);
+    EXPECT_THROW(write_displacements(folder / name, displacements.view(), Side::kLeft), UsageError);
   }
   EXPECT_TRUE(is_displacement_extension("a.FLO"));
   const DisparityMap small(2, 2);
-  EXPECT_THAT(error_of([&] {
-                write_displacements(folder / "d.flo", {displacements.x.view(), small.view()},
-                                    MapSide::kLeft);
-              }),
-              HasSubstr("one size"));
+  EXPECT_THAT(
+      error_of([&] {
+        write_displacements(folder / "d.flo", {displacements.x.view(), small.view()}, Side::kLeft);
+      }),
+      HasSubstr("one size"));
   EXPECT_EQ(folder.entries(), 0U);
 }
 

@@ -72,7 +72,7 @@ Volume plain_pair_costs(const Photograph& reference, const Photograph& other, co
                         const MethodParameters& parameters) {
   const bool is_bayes = parameters.aggregation == Aggregation::kBayes;
   const bool is_relative = is_bayes && parameters.cost == MatchCost::kGradient;
-  Volume costs(grid.width, grid.height, {0, grid.count() - 1}, Reference::kLeft);
+  Volume costs(grid.width, grid.height, {0, grid.count() - 1}, Side::kLeft);
   costs.is_coarse = true;  // which candidates have partners is up to the grid
   for (int v = grid.down.min; v <= grid.down.max; ++v) {
     const test::PlainCostCells cells(
@@ -215,9 +215,9 @@ Volume plain_pair_energies(const Volume& costs, const PlainGrid& grid,
 }
 
 /// Raw maps of one reference against the transcription. Winners that lead by little may differ.
-void expect_equals_pairs(const PhotographPair& pair, const MatchOptions& options,
-                         Reference reference, const DisparityMaps& maps) {
-  const bool is_left = reference == Reference::kLeft;
+void expect_equals_pairs(const PhotographPair& pair, const MatchOptions& options, Side reference,
+                         const DisparityMaps& maps) {
+  const bool is_left = reference == Side::kLeft;
   const MethodParameters parameters = options.resolved();
   const PlainGrid grid{options.disparities, *options.disparities_y, is_left ? -1 : 1,
                        pair.left.width(), pair.left.height()};
@@ -355,7 +355,7 @@ TEST_P(DisplacementSearch, EqualsAPlainSearchOverPairs) {
     }
     const PhotographPair pair =
         textured_pair(31, 23, ranges.across, PixelKind::kGrey8, static_cast<unsigned>(row[1]) + 1);
-    expect_equals_pairs(pair, options, is_left ? Reference::kLeft : Reference::kRight,
+    expect_equals_pairs(pair, options, is_left ? Side::kLeft : Side::kRight,
                         maps_of(pair, options, execution));
   }
 }

@@ -1,4 +1,5 @@
 #include "engine/matching/aggregation/edge_weights.h"
+#include "engine/matching/levels/level_extents.h"
 
 #include <gtest/gtest.h>
 

@@ -73,7 +73,7 @@ TEST(FilledMedians, RowsThatWereFilledAloneFollowTheOutlines) {
   Execution execution({.threads = 2});
   const Photograph photograph{disc_image(3)};
   DiscMap disc = disc_map();
-  fill_unmatched(disc.unmatched, MapSide::kLeft, Fill::kMedian, execution, disc.map);
+  fill_unmatched(disc.unmatched, Side::kLeft, Fill::kMedian, execution, disc.map);
   const int before = wrong(disc.map);
   FilledMediansWork work;
   take_filled_medians(disc.unmatched, photograph, execution, work, disc.map);
@@ -123,7 +123,7 @@ TEST(FilledMedians, DepthsOfPhotographsAgree) {
       }
     }
     DiscMap disc = disc_map();
-    fill_unmatched(disc.unmatched, MapSide::kRight, Fill::kMedian, execution, disc.map);
+    fill_unmatched(disc.unmatched, Side::kRight, Fill::kMedian, execution, disc.map);
     const auto filled = [&](const Photograph& photograph) {
       DisparityMap map = disc.map.copy();
       FilledMediansWork work;
@@ -153,7 +153,7 @@ TEST(FilledMedians, RefinementTakesThemOfBothComponents) {
   const auto refined = [&](Fill fill) {
     DisparityMap map_x = disc.map.copy();
     map_y = disc.map.copy();
-    const MapToRefine map{.side = MapSide::kLeft,
+    const MapToRefine map{.side = Side::kLeft,
                           .image = &photograph,
                           .disparity_px = &map_x,
                           .disparity_y_px = &map_y,

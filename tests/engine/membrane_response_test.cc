@@ -130,7 +130,7 @@ TEST(MembraneResponse, IsTheInverseTransformOfTheSupportFunction) {
 
 TEST(MembraneResponse, CandidatesDoNotMixAndTheOracleResponds) {
   const std::vector<float> cells = response_of(.15, .5, 60, 3, true);
-  test::Volume impulse(kSide, kSide, {0, 0}, Reference::kLeft);
+  test::Volume impulse(kSide, kSide, {0, 0}, Side::kLeft);
   impulse.at(kCentre - 3, kCentre, 0) = 1;
   const test::Volume expected = test::plain_membrane(impulse, .15, .5, 60);
   for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -1,5 +1,5 @@
 // What memory belongs to, against sums over the pixels and cells that must be there.
-#include "engine/memory_use.h"
+#include "engine/image/memory_use.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/matching/costs/candidate_geometry.h"
 #include "engine/matching/match_chain.h"
 #include "scheduler/strip_pipeline.h"
 #include "scheduler/whole_image_pipeline.h"
@@ -46,13 +47,13 @@ struct Outputs {
 /// A prepared pair and the chains of one map of it.
 class MethodChain : public ::testing::TestWithParam<MethodCase> {
  protected:
-  void prepare(Reference reference, PixelKind kind) {
+  void prepare(Side reference, PixelKind kind) {
     options_ = GetParam().options;
     options_.disparities = kRange;
     parameters_ = options_.resolved();
     photographs_ = textured_pair(kWidth, kHeight, kRange, kind, 9);
     geometry_ = candidate_geometry(options_, reference, kWidth, kHeight);
-    const bool is_left = reference == Reference::kLeft;
+    const bool is_left = reference == Side::kLeft;
     if (uses_column_ssd(parameters_)) {
       prepare_pair(photographs_.left, photographs_.right, geometry_,
                    parameters_.window_px * parameters_.window_px, {is_left, !is_left}, execution_,
@@ -60,7 +61,7 @@ class MethodChain : public ::testing::TestWithParam<MethodCase> {
       input_.pair = &pair_;
       return;
     }
-    const auto of_left = candidate_geometry(options_, Reference::kLeft, kWidth, kHeight);
+    const auto of_left = candidate_geometry(options_, Side::kLeft, kWidth, kHeight);
     const auto& [left, right] = photographs_;
     reference_.prepare(is_left ? left : right, parameters_, of_left, {true, false, false},
                        execution_);
@@ -89,7 +90,7 @@ TEST_P(MethodChain, EnergiesEqualTheOracle) {
     GTEST_SKIP() << "rounded to steps, or weights that a chain alone has not: see stage_cost_test, "
                     "coarse_to_fine_test, edge_weights_test";
   }
-  for (const Reference reference : {Reference::kLeft, Reference::kRight}) {
+  for (const Side reference : {Side::kLeft, Side::kRight}) {
     prepare(reference, PixelKind::kGreyFloat);
     Outputs outputs;
     scheduler::run_whole_image(chain(outputs).stages());
@@ -121,7 +122,7 @@ TEST_P(MethodChain, EnergiesEqualTheOracle) {
 }
 
 TEST_P(MethodChain, EveryExecutorEqualsTheWholeImage) {
-  for (const Reference reference : {Reference::kLeft, Reference::kRight}) {
+  for (const Side reference : {Side::kLeft, Side::kRight}) {
     prepare(reference, PixelKind::kColour8);
     Outputs whole;
     scheduler::run_whole_image(chain(whole).stages());

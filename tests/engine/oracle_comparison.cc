@@ -208,8 +208,8 @@ void expect_equals_oracle(const PhotographPair& pair, MatchOptions options, Exec
   request.confidence = true;
   DisparityMaps maps;
   StereoMatcher(options, execution).match(pair.left, pair.right, request, maps);
-  for (const Reference reference : {Reference::kLeft, Reference::kRight}) {
-    const bool is_left = reference == Reference::kLeft;
+  for (const Side reference : {Side::kLeft, Side::kRight}) {
+    const bool is_left = reference == Side::kLeft;
     SCOPED_TRACE(what + (is_left ? ", left map" : ", right map"));
     const PlainMap oracle =
         plain_match(pair.left, pair.right, reference, options.disparities, parameters);

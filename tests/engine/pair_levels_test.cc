@@ -1,4 +1,4 @@
-#include "engine/matching/estimation/pair_levels.h"
+#include "engine/matching/pair_levels.h"
 
 #include <gtest/gtest.h>
 
@@ -213,7 +213,7 @@ TEST(PairLevels, ThreadsChangeNothing) {
   EXPECT_EQ(estimate(serial), estimate(threads));
 }
 
-MatchOptions exposure_options(Reference reference, MatchCost cost) {
+MatchOptions exposure_options(Side reference, MatchCost cost) {
   MatchOptions options;
   options.method = MatchMethod::kSsd;
   options.disparities = kRange;
@@ -242,7 +242,7 @@ TEST(PairLevels, MatchersSeeThroughExposure) {
   Execution execution({.threads = 2});
   const Scene scene = make_scene(200, {{.6, 12}, 2, 1});
   for (const MatchCost cost : {MatchCost::kSquared, MatchCost::kAbsolute, MatchCost::kCombined}) {
-    MatchOptions options = exposure_options(Reference::kLeft, cost);
+    MatchOptions options = exposure_options(Side::kLeft, cost);
     if (cost == MatchCost::kCombined) {
       options.parameters.sigma_census = 0;
       options.parameters.estimate_sigma_measurement = false;
@@ -269,7 +269,7 @@ TEST(PairLevels, SeveralImagesAreChangedEachByItsOwn) {
   Execution execution({.threads = 2});
   const Scene dark = make_scene(200, {{.6, 12}, 1, 1});
   const Scene bright = make_scene(200, {{1.2, -8}, 1, 1});
-  MatchOptions options = exposure_options(Reference::kLeft, MatchCost::kAbsolute);
+  MatchOptions options = exposure_options(Side::kLeft, MatchCost::kAbsolute);
   options.parameters.match_exposure = true;
   DisparityMaps maps;
   MatchReport report;

@@ -1,6 +1,7 @@
 // What the table says reads a parameter, against what changes when the parameter is changed: maps
 // that the matching code makes of given parameters, without the validation that uses the table.
 #include "engine/matching/options/parameter_readers.h"
+#include "engine/matching/costs/candidate_geometry.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,10 +19,10 @@
 #include "engine/error.h"
 #include "engine/matching/aggregation/edge_weights.h"
 #include "engine/matching/costs/cost_planes.h"
-#include "engine/matching/estimation/pair_levels.h"
 #include "engine/matching/map_search.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/options/method_names.h"
+#include "engine/matching/pair_levels.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/test_sample.h"
 
@@ -75,7 +76,7 @@ class Maps {
         parameters.sigma_measurement = levels.sigma_measurement.value();
       }
     }
-    const auto geometry = candidate_geometry(options, Reference::kLeft, kWidth, kHeight);
+    const auto geometry = candidate_geometry(options, Side::kLeft, kWidth, kHeight);
     CostImage left;
     CostImage right;
     left.prepare(pair_.left, parameters, geometry, {true, false, false}, execution_);
@@ -88,7 +89,7 @@ class Maps {
     MapSearchWork work;
     MatchReport report;
     MapSearch(options, parameters, execution_, work, report)
-        .compute(Reference::kLeft, input, {.disparity_px = &map, .confidence = &confidence});
+        .compute(Side::kLeft, input, {.disparity_px = &map, .confidence = &confidence});
     Bytes bytes;
     for (const Image<float>* image : {&map, &confidence}) {
       for (int y = 0; y < kHeight; ++y) {

@@ -201,19 +201,18 @@ double cost_of_channel(const Channel& channel, int x, int partner, int y,
 
 }  // namespace
 
-Volume::Volume(int width_px, int height_px, DisparityRange disparities, Reference reference,
+Volume::Volume(int width_px, int height_px, DisparityRange disparities, Side reference,
                double value)
     : width(width_px),
       height(height_px),
       range(disparities),
-      direction(reference == Reference::kLeft ? -1 : 1),
+      direction(direction_of(reference)),
       cells(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) *
                 static_cast<std::size_t>(disparities.count()),
             value) {}
 
 Volume Volume::like(const Volume& other) {
-  return {other.width, other.height, other.range,
-          other.direction < 0 ? Reference::kLeft : Reference::kRight};
+  return {other.width, other.height, other.range, other.direction < 0 ? Side::kLeft : Side::kRight};
 }
 
 double Plane::at(int x, int y) const {
@@ -307,7 +306,7 @@ double length_of(double x, double y, GradientNorm norm) {
   return .3978247 * (std::abs(x) + std::abs(y)) + .5626091 * std::max(std::abs(x), std::abs(y));
 }
 
-Volume plain_costs(const Photograph& reference, const Photograph& other, Reference reference_is,
+Volume plain_costs(const Photograph& reference, const Photograph& other, Side reference_is,
                    DisparityRange range, const MethodParameters& parameters) {
   const std::vector<Plane> reference_planes = planes_of(reference, parameters.colour);
   const std::vector<Plane> other_planes = planes_of(other, parameters.colour);
@@ -354,7 +353,7 @@ Volume plain_costs(const Photograph& reference, const Photograph& other, Referen
 }
 
 Volume plain_measurement_energies(const Photograph& reference, const Photograph& other,
-                                  Reference reference_is, DisparityRange range,
+                                  Side reference_is, DisparityRange range,
                                   const MethodParameters& parameters) {
   Volume energies = plain_costs(reference, other, reference_is, range, parameters);
   const double epsilon = parameters.epsilon_measurement;
@@ -388,7 +387,7 @@ Volume plain_measurement_energies(const Photograph& reference, const Photograph&
 }
 
 Volume plain_grey(const Photograph& photograph) {
-  Volume grey(photograph.width(), photograph.height(), {0, 0}, Reference::kLeft);
+  Volume grey(photograph.width(), photograph.height(), {0, 0}, Side::kLeft);
   grey.cells = planes_of(photograph, ColourUse::kLuma).front().values;
   return grey;
 }

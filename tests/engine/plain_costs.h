@@ -21,8 +21,7 @@ struct Volume {
 
   Volume() = default;
   /// All cells are `value`.
-  Volume(int width_px, int height_px, DisparityRange disparities, Reference reference,
-         double value = 0);
+  Volume(int width_px, int height_px, DisparityRange disparities, Side reference, double value = 0);
   /// The shape of `other` and nothing else of it.
   static Volume like(const Volume& other);
 
@@ -92,13 +91,13 @@ double combined_energy_without_partner(const MethodParameters& parameters);
 /// E0 of (6.1) with the cost `parameters.cost`; at cells whose partner is outside the cost of the
 /// clamped coordinate, 0 for evidence, −log ε for the contaminated Gaussian, half of the most for
 /// the combined cost.
-Volume plain_costs(const Photograph& reference, const Photograph& other, Reference reference_is,
+Volume plain_costs(const Photograph& reference, const Photograph& other, Side reference_is,
                    DisparityRange range, const MethodParameters& parameters);
 
 /// E0 of Bayesian diffusion (6.26): −log of the likelihood that stage_cost.h states for each cost.
 /// Of three channels r² is the mean of the squared differences, for the contaminated Gaussian too.
 Volume plain_measurement_energies(const Photograph& reference, const Photograph& other,
-                                  Reference reference_is, DisparityRange range,
+                                  Side reference_is, DisparityRange range,
                                   const MethodParameters& parameters);
 
 /// Grey levels, luma of colours, as cells of one candidate.

@@ -65,7 +65,7 @@ PlainChoice choose(const Volume& energies, int x, int y, const MethodParameters&
 
 }  // namespace
 
-Volume plain_aggregate(const Photograph& reference, const Photograph& other, Reference reference_is,
+Volume plain_aggregate(const Photograph& reference, const Photograph& other, Side reference_is,
                        DisparityRange range, const MethodParameters& parameters,
                        StoredCells stored) {
   return plain_coarse_to_fine(
@@ -89,9 +89,9 @@ DisparityRange possible_range(DisparityRange range, int width_px) {
   return {std::max(range.min, 1 - width_px), std::min(range.max, width_px - 1)};
 }
 
-PlainMap plain_match(const Photograph& left, const Photograph& right, Reference reference,
+PlainMap plain_match(const Photograph& left, const Photograph& right, Side reference,
                      DisparityRange range, const MethodParameters& parameters, StoredCells stored) {
-  const bool is_left = reference == Reference::kLeft;
+  const bool is_left = reference == Side::kLeft;
   return plain_select(plain_aggregate(is_left ? left : right, is_left ? right : left, reference,
                                       possible_range(range, left.width()), parameters, stored),
                       parameters);

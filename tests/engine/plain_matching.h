@@ -28,7 +28,7 @@ struct PlainMap {
 };
 
 /// Cells after aggregation, as energies (−log p for Bayes); NaN where border `valid` has no window.
-Volume plain_aggregate(const Photograph& reference, const Photograph& other, Reference reference_is,
+Volume plain_aggregate(const Photograph& reference, const Photograph& other, Side reference_is,
                        DisparityRange range, const MethodParameters& parameters,
                        StoredCells stored = StoredCells::kCompact);
 
@@ -38,7 +38,7 @@ PlainMap plain_select(const Volume& energies, const MethodParameters& parameters
 
 /// The whole method on one grid. Disparities that no pixel of such an image can have are left out
 /// of `range`, as the matcher does.
-PlainMap plain_match(const Photograph& left, const Photograph& right, Reference reference,
+PlainMap plain_match(const Photograph& left, const Photograph& right, Side reference,
                      DisparityRange range, const MethodParameters& parameters,
                      StoredCells stored = StoredCells::kCompact);
 

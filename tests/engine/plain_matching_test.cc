@@ -12,14 +12,14 @@ namespace vantage::test {
 namespace plain_matching_test {
 
 Volume column_volume(const std::vector<double>& column) {
-  Volume volume(1, 1, {0, static_cast<int>(column.size()) - 1}, Reference::kLeft);
+  Volume volume(1, 1, {0, static_cast<int>(column.size()) - 1}, Side::kLeft);
   volume.cells = column;
   return volume;
 }
 
 Volume random_volume(int width, int height, DisparityRange range, std::uint32_t seed) {
   std::mt19937 random(seed);
-  Volume volume(width, height, range, Reference::kLeft);
+  Volume volume(width, height, range, Side::kLeft);
   for (double& cell : volume.cells) {
     cell = static_cast<double>(random() % 1000U) / 300.0;
   }
@@ -38,7 +38,7 @@ double cost_at(MatchCost cost, const Photograph& left, const Photograph& right, 
   MethodParameters parameters = book_parameters(MatchMethod::kSsd);
   parameters.cost = cost;
   parameters.prefilter = false;
-  return plain_costs(left, right, Reference::kLeft, {-3, 3}, parameters).at(x, 0, d + 3);
+  return plain_costs(left, right, Side::kLeft, {-3, 3}, parameters).at(x, 0, d + 3);
 }
 
 TEST(PlainCosts, ByHand) {
@@ -78,8 +78,7 @@ TEST(PlainCosts, RayCensusWithThreeThresholds) {
   MethodParameters parameters = book_parameters(MatchMethod::kSsd);
   parameters.cost = MatchCost::kRayCensus;
   parameters.census_thresholds = 3;
-  EXPECT_DOUBLE_EQ(plain_costs(left, right, Reference::kLeft, {0, 0}, parameters).at(1, 0, 0),
-                   16.0 / 3);
+  EXPECT_DOUBLE_EQ(plain_costs(left, right, Side::kLeft, {0, 0}, parameters).at(1, 0, 0), 16.0 / 3);
 }
 
 TEST(PlainCosts, ColourAndDepths) {
@@ -94,10 +93,9 @@ TEST(PlainCosts, ColourAndDepths) {
   const Photograph a{std::move(left)};
   const Photograph b{std::move(right)};
   const double luma = .299 * 255 + .114;
-  EXPECT_NEAR(plain_costs(a, b, Reference::kLeft, {0, 0}, parameters).at(0, 0, 0), luma * luma,
-              1e-9);
+  EXPECT_NEAR(plain_costs(a, b, Side::kLeft, {0, 0}, parameters).at(0, 0, 0), luma * luma, 1e-9);
   parameters.colour = ColourUse::kChannels;
-  EXPECT_NEAR(plain_costs(a, b, Reference::kLeft, {0, 0}, parameters).at(0, 0, 0),
+  EXPECT_NEAR(plain_costs(a, b, Side::kLeft, {0, 0}, parameters).at(0, 0, 0),
               (255.0 * 255.0 + 1) / 3, 1e-9);
 }
 
@@ -126,7 +124,7 @@ TEST(PlainCosts, GainsOfGradientFilters) {
 
 TEST(PlainAggregation, BoxMeanByHand) {
   // A row of three columns, d = 0 and 1. At d = 1 column 0 has no partner.
-  Volume costs(3, 1, {0, 1}, Reference::kLeft);
+  Volume costs(3, 1, {0, 1}, Side::kLeft);
   costs.cells = {3, 100, 6, 8, 15, 10};
   const Volume clipped = plain_box_mean(costs, 3, Border::kClip);
   EXPECT_DOUBLE_EQ(clipped.at(0, 0, 0), 4.5);
@@ -139,7 +137,7 @@ TEST(PlainAggregation, BoxMeanByHand) {
     EXPECT_TRUE(std::isnan(mean));  // a window of three rows does not fit
   }
   // Rows count as columns do.
-  Volume column(1, 3, {0, 0}, Reference::kLeft);
+  Volume column(1, 3, {0, 0}, Side::kLeft);
   column.cells = {3, 6, 15};
   EXPECT_DOUBLE_EQ(plain_box_mean(column, 3, Border::kClip).at(0, 1, 0), 8);
   EXPECT_DOUBLE_EQ(plain_box_mean(column, 3, Border::kClip).at(0, 2, 0), 10.5);
@@ -161,7 +159,7 @@ TEST(PlainAggregation, KernelsAreNormalisedAndHaveTheirVariance) {
 }
 
 TEST(PlainAggregation, OneStepOfDiffusionSpreadsAnImpulse) {
-  Volume impulse(3, 2, {0, 1}, Reference::kLeft);
+  Volume impulse(3, 2, {0, 1}, Side::kLeft);
   impulse.at(1, 0, 1) = 1;
   const Volume next = plain_diffusion(impulse, .15, 1);
   EXPECT_DOUBLE_EQ(next.at(1, 0, 1), 1 - 3 * .15);  // the neighbour above is absent
@@ -178,7 +176,7 @@ TEST(PlainAggregation, OneStepOfDiffusionSpreadsAnImpulse) {
 }
 
 TEST(PlainAggregation, MembraneKeepsConstants) {
-  const Volume constant(5, 4, {0, 2}, Reference::kLeft, 3.25);
+  const Volume constant(5, 4, {0, 2}, Side::kLeft, 3.25);
   for (const double cell : plain_membrane(constant, .15, .5, 7).cells) {
     EXPECT_NEAR(cell, 3.25, 1e-14);
   }
@@ -198,7 +196,7 @@ TEST(PlainAggregation, CertaintiesByHand) {
 TEST(PlainAggregation, LocalStoppingRestoresSureColumns) {
   // Margins ⅓ and ⅐; a step of .2 makes both columns nearly alike: (1.6, 2.2), margin .158, and
   // (2.4, 2.8). The first is restored, the second improves from 0 to .077.
-  Volume volume(2, 1, {0, 1}, Reference::kLeft);
+  Volume volume(2, 1, {0, 1}, Side::kLeft);
   volume.cells = {1, 2, 3, 3};
   const Volume next = plain_local_stopping(volume, .2, Certainty::kMargin, 1, 1);
   EXPECT_DOUBLE_EQ(next.at(0, 0, 0), 1);
@@ -249,7 +247,7 @@ TEST(PlainAggregation, BayesProductsEqualLogarithms) {
 
 TEST(PlainSelection, ByHand) {
   MethodParameters parameters = book_parameters(MatchMethod::kMembrane);
-  Volume volume(4, 1, {0, 3}, Reference::kLeft);
+  Volume volume(4, 1, {0, 3}, Side::kLeft);
   volume.cells = {9, 0, 0, 0,    // column 0: candidate 0 alone has a partner
                   9, 4, 0, 0,    // candidates 0 and 1
                   3, 1, 2, 0,    // candidates 0 to 2
@@ -265,8 +263,8 @@ TEST(PlainSelection, ByHand) {
   EXPECT_EQ(map.at(3, 0).winner, 1);
   EXPECT_DOUBLE_EQ(map.at(3, 0).disparity, 1.5);
   EXPECT_EQ(map.at(3, 0).runner_up, 2);
-  EXPECT_TRUE(std::isnan(
-      plain_select(Volume(2, 1, {2, 3}, Reference::kLeft), parameters).at(1, 0).disparity));
+  EXPECT_TRUE(
+      std::isnan(plain_select(Volume(2, 1, {2, 3}, Side::kLeft), parameters).at(1, 0).disparity));
 }
 
 }  // namespace plain_matching_test

@@ -64,20 +64,20 @@ TEST(Fill, ConstantLinearAndNone) {
   for (const int x : {0, 4}) {
     unmatched.at(x, 1) = 0;
   }
-  const auto filled = [&](Fill fill, MapSide side, float right) {
+  const auto filled = [&](Fill fill, Side side, float right) {
     DisparityMap map = map_of({{9, 9, 9, 9, 9}, {4, kUnknown, 9, 9, right}, {8, 8, 8, 8, 8}});
     fill_unmatched(unmatched, side, fill, execution, map);
     return map;
   };
   const std::vector<float> line = {4, 4.25F, 4.5F, 4.75F, 5};
-  EXPECT_EQ(rows_of(filled(Fill::kLinear, MapSide::kLeft, 5)), (Rows{line, line, line}));
+  EXPECT_EQ(rows_of(filled(Fill::kLinear, Side::kLeft, 5)), (Rows{line, line, line}));
   const std::vector<float> left = {4, 4, 4, 4, 6};
   const std::vector<float> right = {4, 6, 6, 6, 6};
   for (const Fill fill : {Fill::kConstant, Fill::kLinear}) {
-    EXPECT_EQ(rows_of(filled(fill, MapSide::kLeft, 6)), (Rows{left, left, left}));
-    EXPECT_EQ(rows_of(filled(fill, MapSide::kRight, 6)), (Rows{right, right, right}));
+    EXPECT_EQ(rows_of(filled(fill, Side::kLeft, 6)), (Rows{left, left, left}));
+    EXPECT_EQ(rows_of(filled(fill, Side::kRight, 6)), (Rows{right, right, right}));
   }
-  const DisparityMap none = filled(Fill::kNone, MapSide::kLeft, 6);
+  const DisparityMap none = filled(Fill::kNone, Side::kLeft, 6);
   for (int y = 0; y < 3; ++y) {
     for (int x = 0; x < 5; ++x) {
       EXPECT_EQ(std::isnan(none.at(x, y)), unmatched.at(x, y) != 0);
@@ -113,8 +113,8 @@ TEST(CrossCheckOfTwoComponents, EqualsPlainTranscription) {
       Execution execution({.threads = 2});
       const DisplacementView of_left{left_x.view(), left_y.view()};
       const DisplacementView of_right{right_x.view(), right_y.view()};
-      cross_check(of_left, of_right, MapSide::kLeft, tolerance_px, execution, left);
-      cross_check(of_right, of_left, MapSide::kRight, tolerance_px, execution, right);
+      cross_check(of_left, of_right, Side::kLeft, tolerance_px, execution, left);
+      cross_check(of_right, of_left, Side::kRight, tolerance_px, execution, right);
       const auto agrees = [&, w = width, h = height](int x, int y, bool is_left) {
         const double dx = (is_left ? left_x : right_x).at(x, y);
         const double dy = (is_left ? left_y : right_y).at(x, y);
@@ -164,12 +164,12 @@ struct RefinementCase {
   void refine(bool both = true) {
     Execution execution({.threads = 2});
     RefinementWork work;
-    const MapToRefine left_map{.side = MapSide::kLeft,
+    const MapToRefine left_map{.side = Side::kLeft,
                                .disparity_px = &left,
                                .confidence = &left_confidence,
                                .unmatched = &left_unmatched,
                                .is_result = left_is_result};
-    const MapToRefine right_map{.side = MapSide::kRight,
+    const MapToRefine right_map{.side = Side::kRight,
                                 .disparity_px = &right,
                                 .confidence = &right_confidence,
                                 .unmatched = &right_unmatched,
@@ -282,11 +282,11 @@ TEST(RefineMaps, EdgesOfEachImageMoveItsOwnMapBeforeTheCrossCheck) {
   pair.right = map(17);
   Execution execution({.threads = 2});
   RefinementWork work;
-  const MapToRefine left_map{.side = MapSide::kLeft,
+  const MapToRefine left_map{.side = Side::kLeft,
                              .image = &left_image,
                              .disparity_px = &pair.left,
                              .unmatched = &pair.left_unmatched};
-  const MapToRefine right_map{.side = MapSide::kRight,
+  const MapToRefine right_map{.side = Side::kRight,
                               .image = &right_image,
                               .disparity_px = &pair.right,
                               .unmatched = &pair.right_unmatched};
@@ -319,9 +319,8 @@ TEST(RefineMaps, BothComponentsAreCheckedAndFilledTogether) {
   defaults.options.fill = Fill::kConstant;
   Execution execution({.threads = 2});
   RefinementWork work;
-  const MapToRefine left_map{MapSide::kLeft, nullptr, &left, &left_y, nullptr, &left_unmatched};
-  const MapToRefine right_map{MapSide::kRight, nullptr, &right,
-                              &right_y,        nullptr, &right_unmatched};
+  const MapToRefine left_map{Side::kLeft, nullptr, &left, &left_y, nullptr, &left_unmatched};
+  const MapToRefine right_map{Side::kRight, nullptr, &right, &right_y, nullptr, &right_unmatched};
   refine_maps(defaults.options, left_map, &right_map, execution, work, [](std::string_view) {});
   // The partner of (x, y) is (x − 1, y + 1): the first column and the last row have none.
   EXPECT_EQ(rows_of(left_unmatched),

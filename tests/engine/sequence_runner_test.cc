@@ -146,7 +146,7 @@ class SequenceRunnerTest : public testing::Test {
 
 TEST_F(SequenceRunnerTest, WritesWhatTheMatcherComputes) {
   options_.save = {SequenceOutput::kDisparity, SequenceOutput::kUnmatched};
-  options_.match.reference = Reference::kRight;
+  options_.match.reference = Side::kRight;
   MadeUpPairs pairs(4);
   const SequenceReport report = run(pairs, folder("a"));
   EXPECT_EQ(progress_.frames_done, 4);

@@ -45,7 +45,7 @@ struct NoisePair {
         other(test::random_grey(shape.width, shape.height, levels, 2)) {
     MethodParameters parameters = book_parameters(MatchMethod::kSsd);
     const DisparityRange range = {shape.disparity_min, shape.disparity_min + shape.count - 1};
-    const Reference side = direction < 0 ? Reference::kLeft : Reference::kRight;
+    const Side side = direction < 0 ? Side::kLeft : Side::kRight;
     means = test::plain_box_mean(test::plain_costs(reference, other, side, range, parameters),
                                  shape.window, border)
                 .cells;

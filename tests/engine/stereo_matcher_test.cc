@@ -1,4 +1,5 @@
 #include "engine/matching/stereo_matcher.h"
+#include "engine/matching/costs/candidate_geometry.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -43,7 +44,7 @@ bool has_candidate(const PlainMap& map) {
                      [](const test::PlainChoice& choice) { return !std::isnan(choice.disparity); });
 }
 
-PlainMap plain_map(const Photograph& left, const Photograph& right, Reference reference,
+PlainMap plain_map(const Photograph& left, const Photograph& right, Side reference,
                    const MatchOptions& options) {
   return plain_match(left, right, reference, options.disparities, options.resolved());
 }
@@ -55,9 +56,9 @@ void expect_equals_plain_match(const Photograph& left, const Photograph& right,
   const StereoMatcher matcher(options, execution);
   DisparityMaps maps;
   matcher.match(left, right, {}, maps);
-  for (const Reference reference : {Reference::kLeft, Reference::kRight}) {
+  for (const Side reference : {Side::kLeft, Side::kRight}) {
     const PlainMap plain = plain_map(left, right, reference, options);
-    const DisparityMap& map = reference == Reference::kLeft ? maps.left : maps.right;
+    const DisparityMap& map = reference == Side::kLeft ? maps.left : maps.right;
     ASSERT_EQ(map.width(), left.width());
     ASSERT_EQ(map.height(), left.height());
     for (int y = 0; y < map.height(); ++y) {
@@ -108,7 +109,7 @@ TEST_P(SsdShapes, EqualPlainMatch) {
     const Photograph left = random_grey(shape.width, shape.height, levels, 1);
     const Photograph right = random_grey(shape.width, shape.height, levels, 2);
     if (test::possible_range(options.disparities, shape.width).count() < 1 ||
-        !has_candidate(plain_map(left, right, Reference::kLeft, options))) {
+        !has_candidate(plain_map(left, right, Side::kLeft, options))) {
       DisparityMaps maps;
       EXPECT_THROW(StereoMatcher(options, execution).match(left, right, {}, maps), Error);
       continue;
@@ -190,8 +191,8 @@ TEST_P(SsdDepths, AgreeWithDoubleArithmetic) {
     const MatchOptions options = raw_options({-4, 30}, window, Border::kClip, Subpixel::kNone);
     DisparityMaps maps;
     StereoMatcher(options, execution).match(left, right, {}, maps);
-    const test::Volume energies = test::plain_aggregate(left, right, Reference::kLeft,
-                                                        options.disparities, options.resolved());
+    const test::Volume energies =
+        test::plain_aggregate(left, right, Side::kLeft, options.disparities, options.resolved());
     const PlainMap plain = test::plain_select(energies, options.resolved());
     int different = 0;
     for (int y = 0; y < maps.left.height(); ++y) {
@@ -258,7 +259,7 @@ TEST(StereoMatcher, ChainEqualsWholeImageOracle) {
   DisparityMaps maps;
   StereoMatcher(options, execution).match(left, right, {}, maps);
 
-  const auto geometry = candidate_geometry(options, Reference::kLeft, 89, 37);
+  const auto geometry = candidate_geometry(options, Side::kLeft, 89, 37);
   PreparedPair pair;
   const MethodParameters parameters = options.resolved();
   prepare_pair(left, right, geometry, parameters.window_px * parameters.window_px, {}, execution,

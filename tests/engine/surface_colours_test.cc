@@ -149,7 +149,7 @@ struct WallScene : Scene {
     const RectifiedPair& pair = rectifier.pair();
     const Wall wall(pair);
     for (const Side side : {Side::kLeft, Side::kRight}) {
-      const std::size_t index = side == Side::kLeft ? 0 : 1;
+      const std::size_t index = index_of(side);
       const Eigen::Vector3d centre(static_cast<double>(index), 0, 0);
       const RectifiedCamera& camera = pair.camera(side);
       const LensModel lens(index == 0 ? rig.left : rig.right);

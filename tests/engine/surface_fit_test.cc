@@ -129,7 +129,7 @@ TEST(FitSurface, RefinementFitsBothComponentsBeforeItFills) {
   DisparityMap map_x = stepped.map.copy();
   DisparityMap map_y = stepped.map.copy();
   Mask unmatched;
-  const MapToRefine map{.side = MapSide::kLeft,
+  const MapToRefine map{.side = Side::kLeft,
                         .disparity_px = &map_x,
                         .disparity_y_px = &map_y,
                         .unmatched = &unmatched};
@@ -147,7 +147,7 @@ TEST(FitSurface, RefinementFitsBothComponentsBeforeItFills) {
   EXPECT_THAT(steps, ::testing::ElementsAre("surface fit", "fill"));
   SurfaceFitWork alone;
   fit_surface(stepped.unmatched, 6, kAnyDisparity, execution, alone, stepped.map);
-  fill_unmatched(stepped.unmatched, MapSide::kLeft, Fill::kConstant, execution, stepped.map);
+  fill_unmatched(stepped.unmatched, Side::kLeft, Fill::kConstant, execution, stepped.map);
   EXPECT_TRUE(test::identical(map_x, stepped.map));
   EXPECT_TRUE(test::identical(map_y, stepped.map));
 }

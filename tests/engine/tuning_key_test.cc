@@ -51,7 +51,7 @@ TEST_F(TuningKeyTest, NearlyEqualWorkSharesAKey) {
   // What does not change the work of a cell.
   match_.parameters.subpixel = Subpixel::kNone;
   match_.raw = true;
-  match_.reference = Reference::kRight;
+  match_.reference = Side::kRight;
   EXPECT_EQ(key(), one);
 }
 

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "engine/image/grey_levels.h"
-#include "engine/matching/coarse_to_fine.h"
+#include "engine/image/memory_use.h"
 #include "engine/matching/levels/energy_format.h"
-#include "engine/memory_use.h"
+#include "engine/matching/levels/level_extents.h"
 #include "kernels/edge_weights/edge_weights.h"
 
 namespace vantage {
@@ -82,10 +82,6 @@ void EdgeWeights::prepare(ImageView<const float> grey, const MethodParameters& p
 std::size_t EdgeWeights::held_bytes() const {
   return vantage::held_bytes(floats_.beside) + vantage::held_bytes(floats_.above) +
          vantage::held_bytes(fixed_.beside) + vantage::held_bytes(fixed_.above);
-}
-
-bool uses_edge_weights(const MethodParameters& parameters) {
-  return parameters.aggregation == Aggregation::kBayes && parameters.edge_weight < 1;
 }
 
 std::span<const EdgeWeights> EdgeWeightLevels::prepare(const Photograph& reference,

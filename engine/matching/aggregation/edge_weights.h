@@ -48,9 +48,6 @@ class EdgeWeights {
   Planes<kernels::FixedWeight> fixed_;
 };
 
-/// Whether the neighbours of a pixel count by the edges between them.
-bool uses_edge_weights(const MethodParameters& parameters);
-
 /// The weights of an image and of its coarser levels, whose pixels are means of 2×2 pixels of the
 /// finer level, of those that are there. Working memory, reused from map to map without allocating.
 class EdgeWeightLevels {

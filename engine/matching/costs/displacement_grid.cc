@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include "engine/error.h"
-#include "engine/matching/match_chain.h"
+#include "engine/matching/costs/candidate_geometry.h"
 
 namespace vantage {
 
-std::optional<DisplacementGrid> displacement_grid(const MatchOptions& options, Reference reference,
+std::optional<DisplacementGrid> displacement_grid(const MatchOptions& options, Side reference,
                                                   int width, int height) {
   if (!options.disparities_y) {
     return std::nullopt;

@@ -6,8 +6,8 @@
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
+#include "engine/image/memory_use.h"
 #include "engine/image/photograph.h"
-#include "engine/memory_use.h"
 #include "kernels/candidates.h"
 
 namespace vantage {

@@ -41,15 +41,15 @@ EvidencePair::EvidencePair(const Photograph& left, const Photograph& right,
   right_.prepare(right, parameters, geometry, use, execution);
 }
 
-double EvidencePair::evidence(Reference reference, const PixelBlock& block,
+double EvidencePair::evidence(Side reference, const PixelBlock& block,
                               Displacement displacement) const {
-  return reference == Reference::kLeft
+  return reference == Side::kLeft
              ? sum(left_, right_, block, -displacement.x_px, -displacement.y_px)
              : sum(right_, left_, block, displacement.x_px, displacement.y_px);
 }
 
-double EvidencePair::contrast(Reference reference, const PixelBlock& block) const {
-  const CostImage& image = reference == Reference::kLeft ? left_ : right_;
+double EvidencePair::contrast(Side reference, const PixelBlock& block) const {
+  const CostImage& image = reference == Side::kLeft ? left_ : right_;
   return sum(image, image, block, 0, 0);
 }
 

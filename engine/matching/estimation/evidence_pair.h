@@ -38,10 +38,10 @@ class EvidencePair {
 
   /// Σ E over those pixels of a block of the reference image whose partner lies inside the other
   /// one; others count 0. Added in an order that depends on the block alone.
-  [[nodiscard]] double evidence(Reference reference, const PixelBlock& block,
+  [[nodiscard]] double evidence(Side reference, const PixelBlock& block,
                                 Displacement displacement) const;
   /// Σ |g| over a block: what evidence() reaches for a perfect match.
-  [[nodiscard]] double contrast(Reference reference, const PixelBlock& block) const;
+  [[nodiscard]] double contrast(Side reference, const PixelBlock& block) const;
 
  private:
   [[nodiscard]] double sum(const CostImage& reference, const CostImage& partner,

@@ -10,6 +10,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
+#include "engine/matching/options/method_parameters.h"
 #include "kernels/candidates.h"
 #include "scheduler/range.h"
 
@@ -27,8 +28,6 @@ using BlockList = std::span<const std::uint16_t>;
 class CandidateBlocks {
  public:
   static constexpr int kTilePx = 8;
-  /// Of a tile.
-  static constexpr int kMostBlocks = 8;
   /// Columns of a run: what stages work on at a time.
   static constexpr int kMostRunColumns = 32;
 
@@ -38,7 +37,7 @@ class CandidateBlocks {
     BlockList blocks;
   };
 
-  /// `most`: blocks of a tile, 1..kMostBlocks. Memory is reused.
+  /// `most`: blocks of a tile, 1..kMaxCandidateBlocks. Memory is reused.
   void resize(scheduler::Extent extent, int candidates, int most);
 
   /// Chooses the blocks of all tiles from the winning candidates of the next coarser level. Every
@@ -119,7 +118,7 @@ class BlockSegments {
   std::span<const int> ends() && = delete;  // a loop over them would outlive the object
 
  private:
-  std::array<int, CandidateBlocks::kMostBlocks> ends_;
+  std::array<int, kMaxCandidateBlocks> ends_;
   int count_ = 0;
 };
 

@@ -4,17 +4,13 @@
 #include <cstddef>
 #include <string_view>
 
+#include "engine/matching/levels/level_extents.h"
 #include "engine/matching/levels/level_volume.h"
 #include "kernels/block_row.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
 
 namespace vantage {
-
-/// The grid of the next coarser level: half as many columns and rows, rounded up.
-inline scheduler::Extent coarser_extent(scheduler::Extent extent) {
-  return {(extent.columns + 1) / 2, (extent.rows + 1) / 2};
-}
 
 /// Rows of `finer` whose blocks are the columns of row y of the next coarser level.
 template <typename Cell>

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "engine/image/image.h"
-#include "engine/memory_use.h"
+#include "engine/image/memory_use.h"
 #include "scheduler/range.h"
 
 namespace vantage {

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "engine/error.h"
-#include "engine/matching/levels/candidate_blocks.h"
 #include "kernels/census/census.h"
 
 namespace vantage {
@@ -124,8 +123,8 @@ bool is_positive(double value) { return value > 0 && std::isfinite(value); }
 
 void validate_pruning(const MethodParameters& parameters) {
   const int blocks = parameters.candidate_blocks;
-  require(blocks >= 0 && blocks <= CandidateBlocks::kMostBlocks, "candidate-blocks", blocks,
-          fmt::format("a number from 0 (all candidates) to {}", CandidateBlocks::kMostBlocks));
+  require(blocks >= 0 && blocks <= kMaxCandidateBlocks, "candidate-blocks", blocks,
+          fmt::format("a number from 0 (all candidates) to {}", kMaxCandidateBlocks));
   require(parameters.pruned_levels >= 1 && parameters.pruned_levels <= kMaxLevels, "pruned-levels",
           parameters.pruned_levels, fmt::format("a number from 1 to {}", kMaxLevels));
   if (blocks == 0) {
@@ -308,6 +307,10 @@ void validate(const MethodParameters& parameters) {
   validate_diffusion(parameters);
   validate_bayes(parameters);
   validate_combination(parameters);
+}
+
+bool uses_edge_weights(const MethodParameters& parameters) {
+  return parameters.aggregation == Aggregation::kBayes && parameters.edge_weight < 1;
 }
 
 }  // namespace vantage

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <optional>
 #include <type_traits>
+
+#include "engine/option_field.h"
 
 namespace vantage {
 
@@ -51,6 +52,9 @@ enum class PriorSmoothing {
 };
 enum class GradientFilter { kCentral, kSobel, kSimoncelli3, kSimoncelli5 };
 enum class GradientNorm { kL2, kOctagon };
+
+/// Blocks that a tile can have, see MethodParametersOf::candidate_blocks.
+inline constexpr int kMaxCandidateBlocks = 8;
 
 /// Everything that decides how costs are made, aggregated and selected. With Field = std::optional:
 /// what a user sets; with Field = std::type_identity_t: what is in force.
@@ -109,8 +113,6 @@ struct MethodParametersOf {
   friend bool operator==(const MethodParametersOf&, const MethodParametersOf&) = default;
 };
 
-template <typename T>
-using OptionalField = std::optional<T>;
 /// Empty fields take what the preset, then the method says.
 using MethodOverrides = MethodParametersOf<OptionalField>;
 using MethodParameters = MethodParametersOf<std::type_identity_t>;
@@ -141,6 +143,9 @@ MethodParameters at_level(const MethodParameters& parameters, int level);
 inline bool is_census(MatchCost cost) {
   return cost == MatchCost::kCensus || cost == MatchCost::kRayCensus;
 }
+
+/// Whether the neighbours of a pixel count by the intensity edges between them.
+bool uses_edge_weights(const MethodParameters& parameters);
 
 /// Whether σM takes part.
 bool uses_sigma_measurement(const MethodParameters& parameters);

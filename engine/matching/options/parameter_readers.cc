@@ -5,7 +5,6 @@
 #include <array>
 
 #include "engine/error.h"
-#include "engine/matching/aggregation/edge_weights.h"
 #include "engine/matching/options/method_names.h"
 
 namespace vantage {

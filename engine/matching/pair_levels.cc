@@ -1,4 +1,4 @@
-#include "engine/matching/estimation/pair_levels.h"
+#include "engine/matching/pair_levels.h"
 
 #include <algorithm>
 #include <array>

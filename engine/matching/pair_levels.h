@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "engine/execution.h"
+#include "engine/image/memory_use.h"
 #include "engine/image/photograph.h"
 #include "engine/matching/costs/level_change.h"
 #include "engine/matching/options/match_options.h"
-#include "engine/memory_use.h"
 
 namespace vantage {
 

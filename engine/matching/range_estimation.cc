@@ -1,4 +1,4 @@
-#include "engine/matching/estimation/disparity_range.h"
+#include "engine/matching/range_estimation.h"
 
 #include <fmt/format.h>
 

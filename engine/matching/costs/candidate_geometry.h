@@ -1,0 +1,14 @@
+#pragma once
+
+#include "engine/image/side.h"
+#include "engine/matching/options/match_options.h"
+#include "kernels/candidates.h"
+
+namespace vantage {
+
+/// The candidates of `options` that some pixel of an image `width` columns wide can have.
+/// `reference` is the image whose grid the map is on. Throws Error when there is none.
+kernels::CandidateGeometry candidate_geometry(const MatchOptions& options, Side reference,
+                                              int width, int height);
+
+}  // namespace vantage
