@@ -3,7 +3,7 @@
 namespace vantage {
 namespace {
 
-/// Bayesian diffusion from coarse to fine, as docs/COARSE_TO_FINE.md found it: census codes,
+/// Bayesian diffusion from coarse to fine (perf/log/2026-11-23-coarse-to-fine.md): census codes,
 /// weights from intensity edges, candidates around what coarser levels found.
 MethodOverrides coarse_to_fine() {
   MethodOverrides parameters;
