@@ -68,6 +68,14 @@ class CheckDocumentsTest(unittest.TestCase):
         self.expect_violation("perf/a.md", "# A\n[x](#b)", "perf/a.md:2: link to '#b'")
         self.expect_violation("docs/a.md", "![x](gone.png)", "docs/a.md:1: link to 'gone.png'")
 
+    def test_places_that_do_not_exist(self):
+        table = "| step | engine |\n|---|---|\n| a `word` | `io/box`, `box_x`, `--option` |\n"
+        tree = {**CLEAN_TREE, "engine/io/box.h": "", "kernels/box_x/box_x_simd.cc": ""}
+        self.assertEqual(run({**tree, "docs/ARCHITECTURE.md": table}).returncode, 0)
+        result = run({**tree, "docs/ARCHITECTURE.md": table.replace("io/box", "image/box")})
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("docs/ARCHITECTURE.md:3: there is no file or folder 'image/box'", result.stdout)
+
 
 if __name__ == "__main__":
     unittest.main()
