@@ -8,8 +8,34 @@
 #include "apps/tell.h"
 #include "engine/error.h"
 #include "engine/matching/range_estimation.h"
+#include "engine/matching/vertical_range.h"
 
 namespace vantage::apps {
+namespace {
+
+void choose_vertical_disparities(const Settings& settings, const CommonOptions& common,
+                                 const Photograph& left, const Photograph& right,
+                                 MatchOptions& options, Execution& execution, RunReport& report) {
+  if (!options.disparities_y_auto) {
+    return;
+  }
+  const std::optional<DisparityRange> range = report.timed_compute(
+      "range of rows", [&] { return find_vertical_range(left, right, execution); });
+  if (!range) {
+    throw Error(
+        "the images have too few points in common to tell how far their rows are apart, expected "
+        "texture that both of them show; give --disparities-y MIN:MAX");
+  }
+  options.disparities_y = *range;
+  options.disparities_y_auto = false;
+  options.validate();
+  report.set_settings(reported_settings(settings, options));
+  if (!common.quiet) {
+    tell("{}: --disparities-y auto is {}\n", settings.command(), to_text(*range));
+  }
+}
+
+}  // namespace
 
 void choose_disparities(const Settings& settings, const CommonOptions& common,
                         const std::function<std::optional<DisparityRange>()>& find,
@@ -36,9 +62,14 @@ void choose_disparities(const Settings& settings, const CommonOptions& common,
 void choose_disparities(const Settings& settings, const CommonOptions& common,
                         const Photograph& left, const Photograph& right, MatchOptions& options,
                         Execution& execution, RunReport& report) {
+  choose_vertical_disparities(settings, common, left, right, options, execution, report);
   choose_disparities(
-      settings, common, [&] { return find_disparity_range(left, right, execution); }, options,
-      report);
+      settings, common,
+      [&] {
+        return find_disparity_range(left, right, execution,
+                                    options.disparities_y.value_or(DisparityRange{0, 0}));
+      },
+      options, report);
 }
 
 }  // namespace vantage::apps

@@ -54,7 +54,10 @@ void write_results(const MatchJob& job, const DisparityMaps& maps) {
   }
   if (!job.preview.empty()) {
     const PreviewRange range = preview_range_of(job.match.disparities);
-    const DisparityMap& map = is_left ? maps.left : maps.right;
+    // Along the baseline.
+    const bool is_y = job.vertical && job.match.disparities_y;
+    const DisparityMap& map = is_left ? (is_y ? maps.left_disparity_y : maps.left)
+                                      : (is_y ? maps.right_disparity_y : maps.right);
     write_photograph(job.preview, {colour_preview(map.view(), range.min_px, range.max_px)});
   }
 }
@@ -69,7 +72,8 @@ void transpose(std::vector<Photograph>& images) {
 /// Those that are there.
 void transpose(DisparityMaps& maps) {
   for (DisparityMap* map :
-       {&maps.left, &maps.right, &maps.left_confidence, &maps.right_confidence}) {
+       {&maps.left, &maps.right, &maps.left_disparity_y, &maps.right_disparity_y,
+        &maps.left_confidence, &maps.right_confidence}) {
     if (!map->empty()) {
       *map = transposed(std::as_const(*map).view());
     }
@@ -78,6 +82,10 @@ void transpose(DisparityMaps& maps) {
     if (!mask->empty()) {
       *mask = transposed(std::as_const(*mask).view());
     }
+  }
+  if (!maps.left_disparity_y.empty() || !maps.right_disparity_y.empty()) {
+    std::swap(maps.left, maps.left_disparity_y);
+    std::swap(maps.right, maps.right_disparity_y);
   }
 }
 

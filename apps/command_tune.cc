@@ -107,8 +107,10 @@ void check(const TuneJob& job, const Settings& settings) {
   if (!job.images) {
     throw UsageError("--size is missing, expected --size WxH");
   }
-  if (job.match.disparities_auto) {
-    throw UsageError("--disparities is auto, but there is no pair to look at, expected MIN:MAX");
+  if (job.match.disparities_auto || job.match.disparities_y_auto) {
+    throw UsageError(
+        fmt::format("--disparities{} is auto, but there is no pair to look at, expected MIN:MAX",
+                    job.match.disparities_auto ? "" : "-y"));
   }
 }
 

@@ -53,9 +53,11 @@ void add_file_settings(Settings& settings, MatchJob& job) {
       true;
   settings.positional("right", job.right, "Right image of the same size").required = true;
   add_several_settings(settings, job);
-  settings.flag("vertical", job.vertical,
-                "The cameras stand one above the other, 'left' being the upper one's image: "
-                "disparities are y_upper - y_lower, and --baselines count downwards");
+  settings.flag(
+      "vertical", job.vertical,
+      "The cameras stand one above the other, 'left' being the upper one's image: "
+      "disparities are y_upper - y_lower, those of --disparities-y x_upper - x_lower, and "
+      "--baselines count downwards");
   Setting& output = settings.path("output", job.output, "FILE",
                                   "Disparity map to write: .pfm .png .tiff .exr .npy; with "
                                   "--disparities-y the displacements: .flo .npy .tiff .exr");
@@ -73,13 +75,6 @@ void add_file_settings(Settings& settings, MatchJob& job) {
   settings.path("preview", job.preview, "FILE",
                 "Write the map as a picture whose colours span the search range");
   add_rectification_check_setting(settings, job.check_rectification);
-}
-
-void check_vertical(const MatchJob& job) {
-  if (job.match.disparities_y) {
-    throw UsageError(
-        "--disparities-y cannot go with --vertical: a search in two dimensions covers columns");
-  }
 }
 
 void check_several(const MatchJob& job, const Settings& settings) {
@@ -131,9 +126,6 @@ void require_files_hold_search(const MatchJob& job) {
 void check(const MatchJob& job, const Settings& settings) {
   job.match.validate();
   job.common.execution.validate();
-  if (job.vertical) {
-    check_vertical(job);
-  }
   if (job.has_several()) {
     check_several(job, settings);
   } else if (job.match.reference == Side::kRight &&

@@ -371,18 +371,24 @@ void add_match_settings(Settings& settings, MatchOptions& options) {
     return options.disparities_auto ? "auto" : to_text(options.disparities);
   };
   Setting& disparities_y = settings.add(
-      "disparities-y", "MIN:MAX",
-      "Candidates y_left - y_right of a search in two dimensions; none: 0 only, as of rectified "
-      "pairs");
+      "disparities-y", "MIN:MAX|auto",
+      "Candidates y_left - y_right of a search in two dimensions; auto: what the pair suggests; "
+      "none: 0 only, as of rectified pairs");
   disparities_y.set = [&options](const SettingValue& value) {
+    options.disparities_y_auto = is_word(value, "auto");
     if (is_word(value, "none")) {
       options.disparities_y.reset();
+    } else if (options.disparities_y_auto) {
+      options.disparities_y = DisparityRange{0, 0};
     } else {
-      options.disparities_y = to_disparity_range(value, "MIN:MAX in whole pixels, such as -2:2");
+      options.disparities_y =
+          to_disparity_range(value, "MIN:MAX in whole pixels, such as -2:2, or auto");
     }
   };
   disparities_y.get = [&options] {
-    return options.disparities_y ? to_text(*options.disparities_y) : "none";
+    return options.disparities_y_auto ? "auto"
+           : options.disparities_y    ? to_text(*options.disparities_y)
+                                      : "none";
   };
   add_method_settings(settings, options);
   add_parameter_settings(settings, options);

@@ -91,12 +91,21 @@ Photograph reduced(const Photograph& photograph, int factor, Execution& executio
 /// What is searched in images of this width.
 DisparityRange search_in(int width) { return {-width / 8, width / 3}; }
 
+/// Of images reduced by `factor`.
+DisparityRange reduced(DisparityRange range, int factor) {
+  return {static_cast<int>(std::lround(static_cast<double>(range.min) / factor)),
+          static_cast<int>(std::lround(static_cast<double>(range.max) / factor))};
+}
+
 /// The disparities that both images agree on, in pixels of `left` and `right`, sorted.
 std::vector<float> agreed_disparities(const Photograph& left, const Photograph& right,
-                                      Execution& execution) {
+                                      DisparityRange vertical, Execution& execution) {
   MatchOptions options;
   options.preset = MatchPreset::kBalanced;
   options.disparities = search_in(left.width());
+  if (vertical != DisparityRange{0, 0}) {
+    options.disparities_y = vertical;
+  }
   if (options.disparities.count() == 1) {
     return {};  // winners without others say nothing
   }
@@ -147,14 +156,20 @@ Span span_of(const std::vector<float>& values) {
 }  // namespace
 
 std::optional<DisparityRange> find_disparity_range(const Photograph& left, const Photograph& right,
-                                                   Execution& execution) {
+                                                   Execution& execution, DisparityRange vertical) {
   if (left.width() != right.width() || left.height() != right.height()) {
     throw Error(fmt::format("left image is {}x{} but right image is {}x{}, expected equal sizes",
                             left.width(), left.height(), right.width(), right.height()));
   }
-  const int factor = reduction_of(left.width());
-  const std::vector<float> values = agreed_disparities(
-      reduced(left, factor, execution), reduced(right, factor, execution), execution);
+  int factor = reduction_of(left.width());
+  while (factor < left.width() &&
+         search_in(left.width() / factor).count() * reduced(vertical, factor).count() >
+             kMaxCandidates) {
+    ++factor;
+  }
+  const std::vector<float> values =
+      agreed_disparities(reduced(left, factor, execution), reduced(right, factor, execution),
+                         reduced(vertical, factor), execution);
   const double pixels = 2.0 * (left.width() / factor) * std::max(1, left.height() / factor);
   if (static_cast<double>(values.size()) < std::max(1.0, kLeastMatchedShare * pixels)) {
     return std::nullopt;

@@ -17,10 +17,13 @@ namespace vantage {
 /// that the time is a few per cent of what matching takes; surfaces of fewer than some 10 reduced
 /// pixels can be missed.
 ///
+/// `vertical` holds the y_left − y_right of a pair whose rows do not correspond.
+///
 /// Throws Error when sizes differ. Identical for any `execution` and on every instruction set.
 /// Thread rule: may be called concurrently.
 std::optional<DisparityRange> find_disparity_range(const Photograph& left, const Photograph& right,
-                                                   Execution& execution);
+                                                   Execution& execution,
+                                                   DisparityRange vertical = {0, 0});
 
 /// The same; throws Error when there is none.
 DisparityRange estimate_disparity_range(const Photograph& left, const Photograph& right,

@@ -45,7 +45,7 @@ std::size_t held_bytes(const DisparityMaps& maps) {
 StereoMatcher::StereoMatcher(const MatchOptions& options, Execution& execution)
     : options_(options), execution_(execution) {
   options_.validate();
-  if (options_.disparities_auto) {
+  if (options_.disparities_auto || options_.disparities_y_auto) {
     throw UsageError("disparities is auto, expected the range that the images suggest");
   }
   parameters_ = options_.resolved();

@@ -1,10 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <variant>
 
+#include "engine/image/transposed.h"
 #include "tests/apps/pair_fixture.h"
 #include "tests/well_formed_xml.h"
 
@@ -266,11 +270,61 @@ TEST_F(AutomaticDisparities, ARunFindsItInAllOfTheInput) {
   EXPECT_GE(most, 36);
 }
 
-TEST_F(AutomaticDisparities, NotForTwoDimensions) {
-  const ProcessResult result = run_vantage({"match", left_, right_, "-o", folder_ / "o.flo",
-                                            "--disparities", "auto", "--disparities-y=-1:1"});
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("disparities is auto"));
+/// Share of the pixels away from the borders whose displacement is within half a pixel of (x, y).
+double share_at(const std::string& flo, int width, int height, float x, float y) {
+  const std::string bytes = read_file(flo);
+  constexpr std::size_t kHeader = 12;
+  EXPECT_EQ(bytes.size(), kHeader + static_cast<std::size_t>(width) * height * 8);
+  constexpr int kBorder = 16;
+  int near = 0;
+  int all = 0;
+  for (int row = kBorder; row < height - kBorder; ++row) {
+    for (int column = kBorder; column < width - kBorder; ++column) {
+      float flow[2];
+      std::memcpy(flow, bytes.data() + kHeader + (row * width + column) * 8, sizeof flow);
+      ++all;
+      near += std::abs(flow[0] - x) <= 0.5F && std::abs(flow[1] - y) <= 0.5F ? 1 : 0;
+    }
+  }
+  return static_cast<double>(near) / all;
+}
+
+TEST_F(AutomaticDisparities, OfTwoDimensions) {
+  // A plane at 5 to the left and 3 up; the same lying on its side.
+  constexpr int kWidth = 240;
+  constexpr int kHeight = 180;
+  constexpr int kAcross = 5;
+  constexpr int kDown = 3;
+  BookPairOptions options = book_pair_options("real-square");
+  options.width_px = kWidth + kAcross;
+  options.height_px = kHeight + kDown;
+  const Photograph texture = make_book_pair(options).left;
+  const auto window = [&](int x, int y) {
+    const auto& pixels = std::get<Image<std::uint8_t>>(texture.pixels);
+    Image<std::uint8_t> part(kWidth, kHeight);
+    for (int row = 0; row < kHeight; ++row) {
+      std::copy_n(pixels.row(row + y) + x, kWidth, part.row(row));
+    }
+    return Photograph{std::move(part)};
+  };
+  write_photograph(folder_ / "a.png", window(0, 0));
+  write_photograph(folder_ / "b.png", window(kAcross, kDown));
+  write_photograph(folder_ / "at.png", transposed(window(0, 0)));
+  write_photograph(folder_ / "bt.png", transposed(window(kAcross, kDown)));
+  const auto match = [&](const char* first, const char* second, std::vector<std::string> more) {
+    more.insert(more.begin(), {"match", folder_ / first, folder_ / second, "-o", folder_ / "o.flo",
+                               "--disparities-y", "auto", "--method", "gradient"});
+    const ProcessResult result = run_vantage(more);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.err, testing::AllOf(HasSubstr("match: --disparities-y auto is 2:4\n"),
+                                           HasSubstr("match: --disparities auto is")));
+  };
+  match("a.png", "b.png", {"--report", folder_ / "r.json"});
+  EXPECT_GT(share_at(folder_ / "o.flo", kWidth, kHeight, -kAcross, -kDown), 0.9);
+  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  EXPECT_EQ(report["settings"]["disparities-y"], "2:4");
+  match("at.png", "bt.png", {"--vertical"});
+  EXPECT_GT(share_at(folder_ / "o.flo", kHeight, kWidth, -kDown, -kAcross), 0.9);
 }
 
 }  // namespace command_response_test

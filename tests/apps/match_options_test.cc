@@ -74,8 +74,7 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--surface-fit", "17"}, "surface-fit is 17, expected a number of pixels from 0 to 16"},
       {{"--disparities", "0:4096"}, "(4097 candidates), expected at most 4096"},
       {{"--disparities-y", "-300:300"}, "expected at most 4096"},
-      {{"--disparities", "auto", "--disparities-y", "0:1"},
-       "disparities is auto, expected MIN:MAX"},
+      {{"--disparities", "auto", "--disparities-y", "-3000:3000"}, "expected at most 4096"},
       {{"--disparities", "-3:60", "--output-right", folder_ / "r.png"},
        "r.png is a 16-bit PNG, which holds disparities from 0 to 255.99, but -3:60 are searched"},
       {{"--disparities", "0:256", "--output-right", folder_ / "r.PNG"},
@@ -111,7 +110,7 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--baselines", "1", "--output-right", folder_ / "r.pfm"}, "--output-right cannot go with"},
       {{"--baselines", "1", "--reference", "right"}, "--reference right cannot go with"},
       {{"--baselines", "1", "--disparities-y", "0:1"}, "--disparities-y cannot go with"},
-      {{"--vertical", "--disparities-y", "0:1"}, "--disparities-y cannot go with --vertical"}};
+      {{"--vertical", "--disparities-y", "1:0"}, "disparities-y is 1:0, expected MIN:MAX"}};
   const auto before = files_below(folder_.path());
   SCOPED_TRACE(test::sample_name());
   for (const Refused& refused :

@@ -16,7 +16,6 @@
 namespace vantage {
 namespace {
 
-constexpr int kMaxCandidates = 4096;
 constexpr int kMaxDisparity = 65535;
 constexpr int kMaxEdgeSnapping = 16;
 constexpr int kMaxCheckLevel = 9;
@@ -141,12 +140,7 @@ void MatchOptions::validate() const {
   if (method && preset) {
     throw UsageError("method and preset are both set, expected one of them: a preset has a method");
   }
-  if (disparities_auto && disparities_y) {
-    throw UsageError(
-        "disparities is auto, expected MIN:MAX beside disparities-y: the range is estimated for "
-        "rectified pairs only");
-  }
-  validate_candidates(disparities, disparities_y);
+  validate_candidates(disparities_auto ? DisparityRange{0, 0} : disparities, disparities_y);
   const MethodParameters in_force = resolved();
   vantage::validate(in_force);
   if (in_force.candidate_blocks > 0 && disparities_y) {

@@ -10,6 +10,9 @@
 
 namespace vantage {
 
+/// Of a pixel; of a two-dimensional search the pairs of both components count.
+inline constexpr int kMaxCandidates = 4096;
+
 /// Whether maps of these parameters have levels whose winners a cross-check can look at.
 bool can_check_levels(const MethodParameters& parameters);
 
@@ -19,13 +22,15 @@ struct MatchOptions {
   std::optional<MatchMethod> method;
   /// Chooses the method and the defaults of everything that is not set.
   std::optional<MatchPreset> preset;
-  /// At most 4096 candidates; of a two-dimensional search the pairs of both components count.
+  /// At most kMaxCandidates.
   DisparityRange disparities;
   /// `disparities` is still to be replaced by what estimate_disparity_range() says: whoever reads
   /// the images does that. Matchers refuse it.
   bool disparities_auto = false;
   /// Vertical component of a two-dimensional search, y_left − y_right (5.5.3); empty: 0 only.
   std::optional<DisparityRange> disparities_y;
+  /// The same of `disparities_y`, which is set, and find_vertical_range().
+  bool disparities_y_auto = false;
   MethodOverrides parameters;
   Side reference = Side::kLeft;
   /// Winner-take-all only: no refinement (sub-pixel stays as set above).

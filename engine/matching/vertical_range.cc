@@ -1,0 +1,105 @@
+#include "engine/matching/vertical_range.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/image/transposed.h"
+#include "engine/matching/range_estimation.h"
+#include "engine/rectification/feature_matches.h"
+
+namespace vantage {
+namespace {
+
+constexpr int kMostFeatures = 1000;
+constexpr int kLargestSide_px = 640;
+constexpr int kMinMatches = 20;
+
+// Shares of the matches. A few per cent of them are wrong, each by another number of rows.
+constexpr double kStrayShare = 0.02;
+constexpr double kApartShare = 0.02;
+// In pixels of the images that features are looked for in.
+constexpr double kGap_px = 1;
+constexpr double kMargin_px = 0.5;
+/// Rows that spread over no more say nothing about where the cameras are.
+constexpr double kOffsetsSpread_px = 4;
+
+struct Span {
+  double min_px = 0;
+  double max_px = 0;
+  [[nodiscard]] double length_px() const { return max_px - min_px; }
+};
+
+/// What holds the values but for stray ones and groups that are small and apart. None where all
+/// groups are small.
+std::optional<Span> span_of_matches(std::vector<double> values, double gap_px) {
+  std::sort(values.begin(), values.end());
+  const auto count = static_cast<double>(values.size());
+  const auto stray = static_cast<std::size_t>(std::ceil(kStrayShare * count));
+  const double min_group = std::max(3.0, kApartShare * count);
+  std::optional<Span> span;
+  for (std::size_t start = stray; start + stray < values.size();) {
+    std::size_t end = start + 1;
+    while (end + stray < values.size() && values[end] - values[end - 1] <= gap_px) {
+      ++end;
+    }
+    if (static_cast<double>(end - start) >= min_group) {
+      span = Span{span ? span->min_px : values[start], values[end - 1]};
+    }
+    start = end;
+  }
+  return span;
+}
+
+DisparityRange whole_pixels(const Span& span, double margin_px) {
+  return {static_cast<int>(std::floor(span.min_px - margin_px)),
+          static_cast<int>(std::ceil(span.max_px + margin_px))};
+}
+
+}  // namespace
+
+std::optional<DisparityRange> find_vertical_range(const Photograph& left, const Photograph& right,
+                                                  Execution& execution) {
+  if (left.width() != right.width() || left.height() != right.height()) {
+    throw Error(fmt::format("left image is {}x{} but right image is {}x{}, expected equal sizes",
+                            left.width(), left.height(), right.width(), right.height()));
+  }
+  const std::vector<PointMatch> matches = match_features(left, right,
+                                                         {.kind = FeatureKind::kOrb,
+                                                          .most_features = kMostFeatures,
+                                                          .largest_side_px = kLargestSide_px});
+  if (static_cast<int>(matches.size()) < kMinMatches) {
+    return std::nullopt;
+  }
+  std::vector<double> columns;
+  std::vector<double> rows;
+  for (const PointMatch& match : matches) {
+    columns.push_back(match.left.x() - match.right.x());
+    rows.push_back(match.left.y() - match.right.y());
+  }
+  const double scale =
+      std::max(1.0, std::max(left.width(), left.height()) / static_cast<double>(kLargestSide_px));
+  const std::optional<Span> across = span_of_matches(std::move(columns), kGap_px * scale);
+  const std::optional<Span> down = span_of_matches(std::move(rows), kGap_px * scale);
+  if (!across || !down) {
+    return std::nullopt;
+  }
+  const double margin_px = kMargin_px * scale;
+  const DisparityRange range = whole_pixels(*down, margin_px);
+  if (down->length_px() <= std::max(across->length_px(), kOffsetsSpread_px * scale)) {
+    return range;
+  }
+  // Rows depend on depth, and small surfaces have few points.
+  const std::optional<DisparityRange> of_surfaces = find_disparity_range(
+      transposed(left), transposed(right), execution, whole_pixels(*across, margin_px));
+  return of_surfaces ? DisparityRange{std::min(range.min, of_surfaces->min),
+                                      std::max(range.max, of_surfaces->max)}
+                     : range;
+}
+
+}  // namespace vantage
