@@ -21,15 +21,15 @@ constexpr int kLargestSide_px = 640;
 constexpr int kMinMatches = 20;
 
 // Shares of the matches. A few per cent of them are wrong, each by another number of rows.
-constexpr double kStrayShare = 0.02;
-constexpr double kApartShare = 0.02;
+constexpr double kStrayMatches = 0.02;
+constexpr double kApartMatches = 0.02;
 // In pixels of the images that features are looked for in.
-constexpr double kGap_px = 1;
+constexpr double kMatchGap_px = 1;
 constexpr double kMargin_px = 0.5;
 /// Rows that spread over no more say nothing about where the cameras are.
 constexpr double kOffsetsSpread_px = 4;
 
-struct Span {
+struct MatchSpan {
   double min_px = 0;
   double max_px = 0;
   [[nodiscard]] double length_px() const { return max_px - min_px; }
@@ -37,26 +37,26 @@ struct Span {
 
 /// What holds the values but for stray ones and groups that are small and apart. None where all
 /// groups are small.
-std::optional<Span> span_of_matches(std::vector<double> values, double gap_px) {
+std::optional<MatchSpan> span_of_matches(std::vector<double> values, double gap_px) {
   std::sort(values.begin(), values.end());
   const auto count = static_cast<double>(values.size());
-  const auto stray = static_cast<std::size_t>(std::ceil(kStrayShare * count));
-  const double min_group = std::max(3.0, kApartShare * count);
-  std::optional<Span> span;
+  const auto stray = static_cast<std::size_t>(std::ceil(kStrayMatches * count));
+  const double min_group = std::max(3.0, kApartMatches * count);
+  std::optional<MatchSpan> span;
   for (std::size_t start = stray; start + stray < values.size();) {
     std::size_t end = start + 1;
     while (end + stray < values.size() && values[end] - values[end - 1] <= gap_px) {
       ++end;
     }
     if (static_cast<double>(end - start) >= min_group) {
-      span = Span{span ? span->min_px : values[start], values[end - 1]};
+      span = MatchSpan{span ? span->min_px : values[start], values[end - 1]};
     }
     start = end;
   }
   return span;
 }
 
-DisparityRange whole_pixels(const Span& span, double margin_px) {
+DisparityRange whole_pixels(const MatchSpan& span, double margin_px) {
   return {static_cast<int>(std::floor(span.min_px - margin_px)),
           static_cast<int>(std::ceil(span.max_px + margin_px))};
 }
@@ -84,8 +84,8 @@ std::optional<DisparityRange> find_vertical_range(const Photograph& left, const 
   }
   const double scale =
       std::max(1.0, std::max(left.width(), left.height()) / static_cast<double>(kLargestSide_px));
-  const std::optional<Span> across = span_of_matches(std::move(columns), kGap_px * scale);
-  const std::optional<Span> down = span_of_matches(std::move(rows), kGap_px * scale);
+  const std::optional<MatchSpan> across = span_of_matches(std::move(columns), kMatchGap_px * scale);
+  const std::optional<MatchSpan> down = span_of_matches(std::move(rows), kMatchGap_px * scale);
   if (!across || !down) {
     return std::nullopt;
   }

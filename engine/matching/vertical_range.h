@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "engine/execution.h"
-#include "engine/image/photograph.h"
 #include "engine/image/disparity_range.h"
+#include "engine/image/photograph.h"
 
 namespace vantage {
 
