@@ -8,9 +8,9 @@ struct hwloc_bitmap_s;
 
 namespace vantage::scheduler {
 
-/// Binds the calling thread to hardware threads from construction to destruction, then lets it run
-/// where it ran before. A thread that the system does not let be bound runs on as it is: binding is
-/// a matter of speed.
+/// Binds the calling thread to hardware threads while it exists, then restores the previous
+/// affinity, so neither callers nor TBB's workers stay bound. If the system refuses, the thread
+/// stays as it is: binding affects speed only.
 class BoundThread {
  public:
   /// Does nothing.

@@ -66,7 +66,7 @@ PassStages pass_stages(Chain chain, int first, int end, int source_rows) {
 
 int source_rows_to_keep(Chain chain, const std::vector<RowReach>& reaches, int first, int end) {
   // The stage after the source drives it, or the first reader where it runs beside a later pass. A
-  // reader's row brings it as many rows farther as the stages behind that one look down together.
+  // reader's row brings it as many rows farther as the stages after that one look down together.
   int rows = 0;
   int rows_below = 0;
   bool driven = first == 0;

@@ -8,22 +8,22 @@
 namespace vantage::scheduler {
 
 /// The five steps of one frame in a sequence. `slot` is a number in [0, in_flight); no two frames
-/// that are under way at the same time have the same slot, so buffers can be kept per slot.
+/// in flight at the same time have the same slot, so buffers can be kept per slot.
 struct FrameSteps {
   /// Fetches the next frame into `slot`; false at the end. Called in order, never concurrently.
   std::function<bool(int slot)> read;
-  /// Brings what was read in `slot` into the form to work on. Called concurrently for different
+  /// Converts what was read into `slot` to what compute() needs. Called concurrently for different
   /// slots.
   std::function<void(int slot)> prepare;
-  /// Works on the frame in `slot`. Called concurrently for different slots, unless
+  /// Computes the frame in `slot`. Called concurrently for different slots, unless
   /// compute_in_order: then in the order of reading, never concurrently.
   std::function<void(int slot)> compute;
-  /// Brings the results in `slot` into the form to deliver. Called concurrently for different
+  /// Encodes the results in `slot` into what write() delivers. Called concurrently for different
   /// slots.
   std::function<void(int slot)> encode;
   /// Delivers the frame in `slot`. Called in the order of reading, never concurrently.
   std::function<void(int slot)> write;
-  /// For frames that need what the one before has computed.
+  /// Set if a frame needs results of the frame before it.
   bool compute_in_order = false;
 };
 
@@ -32,7 +32,7 @@ struct FrameSteps {
 ///
 /// Thread rule: parallel_for() may be called from any thread, also from inside a running task or
 /// frame step. Errors: the first exception thrown by a task is rethrown to the caller after all
-/// running tasks have ended; tasks not yet begun by then are dropped.
+/// running tasks have ended; tasks that have not started by then are dropped.
 class Executor {
  public:
   Executor() = default;
@@ -46,7 +46,7 @@ class Executor {
   /// Calls body(task) once for each task in [0, task_count), in no particular order.
   virtual void parallel_for(int task_count, const std::function<void(int task)>& body) = 0;
 
-  /// Runs frames through `steps` with at most `in_flight` (≥ 1) of them under way.
+  /// Runs frames through `steps` with at most `in_flight` (≥ 1) of them at a time.
   /// Steps must not throw: run_frames() of frame_pipeline.h wraps steps that do.
   virtual void run_frame_steps(int in_flight, const FrameSteps& steps) = 0;
 };

@@ -9,7 +9,7 @@ FrameOutcome run_frames(Executor& executor, int in_flight, const FrameSteps& ste
   FrameOutcome outcome;
   std::vector<std::exception_ptr> slot_error(static_cast<std::size_t>(in_flight));
   std::exception_ptr last_error;    // only the writing step touches it
-  std::atomic<bool> failed{false};  // the run has ended at a frame: nothing behind it matters
+  std::atomic<bool> failed{false};  // the run has ended at a frame: later frames do not matter
   bool read_failed = false;         // only the reading step touches it
 
   const auto error_of = [&](int slot) -> std::exception_ptr& {

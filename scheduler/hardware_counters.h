@@ -13,36 +13,36 @@ struct CountedEvent {
   std::string_view name;
   std::uint32_t type = 0;
   std::uint64_t config = 0;
-  /// Counted in user mode alone where the kernel's part may not be seen; false: happens in the
-  /// kernel only.
+  /// Counted in user mode only if the kernel's part is not accessible; false: the event happens in
+  /// the kernel only.
   bool counts_in_user_mode = true;
 };
 
-/// What was counted.
+/// Counts of events.
 struct EventCounts {
   struct Count {
     std::string_view name;
-    double events = 0;  ///< estimated where counters took turns
+    double events = 0;  ///< estimated if counters were multiplexed
   };
   std::vector<Count> counts;
-  /// The kernel's share of the work was not to be seen.
+  /// The kernel's part could not be counted.
   bool user_mode_only = false;
   /// One sentence for each reason why events are missing; empty: all were counted.
   std::string absence;
 };
 
-/// Counts what the programs do that this thread starts, from their exec to their end, all their
-/// threads and programs of their own included: cycles, instructions, caches, branches, page faults,
-/// context switches and moves between processors, as far as the system counts them (Linux'
-/// perf_event). What it does not count is told in words and is no error. Programs that are started
-/// do not inherit the descriptors.
+/// Counts events of the programs that this thread starts, from exec to exit, including their
+/// threads and child programs: cycles, instructions, caches, branches, page faults, context
+/// switches and migrations between processors, as far as the system counts them (perf_event).
+/// Events that cannot be counted are listed in EventCounts::absence and are no error. Programs that
+/// are started do not inherit the descriptors.
 ///
-/// Thread rule: construct it on the thread that starts the programs; read() anywhere, once they
-/// have been waited for.
+/// Thread rule: construct it on the thread that starts the programs; read() on any thread, after
+/// the programs have been waited for.
 class HardwareCounters {
  public:
-  /// Opens a counter that `event` adds to: a descriptor, or −errno. `with_kernel`: also what the
-  /// kernel does for the program.
+  /// Opens a counter of `event` and returns a descriptor, or −errno. `with_kernel`: also count
+  /// events in the kernel on behalf of the program.
   using Opener = std::function<int(const CountedEvent& event, bool with_kernel)>;
 
   explicit HardwareCounters(const Opener& open = open_for_programs);
@@ -58,7 +58,7 @@ class HardwareCounters {
     std::string_view name;
     int descriptor = -1;
   };
-  /// Events that are missing for one reason.
+  /// Events that are missing for the same reason.
   struct Gap {
     std::string reason;
     std::vector<std::string_view> events;

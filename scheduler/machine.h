@@ -5,9 +5,9 @@
 
 namespace vantage::scheduler {
 
-/// What the planner knows of the machine. Sizes in bytes of one instance of the cache.
+/// Properties of the machine, for the planner. Cache sizes are those of one instance.
 struct Machine {
-  std::string processor = "unknown processor";  ///< as its maker calls the model
+  std::string processor = "unknown processor";  ///< model name
   int hardware_threads = 1;  ///< that this process may use (affinity mask and cgroup masks count)
   int cores = 1;
   int numa_nodes = 1;
@@ -17,7 +17,7 @@ struct Machine {
   std::size_t memory_bytes = 0;
 };
 
-/// Asks hwloc. What it cannot tell keeps the default above.
+/// Queries hwloc. Values that hwloc does not know keep the defaults above.
 Machine detect_machine();
 
 }  // namespace vantage::scheduler

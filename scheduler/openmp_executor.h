@@ -7,8 +7,8 @@
 
 namespace vantage::scheduler {
 
-/// One team of OpenMP threads for strips and frames alike, bound as `places` says while they work.
-/// Loops are divided into a range of tasks per node; frames run on any.
+/// One team of OpenMP threads for strips and frames, bound to `places` while they work. A loop is
+/// divided into one range of tasks per node; frames run on any node.
 std::unique_ptr<Executor> make_openmp_executor(const ThreadPlaces& places);
 
 }  // namespace vantage::scheduler

@@ -11,7 +11,7 @@ namespace {
 // whatever else runs on the core.
 constexpr double kLevel1Share = 1.2;
 constexpr double kLevel2Share = 0.5;
-// The same in passes of more parts than kFewParts: their rings are large beside the image rows.
+// For passes of more parts than kFewParts: their rings are large beside the image rows.
 constexpr double kLevel2ShareOfManyParts = 0.75;
 constexpr std::size_t kFewParts = 3;
 // The part of level 3 that the strips of all threads may fill: images, stored rows and other

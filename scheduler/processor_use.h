@@ -4,20 +4,20 @@
 
 namespace vantage::scheduler {
 
-/// Looks at how much of the machine other programs use while this one works.
+/// Measures how much processor time other programs use while this one runs.
 ///
 /// Thread rule: of_others() may be called from any thread.
 class ProcessorUse {
  public:
   ProcessorUse();
 
-  /// How many processors other processes and the system (that of a virtual machine's host included)
-  /// have kept busy since construction, in the mean; at least 0. Ticks of the system are 10 ms, so
-  /// it takes about a second to be exact to a percent. Empty where the system does not tell.
+  /// Mean number of processors that other processes and the system (including a virtual machine's
+  /// host) have kept busy since construction, ≥ 0. System ticks are 10 ms, so about a second is
+  /// needed for an accuracy of one percent. Empty if the system does not report it.
   [[nodiscard]] std::optional<double> of_others() const;
 
  private:
-  /// In seconds of processor time, and of the clock.
+  /// Seconds of processor time and of wall time.
   struct Moment {
     double all_busy_s = 0;
     double own_busy_s = 0;

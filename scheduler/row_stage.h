@@ -42,8 +42,8 @@ class InputRows {
 /// One row to be made.
 struct RowTask {
   int y = 0;
-  /// True for the first row of a sweep: `state` then holds nothing yet. Afterwards a sweep calls
-  /// for y + 1, y + 2, … with the same state.
+  /// True for the first row of a sweep, when `state` is uninitialised. The sweep then continues
+  /// with y + 1, y + 2, … and the same state.
   bool sweep_begins = false;
   InputRows input;              ///< empty for the first stage of a chain
   InputRows source;             ///< see RowStage::reads_source(); else empty
@@ -55,8 +55,8 @@ struct RowTask {
   std::byte* state = nullptr;  ///< state_bytes(), 64-byte aligned, kept through the sweep
 };
 
-/// What a stage does to make one column of one row, whatever the plan: counted from its kernel, for
-/// comparison with what a machine can do.
+/// Work of a stage for one column of one row, independent of the plan: counted from its kernel, for
+/// comparison with the limits of a machine.
 struct ColumnWork {
   /// Candidate disparities made or looked at. Lanes that only fill up vectors do not count.
   double cells = 0;
@@ -92,7 +92,7 @@ class RowStage {
   [[nodiscard]] Extent extent() const { return extent_; }
 
   /// Bytes of one cell column (all its disparities) of an output row, or 0. Rows begin at multiples
-  /// of 64 bytes, columns lie one behind the other.
+  /// of 64 bytes, columns are contiguous.
   [[nodiscard]] virtual std::size_t bytes_per_column() const = 0;
 
   /// Rows of the input needed to make row y, cut to the input's extent. Both ends must not
@@ -107,10 +107,10 @@ class RowStage {
   /// Whether this stage looks, beside its input, at row y of the chain's first stage once more, in
   /// the columns it makes. That stage must have the same extent as this one and those between; all
   /// but the first must look at row y of their input to make row y. Executors keep those rows along
-  /// the way; where a chain is cut into passes, each pass makes them anew, which costs less than
+  /// the way; where a chain is cut into passes, each pass makes them again, which costs less than
   /// storing and loading them.
   [[nodiscard]] virtual bool reads_source() const { return false; }
-  /// Most rows that input_rows() can span: the rows kept between this stage and the one before.
+  /// Maximum span of input_rows(): the rows kept between this stage and the one before.
   [[nodiscard]] virtual int window_rows() const { return 1; }
 
   /// Work of the first row of a sweep, in rows: more than 1 for running sums, which start by adding
@@ -128,7 +128,7 @@ class RowStage {
   /// Not for a last stage: the rows before its band, which it would write, belong to other tasks.
   [[nodiscard]] virtual int sweep_start(int y) const { return y; }
 
-  /// Only profiles ask. All 0: not known.
+  /// For profiles. All 0: not known.
   [[nodiscard]] virtual ColumnWork column_work() const { return {}; }
 
   virtual void make_row(const RowTask& task) const = 0;

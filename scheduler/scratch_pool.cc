@@ -27,7 +27,7 @@ ScratchPool::Lease ScratchPool::lease(std::size_t bytes, ScratchUse use) {
   bytes = std::max<std::size_t>(bytes, kAlignment);
   std::lock_guard lock(mutex_);
   // The smallest block that fits without wasting most of itself: the large ones are for whole-image
-  // states, which would otherwise have to be allocated anew, page by page.
+  // states, which would otherwise have to be allocated again, page by page.
   auto best = free_.end();
   for (auto it = free_.begin(); it != free_.end(); ++it) {
     if (it->bytes >= bytes && it->bytes <= kMostWaste * bytes &&

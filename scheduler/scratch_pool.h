@@ -10,15 +10,15 @@
 
 namespace vantage::scheduler {
 
-/// What leased memory is for; only profiles ask.
+/// Purpose of leased memory, for profiles.
 enum class ScratchUse : std::uint8_t {
   kRings,   ///< rows and states of a strip's sweep
   kStored,  ///< states of whole rows between passes
   kOther
 };
 
-/// Aligned memory that tasks lease and give back, so that a steady stream of equal tasks allocates
-/// nothing. Thread rule: all members may be called concurrently. A lease must not outlive the pool.
+/// Aligned memory that tasks lease and return, so that equal tasks allocate only once.
+/// Thread rule: all members may be called concurrently. A lease must not outlive the pool.
 class ScratchPool {
   struct Free {
     void operator()(std::byte* memory) const noexcept;
@@ -32,7 +32,7 @@ class ScratchPool {
  public:
   static constexpr std::size_t kAlignment = 64;
 
-  /// Holds memory until it is destroyed or assigned to; a default one holds none.
+  /// Holds memory until it is destroyed or assigned to; a default lease holds none.
   class Lease {
    public:
     Lease() = default;
@@ -60,9 +60,9 @@ class ScratchPool {
   /// At least `bytes` of memory. Throws std::bad_alloc.
   [[nodiscard]] Lease lease(std::size_t bytes, ScratchUse use = ScratchUse::kOther);
 
-  /// All memory this pool holds, leased or not.
+  /// Bytes that this pool holds, leased or free.
   [[nodiscard]] std::size_t bytes_held() const;
-  /// The most that was leased for `use` at a time.
+  /// Peak of the bytes leased for `use`.
   [[nodiscard]] std::size_t most_leased_bytes(ScratchUse use) const;
 
  private:

@@ -4,7 +4,7 @@
 
 namespace vantage::scheduler {
 
-/// Everything on the calling thread, in order.
+/// Runs everything on the calling thread, in order.
 class SerialExecutor : public Executor {
  public:
   [[nodiscard]] std::string_view name() const override { return "serial"; }

@@ -10,19 +10,19 @@
 
 namespace vantage::scheduler {
 
-/// A loop that threads of several arenas or teams work on. Who has begun it waits for tasks that
-/// somebody has taken, never for threads that have not come yet: so loops within loops cannot wait
-/// for each other in a circle.
+/// A loop whose tasks are run by threads of several arenas or teams. Its caller waits only for
+/// tasks that a thread has taken, never for threads that have not arrived yet. What is waited for
+/// was therefore always started later than what waits, and nested loops cannot deadlock.
 class SharedLoop {
  public:
-  /// `body` is used as long as tasks are left; see wait().
+  /// `body` must stay valid until wait() has returned.
   SharedLoop(int task_count, const std::vector<int>& threads_of_nodes,
              const std::function<void(int task)>& body);
 
-  /// Concurrently, by threads that want to help: a task to run(), if any is left.
+  /// Called concurrently by helping threads: a task for run(), if any is left.
   std::optional<int> take(int node) { return tasks_.take(node); }
-  /// Runs a task that was taken. Its exception is kept if it is the first, and drops the tasks that
-  /// nobody has taken.
+  /// Runs a task that was taken. The first exception is kept, and drops all tasks that have not
+  /// been taken.
   void run(int task);
 
   /// Returns when all tasks are done or dropped; rethrows the first exception.
@@ -35,7 +35,7 @@ class SharedLoop {
   const std::function<void(int)>& body_;
   std::atomic<int> unfinished_;
   std::atomic<bool> failed_{false};
-  std::exception_ptr error_;  // written by who has set failed_
+  std::exception_ptr error_;  // written by the thread that sets failed_
 };
 
 }  // namespace vantage::scheduler

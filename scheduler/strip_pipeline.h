@@ -8,9 +8,9 @@
 
 namespace vantage::scheduler {
 
-/// Runs `chain` as `plan` says: per pass, strips × bands are independent tasks of `executor`; in a
-/// task the stages follow each other down the image as a wavefront over rings of rows. Blocks until
-/// done. Rethrows the first error of a stage. The results are those of run_whole_image().
+/// Runs `chain` according to `plan`. In each pass, strips × bands are independent tasks of
+/// `executor`; in a task the stages move down the image as a wavefront over rings of rows. Blocks
+/// until done. Rethrows the first error of a stage. Results equal those of run_whole_image().
 void run_strips(Chain chain, const ChainPlan& plan, Executor& executor, ScratchPool& scratch);
 
 }  // namespace vantage::scheduler

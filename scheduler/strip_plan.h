@@ -9,10 +9,10 @@
 
 namespace vantage::scheduler {
 
-/// Most memory that a plan takes unless the request says otherwise.
+/// Memory limit of a plan, unless the request sets one.
 inline constexpr std::size_t kDefaultMemoryBytes = std::size_t{1} << 30;
 
-/// What users tune; what is not set comes from the cost model.
+/// Settings of the user; those that are not set come from the cost model.
 struct PlanRequest {
   int threads = 1;
   std::optional<int> strip_columns;  ///< ≥ 1
@@ -20,7 +20,7 @@ struct PlanRequest {
   /// Stage counts after which the chain is cut and the state stored, increasing, each in
   /// [1, stages − 1]. Empty list: one pass.
   std::optional<std::vector<int>> pass_ends;
-  /// For the rows stored between passes and the scratch of all threads, as far as it can be kept:
+  /// Limit, as far as possible, of the rows stored between passes plus the scratch of all threads;
   /// kDefaultMemoryBytes when not set.
   std::optional<std::size_t> memory_bytes;
 };
@@ -33,29 +33,29 @@ struct PassPlan {
   int band_rows = 0;
   int strips = 0;
   int bands = 0;        ///< of a step
-  int lag_rows = 0;     ///< that this pass stays behind the first one when there are several steps
+  int lag_rows = 0;     ///< rows by which it lags the first pass, if there are several steps
   int stored_rows = 0;  ///< rows of its output kept for the next pass; 0 for the last pass
   int source_rows = 0;  ///< see PassStages
-  std::size_t scratch_bytes = 0;  ///< most that one task needs: rings and states
+  std::size_t scratch_bytes = 0;  ///< maximum of one task: rings and states
   double work_ratio = 1;          ///< cells computed ÷ cells delivered, halo columns and rows in
   double expected_time = 0;  ///< in units of one stage over the image, in level 1 on all threads
 };
 
-/// With several passes whose stored state must not be whole images, the image is worked off in
-/// steps: in each, one pass after the other makes up to `step_rows` rows, each pass staying behind
-/// the one before by the rows it looks down, so that a ring of rows is all that is stored.
+/// If whole images of state between passes exceed the memory limit, the image is processed in
+/// steps. In each step every pass in turn makes up to `step_rows` rows. A pass lags the one before
+/// it by the rows that it reads below, so only a ring of rows is stored between them.
 struct ChainPlan {
   std::vector<PassPlan> passes;
   int steps = 1;
   int step_rows = 0;             ///< all rows where there is one step
-  std::size_t stored_bytes = 0;  ///< rows stored between passes, most at any one time
+  std::size_t stored_bytes = 0;  ///< peak of the rows stored between passes
 };
 
 /// The rows of its output, which has `rows` rows, that `pass` of `plan` makes in `step`; may be
 /// empty.
 Range rows_of_step(const ChainPlan& plan, const PassPlan& pass, int step, int rows);
 
-/// Of all passes (PassPlan::expected_time) and of storing what they hand on.
+/// Expected time of all passes (PassPlan::expected_time) and of storing rows between them.
 double total_expected_time(const ChainPlan& plan);
 
 /// Cuts `chain` into passes, strips and bands so that the rings of a strip stay in the level-2

@@ -6,17 +6,17 @@
 
 namespace vantage::scheduler {
 
-/// The tasks of a loop, a contiguous range of them for each NUMA node. Neighbouring tasks share
-/// rows, so a node goes on where its own threads have been writing; one that is done helps the node
-/// that has most left. Thread rule: all members may be called concurrently.
+/// The tasks of a loop, a contiguous range for each NUMA node. Neighbouring tasks share rows, so a
+/// node continues where its own threads have written. An idle node takes tasks from the node with
+/// the most tasks left. Thread rule: all members may be called concurrently.
 class TaskRanges {
  public:
   /// Ranges are in proportion to the threads of the nodes.
   TaskRanges(int task_count, const std::vector<int>& threads_of_nodes);
 
-  /// A task that nobody else has, for a thread of `node`; nothing when all are taken.
+  /// The next task for a thread of `node`; empty when all are taken.
   std::optional<int> take(int node);
-  /// Takes all that are left; how many that were.
+  /// Takes all remaining tasks and returns their number.
   int take_all();
 
  private:

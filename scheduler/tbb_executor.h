@@ -7,7 +7,7 @@
 
 namespace vantage::scheduler {
 
-/// One arena of `threads` TBB threads for strips and frames alike.
+/// One arena of `threads` TBB threads, for strips and for frames.
 std::unique_ptr<Executor> make_tbb_executor(int threads);
 
 /// Version of the TBB library in use.

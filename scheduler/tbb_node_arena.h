@@ -7,19 +7,20 @@
 
 namespace vantage::scheduler {
 
-/// TBB's arena for the threads of one NUMA node. They are bound by NodeVisit, not by an observer of
-/// the arena: TBB tells no observer when the last threads leave an arena that is being destroyed,
-/// and they would stay bound in whatever arena they work next.
+/// A TBB arena for the threads of one NUMA node. NodeVisit binds them, not an observer of the
+/// arena: TBB does not call observers when the last threads leave an arena that is being destroyed,
+/// and those threads would stay bound in other arenas. TBB's own constraints (tbbbind) know whole
+/// nodes only, neither cores nor a part of a node's threads, and no simulated machine.
 class NodeArena {
  public:
-  /// `callers`: how many of the threads come by arena().execute(), the rest are sent by TBB.
+  /// `callers`: number of threads that enter by arena().execute(); TBB provides the others.
   NodeArena(int node, const ThreadPlaces& places, int callers);
 
   [[nodiscard]] tbb::task_arena& arena() { return arena_; }
   /// Index in ThreadPlaces::nodes.
   [[nodiscard]] int node() const { return node_; }
   [[nodiscard]] int thread_count() const { return threads_.count(); }
-  /// Binds the calling thread, which is inside, as the place in the arena that it has taken says.
+  /// Binds the calling thread, which must be in the arena, according to its slot there.
   [[nodiscard]] BoundThread bind_this_thread() const;
 
  private:
@@ -29,17 +30,17 @@ class NodeArena {
   tbb::task_arena arena_;
 };
 
-/// What the calling thread does for the tasks of an executor, from construction to destruction: it
-/// is bound to the node of `arena`, and loops begun meanwhile know where they are.
+/// While it exists, the calling thread works for an executor: it is bound to the node of `arena`,
+/// and loops that it starts know their node.
 class NodeVisit {
  public:
-  /// `loops_stay`: loops begun meanwhile are for the threads of this node alone.
+  /// `loops_stay`: loops that this thread starts meanwhile run on this node only.
   NodeVisit(const NodeArena& arena, bool loops_stay);
   NodeVisit(const NodeVisit&) = delete;
   NodeVisit& operator=(const NodeVisit&) = delete;
   ~NodeVisit() { innermost_ = outer_; }
 
-  /// This thread's; null outside of all.
+  /// The innermost visit of this thread; null if there is none.
   [[nodiscard]] static const NodeVisit* innermost() { return innermost_; }
   [[nodiscard]] const NodeArena& arena() const { return arena_; }
   [[nodiscard]] bool loops_stay() const { return loops_stay_; }

@@ -8,16 +8,16 @@
 
 namespace vantage::scheduler {
 
-/// How frames are divided between nodes.
+/// Division of the frames between nodes.
 struct FramePlaces {
   std::vector<int> node_of_slot;
-  /// Whether loops within a frame are for its node alone. Else all nodes take part.
+  /// Whether loops within a frame run on its node only. Else all nodes take part.
   bool loops_stay = false;
 };
 
 /// Places for at most `in_flight` frames at a time: as many as give each node its share of them,
-/// within a quarter, so that loops can stay; all of them, and loops of all nodes, where there are
-/// fewer frames than nodes or only one of them is computed at a time.
+/// within a quarter, so that loops can stay on their node. With fewer frames than nodes, or frames
+/// computed in order: `in_flight` places, and loops run on all nodes.
 FramePlaces place_frames(int in_flight, bool compute_in_order,
                          const std::vector<int>& threads_of_nodes);
 

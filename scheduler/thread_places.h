@@ -10,8 +10,8 @@ namespace vantage::scheduler {
 
 /// Threads of an executor that run on one NUMA node.
 struct NodeThreads {
-  int number = 0;  ///< of the node, as the system counts
-  /// For each thread the hardware threads that it may run on, as the system numbers them; empty:
+  int number = 0;  ///< the system's number of the node
+  /// Per thread, the system's numbers of the hardware threads that it may run on; empty:
   /// all.
   std::vector<std::vector<int>> allowed;
 
@@ -22,8 +22,8 @@ struct NodeThreads {
 struct ThreadPlaces {
   ThreadBinding binding = ThreadBinding::kNone;
   std::vector<NodeThreads> nodes;  ///< at least one, each with at least one thread
-  /// hwloc's topology to bind with; null where threads are not bound, because `binding` says so or
-  /// because the topology is not this system's.
+  /// hwloc's topology for binding; null if threads are not bound, because of `binding` or because
+  /// the topology is not that of this system.
   std::shared_ptr<hwloc_topology> system;
 
   [[nodiscard]] int thread_count() const;
@@ -34,16 +34,16 @@ struct ThreadPlaces {
 /// kNodes where `threads` need the cores of more than one node, else kNone.
 ThreadBinding default_binding(const Topology& topology, int threads);
 
-/// `threads` ≥ 1 that run anywhere, as if there were one node.
+/// `threads` ≥ 1 that may run anywhere, as one node.
 ThreadPlaces unbound_threads(int threads);
 
-/// Places `threads` ≥ 1. They use the first nodes whose cores suffice to give each thread one, or
-/// all nodes, in proportion to the cores or, where there are more threads than cores, to the
-/// hardware threads. With kNone: unbound_threads().
+/// Places `threads` ≥ 1. They use the first nodes that have a core for each thread, else all nodes,
+/// in proportion to cores or, if there are more threads than cores, to hardware threads. A thread
+/// then works on memory of its own node. With kNone: unbound_threads().
 ThreadPlaces place_threads(const Topology& topology, int threads, ThreadBinding binding);
 
 /// Like make_executor() of executor.h, for given places. Throws std::invalid_argument for a serial
-/// executor that is to be bound.
+/// executor with binding.
 std::unique_ptr<Executor> make_executor(ExecutorKind kind, const ThreadPlaces& places);
 
 /// `total` divided in proportion to `weights` (≥ 0, not all 0), each part rounded to a neighbour.

@@ -11,12 +11,12 @@ struct hwloc_topology;
 
 namespace vantage::scheduler {
 
-/// Hardware threads that share a core, as the system numbers them; never empty.
+/// The system's numbers of the hardware threads of a core; never empty.
 using Core = std::vector<int>;
 
-/// Memory and the cores next to it.
+/// A NUMA node: memory and its local cores.
 struct NumaNode {
-  int number = 0;  ///< as the system counts nodes
+  int number = 0;  ///< the system's number of the node
   std::vector<Core> cores;
   std::size_t memory_bytes = 0;
 
@@ -27,16 +27,16 @@ struct NumaNode {
 struct Topology {
   Machine machine;
   std::vector<NumaNode> nodes;  ///< those with cores, at least one
-  /// hwloc's, for binding threads. Null where `nodes` are not those of the system that this process
-  /// runs on.
+  /// hwloc's topology, for binding threads. Null if `nodes` are not those of the system that this
+  /// process runs on.
   std::shared_ptr<hwloc_topology> system;
 };
 
-/// Asks hwloc, which obeys HWLOC_SYNTHETIC and HWLOC_XMLFILE: such topologies are planned for, but
-/// no thread is bound to what may not be there. What hwloc cannot tell keeps Machine's defaults.
+/// Queries hwloc, which obeys HWLOC_SYNTHETIC and HWLOC_XMLFILE: plans use such topologies, but no
+/// thread is bound to them. Values that hwloc does not know keep Machine's defaults.
 Topology detect_topology();
 
-/// The one that `description` stands for, in hwloc's notation ("pack:2 core:4 pu:2"). Throws
+/// The topology of `description` in hwloc's notation ("pack:2 core:4 pu:2"). Throws
 /// std::invalid_argument.
 Topology synthetic_topology(const std::string& description);
 

@@ -22,7 +22,7 @@ enum class SpanKind : std::uint8_t {
   kWait   ///< is blocked or has nothing to do
 };
 
-/// Which part of the work a span is about; −1 where that means nothing.
+/// The part of the work that a span belongs to; −1: not applicable.
 struct SpanPlace {
   int frame = -1;
   int task = -1;
@@ -31,20 +31,20 @@ struct SpanPlace {
   int first_row = -1;  ///< of the band
 };
 
-/// What one stage of a chain did within a span.
+/// Work of one stage of a chain within a span.
 struct StageShare {
   std::string_view name;
   std::int64_t duration_ns = 0;
   int rows = 0;
   double columns = 0;  ///< made, summed over the rows
-  /// Those that the strip and band of the span consist of. The rest is halo, rows that warm up
-  /// running sums, and what is made again in a later pass.
+  /// Columns inside the strip and band of the span. The rest is halo, warm-up rows of running sums,
+  /// and columns that a later pass makes again.
   double own_columns = 0;
   ColumnWork column_work;  ///< of each column
 };
 
-/// One thing that a thread did, from begin_ns to end_ns after the start of the trace. Spans of a
-/// thread nest: two either do not overlap, or one lies within the other.
+/// What a thread did from begin_ns to end_ns after the start of the trace. Spans of a thread nest:
+/// two of them either do not overlap, or one lies within the other.
 struct SpanRecord {
   std::string_view name;
   SpanKind kind = SpanKind::kWork;
@@ -58,19 +58,19 @@ struct SpanRecord {
 struct ThreadTrace {
   std::string name;               ///< "main", "worker 1", or what name_traced_thread() said
   bool is_in_pool = false;        ///< has run tasks or steps of frames
-  std::vector<SpanRecord> spans;  ///< a span comes behind those that it holds
+  std::vector<SpanRecord> spans;  ///< a span comes after the spans within it
   std::vector<StageShare> stages;
 };
 
 /// What a trace has recorded.
 struct TraceData {
   std::int64_t wall_ns = 0;
-  std::int64_t dropped_spans = 0;    ///< that came when most_spans were reached
+  std::int64_t dropped_spans = 0;    ///< those beyond most_spans
   std::vector<ThreadTrace> threads;  ///< in the order of their first spans; the first is "main"
 };
 
-/// Records the spans of all threads of this process from its construction to finish(). Where there
-/// is no trace, a Span costs one load and a branch.
+/// Records the spans of all threads of this process from its construction to finish(). Without an
+/// active trace, a Span costs one load and a branch.
 ///
 /// Thread rule: construct, finish and destroy it on one thread ("main"), one trace at a time,
 /// while no other thread has a span open.
@@ -83,7 +83,7 @@ class Trace {
   Trace& operator=(const Trace&) = delete;
   ~Trace();
 
-  /// Ends the recording and hands over what was recorded.
+  /// Ends the recording and returns it.
   [[nodiscard]] TraceData finish();
 
   [[nodiscard]] static bool is_active() {
@@ -110,7 +110,7 @@ class Trace {
 };
 
 /// A span from construction to destruction. `name` must outlive the trace (a literal). Without a
-/// frame of its own it is about the frame of the span around it.
+/// frame of its own it belongs to the frame of the enclosing span.
 class Span {
  public:
   explicit Span(std::string_view name, SpanKind kind = SpanKind::kWork,
@@ -132,7 +132,7 @@ class Span {
   [[nodiscard]] const SpanRecord& record() const { return record_; }
   /// For the task that sweeps a strip and band in one pass of a chain. Only for recorded spans.
   void set_strip(int pass, int strip, int first_row);
-  /// What a stage took within it. Only for recorded spans.
+  /// Adds the work of a stage. Only for recorded spans.
   void add_stage(const StageShare& share);
   /// Notes that this thread belongs to the pool.
   static void note_pool_thread();
@@ -149,7 +149,7 @@ class Span {
 /// Nanoseconds on the clock of traces.
 [[nodiscard]] std::int64_t trace_clock_ns();
 
-/// What this thread is called in traces, if one is active. For threads outside of the pool.
+/// Names this thread in the active trace, if there is one. For threads outside the pool.
 void name_traced_thread(std::string_view name);
 
 }  // namespace vantage::scheduler

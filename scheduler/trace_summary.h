@@ -8,11 +8,11 @@
 
 namespace vantage::scheduler {
 
-/// Writes down as spans what a trace leaves open: on threads of the pool, the time before, between
-/// and behind the outermost spans ("idle"), and within joins that between their inner spans
-/// ("wait for tasks"). Afterwards every moment of such a thread from 0 to wall_ns lies in a span of
-/// kind kWork or kWait that no other span of these kinds within it covers. Threads outside of the
-/// pool stay as they are.
+/// Fills the gaps of a trace with spans. On threads of the pool it adds "idle" before, between and
+/// after the outermost spans, and "wait for tasks" between the inner spans of a join. After that,
+/// every moment of such a thread from 0 to wall_ns lies in a span of kind kWork or kWait that no
+/// other span of these kinds within it covers, so work and waits add up to the wall time. Threads
+/// outside the pool are not changed.
 void add_waits(TraceData& trace);
 
 /// Times in seconds, summed over threads.
@@ -28,11 +28,11 @@ struct TraceSummary {
     int count = 0;
   };
 
-  /// What the stages of one name did, summed over passes, strips, threads and frames.
+  /// Work of the stages of one name, summed over passes, strips, threads and frames.
   struct Stage {
     double seconds = 0;
     double columns = 0;      ///< made; see StageShare
-    double own_columns = 0;  ///< of them, without halo and repetition
+    double own_columns = 0;  ///< without halo and repetition
     ColumnWork work;         ///< of all columns made
   };
 

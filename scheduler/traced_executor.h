@@ -8,7 +8,7 @@ namespace vantage::scheduler {
 
 /// An executor that works like `inner` and, while a Trace is active, records every task and every
 /// step of a frame as work, and every loop and pipeline as a join. Tasks are named after the span
-/// that their loop was begun in.
+/// in which their loop started.
 std::unique_ptr<Executor> with_tracing(std::unique_ptr<Executor> inner);
 
 }  // namespace vantage::scheduler

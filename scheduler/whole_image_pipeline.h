@@ -4,8 +4,8 @@
 
 namespace vantage::scheduler {
 
-/// The plain executor of a chain: one stage after the other over the whole image, every row of
-/// every stage stored. Slow and large, and obviously right: what run_strips() is tested against.
+/// The reference executor of a chain: one stage after the other over the whole image, with every
+/// row of every stage stored. Slow and simple: the oracle for tests of run_strips().
 void run_whole_image(Chain chain);
 
 }  // namespace vantage::scheduler
