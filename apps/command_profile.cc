@@ -12,7 +12,7 @@
 #include "apps/commands.h"
 #include "apps/interrupt.h"
 #include "apps/outputs.h"
-#include "apps/profile_json.h"
+#include "apps/profile_page.h"
 #include "apps/profile_report.h"
 #include "apps/profile_rounds.h"
 #include "apps/profiled_command.h"
@@ -20,10 +20,10 @@
 #include "apps/tell.h"
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
-#include "engine/profile_page/profile_page.h"
 #include "engine/profiling/profile_advice.h"
 #include "engine/profiling/profile_comparison.h"
 #include "engine/profiling/profile_figures.h"
+#include "engine/profiling/profile_json.h"
 #include "engine/simd.h"
 #include "scheduler/machine.h"
 
@@ -219,13 +219,10 @@ Profile make_profile(const ProfiledCommand& command, const std::vector<Contestan
 
 void write_files(const ProfileJob& job, const Profile& profile) {
   if (!job.json.empty()) {
-    // File names need not be UTF-8, JSON must be.
-    write_text_file(
-        job.json,
-        as_json(profile).dump(1, ' ', false, SettingValue::error_handler_t::replace) + "\n");
+    write_text_file(job.json, profile_json(profile));
   }
   if (!job.html.empty()) {
-    write_text_file(job.html, profile_page(profile));
+    write_text_file(job.html, make_profile_page(profile));
   }
 }
 

@@ -6,8 +6,9 @@
 
 #include "apps/setting_value.h"
 #include "apps/text_table.h"
-#include "engine/profile_page/quantity_text.h"
+#include "engine/profiling/profile_figures.h"
 #include "engine/profiling/profile_findings.h"
+#include "engine/profiling/quantity_text.h"
 #include "engine/profiling/roofline.h"
 #include "engine/profiling/stage_figures.h"
 
@@ -79,7 +80,7 @@ std::string scaling(const Profile& profile) {
 }
 
 std::string stages(const Profile& profile, const ThreadCountProfile& count) {
-  const std::optional<ThreadRoofs> roofs = roofs_of_most_threads(profile);
+  const std::optional<ThreadRoofs> roofs = roofs_on(profile, count.threads);
   TextTable table(
       fmt::format("Stages of matching on {}, time over all threads, rates of one thread",
                   threads_text(count.threads)),
@@ -88,7 +89,7 @@ std::string stages(const Profile& profile, const ThreadCountProfile& count) {
     const bool known = stage.cells > 0;
     const auto place = roofs ? place_on_roofline(stage, *roofs) : std::nullopt;
     table.add({stage.name, quantity_text(stage.seconds.median, "s"),
-               share_text(stage.seconds.median, pool_work_s(count)),
+               percent_text(work_share(stage, count)),
                known ? number_text(nanoseconds_per_cell(stage)) : kUnknown,
                known ? quantity_text(cells_per_second(stage), "") : kUnknown,
                percent_text(halo_share(stage)), place ? number_text(place->gb_per_s) : kUnknown,

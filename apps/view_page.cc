@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <string_view>
 #include <variant>
 
 #include "apps/embedded_files.h"
+#include "apps/page_template.h"
 #include "engine/build_info.h"
 #include "engine/error.h"
 #include "engine/io/base64.h"
@@ -95,21 +95,6 @@ std::string as_base64(const std::string& file_name, Image<std::uint8_t> pixels) 
   return encode_base64(bytes);
 }
 
-// The template with every {{name}} replaced. What is put in is not looked at again.
-std::string filled_in(std::string_view page, const std::map<std::string_view, std::string>& parts) {
-  std::string result;
-  while (true) {
-    const std::size_t begin = page.find("{{");
-    result += page.substr(0, begin);
-    if (begin == std::string_view::npos) {
-      return result;
-    }
-    const std::size_t end = page.find("}}", begin);
-    result += parts.at(page.substr(begin + 2, end - begin - 2));
-    page.remove_prefix(end + 2);
-  }
-}
-
 SettingValue intensity_of(const PairWithMaps& pair, const SynthesisOptions& options,
                           Execution& execution) {
   std::array<IntensityFit, 4> fits;
@@ -148,20 +133,7 @@ std::string shader_elements() {
        {"disparity.glsl", "warp.vert", "warp.frag", "screen.vert", "combine.frag", "fill.frag",
         "soften.frag", "outlines.frag", "rows.frag", "show.frag"}) {
     result += fmt::format("<script type=\"text/plain\" id=\"{}\">\n{}</script>\n", name,
-                          embedded_file(name));
-  }
-  return result;
-}
-
-// No "</script>" may end the element that holds it.
-std::string json_in_html(const SettingValue& value) {
-  std::string result;
-  for (const char letter : value.dump()) {
-    if (letter == '<') {
-      result += "\\u003c";
-    } else {
-      result += letter;
-    }
+                          embedded_file(fmt::format("view_page/{}", name)));
   }
   return result;
 }
@@ -236,21 +208,21 @@ std::string make_view_page(const PairWithMaps& pair, const std::string& names,
   const bool lossless = options.images == PageImages::kPng;
   const std::string image_name = lossless ? "image.png" : "image.jpg";
   return filled_in(
-      embedded_file("page.html"),
+      embedded_file("view_page/page.html"),
       {{"title", escaped_markup(names + " – Vantage")},
        {"names", escaped_markup(names)},
        {"version", build_info().version},
-       {"style", std::string(embedded_file("page.css"))},
+       {"style", std::string(embedded_file("view_page/page.css"))},
        {"image_type", lossless ? "image/png" : "image/jpeg"},
        {"left_image", as_base64(image_name, for_browser(pair.left))},
        {"right_image", as_base64(image_name, for_browser(pair.right))},
        {"left_map", as_base64("map.png", as_numbers(pair.maps.left.view(), numbers))},
        {"right_map", as_base64("map.png", as_numbers(pair.maps.right.view(), numbers))},
        {"palette", as_base64("palette.png", make_palette())},
-       {"scene", json_in_html(scene)},
+       {"scene", json_in_html(scene.dump())},
        {"shaders", shader_elements()},
-       {"renderer", std::string(embedded_file("renderer.js"))},
-       {"script", std::string(embedded_file("page.js"))}});
+       {"renderer", std::string(embedded_file("view_page/renderer.js"))},
+       {"script", std::string(embedded_file("view_page/page.js"))}});
 }
 
 }  // namespace vantage::apps

@@ -27,8 +27,7 @@ struct XmlOutline {
 /// given once, the five entities, a declaration, ASCII. Whatever else there is counts as an error.
 class XmlReader {
  public:
-  /// `most`: the last character code that needs no escape; 255 for texts in UTF-8.
-  explicit XmlReader(std::string_view text, unsigned char most = 126) : text_(text), most_(most) {}
+  explicit XmlReader(std::string_view text) : text_(text) {}
 
   XmlOutline read() {
     take("<?xml");
@@ -45,6 +44,8 @@ class XmlReader {
   }
 
  private:
+  static constexpr unsigned char kMaxAscii = 126;
+
   void element() {
     if (!take("<")) {
       return fail("an element is missing");
@@ -83,7 +84,7 @@ class XmlReader {
   /// Characters up to `end`.
   void content(char end) {
     for (; ok() && peek() != end; ++position_) {
-      if (peek() == '<' || peek() == '>' || static_cast<unsigned char>(peek()) > most_) {
+      if (peek() == '<' || peek() == '>' || static_cast<unsigned char>(peek()) > kMaxAscii) {
         return fail("a character that must be escaped");
       }
       if (peek() == '&' && !starts_with("&amp;") && !starts_with("&lt;") && !starts_with("&gt;") &&
@@ -128,7 +129,6 @@ class XmlReader {
   }
 
   std::string_view text_;
-  unsigned char most_;
   std::size_t position_ = 0;
   XmlOutline outline_;
 };

@@ -15,6 +15,8 @@ struct MachineCeilings {
   double all_l2_gb_per_s = 0;
   double core_memory_gb_per_s = 0;  ///< the triad's loads and stores, without loads for stores
   double all_memory_gb_per_s = 0;
+
+  bool operator==(const MachineCeilings&) const = default;
 };
 
 /// Measures for about `seconds` (> 0, usually 2). The best of many short measurements each, as

@@ -15,6 +15,8 @@ struct ProfileSample {
   double median = 0;
   double least = 0;
   double most = 0;
+
+  bool operator==(const ProfileSample&) const = default;
 };
 
 /// What the stages of one name did in one run, summed over all threads, passes, strips and frames.
@@ -27,6 +29,8 @@ struct StageProfile {
   double cells = 0;
   double operations = 0;
   double bytes = 0;  ///< loaded and stored by the kernel, whichever cache they lie in
+
+  bool operator==(const StageProfile&) const = default;
 };
 
 /// A named part of the work, or of the waiting. Stages of chains are within the parts that sweep
@@ -35,6 +39,8 @@ struct PartProfile {
   std::string name;
   ProfileSample seconds;  ///< over all threads, without the parts within it
   double count = 0;       ///< of spans
+
+  bool operator==(const PartProfile&) const = default;
 };
 
 struct ThreadProfile {
@@ -42,6 +48,8 @@ struct ThreadProfile {
   bool is_in_pool = false;
   double work_s = 0;
   double wait_s = 0;
+
+  bool operator==(const ThreadProfile&) const = default;
 };
 
 /// What the waiting threads of the pool waited for, in seconds over all of them; see
@@ -51,6 +59,8 @@ struct WaitingProfile {
   ProfileSample computing_s;  ///< other work
   ProfileSample writing_s;    ///< results being encoded or written
   ProfileSample nothing_s;    ///< no thread did anything that is recorded
+
+  bool operator==(const WaitingProfile&) const = default;
 };
 
 /// One thread doing one thing, for drawing: the innermost of what was recorded.
@@ -60,6 +70,8 @@ struct TimelineSpan {
   double begin_s = 0;
   double end_s = 0;
   int frame = -1;  ///< −1: about none
+
+  bool operator==(const TimelineSpan&) const = default;
 };
 
 /// A thread's row in the timeline. Spans that are too short to be seen are joined with neighbours
@@ -68,6 +80,8 @@ struct TimelineRow {
   std::string thread;
   bool is_in_pool = false;
   std::vector<TimelineSpan> spans;  ///< in order, apart
+
+  bool operator==(const TimelineRow&) const = default;
 };
 
 /// What was measured on one number of threads.
@@ -87,6 +101,8 @@ struct ThreadCountProfile {
   std::vector<PartProfile> waits;      ///< most time first
   WaitingProfile waiting_for;          ///< the same time as in waits, by cause
   std::vector<ThreadProfile> workers;  ///< of the run with the median wall time
+
+  bool operator==(const ThreadCountProfile&) const = default;
 };
 
 /// How much faster more threads are.
@@ -96,18 +112,24 @@ struct SpeedUp {
   double efficiency = 0;
   /// Karp and Flatt's serial fraction; none for the fewest threads.
   std::optional<double> serial_fraction;
+
+  bool operator==(const SpeedUp&) const = default;
 };
 
 /// What the memory belonged to at its peak, or as much of it as is known.
 struct MemoryOwner {
   std::string name;
   std::uint64_t bytes = 0;
+
+  bool operator==(const MemoryOwner&) const = default;
 };
 
 /// Counts of the processor over one run, all threads. Empty where the system keeps none.
 struct HardwareCounts {
   std::map<std::string, ProfileSample> counts;  ///< "instructions", "cycles", …
   std::string absence;                          ///< why there are none or not all; empty: all there
+
+  bool operator==(const HardwareCounts&) const = default;
 };
 
 /// What `vantage profile` has found out.
@@ -132,6 +154,8 @@ struct Profile {
   double timeline_s = 0;              ///< its wall time
   std::vector<MemoryOwner> memory;    ///< most first
   HardwareCounts hardware;            ///< of the most threads
+
+  bool operator==(const Profile&) const = default;
 };
 
 }  // namespace vantage

@@ -55,4 +55,38 @@ std::optional<double> amdahl_fit(std::span<const SpeedUp> speed_ups) {
   return xx > 0 ? std::optional(xy / xx) : std::nullopt;
 }
 
+double stages_s(const ThreadCountProfile& count) {
+  double result = 0;
+  for (const StageProfile& stage : count.stages) {
+    result += stage.seconds.median;
+  }
+  return result;
+}
+
+double pool_work_s(const ThreadCountProfile& count) {
+  double result = 0;
+  for (const ThreadProfile& worker : count.workers) {
+    result += worker.is_in_pool ? worker.work_s : 0;
+  }
+  return result;
+}
+
+double pool_time_s(const ThreadCountProfile& count) {
+  double result = 0;
+  for (const ThreadProfile& worker : count.workers) {
+    result += worker.is_in_pool ? worker.work_s + worker.wait_s : 0;
+  }
+  return result;
+}
+
+std::optional<double> instructions_per_cycle(const HardwareCounts& hardware) {
+  const auto instructions = hardware.counts.find("instructions");
+  const auto cycles = hardware.counts.find("cycles");
+  if (instructions == hardware.counts.end() || cycles == hardware.counts.end() ||
+      !(cycles->second.median > 0)) {
+    return std::nullopt;
+  }
+  return instructions->second.median / cycles->second.median;
+}
+
 }  // namespace vantage

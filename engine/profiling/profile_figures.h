@@ -34,4 +34,14 @@ std::vector<SpeedUp> speed_ups(std::span<const WallTimes> times);
 /// of threads.
 std::optional<double> amdahl_fit(std::span<const SpeedUp> speed_ups);
 
+/// Processor time of all stages, in seconds.
+double stages_s(const ThreadCountProfile& count);
+/// Work of the pool's threads in the run with the median wall time; 0 if it is not known.
+double pool_work_s(const ThreadCountProfile& count);
+/// Their work and waits.
+double pool_time_s(const ThreadCountProfile& count);
+
+/// None where instructions or cycles were not counted.
+std::optional<double> instructions_per_cycle(const HardwareCounts& hardware);
+
 }  // namespace vantage

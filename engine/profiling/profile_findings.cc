@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/profiling/profile_figures.h"
 #include "engine/profiling/roofline.h"
 #include "engine/profiling/stage_figures.h"
 
@@ -27,14 +28,6 @@ using Finding = std::optional<ProfileFinding>;
 
 std::string percent(double share) {
   return fmt::format("{:.{}f} %", 100 * share, share < 0.0995 ? 1 : 0);
-}
-
-double stages_s(const ThreadCountProfile& profile) {
-  double result = 0;
-  for (const StageProfile& stage : profile.stages) {
-    result += stage.seconds.median;
-  }
-  return result;
 }
 
 template <typename Named>
@@ -79,12 +72,10 @@ Finding largest_stage(const ThreadCountProfile& most, const std::optional<Thread
     return std::nullopt;
   }
   const StageProfile& stage = largest(most.stages);
-  const double work_s = pool_work_s(most);
-  const double share = stage.seconds.median / (work_s > 0 ? std::max(work_s, sum_s) : sum_s);
-  return ProfileFinding{
-      Kind::kStage,
-      fmt::format("The stage \"{}\" takes {} of the {}. {}", stage.name, percent(share),
-                  work_s > 0 ? "work" : "stages' time", bound_of(stage, roofs))};
+  return ProfileFinding{Kind::kStage, fmt::format("The stage \"{}\" takes {} of the {}. {}",
+                                                  stage.name, percent(work_share(stage, most)),
+                                                  pool_work_s(most) > 0 ? "work" : "stages' time",
+                                                  bound_of(stage, roofs))};
 }
 
 Finding largest_part(const ThreadCountProfile& most) {
@@ -189,22 +180,6 @@ Finding scaling(const Profile& profile) {
 
 }  // namespace
 
-double pool_work_s(const ThreadCountProfile& profile) {
-  double result = 0;
-  for (const ThreadProfile& worker : profile.workers) {
-    result += worker.is_in_pool ? worker.work_s : 0;
-  }
-  return result;
-}
-
-double pool_time_s(const ThreadCountProfile& profile) {
-  double result = 0;
-  for (const ThreadProfile& worker : profile.workers) {
-    result += worker.is_in_pool ? worker.work_s + worker.wait_s : 0;
-  }
-  return result;
-}
-
 std::vector<ProfileFinding> profile_findings(const Profile& profile) {
   std::vector<ProfileFinding> findings;
   if (profile.thread_counts.empty()) {
@@ -212,7 +187,7 @@ std::vector<ProfileFinding> profile_findings(const Profile& profile) {
   }
   const ThreadCountProfile& most = profile.thread_counts.back();
   for (const Finding& finding :
-       {largest_stage(most, roofs_of_most_threads(profile)), largest_part(most), waiting(most),
+       {largest_stage(most, roofs_on(profile, most.threads)), largest_part(most), waiting(most),
         imbalance(most), halo(most), scaling(profile)}) {
     if (finding) {
       findings.push_back(*finding);

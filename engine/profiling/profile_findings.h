@@ -28,9 +28,4 @@ struct ProfileFinding {
 /// between 60 % and 110 % of what memory delivers; else by neither.
 std::vector<ProfileFinding> profile_findings(const Profile& profile);
 
-/// Work of the pool's threads in the run with the median wall time; 0 if it is not known.
-double pool_work_s(const ThreadCountProfile& profile);
-/// Their work and waits.
-double pool_time_s(const ThreadCountProfile& profile);
-
 }  // namespace vantage

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/profiling/stage_figures.h"
+
 namespace vantage {
 namespace {
 
@@ -17,11 +19,7 @@ ThreadRoofs thread_roofs(const MachineCeilings& ceilings) {
           .memory_gb_per_s = ceilings.all_memory_gb_per_s / threads};
 }
 
-std::optional<ThreadRoofs> roofs_of_most_threads(const Profile& profile) {
-  if (profile.thread_counts.empty()) {
-    return std::nullopt;
-  }
-  const int threads = profile.thread_counts.back().threads;
+std::optional<ThreadRoofs> roofs_on(const Profile& profile, int threads) {
   const auto found = std::ranges::find(profile.ceilings, threads, &MachineCeilings::threads);
   if (found == profile.ceilings.end()) {
     return std::nullopt;
@@ -36,14 +34,14 @@ std::optional<ThreadRoofs> roofs_of_most_threads(const Profile& profile) {
 
 std::optional<RooflinePlace> place_on_roofline(const StageProfile& stage,
                                                const ThreadRoofs& roofs) {
-  const double seconds = stage.seconds.median;
-  if (!is_positive(seconds) || !is_positive(stage.operations) || !is_positive(stage.bytes)) {
+  if (!is_positive(stage.seconds.median) || !is_positive(stage.operations) ||
+      !is_positive(stage.bytes)) {
     return std::nullopt;
   }
   RooflinePlace place;
   place.operations_per_byte = stage.operations / stage.bytes;
-  place.gflops = stage.operations / seconds * 1e-9;
-  place.gb_per_s = stage.bytes / seconds * 1e-9;
+  place.gflops = gflops(stage);
+  place.gb_per_s = gb_per_second(stage);
   const double l2_gflops = place.operations_per_byte * roofs.l2_gb_per_s;
   const bool is_in_l1 = place.gb_per_s > roofs.l2_gb_per_s;
   place.roof = is_in_l1 || roofs.gflops <= l2_gflops ? Roof::kArithmetic : Roof::kL2;

@@ -17,8 +17,8 @@ struct ThreadRoofs {
 /// All 0 where nothing was measured.
 ThreadRoofs thread_roofs(const MachineCeilings& ceilings);
 
-/// Those of the most threads; none if they were not measured or are not positive.
-std::optional<ThreadRoofs> roofs_of_most_threads(const Profile& profile);
+/// Of one of `threads` threads; none if they were not measured or are not positive.
+std::optional<ThreadRoofs> roofs_on(const Profile& profile, int threads);
 
 enum class Roof { kArithmetic, kL2 };
 

@@ -63,21 +63,18 @@ TEST(Roofline, StagesWithoutWorkOrTimeHaveNoPlace) {
   EXPECT_FALSE(place_on_roofline(stage(1, 1e9, 0), kRoofs).has_value());
 }
 
-TEST(Roofline, RoofsAreThoseOfTheMostThreads) {
+TEST(Roofline, RoofsAreThoseMeasuredOnAsManyThreads) {
   Profile profile;
-  EXPECT_FALSE(roofs_of_most_threads(profile).has_value());
-  profile.thread_counts.resize(2);
-  profile.thread_counts[0].threads = 1;
-  profile.thread_counts[1].threads = 2;
-  EXPECT_FALSE(roofs_of_most_threads(profile).has_value());
+  EXPECT_FALSE(roofs_on(profile, 2).has_value());
   profile.ceilings = {{1, 10, 10, 10, 10, 10, 10}, {2, 10, 18, 10, 16, 10, 12}};
-  const auto roofs = roofs_of_most_threads(profile);
+  const auto roofs = roofs_on(profile, 2);
   ASSERT_TRUE(roofs.has_value());
   EXPECT_DOUBLE_EQ(roofs->gflops, 9);
   EXPECT_DOUBLE_EQ(roofs->l2_gb_per_s, 8);
   EXPECT_DOUBLE_EQ(roofs->memory_gb_per_s, 6);
+  EXPECT_FALSE(roofs_on(profile, 4).has_value());
   profile.ceilings[1].all_l2_gb_per_s = 0;
-  EXPECT_FALSE(roofs_of_most_threads(profile).has_value());
+  EXPECT_FALSE(roofs_on(profile, 2).has_value());
 }
 
 }  // namespace roofline_test

@@ -1,4 +1,4 @@
-#include "engine/profile_page/quantity_text.h"
+#include "engine/profiling/quantity_text.h"
 
 #include <fmt/format.h>
 
@@ -31,15 +31,6 @@ Prefix prefix_for(double value) {
   return {"n", 1e-9};
 }
 
-std::string scaled_sample(const ProfileSample& sample, double factor) {
-  const std::string median = number_text(sample.median / factor);
-  const std::string least = number_text(sample.least / factor);
-  const std::string most = number_text(sample.most / factor);
-  return least == median && most == median
-             ? median
-             : fmt::format("{}{}({}–{})", median, kNoBreak, least, most);
-}
-
 }  // namespace
 
 std::string number_text(double value) {
@@ -70,12 +61,12 @@ std::string sample_text(const ProfileSample& sample, std::string_view unit) {
     return std::string(kNothing);
   }
   const Prefix prefix = prefix_for(sample.median);
-  return scaled_sample(sample, prefix.factor) + fmt::format("{}{}{}", kNoBreak, prefix.text, unit);
-}
-
-std::string plain_sample_text(const ProfileSample& sample, std::string_view suffix) {
-  return std::isfinite(sample.median) ? scaled_sample(sample, 1) + std::string(suffix)
-                                      : std::string(kNothing);
+  const std::string median = number_text(sample.median / prefix.factor);
+  const std::string least = number_text(sample.least / prefix.factor);
+  const std::string most = number_text(sample.most / prefix.factor);
+  const bool has_range = least != median || most != median;
+  return median + (has_range ? fmt::format("{}({}–{})", kNoBreak, least, most) : "") +
+         fmt::format("{}{}{}", kNoBreak, prefix.text, unit);
 }
 
 std::string percent_text(double share) {
@@ -86,11 +77,6 @@ std::string percent_text(double share) {
   const double size = std::abs(percent);
   const int digits = size >= 9.95 || size == 0 ? 0 : size >= 0.995 ? 1 : 2;
   return fmt::format("{:.{}f}{}%", percent, digits, kNoBreak);
-}
-
-std::string count_text(double count) {
-  constexpr double kManyDigits = 1e6;
-  return std::abs(count) < kManyDigits ? fmt::format("{:.0f}", count) : quantity_text(count, "");
 }
 
 }  // namespace vantage

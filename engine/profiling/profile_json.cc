@@ -1,16 +1,21 @@
-#include "apps/profile_json.h"
+#include "engine/profiling/profile_json.h"
 
 #include <fmt/format.h>
 
 #include <concepts>
-#include <fstream>
 #include <type_traits>
 
 #include "engine/error.h"
 #include "engine/io/json_text.h"
+#include "engine/profiling/profile_figures.h"
+#include "engine/profiling/profile_findings.h"
+#include "engine/profiling/roofline.h"
+#include "engine/profiling/stage_figures.h"
 
-namespace vantage::apps {
+namespace vantage {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr int kSchema = 1;
 constexpr const char* kSchemaKey = "profile_schema";
@@ -114,6 +119,13 @@ void visit_fields(T& ceilings, const Visit& visit) {
   visit("all_memory_gb_per_s", ceilings.all_memory_gb_per_s);
 }
 
+template <Maybe<ThreadRoofs> T, typename Visit>
+void visit_fields(T& roofs, const Visit& visit) {
+  visit("gflops", roofs.gflops);
+  visit("l2_gb_per_s", roofs.l2_gb_per_s);
+  visit("memory_gb_per_s", roofs.memory_gb_per_s);
+}
+
 template <Maybe<MemoryOwner> T, typename Visit>
 void visit_fields(T& owner, const Visit& visit) {
   visit("name", owner.name);
@@ -148,22 +160,21 @@ void visit_fields(T& profile, const Visit& visit) {
 // To JSON.
 
 template <typename T>
-requires std::is_arithmetic_v<T> || std::same_as<T, std::string> SettingValue
-to_value(const T& value) {
+requires std::is_arithmetic_v<T> || std::same_as<T, std::string> Json to_value(const T& value) {
   return value;
 }
 
 template <typename T>
-requires std::is_class_v<T> &&(!std::same_as<T, std::string>)SettingValue to_value(const T& value);
+requires std::is_class_v<T> &&(!std::same_as<T, std::string>)Json to_value(const T& value);
 
 template <typename T>
-SettingValue to_value(const std::optional<T>& value) {
-  return value ? to_value(*value) : SettingValue();
+Json to_value(const std::optional<T>& value) {
+  return value ? to_value(*value) : Json();
 }
 
 template <typename T>
-SettingValue to_value(const std::vector<T>& values) {
-  SettingValue list = SettingValue::array();
+Json to_value(const std::vector<T>& values) {
+  Json list = Json::array();
   for (const T& value : values) {
     list.push_back(to_value(value));
   }
@@ -171,8 +182,8 @@ SettingValue to_value(const std::vector<T>& values) {
 }
 
 template <typename T>
-SettingValue to_value(const std::map<std::string, T>& values) {
-  SettingValue object = SettingValue::object();
+Json to_value(const std::map<std::string, T>& values) {
+  Json object = Json::object();
   for (const auto& [name, value] : values) {
     object[name] = to_value(value);
   }
@@ -180,10 +191,54 @@ SettingValue to_value(const std::map<std::string, T>& values) {
 }
 
 template <typename T>
-requires std::is_class_v<T> &&(!std::same_as<T, std::string>)SettingValue to_value(const T& value) {
-  SettingValue object = SettingValue::object();
+requires std::is_class_v<T> &&(!std::same_as<T, std::string>)Json to_value(const T& value) {
+  Json object = Json::object();
   visit_fields(value, [&](const char* key, const auto& field) { object[key] = to_value(field); });
   return object;
+}
+
+// What is computed from a profile for those who show it. It is not read again.
+
+Json roofline_of(const StageProfile& stage, const std::optional<ThreadRoofs>& roofs) {
+  const auto place = roofs ? place_on_roofline(stage, *roofs) : std::nullopt;
+  if (!place) {
+    return {};
+  }
+  return {{"operations_per_byte", place->operations_per_byte},
+          {"roof", place->roof == Roof::kArithmetic ? "arithmetic" : "level 2"},
+          {"roof_gflops", place->roof_gflops},
+          {"roof_share", place->roof_share},
+          {"memory_share", place->memory_share}};
+}
+
+void add_figures(const Profile& profile, const ThreadCountProfile& count, Json& value) {
+  const std::optional<ThreadRoofs> roofs = roofs_on(profile, count.threads);
+  value["pool_work_s"] = pool_work_s(count);
+  value["pool_time_s"] = pool_time_s(count);
+  value["roofs"] = to_value(roofs);
+  for (std::size_t i = 0; i < count.stages.size(); ++i) {
+    const StageProfile& stage = count.stages[i];
+    value["stages"][i].update({{"work_share", work_share(stage, count)},
+                               {"ns_per_cell", nanoseconds_per_cell(stage)},
+                               {"cells_per_s", cells_per_second(stage)},
+                               {"halo_share", halo_share(stage)},
+                               {"gb_per_s", gb_per_second(stage)},
+                               {"gflops", gflops(stage)},
+                               {"roofline", roofline_of(stage, roofs)}});
+  }
+}
+
+void add_figures(const Profile& profile, Json& document) {
+  for (std::size_t i = 0; i < profile.thread_counts.size(); ++i) {
+    add_figures(profile, profile.thread_counts[i], document["thread_counts"][i]);
+  }
+  document["hardware"]["instructions_per_cycle"] =
+      to_value(instructions_per_cycle(profile.hardware));
+  document["advice"] = profile.advice;
+  document["findings"] = Json::array();
+  for (const ProfileFinding& finding : profile_findings(profile)) {
+    document["findings"].push_back(finding.text);
+  }
 }
 
 // From JSON; `where` names the value in messages.
@@ -192,21 +247,21 @@ requires std::is_class_v<T> &&(!std::same_as<T, std::string>)SettingValue to_val
   throw Error(fmt::format("{} is missing or wrong, expected {}", where, expected));
 }
 
-void take(const SettingValue& value, const std::string& where, std::string& field) {
+void take(const Json& value, const std::string& where, std::string& field) {
   if (!value.is_string()) {
     reject(where, "a text");
   }
   field = value.get<std::string>();
 }
 
-void take(const SettingValue& value, const std::string& where, bool& field) {
+void take(const Json& value, const std::string& where, bool& field) {
   if (!value.is_boolean()) {
     reject(where, "true or false");
   }
   field = value.get<bool>();
 }
 
-void take(const SettingValue& value, const std::string& where, double& field) {
+void take(const Json& value, const std::string& where, double& field) {
   if (!value.is_number()) {
     reject(where, "a number");
   }
@@ -214,7 +269,7 @@ void take(const SettingValue& value, const std::string& where, double& field) {
 }
 
 template <std::integral T>
-void take(const SettingValue& value, const std::string& where, T& field) {
+void take(const Json& value, const std::string& where, T& field) {
   if (!value.is_number_integer()) {
     reject(where, "a whole number");
   }
@@ -223,11 +278,10 @@ void take(const SettingValue& value, const std::string& where, T& field) {
 
 template <typename T>
 requires std::is_class_v<T> &&
-    (!std::same_as<T, std::string>)void take(const SettingValue& value, const std::string& where,
-                                             T& field);
+    (!std::same_as<T, std::string>)void take(const Json& value, const std::string& where, T& field);
 
 template <typename T>
-void take(const SettingValue& value, const std::string& where, std::optional<T>& field) {
+void take(const Json& value, const std::string& where, std::optional<T>& field) {
   if (value.is_null()) {
     field.reset();
   } else {
@@ -236,19 +290,19 @@ void take(const SettingValue& value, const std::string& where, std::optional<T>&
 }
 
 template <typename T>
-void take(const SettingValue& value, const std::string& where, std::vector<T>& field) {
+void take(const Json& value, const std::string& where, std::vector<T>& field) {
   if (!value.is_array()) {
     reject(where, "a list");
   }
   field.clear();
-  for (const SettingValue& member : value) {
+  for (const Json& member : value) {
     const std::string member_name = fmt::format("{}[{}]", where, field.size());
     take(member, member_name, field.emplace_back());
   }
 }
 
 template <typename T>
-void take(const SettingValue& value, const std::string& where, std::map<std::string, T>& field) {
+void take(const Json& value, const std::string& where, std::map<std::string, T>& field) {
   if (!value.is_object()) {
     reject(where, "an object");
   }
@@ -260,7 +314,7 @@ void take(const SettingValue& value, const std::string& where, std::map<std::str
 
 template <typename T>
 requires std::is_class_v<T> &&
-    (!std::same_as<T, std::string>)void take(const SettingValue& value, const std::string& where,
+    (!std::same_as<T, std::string>)void take(const Json& value, const std::string& where,
                                              T& field) {
   if (!value.is_object()) {
     reject(where, "an object");
@@ -268,22 +322,22 @@ requires std::is_class_v<T> &&
   visit_fields(field, [&](const char* key, auto& member) {
     const auto found = value.find(key);
     const std::string member_name = where.empty() ? std::string(key) : where + "." + key;
-    take(found == value.end() ? SettingValue(SettingValue::value_t::discarded) : *found,
-         member_name, member);
+    take(found == value.end() ? Json(Json::value_t::discarded) : *found, member_name, member);
   });
 }
 
 }  // namespace
 
-SettingValue as_json(const Profile& profile) {
-  SettingValue document = {{kSchemaKey, kSchema}};
+std::string profile_json(const Profile& profile) {
+  Json document = {{kSchemaKey, kSchema}};
   document.update(to_value(profile));
-  document["advice"] = profile.advice;  // for people: not read again
-  return document;
+  add_figures(profile, document);
+  // File names need not be UTF-8, JSON must be.
+  return document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Profile read_profile(const std::string& path) {
-  const SettingValue document = read_json_file(path);
+  const Json document = read_json_file(path);
   if (!document.is_object() || !document.contains(kSchemaKey)) {
     throw Error(fmt::format("{}: is no profile, expected what 'profile --json' wrote", path));
   }
@@ -300,4 +354,4 @@ Profile read_profile(const std::string& path) {
   return profile;
 }
 
-}  // namespace vantage::apps
+}  // namespace vantage

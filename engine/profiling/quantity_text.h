@@ -12,20 +12,14 @@ namespace vantage {
 /// With an SI prefix from nano to tera before `unit`: "1.24 ms", "310 MB", "0 s".
 std::string quantity_text(double value, std::string_view unit);
 
-/// The median, and behind it least to most where they differ as far as shown, all in one unit:
+/// The median, followed by the range where the shown digits differ, all in one unit:
 /// "1.24 (1.21–1.30) ms".
 std::string sample_text(const ProfileSample& sample, std::string_view unit);
-
-/// The same without a prefix, `suffix` right behind it: "1.92 (1.88–1.95)×".
-std::string plain_sample_text(const ProfileSample& sample, std::string_view suffix = "");
 
 /// Of a share, 1 being all: "43 %", "4.3 %", "0.43 %".
 std::string percent_text(double share);
 
 /// Three significant digits without exponent up to a million: "12.4", "0.031", "1240".
 std::string number_text(double value);
-
-/// A whole number: "0", "12800", "1.28 M".
-std::string count_text(double count);
 
 }  // namespace vantage

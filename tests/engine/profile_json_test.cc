@@ -1,0 +1,97 @@
+// The JSON of a profile: nothing is lost on the way to a file and back, and it holds what is
+// computed for those who show it.
+
+#include "engine/profiling/profile_json.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "engine/error.h"
+#include "tests/engine/made_up_profiles.h"
+#include "tests/temporary_folder.h"
+
+namespace vantage {
+namespace profile_json_test {
+
+using nlohmann::json;
+
+json json_of(const Profile& profile) { return json::parse(profile_json(profile)); }
+
+Profile read_again(const std::string& text) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "profile.json") << text;
+  return read_profile(folder / "profile.json");
+}
+
+TEST(ProfileJson, KeepsEveryField) {
+  for (Profile profile : {made_up_match(), made_up_run()}) {
+    profile.hardware.counts["cycles"] = {3, 2, 4};
+    profile.advice = {"not read again"};
+    const Profile read = read_again(profile_json(profile));
+    profile.advice.clear();
+    EXPECT_TRUE(read == profile);
+  }
+}
+
+TEST(ProfileJson, HoldsFiguresOfStages) {
+  const json count = json_of(made_up_match()).at("thread_counts")[1];
+  const json& roofs = count.at("roofs");
+  EXPECT_DOUBLE_EQ(roofs.at("gflops"), 118);
+  EXPECT_DOUBLE_EQ(roofs.at("l2_gb_per_s"), 136);
+  EXPECT_NEAR(roofs.at("memory_gb_per_s"), 9.75, 0.01);
+  EXPECT_NEAR(count.at("pool_work_s"), 0.56, 1e-9);
+  EXPECT_NEAR(count.at("pool_time_s"), 0.64, 1e-9);
+  const json& stage = count.at("stages")[0];  // 164e6 cells of 11 operations and 12 bytes
+  EXPECT_NEAR(stage.at("work_share"), 0.402 / 0.56, 1e-9);
+  EXPECT_NEAR(stage.at("ns_per_cell"), 402.0 / 164, 1e-9);
+  EXPECT_NEAR(stage.at("cells_per_s"), 164e6 / 0.402, 1);
+  EXPECT_NEAR(stage.at("halo_share"), 0.0675, 1e-9);
+  EXPECT_NEAR(stage.at("gb_per_s"), 0.164 * 12 / 0.402, 1e-9);
+  EXPECT_NEAR(stage.at("gflops"), 0.164 * 11 / 0.402, 1e-9);
+  const json& place = stage.at("roofline");
+  EXPECT_EQ(place.at("roof"), "arithmetic");
+  EXPECT_DOUBLE_EQ(place.at("operations_per_byte"), 11.0 / 12);
+  EXPECT_DOUBLE_EQ(place.at("roof_gflops"), 118);
+  EXPECT_NEAR(place.at("roof_share"), 0.164 * 11 / 0.402 / 118, 1e-9);
+  EXPECT_NEAR(place.at("memory_share"), 4.896 / 9.748, 1e-3);
+}
+
+TEST(ProfileJson, HoldsWhatIsSaidOfTheFigures) {
+  Profile profile = made_up_run();
+  profile.advice = {"--preset fast"};
+  const json document = json_of(profile);
+  EXPECT_EQ(document.at("advice"), json::array({"--preset fast"}));
+  EXPECT_GE(document.at("findings").size(), 3U);
+  EXPECT_NEAR(document.at("hardware").at("instructions_per_cycle"), 7.1 / 3.4, 1e-9);
+}
+
+TEST(ProfileJson, UnknownFiguresAreNull) {
+  Profile profile = made_up_match();
+  profile.ceilings.clear();
+  profile.thread_counts[0].wall_s.most = std::numeric_limits<double>::infinity();
+  profile.command = "\xFF";  // no UTF-8
+  const json document = json_of(profile);
+  EXPECT_TRUE(document.at("hardware").at("instructions_per_cycle").is_null());
+  EXPECT_TRUE(document.at("thread_counts")[0].at("roofs").is_null());
+  EXPECT_TRUE(document.at("thread_counts")[0].at("stages")[0].at("roofline").is_null());
+  EXPECT_TRUE(document.at("thread_counts")[0].at("wall_s").at("most").is_null());
+  EXPECT_EQ(json_of({}).at("findings"), json::array());
+}
+
+TEST(ProfileJson, FilesWithoutWhatIsComputedAreRead) {
+  json old = json_of(made_up_match());
+  old.erase("findings");
+  for (json& count : old["thread_counts"]) {
+    count.erase("roofs");
+    count["stages"][0].erase("roofline");
+  }
+  EXPECT_TRUE(read_again(old.dump()) == made_up_match());
+  old["profile_schema"] = 0;
+  EXPECT_THROW(read_again(old.dump()), Error);
+}
+
+}  // namespace profile_json_test
+}  // namespace vantage
