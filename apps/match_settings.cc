@@ -11,8 +11,6 @@
 namespace vantage::apps {
 namespace {
 
-constexpr double kNoThreshold = -std::numeric_limits<double>::infinity();
-
 /// "auto: squared; gradient for gradient, …": a default that depends on the method. The rule is
 /// what most methods have.
 template <typename Enum>
@@ -240,11 +238,11 @@ void add_confidence_setting(Settings& settings, RefinementOverrides& refinement)
     if (is_word(value, "auto")) {
       field.reset();
     } else {
-      field = is_word(value, "none") ? kNoThreshold : to_number(value);
+      field = is_word(value, "none") ? kNoConfidenceThreshold : to_number(value);
     }
   };
   setting.get = [&field]() -> SettingValue {
-    if (field == kNoThreshold) {
+    if (field == kNoConfidenceThreshold) {
       return "none";
     }
     return field ? SettingValue(*field) : SettingValue("auto");
@@ -402,7 +400,7 @@ void add_reference_setting(Settings& settings, MatchOptions& options) {
 }
 
 SettingValue reported_settings(const Settings& settings, const MatchOptions& options) {
-  MatchOptions in_force = options.spelled_out();
+  MatchOptions in_force = options.fully_resolved();
   Settings resolved("", "");
   add_match_settings(resolved, in_force);
   SettingValue values = settings.values();

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <limits>
 #include <string_view>
 
 #include "engine/refinement/refine_maps.h"
@@ -50,10 +49,7 @@ void refine_peer_maps(const SgbmPostProcessing& post, const ScenePair& pair,
                       DisparityMaps& refined) {
   refined.left = to_map(disparities.left, pair.range.min);
   refined.right = to_map(disparities.right, pair.range.min);
-  RefinementOptions options{};
-  options.cross_check = true;
-  options.cross_check_px = 1;
-  options.confidence_threshold = -std::numeric_limits<double>::infinity();
+  RefinementOptions options;
   options.speckle_size_px = post.speckle_size_px;
   options.fill = Fill::kMedian;
   RefinementWork work;

@@ -102,7 +102,7 @@ TEST(MethodParameters, NoiseOfCombinedCostsIsEstimatedUnlessItIsSet) {
   EXPECT_FALSE(options.resolved().estimate_sigma_measurement);
   options.parameters.cost = MatchCost::kCombined;
   EXPECT_TRUE(options.resolved().estimate_sigma_measurement);
-  EXPECT_TRUE(options.spelled_out().resolved().estimate_sigma_measurement);
+  EXPECT_TRUE(options.fully_resolved().resolved().estimate_sigma_measurement);
   options.parameters.sigma_measurement = 7;
   EXPECT_FALSE(options.resolved().estimate_sigma_measurement);
   EXPECT_EQ(options.resolved().sigma_measurement, 7);
@@ -129,7 +129,7 @@ TEST(MethodParameters, WithoutAnyChoiceTheyAreThoseOfBalanced) {
   MatchOptions options;
   EXPECT_EQ(options.resolved(), balanced.resolved());
   EXPECT_EQ(options.resolved_refinement(), balanced.resolved_refinement());
-  EXPECT_EQ(options.spelled_out().method, MatchMethod::kBayes);
+  EXPECT_EQ(options.fully_resolved().method, MatchMethod::kBayes);
   options.parameters.levels = balanced.parameters.levels = 3;
   EXPECT_EQ(options.resolved(), balanced.resolved());
 
@@ -137,7 +137,7 @@ TEST(MethodParameters, WithoutAnyChoiceTheyAreThoseOfBalanced) {
   options = {};
   options.disparities_y = {0, 1};
   EXPECT_EQ(options.resolved(), ssd);
-  EXPECT_EQ(options.spelled_out().method, MatchMethod::kSsd);
+  EXPECT_EQ(options.fully_resolved().method, MatchMethod::kSsd);
   // Another cost in the preset's place leaves all else as it is.
   options = balanced = {};
   balanced.preset = MatchPreset::kBalanced;
@@ -167,12 +167,12 @@ TEST(MethodParameters, SpelledOutIsTheSameWithoutPreset) {
   options.disparities = {-7, 90};
   options.parameters.mu = 0.25;
   options.refinement.fill = Fill::kLinear;
-  const MatchOptions spelled_out = options.spelled_out();
-  EXPECT_FALSE(spelled_out.preset.has_value());
-  EXPECT_EQ(spelled_out.resolved(), options.resolved());
-  EXPECT_EQ(spelled_out.resolved_refinement(), options.resolved_refinement());
+  const MatchOptions fully_resolved = options.fully_resolved();
+  EXPECT_FALSE(fully_resolved.preset.has_value());
+  EXPECT_EQ(fully_resolved.resolved(), options.resolved());
+  EXPECT_EQ(fully_resolved.resolved_refinement(), options.resolved_refinement());
   // Nothing is left to the defaults of a method or of the range.
-  MatchOptions other = spelled_out;
+  MatchOptions other = fully_resolved;
   other.method = MatchMethod::kGradient;
   other.disparities = {0, 1};
   EXPECT_EQ(other.resolved(), options.resolved());

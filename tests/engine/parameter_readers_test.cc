@@ -1,8 +1,8 @@
-// What the table says reads a parameter, against what changes when the parameter is changed: maps
-// that the matching code makes of given parameters, without the validation that uses the table.
+// What visit_fields() says reads a parameter, against what changes when the parameter is changed:
+// maps that the matching code makes of given parameters, without the validation that uses the list.
 #include "engine/matching/options/parameter_readers.h"
-#include "engine/matching/costs/candidate_geometry.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,16 +13,20 @@
 #include <functional>
 #include <iterator>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "engine/error.h"
 #include "engine/matching/aggregation/edge_weights.h"
+#include "engine/matching/costs/candidate_geometry.h"
 #include "engine/matching/costs/cost_planes.h"
 #include "engine/matching/map_search.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/matching/options/method_fields.h"
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/pair_levels.h"
+#include "engine/refinement/refinement_fields.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/test_sample.h"
 
@@ -236,26 +240,44 @@ bool is_without_difference(std::string_view name, const MethodParameters& parame
   return false;
 }
 
-TEST(ParameterReaders, ListEveryParameterOnce) {
-  std::vector<std::string_view> names;
-  for (const ParameterReaders& parameter : parameter_readers()) {
-    names.push_back(parameter.name);
-    ASSERT_TRUE(changes().contains(parameter.name)) << parameter.name;
-    EXPECT_FALSE(parameter.is_set({})) << parameter.name;
-    for (const auto& change : changes().at(parameter.name)) {
+std::vector<MethodField> fields_of_method() {
+  std::vector<MethodField> fields;
+  const MethodOverrides none;
+  visit_fields([&](const MethodField& field, const auto&) { fields.push_back(field); }, none);
+  return fields;
+}
+
+/// Names of the options that are set.
+std::set<std::string_view> set_in(const MethodOverrides& overrides) {
+  std::set<std::string_view> names;
+  visit_fields(
+      [&](const MethodField& field, const auto& value) {
+        if (value) {
+          names.insert(field.option);
+        }
+      },
+      overrides);
+  return names;
+}
+
+TEST(MethodFields, AreVisitedOnceEach) {
+  std::set<const void*> fields;
+  const MethodOverrides none;
+  visit_fields([&](const MethodField&, const auto& value) { fields.insert(&value); }, none);
+  EXPECT_EQ(fields.size(), count_fields<MethodParameters>());
+  EXPECT_TRUE(set_in(none).empty());
+}
+
+TEST(MethodFields, HaveTheNamesOfTheirOptions) {
+  for (const auto& [name, changes_of_one] : changes()) {
+    for (const auto& change : changes_of_one) {
       MethodOverrides overrides;
       change(overrides);
-      for (const ParameterReaders& other : parameter_readers()) {
-        EXPECT_EQ(other.is_set(overrides), other.name == parameter.name)
-            << parameter.name << ' ' << other.name;
-      }
+      EXPECT_EQ(set_in(overrides), std::set{name});
     }
   }
-  EXPECT_EQ(names.size(), changes().size());
-  // No field is left out: what sets all of them is set, whichever way it is looked at.
-  const MethodOverrides all = as_overrides(book_parameters(MatchMethod::kBayes));
-  for (const ParameterReaders& parameter : parameter_readers()) {
-    EXPECT_TRUE(parameter.is_set(all)) << parameter.name;
+  for (const MethodField& field : fields_of_method()) {
+    EXPECT_TRUE(changes().contains(field.option)) << field.option;
   }
 }
 
@@ -271,9 +293,9 @@ TEST(ParameterReaders, AreThoseWhoseMapsChange) {
     const test::SampleRow& row = rows[i];
     const MethodParameters before = parameters_of(row);
     ASSERT_TRUE(is_valid(before));
-    for (const ParameterReaders& parameter : parameter_readers()) {
+    for (const MethodField& field : fields_of_method()) {
       bool is_changed = false;
-      for (const auto& change : changes().at(parameter.name)) {
+      for (const auto& change : changes().at(field.option)) {
         MethodOverrides overrides = as_overrides(before);
         change(overrides);
         MethodParameters after = resolve(MatchMethod::kSsd, overrides);
@@ -286,8 +308,8 @@ TEST(ParameterReaders, AreThoseWhoseMapsChange) {
         is_changed = is_changed || !are_equal(maps.of(before), maps.of(after));
       }
       const bool is_expected =
-          parameter.is_read(before) && !is_without_difference(parameter.name, before);
-      EXPECT_EQ(is_changed, is_expected) << parameter.name << " with " << summary_of(before);
+          field.readers.are_in_force(before) && !is_without_difference(field.option, before);
+      EXPECT_EQ(is_changed, is_expected) << field.option << " with " << summary_of(before);
     }
   }
 }
@@ -323,25 +345,25 @@ TEST(ParameterReaders, WhatNothingReadsIsRefusedUnlessAPresetSetsIt) {
 }
 
 TEST(Refinement, WhatNothingReadsIsRefused) {
-  using R = RefinementOverrides;
-  const std::vector<std::pair<std::string, std::function<void(R&)>>> fields = {
-      {"edge-snapping", [](R& r) { r.edge_snapping_px = 0; }},
-      {"cross-check", [](R& r) { r.cross_check = false; }},
-      {"cross-check", [](R& r) { r.cross_check_px = 2; }},
-      {"cross-check-level", [](R& r) { r.cross_check_level = 1; }},
-      {"confidence-threshold", [](R& r) { r.confidence_threshold = 0; }},
-      {"speckle-size", [](R& r) { r.speckle_size_px = 5; }},
-      {"surface-fit", [](R& r) { r.surface_fit_px = 5; }},
-      {"fill", [](R& r) { r.fill = Fill::kNone; }}};
-  for (const auto& [name, set] : fields) {
-    MatchOptions options;
-    set(options.refinement);
-    EXPECT_EQ(complaint(options), "") << name;
-    options.raw = true;
-    EXPECT_EQ(complaint(options),
-              name + " is set but has no effect with raw, which leaves all refinement out");
-  }
+  std::set<const void*> fields;
+  const RefinementOptions defaults;
   MatchOptions options;
+  visit_fields(
+      [&](const RefinementField& field, const auto& in_force, auto& value) {
+        fields.insert(&value);
+        options.raw = false;
+        value = in_force;
+        EXPECT_EQ(complaint(options), "") << field.option;
+        options.raw = true;
+        EXPECT_EQ(complaint(options),
+                  fmt::format("{} is set but has no effect with raw, which leaves all refinement "
+                              "out",
+                              field.option));
+        value.reset();
+      },
+      defaults, options.refinement);
+  EXPECT_EQ(fields.size(), count_fields<RefinementOptions>());
+  options = {};
   options.refinement.cross_check = false;
   options.refinement.cross_check_level = 1;
   EXPECT_EQ(complaint(options), "cross-check-level is set but has no effect with cross-check none");

@@ -19,7 +19,6 @@ using test::identical;
 using ::testing::ElementsAre;
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-constexpr double kNoThreshold = -std::numeric_limits<double>::infinity();
 
 DisparityMap map_of(const std::vector<std::vector<float>>& rows) {
   DisparityMap map(static_cast<int>(rows.front().size()), static_cast<int>(rows.size()));
@@ -143,14 +142,7 @@ TEST(CrossCheckOfTwoComponents, EqualsPlainTranscription) {
 
 /// A pair of one-row maps and what refinement makes of them.
 struct RefinementCase {
-  RefinementOptions options{.edge_snapping_px = 0,
-                            .cross_check = true,
-                            .cross_check_px = 1,
-                            .cross_check_level = 0,
-                            .confidence_threshold = kNoThreshold,
-                            .speckle_size_px = 0,
-                            .surface_fit_px = 0,
-                            .fill = Fill::kNone};
+  RefinementOptions options{.fill = Fill::kNone};
   DisparityMap left = map_of({{0, 0, 0, 0, 2, 2, 2, 0, 0, 0}});
   DisparityMap right = map_of({{0, 0, 2, 2, 2, 0, 0, 0, 0, 0}});
   Image<float> left_confidence = map_of({{5, 4, 3, 2, 1, 0, -1, -2, kUnknown, 9}});

@@ -3,43 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <string_view>
 
 #include "engine/error.h"
 #include "engine/matching/options/match_presets.h"
+#include "engine/matching/options/method_fields.h"
 #include "engine/matching/options/method_names.h"
-#include "engine/matching/options/parameter_readers.h"
+#include "engine/refinement/refinement_fields.h"
 #include "kernels/surface_fit/surface_fit.h"
 
 namespace vantage {
+
+static_assert(visits_every_field<RefinementOptions>(), "visit_fields() lacks a field");
+static_assert(kernels::kMaxSurfaceRadiusPx == 16, "so say the limits of surface-fit");
+
 namespace {
 
 constexpr int kMaxDisparity = 65535;
-constexpr int kMaxEdgeSnapping = 16;
-constexpr int kMaxCheckLevel = 9;
-constexpr double kNoThreshold = -std::numeric_limits<double>::infinity();
 
 PresetSettings settings_of(const std::optional<MatchPreset>& preset) {
   return preset ? preset_settings(*preset) : PresetSettings{};
-}
-
-/// Gives `target` the fields that `overrides` have.
-void take_over(const RefinementOverrides& overrides, RefinementOptions& target) {
-  const auto take = [](const auto& override_value, auto& field) {
-    if (override_value) {
-      field = *override_value;
-    }
-  };
-  take(overrides.edge_snapping_px, target.edge_snapping_px);
-  take(overrides.cross_check, target.cross_check);
-  take(overrides.cross_check_px, target.cross_check_px);
-  take(overrides.cross_check_level, target.cross_check_level);
-  take(overrides.confidence_threshold, target.confidence_threshold);
-  take(overrides.speckle_size_px, target.speckle_size_px);
-  take(overrides.surface_fit_px, target.surface_fit_px);
-  take(overrides.fill, target.fill);
 }
 
 void validate_range(std::string_view field, DisparityRange range) {
@@ -72,35 +55,12 @@ void validate_candidates(DisparityRange x, const std::optional<DisparityRange>& 
 }
 
 void validate_refinement(const RefinementOptions& refinement, bool is_two_dimensional) {
-  if (refinement.edge_snapping_px < 0 || refinement.edge_snapping_px > kMaxEdgeSnapping) {
-    throw UsageError(fmt::format("edge-snapping is {}, expected a number of pixels from 0 to {}",
-                                 refinement.edge_snapping_px, kMaxEdgeSnapping));
-  }
+  require_within_limits(refinement);
   if (refinement.edge_snapping_px > 0 && is_two_dimensional) {
     throw UsageError(fmt::format(
         "edge-snapping is {}, expected 0 with disparities-y: it moves discontinuities of "
         "horizontal disparities only",
         refinement.edge_snapping_px));
-  }
-  if (!(refinement.cross_check_px >= 1 && std::isfinite(refinement.cross_check_px))) {
-    throw UsageError(fmt::format("cross-check is {}, expected a number of at least 1",
-                                 refinement.cross_check_px));
-  }
-  if (refinement.cross_check_level < 0 || refinement.cross_check_level > kMaxCheckLevel) {
-    throw UsageError(fmt::format("cross-check-level is {}, expected a level from 0 to {}",
-                                 refinement.cross_check_level, kMaxCheckLevel));
-  }
-  if (!(refinement.confidence_threshold < std::numeric_limits<double>::infinity())) {
-    throw UsageError(fmt::format("confidence-threshold is {}, expected a finite number",
-                                 refinement.confidence_threshold));
-  }
-  if (refinement.speckle_size_px < 0) {
-    throw UsageError(fmt::format("speckle-size is {}, expected a number of pixels, at least 0",
-                                 refinement.speckle_size_px));
-  }
-  if (refinement.surface_fit_px < 0 || refinement.surface_fit_px > kernels::kMaxSurfaceRadiusPx) {
-    throw UsageError(fmt::format("surface-fit is {}, expected a number of pixels from 0 to {}",
-                                 refinement.surface_fit_px, kernels::kMaxSurfaceRadiusPx));
   }
 }
 
@@ -111,14 +71,11 @@ void require_read(const RefinementOverrides& set, const RefinementOptions& in_fo
       throw UsageError(fmt::format("{} is set but has no effect with {}", field, why));
     }
   };
-  constexpr std::string_view kWithRaw = "raw, which leaves all refinement out";
-  refuse_if(raw && set.edge_snapping_px, "edge-snapping", kWithRaw);
-  refuse_if(raw && (set.cross_check || set.cross_check_px), "cross-check", kWithRaw);
-  refuse_if(raw && set.cross_check_level, "cross-check-level", kWithRaw);
-  refuse_if(raw && set.confidence_threshold, "confidence-threshold", kWithRaw);
-  refuse_if(raw && set.speckle_size_px, "speckle-size", kWithRaw);
-  refuse_if(raw && set.surface_fit_px, "surface-fit", kWithRaw);
-  refuse_if(raw && set.fill, "fill", kWithRaw);
+  visit_fields(
+      [&](const RefinementField& field, const auto& value) {
+        refuse_if(raw && value, field.option, "raw, which leaves all refinement out");
+      },
+      set);
   constexpr std::string_view kUnchecked = "cross-check none";
   refuse_if(!in_force.cross_check && set.cross_check_px, "a number of pixels for cross-check",
             kUnchecked);
@@ -127,10 +84,6 @@ void require_read(const RefinementOverrides& set, const RefinementOptions& in_fo
 }
 
 }  // namespace
-
-bool uses_confidence(const RefinementOptions& refinement) {
-  return refinement.confidence_threshold > kNoThreshold;
-}
 
 bool can_check_levels(const MethodParameters& parameters) {
   return parameters.levels > 1 && parameters.aggregation == Aggregation::kBayes;
@@ -205,16 +158,11 @@ MethodParameters MatchOptions::resolved() const {
 }
 
 RefinementOptions MatchOptions::resolved_refinement() const {
-  RefinementOptions result{
-      .edge_snapping_px = 0,
-      .cross_check = true,
-      .cross_check_px = std::max(1.0, disparities.count() / 15.0),
-      .cross_check_level = 0,
-      .confidence_threshold = is_evidence(resolved()) ? 0 : kNoThreshold,
-      .speckle_size_px = 0,
-      .surface_fit_px = 0,
-      .fill = Fill::kConstant,
-  };
+  RefinementOptions result;
+  result.cross_check_px = std::max(1.0, disparities.count() / 15.0);
+  if (is_evidence(resolved())) {
+    result.confidence_threshold = 0;
+  }
   take_over(settings_of(preset_in_force()).refinement, result);
   take_over(refinement, result);
   // As with pruning: a preset's level holds where there can be one.
@@ -224,22 +172,12 @@ RefinementOptions MatchOptions::resolved_refinement() const {
   return result;
 }
 
-MatchOptions MatchOptions::spelled_out() const {
+MatchOptions MatchOptions::fully_resolved() const {
   MatchOptions result = *this;
   result.method = method.value_or(settings_of(preset_in_force()).method);
   result.preset.reset();
   result.parameters = as_overrides(resolved());
-  const RefinementOptions in_force = resolved_refinement();
-  result.refinement = {
-      .edge_snapping_px = in_force.edge_snapping_px,
-      .cross_check = in_force.cross_check,
-      .cross_check_px = in_force.cross_check_px,
-      .cross_check_level = in_force.cross_check_level,
-      .confidence_threshold = in_force.confidence_threshold,
-      .speckle_size_px = in_force.speckle_size_px,
-      .surface_fit_px = in_force.surface_fit_px,
-      .fill = in_force.fill,
-  };
+  result.refinement = all_set<RefinementOverrides>(resolved_refinement());
   return result;
 }
 

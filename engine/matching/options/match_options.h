@@ -53,10 +53,10 @@ struct MatchOptions {
   [[nodiscard]] RefinementOptions resolved_refinement() const;
   /// The same options with every field set to what is in force, without the preset. To be shown:
   /// validate() refuses them, as a method reads some of the fields only.
-  [[nodiscard]] MatchOptions spelled_out() const;
+  [[nodiscard]] MatchOptions fully_resolved() const;
   /// Throws UsageError naming the field, its value and its limit, or why options do not go
   /// together, or which field of `parameters` or `refinement` is set although nothing reads it
-  /// (parameter_readers).
+  /// (method_fields).
   void validate() const;
 };
 

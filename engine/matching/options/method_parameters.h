@@ -56,59 +56,80 @@ enum class GradientNorm { kL2, kOctagon };
 /// Blocks that a tile can have, see MethodParametersOf::candidate_blocks.
 inline constexpr int kMaxCandidateBlocks = 8;
 
-/// Everything that decides how costs are made, aggregated and selected. With Field = std::optional:
-/// what a user sets; with Field = std::type_identity_t: what is in force.
+/// Everything that decides how costs are made, aggregated and selected, with the book's defaults of
+/// the method ssd. With Field = std::optional: what a user sets; with Field = std::type_identity_t:
+/// what is in force. A field stands here and in visit_fields() (method_fields.h); what is forgotten
+/// there does not compile.
 template <template <typename> class Field>
 struct MethodParametersOf {
-  Field<MatchCost> cost;
-  Field<Aggregation> aggregation;
-  Field<ColourUse> colour;
+  Field<MatchCost> cost = by_default<Field>(MatchCost::kSquared);
+  Field<ColourUse> colour = by_default<Field>(ColourUse::kLuma);
+  /// Truncated cost: grey levels, > 0.
+  Field<double> truncation = by_default<Field>(20.0);
   /// The right image's grey levels are changed to the left's before they are compared, gain and
   /// offset estimated from each pair (pair_levels).
-  Field<bool> match_exposure;
-  Field<Subpixel> subpixel;
-  Field<Border> border;  ///< of box aggregation
-
-  Field<int> window_px;                ///< box: side of the square window, odd, 1..181
-  Field<double> aggregation_sigma_px;  ///< Gaussian, box cascade: σ, 0.5..16
-  Field<int> iterations;               ///< of diffusion, membrane, local stopping, Bayes: 0..10000
-  /// Coarse to fine, 1..10: `iterations` at each level, from an image of 1/2^(levels − 1) of the
-  /// size to the image itself; levels that would be a single pixel are left out. 1: flat.
-  Field<int> levels;
-  /// Bayes with levels: blocks of 16 candidates that are looked at in each tile of 8×8 pixels of
-  /// the finest `pruned_levels` levels, 1..8; 0: all candidates.
-  Field<int> candidate_blocks;
-  Field<int> pruned_levels;     ///< 1..10; the coarsest level always looks at all candidates
-  Field<int> final_iterations;  ///< of the image's own level where there are several: 0..10000
-  Field<double> lambda;         ///< step: 0 < λ < ¼; membrane: λ ≤ 1/(4+β)
-  Field<double> beta;           ///< membrane: pull towards the first cost, ≥ 0
-  Field<Certainty> certainty;   ///< local stopping
-  Field<double> mu;             ///< Bayes: weight of the neighbours, 0 < μ ≤ 1
-  Field<double> sigma_prior;    ///< Bayes: σP in pixels of disparity, > 0
-  Field<double> epsilon_prior;  ///< Bayes: εP, inside (0, 1)
+  Field<bool> match_exposure = by_default<Field>(false);
   /// σM in grey levels, > 0: contaminated and combined cost, Bayes, entropy.
-  Field<double> sigma_measurement;
+  Field<double> sigma_measurement = by_default<Field>(5.0);
   /// σM follows from each pair (pair_levels); where it does not, it is sigma_measurement. Of the
   /// combined cost unless either is set.
-  Field<bool> estimate_sigma_measurement;
-  Field<double> epsilon_measurement;  ///< εM, inside (0, 1): the same
-  Field<int> census_thresholds;  ///< ray census: grey levels a neighbour is compared with, 1 or 3
-  Field<double> sigma_census;  ///< combined cost: σ of the share of census bits, 0..1; 0: no term
-  Field<double> sigma_gradient;  ///< combined cost: σ in grey levels per pixel, ≥ 0; 0: no term
-  Field<double> prior_growth;    ///< Bayes: σP of a level ÷ that of the next finer one, 1..4
-  Field<PriorSmoothing> prior_smoothing;  ///< Bayes
+  Field<bool> estimate_sigma_measurement = by_default<Field>(false);
+  /// εM, inside (0, 1): contaminated and combined cost, Bayes.
+  Field<double> epsilon_measurement = by_default<Field>(0.1);
+  /// Ray census: grey levels a neighbour is compared with, 1 or 3.
+  Field<int> census_thresholds = by_default<Field>(1);
+  /// Combined cost: σ of the share of census bits, 0..1; 0: no term.
+  Field<double> sigma_census = by_default<Field>(0.2);
+  /// Combined cost: σ in grey levels per pixel, ≥ 0; 0: no term.
+  Field<double> sigma_gradient = by_default<Field>(0.0);
+  /// Gradient evidence: weight of the gradients' difference, ≥ 0.
+  Field<double> alpha = by_default<Field>(1.0);
+  Field<GradientNorm> norm = by_default<Field>(GradientNorm::kL2);
+  Field<GradientFilter> gradient = by_default<Field>(GradientFilter::kCentral);
+  /// Gradient evidence: Gaussian σ = ½ first.
+  Field<bool> prefilter = by_default<Field>(true);
+
+  Field<Aggregation> aggregation = by_default<Field>(Aggregation::kBox);
+  /// Box: side of the square window, odd, 1..181.
+  Field<int> window_px = by_default<Field>(9);
+  Field<Border> border = by_default<Field>(Border::kClip);  ///< of box aggregation
+  /// Gaussian, box cascade: σ, 0.5..16.
+  Field<double> aggregation_sigma_px = by_default<Field>(2.0);
+  /// Of diffusion, membrane, local stopping, Bayes: 0..10000.
+  Field<int> iterations = by_default<Field>(10);
+  /// Coarse to fine, 1..10: `iterations` at each level, from an image of 1/2^(levels − 1) of the
+  /// size to the image itself; levels that would be a single pixel are left out. 1: flat.
+  Field<int> levels = by_default<Field>(1);
+  /// Bayes with levels: blocks of 16 candidates that are looked at in each tile of 8×8 pixels of
+  /// the finest `pruned_levels` levels, 1..8; 0: all candidates.
+  Field<int> candidate_blocks = by_default<Field>(0);
+  /// 1..10; the coarsest level always looks at all candidates.
+  Field<int> pruned_levels = by_default<Field>(2);
+  /// Of the image's own level where there are several: 0..10000. Unless set, `iterations`.
+  Field<int> final_iterations = by_default<Field>(10);
+  /// Step: 0 < λ < ¼; membrane: λ ≤ 1/(4+β).
+  Field<double> lambda = by_default<Field>(0.15);
+  /// Membrane: pull towards the first cost, ≥ 0.
+  Field<double> beta = by_default<Field>(0.5);
+  Field<Certainty> certainty = by_default<Field>(Certainty::kMargin);  ///< local stopping
+  /// Bayes: weight of the neighbours, 0 < μ ≤ 1.
+  Field<double> mu = by_default<Field>(0.5);
+  /// Bayes: σP in pixels of disparity, > 0.
+  Field<double> sigma_prior = by_default<Field>(0.4);
+  /// Bayes: εP, inside (0, 1).
+  Field<double> epsilon_prior = by_default<Field>(0.01);
+  /// Bayes: σP of a level ÷ that of the next finer one, 1..4.
+  Field<double> prior_growth = by_default<Field>(1.0);
+  Field<PriorSmoothing> prior_smoothing = by_default<Field>(PriorSmoothing::kSum);  ///< Bayes
   /// Bayes: energies of a coarse level are this share of the sum of those of 2×2 pixels, which are
   /// not independent of each other; 0 < w ≤ 1.
-  Field<double> level_weight;
+  Field<double> level_weight = by_default<Field>(1.0);
   /// Bayes: weight of a neighbour beyond the strongest intensity edge, 0..1; 1: edges do not count.
-  Field<double> edge_weight;
-  Field<double> edge_contrast;  ///< Bayes: grey levels over which the weight falls, > 0
+  Field<double> edge_weight = by_default<Field>(1.0);
+  /// Bayes: grey levels over which the weight falls, > 0.
+  Field<double> edge_contrast = by_default<Field>(8.0);
 
-  Field<double> truncation;  ///< truncated cost: grey levels, > 0
-  Field<double> alpha;       ///< gradient evidence: weight of the gradients' difference, ≥ 0
-  Field<GradientNorm> norm;
-  Field<GradientFilter> gradient;
-  Field<bool> prefilter;  ///< gradient evidence: Gaussian σ = ½ first
+  Field<Subpixel> subpixel = by_default<Field>(Subpixel::kParabola);
 
   friend bool operator==(const MethodParametersOf&, const MethodParametersOf&) = default;
 };

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <string_view>
+#include <type_traits>
+
+#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/options/parameter_readers.h"
+#include "engine/option_field.h"
+
+namespace vantage {
+
+/// What is known of a field of MethodParameters.
+struct MethodField {
+  std::string_view option;  ///< its name on the command line, in files and in messages
+  ParameterReaders readers;
+  Limits limits = {};  ///< those that do not depend on other fields
+};
+
+template <typename T>
+concept MethodOptions = std::same_as<std::remove_const_t<T>, MethodOverrides> ||
+    std::same_as<std::remove_const_t<T>, MethodParameters>;
+
+/// Calls visit(MethodField, options.field...) for every field, in the order of the options.
+template <typename Visit, MethodOptions... Options>
+constexpr void visit_fields(const Visit& visit, Options&... options) {
+  using Field = MethodField;
+  constexpr auto is_positive = [](double v) { return v > 0 && std::isfinite(v); };
+  constexpr auto is_not_negative = [](double v) { return v >= 0 && std::isfinite(v); };
+  constexpr auto is_probability = [](double v) { return v > 0 && v < 1; };
+  constexpr auto is_weight = [](double v) { return v > 0 && v <= 1; };
+  constexpr Limits kGreyLevels = {is_positive, "a number of grey levels above 0"};
+  constexpr Limits kProbability = {is_probability, "a number between 0 and 1, both excluded"};
+  constexpr Limits kNotNegative = {is_not_negative, "a number of at least 0"};
+  constexpr Limits kIterations = {is_within<0, 10000>, "a number from 0 to 10000"};
+  constexpr Limits kLevels = {is_within<1, 10>, "a number from 1 to 10"};
+
+  visit(Field{"cost", readers::kAll}, options.cost...);
+  visit(Field{"colour", readers::kAll}, options.colour...);
+  visit(Field{"truncation", readers::kTruncated, kGreyLevels}, options.truncation...);
+  visit(Field{"match-exposure", readers::kExposure}, options.match_exposure...);
+  // Two fields of one option: a number, or that it is estimated.
+  visit(Field{"sigma-measurement", readers::kSigmaMeasurement, kGreyLevels},
+        options.sigma_measurement...);
+  visit(Field{"sigma-measurement", readers::kSigmaMeasurement},
+        options.estimate_sigma_measurement...);
+  visit(Field{"epsilon-measurement", readers::kEpsilonMeasurement, kProbability},
+        options.epsilon_measurement...);
+  visit(Field{"census-thresholds",
+              readers::kRayCensus,
+              {[](double v) { return v == 1 || v == 3; }, "1 or 3"}},
+        options.census_thresholds...);
+  visit(Field{"sigma-census",
+              readers::kCombined,
+              {is_within<0, 1>, "a share of bits from 0, which leaves the term out, to 1"}},
+        options.sigma_census...);
+  visit(Field{"sigma-gradient",
+              readers::kCombined,
+              {is_not_negative,
+               "a number of grey levels per pixel, at least 0, which leaves the term out"}},
+        options.sigma_gradient...);
+  visit(Field{"alpha", readers::kGradient, kNotNegative}, options.alpha...);
+  visit(Field{"norm", readers::kGradient}, options.norm...);
+  visit(Field{"gradient", readers::kGradient}, options.gradient...);
+  visit(Field{"prefilter", readers::kGradient}, options.prefilter...);
+
+  visit(Field{"aggregate", readers::kAll}, options.aggregation...);
+  // 181² · 255² is the largest windowed sum of squares that fits 31 bits.
+  constexpr auto is_window = [](double v) {
+    return is_within<1, 181>(v) && static_cast<int>(v) % 2 == 1;
+  };
+  visit(Field{"window", readers::kBox, {is_window, "an odd number from 1 to 181"}},
+        options.window_px...);
+  visit(Field{"border", readers::kBox}, options.border...);
+  visit(Field{"aggregation-sigma",
+              readers::kGaussians,
+              {[](double v) { return v >= 0.5 && v <= 16; }, "a number of pixels from 0.5 to 16"}},
+        options.aggregation_sigma_px...);
+  visit(Field{"iterations", readers::kIterative, kIterations}, options.iterations...);
+  visit(Field{"levels", readers::kAll, kLevels}, options.levels...);
+  visit(Field{"candidate-blocks",
+              readers::kCandidateBlocks,
+              {is_within<0, kMaxCandidateBlocks>, "a number from 0 (all candidates) to 8"}},
+        options.candidate_blocks...);
+  visit(Field{"pruned-levels", readers::kPrunedLevels, kLevels}, options.pruned_levels...);
+  visit(Field{"final-iterations", readers::kIterativeWithLevels, kIterations},
+        options.final_iterations...);
+  visit(Field{"lambda", readers::kSteps}, options.lambda...);
+  visit(Field{"beta", readers::kMembrane, kNotNegative}, options.beta...);
+  visit(Field{"certainty", readers::kLocalStopping}, options.certainty...);
+  visit(Field{"mu",
+              readers::kBayes,
+              {is_weight,
+               "a number above 0 and at most 1: larger weights of the neighbours are unstable"}},
+        options.mu...);
+  visit(Field{"sigma-prior", readers::kBayes, {is_positive, "a number of pixels above 0"}},
+        options.sigma_prior...);
+  visit(Field{"epsilon-prior", readers::kBayes, kProbability}, options.epsilon_prior...);
+  visit(Field{"prior-growth", readers::kBayesWithLevels, {is_within<1, 4>, "a number from 1 to 4"}},
+        options.prior_growth...);
+  visit(Field{"prior-smoothing", readers::kBayes}, options.prior_smoothing...);
+  visit(
+      Field{
+          "level-weight", readers::kBayesWithLevels, {is_weight, "a number above 0 and at most 1"}},
+      options.level_weight...);
+  visit(Field{"edge-weight", readers::kBayes, {is_within<0, 1>, "a number from 0 to 1"}},
+        options.edge_weight...);
+  visit(Field{"edge-contrast", readers::kEdges, kGreyLevels}, options.edge_contrast...);
+
+  visit(Field{"subpixel", readers::kAll}, options.subpixel...);
+}
+
+/// Throws UsageError for the first parameter that `overrides` sets and nothing reads where
+/// `in_force` is. `chosen`: what is in force, in words.
+void require_read(const MethodOverrides& overrides, const MethodParameters& in_force,
+                  std::string_view chosen);
+
+}  // namespace vantage
