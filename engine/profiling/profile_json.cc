@@ -342,8 +342,10 @@ Profile read_profile(const std::string& path) {
     throw Error(fmt::format("{}: is no profile, expected what 'profile --json' wrote", path));
   }
   if (document.at(kSchemaKey) != kSchema) {
-    throw Error(fmt::format("{}: {} is {}, expected {}: it is of another version of vantage", path,
-                            kSchemaKey, quoted_json(document.at(kSchemaKey)), kSchema));
+    throw Error(
+        fmt::format("{}: {} is {}, expected {}: another version of vantage wrote it, profile again "
+                    "with this one",
+                    path, kSchemaKey, quoted_json(document.at(kSchemaKey)), kSchema));
   }
   Profile profile;
   try {

@@ -254,7 +254,7 @@ TEST_F(InputComparedProfiles, MustBeProfiles) {
   refused("thread_counts is missing or wrong, expected a list");
   second_ = first_;
   second_["profile_schema"] = 2;
-  refused("profile_schema is 2, expected 1");
+  refused("profile_schema is 2, expected 1: another version of vantage wrote it, profile again");
   second_ = json::array();
   refused("is no profile");
   const ProcessResult one = run_vantage({"profile", "--compare", folder_ / "a.json"});

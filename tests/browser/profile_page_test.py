@@ -293,6 +293,8 @@ class ProfilePageTest(unittest.TestCase):
                 # Tables and charts beside each other keep apart.
                 for a, b in itertools.combinations(tab.evaluate(BOXES.format("table, svg")), 2):
                     self.assertFalse(overlap(a, b), (a, b))
+        # In a narrower window wide tables scroll by themselves.
+        self.assertLessEqual(self.open(500).evaluate("document.documentElement.scrollWidth"), 500)
 
     def test_labels_of_the_roofline_can_be_read(self):
         labels = self.open().evaluate(BOXES.format("svg .label, svg .roof-name"))
