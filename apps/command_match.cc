@@ -26,39 +26,36 @@ namespace vantage::apps {
 namespace {
 
 void write_map(const MatchJob& job, const std::string& path, const DisparityMaps& maps, Side side) {
-  const bool is_left = side == Side::kLeft;
-  const DisparityMap& map = is_left ? maps.left : maps.right;
+  const MatchedMap& map = maps.of(side);
   if (!job.match.disparities_y) {
-    write_disparity(path, map.view());
+    write_disparity(path, map.disparity_px.view());
     return;
   }
-  const DisparityMap& map_y = is_left ? maps.left_disparity_y : maps.right_disparity_y;
-  write_displacements(path, {map.view(), map_y.view()}, side);
+  write_displacements(path, {map.disparity_px.view(), map.disparity_y_px.view()}, side);
 }
 
 void write_results(const MatchJob& job, const DisparityMaps& maps) {
-  const bool is_left = job.is_left();
-  write_map(job, job.output, maps, is_left ? Side::kLeft : Side::kRight);
+  const Side side = job.is_left() ? Side::kLeft : Side::kRight;
+  const MatchedMap& map = maps.of(side);
+  write_map(job, job.output, maps, side);
   if (!job.output_right.empty()) {
     write_map(job, job.output_right, maps, Side::kRight);
   }
   if (!job.confidence.empty()) {
-    write_disparity(job.confidence,
-                    (is_left ? maps.left_confidence : maps.right_confidence).view());
+    write_disparity(job.confidence, map.confidence.view());
   }
   if (!job.unmatched.empty()) {
-    write_mask(job.unmatched, (is_left ? maps.left_unmatched : maps.right_unmatched).view());
+    write_mask(job.unmatched, map.unmatched.view());
   }
   if (!job.unmatched_right.empty()) {
-    write_mask(job.unmatched_right, maps.right_unmatched.view());
+    write_mask(job.unmatched_right, maps.right.unmatched.view());
   }
   if (!job.preview.empty()) {
     const PreviewRange range = preview_range_of(job.match.disparities);
     // Along the baseline.
     const bool is_y = job.vertical && job.match.disparities_y;
-    const DisparityMap& map = is_left ? (is_y ? maps.left_disparity_y : maps.left)
-                                      : (is_y ? maps.right_disparity_y : maps.right);
-    write_photograph(job.preview, {colour_preview(map.view(), range.min_px, range.max_px)});
+    const DisparityMap& shown = is_y ? map.disparity_y_px : map.disparity_px;
+    write_photograph(job.preview, {colour_preview(shown.view(), range.min_px, range.max_px)});
   }
 }
 
@@ -69,23 +66,22 @@ void transpose(std::vector<Photograph>& images) {
   }
 }
 
-/// Those that are there.
 void transpose(DisparityMaps& maps) {
-  for (DisparityMap* map :
-       {&maps.left, &maps.right, &maps.left_disparity_y, &maps.right_disparity_y,
-        &maps.left_confidence, &maps.right_confidence}) {
-    if (!map->empty()) {
-      *map = transposed(std::as_const(*map).view());
+  const auto transpose_unless_empty = [](auto& image) {
+    if (!image.empty()) {
+      image = transposed(std::as_const(image).view());
     }
+  };
+  for (MatchedMap* map : {&maps.left, &maps.right}) {
+    transpose_unless_empty(map->disparity_px);
+    transpose_unless_empty(map->disparity_y_px);
+    transpose_unless_empty(map->confidence);
+    transpose_unless_empty(map->unmatched);
   }
-  for (Mask* mask : {&maps.left_unmatched, &maps.right_unmatched}) {
-    if (!mask->empty()) {
-      *mask = transposed(std::as_const(*mask).view());
+  if (!maps.left.disparity_y_px.empty() || !maps.right.disparity_y_px.empty()) {
+    for (MatchedMap* map : {&maps.left, &maps.right}) {
+      std::swap(map->disparity_px, map->disparity_y_px);
     }
-  }
-  if (!maps.left_disparity_y.empty() || !maps.right_disparity_y.empty()) {
-    std::swap(maps.left, maps.left_disparity_y);
-    std::swap(maps.right, maps.right_disparity_y);
   }
 }
 

@@ -16,9 +16,9 @@ std::string why_empty(const PairWithMaps& pair, const ViewPose& pose) {
                                 pair.left.height());
   int behind = 0;
   int all = 0;
-  for (int y = 0; y < pair.maps.left.height(); ++y) {
-    for (int x = 0; x < pair.maps.left.width(); ++x) {
-      const double d = pair.maps.left.at(x, y);
+  for (int y = 0; y < pair.maps.left.disparity_px.height(); ++y) {
+    for (int x = 0; x < pair.maps.left.disparity_px.width(); ++x) {
+      const double d = pair.maps.left.disparity_px.at(x, y);
       if (std::isfinite(d)) {
         const double depth = view.from_left.homography.row(2).dot(Eigen::Vector3d(x, y, 1)) +
                              d * view.from_left.parallax.z();

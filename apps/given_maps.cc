@@ -23,18 +23,20 @@ Agreement agreement_of(const DisparityMaps& maps, float sign) {
   long long partners = 0;
   long long agreeing = 0;
   long long negative = 0;
-  for (int y = 0; y < maps.left.height(); ++y) {
-    for (int x = 0; x < maps.left.width(); ++x) {
-      const float d = maps.left.at(x, y);
+  for (int y = 0; y < maps.left.disparity_px.height(); ++y) {
+    for (int x = 0; x < maps.left.disparity_px.width(); ++x) {
+      const float d = maps.left.disparity_px.at(x, y);
       const float partner = std::round(static_cast<float>(x) - sign * d);
       if (!std::isfinite(d) || !(partner >= 0) ||
-          !(partner < static_cast<float>(maps.right.width()))) {
+          !(partner < static_cast<float>(maps.right.disparity_px.width()))) {
         continue;
       }
       ++partners;
       negative += d < 0 ? 1 : 0;
       agreeing +=
-          std::abs(maps.right.at(static_cast<int>(partner), y) - d) <= kTolerance_px ? 1 : 0;
+          std::abs(maps.right.disparity_px.at(static_cast<int>(partner), y) - d) <= kTolerance_px
+              ? 1
+              : 0;
     }
   }
   const auto all = static_cast<double>(partners);
@@ -46,7 +48,8 @@ Agreement agreement_of(const DisparityMaps& maps, float sign) {
 }  // namespace
 
 void require_agreeing_maps(const DisparityMaps& maps) {
-  if (maps.left.width() != maps.right.width() || maps.left.height() != maps.right.height()) {
+  if (maps.left.disparity_px.width() != maps.right.disparity_px.width() ||
+      maps.left.disparity_px.height() != maps.right.disparity_px.height()) {
     return;
   }
   const Agreement as_declared = agreement_of(maps, 1);

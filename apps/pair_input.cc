@@ -104,8 +104,8 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
     result.right = read_photograph(pair.right);
     if (pair.has_maps()) {
       const double scale = pair.disparity_scale.value_or(0);
-      result.maps.left = read_disparity(pair.left_disparity, scale);
-      result.maps.right = read_disparity(pair.right_disparity, scale);
+      result.maps.left.disparity_px = read_disparity(pair.left_disparity, scale);
+      result.maps.right.disparity_px = read_disparity(pair.right_disparity, scale);
       require_agreeing_maps(result.maps);
     }
   });

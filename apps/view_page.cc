@@ -101,8 +101,9 @@ SettingValue intensity_of(const PairWithMaps& pair, const SynthesisOptions& opti
   const int channels = pair.left.channels();
   const ViewSynthesizer synthesizer(options, execution);
   // Also where they are not wanted: this checks that the pair and its maps fit together.
-  const auto sums = synthesizer.intensity_sums(pair.left, pair.right, pair.maps.left.view(),
-                                               pair.maps.right.view(), 0.5);
+  const auto sums =
+      synthesizer.intensity_sums(pair.left, pair.right, pair.maps.left.disparity_px.view(),
+                                 pair.maps.right.disparity_px.view(), 0.5);
   if (options.match_intensities) {
     fits = fit_channels(sums, channels, 1);
   }
@@ -188,9 +189,9 @@ std::string make_view_page(const PairWithMaps& pair, const std::string& names,
                     "of browsers draw no larger",
                     width, height, kMaxSide));
   }
-  const DisparityNumbers numbers =
-      choose_disparity_numbers(pair.maps.left.view(), pair.maps.right.view());
-  const PreviewRange palette_range = choose_preview_range(pair.maps.left.view());
+  const DisparityNumbers numbers = choose_disparity_numbers(pair.maps.left.disparity_px.view(),
+                                                            pair.maps.right.disparity_px.view());
+  const PreviewRange palette_range = choose_preview_range(pair.maps.left.disparity_px.view());
   const SynthesisOptions& synthesis = options.synthesis;
   const SettingValue scene = {
       {"width", width},
@@ -216,8 +217,9 @@ std::string make_view_page(const PairWithMaps& pair, const std::string& names,
        {"image_type", lossless ? "image/png" : "image/jpeg"},
        {"left_image", as_base64(image_name, for_browser(pair.left))},
        {"right_image", as_base64(image_name, for_browser(pair.right))},
-       {"left_map", as_base64("map.png", as_numbers(pair.maps.left.view(), numbers))},
-       {"right_map", as_base64("map.png", as_numbers(pair.maps.right.view(), numbers))},
+       {"left_map", as_base64("map.png", as_numbers(pair.maps.left.disparity_px.view(), numbers))},
+       {"right_map",
+        as_base64("map.png", as_numbers(pair.maps.right.disparity_px.view(), numbers))},
        {"palette", as_base64("palette.png", make_palette())},
        {"scene", json_in_html(scene.dump())},
        {"shaders", shader_elements()},

@@ -11,7 +11,11 @@ namespace vantage::apps {
 
 ViewRenderer::ViewRenderer(const PairWithMaps& pair, const SynthesisOptions& options,
                            std::optional<TwoEyes> two_eyes, Execution& execution)
-    : source_{pair.left, pair.right, pair.maps.left.view(), pair.maps.right.view(), {}},
+    : source_{pair.left,
+              pair.right,
+              pair.maps.left.disparity_px.view(),
+              pair.maps.right.disparity_px.view(),
+              {}},
       baseline_(pair.cameras ? pair.cameras->baseline : 0),
       two_eyes_(two_eyes),
       renderer_(options, pair.cameras ? &*pair.cameras : nullptr, execution) {

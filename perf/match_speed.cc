@@ -53,7 +53,8 @@ class OneMap {
 /// The same chain by the whole-image executor: pass by pass, every row of every stage stored.
 void run_whole_image_chain(const Photograph& left, const Photograph& right,
                            const MatchOptions& options, Execution& execution) {
-  const auto geometry = candidate_geometry(options, Side::kLeft, left.width(), left.height());
+  const auto geometry =
+      candidate_geometry(options.in_force(), Side::kLeft, left.width(), left.height());
   const MethodParameters parameters = options.resolved();
   PreparedPair pair;
   prepare_pair(left, right, geometry, parameters.window_px * parameters.window_px, {true, false},

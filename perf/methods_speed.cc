@@ -71,7 +71,7 @@ std::vector<Method> all_methods() {
 /// The chain by the whole-image executor: every row of every stage stored, one thread.
 void run_whole_image_chain(const Method& method, const Pair& pair, Execution& execution) {
   const MethodParameters parameters = method.options.resolved();
-  const auto geometry = candidate_geometry(method.options, Side::kLeft, kWidth, kHeight);
+  const auto geometry = candidate_geometry(method.options.in_force(), Side::kLeft, kWidth, kHeight);
   CostImage left;
   CostImage right;
   left.prepare(pair.left_grey, parameters, geometry, {true, false, false}, execution);

@@ -11,8 +11,8 @@ namespace vantage::perf {
 /// Disparities as a view sees them: those of both maps, the nearer ones in front, and what neither
 /// has as far away as the farther end of its run.
 inline DisparityMap seen_from(const DisparityMaps& maps, double view_x) {
-  DisparityMap seen = moved(maps.left, view_x);
-  const DisparityMap right = moved(maps.right, view_x - 1);
+  DisparityMap seen = moved(maps.left.disparity_px, view_x);
+  const DisparityMap right = moved(maps.right.disparity_px, view_x - 1);
   const int width = seen.width();
   for (int y = 0; y < seen.height(); ++y) {
     for (int x = 0; x < width; ++x) {

@@ -46,8 +46,8 @@ inline Photograph plain_view(const Photograph& left, const Photograph& right,
   };
   Image<std::uint8_t> result(width, left.height(), channels);
   for (int y = 0; y < left.height(); ++y) {
-    Warped row = warp(left_pixels, maps.left, view_x, y);
-    const Warped other = warp(right_pixels, maps.right, view_x - 1, y);
+    Warped row = warp(left_pixels, maps.left.disparity_px, view_x, y);
+    const Warped other = warp(right_pixels, maps.right.disparity_px, view_x - 1, y);
     const double alpha = std::abs(view_x - 1) / (std::abs(view_x) + std::abs(view_x - 1));
     const auto value = [&](const Warped& from, std::size_t x, int c) {
       return from.colour[x * static_cast<std::size_t>(channels) + static_cast<std::size_t>(c)];

@@ -40,7 +40,7 @@ class Worker {
   Worker(const MatchOptions& options, const ExecutionOptions& execution)
       : execution_(execution), matcher_(options, execution_) {}
   void run(const Pair& pair) {
-    const bool refined = !matcher_.options().raw;
+    const bool refined = matcher_.in_force().refinement.has_value();
     matcher_.match(pair.left_grey, pair.right_grey,
                    {.left = true, .right = refined, .unmatched = refined}, maps_, &report_);
   }

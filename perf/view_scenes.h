@@ -106,18 +106,18 @@ inline DisparityMap moved(const DisparityMap& map, double baselines) {
 inline DisparityMaps true_maps(const ViewScene& scene, const std::filesystem::path& folder,
                                Execution& execution) {
   DisparityMaps maps;
-  maps.left = read_disparity(folder / scene.left_truth, scene.scale);
+  maps.left.disparity_px = read_disparity(folder / scene.left_truth, scene.scale);
   if (scene.right_truth.empty()) {
-    maps.right = moved(maps.left, 1 - scene.truth_x);
-    maps.left = moved(maps.left, -scene.truth_x);
+    maps.right.disparity_px = moved(maps.left.disparity_px, 1 - scene.truth_x);
+    maps.left.disparity_px = moved(maps.left.disparity_px, -scene.truth_x);
   } else {
-    maps.right = read_disparity(folder / scene.right_truth, scene.scale);
+    maps.right.disparity_px = read_disparity(folder / scene.right_truth, scene.scale);
   }
   Mask unknown;
-  mark_unknown(maps.left.view(), execution, unknown);
-  fill_unmatched(unknown, Side::kLeft, Fill::kConstant, execution, maps.left);
-  mark_unknown(maps.right.view(), execution, unknown);
-  fill_unmatched(unknown, Side::kRight, Fill::kConstant, execution, maps.right);
+  mark_unknown(maps.left.disparity_px.view(), execution, unknown);
+  fill_unmatched(unknown, Side::kLeft, Fill::kConstant, execution, maps.left.disparity_px);
+  mark_unknown(maps.right.disparity_px.view(), execution, unknown);
+  fill_unmatched(unknown, Side::kRight, Fill::kConstant, execution, maps.right.disparity_px);
   return maps;
 }
 

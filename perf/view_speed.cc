@@ -53,9 +53,9 @@ class Row {
   }
 
   void run(std::size_t which_threads) {
-    synthesizers_[which_threads].synthesize(scene_.left, scene_.right, scene_.maps.left.view(),
-                                            scene_.maps.right.view(), geometry_, view_,
-                                            fit_ ? &*fit_ : nullptr);
+    synthesizers_[which_threads].synthesize(
+        scene_.left, scene_.right, scene_.maps.left.disparity_px.view(),
+        scene_.maps.right.disparity_px.view(), geometry_, view_, fit_ ? &*fit_ : nullptr);
   }
 
   // Ours and theirs close together, so that a machine that slows down does so for both.

@@ -49,7 +49,8 @@ MakeView ours(const SynthesisOptions& options) {
                    Execution& execution) {
     SynthesizedView view;
     ViewSynthesizer(options, execution)
-        .synthesize(pair.left, pair.right, maps.left.view(), maps.right.view(), view_x, view);
+        .synthesize(pair.left, pair.right, maps.left.disparity_px.view(),
+                    maps.right.disparity_px.view(), view_x, view);
     return std::move(view.image);
   };
 }
@@ -71,14 +72,16 @@ DisparityMaps opencv_maps(const LoadedPair& pair, Execution& execution) {
   PeerMaps sgbm = sgbm_maps(to_opencv(pair.left), to_opencv(pair.right), pair.scene->range, 5,
                             cv::StereoSGBM::MODE_SGBM);
   DisparityMaps maps;
-  maps.left = std::move(sgbm.left);
-  maps.right = std::move(sgbm.right);
+  maps.left.disparity_px = std::move(sgbm.left);
+  maps.right.disparity_px = std::move(sgbm.right);
   Mask left;
   Mask right;
-  cross_check(maps.left.view(), maps.right.view(), Side::kLeft, 1, execution, left);
-  cross_check(maps.right.view(), maps.left.view(), Side::kRight, 1, execution, right);
-  fill_unmatched(left, Side::kLeft, Fill::kConstant, execution, maps.left);
-  fill_unmatched(right, Side::kRight, Fill::kConstant, execution, maps.right);
+  cross_check(maps.left.disparity_px.view(), maps.right.disparity_px.view(), Side::kLeft, 1,
+              execution, left);
+  cross_check(maps.right.disparity_px.view(), maps.left.disparity_px.view(), Side::kRight, 1,
+              execution, right);
+  fill_unmatched(left, Side::kLeft, Fill::kConstant, execution, maps.left.disparity_px);
+  fill_unmatched(right, Side::kRight, Fill::kConstant, execution, maps.right.disparity_px);
   return maps;
 }
 

@@ -104,7 +104,7 @@ void compute(const BookExperimentOptions& options, Execution& execution, Experim
   const StereoMatcher matcher(match_options(run, pair_options, pair.search), execution);
   DisparityMaps maps;
   matcher.match(pair.left, pair.right, {.left = left, .right = !left, .unmatched = false}, maps);
-  run.map = std::move(left ? maps.left : maps.right);
+  run.map = std::move(left ? maps.left.disparity_px : maps.right.disparity_px);
   const Mask visible = visible_pixels(left ? pair.left_occluded : pair.right_occluded);
   const DisparityMap& truth = left ? pair.left_disparity : pair.right_disparity;
   run.scores = evaluate_disparity(run.map.view(), truth.view(), {.mask = visible.view()});

@@ -21,19 +21,15 @@ scheduler::ChainPlan chain_plan(const MatchChain& chain, const ExecutionOptions&
   return scheduler::plan_chain(chain.stages(), machine, request);
 }
 
-void MapSearch::compute(Side reference, const ChainInput& input, const MapResult& result) {
-  const int width = result.disparity_px->width();
-  const int height = result.disparity_px->height();
-  MapOutputs outputs{.disparity_px = result.disparity_px->view()};
-  if (result.confidence != nullptr) {
-    outputs.confidence = result.confidence->view();
-  }
+void MapSearch::compute(Side reference, const ChainInput& input, const MapOutputs& outputs,
+                        const CoarseMap& coarse) {
+  const int width = outputs.disparity_px.width();
+  const int height = outputs.disparity_px.height();
   const auto grid = displacement_grid(options_, reference, width, height);
   ChainInput searched = input;
   double candidates = options_.disparities.count();
   kernels::CandidateGeometry geometry = candidate_geometry(options_, reference, width, height);
   if (grid) {
-    outputs.disparity_y_px = result.disparity_y_px->view();
     searched.grid = &*grid;
     geometry = grid->columns();
     candidates *= options_.disparities_y->count();
@@ -49,9 +45,9 @@ void MapSearch::compute(Side reference, const ChainInput& input, const MapResult
   scheduler::ChainPlan plan_before = report_.plan;
   const LevelCells cells = match_coarse_to_fine(
       parameters_, geometry, searched, outputs, work_.levels, execution_,
-      [this](const MatchChain& chain) { run_chain(chain); }, result.coarse);
+      [this](const MatchChain& chain) { run_chain(chain); }, coarse);
   report_.cells += cells.all_levels;
-  if (result.coarse.is_all) {
+  if (coarse.is_all) {
     report_.plan = std::move(plan_before);
     return;
   }

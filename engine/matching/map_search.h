@@ -19,34 +19,28 @@ struct MapSearchWork {
   CoarseLevels levels;
 };
 
-/// One map and what goes with it, all of the image's size. Not owned.
-struct MapResult {
-  DisparityMap* disparity_px;  ///< of which only the size counts where the coarse map is all
-  Image<float>* confidence = nullptr;      ///< null: not wanted
-  DisparityMap* disparity_y_px = nullptr;  ///< of a search in two dimensions, else null
-  CoarseMap coarse = {};
-};
-
 /// Computes single maps: flat or coarse to fine, along rows or in two dimensions (5.5.3).
 class MapSearch {
  public:
   /// `parameters`: those of `options`, with what was estimated from the images. All must outlive
   /// the search. `report` gets plan and cells.
-  MapSearch(const MatchOptions& options, const MethodParameters& parameters, Execution& execution,
-            MapSearchWork& work, MatchReport& report)
+  MapSearch(const ResolvedMatchOptions& options, const MethodParameters& parameters,
+            Execution& execution, MapSearchWork& work, MatchReport& report)
       : options_(options),
         parameters_(parameters),
         execution_(execution),
         work_(work),
         report_(report) {}
 
-  /// Throws Error when no pixel has a candidate.
-  void compute(Side reference, const ChainInput& input, const MapResult& result);
+  /// `outputs` of the image's size; where the coarse map is all, only that size counts. Throws
+  /// Error when no pixel has a candidate.
+  void compute(Side reference, const ChainInput& input, const MapOutputs& outputs,
+               const CoarseMap& coarse);
 
  private:
   void run_chain(const MatchChain& chain);
 
-  const MatchOptions& options_;
+  const ResolvedMatchOptions& options_;
   const MethodParameters& parameters_;
   Execution& execution_;
   MapSearchWork& work_;

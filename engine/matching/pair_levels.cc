@@ -197,7 +197,7 @@ PairLevels PairLevelsEstimator::estimate(const Photograph& left, const Photograp
   DisparityMaps maps;
   matcher_->match(of_left.photograph(), of_right.photograph(),
                   {.left = true, .right = false, .unmatched = false}, maps);
-  const std::vector<Match> matches = matches_of(maps.left, bands);
+  const std::vector<Match> matches = matches_of(maps.left.disparity_px, bands);
 
   PairLevels result;
   result.matches = static_cast<int>(matches.size());

@@ -118,7 +118,7 @@ std::vector<float> agreed_disparities(const Photograph& left, const Photograph& 
   DisparityMaps maps;
   StereoMatcher(options, execution).match(left, right, {}, maps);
   std::vector<float> values;
-  for (const DisparityMap* map : {&maps.left, &maps.right}) {
+  for (const DisparityMap* map : {&maps.left.disparity_px, &maps.right.disparity_px}) {
     for (int y = 0; y < map->height(); ++y) {
       std::copy_if(map->row(y), map->row(y) + map->width(), std::back_inserter(values),
                    [](float d) { return std::isfinite(d); });

@@ -17,61 +17,45 @@
 namespace vantage {
 namespace {
 
-std::size_t held_bytes_of(const RefinementWork& work) {
-  const EdgeSnappingWork& edges = work.edge_snapping;
-  std::size_t bytes = held_bytes(edges.grey) + held_bytes(edges.smooth_x) +
-                      held_bytes(edges.gradient_x) + held_bytes(edges.gradient_y) +
-                      held_bytes(edges.edges) + held_bytes(work.filled_medians.before) +
-                      held_bytes(work.filled_medians.pixels) +
-                      held_bytes(work.surface_fit.matched_px);
-  for (const SpeckleWork& speckles : work.speckles) {
-    bytes += held_bytes(speckles.runs) + held_bytes(speckles.row_begin);
+ResolvedMatchOptions checked(const MatchOptions& options) {
+  options.validate();
+  if (options.disparities_auto || options.disparities_y_auto) {
+    throw UsageError("disparities is auto, expected the range that the images suggest");
   }
-  return bytes;
+  return options.in_force();
 }
 
 }  // namespace
 
-std::size_t held_bytes(const DisparityMaps& maps) {
-  std::size_t bytes = held_bytes(maps.left_unmatched) + held_bytes(maps.right_unmatched);
-  for (const Image<float>* map :
-       {&maps.left, &maps.right, &maps.left_confidence, &maps.right_confidence,
-        &maps.left_disparity_y, &maps.right_disparity_y}) {
-    bytes += held_bytes(*map);
-  }
-  return bytes;
-}
-
 StereoMatcher::StereoMatcher(const MatchOptions& options, Execution& execution)
-    : options_(options), execution_(execution) {
-  options_.validate();
-  if (options_.disparities_auto || options_.disparities_y_auto) {
-    throw UsageError("disparities is auto, expected the range that the images suggest");
-  }
-  parameters_ = options_.resolved();
-  if (uses_pair_levels(parameters_)) {
-    levels_ = std::make_unique<PairLevelsEstimator>(options_.disparities, execution_);
+    : in_force_(checked(options)), execution_(execution) {
+  if (uses_pair_levels(in_force_.parameters)) {
+    levels_ = std::make_unique<PairLevelsEstimator>(in_force_.disparities, execution_);
   }
 }
 
-int StereoMatcher::check_level(const RefinementOptions& refinement, scheduler::Extent image) const {
-  const auto coarsest = static_cast<int>(level_extents(image, parameters_.levels).size()) - 1;
-  return std::min(refinement.cross_check_level, coarsest);
+int StereoMatcher::check_level(scheduler::Extent image) const {
+  if (!in_force_.refinement) {
+    return 0;
+  }
+  const auto coarsest =
+      static_cast<int>(level_extents(image, in_force_.parameters.levels).size()) - 1;
+  return std::min(in_force_.refinement->cross_check_level, coarsest);
 }
 
 bool StereoMatcher::wants_confidence(const MatchRequest& request) const {
-  return request.confidence || (!options_.raw && uses_confidence(options_.resolved_refinement()));
+  return request.confidence || (in_force_.refinement && uses_confidence(*in_force_.refinement));
 }
 
 /// What is estimated from a pair's grey levels.
 void StereoMatcher::settle_levels(const Photograph& left, const Photograph& right,
                                   Prepared& prepared, MatchReport& report) const {
   // Throws for the whole images, where bands of them would be named otherwise.
-  candidate_geometry(options_, Side::kLeft, left.width(), left.height());
-  const PairLevels levels =
-      levels_->estimate(left, right, parameters_.colour, parameters_.match_exposure);
+  candidate_geometry(in_force_, Side::kLeft, left.width(), left.height());
+  const PairLevels levels = levels_->estimate(left, right, in_force_.parameters.colour,
+                                              in_force_.parameters.match_exposure);
   prepared.of_right = levels.of_right;
-  if (parameters_.estimate_sigma_measurement && levels.sigma_measurement) {
+  if (in_force_.parameters.estimate_sigma_measurement && levels.sigma_measurement) {
     prepared.parameters.sigma_measurement = *levels.sigma_measurement;
   }
   report.levels = levels;
@@ -88,12 +72,13 @@ std::vector<LevelChanges> StereoMatcher::settle_levels(const Photograph& referen
     // In units of x_reference − x_other.
     const double ratio = other.baseline / std::abs(others.front().baseline);
     const auto [least, most] =
-        std::minmax({options_.disparities.min * ratio, options_.disparities.max * ratio});
+        std::minmax({in_force_.disparities.min * ratio, in_force_.disparities.max * ratio});
     const DisparityRange range{static_cast<int>(std::floor(least)),
                                static_cast<int>(std::ceil(most))};
     const PairLevels levels =
         PairLevelsEstimator(range, execution_)
-            .estimate(reference, *other.photograph, parameters_.colour, parameters_.match_exposure);
+            .estimate(reference, *other.photograph, in_force_.parameters.colour,
+                      in_force_.parameters.match_exposure);
     changes.push_back(levels.of_right);
     if (levels.sigma_measurement) {
       sigma = std::max(sigma.value_or(0), *levels.sigma_measurement);
@@ -102,7 +87,7 @@ std::vector<LevelChanges> StereoMatcher::settle_levels(const Photograph& referen
       report.levels = levels;
     }
   }
-  if (parameters_.estimate_sigma_measurement && sigma) {
+  if (in_force_.parameters.estimate_sigma_measurement && sigma) {
     prepared.parameters.sigma_measurement = *sigma;
   }
   return changes;
@@ -111,13 +96,13 @@ std::vector<LevelChanges> StereoMatcher::settle_levels(const Photograph& referen
 /// What the chains of both maps read.
 void StereoMatcher::prepare_inputs(MapTask& left, MapTask& right, bool uses_prior,
                                    Prepared& prepared) const {
-  const auto is_needed = [](const MapTask& side) { return side.need.whole || side.need.coarse; };
-  const bool needs_left = is_needed(left);
-  const bool needs_right = is_needed(right);
+  const bool needs_left = left.need.any();
+  const bool needs_right = right.need.any();
   const auto geometry =
-      candidate_geometry(options_, Side::kLeft, left.image->width(), left.image->height());
-  if (uses_column_ssd(parameters_) && !options_.disparities_y && !uses_prior) {
-    prepare_pair(*left.image, *right.image, geometry, parameters_.window_px * parameters_.window_px,
+      candidate_geometry(in_force_, Side::kLeft, left.image->width(), left.image->height());
+  if (uses_column_ssd(in_force_.parameters) && !in_force_.disparities_y && !uses_prior) {
+    prepare_pair(*left.image, *right.image, geometry,
+                 in_force_.parameters.window_px * in_force_.parameters.window_px,
                  {needs_left, needs_right}, execution_, prepared.pair);
     left.input.pair = right.input.pair = &prepared.pair;
   } else {
@@ -142,28 +127,29 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
     std::span<const ExecutionOptions> executions) const {
   require_equal_sizes(left, "left image", right, "right image");
   const auto prepared = prepared_.borrow();
-  prepared->parameters = parameters_;
+  prepared->parameters = in_force_.parameters;
   prepared->of_right = {};
   DisparityMaps maps;  // nobody looks into them
-  MapTask of_left = left_task(left, maps);
-  MapTask of_right = right_task(right, maps);
+  MapTask of_left{.side = Side::kLeft, .image = &left, .map = &maps.left};
+  MapTask of_right{.side = Side::kRight, .image = &right, .map = &maps.right};
   of_left.need = {.whole = true};
   prepare_inputs(of_left, of_right, false, *prepared);
-  auto geometry = candidate_geometry(options_, Side::kLeft, left.width(), left.height());
-  maps.left.resize(left.width(), left.height());
-  const auto grid = displacement_grid(options_, Side::kLeft, left.width(), left.height());
+  auto geometry = candidate_geometry(in_force_, Side::kLeft, left.width(), left.height());
+  maps.left.disparity_px.resize(left.width(), left.height());
+  const auto grid = displacement_grid(in_force_, Side::kLeft, left.width(), left.height());
   if (grid) {
     of_left.input.grid = &*grid;
     geometry = grid->columns();
   }
   const LevelVolume coarser;  // nobody looks into it
-  const auto extents = level_extents({left.width(), left.height()}, parameters_.levels);
-  const bool is_pruned = parameters_.candidate_blocks > 0 && extents.size() > 1;
+  const auto extents = level_extents({left.width(), left.height()}, in_force_.parameters.levels);
+  const bool is_pruned = in_force_.parameters.candidate_blocks > 0 && extents.size() > 1;
   CandidateBlocks blocks;
   if (is_pruned) {
-    blocks.resize(extents.front(), geometry.count, parameters_.candidate_blocks);
+    blocks.resize(extents.front(), geometry.count, in_force_.parameters.candidate_blocks);
   }
-  const MatchChain chain(parameters_, geometry, of_left.input, {.disparity_px = maps.left.view()},
+  const MatchChain chain(in_force_.parameters, geometry, of_left.input,
+                         {.disparity_px = maps.left.disparity_px.view()},
                          {.coarser = extents.size() > 1 ? &coarser : nullptr,
                           .blocks = is_pruned ? &blocks : nullptr});
   std::vector<scheduler::ChainPlan> plans;
@@ -177,8 +163,8 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
 /// What is made of each image's map: all of it where it or, for a check of the other one, all of it
 /// is wanted; the coarse level where the other is checked against that.
 std::pair<StereoMatcher::MapNeed, StereoMatcher::MapNeed> StereoMatcher::needs(
-    const MatchRequest& request, const RefinementOptions& refinement, int check_level) const {
-  const bool is_checked = !options_.raw && refinement.cross_check;
+    const MatchRequest& request, int check_level) const {
+  const bool is_checked = in_force_.refinement && in_force_.refinement->cross_check;
   const auto need = [&](bool is_wanted, bool is_other_wanted) -> MapNeed {
     return {.whole = is_wanted || (is_checked && check_level == 0),
             .coarse = is_checked && check_level > 0 && is_other_wanted};
@@ -186,66 +172,45 @@ std::pair<StereoMatcher::MapNeed, StereoMatcher::MapNeed> StereoMatcher::needs(
   return {need(request.left, request.right), need(request.right, request.left)};
 }
 
-StereoMatcher::MapTask StereoMatcher::left_task(const Photograph& image, DisparityMaps& maps) {
-  return {.reference = Side::kLeft,
-          .image = &image,
-          .px = &maps.left,
-          .confidence = &maps.left_confidence,
-          .disparity_y = &maps.left_disparity_y,
-          .unmatched = &maps.left_unmatched};
-}
-
-StereoMatcher::MapTask StereoMatcher::right_task(const Photograph& image, DisparityMaps& maps) {
-  return {.reference = Side::kRight,
-          .image = &image,
-          .px = &maps.right,
-          .confidence = &maps.right_confidence,
-          .disparity_y = &maps.right_disparity_y,
-          .unmatched = &maps.right_unmatched};
-}
-
-/// Gives the side's images their sizes and computes what it needs of its map.
-void StereoMatcher::compute(MapTask& side, std::string_view name, bool wants_confidence,
+/// Gives the images of the task's map their sizes and computes what is needed of it.
+void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_confidence,
                             int check_level, Prepared& prepared, StageClock& clock,
                             MatchReport& report) const {
   const auto resize = [&](Image<float>& image, bool is_wanted) {
-    image.resize(is_wanted ? side.image->width() : 0, is_wanted ? side.image->height() : 0);
+    image.resize(is_wanted ? task.image->width() : 0, is_wanted ? task.image->height() : 0);
   };
-  const bool has_confidence = side.need.whole && wants_confidence;
-  const bool has_disparity_y = side.need.whole && options_.disparities_y;
-  DisparityMap& coarse_px = prepared.coarse_px[index_of(side.reference)];
-  resize(*side.px, side.need.whole);
-  resize(*side.confidence, has_confidence);
-  resize(*side.disparity_y, has_disparity_y);
-  resize(coarse_px, side.need.coarse);
-  side.check_px = std::as_const(coarse_px).view();
-  if (!side.need.whole && !side.need.coarse) {
+  MatchedMap& map = *task.map;
+  DisparityMap& coarse_px = prepared.coarse_px[index_of(task.side)];
+  resize(map.disparity_px, task.need.whole);
+  resize(map.confidence, task.need.whole && wants_confidence);
+  resize(map.disparity_y_px, task.need.whole && in_force_.disparities_y);
+  resize(coarse_px, task.need.coarse);
+  task.check_px = std::as_const(coarse_px).view();
+  if (!task.need.any()) {
     return;
   }
   clock.begin(name);
-  side.input.edges = prepared.edges.prepare(*side.image, parameters_, execution_);
-  MapResult result{.disparity_px = side.need.whole ? side.px : &coarse_px,
-                   .confidence = has_confidence ? side.confidence : nullptr,
-                   .disparity_y_px = has_disparity_y ? side.disparity_y : nullptr};
-  if (side.need.coarse) {
-    result.coarse = {
-        .level = check_level, .disparity_px = coarse_px.view(), .is_all = !side.need.whole};
+  task.input.edges = prepared.edges.prepare(*task.image, in_force_.parameters, execution_);
+  CoarseMap coarse;
+  if (task.need.coarse) {
+    coarse = {.level = check_level, .disparity_px = coarse_px.view(), .is_all = !task.need.whole};
   }
-  MapSearch(options_, prepared.parameters, execution_, prepared.search, report)
-      .compute(side.reference, side.input, result);
+  MapSearch(in_force_, prepared.parameters, execution_, prepared.search, report)
+      .compute(task.side, task.input,
+               {.disparity_px = (task.need.whole ? map.disparity_px : coarse_px).view(),
+                .confidence = map.confidence.view(),
+                .disparity_y_px = map.disparity_y_px.view()},
+               coarse);
 }
 
-MapToRefine StereoMatcher::to_refine(const MapTask& side, bool is_result) const {
-  return {.side = side.reference,
-          .image = side.image,
-          .disparity_px = side.need.whole ? side.px : nullptr,
-          .disparity_y_px = options_.disparities_y ? side.disparity_y : nullptr,
-          .confidence = side.confidence,
-          .unmatched = side.unmatched,
-          .check_px = side.check_px,
+MapToRefine StereoMatcher::to_refine(const MapTask& task, bool is_result) const {
+  return {.side = task.side,
+          .image = task.image,
+          .map = task.map,
+          .check_px = task.check_px,
           .is_result = is_result,
-          .search = options_.disparities,
-          .search_y = options_.disparities_y.value_or(kAnyDisparity)};
+          .search = in_force_.disparities,
+          .search_y = in_force_.disparities_y.value_or(kAnyDisparity)};
 }
 
 void StereoMatcher::match(const Photograph& left, const Photograph& right,
@@ -253,7 +218,7 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
                           MatchReport* report) const {
   require_equal_sizes(left, "left image", right, "right image");
   require_usable(request.prior, left);
-  if (!request.prior.empty() && options_.disparities_y) {
+  if (!request.prior.empty() && in_force_.disparities_y) {
     throw UsageError("there is a prior beside disparities-y, expected a search along rows only");
   }
   const bool uses_prior = !request.prior.empty() && request.prior.weight > 0;
@@ -262,13 +227,12 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   times = {};
   StageClock clock(times);
   clock.begin("prepare");
-  const RefinementOptions refinement = options_.resolved_refinement();
-  const int check_level = this->check_level(refinement, {left.width(), left.height()});
-  MapTask of_left = left_task(left, maps);
-  MapTask of_right = right_task(right, maps);
-  std::tie(of_left.need, of_right.need) = needs(request, refinement, check_level);
+  const int check_level = this->check_level({left.width(), left.height()});
+  MapTask of_left{.side = Side::kLeft, .image = &left, .map = &maps.left};
+  MapTask of_right{.side = Side::kRight, .image = &right, .map = &maps.right};
+  std::tie(of_left.need, of_right.need) = needs(request, check_level);
   const auto prepared = prepared_.borrow();
-  prepared->parameters = parameters_;
+  prepared->parameters = in_force_.parameters;
   prepared->of_right = {};
   if (levels_) {
     clock.begin("grey levels");
@@ -285,17 +249,17 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   compute(of_left, "match left", confidence, check_level, *prepared, clock, times);
   compute(of_right, "match right", confidence, check_level, *prepared, clock, times);
 
-  if (options_.raw) {
+  if (!in_force_.refinement) {
     if (request.unmatched) {
-      mark_unknown(maps.left.view(), execution_, maps.left_unmatched);
-      mark_unknown(maps.right.view(), execution_, maps.right_unmatched);
+      mark_unknown(maps.left.disparity_px.view(), execution_, maps.left.unmatched);
+      mark_unknown(maps.right.disparity_px.view(), execution_, maps.right.unmatched);
     }
     return;
   }
   const auto work = refinement_works_.borrow();
   const MapToRefine left_map = to_refine(of_left, request.left);
   const MapToRefine right_map = to_refine(of_right, request.right);
-  refine_maps(refinement, left_map, &right_map, execution_, *work,
+  refine_maps(*in_force_.refinement, left_map, &right_map, execution_, *work,
               [&](std::string_view step) { clock.begin(step); });
 }
 
@@ -313,9 +277,9 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
   StageClock clock(times);
   clock.begin("prepare");
   const auto geometry =
-      candidate_geometry(options_, Side::kLeft, reference.width(), reference.height());
+      candidate_geometry(in_force_, Side::kLeft, reference.width(), reference.height());
   const auto prepared = prepared_.borrow();
-  prepared->parameters = parameters_;
+  prepared->parameters = in_force_.parameters;
   std::vector<LevelChanges> changes(others.size());
   if (levels_) {
     clock.begin("grey levels");
@@ -326,27 +290,27 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
   prepared->images[0].prepare(reference, prepared->parameters, geometry, {true, false, false},
                               execution_);
   maps = {};
-  MapTask side =
-      others.front().baseline > 0 ? left_task(reference, maps) : right_task(reference, maps);
-  side.need = {.whole = true};
-  side.input = {nullptr, prepared->images.data(), {}};
+  const Side side = others.front().baseline > 0 ? Side::kLeft : Side::kRight;
+  MapTask task{.side = side, .image = &reference, .map = &maps.of(side)};
+  task.need = {.whole = true};
+  task.input = {nullptr, prepared->images.data(), {}};
   for (std::size_t k = 0; k < others.size(); ++k) {
     CostImage& image = prepared->images[k + 1];
     const double ratio = others[k].baseline / others.front().baseline;
     image.prepare(*others[k].photograph, prepared->parameters, geometry,
                   {false, true, true, changes[k]}, execution_);
-    side.input.partners.push_back({&image, ratio});
+    task.input.partners.push_back({&image, ratio});
   }
-  compute(side, "match", wants_confidence(request), 0, *prepared, clock, times);
+  compute(task, "match", wants_confidence(request), 0, *prepared, clock, times);
 
-  if (options_.raw) {
+  if (!in_force_.refinement) {
     if (request.unmatched) {
-      mark_unknown(side.px->view(), execution_, *side.unmatched);
+      mark_unknown(task.map->disparity_px.view(), execution_, task.map->unmatched);
     }
     return;
   }
   const auto work = refinement_works_.borrow();
-  refine_maps(options_.resolved_refinement(), to_refine(side, true), nullptr, execution_, *work,
+  refine_maps(*in_force_.refinement, to_refine(task, true), nullptr, execution_, *work,
               [&](std::string_view step) { clock.begin(step); });
 }
 
@@ -365,7 +329,7 @@ void StereoMatcher::add_memory_use(MemoryUse& use) const {
     use.add("coarse levels", prepared.search.levels.held_bytes());
   });
   refinement_works_.for_each_idle(
-      [&use](const RefinementWork& work) { use.add("refinement", held_bytes_of(work)); });
+      [&use](const RefinementWork& work) { use.add("refinement", held_bytes(work)); });
 }
 
 }  // namespace vantage

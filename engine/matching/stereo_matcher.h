@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/execution.h"
+#include "engine/image/disparity_maps.h"
 #include "engine/image/image.h"
 #include "engine/image/memory_use.h"
 #include "engine/image/photograph.h"
@@ -23,24 +24,6 @@
 namespace vantage {
 
 class StageClock;
-
-/// Results of one pair, on the grid of the images. Reused from call to call without allocating.
-/// Each member is filled only when MatchRequest asked for it (or the work needed it anyway).
-struct DisparityMaps {
-  DisparityMap left;    ///< on the left grid
-  DisparityMap right;   ///< on the right grid
-  Mask left_unmatched;  ///< 255 where refinement or border left the pixel without a match
-  Mask right_unmatched;
-  /// How sure the winners are: M = max Ê for evidence (5.12), max p for Bayes, the certainty in use
-  /// for local stopping, the winner margin (6.13) otherwise. As it was before refinement.
-  Image<float> left_confidence;
-  Image<float> right_confidence;
-  DisparityMap left_disparity_y;  ///< y_left − y_right of a two-dimensional search, else empty
-  DisparityMap right_disparity_y;
-};
-
-/// What the maps take that are there.
-std::size_t held_bytes(const DisparityMaps& maps);
 
 /// What the caller wants. A map that is not wanted may be there all the same, for the cross-check
 /// of the other one: its contents mean nothing. Maps do not depend on whether the other is wanted.
@@ -70,10 +53,10 @@ class StereoMatcher {
   void match(const Photograph& left, const Photograph& right, const MatchRequest& request,
              DisparityMaps& maps, MatchReport* report = nullptr) const;
 
-  /// How the map of the left image is going to be worked off, with several levels the finest of
-  /// them: what a report of match() says. Errors as match().
+  /// Execution plan for the left map (its finest level, if there are several), as match() reports
+  /// it. Errors as match().
   [[nodiscard]] scheduler::ChainPlan plan(const Photograph& left, const Photograph& right) const;
-  /// The same for each of `executions` in place of the matcher's own; the machine stays the same.
+  /// One plan for each of `executions` in place of the matcher's own, on the same machine.
   [[nodiscard]] std::vector<scheduler::ChainPlan> plans(
       const Photograph& left, const Photograph& right,
       std::span<const ExecutionOptions> executions) const;
@@ -92,14 +75,14 @@ class StereoMatcher {
   /// execution.
   void add_memory_use(MemoryUse& use) const;
 
-  [[nodiscard]] const MatchOptions& options() const { return options_; }
+  [[nodiscard]] const ResolvedMatchOptions& in_force() const { return in_force_; }
 
  private:
   /// What a pair or several images become before they are matched, and what matching works in.
   struct Prepared {
     PreparedPair pair;
     std::vector<CostImage> images;
-    MethodParameters parameters;  ///< with what was estimated from the images
+    MethodParameters parameters;  ///< in force, with what was estimated from the images
     LevelChanges of_right;
     EdgeWeightLevels edges;  ///< of the map that is being computed
     MapSearchWork search;
@@ -111,26 +94,21 @@ class StereoMatcher {
   struct MapNeed {
     bool whole = false;
     bool coarse = false;
+    [[nodiscard]] bool any() const { return whole || coarse; }
   };
   /// One image on the way to its map.
   struct MapTask {
-    Side reference;
+    Side side;
     const Photograph* image;
+    MatchedMap* map;
     MapNeed need = {};
     ChainInput input = {};
-    DisparityMap* px;
-    Image<float>* confidence;
-    DisparityMap* disparity_y;
-    Mask* unmatched;
     ImageView<const float> check_px = {};  ///< of the coarse level; empty: not needed
   };
 
-  [[nodiscard]] static MapTask left_task(const Photograph& image, DisparityMaps& maps);
-  [[nodiscard]] static MapTask right_task(const Photograph& image, DisparityMaps& maps);
   /// The level that maps are checked against, 0: maps themselves.
-  [[nodiscard]] int check_level(const RefinementOptions& refinement, scheduler::Extent image) const;
+  [[nodiscard]] int check_level(scheduler::Extent image) const;
   [[nodiscard]] std::pair<MapNeed, MapNeed> needs(const MatchRequest& request,
-                                                  const RefinementOptions& refinement,
                                                   int check_level) const;
   [[nodiscard]] bool wants_confidence(const MatchRequest& request) const;
   void prepare_inputs(MapTask& left, MapTask& right, bool uses_prior, Prepared& prepared) const;
@@ -140,12 +118,11 @@ class StereoMatcher {
                                                         std::span<const OtherView> others,
                                                         Prepared& prepared,
                                                         MatchReport& report) const;
-  void compute(MapTask& side, std::string_view name, bool wants_confidence, int check_level,
+  void compute(MapTask& task, std::string_view name, bool wants_confidence, int check_level,
                Prepared& prepared, StageClock& clock, MatchReport& report) const;
-  [[nodiscard]] MapToRefine to_refine(const MapTask& side, bool is_result) const;
+  [[nodiscard]] MapToRefine to_refine(const MapTask& task, bool is_result) const;
 
-  MatchOptions options_;
-  MethodParameters parameters_;
+  const ResolvedMatchOptions in_force_;
   Execution& execution_;
   std::unique_ptr<PairLevelsEstimator> levels_;  ///< null: nothing is estimated
   mutable ObjectPool<Prepared> prepared_;

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
+#include "engine/image/memory_use.h"
 #include "engine/image/photograph.h"
 
 namespace vantage {
@@ -16,6 +18,11 @@ struct EdgeSnappingWork {
   Image<std::int16_t> gradient_y;
   Mask edges;
 };
+
+inline std::size_t held_bytes(const EdgeSnappingWork& work) {
+  return held_bytes(work.grey) + held_bytes(work.smooth_x) + held_bytes(work.gradient_x) +
+         held_bytes(work.gradient_y) + held_bytes(work.edges);
+}
 
 /// Marks the intensity edges of a photograph (255) by Canny's method: luma smoothed by a Gaussian
 /// of σ = 1 (border replicated), central differences ÷ 2, thresholds of 6 and 10 grey levels per

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
+#include "engine/image/memory_use.h"
 #include "engine/image/photograph.h"
 
 namespace vantage {
@@ -13,6 +15,10 @@ struct FilledMediansWork {
   DisparityMap before;         ///< the map, with margins
   Image<std::uint8_t> pixels;  ///< of the photograph as the kernel takes them, with margins
 };
+
+inline std::size_t held_bytes(const FilledMediansWork& work) {
+  return held_bytes(work.before) + held_bytes(work.pixels);
+}
 
 /// Gives filled pixels (≠ 0 in `unmatched`) the weighted median of the disparities around them,
 /// those of pixels that look alike counting more (kernels/filled_median). Filling at constant depth

@@ -5,24 +5,28 @@
 namespace vantage {
 namespace {
 
-void check_against(const MapToRefine& map, const MapToRefine& other, double tolerance_px,
+void check_against(const MapToRefine& to_refine, const MapToRefine& other, double tolerance_px,
                    Execution& execution) {
-  if (map.disparity_y_px == nullptr) {
-    cross_check(map.disparity_px->view(),
-                other.check_px.empty() ? other.disparity_px->view() : other.check_px, map.side,
-                tolerance_px, execution, *map.unmatched);
+  MatchedMap& map = *to_refine.map;
+  const MatchedMap& partner = *other.map;
+  if (map.disparity_y_px.empty()) {
+    cross_check(map.disparity_px.view(),
+                other.check_px.empty() ? partner.disparity_px.view() : other.check_px,
+                to_refine.side, tolerance_px, execution, map.unmatched);
     return;
   }
-  cross_check({map.disparity_px->view(), map.disparity_y_px->view()},
-              {other.disparity_px->view(), other.disparity_y_px->view()}, map.side, tolerance_px,
-              execution, *map.unmatched);
-}
-
-ImageView<const float> second_component(const MapToRefine& map) {
-  return map.disparity_y_px != nullptr ? map.disparity_y_px->view() : ImageView<const float>();
+  cross_check({map.disparity_px.view(), map.disparity_y_px.view()},
+              {partner.disparity_px.view(), partner.disparity_y_px.view()}, to_refine.side,
+              tolerance_px, execution, map.unmatched);
 }
 
 }  // namespace
+
+std::size_t held_bytes(const RefinementWork& work) {
+  return held_bytes(work.edge_snapping) + held_bytes(work.speckles[0]) +
+         held_bytes(work.speckles[1]) + held_bytes(work.surface_fit) +
+         held_bytes(work.filled_medians);
+}
 
 void refine_maps(const RefinementOptions& options, const MapToRefine& map, const MapToRefine* other,
                  Execution& execution, RefinementWork& work,
@@ -33,12 +37,12 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
   if (options.edge_snapping_px > 0) {
     begin_step("edge snapping");
     for (const MapToRefine* one : maps) {
-      if (one->disparity_px == nullptr) {
+      if (one->map->disparity_px.empty()) {
         continue;
       }
       find_edges(*one->image, execution, work.edge_snapping);
       snap_discontinuities(work.edge_snapping.edges, options.edge_snapping_px, execution,
-                           *one->disparity_px);
+                           one->map->disparity_px);
     }
   }
   // Both are checked before either is changed.
@@ -57,44 +61,48 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
   }
   if (!is_checked) {
     for (const MapToRefine* one : maps) {
-      mark_unknown(one->disparity_px->view(), execution, *one->unmatched);
+      mark_unknown(one->map->disparity_px.view(), execution, one->map->unmatched);
     }
   }
   if (uses_confidence(options)) {
     begin_step("confidence");
     for (const MapToRefine* one : maps) {
-      mark_unsure(one->confidence->view(), options.confidence_threshold, execution,
-                  *one->unmatched);
+      mark_unsure(one->map->confidence.view(), options.confidence_threshold, execution,
+                  one->map->unmatched);
     }
   }
   if (options.speckle_size_px > 1) {
     begin_step("speckles");
     execution.executor().parallel_for(static_cast<int>(maps.size()), [&](int index) {
-      const MapToRefine& one = *maps[static_cast<std::size_t>(index)];
-      mark_speckles(one.disparity_px->view(), second_component(one), options.speckle_size_px,
-                    work.speckles[static_cast<std::size_t>(index)], *one.unmatched);
+      MatchedMap& matched = *maps[static_cast<std::size_t>(index)]->map;
+      mark_speckles(matched.disparity_px.view(), matched.disparity_y_px.view(),
+                    options.speckle_size_px, work.speckles[static_cast<std::size_t>(index)],
+                    matched.unmatched);
     });
   }
   if (options.surface_fit_px > 0) {
     begin_step("surface fit");
     for (const MapToRefine* one : maps) {
-      fit_surface(*one->unmatched, options.surface_fit_px, one->search, execution, work.surface_fit,
-                  *one->disparity_px);
-      if (one->disparity_y_px != nullptr) {
-        fit_surface(*one->unmatched, options.surface_fit_px, one->search_y, execution,
-                    work.surface_fit, *one->disparity_y_px);
+      MatchedMap& matched = *one->map;
+      fit_surface(matched.unmatched, options.surface_fit_px, one->search, execution,
+                  work.surface_fit, matched.disparity_px);
+      if (!matched.disparity_y_px.empty()) {
+        fit_surface(matched.unmatched, options.surface_fit_px, one->search_y, execution,
+                    work.surface_fit, matched.disparity_y_px);
       }
     }
   }
   begin_step("fill");
   for (const MapToRefine* one : maps) {
-    for (DisparityMap* map_px : {one->disparity_px, one->disparity_y_px}) {
-      if (map_px == nullptr) {
+    MatchedMap& matched = *one->map;
+    for (DisparityMap* component_px : {&matched.disparity_px, &matched.disparity_y_px}) {
+      if (component_px->empty()) {
         continue;
       }
-      fill_unmatched(*one->unmatched, one->side, options.fill, execution, *map_px);
+      fill_unmatched(matched.unmatched, one->side, options.fill, execution, *component_px);
       if (options.fill == Fill::kMedian) {
-        take_filled_medians(*one->unmatched, *one->image, execution, work.filled_medians, *map_px);
+        take_filled_medians(matched.unmatched, *one->image, execution, work.filled_medians,
+                            *component_px);
       }
     }
   }

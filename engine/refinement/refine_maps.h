@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "engine/execution.h"
+#include "engine/image/disparity_maps.h"
 #include "engine/image/disparity_range.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
@@ -24,11 +25,10 @@ inline constexpr DisparityRange kAnyDisparity{-(1 << 20), 1 << 20};
 struct MapToRefine {
   Side side = Side::kLeft;
   const Photograph* image = nullptr;  ///< the map's own; for edge snapping and medians
-  /// Winners, NaN = unknown; null: there is none to be made, only the other map to be checked.
-  DisparityMap* disparity_px = nullptr;
-  DisparityMap* disparity_y_px = nullptr;    ///< of a two-dimensional search, else null
-  const Image<float>* confidence = nullptr;  ///< where uses_confidence(); else not read
-  Mask* unmatched = nullptr;                 ///< result
+  /// Winners, NaN = unknown, become the refined map. Without disparities there is none to be made,
+  /// only the other map to be checked. `disparity_y_px`: of a two-dimensional search, else empty.
+  /// `confidence`: read where uses_confidence(). `unmatched` is a result.
+  MatchedMap* map = nullptr;
   /// What the other map is checked against in place of this one, of the same size; empty: this one.
   ImageView<const float> check_px = {};
   /// false: the map is there for the cross-check of the other one alone; what becomes of it, and
@@ -46,6 +46,8 @@ struct RefinementWork {
   SurfaceFitWork surface_fit;
   FilledMediansWork filled_medians;
 };
+
+std::size_t held_bytes(const RefinementWork& work);
 
 /// Makes dense maps of winners (EQUATIONS §5): edge snapping → cross-check → confidence → speckles
 /// → surface fit → fill, each as `options` says. `other`: the map of the other image, refined as

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "engine/image/image.h"
+#include "engine/image/memory_use.h"
 
 namespace vantage {
 
@@ -30,6 +32,10 @@ struct SpeckleWork {
   std::vector<std::uint64_t> near;
   std::vector<std::uint64_t> near_y;
 };
+
+inline std::size_t held_bytes(const SpeckleWork& work) {
+  return held_bytes(work.runs) + held_bytes(work.row_begin);
+}
 
 /// Marks as unmatched (255) the matched pixels (0 in `unmatched`) of regions smaller than
 /// `least_pixels`, which is ≥ 0. A region is connected over its 4-neighbours whose disparities

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstddef>
+
 #include "engine/execution.h"
 #include "engine/image/disparity_range.h"
 #include "engine/image/image.h"
+#include "engine/image/memory_use.h"
 
 namespace vantage {
 
@@ -10,6 +13,8 @@ namespace vantage {
 struct SurfaceFitWork {
   Image<float> matched_px;  ///< the map before, between margins
 };
+
+inline std::size_t held_bytes(const SurfaceFitWork& work) { return held_bytes(work.matched_px); }
 
 /// Gives matched pixels (0 in `unmatched`) the values of planes through the matched disparities
 /// around them, radius_px columns and rows far (kernels/surface_fit says which): winners and

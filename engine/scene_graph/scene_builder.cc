@@ -270,7 +270,7 @@ void SceneBuilder::match(const SceneEdge& edge, const std::array<Photograph, 2>&
                          DisparityMaps& maps, StoredEdge& result, MatchReport* report) const {
   try {
     const StereoMatcher matcher(options_for(edge, images[0], images[1]), execution_);
-    result.disparities = matcher.options().disparities;
+    result.disparities = matcher.in_force().disparities;
     matcher.match(images[0], images[1], {}, maps, report);
   } catch (const UsageError&) {
     throw;
@@ -313,8 +313,9 @@ SceneBuilder::BuiltEdge SceneBuilder::build(int edge, MatchReport* report) {
   }
   DisparityMaps maps;
   match(wanted, images, maps, result, report);
-  const std::array<DisparityMap*, 2> disparities = {&maps.left, &maps.right};
-  const std::array<Mask*, 2> masks = {&maps.left_unmatched, &maps.right_unmatched};
+  const std::array<DisparityMap*, 2> disparities = {&maps.left.disparity_px,
+                                                    &maps.right.disparity_px};
+  const std::array<Mask*, 2> masks = {&maps.left.unmatched, &maps.right.unmatched};
   for (std::size_t side = 0; side < 2; ++side) {
     DisparityMap& disparity = *disparities[side];
     Mask& unmatched = *masks[side];

@@ -210,7 +210,11 @@ void FrameWorker::synthesize(FrameSlot& slot) const {
   }
   const TimedStep step(slot, "views");
   slot.views.resize(slot.view_poses.size());
-  ViewSource source{*slot.left, *slot.right, slot.maps.left.view(), slot.maps.right.view(), {}};
+  ViewSource source{*slot.left,
+                    *slot.right,
+                    slot.maps.left.disparity_px.view(),
+                    slot.maps.right.disparity_px.view(),
+                    {}};
   if (photograph_grid_) {
     photograph_grid_->bring(slot.maps, slot.photograph_maps);
     source.photographs.emplace(
@@ -250,7 +254,7 @@ void FrameWorker::pack_stereo_picture(FrameSlot& slot) const {
 }
 
 const DisparityMap& FrameWorker::primary_map(const FrameSlot& slot) const {
-  return options_.match.reference == Side::kLeft ? slot.maps.left : slot.maps.right;
+  return slot.maps.of(options_.match.reference).disparity_px;
 }
 
 const Mask& FrameWorker::mask_of(const FrameSlot& slot, const OutputStream& stream) const {
@@ -262,7 +266,7 @@ const Mask& FrameWorker::mask_of(const FrameSlot& slot, const OutputStream& stre
   }
   const bool left =
       options_.match.reference == Side::kLeft && stream.output == SequenceOutput::kUnmatched;
-  return left ? slot.maps.left_unmatched : slot.maps.right_unmatched;
+  return left ? slot.maps.left.unmatched : slot.maps.right.unmatched;
 }
 
 /// Null for masks and maps.
@@ -312,12 +316,10 @@ void FrameWorker::encode_stream(FrameSlot& slot, const OutputStream& stream,
       encode_disparity(path, primary_map(slot).view(), slot.encoded);
       return;
     case SequenceOutput::kRightDisparity:
-      encode_disparity(path, slot.maps.right.view(), slot.encoded);
+      encode_disparity(path, slot.maps.right.disparity_px.view(), slot.encoded);
       return;
     case SequenceOutput::kConfidence:
-      encode_disparity(path,
-                       options_.match.reference == Side::kLeft ? slot.maps.left_confidence.view()
-                                                               : slot.maps.right_confidence.view(),
+      encode_disparity(path, slot.maps.of(options_.match.reference).confidence.view(),
                        slot.encoded);
       return;
     default:

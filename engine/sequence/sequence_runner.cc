@@ -168,7 +168,8 @@ class Run {
     for (std::size_t view = 0; view < options_.views.size(); ++view) {
       views.push_back({slot.view_poses[view], &slot.views[view].image});
     }
-    record.flicker = flicker_.add(*slot.left, slot.maps.left.view(), views, execution_);
+    record.flicker =
+        flicker_.add(*slot.left, slot.maps.left.disparity_px.view(), views, execution_);
   }
 
   void note_oddities(FrameSlot& slot, FrameRecord& record) {

@@ -41,7 +41,8 @@ bool read_stored_maps(const SequenceLayout& layout, const FrameRecord& record, S
       return false;
     }
     const bool is_left = is_primary && reference == Side::kLeft;
-    (is_left ? maps.left : maps.right) = read_disparity(layout.folder() / file->name);
+    (is_left ? maps.left.disparity_px : maps.right.disparity_px) =
+        read_disparity(layout.folder() / file->name);
   }
   return true;
 }

@@ -70,8 +70,8 @@ void TemporalState::remember(const Photograph& left, const Photograph& right,
   if (options_.weight == 0) {
     return;
   }
-  remember_side(left, maps.left, maps.left_unmatched, left_, execution);
-  remember_side(right, maps.right, maps.right_unmatched, right_, execution);
+  remember_side(left, maps.left.disparity_px, maps.left.unmatched, left_, execution);
+  remember_side(right, maps.right.disparity_px, maps.right.unmatched, right_, execution);
 }
 
 void TemporalState::remember_side(const Photograph& image, const DisparityMap& map,

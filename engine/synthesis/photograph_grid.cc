@@ -137,8 +137,8 @@ void PhotographGrid::bring(Side side, ImageView<const float> map, Image<float>& 
 }
 
 void PhotographGrid::bring(const DisparityMaps& maps, std::array<Image<float>, 2>& results) const {
-  bring(Side::kLeft, maps.left.view(), results[0]);
-  bring(Side::kRight, maps.right.view(), results[1]);
+  bring(Side::kLeft, maps.left.disparity_px.view(), results[0]);
+  bring(Side::kRight, maps.right.disparity_px.view(), results[1]);
 }
 
 UnrectifiedPair PhotographGrid::pair_of(const Photograph& left, const Photograph& right,

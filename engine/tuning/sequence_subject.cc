@@ -62,7 +62,7 @@ int SequenceSubject::work(Runner& runner) {
                          at(slot).maps);
   };
   steps.encode = [&](int slot) {
-    encode_disparity("map.pfm", at(slot).maps.left.view(), at(slot).file);
+    encode_disparity("map.pfm", at(slot).maps.left.disparity_px.view(), at(slot).file);
   };
   steps.write = [](int /*slot*/) {};
   scheduler::run_frames(runner.execution.executor(), in_flight, steps);

@@ -139,7 +139,7 @@ void judge(const TrueScene& scene, const std::filesystem::path& data, int rounds
   }
   const std::vector<std::optional<FrameTime>> times = time_in_turn(makers, rounds, timed);
   for (std::size_t i = 0; i < makers.size(); ++i) {
-    const DisparityMap& map = makers[i]->maps().left;
+    const DisparityMap& map = makers[i]->maps().left.disparity_px;
     results.outcomes[i].push_back(
         {bad_pixels(map, loaded), times[i],
          scene.is_fractional ? sub_pixel_figures(map, loaded) : SubPixelFigures()});

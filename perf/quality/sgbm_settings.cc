@@ -47,16 +47,14 @@ void filter_opencv_speckles(const SgbmPostProcessing& post, DisparityRange range
 void refine_peer_maps(const SgbmPostProcessing& post, const ScenePair& pair,
                       const PeerDisparities& disparities, Execution& execution,
                       DisparityMaps& refined) {
-  refined.left = to_map(disparities.left, pair.range.min);
-  refined.right = to_map(disparities.right, pair.range.min);
+  refined.left.disparity_px = to_map(disparities.left, pair.range.min);
+  refined.right.disparity_px = to_map(disparities.right, pair.range.min);
   RefinementOptions options;
   options.speckle_size_px = post.speckle_size_px;
   options.fill = Fill::kMedian;
   RefinementWork work;
-  const MapToRefine left{Side::kLeft, &pair.left, &refined.left,
-                         nullptr,     nullptr,    &refined.left_unmatched};
-  const MapToRefine right{Side::kRight, &pair.right, &refined.right,
-                          nullptr,      nullptr,     &refined.right_unmatched};
+  const MapToRefine left{.side = Side::kLeft, .image = &pair.left, .map = &refined.left};
+  const MapToRefine right{.side = Side::kRight, .image = &pair.right, .map = &refined.right};
   refine_maps(options, left, &right, execution, work, [](std::string_view) {});
 }
 

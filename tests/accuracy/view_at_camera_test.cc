@@ -189,7 +189,7 @@ TEST_F(ViewAtCamera, OfAnOriginalIsTheOriginal) {
   const PhotographGrid grid(rectifier, execution_);
   // What the maps say does not matter, but they may be anything: cards before a wall.
   DisparityMaps maps;
-  for (DisparityMap* map : {&maps.left, &maps.right}) {
+  for (DisparityMap* map : {&maps.left.disparity_px, &maps.right.disparity_px}) {
     map->resize(kWidth, kHeight);
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
@@ -200,7 +200,8 @@ TEST_F(ViewAtCamera, OfAnOriginalIsTheOriginal) {
   std::array<Image<float>, 2> photograph_maps;
   grid.bring(maps, photograph_maps);
   // The rectified images are not looked at.
-  const ViewSource source{raw.left, raw.right, maps.left.view(), maps.right.view(),
+  const ViewSource source{raw.left, raw.right, maps.left.disparity_px.view(),
+                          maps.right.disparity_px.view(),
                           grid.pair_of(raw.left, raw.right, photograph_maps)};
   const PoseRenderer renderer({}, &cameras, execution_);
   for (const Side side : {Side::kLeft, Side::kRight}) {

@@ -63,7 +63,7 @@ TEST_F(MatchCommand, EqualsTheLibrary) {
   int unknown = 0;
   for (int y = 0; y < map.height(); ++y) {
     for (int x = 0; x < map.width(); ++x) {
-      const float expected = maps.left.at(x, y);
+      const float expected = maps.left.disparity_px.at(x, y);
       unknown += std::isnan(expected) ? 1 : 0;
       EXPECT_TRUE(map.at(x, y) == expected || (std::isnan(map.at(x, y)) && std::isnan(expected)));
     }

@@ -43,7 +43,7 @@ int main() {
   int wrong = 0;
   for (int y = 0; y < kHeight; ++y) {
     for (int x = kDisparityPx + 3; x < kWidth - 3; ++x) {
-      const float error_px = std::abs(maps.left.at(x, y) - float{kDisparityPx});
+      const float error_px = std::abs(maps.left.disparity_px.at(x, y) - float{kDisparityPx});
       wrong += error_px <= 0.25F ? 0 : 1;  // NaN, an unknown disparity, counts as wrong
     }
   }

@@ -199,7 +199,7 @@ TEST_P(CoarseToFine, WholeImageExecutorGivesTheSame) {
   options.raw = true;
   const MethodParameters parameters = options.resolved();
   Execution execution({.threads = 2});
-  const auto geometry = candidate_geometry(options, Side::kLeft, 37, 29);
+  const auto geometry = candidate_geometry(options.in_force(), Side::kLeft, 37, 29);
   CostImage left;
   CostImage right;
   left.prepare(pair.left, parameters, geometry, {true, false, false}, execution);
@@ -214,7 +214,7 @@ TEST_P(CoarseToFine, WholeImageExecutorGivesTheSame) {
                          ++chains;
                        });
   EXPECT_EQ(chains, 1 + 4);
-  EXPECT_TRUE(identical(map, maps_of(pair.left, pair.right, options).left));
+  EXPECT_TRUE(identical(map, maps_of(pair.left, pair.right, options).left.disparity_px));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -273,7 +273,7 @@ TEST(CoarseToFineMatcher, FindsWhatOnlyLargeRegionsTell) {
     int count = 0;
     for (int y = 0; y < 90; ++y) {
       for (int x = 15; x < 120; ++x) {
-        count += maps.left.at(x, y) != kDisparity ? 1 : 0;
+        count += maps.left.disparity_px.at(x, y) != kDisparity ? 1 : 0;
       }
     }
     return count;
@@ -322,7 +322,8 @@ TEST(CoarseToFineMatcher, SeveralImagesGoToo) {
   DisparityMaps of_one;
   const OtherView other{&pair.right, 1};
   StereoMatcher(options, execution).match_several(pair.left, {&other, 1}, {}, of_one);
-  EXPECT_TRUE(identical(of_one.left, maps_of(pair.left, pair.right, options).left));
+  EXPECT_TRUE(identical(of_one.left.disparity_px,
+                        maps_of(pair.left, pair.right, options).left.disparity_px));
 }
 
 TEST(CoarseToFineMatcher, PruningOfVerticalSearchIsRefused) {

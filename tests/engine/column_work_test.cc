@@ -49,7 +49,7 @@ std::vector<StageWork> works_of(const MatchOptions& method, const ChainCase& mad
   const MethodParameters parameters = options.resolved();
   Execution execution({.threads = 1});
   const auto photographs = textured_pair(kWidth, kHeight, kRange, made.pixels, 3);
-  const auto geometry = candidate_geometry(options, Side::kLeft, kWidth, kHeight);
+  const auto geometry = candidate_geometry(options.in_force(), Side::kLeft, kWidth, kHeight);
   PreparedPair pair;
   CostImage reference;
   CostImage partner;

@@ -51,7 +51,8 @@ BothMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options, 
   Execution execution({.threads = 2});
   const bool is_left = reference == Side::kLeft;
   const Photograph& own = is_left ? pair.left : pair.right;
-  const auto geometry = candidate_geometry(options, reference, own.width(), own.height());
+  const auto geometry =
+      candidate_geometry(options.in_force(), reference, own.width(), own.height());
   CostImage left;
   CostImage right;
   left.prepare(pair.left, parameters, geometry, {is_left, false, !is_left}, execution);
@@ -155,14 +156,16 @@ TEST_P(CrossCheckLevel, MapsAreCheckedAgainstIt) {
     Execution execution({.threads = 1});
     Mask left;
     Mask right;
-    cross_check(winners.left.view(), maps_of(pair, raw, Side::kRight, level, true).coarse.view(),
-                Side::kLeft, 1, execution, left);
-    cross_check(winners.right.view(), maps_of(pair, raw, Side::kLeft, level, true).coarse.view(),
-                Side::kRight, 1, execution, right);
-    EXPECT_TRUE(identical(maps.left_unmatched, left)) << level;
-    EXPECT_TRUE(identical(maps.right_unmatched, right)) << level;
+    cross_check(winners.left.disparity_px.view(),
+                maps_of(pair, raw, Side::kRight, level, true).coarse.view(), Side::kLeft, 1,
+                execution, left);
+    cross_check(winners.right.disparity_px.view(),
+                maps_of(pair, raw, Side::kLeft, level, true).coarse.view(), Side::kRight, 1,
+                execution, right);
+    EXPECT_TRUE(identical(maps.left.unmatched, left)) << level;
+    EXPECT_TRUE(identical(maps.right.unmatched, right)) << level;
     MatchOptions whole = options();
-    EXPECT_FALSE(identical(maps.left_unmatched, matched(pair, whole).left_unmatched)) << level;
+    EXPECT_FALSE(identical(maps.left.unmatched, matched(pair, whole).left.unmatched)) << level;
   }
 }
 
@@ -177,16 +180,16 @@ TEST_P(CrossCheckLevel, MapsDoNotDependOnWhichAreWanted) {
   for (const int threads : {1, 3}) {
     const DisparityMaps left =
         matched(pair, options, {.left = true, .right = false, .confidence = true}, threads);
-    EXPECT_TRUE(identical(left.left, both.left));
-    EXPECT_TRUE(identical(left.left_unmatched, both.left_unmatched));
-    EXPECT_TRUE(identical(left.left_confidence, both.left_confidence));
-    EXPECT_TRUE(left.right.width() == 0);
+    EXPECT_TRUE(identical(left.left.disparity_px, both.left.disparity_px));
+    EXPECT_TRUE(identical(left.left.unmatched, both.left.unmatched));
+    EXPECT_TRUE(identical(left.left.confidence, both.left.confidence));
+    EXPECT_TRUE(left.right.disparity_px.width() == 0);
     const DisparityMaps right =
         matched(pair, options, {.left = false, .right = true, .confidence = true}, threads);
-    EXPECT_TRUE(identical(right.right, both.right));
-    EXPECT_TRUE(identical(right.right_unmatched, both.right_unmatched));
-    EXPECT_TRUE(identical(right.right_confidence, both.right_confidence));
-    EXPECT_TRUE(right.left.width() == 0);
+    EXPECT_TRUE(identical(right.right.disparity_px, both.right.disparity_px));
+    EXPECT_TRUE(identical(right.right.unmatched, both.right.unmatched));
+    EXPECT_TRUE(identical(right.right.confidence, both.right.confidence));
+    EXPECT_TRUE(right.left.disparity_px.width() == 0);
   }
 }
 
@@ -201,7 +204,7 @@ TEST_P(CrossCheckLevel, OfTooFewLevelsItIsTheCoarsest) {
   // A single level: the maps themselves.
   const auto pixel = textured_pair(1, 1, {0, 0}, PixelKind::kGrey8, 3);
   options.disparities = {0, 0};
-  EXPECT_EQ(matched(pixel, options, {.left = true, .right = false}).left_unmatched.at(0, 0), 0);
+  EXPECT_EQ(matched(pixel, options, {.left = true, .right = false}).left.unmatched.at(0, 0), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, CrossCheckLevel,

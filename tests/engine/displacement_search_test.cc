@@ -225,9 +225,9 @@ void expect_equals_pairs(const PhotographPair& pair, const MatchOptions& options
       plain_pair_energies(plain_pair_costs(is_left ? pair.left : pair.right,
                                            is_left ? pair.right : pair.left, grid, parameters),
                           grid, parameters);
-  const DisparityMap& map_x = is_left ? maps.left : maps.right;
-  const DisparityMap& map_y = is_left ? maps.left_disparity_y : maps.right_disparity_y;
-  const Image<float>& confidence = is_left ? maps.left_confidence : maps.right_confidence;
+  const DisparityMap& map_x = is_left ? maps.left.disparity_px : maps.right.disparity_px;
+  const DisparityMap& map_y = is_left ? maps.left.disparity_y_px : maps.right.disparity_y_px;
+  const Image<float>& confidence = is_left ? maps.left.confidence : maps.right.confidence;
   const test::Tolerance tolerance = test::tolerance_of(parameters);
   int distinct = 0;
   int equal = 0;
@@ -372,11 +372,11 @@ constexpr int kBorder = 12;
 double share_right(const DisparityMaps& maps, double u, double v) {
   int right = 0;
   int all = 0;
-  for (int y = kBorder; y < maps.left.height() - kBorder; ++y) {
-    for (int x = kBorder; x < maps.left.width() - kBorder; ++x) {
+  for (int y = kBorder; y < maps.left.disparity_px.height() - kBorder; ++y) {
+    for (int x = kBorder; x < maps.left.disparity_px.width() - kBorder; ++x) {
       ++all;
-      right += std::abs(maps.left.at(x, y) - u) <= 0.5 &&
-                       std::abs(maps.left_disparity_y.at(x, y) - v) <= 0.5
+      right += std::abs(maps.left.disparity_px.at(x, y) - u) <= 0.5 &&
+                       std::abs(maps.left.disparity_y_px.at(x, y) - v) <= 0.5
                    ? 1
                    : 0;
     }
@@ -468,8 +468,8 @@ TEST(DisplacementSearchOfMethods, FindsWholeAndHalfShiftsOfAPhotograph) {
     options.disparities_y = {-1, 3};
     EXPECT_GE(share_right(maps_of(whole, options, execution), 3, 1), 0.99) << number;
     const DisparityMaps between = maps_of(half, options, execution);
-    EXPECT_NEAR(inner_median(between.left), 2.5, 0.25) << number;
-    EXPECT_NEAR(inner_median(between.left_disparity_y), 1.5, 0.25) << number;
+    EXPECT_NEAR(inner_median(between.left.disparity_px), 2.5, 0.25) << number;
+    EXPECT_NEAR(inner_median(between.left.disparity_y_px), 1.5, 0.25) << number;
   }
 }
 
@@ -485,9 +485,9 @@ TEST(DisplacementSearchOfMethods, IsTheSameForAnyExecution) {
     options.disparities_y = {-2, 1};
     const DisparityMaps expected = maps_of(pair, options, plain);
     const DisparityMaps actual = maps_of(pair, options, cut);
-    EXPECT_TRUE(identical(expected.left, actual.left)) << number;
-    EXPECT_TRUE(identical(expected.right_disparity_y, actual.right_disparity_y)) << number;
-    EXPECT_TRUE(identical(expected.left_confidence, actual.left_confidence)) << number;
+    EXPECT_TRUE(identical(expected.left.disparity_px, actual.left.disparity_px)) << number;
+    EXPECT_TRUE(identical(expected.right.disparity_y_px, actual.right.disparity_y_px)) << number;
+    EXPECT_TRUE(identical(expected.left.confidence, actual.left.confidence)) << number;
   }
 }
 
@@ -503,7 +503,9 @@ TEST(DisplacementSearchOfMethods, OfOneVerticalDisparityOf0IsASearchAlongRows) {
     }
     const DisparityMaps expected = maps_of(pair, options, execution);
     options.disparities_y = {0, 0};
-    EXPECT_TRUE(identical(expected.left, maps_of(pair, options, execution).left)) << number;
+    EXPECT_TRUE(
+        identical(expected.left.disparity_px, maps_of(pair, options, execution).left.disparity_px))
+        << number;
   }
 }
 
@@ -554,7 +556,8 @@ TEST(DisplacementSearchOfMethods, MovesBothComponentsBetweenPixels) {
     int pixels = 0;
     for (int y = 12; y < 48; ++y) {
       for (int x = 12; x < 58; ++x, ++pixels) {
-        off += std::abs(maps.left.at(x, y) - 2.5) + std::abs(maps.left_disparity_y.at(x, y) - 1.5);
+        off += std::abs(maps.left.disparity_px.at(x, y) - 2.5) +
+               std::abs(maps.left.disparity_y_px.at(x, y) - 1.5);
       }
     }
     // Whole pixels would be half a pixel off in each component.

@@ -147,17 +147,10 @@ TEST(FilledMedians, RefinementTakesThemOfBothComponents) {
       }
     }
   }
-  DisparityMap map_y = disc.map.copy();
-  Mask unmatched;
   RefinementWork work;
   const auto refined = [&](Fill fill) {
-    DisparityMap map_x = disc.map.copy();
-    map_y = disc.map.copy();
-    const MapToRefine map{.side = Side::kLeft,
-                          .image = &photograph,
-                          .disparity_px = &map_x,
-                          .disparity_y_px = &map_y,
-                          .unmatched = &unmatched};
+    MatchedMap matched{.disparity_px = disc.map.copy(), .disparity_y_px = disc.map.copy()};
+    const MapToRefine map{.side = Side::kLeft, .image = &photograph, .map = &matched};
     refine_maps({.edge_snapping_px = 0,
                  .cross_check = false,
                  .cross_check_px = 1,
@@ -167,8 +160,8 @@ TEST(FilledMedians, RefinementTakesThemOfBothComponents) {
                  .surface_fit_px = 0,
                  .fill = fill},
                 map, nullptr, execution, work, [](std::string_view) {});
-    EXPECT_TRUE(test::identical(map_x, map_y));
-    return wrong(map_x);
+    EXPECT_TRUE(test::identical(matched.disparity_px, matched.disparity_y_px));
+    return wrong(matched.disparity_px);
   };
   const int constant = refined(Fill::kConstant);
   EXPECT_GT(constant, 100);

@@ -23,9 +23,10 @@ bool identical(const Image<T>& a, const Image<T>& b) {
 
 /// The same of the maps of both images and their confidences.
 inline bool identical(const DisparityMaps& a, const DisparityMaps& b) {
-  return identical(a.left, b.left) && identical(a.right, b.right) &&
-         identical(a.left_confidence, b.left_confidence) &&
-         identical(a.right_confidence, b.right_confidence);
+  return identical(a.left.disparity_px, b.left.disparity_px) &&
+         identical(a.right.disparity_px, b.right.disparity_px) &&
+         identical(a.left.confidence, b.left.confidence) &&
+         identical(a.right.confidence, b.right.confidence);
 }
 
 }  // namespace vantage::test

@@ -99,7 +99,7 @@ TEST_P(MatchingWithPrior, InstructionSetsAgree) {
   for (const std::string& name : available_instruction_sets()) {
     force_instruction_set(name);
     DisparityMaps maps = maps_of(pair, options_, prior);
-    if (expected.left.empty()) {
+    if (expected.left.disparity_px.empty()) {
       expected = std::move(maps);
     } else {
       EXPECT_TRUE(identical(maps, expected)) << name;
@@ -119,8 +119,8 @@ TEST_P(MatchingWithPrior, NoPixelWithAPriorIsNoPrior) {
     int equal = 0;
     for (int y = 0; y < 23; ++y) {
       for (int x = 0; x < 37; ++x) {
-        const float wanted = expected.left.at(x, y);
-        const float actual = maps.left.at(x, y);
+        const float wanted = expected.left.disparity_px.at(x, y);
+        const float actual = maps.left.disparity_px.at(x, y);
         equal += std::isnan(wanted) ? std::isnan(actual) : wanted == actual;
       }
     }
@@ -144,9 +144,10 @@ TEST_P(MatchingWithPrior, DecidesWhereTheImagesDoNot) {
   const bool has_likelihoods = options_.resolved().aggregation == Aggregation::kBayes;
   const DisparityMaps without = maps_of(flat, options_, {});
   for (int x = 12; x < 30; ++x) {
-    const float actual = maps.left.at(x, 9);
+    const float actual = maps.left.disparity_px.at(x, 9);
     // Without any contrast a prior on energies has no unit; what rounding leaves will do.
-    EXPECT_TRUE(actual == 5 || (!has_likelihoods && actual == without.left.at(x, 9))) << actual;
+    EXPECT_TRUE(actual == 5 || (!has_likelihoods && actual == without.left.disparity_px.at(x, 9)))
+        << actual;
   }
 }
 
@@ -162,8 +163,8 @@ TEST_P(MatchingWithPrior, GivesWayToTheImages) {
   int equal = 0;
   for (int y = 5; y < 38; ++y) {
     for (int x = 22; x < 50; ++x) {
-      candidates += std::isnan(expected.left.at(x, y)) ? 0 : 1;
-      equal += maps.left.at(x, y) == expected.left.at(x, y) ? 1 : 0;
+      candidates += std::isnan(expected.left.disparity_px.at(x, y)) ? 0 : 1;
+      equal += maps.left.disparity_px.at(x, y) == expected.left.disparity_px.at(x, y) ? 1 : 0;
     }
   }
   EXPECT_GE(equal, 0.85 * candidates);
@@ -194,8 +195,8 @@ TEST(MatchingWithPriorErrors, OneMapMayHaveNone) {
   const DisparityMap map = constant_prior(31, 17, 4);
   const DisparityMaps expected = maps_of(pair, options, {});
   const DisparityMaps maps = maps_of(pair, options, {.left_px = map.view(), .weight = 100});
-  EXPECT_FALSE(identical(maps.left, expected.left));
-  EXPECT_TRUE(identical(maps.right, expected.right));
+  EXPECT_FALSE(identical(maps.left.disparity_px, expected.left.disparity_px));
+  EXPECT_TRUE(identical(maps.right.disparity_px, expected.right.disparity_px));
 }
 
 }  // namespace matching_with_prior_test

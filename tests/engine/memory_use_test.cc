@@ -145,9 +145,9 @@ TEST(MemoryUse, OfFramesIsThatOfTheirImages) {
   slot.pair.left.pixels = Image<std::uint8_t>(kWidth, kHeight, 3);
   slot.pair.right.pixels = Image<std::uint16_t>(kWidth, kHeight, 3);
   expect_images_of(held_bytes(slot), 3 * kPixels * (1 + 2), 2);
-  slot.maps.left.resize(kWidth, kHeight);
-  slot.maps.right_confidence.resize(kWidth, kHeight);
-  slot.maps.left_unmatched.resize(kWidth, kHeight);
+  slot.maps.left.disparity_px.resize(kWidth, kHeight);
+  slot.maps.right.confidence.resize(kWidth, kHeight);
+  slot.maps.left.unmatched.resize(kWidth, kHeight);
   expect_images_of(held_bytes(slot), kPixels * (3 * (1 + 2) + 4 + 4 + 1), 5);
   slot.views.resize(2);
   slot.views[1].image.pixels = Image<std::uint8_t>(kWidth, kHeight, 3);

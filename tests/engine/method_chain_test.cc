@@ -52,7 +52,7 @@ class MethodChain : public ::testing::TestWithParam<MethodCase> {
     options_.disparities = kRange;
     parameters_ = options_.resolved();
     photographs_ = textured_pair(kWidth, kHeight, kRange, kind, 9);
-    geometry_ = candidate_geometry(options_, reference, kWidth, kHeight);
+    geometry_ = candidate_geometry(options_.in_force(), reference, kWidth, kHeight);
     const bool is_left = reference == Side::kLeft;
     if (uses_column_ssd(parameters_)) {
       prepare_pair(photographs_.left, photographs_.right, geometry_,
@@ -61,7 +61,7 @@ class MethodChain : public ::testing::TestWithParam<MethodCase> {
       input_.pair = &pair_;
       return;
     }
-    const auto of_left = candidate_geometry(options_, Side::kLeft, kWidth, kHeight);
+    const auto of_left = candidate_geometry(options_.in_force(), Side::kLeft, kWidth, kHeight);
     const auto& [left, right] = photographs_;
     reference_.prepare(is_left ? left : right, parameters_, of_left, {true, false, false},
                        execution_);

@@ -111,7 +111,7 @@ TEST_P(MethodExecution, PlansAndExecutorsGiveIdenticalResults) {
   for (const test::SampleRow& row : test::rows_of(execution_rows(), GetParam())) {
     PhotographPair& pair = pairs[row[1]];
     DisparityMaps& wanted = expected[row[1]];
-    if (wanted.left.empty()) {
+    if (wanted.left.disparity_px.empty()) {
       pair = textured_pair(59, 41, {-3, 17}, kKinds[row[1]], 7);
       wanted = maps_of(pair, options, {.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
     }
@@ -149,7 +149,7 @@ TEST_P(MethodExecution, InstructionSetsAgree) {
     force_instruction_set(name);
     ASSERT_EQ(instruction_set_in_use(), name);
     DisparityMaps maps = maps_of(pair, options, execution);
-    if (expected.left.empty()) {
+    if (expected.left.disparity_px.empty()) {
       expected = std::move(maps);
       continue;
     }
@@ -159,15 +159,15 @@ TEST_P(MethodExecution, InstructionSetsAgree) {
     }
     int candidates = 0;
     int equal = 0;
-    for (int y = 0; y < maps.left.height(); ++y) {
-      for (int x = 0; x < maps.left.width(); ++x) {
-        const float wanted = expected.left.at(x, y);
-        EXPECT_EQ(std::isnan(maps.left.at(x, y)), std::isnan(wanted)) << name;
+    for (int y = 0; y < maps.left.disparity_px.height(); ++y) {
+      for (int x = 0; x < maps.left.disparity_px.width(); ++x) {
+        const float wanted = expected.left.disparity_px.at(x, y);
+        EXPECT_EQ(std::isnan(maps.left.disparity_px.at(x, y)), std::isnan(wanted)) << name;
         candidates += std::isnan(wanted) ? 0 : 1;
-        if (maps.left.at(x, y) == wanted) {
+        if (maps.left.disparity_px.at(x, y) == wanted) {
           ++equal;
-          const float confidence = expected.left_confidence.at(x, y);
-          EXPECT_NEAR(maps.left_confidence.at(x, y), confidence,
+          const float confidence = expected.left.confidence.at(x, y);
+          EXPECT_NEAR(maps.left.confidence.at(x, y), confidence,
                       1e-5 * std::max(1.0F, std::abs(confidence)))
               << name << " at " << x << ", " << y;
         }

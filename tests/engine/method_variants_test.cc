@@ -205,8 +205,8 @@ TEST_P(AwkwardShapes, ConstantImagesTakeTheSmallestDisparity) {
       options.resolved().border == Border::kValid ? options.resolved().window_px / 2 : 0;
   for (int y = margin; y < 12 - margin; ++y) {
     for (int x = margin; x < 23 - margin; ++x) {
-      EXPECT_EQ(maps.left.at(x, y), std::max(-4, x - 22 + margin)) << x << ", " << y;
-      EXPECT_EQ(maps.right.at(x, y), std::max(-4, -x + margin)) << x << ", " << y;
+      EXPECT_EQ(maps.left.disparity_px.at(x, y), std::max(-4, x - 22 + margin)) << x << ", " << y;
+      EXPECT_EQ(maps.right.disparity_px.at(x, y), std::max(-4, -x + margin)) << x << ", " << y;
     }
   }
 }

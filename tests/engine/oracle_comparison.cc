@@ -213,8 +213,8 @@ void expect_equals_oracle(const PhotographPair& pair, MatchOptions options, Exec
     SCOPED_TRACE(what + (is_left ? ", left map" : ", right map"));
     const PlainMap oracle =
         plain_match(pair.left, pair.right, reference, options.disparities, parameters);
-    const DisparityMap& map = is_left ? maps.left : maps.right;
-    const Image<float>& confidence = is_left ? maps.left_confidence : maps.right_confidence;
+    const DisparityMap& map = is_left ? maps.left.disparity_px : maps.right.disparity_px;
+    const Image<float>& confidence = is_left ? maps.left.confidence : maps.right.confidence;
     ASSERT_EQ(map.width(), oracle.width);
     ASSERT_EQ(map.height(), oracle.height);
     ASSERT_EQ(confidence.width(), oracle.width);

@@ -251,7 +251,7 @@ TEST(PairLevels, MatchersSeeThroughExposure) {
     MatchReport report;
     StereoMatcher(options, execution).match(scene.left, scene.right, {}, maps, &report);
     EXPECT_FALSE(report.levels);
-    const double without = share_of_right(maps.left, scene);
+    const double without = share_of_right(maps.left.disparity_px, scene);
     options.parameters.match_exposure = true;
     if (cost == MatchCost::kCombined) {
       options.parameters.estimate_sigma_measurement = true;
@@ -259,7 +259,7 @@ TEST(PairLevels, MatchersSeeThroughExposure) {
     StereoMatcher(options, execution).match(scene.left, scene.right, {}, maps, &report);
     ASSERT_TRUE(report.levels);
     EXPECT_TRUE(report.levels->has_levels);
-    const double with = share_of_right(maps.left, scene);
+    const double with = share_of_right(maps.left.disparity_px, scene);
     EXPECT_GT(with, 0.9) << static_cast<int>(cost);
     EXPECT_GT(with, without) << static_cast<int>(cost);
   }
@@ -278,7 +278,7 @@ TEST(PairLevels, SeveralImagesAreChangedEachByItsOwn) {
   matcher.match_several(dark.left, others, {}, maps, &report);
   ASSERT_TRUE(report.levels);
   expect_near(report.levels->of_right.luma, inverse({.6, 12}));
-  EXPECT_GT(share_of_right(maps.left, dark), 0.9);
+  EXPECT_GT(share_of_right(maps.left.disparity_px, dark), 0.9);
 }
 
 TEST(PairLevels, OfAPhotographTakenWithAnotherExposure) {

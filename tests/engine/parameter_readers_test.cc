@@ -80,7 +80,7 @@ class Maps {
         parameters.sigma_measurement = levels.sigma_measurement.value();
       }
     }
-    const auto geometry = candidate_geometry(options, Side::kLeft, kWidth, kHeight);
+    const auto geometry = candidate_geometry(options.in_force(), Side::kLeft, kWidth, kHeight);
     CostImage left;
     CostImage right;
     left.prepare(pair_.left, parameters, geometry, {true, false, false}, execution_);
@@ -92,8 +92,9 @@ class Maps {
     Image<float> confidence(kWidth, kHeight);
     MapSearchWork work;
     MatchReport report;
-    MapSearch(options, parameters, execution_, work, report)
-        .compute(Side::kLeft, input, {.disparity_px = &map, .confidence = &confidence});
+    MapSearch(options.in_force(), parameters, execution_, work, report)
+        .compute(Side::kLeft, input, {.disparity_px = map.view(), .confidence = confidence.view()},
+                 {});
     Bytes bytes;
     for (const Image<float>* image : {&map, &confidence}) {
       for (int y = 0; y < kHeight; ++y) {

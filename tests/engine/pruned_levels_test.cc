@@ -386,8 +386,8 @@ TEST_P(PrunedMatchingOf, WiderRangesThanImagesHasADisparityEverywhere) {
     const DisparityMaps maps = maps_of(pair, pruned_options({-90, 120}, 1, GetParam()));
     for (int y = 0; y < extent.rows; ++y) {
       for (int x = 0; x < extent.columns; ++x) {
-        EXPECT_FALSE(std::isnan(maps.left.at(x, y)));
-        EXPECT_FALSE(std::isnan(maps.right.at(x, y)));
+        EXPECT_FALSE(std::isnan(maps.left.disparity_px.at(x, y)));
+        EXPECT_FALSE(std::isnan(maps.right.disparity_px.at(x, y)));
       }
     }
   }
@@ -432,11 +432,12 @@ TEST_P(PrunedMatchingOf, ThinObjectsStayFound) {
   int different = 0;
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 150; x < 153; ++x) {
-      found += std::abs(pruned.left.at(x, y) - kBar) < 1 ? 1 : 0;
-      full_found += std::abs(full.left.at(x, y) - kBar) < 1 ? 1 : 0;
+      found += std::abs(pruned.left.disparity_px.at(x, y) - kBar) < 1 ? 1 : 0;
+      full_found += std::abs(full.left.disparity_px.at(x, y) - kBar) < 1 ? 1 : 0;
     }
     for (int x = 127; x < kWidth; ++x) {
-      different += std::abs(pruned.left.at(x, y) - full.left.at(x, y)) > 1 ? 1 : 0;
+      different +=
+          std::abs(pruned.left.disparity_px.at(x, y) - full.left.disparity_px.at(x, y)) > 1 ? 1 : 0;
     }
   }
   EXPECT_GE(full_found, 3 * kHeight * 9 / 10) << "nothing to lose";

@@ -143,12 +143,10 @@ TEST(CrossCheckOfTwoComponents, EqualsPlainTranscription) {
 /// A pair of one-row maps and what refinement makes of them.
 struct RefinementCase {
   RefinementOptions options{.fill = Fill::kNone};
-  DisparityMap left = map_of({{0, 0, 0, 0, 2, 2, 2, 0, 0, 0}});
-  DisparityMap right = map_of({{0, 0, 2, 2, 2, 0, 0, 0, 0, 0}});
-  Image<float> left_confidence = map_of({{5, 4, 3, 2, 1, 0, -1, -2, kUnknown, 9}});
-  Image<float> right_confidence = map_of({{1, 1, 1, 1, 1, 1, 1, 1, 1, 1}});
-  Mask left_unmatched;
-  Mask right_unmatched;
+  MatchedMap left{.disparity_px = map_of({{0, 0, 0, 0, 2, 2, 2, 0, 0, 0}}),
+                  .confidence = map_of({{5, 4, 3, 2, 1, 0, -1, -2, kUnknown, 9}})};
+  MatchedMap right{.disparity_px = map_of({{0, 0, 2, 2, 2, 0, 0, 0, 0, 0}}),
+                   .confidence = map_of({{1, 1, 1, 1, 1, 1, 1, 1, 1, 1}})};
   bool left_is_result = true;
   bool right_is_result = true;
   std::vector<std::string> steps;
@@ -156,21 +154,13 @@ struct RefinementCase {
   void refine(bool both = true) {
     Execution execution({.threads = 2});
     RefinementWork work;
-    const MapToRefine left_map{.side = Side::kLeft,
-                               .disparity_px = &left,
-                               .confidence = &left_confidence,
-                               .unmatched = &left_unmatched,
-                               .is_result = left_is_result};
-    const MapToRefine right_map{.side = Side::kRight,
-                                .disparity_px = &right,
-                                .confidence = &right_confidence,
-                                .unmatched = &right_unmatched,
-                                .is_result = right_is_result};
+    const MapToRefine left_map{.side = Side::kLeft, .map = &left, .is_result = left_is_result};
+    const MapToRefine right_map{.side = Side::kRight, .map = &right, .is_result = right_is_result};
     refine_maps(options, left_map, both ? &right_map : nullptr, execution, work,
                 [&](std::string_view step) { steps.emplace_back(step); });
   }
-  [[nodiscard]] std::vector<std::uint8_t> left_mask() const { return rows_of(left_unmatched)[0]; }
-  [[nodiscard]] std::vector<std::uint8_t> right_mask() const { return rows_of(right_unmatched)[0]; }
+  [[nodiscard]] std::vector<std::uint8_t> left_mask() const { return rows_of(left.unmatched)[0]; }
+  [[nodiscard]] std::vector<std::uint8_t> right_mask() const { return rows_of(right.unmatched)[0]; }
 };
 
 TEST(RefineMaps, AMapThatIsNoResultIsLeftAlone) {
@@ -184,8 +174,10 @@ TEST(RefineMaps, AMapThatIsNoResultIsLeftAlone) {
     (left_is_result ? one.right_is_result : one.left_is_result) = false;
     one.refine();
     const RefinementCase untouched;
-    EXPECT_TRUE(identical(one.left, left_is_result ? both.left : untouched.left));
-    EXPECT_TRUE(identical(one.right, left_is_result ? untouched.right : both.right));
+    EXPECT_TRUE(
+        identical(one.left.disparity_px, (left_is_result ? both : untouched).left.disparity_px));
+    EXPECT_TRUE(
+        identical(one.right.disparity_px, (left_is_result ? untouched : both).right.disparity_px));
     const auto mask = [&](const RefinementCase& of) {
       return left_is_result ? of.left_mask() : of.right_mask();
     };
@@ -200,14 +192,14 @@ TEST(RefineMaps, CrossCheckMarksWhatIsHiddenInTheOtherImage) {
   EXPECT_THAT(pair.left_mask(), ElementsAre(0, 0, 255, 255, 0, 0, 0, 0, 0, 0));
   EXPECT_THAT(pair.right_mask(), ElementsAre(0, 0, 0, 0, 0, 255, 255, 0, 0, 0));
   EXPECT_THAT(pair.steps, ElementsAre("cross-check", "fill"));
-  EXPECT_TRUE(std::isnan(pair.left.at(2, 0)));
-  EXPECT_EQ(pair.left.at(4, 0), 2);
+  EXPECT_TRUE(std::isnan(pair.left.disparity_px.at(2, 0)));
+  EXPECT_EQ(pair.left.disparity_px.at(4, 0), 2);
 }
 
 TEST(RefineMaps, EachStepCanBeSwitched) {
   RefinementCase none;
   none.options.cross_check = false;
-  none.left.at(7, 0) = kUnknown;
+  none.left.disparity_px.at(7, 0) = kUnknown;
   none.refine();
   EXPECT_THAT(none.left_mask(), ElementsAre(0, 0, 0, 0, 0, 0, 0, 255, 0, 0));
   EXPECT_THAT(none.steps, ElementsAre("fill"));
@@ -228,17 +220,17 @@ TEST(RefineMaps, EachStepCanBeSwitched) {
   // After cross-check and confidence columns 0, 1, 4 and 9 are left; 4 and 9 are alone.
   EXPECT_THAT(all.left_mask(), ElementsAre(0, 0, 255, 255, 255, 255, 255, 255, 255, 255));
   EXPECT_THAT(all.steps, ElementsAre("cross-check", "confidence", "speckles", "fill"));
-  EXPECT_EQ(rows_of(all.left), (Rows{std::vector<float>(10, 0)}));
+  EXPECT_EQ(rows_of(all.left.disparity_px), (Rows{std::vector<float>(10, 0)}));
 }
 
 TEST(RefineMaps, AMapWithoutPartnerHasNoCrossCheck) {
   RefinementCase alone;
-  alone.left.at(0, 0) = kUnknown;
+  alone.left.disparity_px.at(0, 0) = kUnknown;
   alone.options.fill = Fill::kConstant;
   alone.refine(false);
   EXPECT_THAT(alone.left_mask(), ElementsAre(255, 0, 0, 0, 0, 0, 0, 0, 0, 0));
-  EXPECT_EQ(alone.left.at(0, 0), 0);
-  EXPECT_TRUE(alone.right_unmatched.empty());
+  EXPECT_EQ(alone.left.disparity_px.at(0, 0), 0);
+  EXPECT_TRUE(alone.right.unmatched.empty());
   EXPECT_THAT(alone.steps, ElementsAre("fill"));
 }
 
@@ -270,57 +262,48 @@ TEST(RefineMaps, EdgesOfEachImageMoveItsOwnMapBeforeTheCrossCheck) {
   RefinementCase pair;
   pair.options.edge_snapping_px = 4;
   pair.options.fill = Fill::kConstant;
-  pair.left = map(27);
-  pair.right = map(17);
+  pair.left.disparity_px = map(27);
+  pair.right.disparity_px = map(17);
   Execution execution({.threads = 2});
   RefinementWork work;
-  const MapToRefine left_map{.side = Side::kLeft,
-                             .image = &left_image,
-                             .disparity_px = &pair.left,
-                             .unmatched = &pair.left_unmatched};
-  const MapToRefine right_map{.side = Side::kRight,
-                              .image = &right_image,
-                              .disparity_px = &pair.right,
-                              .unmatched = &pair.right_unmatched};
+  const MapToRefine left_map{.side = Side::kLeft, .image = &left_image, .map = &pair.left};
+  const MapToRefine right_map{.side = Side::kRight, .image = &right_image, .map = &pair.right};
   std::vector<std::string> steps;
   refine_maps(pair.options, right_map, &left_map, execution, work,
               [&](std::string_view step) { steps.emplace_back(step); });
   EXPECT_THAT(steps, ElementsAre("edge snapping", "cross-check", "fill"));
   for (int y = 0; y < kHeight; ++y) {
     // Up to the edge pixel itself, on either side of which the border may be.
-    EXPECT_EQ(pair.left.at(22, y), 0);
-    EXPECT_EQ(pair.left.at(25, y), 4);
-    EXPECT_EQ(pair.right.at(18, y), 0);
-    EXPECT_EQ(pair.right.at(21, y), 4);
-    EXPECT_EQ(pair.left_unmatched.at(26, y), 0);
+    EXPECT_EQ(pair.left.disparity_px.at(22, y), 0);
+    EXPECT_EQ(pair.left.disparity_px.at(25, y), 4);
+    EXPECT_EQ(pair.right.disparity_px.at(18, y), 0);
+    EXPECT_EQ(pair.right.disparity_px.at(21, y), 4);
+    EXPECT_EQ(pair.left.unmatched.at(26, y), 0);
     // The right image shows the partners of the left one's last columns, but not the reverse.
-    EXPECT_EQ(pair.left_unmatched.at(39, y), 0);
-    EXPECT_EQ(pair.right_unmatched.at(39, y), 255);
+    EXPECT_EQ(pair.left.unmatched.at(39, y), 0);
+    EXPECT_EQ(pair.right.unmatched.at(39, y), 255);
   }
 }
 
 TEST(RefineMaps, BothComponentsAreCheckedAndFilledTogether) {
-  DisparityMap left = map_of({{1, 1, 1, 1}, {1, 1, 1, 1}, {1, 1, 1, 1}});
-  DisparityMap left_y = map_of({{-1, -1, -1, -1}, {-1, 0, -1, -1}, {-1, -1, -1, -1}});
-  DisparityMap right = left.copy();
-  DisparityMap right_y(4, 3);
-  right_y.fill(-1);
-  Mask left_unmatched;
-  Mask right_unmatched;
+  MatchedMap left{.disparity_px = map_of({{1, 1, 1, 1}, {1, 1, 1, 1}, {1, 1, 1, 1}}),
+                  .disparity_y_px = map_of({{-1, -1, -1, -1}, {-1, 0, -1, -1}, {-1, -1, -1, -1}})};
+  MatchedMap right{.disparity_px = left.disparity_px.copy(), .disparity_y_px = DisparityMap(4, 3)};
+  right.disparity_y_px.fill(-1);
   RefinementCase defaults;
   defaults.options.fill = Fill::kConstant;
   Execution execution({.threads = 2});
   RefinementWork work;
-  const MapToRefine left_map{Side::kLeft, nullptr, &left, &left_y, nullptr, &left_unmatched};
-  const MapToRefine right_map{Side::kRight, nullptr, &right, &right_y, nullptr, &right_unmatched};
+  const MapToRefine left_map{.side = Side::kLeft, .map = &left};
+  const MapToRefine right_map{.side = Side::kRight, .map = &right};
   refine_maps(defaults.options, left_map, &right_map, execution, work, [](std::string_view) {});
   // The partner of (x, y) is (x − 1, y + 1): the first column and the last row have none.
-  EXPECT_EQ(rows_of(left_unmatched),
+  EXPECT_EQ(rows_of(left.unmatched),
             (MaskRows{{255, 0, 0, 0}, {255, 255, 0, 0}, {255, 255, 255, 255}}));
-  EXPECT_EQ(rows_of(right_unmatched),
+  EXPECT_EQ(rows_of(right.unmatched),
             (MaskRows{{255, 255, 255, 255}, {0, 0, 0, 255}, {255, 0, 0, 255}}));
-  EXPECT_EQ(left_y.at(1, 1), -1);
-  EXPECT_EQ(left_y.at(0, 0), -1);
+  EXPECT_EQ(left.disparity_y_px.at(1, 1), -1);
+  EXPECT_EQ(left.disparity_y_px.at(0, 0), -1);
 }
 
 }  // namespace refinement_test

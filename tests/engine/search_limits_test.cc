@@ -91,11 +91,11 @@ TEST(SearchLimits, NoMethodAndNoRefinementLeavesThem) {
     const std::string what = methods[static_cast<std::size_t>(row[0])].name + ", fill " +
                              std::to_string(row[1]) + ", surface fit " +
                              std::to_string(5 * row[2]) + ", " + test::sample_name();
-    expect_within(maps.left, kSearch, what);
-    expect_within(maps.right, kSearch, what);
+    expect_within(maps.left.disparity_px, kSearch, what);
+    expect_within(maps.right.disparity_px, kSearch, what);
     if (row[4] == 1) {
-      expect_within(maps.left_disparity_y, kSearchY, what + " (y)");
-      expect_within(maps.right_disparity_y, kSearchY, what + " (y)");
+      expect_within(maps.left.disparity_y_px, kSearchY, what + " (y)");
+      expect_within(maps.right.disparity_y_px, kSearchY, what + " (y)");
     }
   }
 }
@@ -110,8 +110,8 @@ TEST(SearchLimits, PresetsKeepThem) {
     options.preset = preset;
     options.disparities = kSearch;
     StereoMatcher(options, execution).match(pair.left, pair.right, {}, maps);
-    expect_within(maps.left, kSearch, "preset");
-    expect_within(maps.right, kSearch, "preset");
+    expect_within(maps.left.disparity_px, kSearch, "preset");
+    expect_within(maps.right.disparity_px, kSearch, "preset");
   }
 }
 

@@ -171,9 +171,9 @@ TEST_F(SequenceRunnerTest, WritesWhatTheMatcherComputes) {
     const Photograph mask = read_photograph(folder("a") / "unmatched" / (name + ".png"));
     for (int y = 0; y < map.height(); ++y) {
       for (int x = 0; x < map.width(); ++x) {
-        ASSERT_EQ(map.at(x, y), maps.right.at(x, y));
+        ASSERT_EQ(map.at(x, y), maps.right.disparity_px.at(x, y));
         ASSERT_EQ(std::get<Image<std::uint8_t>>(mask.pixels).at(x, y),
-                  maps.right_unmatched.at(x, y));
+                  maps.right.unmatched.at(x, y));
       }
     }
   }
@@ -238,12 +238,12 @@ TEST_F(SequenceRunnerTest, CamerasSeeWhatTheSynthesizerRenders) {
         SynthesizedView view;
         if (warp == WarpColour::kForward) {
           ThreeStepSynthesizer(options_.synthesis, serial)
-              .synthesize(pair.left, pair.right, maps.left.view(), maps.right.view(), cameras_,
-                          camera, view);
+              .synthesize(pair.left, pair.right, maps.left.disparity_px.view(),
+                          maps.right.disparity_px.view(), cameras_, camera, view);
         } else {
           ViewSynthesizer(options_.synthesis, serial)
-              .synthesize(pair.left, pair.right, maps.left.view(), maps.right.view(),
-                          camera_view(cameras_, camera), view);
+              .synthesize(pair.left, pair.right, maps.left.disparity_px.view(),
+                          maps.right.disparity_px.view(), camera_view(cameras_, camera), view);
         }
         const std::string file = name + "/00000" + std::to_string(frame) + ".png";
         const auto& image = std::get<Image<std::uint8_t>>(view.image.pixels);

@@ -58,7 +58,8 @@ void expect_equals_plain_match(const Photograph& left, const Photograph& right,
   matcher.match(left, right, {}, maps);
   for (const Side reference : {Side::kLeft, Side::kRight}) {
     const PlainMap plain = plain_map(left, right, reference, options);
-    const DisparityMap& map = reference == Side::kLeft ? maps.left : maps.right;
+    const DisparityMap& map =
+        reference == Side::kLeft ? maps.left.disparity_px : maps.right.disparity_px;
     ASSERT_EQ(map.width(), left.width());
     ASSERT_EQ(map.height(), left.height());
     for (int y = 0; y < map.height(); ++y) {
@@ -136,15 +137,15 @@ TEST(StereoMatcher, EqualsPlainMatchOnEveryInstructionSet) {
       for (const std::string& name : available_instruction_sets()) {
         force_instruction_set(name);
         ASSERT_EQ(instruction_set_in_use(), name);
-        if (expected.left.empty()) {
+        if (expected.left.disparity_px.empty()) {
           expect_equals_plain_match(left, right, options, execution);
           StereoMatcher(options, execution).match(left, right, {}, expected);
           continue;
         }
         DisparityMaps maps;
         StereoMatcher(options, execution).match(left, right, {}, maps);
-        EXPECT_TRUE(identical(maps.left, expected.left)) << name;
-        EXPECT_TRUE(identical(maps.right, expected.right)) << name;
+        EXPECT_TRUE(identical(maps.left.disparity_px, expected.left.disparity_px)) << name;
+        EXPECT_TRUE(identical(maps.right.disparity_px, expected.right.disparity_px)) << name;
       }
     }
   }
@@ -195,10 +196,10 @@ TEST_P(SsdDepths, AgreeWithDoubleArithmetic) {
         test::plain_aggregate(left, right, Side::kLeft, options.disparities, options.resolved());
     const PlainMap plain = test::plain_select(energies, options.resolved());
     int different = 0;
-    for (int y = 0; y < maps.left.height(); ++y) {
-      for (int x = 0; x < maps.left.width(); ++x) {
+    for (int y = 0; y < maps.left.disparity_px.height(); ++y) {
+      for (int x = 0; x < maps.left.disparity_px.width(); ++x) {
         const double expected = plain.at(x, y).disparity;
-        const double actual = maps.left.at(x, y);
+        const double actual = maps.left.disparity_px.at(x, y);
         if (actual != expected) {
           ++different;
           const auto energy = [&](double d) {
@@ -244,7 +245,8 @@ TEST(StereoMatcher, ResultsDoNotDependOnExecution) {
                            .band_height_px = row[3] == 0 ? 2 : 500});
       DisparityMaps maps;
       StereoMatcher(options, execution).match(left, right, {}, maps);
-      ASSERT_TRUE(identical(maps.left, expected.left) && identical(maps.right, expected.right))
+      ASSERT_TRUE(identical(maps.left.disparity_px, expected.left.disparity_px) &&
+                  identical(maps.right.disparity_px, expected.right.disparity_px))
           << "executor, threads, strip, band: " << ::testing::PrintToString(row) << ", "
           << test::sample_name();
     }
@@ -259,7 +261,7 @@ TEST(StereoMatcher, ChainEqualsWholeImageOracle) {
   DisparityMaps maps;
   StereoMatcher(options, execution).match(left, right, {}, maps);
 
-  const auto geometry = candidate_geometry(options, Side::kLeft, 89, 37);
+  const auto geometry = candidate_geometry(options.in_force(), Side::kLeft, 89, 37);
   PreparedPair pair;
   const MethodParameters parameters = options.resolved();
   prepare_pair(left, right, geometry, parameters.window_px * parameters.window_px, {}, execution,
@@ -269,7 +271,7 @@ TEST(StereoMatcher, ChainEqualsWholeImageOracle) {
   DisparityMap whole(89, 37);
   const MatchChain chain(parameters, geometry, input, {whole.view(), {}, {}});
   scheduler::run_whole_image(chain.stages());
-  EXPECT_TRUE(identical(maps.left, whole));
+  EXPECT_TRUE(identical(maps.left.disparity_px, whole));
 
   // The column sums stored as a whole image between two passes.
   DisparityMap in_passes(89, 37);
@@ -307,12 +309,12 @@ TEST(StereoMatcher, FindsAKnownShiftEverywhere) {
     for (int x = 0; x < 100; ++x) {
       // Columns without a partner in the other image may agree by chance within the tolerance.
       if (x >= shift) {
-        ASSERT_NEAR(maps.left.at(x, y), shift, 0.2) << x << ", " << y;
-        ASSERT_EQ(maps.left_unmatched.at(x, y), 0) << x << ", " << y;
+        ASSERT_NEAR(maps.left.disparity_px.at(x, y), shift, 0.2) << x << ", " << y;
+        ASSERT_EQ(maps.left.unmatched.at(x, y), 0) << x << ", " << y;
       }
       if (x < 100 - shift) {
-        ASSERT_NEAR(maps.right.at(x, y), shift, 0.2) << x << ", " << y;
-        ASSERT_EQ(maps.right_unmatched.at(x, y), 0) << x << ", " << y;
+        ASSERT_NEAR(maps.right.disparity_px.at(x, y), shift, 0.2) << x << ", " << y;
+        ASSERT_EQ(maps.right.unmatched.at(x, y), 0) << x << ", " << y;
       }
     }
   }
@@ -327,8 +329,8 @@ TEST(StereoMatcher, RefinedMapsAreDense) {
       .match(random_grey(50, 20, 256, 12), random_grey(50, 20, 256, 13), {}, maps);
   for (int y = 0; y < 20; ++y) {
     for (int x = 0; x < 50; ++x) {
-      ASSERT_TRUE(std::isfinite(maps.left.at(x, y)));
-      ASSERT_TRUE(std::isfinite(maps.right.at(x, y)));
+      ASSERT_TRUE(std::isfinite(maps.left.disparity_px.at(x, y)));
+      ASSERT_TRUE(std::isfinite(maps.right.disparity_px.at(x, y)));
     }
   }
 }

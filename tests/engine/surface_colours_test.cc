@@ -128,14 +128,16 @@ struct Scene {
                                    const SynthesisOptions& options = {}) {
     SynthesizedView result;
     ViewSynthesizer(options, on)
-        .synthesize(unrectified(), maps.left.view(), maps.right.view(), view, result);
+        .synthesize(unrectified(), maps.left.disparity_px.view(), maps.right.disparity_px.view(),
+                    view, result);
     return result;
   }
   [[nodiscard]] SynthesizedView from_rectified(const NewView& view,
                                                const SynthesisOptions& options = {}) const {
     SynthesizedView result;
     ViewSynthesizer(options, execution())
-        .synthesize(rectified[0], rectified[1], maps.left.view(), maps.right.view(), view, result);
+        .synthesize(rectified[0], rectified[1], maps.left.disparity_px.view(),
+                    maps.right.disparity_px.view(), view, result);
     return result;
   }
 };
@@ -164,7 +166,7 @@ struct WallScene : Scene {
         }
       }
       photographs[index].pixels = std::move(photograph);
-      (index == 0 ? maps.left : maps.right) = std::move(map);
+      (index == 0 ? maps.left.disparity_px : maps.right.disparity_px) = std::move(map);
     }
     rectify();
   }
@@ -176,7 +178,7 @@ struct NoiseScene : Scene {
   NoiseScene(int width, int height, int channels, Execution& on, double kept_outline = 0)
       : Scene(random_rig(width, height), width, height, on, kept_outline) {
     photographs = {noise<T>(width, height, channels, 1), noise<T>(width, height, channels, 2)};
-    for (DisparityMap* map : {&maps.left, &maps.right}) {
+    for (DisparityMap* map : {&maps.left.disparity_px, &maps.right.disparity_px}) {
       map->resize(width, height);
       for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
@@ -275,7 +277,7 @@ TEST(SurfaceColours, OneInterpolationIsNearerToTheTruthThanTwo) {
 // show; they count all the same.
 TEST(SurfaceColours, AtACameraTheViewIsTheRectifiedImage) {
   const auto expect_equal = [](Scene&& scene, int width, int height) {
-    for (DisparityMap* map : {&scene.maps.left, &scene.maps.right}) {
+    for (DisparityMap* map : {&scene.maps.left.disparity_px, &scene.maps.right.disparity_px}) {
       map->fill(2);
     }
     SynthesisOptions options;
@@ -357,7 +359,7 @@ TEST(SurfaceColours, DoNotMixAcrossOutlines) {
     // Black wall, white plate, told apart by the disparity that the photograph's pixels have.
     auto& photograph = std::get<Image<float>>(scene.photographs[k].pixels);
     scene.grid.bring(k == 0 ? Side::kLeft : Side::kRight,
-                     (k == 0 ? scene.maps.left : scene.maps.right).view(),
+                     (k == 0 ? scene.maps.left.disparity_px : scene.maps.right.disparity_px).view(),
                      scene.photograph_maps[k]);
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
@@ -453,9 +455,9 @@ TEST(SurfaceColours, RegressionSeesThePhotographs) {
                   [](float& value) { value = 0.1F + 0.5F * value; });
   }
   const ViewSynthesizer synthesizer({}, execution());
-  const kernels::IntensitySums sums =
-      synthesizer.intensity_sums(scene.unrectified(), scene.maps.left.view(),
-                                 scene.maps.right.view(), baseline_view(0.5, 0, kWidth, kHeight));
+  const kernels::IntensitySums sums = synthesizer.intensity_sums(
+      scene.unrectified(), scene.maps.left.disparity_px.view(),
+      scene.maps.right.disparity_px.view(), baseline_view(0.5, 0, kWidth, kHeight));
   const IntensityFit fit = fit_channels(sums, 1, 1)[0];
   EXPECT_NEAR(fit.gain, 2, 0.1);
   EXPECT_NEAR(fit.offset, -0.2 * 255, 0.1 * 255);
@@ -474,8 +476,8 @@ TEST(SurfaceColours, RefuseTheBooksWarpAndGeometryOfAnotherSize) {
   SynthesizedView result;
   EXPECT_THAT(error_of([&] {
                 ViewSynthesizer({}, execution())
-                    .synthesize(pair, scene.maps.left.view(), scene.maps.right.view(), view,
-                                result);
+                    .synthesize(pair, scene.maps.left.disparity_px.view(),
+                                scene.maps.right.disparity_px.view(), view, result);
               }),
               HasSubstr("is 39×30, expected 40×30"));
 }

@@ -126,13 +126,8 @@ TEST(FitSurface, RefinementFitsBothComponentsBeforeItFills) {
       stepped.map.at(x, y) = stepped.unmatched.at(x, y) != 0 ? kUnknown : stepped.map.at(x, y);
     }
   }
-  DisparityMap map_x = stepped.map.copy();
-  DisparityMap map_y = stepped.map.copy();
-  Mask unmatched;
-  const MapToRefine map{.side = Side::kLeft,
-                        .disparity_px = &map_x,
-                        .disparity_y_px = &map_y,
-                        .unmatched = &unmatched};
+  MatchedMap matched{.disparity_px = stepped.map.copy(), .disparity_y_px = stepped.map.copy()};
+  const MapToRefine map{.side = Side::kLeft, .map = &matched};
   std::vector<std::string> steps;
   refine_maps({.edge_snapping_px = 0,
                .cross_check = false,
@@ -148,8 +143,8 @@ TEST(FitSurface, RefinementFitsBothComponentsBeforeItFills) {
   SurfaceFitWork alone;
   fit_surface(stepped.unmatched, 6, kAnyDisparity, execution, alone, stepped.map);
   fill_unmatched(stepped.unmatched, Side::kLeft, Fill::kConstant, execution, stepped.map);
-  EXPECT_TRUE(test::identical(map_x, stepped.map));
-  EXPECT_TRUE(test::identical(map_y, stepped.map));
+  EXPECT_TRUE(test::identical(matched.disparity_px, stepped.map));
+  EXPECT_TRUE(test::identical(matched.disparity_y_px, stepped.map));
 }
 
 }  // namespace surface_fit_test

@@ -26,18 +26,18 @@ Photograph copy_of(const Photograph& photograph) {
 /// A map of different values with some pixels filled.
 DisparityMaps some_maps(int width = kWidth, int height = kHeight) {
   DisparityMaps maps;
-  for (DisparityMap* map : {&maps.left, &maps.right}) {
+  for (DisparityMap* map : {&maps.left.disparity_px, &maps.right.disparity_px}) {
     map->resize(width, height);
   }
-  for (Mask* mask : {&maps.left_unmatched, &maps.right_unmatched}) {
+  for (Mask* mask : {&maps.left.unmatched, &maps.right.unmatched}) {
     mask->resize(width, height);
   }
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      maps.left.at(x, y) = static_cast<float>(x) + 0.25F;
-      maps.right.at(x, y) = static_cast<float>(y) + 0.5F;
-      maps.left_unmatched.at(x, y) = (x + y) % 7 == 0 ? 255 : 0;
-      maps.right_unmatched.at(x, y) = (x + 2 * y) % 5 == 0 ? 255 : 0;
+      maps.left.disparity_px.at(x, y) = static_cast<float>(x) + 0.25F;
+      maps.right.disparity_px.at(x, y) = static_cast<float>(y) + 0.5F;
+      maps.left.unmatched.at(x, y) = (x + y) % 7 == 0 ? 255 : 0;
+      maps.right.unmatched.at(x, y) = (x + 2 * y) % 5 == 0 ? 255 : 0;
     }
   }
   return maps;
@@ -71,15 +71,15 @@ TEST_F(TemporalStateTest, HandsOnMatchedPixelsOfWhatDidNotChange) {
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       const bool left_changed = std::abs(x - 30) <= 2 && std::abs(y - 20) <= 2;
-      if (left_changed || maps_.left_unmatched.at(x, y) != 0) {
+      if (left_changed || maps_.left.unmatched.at(x, y) != 0) {
         ASSERT_TRUE(std::isnan(prior.left_px.at(x, y))) << x << ", " << y;
       } else {
-        ASSERT_EQ(prior.left_px.at(x, y), maps_.left.at(x, y)) << x << ", " << y;
+        ASSERT_EQ(prior.left_px.at(x, y), maps_.left.disparity_px.at(x, y)) << x << ", " << y;
       }
-      if (maps_.right_unmatched.at(x, y) != 0) {
+      if (maps_.right.unmatched.at(x, y) != 0) {
         ASSERT_TRUE(std::isnan(prior.right_px.at(x, y)));
       } else {
-        ASSERT_EQ(prior.right_px.at(x, y), maps_.right.at(x, y));
+        ASSERT_EQ(prior.right_px.at(x, y), maps_.right.disparity_px.at(x, y));
       }
     }
   }
@@ -98,7 +98,7 @@ TEST_F(TemporalStateTest, ComparesWithTheFrameJustBefore) {
   state_.remember(brighter, right_, maps_, execution_);
   const DisparityPrior prior = state_.priors_for(brighter, right_, execution_);
   ASSERT_FALSE(prior.left_px.empty());
-  EXPECT_EQ(prior.left_px.at(1, 0), maps_.left.at(1, 0));
+  EXPECT_EQ(prior.left_px.at(1, 0), maps_.left.disparity_px.at(1, 0));
 }
 
 TEST_F(TemporalStateTest, HasNothingAtTheBeginning) {
@@ -118,7 +118,7 @@ TEST_F(TemporalStateTest, OtherSizesHaveNothingInCommon) {
 }
 
 TEST_F(TemporalStateTest, AMapThatWasNotMadeIsNoPrior) {
-  maps_.right.resize(0, 0);
+  maps_.right.disparity_px.resize(0, 0);
   state_.remember(left_, right_, maps_, execution_);
   const DisparityPrior prior = state_.priors_for(left_, right_, execution_);
   EXPECT_FALSE(prior.left_px.empty());
@@ -181,10 +181,10 @@ double mean_change_px(MatchMethod method, double weight) {
     state.remember(noisy[0], noisy[1], maps, execution);
     for (int y = 0; frame > 0 && y < 60; ++y) {
       for (int x = 20; x < 70; ++x) {
-        change += std::abs(maps.left.at(x, y) - before.at(x, y));
+        change += std::abs(maps.left.disparity_px.at(x, y) - before.at(x, y));
       }
     }
-    before = maps.left.copy();
+    before = maps.left.disparity_px.copy();
   }
   return change / (50.0 * 60 * (kFrames - 1));
 }

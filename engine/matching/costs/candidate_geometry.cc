@@ -8,10 +8,10 @@
 
 namespace vantage {
 
-kernels::CandidateGeometry candidate_geometry(const MatchOptions& options, Side reference,
+kernels::CandidateGeometry candidate_geometry(const ResolvedMatchOptions& options, Side reference,
                                               int width, int height) {
   // Whole windows need room: with border `valid` they shorten the largest shift that can match.
-  const MethodParameters parameters = options.resolved();
+  const MethodParameters& parameters = options.parameters;
   const bool has_whole_windows =
       parameters.aggregation == Aggregation::kBox && parameters.border == Border::kValid;
   const int margin = has_whole_windows ? parameters.window_px - 1 : 0;

@@ -8,7 +8,7 @@ namespace vantage {
 
 /// The candidates of `options` that some pixel of an image `width` columns wide can have.
 /// `reference` is the image whose grid the map is on. Throws Error when there is none.
-kernels::CandidateGeometry candidate_geometry(const MatchOptions& options, Side reference,
+kernels::CandidateGeometry candidate_geometry(const ResolvedMatchOptions& options, Side reference,
                                               int width, int height);
 
 }  // namespace vantage

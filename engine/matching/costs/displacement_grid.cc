@@ -7,12 +7,12 @@
 
 namespace vantage {
 
-std::optional<DisplacementGrid> displacement_grid(const MatchOptions& options, Side reference,
-                                                  int width, int height) {
+std::optional<DisplacementGrid> displacement_grid(const ResolvedMatchOptions& options,
+                                                  Side reference, int width, int height) {
   if (!options.disparities_y) {
     return std::nullopt;
   }
-  const MethodParameters parameters = options.resolved();
+  const MethodParameters& parameters = options.parameters;
   const int margin = parameters.border == Border::kValid ? parameters.window_px - 1 : 0;
   const int most_shift = height - 1 - margin;
   const int least = std::max(options.disparities_y->min, -most_shift);

@@ -44,7 +44,7 @@ struct DisplacementGrid {
 
 /// The grid that `options` ask for on images of this size; empty: a search along rows only. Leaves
 /// out what no pixel can have. Throws Error when no pixel has a candidate.
-std::optional<DisplacementGrid> displacement_grid(const MatchOptions& options, Side reference,
-                                                  int width, int height);
+std::optional<DisplacementGrid> displacement_grid(const ResolvedMatchOptions& options,
+                                                  Side reference, int width, int height);
 
 }  // namespace vantage

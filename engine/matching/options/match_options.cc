@@ -172,6 +172,13 @@ RefinementOptions MatchOptions::resolved_refinement() const {
   return result;
 }
 
+ResolvedMatchOptions MatchOptions::in_force() const {
+  return {.disparities = disparities,
+          .disparities_y = disparities_y,
+          .parameters = resolved(),
+          .refinement = raw ? std::nullopt : std::optional(resolved_refinement())};
+}
+
 MatchOptions MatchOptions::fully_resolved() const {
   MatchOptions result = *this;
   result.method = method.value_or(settings_of(preset_in_force()).method);

@@ -16,6 +16,14 @@ inline constexpr int kMaxCandidates = 4096;
 /// Whether maps of these parameters have levels whose winners a cross-check can look at.
 bool can_check_levels(const MethodParameters& parameters);
 
+/// What is in force after method, preset and defaults have had their say: what matching works by.
+struct ResolvedMatchOptions {
+  DisparityRange disparities;
+  std::optional<DisparityRange> disparities_y;
+  MethodParameters parameters;
+  std::optional<RefinementOptions> refinement;  ///< none: maps stay as the winners are
+};
+
 /// Everything that decides what a pair's disparity maps are. Defaults are the command line's.
 struct MatchOptions {
   /// Empty: that of the preset in force. Not both.
@@ -51,6 +59,8 @@ struct MatchOptions {
   /// gradient evidence and any for the others, speckles kept, no surface fit, fill at constant
   /// depth.
   [[nodiscard]] RefinementOptions resolved_refinement() const;
+  /// All of it.
+  [[nodiscard]] ResolvedMatchOptions in_force() const;
   /// The same options with every field set to what is in force, without the preset. To be shown:
   /// validate() refuses them, as a method reads some of the fields only.
   [[nodiscard]] MatchOptions fully_resolved() const;
