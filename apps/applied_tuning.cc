@@ -43,12 +43,11 @@ TunedSettings left_open(TunedSettings settings, const TuningSituation& situation
 
 void add_tuning_settings(Settings& settings, TuningSource& source) {
   settings.begin_group("Execution (never changes a result)", false);
-  settings.input_path(
-      "tuning", source.file, "FILE",
-      "Where to look for what 'vantage tune' has found for such images; it goes before "
-      "auto below. Without it tuning.json in the folder vantage of $XDG_CONFIG_HOME or "
-      "~/.config");
-  settings.flag("no-tuning", source.ignored, "Leave what is auto below to the cost model");
+  settings.input_path("tuning", source.file, "FILE",
+                      "Results of 'vantage tune', which replace auto below; default: "
+                      "vantage/tuning.json in $XDG_CONFIG_HOME or ~/.config");
+  settings.flag("no-tuning", source.ignored,
+                "Use the cost model, not results of 'vantage tune', for auto below");
 }
 
 fs::path file_of(const TuningSource& source) {
@@ -76,7 +75,7 @@ AppliedTuning apply_tuning(const TuningSource& source, const TuningSituation& si
   TuningFileContent content = read_tuning_file(path);
   std::error_code ignored_error;
   if (!source.file.empty() && !fs::exists(path, ignored_error)) {
-    content.warnings.push_back(fmt::format("{}: there is no such file", path.string()));
+    content.warnings.push_back(fmt::format("{}: no such file", path.string()));
   }
   if (!quiet) {
     for (const std::string& warning : content.warnings) {
@@ -95,8 +94,8 @@ AppliedTuning apply_tuning(const TuningSource& source, const TuningSituation& si
   }
   AppliedTuning applied;
   if (plan == nullptr) {
-    applied = no_tuning(content.warnings.empty() ? "there is no entry for this work"
-                                                 : content.warnings.front());
+    applied =
+        no_tuning(content.warnings.empty() ? "no entry for this work" : content.warnings.front());
     applied.report["wanted"] = key.text();
     applied.report["file"] = path.string();
     return applied;

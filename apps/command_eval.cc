@@ -41,19 +41,21 @@ struct Row {
 
 void add_eval_settings(Settings& settings, EvalJob& job) {
   settings.begin_group("Files");
-  settings.positional("disparity", job.first, "Disparity map to judge; with --views a photograph")
+  settings
+      .positional("disparity", job.first, "Disparity map to evaluate; with --views a photograph")
       .required = true;
-  settings.positional("truth", job.second, "The true map; with --views the true photograph")
+  settings.positional("truth", job.second, "True disparity map; with --views the true photograph")
       .required = true;
-  settings.flag("views", job.views, "Compare two photographs instead of two disparity maps");
+  settings.flag("views", job.views, "Compare two photographs, not disparity maps");
   settings.number("scale", job.truth_scale, "S",
-                  "Divides the values of an integer TRUTH file; auto: 256 for 16-bit PNG, needed "
+                  "Divide values of an integer TRUTH file by S; auto: 256 for 16-bit PNG; required "
                   "for 8-bit files");
-  settings.number("disparity-scale", job.disparity_scale, "S", "The same for DISPARITY");
+  settings.number("disparity-scale", job.disparity_scale, "S",
+                  "Divide values of an integer DISPARITY file by S, as --scale");
   settings.input_path("mask", job.mask, "FILE",
-                      "Only pixels that are white in this 8-bit image count");
+                      "Evaluate only pixels that are white in this 8-bit image");
   settings.integer("ignore-border", job.ignore_border_px, "PX",
-                   "Rows and columns left out at each side");
+                   "Number of rows and columns to leave out at each side");
 }
 
 void require_positive(const char* option, const std::optional<double>& scale) {
@@ -173,6 +175,11 @@ int command_eval(const Arguments& arguments) {
   add_eval_settings(settings, job);
   add_common_settings(settings, job.common, Work::kWithoutMatching);
   add_input_limit_settings(settings, job.common.execution);
+  settings.set_short_help(
+      {"disparity", "truth", "views", "scale", "disparity-scale", "mask", "ignore-border", "report",
+       "quiet"},
+      {"vantage eval disparity.pfm truth.pfm", "vantage eval disparity.pfm truth.png --scale 4",
+       "vantage eval --views view.png photograph.png"});
   if (!settings.read(arguments)) {
     return kExitDone;
   }

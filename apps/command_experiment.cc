@@ -31,10 +31,10 @@ struct ExperimentJob {
 
 void add_experiment_settings(Settings& settings, ExperimentJob& job) {
   settings.begin_group("Files");
-  Setting& name = settings.positional(
-      "name", job.name,
-      "noise: error of the methods against noise (Figs. 6.16, 6.17), against iterations (6.10), "
-      "and the membrane's support (6.9)");
+  Setting& name =
+      settings.positional("name", job.name,
+                          "noise: error of the methods by noise (Figs. 6.16, 6.17) and by "
+                          "iterations (6.10), and the support of the membrane (6.9)");
   name.required = true;
   name.path = PathRole::kNone;
   name.set = [&job](const SettingValue& value) {
@@ -43,15 +43,15 @@ void add_experiment_settings(Settings& settings, ExperimentJob& job) {
     }
     job.name = to_text(value);
   };
-  Setting& output = settings.path("output", job.output, "DIR", "Folder to write to");
+  Setting& output = settings.path("output", job.output, "DIR", "Output folder");
   output.short_name = 'o';
   output.required = true;
 
   settings.begin_group("Experiment");
   settings.integer("size", job.options.size_px, "PX", "Width and height of the synthetic images");
   settings.integer("iterations", job.options.iterations, "N",
-                   "Of the iterative methods in the comparison against noise");
-  Setting& pairs = settings.add("pairs", "LIST", "Which pairs are compared against noise");
+                   "Number of iterations of the iterative methods in the comparison by noise");
+  Setting& pairs = settings.add("pairs", "LIST", "Pairs to compare by noise");
   pairs.list = true;
   pairs.set = [&job](const SettingValue& value) {
     std::vector<std::string> names;
@@ -88,9 +88,13 @@ SettingValue describe_runs(const std::vector<ExperimentRun>& runs) {
 int command_experiment(const Arguments& arguments) {
   ExperimentJob job;
   Settings settings("experiment",
-                    "Computes figures of the book anew: tables (CSV), charts (SVG), pictures.");
+                    "Reproduces figures of the book: tables (CSV), charts (SVG), images.");
   add_experiment_settings(settings, job);
   add_common_settings(settings, job.common);
+  settings.set_short_help(
+      {"name", "output", "size", "iterations", "pairs", "seed", "threads", "quiet"},
+      {"vantage experiment noise -o figures",
+       "vantage experiment noise --size 128 --iterations 20 -o figures"});
   if (!settings.read(arguments)) {
     return kExitDone;
   }

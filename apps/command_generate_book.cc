@@ -21,7 +21,7 @@ struct BookJob {
 
 void add_book_settings(Settings& settings, BookJob& job) {
   settings.begin_group("Files");
-  Setting& output = settings.path("output", job.output, "DIR", "Folder to write to");
+  Setting& output = settings.path("output", job.output, "DIR", "Output folder");
   output.short_name = 'o';
   output.required = true;
 
@@ -57,15 +57,16 @@ void add_book_settings(Settings& settings, BookJob& job) {
   settings.integer("background-disparity", pair.background_disparity_px, "PX",
                    "Disparity of the background");
   settings.integer("front-disparity", pair.front_disparity_px, "PX",
-                   "Disparity of the square or the rectangle; auto: 6 and 7");
+                   "Disparity of the square or rectangle; auto: 6 and 7");
   settings.integer("narrow-disparity", pair.narrow_disparity_px, "PX",
                    "Disparity of the narrow bar; auto: 16");
-  settings.number("noise", pair.noise_sigma, "SIGMA",
-                  "Noise in both images, grey levels; gives float images");
-  settings.flag("float", pair.float_pixels, "Write float images (PFM) without noise too");
+  settings.number(
+      "noise", pair.noise_sigma, "SIGMA",
+      "Standard deviation of the noise in both images, in grey levels; writes float images");
+  settings.flag("float", pair.float_pixels, "Write float images (PFM) even without noise");
   settings.choice<Side>("reference", pair.reference,
                         {{"left", Side::kLeft}, {"right", Side::kRight}},
-                        "Image on whose grid the shapes are placed");
+                        "Image in which the shapes are placed");
   add_seed_setting(settings, pair.seed);
 }
 
@@ -73,9 +74,15 @@ void add_book_settings(Settings& settings, BookJob& job) {
 
 int command_generate_book(const Arguments& arguments) {
   BookJob job;
-  Settings settings("generate book", "Writes a synthetic pair of the book with its truth.");
+  Settings settings("generate book",
+                    "Generates a synthetic pair of the book with its true disparities.");
   add_book_settings(settings, job);
   add_common_settings(settings, job.common, Work::kWithoutMatching);
+  settings.set_short_help(
+      {"output", "pattern", "width", "height", "background-disparity", "front-disparity",
+       "narrow-disparity", "noise", "float", "reference", "seed"},
+      {"vantage generate book -o pair", "vantage generate book --width 512 --height 512 -o pair",
+       "vantage generate book --noise 5 --seed 2 -o pair"});
   if (!settings.read(arguments)) {
     return kExitDone;
   }

@@ -38,33 +38,35 @@ constexpr SceneView kRightCamera{1, 0};
 
 void add_scene_settings(Settings& settings, SceneJob& job) {
   settings.begin_group("Files");
-  Setting& output = settings.path("output", job.output, "DIR", "Folder to write to");
+  Setting& output = settings.path("output", job.output, "DIR", "Output folder");
   output.short_name = 'o';
   output.required = true;
   settings.integer("frames", job.frames, "N",
-                   "Write a sequence of N frames (DIR/left/000000.png …); single: one pair "
-                   "(DIR/left.png …)",
+                   "Number of frames of a sequence (DIR/left/000000.png ...); single: one pair "
+                   "(DIR/left.png ...)",
                    "single");
   add_view_setting(settings, job.views);
   settings.input_path("pose", job.pose_file, "FILE",
-                      "Also what the cameras of a file of poses see (as for 'vantage synth'; t in "
-                      "baselines), as camera-0, camera-1, ...");
+                      "Also render the cameras of this file of poses as camera-0, camera-1, ...; "
+                      "the file is as for 'vantage synth', with t in baselines");
 
   settings.begin_group("Scene");
   LayeredSceneOptions& scene = job.scene;
   settings.integer("width", scene.width_px, "PX", "Width of the images");
   settings.integer("height", scene.height_px, "PX", "Height of the images");
   settings.number("far", scene.far_disparity_px, "PX",
-                  "Least disparity of the scene; auto: width / 80");
+                  "Minimum disparity of the scene; auto: width / 80");
   settings.number("near", scene.near_disparity_px, "PX",
-                  "Largest disparity of the scene; auto: width / 16");
+                  "Maximum disparity of the scene; auto: width / 16");
   settings.integer("frames-per-cycle", scene.frames_per_cycle, "N",
-                   "Frames after which all movements begin anew");
-  settings.integer("samples", scene.samples_per_side, "N",
-                   "Colour of a pixel is the mean of N x N samples");
-  settings.number("right-gain", scene.right_gain, "G", "Brightness of the right camera: G I + O");
-  settings.number("right-offset", scene.right_offset, "O", "In grey levels, see --right-gain");
-  settings.number("noise", scene.noise_sigma, "SIGMA", "Noise in all images, grey levels");
+                   "Number of frames after which all movements repeat");
+  settings.integer("samples", scene.samples_per_side, "N", "Average N x N samples per pixel");
+  settings.number("right-gain", scene.right_gain, "G",
+                  "Gain of the right camera, whose intensity is G * I + O");
+  settings.number("right-offset", scene.right_offset, "O",
+                  "Offset of the right camera in grey levels; see --right-gain");
+  settings.number("noise", scene.noise_sigma, "SIGMA",
+                  "Standard deviation of the noise in all images, in grey levels");
   add_seed_setting(settings, scene.seed);
 }
 
@@ -179,10 +181,16 @@ std::string calibration_text(const LayeredScene& scene) {
 
 int command_generate_scene(const Arguments& arguments) {
   SceneJob job;
-  Settings settings("generate scene",
-                    "Renders a made-up moving scene for both cameras, with its truth.");
+  Settings settings(
+      "generate scene",
+      "Renders an artificial moving scene for both cameras, with its true disparities.");
   add_scene_settings(settings, job);
   add_common_settings(settings, job.common, Work::kWithoutMatching);
+  settings.set_short_help(
+      {"output", "frames", "view", "pose", "width", "height", "far", "near", "frames-per-cycle",
+       "noise", "seed"},
+      {"vantage generate scene -o scene", "vantage generate scene --frames 100 -o sequence",
+       "vantage generate scene --view 0.5 --width 1280 --height 720 -o scene"});
   if (!settings.read(arguments)) {
     return kExitDone;
   }

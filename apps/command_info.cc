@@ -93,10 +93,10 @@ SettingValue machine_json(const BuildInfo& build, const scheduler::Topology& top
 int command_info(const Arguments& arguments) {
   bool json = false;
   bool measure = false;
-  Settings settings("info", "Tells the version and what it can use of this machine.");
+  Settings settings("info", "Prints the version and what the program can use of this machine.");
   settings.flag("json", json, "Write JSON instead of a table");
   settings.flag("measure", measure,
-                "Measure what the machine can do at best: arithmetic, caches, memory; 2 seconds");
+                "Measure the peak performance of arithmetic, caches and memory (2 seconds)");
   if (!settings.read(arguments)) {
     return kExitDone;
   }

@@ -133,13 +133,13 @@ void print_levels(const MatchReport& match) {
   }
   const PairLevels& levels = *match.levels;
   std::string text = levels.has_levels
-                         ? fmt::format("right levels x {:.4g} {:+.4g}", levels.of_right.luma.gain,
-                                       levels.of_right.luma.offset)
-                         : "levels left as they are";
+                         ? fmt::format("right intensity x {:.4g} {:+.4g}",
+                                       levels.of_right.luma.gain, levels.of_right.luma.offset)
+                         : "intensities unchanged";
   if (levels.sigma_measurement) {
     text += fmt::format(", noise {:.3g}", *levels.sigma_measurement);
   }
-  tell("match: of {} matches: {}\n", levels.matches, text);
+  tell("match: from {} matches: {}\n", levels.matches, text);
 }
 
 }  // namespace
@@ -179,7 +179,7 @@ int command_match(const Arguments& arguments) {
   choose_disparities(settings, job.common, left, right, job.match, execution, report);
   require_files_hold_search(job);
   const AppliedTuning tuning = job.has_several()
-                                   ? no_tuning("tuning is for pairs, there are more images")
+                                   ? no_tuning("tuning is for pairs, but there are more images")
                                    : apply_tuning(job.tuning,
                                                   {.match = job.match,
                                                    .execution = job.common.execution,

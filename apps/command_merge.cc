@@ -32,19 +32,22 @@ struct MergeJob {
 void add_merge_settings(Settings& settings, MergeJob& job) {
   settings.positional("dir", job.folder, "Folder of the run").required = true;
   settings.flag("partial", job.partial,
-                "Join the frames there are, if they follow each other without a gap");
-  settings.flag("no-sound", job.no_sound, "Leave the sound of the input out of the videos");
+                "Join the existing frames, if there are no gaps between them");
+  settings.flag("no-sound", job.no_sound, "Do not copy the sound of the input");
   settings.flag("verify", job.verify,
-                "Read all results first and stop if one is not as it was written");
-  settings.path("report", job.report, "FILE", "Write a JSON report to FILE");
+                "Read all results first, and stop if a file has changed since it was written");
+  settings.path("report", job.report, "FILE", "Write a JSON report");
   settings.flag("quiet", job.quiet, "Print errors only");
+  settings.set_short_help({}, {"vantage merge results", "vantage merge results --partial",
+                               "vantage merge results --verify --report merge.json"});
 }
 
 }  // namespace
 
 int command_merge(const Arguments& arguments) {
   MergeJob job;
-  Settings settings("merge", "Checks that all parts of a run are complete and joins their videos.");
+  Settings settings("merge",
+                    "Checks that all parts of a run are complete, and joins their videos.");
   add_merge_settings(settings, job);
   if (!settings.read(arguments)) {
     return kExitDone;

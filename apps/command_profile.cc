@@ -87,7 +87,7 @@ void add_profile_settings(Settings& settings, ProfileJob& job) {
 /// Where the profiled command begins among the arguments: the first that is neither an option nor
 /// its value. All of them with --compare.
 std::size_t command_begin(const Arguments& arguments) {
-  const Arguments flags = {"--compare", "--quiet", "--help", "-h", "--print-config"};
+  const Arguments flags = {"--compare", "--quiet", "--help", "-h", "--help-all", "--print-config"};
   if (std::ranges::find(arguments, "--compare") != arguments.end()) {
     return arguments.size();
   }

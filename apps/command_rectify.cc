@@ -50,31 +50,32 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
   settings.begin_group("Input");
   settings
       .positional("left", job.input.left,
-                  "Left photograph; or those of a rig that does not change: a folder, a pattern "
+                  "Left photograph, or several from a fixed rig: a folder, a pattern "
                   "(left/%06d.png), a glob or a video")
       .required = true;
-  settings
-      .positional("right", job.input.right, "Right photograph, or photographs, of the same size")
+  settings.positional("right", job.input.right, "Right photograph or photographs of the same size")
       .required = true;
   settings.input_path(
       "calibration", job.calibration, "FILE",
-      "OpenCV YAML or XML, Middlebury or KITTI calib.txt; without it the cameras are "
-      "estimated from the images");
-  settings.integer("sample-pairs", job.sample_pairs, "N",
-                   "Of several pairs, so many are looked at to estimate and to measure");
+      "Cameras: OpenCV, Middlebury or KITTI file; default: estimated from the images");
+  settings.integer(
+      "sample-pairs", job.sample_pairs, "N",
+      "Maximum number of pairs to estimate the cameras from and to measure row errors in");
   settings.begin_group("Output: at least one of these");
   settings
       .path("output", job.output, "DIR",
-            "Folder for the rectified images: DIR/left.png and DIR/right.png, of several pairs "
+            "Folder for the rectified images: DIR/left.png and DIR/right.png; for several pairs "
             "DIR/left/000000.png and so on")
       .short_name = 'o';
-  settings.path("matrices", job.matrices, "FILE",
-                "Write cameras, rectifying rotations, homographies and the valid region as OpenCV "
-                "does: .yml .yaml .xml .json; YAML and XML serve as --calibration");
+  settings.path(
+      "matrices", job.matrices, "FILE",
+      "Write cameras, rectifying rotations, homographies and the valid region in OpenCV's format: "
+      ".yml .yaml .xml .json; YAML and XML can be used as --calibration");
   settings.path("valid-mask", job.valid_mask, "MASK.png",
-                "Write a mask of the pixels that both rectified images show something at");
-  settings.number("kept-outline", job.rectification.kept_outline, "S",
-                  "0: nothing black comes in; 1: nothing of the photographs is lost");
+                "Write a mask of the pixels that both rectified images cover");
+  settings.number(
+      "kept-outline", job.rectification.kept_outline, "S",
+      "Area of the rectified images: 0 no black borders, 1 nothing of the photographs is lost");
 }
 
 void check(const RectifyJob& job) {
@@ -208,8 +209,8 @@ void require_success(const Rectification& rectification, std::size_t matches,
   }
   if (rectification.remaining->rms_px > kMostRemaining_px) {
     throw Error(
-        fmt::format("{}: rows would still be off by {:.1f} px RMS, expected at most {}: the images "
-                    "show too little to estimate cameras from, a calibration is needed",
+        fmt::format("{}: the remaining row error is {:.1f} px RMS, expected at most {}: the images "
+                    "show too little to estimate the cameras, use --calibration",
                     inputs, rectification.remaining->rms_px, kMostRemaining_px));
   }
 }
@@ -219,11 +220,17 @@ void require_success(const Rectification& rectification, std::size_t matches,
 int command_rectify(const Arguments& arguments) {
   RectifyJob job;
   Settings settings("rectify",
-                    "Turns photographs of two cameras so that their rows correspond, and tells how "
-                    "well they do.");
+                    "Rectifies photographs of two cameras so that their rows correspond, and "
+                    "reports the remaining error.");
   add_rectify_settings(settings, job);
   add_common_settings(settings, job.common, Work::kWithoutMatching);
   add_input_limit_settings(settings, job.common.execution);
+  settings.set_short_help(
+      {"left", "right", "calibration", "output", "matrices", "valid-mask", "kept-outline",
+       "threads", "quiet"},
+      {"vantage rectify left.jpg right.jpg -o rectified",
+       "vantage rectify left/ right/ -o rectified --matrices rig.yml",
+       "vantage rectify left.jpg right.jpg --calibration rig.yml -o rectified"});
   if (!settings.read(arguments)) {
     return kExitDone;
   }

@@ -41,20 +41,20 @@ void add_response_settings(Settings& settings, ResponseJob& job) {
   settings.begin_group("Files");
   settings.positional("left", job.left, "Left image").required = true;
   settings.positional("right", job.right, "Right image of the same size").required = true;
-  Setting& output = settings.path(
-      "output", job.output, "FILE",
-      "Sums to write: .csv, one row per displacement, or .npy of shape (5, y, x): whole image, "
-      "top left, top right, bottom left and bottom right quadrant");
+  Setting& output =
+      settings.path("output", job.output, "FILE",
+                    "Path to the sums: .csv with one row per displacement, or .npy of shape (5, y, "
+                    "x): whole image, top left, top right, bottom left and bottom right quadrant");
   output.short_name = 'o';
   output.required = true;
-  settings.path(
-      "plot", job.plot, "FILE",
-      "Draw the sums per pixel: curves over one range, heat maps over two: .svg .png .jpg ...");
+  settings.path("plot", job.plot, "FILE",
+                "Plot the sums per pixel, as curves over one range or heat maps over two: .svg "
+                ".png .jpg ...");
 
   settings.begin_group("Displacements");
   Setting& x = settings.add("displacements-x", "MIN:MAX",
-                            "x_left - x_right in pixels, both inclusive; auto: -16 to a quarter of "
-                            "the width");
+                            "Range of x_left - x_right in pixels, both ends included; auto: -16 to "
+                            "a quarter of the width");
   x.set = [&job](const SettingValue& value) {
     job.displacements_x = value == kAutomatic
                               ? std::nullopt
@@ -65,7 +65,8 @@ void add_response_settings(Settings& settings, ResponseJob& job) {
   x.get = [&job]() -> SettingValue {
     return job.displacements_x ? to_text(*job.displacements_x) : kAutomatic;
   };
-  Setting& y = settings.add("displacements-y", "MIN:MAX", "y_left - y_right, likewise");
+  Setting& y = settings.add("displacements-y", "MIN:MAX",
+                            "Range of y_left - y_right in pixels, both ends included");
   y.set = [&job](const SettingValue& value) {
     job.displacements_y = to_disparity_range(value, "MIN:MAX in whole pixels, such as -4:4");
   };
@@ -208,10 +209,15 @@ int command_response(const Arguments& arguments) {
   ResponseJob job;
   Settings settings("response",
                     "Sums the gradient evidence of a pair for a range of displacements, over the "
-                    "image and its quadrants, and prints where it is largest.");
+                    "image and its quadrants, and prints the maxima.");
   add_response_settings(settings, job);
   add_common_settings(settings, job.common, Work::kWithoutMatching);
   add_input_limit_settings(settings, job.common.execution);
+  settings.set_short_help(
+      {"left", "right", "output", "plot", "displacements-x", "displacements-y", "threads", "quiet"},
+      {"vantage response left.png right.png -o response.csv --plot response.svg",
+       "vantage response left.png right.png -o response.csv --displacements-x 0:63",
+       "vantage response left.png right.png -o response.npy --displacements-y -4:4"});
   if (!settings.read(arguments)) {
     return kExitDone;
   }

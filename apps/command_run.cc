@@ -75,8 +75,7 @@ std::string join_if_whole(const RunJob& job, const RunSession& session,
 
 int command_run(const Arguments& arguments) {
   RunJob job;
-  Settings settings("run",
-                    "Computes disparity maps and new views of a sequence of pairs of frames.");
+  Settings settings("run", "Computes disparity maps and new views of a sequence of stereo pairs.");
   add_run_settings(settings, job);
   if (!settings.read(arguments)) {
     return kExitDone;
@@ -110,7 +109,7 @@ int command_run(const Arguments& arguments) {
     shots = find_shots(job, session, layout, execution, report);
     if (!shots) {
       if (!job.common.quiet) {
-        tell("run: interrupted while looking for shots, --resume begins with that\n");
+        tell("run: interrupted while looking for shots, --resume starts with that again\n");
       }
       return kExitInterrupted;
     }

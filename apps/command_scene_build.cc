@@ -36,11 +36,11 @@ void add_file_settings(Settings& settings, SceneBuildJob& job) {
   settings.begin_group("Files");
   add_scene_images_settings(settings, job.images);
   Setting& output = settings.path("output", job.output, "SCENE",
-                                  "Folder of the scene; what it holds already is kept");
+                                  "Folder of the scene; existing results are kept");
   output.short_name = 'o';
   output.required = true;
-  Setting& copy = settings.add("copy-images", "",
-                               "Copy the images into the folder, which can then be moved alone");
+  Setting& copy =
+      settings.add("copy-images", "", "Copy the images into the folder, so that it can be moved");
   copy.flag = true;
   copy.set = [&job](const SettingValue& value) { job.copy_images = to_truth(value); };
   copy.get = [&job] { return job.copy_images; };
@@ -87,14 +87,20 @@ SettingValue describe_edge(const StoredEdge& edge, SettingValue rectification) {
 int command_scene_build(const Arguments& arguments) {
   SceneBuildJob job;
   Settings settings("scene build",
-                    "Matches the neighbours among many images of a row or grid of cameras, whose "
-                    "--disparities are those of the nearest neighbours.");
+                    "Matches neighbouring images of a row or grid of cameras. --disparities is for "
+                    "the nearest neighbours.");
   add_file_settings(settings, job);
   add_match_settings(settings, job.match);
   settings.begin_group("Check");
   add_rectification_check_setting(settings, job.check_rectification);
   add_common_settings(settings, job.common);
   add_input_limit_settings(settings, job.common.execution);
+  settings.set_short_help(
+      {"images", "grid", "spacing", "positions", "output", "disparities", "preset", "threads",
+       "quiet"},
+      {"vantage scene build --images photographs/ --spacing 0.2,1 -o scene",
+       "vantage scene build --images photographs/ --grid 5x3 --spacing 10,12.5 -o scene",
+       "vantage scene build --positions positions.csv --preset quality -o scene"});
   if (!settings.read(arguments)) {
     return kExitDone;
   }
@@ -146,7 +152,7 @@ int command_scene_build(const Arguments& arguments) {
   const int done = static_cast<int>(matched.size());
   if (done < to_match) {
     if (!job.common.quiet) {
-      tell("scene build: interrupted after {} of {} edges; the same command goes on there\n",
+      tell("scene build: interrupted after {} of {} edges; run the same command to continue\n",
            edges - to_match + done, edges);
     }
     return kExitInterrupted;

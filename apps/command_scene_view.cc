@@ -84,10 +84,16 @@ std::vector<ScenePosition> eyes_of(const SceneViewJob& job, ScenePosition view,
 
 int command_scene_view(const Arguments& arguments) {
   SceneViewJob job;
-  Settings settings("scene view", "Renders new views among the images of a scene.");
+  Settings settings("scene view", "Renders new views between the images of a scene.");
   add_settings(settings, job);
   add_common_settings(settings, job.common, Work::kWithoutMatching);
   add_input_limit_settings(settings, job.common.execution);
+  settings.set_short_help(
+      {"scene", "output", "at", "sweep", "path", "stereo-packing", "fps", "holes", "threads",
+       "quiet"},
+      {"vantage scene view scene --at 0.25,0 -o between.png",
+       "vantage scene view scene --sweep 0,0:0.6,0:60 -o along.mp4",
+       "vantage scene view scene --at 0.25,0 --stereo-packing arcd -o anaglyph.png"});
   if (!settings.read(arguments)) {
     return kExitDone;
   }
@@ -169,8 +175,8 @@ int command_scene_view(const Arguments& arguments) {
   if (!job.common.quiet) {
     if (outside > 0) {
       tell(
-          "scene view: {} of {} view{} outside of what the images enclose, made from the "
-          "nearest edge\n",
+          "scene view: {} of {} view{} outside the area of the images, rendered from the nearest "
+          "edge\n",
           outside, views, views == 1 ? " is" : "s are");
     }
     tell("scene view: {}x{} pixels, {} view{} -> {}\n", rendered.width_px, rendered.height_px,

@@ -47,9 +47,14 @@ struct SubmittedJobs {
 void add_submit_settings(Settings& settings, SubmitJob& job) {
   add_run_settings(settings, job.run);
   add_slurm_settings(settings, job.slurm);
-  settings.choice("engine", job.engine, {{"slurm", BatchEngine::kSlurm}},
-                  "What distributes the tasks");
-  settings.flag("no-submit", job.no_submit, "Write the job scripts and stop");
+  settings.choice("engine", job.engine, {{"slurm", BatchEngine::kSlurm}}, "Batch system");
+  settings.flag("no-submit", job.no_submit, "Write the job scripts, but do not submit them");
+  settings.set_short_help(
+      {"left", "right", "stereo", "packing", "pairs", "output", "save", "disparities", "preset",
+       "shards", "partition", "time", "cpus", "slurm-memory", "no-submit"},
+      {"vantage submit --shards 40 --left left/ --right right/ -o results",
+       "vantage submit --shards 40 --time 4:00:00 --cpus 16 --left left/ --right right/ -o results",
+       "vantage submit --shards 4 --no-submit --pairs pairs.csv -o results"});
 }
 
 /// What would do something else in every task is refused, naming what to do instead.
@@ -102,10 +107,9 @@ void require_work_for_all(const SlurmOptions& slurm, const FrameSelection& selec
   const FrameRange frames = selection.all();
   const int chunks = chunk_count(selection);
   if (slurm.shards > chunks) {
-    throw UsageError(
-        fmt::format("--shards is {}, expected at most {}: there are {} frames and {} of them stay "
-                    "together (--chunk-frames)",
-                    slurm.shards, chunks, frames.count(), selection.chunk_frames));
+    throw UsageError(fmt::format(
+        "--shards is {}, expected at most {}: there are {} frames in chunks of {} (--chunk-frames)",
+        slurm.shards, chunks, frames.count(), selection.chunk_frames));
   }
 }
 
@@ -151,7 +155,7 @@ void require_none_in_queue(const fs::path& folder) {
   }
   const SettingValue jobs = read_json_file(record);
   if (!jobs.is_object()) {
-    throw Error(fmt::format("{}: is damaged, expected the numbers of jobs", record.string()));
+    throw Error(fmt::format("{}: damaged, expected job numbers", record.string()));
   }
   for (const char* const name : {"array_job", "merge_job"}) {
     const std::string job = jobs.value(name, "none");
@@ -176,8 +180,8 @@ std::string submit(const std::vector<std::string>& options, const fs::path& scri
   std::string job = result.out.substr(0, result.out.find_first_of(";\n"));
   if (job.empty() ||
       !std::ranges::all_of(job, [](char letter) { return letter >= '0' && letter <= '9'; })) {
-    throw Error(fmt::format("sbatch printed '{}', expected the number of a job",
-                            quotable(message_of(result))));
+    throw Error(
+        fmt::format("sbatch printed '{}', expected a job number", quotable(message_of(result))));
   }
   return job;
 }
@@ -243,7 +247,7 @@ void print_how_to_submit(const fs::path& folder) {
 
 int command_submit(const Arguments& arguments) {
   SubmitJob job;
-  Settings settings("submit", "Has a cluster make a sequence: a task per shard, then the merge.");
+  Settings settings("submit", "Runs a sequence on a cluster: one task per shard, then the merge.");
   add_submit_settings(settings, job);
   if (!settings.read(arguments)) {
     return kExitDone;

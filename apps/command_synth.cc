@@ -95,13 +95,20 @@ MemoryUse memory_use(const PairWithMaps& input, Execution& execution) {
 
 int command_synth(const Arguments& arguments) {
   SynthJob job;
-  Settings settings("synth", "Renders new views of a stereo pair: stills, or movies along a path.");
+  Settings settings("synth",
+                    "Renders new views of a stereo pair: images, or a video along a path.");
   add_file_settings(settings, job);
   add_view_settings(settings, job);
   add_synthesis_settings(settings, job.synthesis);
   add_match_settings(settings, job.pair.match);
   add_common_settings(settings, job.common);
   add_input_limit_settings(settings, job.common.execution);
+  settings.set_short_help(
+      {"left", "right", "calibration", "output", "view", "sweep", "orbit", "path", "fps", "holes",
+       "disparities", "preset", "threads", "quiet"},
+      {"vantage synth left.png right.png --view 0.5 -o between.png",
+       "vantage synth left.png right.png --sweep 0:1:50 -o sweep.mp4",
+       "vantage synth left.png right.png --calibration calib.txt --orbit 0.3:60 -o orbit.mp4"});
   if (!settings.read(arguments)) {
     return kExitDone;
   }

@@ -67,21 +67,21 @@ void add_tune_settings(Settings& settings, TuneJob& job) {
                ? SettingValue(fmt::format("{}x{}", job.images->width_px, job.images->height_px))
                : SettingValue();
   };
-  settings.choice<bool>("images", job.grey, {{"colour", false}, {"grey", true}},
-                        "What the images are: grey of 8 bits, which ssd matches in whole numbers, "
-                        "or anything else");
+  settings.choice<bool>(
+      "images", job.grey, {{"colour", false}, {"grey", true}},
+      "Pixel format of the images: grey is 8 bits with one channel, colour is anything else");
   settings.choice<Uses>("for", job.uses,
                         {{"both", Uses::kBoth}, {"match", Uses::kMatch}, {"run", Uses::kRun}},
-                        "What is to become fast: single pairs, or sequences");
-  settings.number("budget", job.budget_seconds, "SECONDS", "How long the search may take");
+                        "Commands to tune");
+  settings.number("budget", job.budget_seconds, "SECONDS", "Time limit of the search");
   settings
       .path("output", job.output, "FILE",
-            "Tuning file to keep what is found in; without it tuning.json in the folder "
-            "vantage of $XDG_CONFIG_HOME or ~/.config, where match and run look for it")
+            "Tuning file to write; default: vantage/tuning.json in $XDG_CONFIG_HOME or ~/.config, "
+            "where match and run look for it")
       .short_name = 'o';
-  settings.flag("dry-run", job.dry_run, "Tell what would be tuned and where it would be kept");
-  settings.flag("list", job.list, "Show what the tuning file holds");
-  settings.flag("forget", job.forget, "Remove from it what has been found on this machine");
+  settings.flag("dry-run", job.dry_run, "Print what would be tuned, and stop");
+  settings.flag("list", job.list, "List the entries of the tuning file");
+  settings.flag("forget", job.forget, "Remove the entries of this machine from the tuning file");
 }
 
 fs::path tuning_path(const TuneJob& job) {
@@ -108,9 +108,9 @@ void check(const TuneJob& job, const Settings& settings) {
     throw UsageError("--size is missing, expected --size WxH");
   }
   if (job.match.disparities_auto || job.match.disparities_y_auto) {
-    throw UsageError(
-        fmt::format("--disparities{} is auto, but there is no pair to look at, expected MIN:MAX",
-                    job.match.disparities_auto ? "" : "-y"));
+    throw UsageError(fmt::format(
+        "--disparities{} is auto, but tuning has no pair to estimate it from, expected MIN:MAX",
+        job.match.disparities_auto ? "" : "-y"));
   }
 }
 
@@ -143,8 +143,8 @@ void warn_of_other_programs(std::optional<double> of_others, const scheduler::Ma
   constexpr double kBusyShare = 0.05;
   if (of_others.value_or(0) > kBusyShare * machine.hardware_threads) {
     tell(
-        "tune: warning: the machine is busy: other programs {} ({:.1f} of {} processors in "
-        "the mean), expected an idle one; tune again then\n",
+        "tune: warning: the machine is busy: other programs {} ({:.1f} of {} processors on "
+        "average), expected an idle machine; tune again later\n",
         when, *of_others, machine.hardware_threads);
   }
 }
@@ -195,12 +195,18 @@ TuningReport tune(const TuneJob& job, const TuningRequest& request) {
 int command_tune(const Arguments& arguments) {
   TuneJob job;
   Settings settings("tune",
-                    "Finds the threads, strips, bands, passes and frames in flight with which this "
-                    "machine is fastest, for match and run to use.");
+                    "Finds the fastest number of threads, strips, bands, passes and frames in "
+                    "flight on this machine, for match and run.");
   add_tune_settings(settings, job);
   add_match_settings(settings, job.match);
   add_common_settings(settings, job.common);
   add_input_limit_settings(settings, job.common.execution);
+  settings.set_short_help(
+      {"size", "images", "for", "budget", "output", "dry-run", "list", "forget", "disparities",
+       "preset", "threads", "quiet"},
+      {"vantage tune --size 1280x720 --disparities 0:127",
+       "vantage tune --size 1280x720 --disparities 0:127 --preset fast --for run --budget 300",
+       "vantage tune --list"});
   if (!settings.read(arguments)) {
     return kExitDone;
   }
@@ -232,7 +238,7 @@ int command_tune(const Arguments& arguments) {
     return kExitDone;
   }
   if (!job.common.quiet) {
-    warn_of_other_programs(others_at_present(), machine, "are at work");
+    warn_of_other_programs(others_at_present(), machine, "are running");
   }
   const scheduler::ProcessorUse use;
   const TuningReport tuned = report.timed_compute("tune", [&] { return tune(job, request); });
@@ -240,7 +246,7 @@ int command_tune(const Arguments& arguments) {
   fmt::print("{}", describe(tuned, request));
   if (!job.common.quiet) {
     std::fflush(stdout);
-    warn_of_other_programs(of_others, machine, "were at work while plans were measured");
+    warn_of_other_programs(of_others, machine, "ran while plans were measured");
   }
   SettingValue results = as_json(tuned, path);
   results["processors_used_by_others"] = of_others ? SettingValue(*of_others) : SettingValue();
@@ -248,7 +254,7 @@ int command_tune(const Arguments& arguments) {
   report.write(job.common.report);
   if (tuned.interrupted) {
     if (!job.common.quiet) {
-      tell("tune: interrupted, nothing is kept\n");
+      tell("tune: interrupted, nothing was saved\n");
     }
     return kExitInterrupted;
   }
@@ -259,7 +265,7 @@ int command_tune(const Arguments& arguments) {
   }
   std::fflush(stdout);
   store_entry(path, entry);
-  fmt::print("kept in {}\n", path.string());
+  fmt::print("saved in {}\n", path.string());
   return kExitDone;
 }
 

@@ -27,9 +27,11 @@ struct VerifyJob {
 void add_verify_settings(Settings& settings, VerifyJob& job) {
   settings.positional("dir", job.folder, "Folder of the run").required = true;
   settings.flag("remove", job.remove,
-                "Remove damaged files; 'vantage run --resume' then makes them again");
-  settings.path("report", job.report, "FILE", "Write a JSON report to FILE");
+                "Remove damaged files; 'vantage run --resume' then writes them again");
+  settings.path("report", job.report, "FILE", "Write a JSON report");
   settings.flag("quiet", job.quiet, "Print errors only");
+  settings.set_short_help({}, {"vantage verify results", "vantage verify results --remove",
+                               "vantage verify results --report verify.json"});
 }
 
 void remove_damaged(const RunVerification& verification, const std::filesystem::path& folder) {
@@ -47,7 +49,7 @@ void remove_damaged(const RunVerification& verification, const std::filesystem::
 
 int command_verify(const Arguments& arguments) {
   VerifyJob job;
-  Settings settings("verify", "Reads the results of a run and tells which have been damaged.");
+  Settings settings("verify", "Reads the results of a run and lists damaged files.");
   add_verify_settings(settings, job);
   if (!settings.read(arguments)) {
     return kExitDone;

@@ -48,19 +48,20 @@ void add_range_setting(Settings& settings, const std::string& name, ViewRange& r
 void add_page_settings(Settings& settings, ViewPageOptions& page) {
   settings.begin_group("Page");
   add_range_setting(settings, "range", page.range_x,
-                    "Positions along the baseline: 0 left camera, 1 right camera");
+                    "Range of positions along the baseline: 0 left camera, 1 right camera");
   add_range_setting(settings, "vertical-range", page.range_y,
-                    "Positions across it, in baselines, below where positive; 0:0: none");
-  settings.choice<PageImages>(
-      "images", page.images, {{"png", PageImages::kPng}, {"jpeg", PageImages::kJpeg}},
-      "How the page holds the photographs: without loss, or in a fraction of the size");
+                    "Range of vertical positions in baselines, positive downwards; 0:0: none");
+  settings.choice<PageImages>("images", page.images,
+                              {{"png", PageImages::kPng}, {"jpeg", PageImages::kJpeg}},
+                              "Image format in the page: lossless, or smaller");
   settings.begin_group("View synthesis");
   settings.choice<HoleFilling>(
       "holes", page.synthesis.holes,
       {{"mirror", HoleFilling::kMirror},
        {"spread", HoleFilling::kSpread},
        {"none", HoleFilling::kNone}},
-      "What fills places that no image shows: the background mirrored, spread, or nothing");
+      "Filling of areas that no image shows: background mirrored along the row (mirror), its "
+      "border pixel repeated (spread), or black (none)");
   add_combining_settings(settings, page.synthesis);
 }
 
@@ -72,17 +73,23 @@ std::string file_name(const std::string& path) {
 
 int command_view(const Arguments& arguments) {
   ViewJob job;
-  Settings settings("view", "Writes a page that renders new views of a rectified pair by itself.");
+  Settings settings("view",
+                    "Writes a self-contained web page that renders new views of a rectified pair.");
   settings.begin_group("Files");
   add_pair_settings(settings, job.pair);
-  Setting& output = settings.path("output", job.output, "FILE.html",
-                                  "Page to write; it holds everything it needs");
+  Setting& output = settings.path("output", job.output, "FILE.html", "Path to the page");
   output.short_name = 'o';
   output.required = true;
   add_page_settings(settings, job.page);
   add_match_settings(settings, job.pair.match);
   add_common_settings(settings, job.common);
   add_input_limit_settings(settings, job.common.execution);
+  settings.set_short_help(
+      {"left", "right", "left-disparity", "right-disparity", "calibration", "output", "range",
+       "vertical-range", "images", "holes", "disparities", "preset", "threads", "quiet"},
+      {"vantage view left.png right.png -o pair.html",
+       "vantage view left.png right.png -o pair.html --images jpeg --range 0:1",
+       "vantage view left.jpg right.jpg --calibration rig.yml -o pair.html"});
   if (!settings.read(arguments)) {
     return kExitDone;
   }

@@ -97,8 +97,8 @@ Setting& add_size_setting(Settings& settings, std::string name, std::optional<st
 }
 
 void add_pixel_limit_setting(Settings& settings) {
-  Setting& setting = settings.add("max-pixels", "N",
-                                  "Refuse images and videos of more pixels, 1 to 268435456 (2^28)");
+  Setting& setting = settings.add(
+      "max-pixels", "N", "Maximum number of pixels of input images, 1 to 268435456 (2^28)");
   setting.set = [](const SettingValue& value) {
     const int pixels = to_integer(value);
     if (pixels < 1 || pixels > kMaxImagePixels) {
@@ -112,10 +112,9 @@ void add_pixel_limit_setting(Settings& settings) {
 void add_input_limit_settings(Settings& settings, ExecutionOptions& execution) {
   settings.begin_group("Limits", false);
   add_pixel_limit_setting(settings);
-  Setting& memory = add_size_setting(
-      settings, "memory", memory_limit,
-      "Most memory for images and what is made of them, such as 800M or 4G: fail beyond; auto: no "
-      "limit");
+  Setting& memory = add_size_setting(settings, "memory", memory_limit,
+                                     "Memory limit for images and results, such as 800M or 4G; the "
+                                     "command fails beyond it; auto: no limit");
   const auto set_field = std::move(memory.set);
   memory.set = [&execution, set_field](const SettingValue& value) {
     set_field(value);

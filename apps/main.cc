@@ -33,8 +33,9 @@ std::string help() {
     text += fmt::format("  {:<15} {}\n", command.name, command.summary);
   }
   return text +
-         "\n'vantage help COMMAND' lists its options; --version tells the version.\n"
-         "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 frames skipped, 130 interrupted.\n";
+         "\n'vantage help COMMAND' shows the most used options of a command, 'vantage COMMAND "
+         "--help-all' all.\n'vantage --version' prints the version.\nExit codes: 0 done, 1 failed, "
+         "2 wrong usage, 3 frames skipped, 130 interrupted.\n";
 }
 
 /// The command that the arguments begin with; its words are taken off. Null if there is none.

@@ -14,8 +14,9 @@ namespace vantage::apps {
 namespace {
 
 void add_several_settings(Settings& settings, MatchJob& job) {
-  Setting& more = settings.add("more", "OTHER",
-                               "More images of cameras on the same line, compared with the first");
+  Setting& more =
+      settings.add("more", "OTHER",
+                   "More images from cameras on the same line; each is compared with the first");
   more.positional = true;
   more.path = PathRole::kInput;
   more.list = true;
@@ -27,10 +28,10 @@ void add_several_settings(Settings& settings, MatchJob& job) {
     job.more = std::move(files);
   };
   more.get = [&job] { return job.more; };
-  Setting& baselines = settings.add(
-      "baselines", "B1,B2,...",
-      "Where the cameras of all images but the first stand, from the first, to the right positive; "
-      "disparities are those between the first two");
+  Setting& baselines =
+      settings.add("baselines", "B1,B2,...",
+                   "Positions of the cameras of all images but the first, relative to the first, "
+                   "positive to the right; disparities are those between the first two images");
   baselines.set = [&job](const SettingValue& value) {
     std::vector<double> numbers;
     for (const SettingValue& member : to_list(value)) {
@@ -49,31 +50,30 @@ void add_several_settings(Settings& settings, MatchJob& job) {
 
 void add_file_settings(Settings& settings, MatchJob& job) {
   settings.begin_group("Files");
-  settings.positional("left", job.left, "Left image; with --baselines the reference").required =
-      true;
+  settings.positional("left", job.left, "Left image; with --baselines the reference image")
+      .required = true;
   settings.positional("right", job.right, "Right image of the same size").required = true;
   add_several_settings(settings, job);
-  settings.flag(
-      "vertical", job.vertical,
-      "The cameras stand one above the other, 'left' being the upper one's image: "
-      "disparities are y_upper - y_lower, those of --disparities-y x_upper - x_lower, and "
-      "--baselines count downwards");
+  settings.flag("vertical", job.vertical,
+                "Cameras one above the other: LEFT is the image of the upper one, --disparities "
+                "are y_upper - y_lower, --disparities-y are x_upper - x_lower, and --baselines are "
+                "positive downwards");
   Setting& output = settings.path("output", job.output, "FILE",
-                                  "Disparity map to write: .pfm .png .tiff .exr .npy; with "
-                                  "--disparities-y the displacements: .flo .npy .tiff .exr");
+                                  "Path to the disparity map: .pfm .png .tiff .exr .npy; with "
+                                  "--disparities-y displacements: .flo .npy .tiff .exr");
   output.short_name = 'o';
   output.required = true;
-  settings.path("output-right", job.output_right, "FILE", "Write the map of the right image too");
+  settings.path("output-right", job.output_right, "FILE",
+                "Also write the disparity map of the right image");
   settings.path("confidence", job.confidence, "FILE",
-                "Write how sure the map is, before refinement: the evidence for cost gradient, the "
-                "largest probability for bayes, the certainty for local-stopping, the winner's "
-                "margin for others: .pfm .tiff .exr .npy");
-  settings.path("unmatched", job.unmatched, "MASK.png",
-                "Write a mask of the pixels of the map that had no match");
+                "Write the confidence before refinement: .pfm .tiff .exr .npy; evidence with cost "
+                "gradient, maximum probability with bayes and the presets, certainty with "
+                "local-stopping, else the winner's margin");
+  settings.path("unmatched", job.unmatched, "MASK.png", "Write a mask of the unmatched pixels");
   settings.path("unmatched-right", job.unmatched_right, "MASK.png",
-                "The same of the map of the right image");
+                "Write a mask of the unmatched pixels of the right map");
   settings.path("preview", job.preview, "FILE",
-                "Write the map as a picture whose colours span the search range");
+                "Write the map in false colours, scaled to the search range");
   add_rectification_check_setting(settings, job.check_rectification);
 }
 
@@ -112,6 +112,12 @@ void add_match_job_settings(Settings& settings, MatchJob& job) {
   add_tuning_settings(settings, job.tuning);
   add_common_settings(settings, job.common);
   add_input_limit_settings(settings, job.common.execution);
+  settings.set_short_help(
+      {"left", "right", "more", "output", "output-right", "unmatched", "preview", "disparities",
+       "preset", "fill", "threads", "quiet"},
+      {"vantage match left.png right.png -o disparity.pfm --preview preview.png",
+       "vantage match left.png right.png -o disparity.npy --disparities 0:127 --preset fast",
+       "vantage match left.png right.png -o disparity.png --fill none --unmatched mask.png"});
 }
 
 void require_files_hold_search(const MatchJob& job) {

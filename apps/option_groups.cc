@@ -10,32 +10,32 @@ void add_common_settings(Settings& settings, CommonOptions& options, Work work) 
   using scheduler::ThreadBinding;
   settings.begin_group("Execution (never changes a result)", false);
   settings.integer("threads", options.execution.threads, "N",
-                   "Threads, 1 to 1024; auto: all this process may use");
+                   "Number of threads, 1 to 1024; auto: all that this process may use");
   settings.choice<ExecutorKind>("executor", options.execution.executor,
                                 {{"tbb", ExecutorKind::kTbb},
                                  {"openmp", ExecutorKind::kOpenMp},
                                  {"serial", ExecutorKind::kSerial}},
-                                "What runs the threads");
+                                "Threading library");
   settings.choice<ThreadBinding>("bind", options.execution.binding,
                                  {{"none", ThreadBinding::kNone},
                                   {"node", ThreadBinding::kNodes},
                                   {"core", ThreadBinding::kCores}},
-                                 "Keep each thread on the cores of one NUMA node, or on one core; "
-                                 "auto: on nodes where one has too few cores for all threads");
+                                 "Bind each thread to one NUMA node or to one core; auto: to nodes "
+                                 "if one node has too few cores for all threads");
   if (work == Work::kWithMatching) {
     settings.integer("strip-width", options.execution.strip_width_px, "PX",
-                     "Columns of a strip; auto: from the cache sizes");
+                     "Columns per strip; auto: from the cache sizes");
     settings.integer("band-height", options.execution.band_height_px, "PX",
-                     "Rows of a band; auto: from the cache sizes");
+                     "Rows per band; auto: from the cache sizes");
     settings.integer("iterations-per-pass", options.execution.iterations_per_pass, "K",
-                     "Iterations between two stores of their state; auto: from the cache sizes");
+                     "Iterations per pass over memory; auto: from the cache sizes");
   }
   settings.text("isa", options.isa, "NAME",
-                "Instruction set of the kernels; best, or a name of 'vantage info'");
+                "Instruction set of the kernels: best, or a name from 'vantage info'");
   settings.begin_group("Messages", false);
-  settings.path("report", options.report, "FILE", "Write a JSON report of the run to FILE");
+  settings.path("report", options.report, "FILE", "Write a JSON report");
   settings.path("trace", options.trace, "FILE",
-                "Record what every thread does, as Chrome trace events: FILE opens in Perfetto");
+                "Write a trace of all threads as Chrome trace events, for Perfetto");
   settings.flag("quiet", options.quiet, "Print errors only");
 }
 
@@ -48,33 +48,34 @@ void add_synthesis_settings(Settings& settings, SynthesisOptions& options) {
   settings.begin_group("View synthesis");
   settings.choice<WarpColour>(
       "warp", options.warp, {{"one-pass", WarpColour::kOnePass}, {"forward", WarpColour::kForward}},
-      "one-pass: one bicubic interpolation of the photograph; forward: moves whole pixels, "
-      "for cameras between rectifying and derectifying as in the book");
+      "Colours of views. one-pass: one bicubic interpolation of the photograph; forward: whole "
+      "pixels are moved, as in the book (with cameras: between rectification and its inverse)");
   add_holes_setting(settings, options.holes);
   add_soft_edges_setting(settings, options.soft_edges);
   add_combining_settings(settings, options);
 }
 
 void add_soft_edges_setting(Settings& settings, bool& soft_edges) {
-  settings.choice<bool>("soft-edges", soft_edges, {{"on", true}, {"off", false}},
-                        "Outlines as soft as a photograph's, without traces of old ones");
+  settings.choice<bool>(
+      "soft-edges", soft_edges, {{"on", true}, {"off", false}},
+      "Blend the edges of objects as in a photograph, without remains of their old background");
 }
 
 void add_holes_setting(Settings& settings, HoleFilling& holes) {
-  settings.choice<HoleFilling>(
-      "holes", holes,
-      {{"mirror", HoleFilling::kMirror},
-       {"spread", HoleFilling::kSpread},
-       {"inpaint", HoleFilling::kInpaint},
-       {"none", HoleFilling::kNone}},
-      "What fills places that no image shows: the background mirrored or spread along the row or "
-      "painted on from all sides, or nothing");
+  settings.choice<HoleFilling>("holes", holes,
+                               {{"mirror", HoleFilling::kMirror},
+                                {"spread", HoleFilling::kSpread},
+                                {"inpaint", HoleFilling::kInpaint},
+                                {"none", HoleFilling::kNone}},
+                               "Filling of areas that no image shows: background mirrored along "
+                               "the row (mirror), its border pixel repeated (spread), background "
+                               "continued from all sides (inpaint), or black (none)");
 }
 
 void add_combining_settings(Settings& settings, SynthesisOptions& options) {
   settings.number("gamma", options.gamma, "G",
-                  "Brightness of views: 1 as the left image, 0 as the right one; alpha: by the "
-                  "view's position, at a camera's place as its photograph",
+                  "Brightness of views, 0 to 1: 1 as the left image, 0 as the right image; alpha: "
+                  "by the position of the view",
                   "alpha");
   add_surface_settings(settings, options);
 }
@@ -86,10 +87,11 @@ void check_combining(const Settings& settings, const SynthesisOptions& options) 
 }
 
 void add_surface_settings(Settings& settings, SynthesisOptions& options) {
-  settings.number("gradient-limit", options.disparity_gradient_limit_px, "PX",
-                  "Neighbours whose disparities differ by no more are one surface");
-  Setting& no_matching = settings.add("no-intensity-matching", "",
-                                      "Do not adapt the brightness of the images to each other");
+  settings.number(
+      "gradient-limit", options.disparity_gradient_limit_px, "PX",
+      "Neighbouring pixels belong to one surface if their disparities differ by at most PX");
+  Setting& no_matching =
+      settings.add("no-intensity-matching", "", "Do not match the brightness of the images");
   no_matching.flag = true;
   no_matching.set = [&options](const SettingValue& value) {
     options.match_intensities = !to_truth(value);
@@ -98,8 +100,7 @@ void add_surface_settings(Settings& settings, SynthesisOptions& options) {
 }
 
 void add_seed_setting(Settings& settings, std::uint64_t& seed) {
-  Setting& setting =
-      settings.add("seed", "N", "Of the random numbers; equal seeds, equal pictures");
+  Setting& setting = settings.add("seed", "N", "Random seed; the same seed gives the same images");
   setting.set = [&seed](const SettingValue& value) {
     const int number = to_integer(value);
     if (number < 0) {

@@ -50,18 +50,17 @@ void add_pair_settings(Settings& settings, PairInput& pair) {
   settings.positional("left", pair.left, "Left image").required = true;
   settings.positional("right", pair.right, "Right image of the same size").required = true;
   settings.input_path("left-disparity", pair.left_disparity, "FILE",
-                      "Disparity map of the left image; without maps the pair is matched");
+                      "Disparity map of the left image; without maps, the pair is matched");
   settings.input_path("right-disparity", pair.right_disparity, "FILE",
                       "Disparity map of the right image");
   settings.number("disparity-scale", pair.disparity_scale, "S",
-                  "Divides the values of integer disparity files; auto: 256 for 16-bit PNG");
-  settings.input_path(
-      "calibration", pair.calibration, "FILE",
-      "Cameras of the pair: OpenCV YAML or XML, Middlebury or KITTI text. Images that are "
-      "not rectified are rectified first; maps in files are of rectified images");
-  settings.number("kept-outline", pair.rectification.kept_outline, "SHARE",
-                  "What is kept where images are rectified: 0 what both cameras see, 1 all, with "
-                  "black around it");
+                  "Divide values of integer disparity files by S; auto: 256 for 16-bit PNG");
+  settings.input_path("calibration", pair.calibration, "FILE",
+                      "Cameras, to rectify the pair first if needed: OpenCV, Middlebury or KITTI "
+                      "file; given maps belong to rectified images");
+  settings.number(
+      "kept-outline", pair.rectification.kept_outline, "SHARE",
+      "Area of rectified images: 0 only what both cameras see, 1 everything, with black borders");
   add_rectification_check_setting(settings, pair.check_rectification);
 }
 
@@ -80,7 +79,7 @@ void check_pair(const PairInput& pair, const Settings& settings) {
   } else {
     pair.match.validate();
     if (pair.match.disparities_y) {
-      throw UsageError("--disparities-y has no use here: views come from rectified pairs");
+      throw UsageError("--disparities-y cannot be used here: views need rectified pairs");
     }
     if (pair.disparity_scale) {
       throw UsageError("--disparity-scale has no effect without --left-disparity");

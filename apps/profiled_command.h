@@ -20,9 +20,9 @@ namespace vantage::apps {
 /// its results led to hidden folders beside the places that they are meant for.
 class ProfiledCommand {
  public:
-  /// `words`: "match" or "run" and its arguments. Null when --help or --print-config has been
-  /// answered on stdout. Throws UsageError for another command and for options that make no sense
-  /// here, and what the command itself would throw before it begins to work.
+  /// `words`: "match" or "run" and its arguments. Null when --help, --help-all or --print-config
+  /// has been answered on stdout. Throws UsageError for another command and for options that make
+  /// no sense here, and what the command itself would throw before it begins to work.
   static std::unique_ptr<ProfiledCommand> read(const Arguments& words);
 
   [[nodiscard]] const std::string& name() const { return settings_.command(); }

@@ -60,10 +60,9 @@ bool expects_negative_disparities(const MatchOptions& options) {
 }
 
 void add_rectification_check_setting(Settings& settings, bool& wanted) {
-  Setting& setting =
-      settings.add("no-rectification-check", "",
-                   "Do not look whether rows correspond, nor warn when matching suffers from "
-                   "rows that do not or when left and right look exchanged");
+  Setting& setting = settings.add(
+      "no-rectification-check", "",
+      "Do not check, and warn, whether rows correspond and whether left and right are exchanged");
   setting.flag = true;
   setting.changes_results = false;
   setting.set = [&wanted](const SettingValue& value) { wanted = !to_truth(value); };

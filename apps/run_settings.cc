@@ -95,28 +95,30 @@ void add_input_settings(Settings& settings, RunJob& job) {
     return setting;
   };
   path("left", job.input.left, "SOURCE",
-       "Frames of the left camera: a folder, a pattern (left/%06d.png), a glob or a video");
-  path("right", job.input.right, "SOURCE", "Frames of the right camera");
+       "Left frames: a folder, pattern (left/%06d.png), glob or video");
+  path("right", job.input.right, "SOURCE", "Right frames");
   settings.integer("offset", job.input.offset_frames, "N",
-                   "Right frame i + N belongs to left frame i");
-  path("stereo", job.input.stereo, "SOURCE", "Frames that hold both images, see --packing");
-  add_packing(settings, "packing", job.input.packing, "How they do, by the names of ffmpeg");
-  path("pairs", job.input.pairs, "FILE.csv", "Pairs of image files, a line left,right each");
-  path("sequence", job.input.sequence, "SOURCE", "Frames of one moving camera, see --step");
+                   "Pair left frame i with right frame i + N");
+  path("stereo", job.input.stereo, "SOURCE", "Frames that hold both images; needs --packing");
+  add_packing(settings, "packing", job.input.packing,
+              "Stereo layout (ffmpeg's stereo3d names): sbsl side by side, left first; abl "
+              "above/below, left on top; sbs2l, ab2l half size");
+  path("pairs", job.input.pairs, "FILE.csv", "List of image files, one line left,right per pair");
+  path("sequence", job.input.sequence, "SOURCE", "Frames of one moving camera; see --step");
   settings.integer("step", job.input.step, "K",
-                   "Frame t is the left image and frame t + K the right one");
+                   "Frame t is the left image, frame t + K the right image");
   path("calibration", job.calibration, "FILE",
-       "Rectifies the pairs first: OpenCV YAML or XML, Middlebury or KITTI calib.txt");
+       "Cameras, to rectify the pairs first: OpenCV, Middlebury or KITTI file");
   add_rectification_check_setting(settings, job.check_rectification);
   settings.number("kept-outline", job.rectification.kept_outline, "SHARE",
-                  "What rectified images show: 0 only what both cameras see, 1 all they see, with "
-                  "black around it, which is matched like a picture");
+                  "Area of rectified images: 0 only what both cameras see, 1 everything, with "
+                  "black borders, which are matched like image content");
 }
 
 void add_stereo_views_setting(Settings& settings, std::array<double, 2>& views_x) {
   Setting& setting = settings.add("stereo-views", "XL,XR",
-                                  "Where the eyes of the packed stereo output stand; 0,1: the "
-                                  "photographs themselves");
+                                  "Positions of the two views of the stereo output, in baselines; "
+                                  "0,1: the photographs themselves");
   setting.set = [&views_x](const SettingValue& value) {
     const auto parts = split(to_text(value), ',');
     try {
@@ -134,14 +136,14 @@ void add_stereo_views_setting(Settings& settings, std::array<double, 2>& views_x
 
 void add_output_settings(Settings& settings, RunJob& job) {
   settings.begin_group("Output");
-  Setting& output = settings.path("output", job.output, "DIR",
-                                  "Folder to write to: DIR/disparity/000000.pfm, DIR/views.mp4 and "
-                                  "so on");
+  Setting& output =
+      settings.path("output", job.output, "DIR",
+                    "Output folder: DIR/disparity/000000.pfm, DIR/views.mp4 and so on");
   output.short_name = 'o';
   output.required = true;
   output.changes_results = false;
   Setting& save = settings.add("save", "LIST",
-                               "What to write of each frame, from " + known_outputs() +
+                               "Outputs to write per frame, from " + known_outputs() +
                                    "; auto: disparity, and views if there are any");
   save.list = true;
   save.set = [&job](const SettingValue& value) {
@@ -153,10 +155,9 @@ void add_output_settings(Settings& settings, RunJob& job) {
     }
   };
   save.get = [&job] { return job.save ? output_names(*job.save) : SettingValue(kAutomatic); };
-  Setting& video =
-      settings.add("video", "LIST",
-                   "Of these, what is written as one video instead of images: "
-                   "unmatched, right-unmatched, preview, views, holes, sources, stereo");
+  Setting& video = settings.add("video", "LIST",
+                                "Outputs of --save to write as one video each, from unmatched, "
+                                "right-unmatched, preview, views, holes, sources, stereo");
   video.list = true;
   video.set = [&job](const SettingValue& value) { job.sequence.video = to_outputs(value); };
   video.get = [&job] { return output_names(job.sequence.video); };
@@ -164,40 +165,39 @@ void add_output_settings(Settings& settings, RunJob& job) {
   add_stereo_views_setting(settings, job.sequence.stereo_views_x);
   settings.choice<StereoDisplay>("stereo-packing", job.sequence.stereo_packing,
                                  stereo_display_names(),
-                                 "How the stereo output holds them: side by side, one above the "
-                                 "other, interleaved or as an anaglyph");
+                                 "Layout of the stereo output: side by side, above/below, "
+                                 "interleaved or anaglyph, using ffmpeg's stereo3d names");
   settings.text("format", job.sequence.map_format, "EXT",
                 "File format of the maps: pfm, png, tiff, exr or npy");
   add_frame_rate_setting(settings, "fps", job.frame_rate,
-                         "Frames per second of the videos; auto: the input's, of images 25");
-  settings.integer("crf", job.sequence.crf, "N", "Quality of the videos, 0 (best) to 51");
-  Setting& no_sound = settings.add("no-sound", "", "Do not take over the sound of the input");
+                         "Frames per second of videos; auto: as the input, 25 for images");
+  settings.integer("crf", job.sequence.crf, "N", "Constant rate factor of videos, 0 (best) to 51");
+  Setting& no_sound = settings.add("no-sound", "", "Do not copy the sound of the input");
   no_sound.flag = true;
   no_sound.set = [&job](const SettingValue& value) { job.sequence.sound = !to_truth(value); };
   no_sound.get = [&job] { return !job.sequence.sound; };
 }
 
 void add_steadiness_settings(Settings& settings, SequenceOptions& options) {
-  settings.begin_group("Steadiness from frame to frame");
-  settings.choice<FitScope>(
-      "intensity-fit", options.intensity_fit,
-      {{"frame", FitScope::kFrame}, {"shot", FitScope::kShot}},
-      "Brightness of the images is adapted to each other per frame or once per shot");
+  settings.begin_group("Temporal stability");
+  settings.choice<FitScope>("intensity-fit", options.intensity_fit,
+                            {{"frame", FitScope::kFrame}, {"shot", FitScope::kShot}},
+                            "Match the brightness of both images once per frame or once per shot");
   settings.choice<bool>("preview-range", options.preview_range_per_shot,
                         {{"search", false}, {"shot", true}},
-                        "Colours of previews span the search range or the disparities of a shot");
+                        "Colour scale of previews: the search range or the disparities of a shot");
   settings.number("temporal-prior", options.temporal.weight, "W",
-                  "How much pixels whose image does not change keep their disparity; 0: not, "
-                  "1: as much as their own costs count");
+                  "Weight that keeps the disparity of unchanged pixels from frame to frame, 0 to "
+                  "100; 0: off, 1: as strong as their own costs");
   settings.number("temporal-threshold", options.temporal.threshold, "G",
-                  "Up to so many grey levels of difference an image does not change");
+                  "A pixel counts as unchanged if it differs by at most this many grey levels");
   settings.flag("measure-flicker", options.measure_flicker,
                 "Measure how much results change where the images do not");
 }
 
 void add_part_settings(Settings& settings, RunJob& job) {
-  settings.begin_group("Part of the work, and resuming it", false);
-  Setting& frames = settings.add("frames", "A-B", "Only frames A to B, counted from 0; all");
+  settings.begin_group("Parts of a run, and resuming", false);
+  Setting& frames = settings.add("frames", "A-B", "Process frames A to B only, counted from 0");
   frames.set = [&job](const SettingValue& value) {
     if (value == "all") {
       job.frames.reset();
@@ -213,7 +213,7 @@ void add_part_settings(Settings& settings, RunJob& job) {
     return job.frames ? fmt::format("{}-{}", job.frames->first, job.frames->end - 1) : "all";
   };
   Setting& shard =
-      settings.add("shard", "I/N", "Only part I of N, in a folder that all share; all");
+      settings.add("shard", "I/N", "Process part I of N only; all parts share one output folder");
   shard.set = [&job](const SettingValue& value) {
     if (value == "all") {
       job.shard.reset();
@@ -231,30 +231,31 @@ void add_part_settings(Settings& settings, RunJob& job) {
   };
   settings
       .integer("chunk-frames", job.sequence.chunk_frames, "N",
-               "Frames that are never divided between parts; videos are made and a temporal "
-               "prior starts anew in such chunks")
+               "Frames per chunk, 1 to 100000. Parts of a run consist of whole chunks. Videos are "
+               "written chunk by chunk, so an interruption loses one chunk at most. A temporal "
+               "prior starts again with each chunk")
       .changes_results = true;
-  settings.flag("resume", job.resume,
-                "Continue the run that the folder holds; -o DIR alone is enough");
-  settings.flag("overwrite", job.overwrite, "Begin anew where the folder holds a run");
-  settings.flag("force", job.force, "Continue although settings or inputs differ");
-  settings.flag("keep-going", job.keep_going, "Skip and record bad frames; exit code 3");
+  settings.flag("resume", job.resume, "Continue the run in the output folder; needs only -o DIR");
+  settings.flag("overwrite", job.overwrite, "Replace the run in the output folder");
+  settings.flag("force", job.force, "Continue even if settings or inputs have changed");
+  settings.flag("keep-going", job.keep_going, "Skip and record frames that fail; exit code 3");
 }
 
 void add_pipeline_settings(Settings& settings, RunJob& job) {
   settings.begin_group("Pipeline", false);
-  settings.integer("in-flight", job.in_flight, "N",
-                   "Frames under way at once, 1 to 64; auto: threads + 2, less where memory is");
+  settings.integer(
+      "in-flight", job.in_flight, "N",
+      "Number of frames in flight, 1 to 64; auto: threads + 2, fewer if memory is short");
   add_size_setting(settings, "memory", job.memory_bytes,
-                   "Most memory to plan for, such as 800M or 4G; auto: no limit");
+                   "Memory budget of the plan, such as 800M or 4G; auto: no limit");
   settings.flag("dry-run", job.dry_run, "Print the plan and stop");
   settings.choice<ProgressStyle>("progress", job.progress,
                                  {{"auto", ProgressStyle::kAuto},
                                   {"bar", ProgressStyle::kBar},
                                   {"plain", ProgressStyle::kPlain},
                                   {"none", ProgressStyle::kNone}},
-                                 "A bar, a line every few seconds, or none; auto: a bar on a "
-                                 "terminal, else lines");
+                                 "Progress as a bar, as a line every few seconds, or none; auto: a "
+                                 "bar on a terminal, else lines");
 }
 
 /// What says how outputs are made that are not made.
@@ -308,6 +309,12 @@ void add_run_settings(Settings& settings, RunJob& job) {
   add_tuning_settings(settings, job.tuning);
   add_common_settings(settings, job.common);
   add_pixel_limit_setting(settings);
+  settings.set_short_help(
+      {"left", "right", "stereo", "packing", "pairs", "calibration", "output", "save", "video",
+       "view", "frames", "resume", "disparities", "preset", "quiet"},
+      {"vantage run --left left/ --right right/ -o results",
+       "vantage run --stereo film.mp4 --packing sbsl --save preview --video preview -o results",
+       "vantage run -o results --resume"});
 }
 
 void complete_sequence(RunJob& job) {
@@ -338,7 +345,7 @@ void complete(RunJob& job, const Settings& settings) {
   job.input.validate();
   job.rectification.validate();
   if (job.rectification.kept_outline > 0 && job.calibration.empty()) {
-    throw UsageError("--kept-outline is for pairs that are rectified, expected --calibration");
+    throw UsageError("--kept-outline has no effect without --calibration");
   }
   job.common.execution.validate();
   if (job.in_flight && (*job.in_flight < 1 || *job.in_flight > kMaxInFlight)) {

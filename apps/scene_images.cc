@@ -74,9 +74,8 @@ ScenePosition to_scene_position(const SettingValue& value) {
 void add_scene_images_settings(Settings& settings, SceneImagesInput& input) {
   settings.input_path(
       "images", input.images, "SOURCE",
-      "Folder, pattern (images/%03d.png) or glob of the images, row by row from the "
-      "upper left");
-  Setting& grid = settings.add("grid", "COLSxROWS", "How they stand; row: all in one row");
+      "Images, row by row from the upper left: a folder, a pattern (images/%03d.png) or a glob");
+  Setting& grid = settings.add("grid", "COLSxROWS", "Camera grid; row: a single row");
   grid.set = [&input](const SettingValue& value) {
     if (value.is_string() && value.get_ref<const std::string&>() == "row") {
       input.grid.reset();
@@ -87,14 +86,16 @@ void add_scene_images_settings(Settings& settings, SceneImagesInput& input) {
   grid.get = [&input]() -> SettingValue {
     return input.grid ? fmt::format("{}x{}", input.grid->columns, input.grid->rows) : "row";
   };
-  Setting& spacing = settings.add("spacing", "SX,SY",
-                                  "Distances of neighbours along rows and columns, in any unit");
+  Setting& spacing =
+      settings.add("spacing", "SX,SY",
+                   "Distance between neighbouring cameras along rows and columns, in any unit");
   spacing.set = [&input](const SettingValue& value) { input.spacing = to_spacing(value); };
   spacing.get = [&input]() -> SettingValue {
     return fmt::format("{},{}", input.spacing.x, input.spacing.y);
   };
   settings.input_path("positions", input.positions, "FILE.csv",
-                      "Instead: lines image,x,y, y down; names are relative to the file's folder");
+                      "List of images with positions instead of --images: lines image,x,y, with y "
+                      "downwards; paths are relative to the folder of the list");
 }
 
 std::vector<SceneImage> scene_images(const SceneImagesInput& input, const Settings& settings) {

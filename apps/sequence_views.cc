@@ -11,10 +11,9 @@ namespace vantage::apps {
 namespace {
 
 void add_view_path_setting(Settings& settings, std::vector<ViewPath>& paths) {
-  Setting& setting =
-      settings.add("view-path", "KEYS",
-                   "New view that moves: FRAME=XS,FRAME=XS…, or FRAME=XS,YS,…, linear in between; "
-                   "repeatable");
+  Setting& setting = settings.add("view-path", "KEYS",
+                                  "New view that moves linearly between positions: "
+                                  "FRAME=XS,FRAME=XS... or FRAME=XS,YS,...; repeatable");
   setting.list = true;
   setting.set = [&paths](const SettingValue& value) {
     std::vector<ViewPath> read;

@@ -1,11 +1,13 @@
 #include "apps/settings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <stdexcept>
 
 #include "apps/suggestions.h"
 #include "apps/toml_file.h"
@@ -41,33 +43,44 @@ std::string option_names(const Setting& setting) {
   return short_name + "--" + setting.name;
 }
 
-/// `text` in lines that fit beside the names of the options.
-std::string wrapped(const std::string& text) {
-  constexpr std::size_t kColumns = 70;
+/// `text` in lines that fit beside the names of the options, or are `columns` wide.
+std::string wrapped(const std::string& text, std::size_t columns = 70) {
   std::string lines;
-  std::size_t column = 0;
-  for (const std::string& word : split(text, ' ')) {
-    if (column > 0) {
-      const bool fits = column + 1 + word.size() <= kColumns;
-      lines += fits ? ' ' : '\n';
-      column = fits ? column + 1 : 0;
+  for (const std::string& paragraph : split(text, '\n')) {
+    lines += lines.empty() ? "" : "\n";
+    std::size_t column = 0;
+    for (const std::string& word : split(paragraph, ' ')) {
+      if (column > 0) {
+        const bool fits = column + 1 + word.size() <= columns;
+        lines += fits ? ' ' : '\n';
+        column = fits ? column + 1 : 0;
+      }
+      lines += word;
+      column += word.size();
     }
-    lines += word;
-    column += word.size();
   }
   return lines;
 }
 
+/// Whether the option and its value are too long for one line of the help.
+bool is_long(const Setting& setting) {
+  constexpr std::size_t kMaxColumns = 80;
+  return setting.name.size() + setting.value_name.size() > kMaxColumns;
+}
+
 CLI::Option* add_option(CLI::App& app, const Setting& setting) {
   CLI::Option* option = nullptr;
-  const std::string help = wrapped(setting.help);
+  const std::string help =
+      wrapped(is_long(setting) ? fmt::format("{}. NAME: {}", setting.help,
+                                             fmt::join(split(setting.value_name, '|'), ", "))
+                               : setting.help);
   if (setting.flag) {
     option = app.add_flag(option_names(setting), help);
   } else {
     // Texts are only collected here: they are applied after the configuration file.
     option = app.add_option(
         option_names(setting), [](const CLI::results_t&) { return true; }, help);
-    option->type_name(setting.positional ? "" : setting.value_name);
+    option->type_name(setting.positional ? "" : is_long(setting) ? "NAME" : setting.value_name);
     option->default_str(shown_default(setting.get()));
     if (setting.positional && setting.list) {
       option->expected(-1);  // all that follow
@@ -75,6 +88,37 @@ CLI::Option* add_option(CLI::App& app, const Setting& setting) {
   }
   option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->group(setting.group);
   return option;
+}
+
+/// Prints the help of `app`, whose `options` are those of `settings`: the settings in `names` under
+/// one heading, or all in their groups when there are no names.
+void print_help(CLI::App& app, const std::vector<CLI::Option*>& options,
+                const std::deque<Setting>& settings, const std::vector<std::string_view>& names) {
+  if (!names.empty()) {
+    for (CLI::Option* const option : app.get_options()) {
+      option->group("Options");
+    }
+  }
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    options[i]->required(settings[i].required);  // only now: settings are also read from a file
+    if (!names.empty() && std::ranges::find(names, settings[i].name) == names.end()) {
+      options[i]->group("");  // hidden
+    }
+  }
+  std::string text = app.help();
+  for (std::size_t at = text.find("\n\n\n"); at != std::string::npos;
+       at = text.find("\n\n\n", at)) {
+    text.erase(at, 1);  // one blank line between groups
+  }
+  std::fputs(text.c_str(), stdout);
+}
+
+std::string examples_text(const std::vector<std::string_view>& examples) {
+  std::string text = examples.empty() ? "" : "Examples:";
+  for (const std::string_view example : examples) {
+    text += fmt::format("\n  {}", example);
+  }
+  return text;
 }
 
 [[noreturn]] void reject_option(const std::string& command, const std::string& argument,
@@ -284,12 +328,23 @@ void Settings::set_values(const SettingValue& values) {
   }
 }
 
+void Settings::set_short_help(std::vector<std::string_view> names,
+                              std::vector<std::string_view> examples) {
+  for (const std::string_view name : names) {
+    if (std::ranges::find(settings_, name, &Setting::name) == settings_.end()) {
+      throw std::logic_error(fmt::format("no setting '{}' for the short help", name));
+    }
+  }
+  short_help_ = std::move(names);
+  examples_ = std::move(examples);
+}
+
 bool Settings::read(const std::vector<std::string>& arguments) {
-  CLI::App app(summary_, "vantage " + command_);
+  CLI::App app(wrapped(summary_, 100), "vantage " + command_);
   app.allow_extras();
   std::string config_path;
   bool print_config = false;
-  std::vector<std::string> known = {"--help", "--config", "--print-config"};
+  std::vector<std::string> known = {"--help", "--help-all", "--config", "--print-config"};
   std::vector<CLI::Option*> options;
   for (const Setting& setting : settings_) {
     options.push_back(add_option(app, setting));
@@ -312,12 +367,20 @@ bool Settings::read(const std::vector<std::string>& arguments) {
         ->type_name("")
         ->group("Settings");
   }
+  app.set_help_flag("-h,--help", short_help_.empty() ? "Print this help and exit"
+                                                     : "Print the most used options and exit")
+      ->group("Settings");
+  app.set_help_all_flag("--help-all", "Print all options and exit")->group("Settings");
+  app.footer(examples_text(examples_));
   std::vector<std::string> reversed = arguments;  // as CLI11 wants them
   std::reverse(reversed.begin(), reversed.end());
   try {
     app.parse(std::move(reversed));
   } catch (const CLI::CallForHelp&) {
-    std::fputs(app.help().c_str(), stdout);
+    print_help(app, options, settings_, short_help_);
+    return false;
+  } catch (const CLI::CallForAllHelp&) {
+    print_help(app, options, settings_, {});
     return false;
   } catch (const CLI::ParseError& error) {
     // An unknown option is the likelier cause of whatever CLI11 stumbled over.
@@ -406,6 +469,7 @@ void Settings::refuse_idle(std::initializer_list<const char*> names, std::string
 
 std::string Settings::toml() const {
   std::string text = fmt::format("# Settings of 'vantage {}'; use with --config.\n", command_);
+  const SettingValue resolved = resolved_ ? resolved_() : SettingValue::object();
   const std::string* group = nullptr;
   for (const Setting& setting : settings_) {
     if (group == nullptr || *group != setting.group) {
@@ -414,8 +478,13 @@ std::string Settings::toml() const {
     }
     const SettingValue value =
         setting.path == PathRole::kNone ? setting.get() : with_texts(setting.get(), stored_name);
-    text += value.is_null() ? fmt::format("# {} is not set\n", setting.name)
-                            : fmt::format("{} = {}\n", setting.name, to_toml(value));
+    if (value.is_null()) {
+      text += fmt::format("# {} is not set\n", setting.name);
+      continue;
+    }
+    const SettingValue meaning = resolved.value(setting.name, value);
+    text += fmt::format("{} = {}{}\n", setting.name, to_toml(value),
+                        meaning == value ? "" : fmt::format("  # {}", to_toml(meaning)));
   }
   return text;
 }

@@ -57,6 +57,10 @@ class Settings {
   }
   /// A first argument that is no option is taken as --config.
   void take_job_file() { takes_job_file_ = true; }
+  /// What --help prints on one screen: these settings (all without names), then the examples.
+  /// --help-all prints all settings. Call it after all settings are added; another call replaces
+  /// the list. Throws std::logic_error for a name that no setting has.
+  void set_short_help(std::vector<std::string_view> names, std::vector<std::string_view> examples);
 
   Setting& flag(std::string name, bool& field, std::string help);
   Setting& integer(std::string name, int& field, std::string value_name, std::string help);
@@ -88,9 +92,13 @@ class Settings {
   /// Anything else: the caller fills in the rest.
   Setting& add(std::string name, std::string value_name, std::string help);
 
+  /// Tells --print-config what `auto` means at present: `values` returns an object of setting name
+  /// → value, which need not hold all names.
+  void show_resolved(std::function<SettingValue()> values) { resolved_ = std::move(values); }
+
   /// Reads the command line and --config. Returns false when there is nothing left to do, because
-  /// --help or --print-config has been answered on stdout. Throws UsageError, and Error when the
-  /// file of --config cannot be read.
+  /// --help, --help-all or --print-config has been answered on stdout. Throws UsageError, and Error
+  /// when the file of --config cannot be read.
   [[nodiscard]] bool read(const std::vector<std::string>& arguments);
 
   /// Whether the user set it: the command line names it, or the file gives it another value than
@@ -108,7 +116,8 @@ class Settings {
   void set_values(const SettingValue& values);
   /// The names that the user gave of what is read, the file of --config among them.
   [[nodiscard]] std::vector<std::string> input_paths() const;
-  /// All settings as --print-config writes them.
+  /// All settings as --print-config writes them; `auto` is followed by a comment that says what it
+  /// means.
   [[nodiscard]] std::string toml() const;
   [[nodiscard]] const std::string& command() const { return command_; }
 
@@ -125,7 +134,10 @@ class Settings {
   std::string group_ = "Options";
   bool group_changes_results_ = true;
   bool takes_job_file_ = false;
-  std::deque<Setting> settings_;  // deque: add() hands out references
+  std::vector<std::string_view> short_help_;  ///< names; empty: all
+  std::vector<std::string_view> examples_;
+  std::function<SettingValue()> resolved_;  ///< may be empty
+  std::deque<Setting> settings_;            // deque: add() hands out references
   std::set<std::string> set_;
   std::string config_path_;  ///< empty: none was read
 };

@@ -97,27 +97,27 @@ int SlurmOptions::drain_seconds_or_default() const {
 
 void add_slurm_settings(Settings& settings, SlurmOptions& options) {
   settings.begin_group("Slurm");
-  Setting& shards =
-      settings.integer("shards", options.shards, "N", "Tasks that the run is divided into");
+  Setting& shards = settings.integer("shards", options.shards, "N", "Number of tasks");
   shards.required = true;
   shards.get = [&options] {
     return options.shards == 0 ? SettingValue() : SettingValue(options.shards);
   };
-  settings.integer("concurrent", options.concurrent, "N", "Tasks at once; auto: all");
+  settings.integer("concurrent", options.concurrent, "N",
+                   "Maximum number of tasks at a time; auto: all");
   settings.text("partition", options.partition, "NAME", "Partition of the cluster");
   settings.text("account", options.account, "NAME", "Account to charge");
-  settings.text(
-      "time", options.time_limit, "TIME",
-      "Time limit of a task as for sbatch, such as 90, 12:00:00 or 1-12; a run that needs "
-      "longer continues in a new job");
+  settings.text("time", options.time_limit, "TIME",
+                "Time limit per task as for sbatch, such as 90, 12:00:00 or 1-12; a run that needs "
+                "longer continues in a new job");
+  settings.integer("drain-time", options.drain_seconds, "SECONDS",
+                   "Time before the limit at which a task starts no more frames; auto: 120, at "
+                   "most a quarter of the limit");
   settings.integer(
-      "drain-time", options.drain_seconds, "SECONDS",
-      "How long before the time limit a task finishes the frames under way; auto: 120, "
-      "at most a quarter of the limit");
-  settings.integer("cpus", options.cpus, "N",
-                   "Processors of a task; auto: --threads, or else what the cluster gives");
-  settings.text("slurm-memory", options.memory, "SIZE", "Memory of a task, such as 8G");
-  settings.integer("retries", options.retries, "N", "Further attempts after a task has failed");
+      "cpus", options.cpus, "N",
+      "Number of processors per task; auto: --threads, else the default of the cluster");
+  settings.text("slurm-memory", options.memory, "SIZE", "Memory per task, such as 8G");
+  settings.integer("retries", options.retries, "N",
+                   "Number of further attempts after a task has failed");
   Setting& more = settings.add("sbatch-option", "TEXT",
                                "Any other option of sbatch, such as --qos=long; repeatable");
   more.list = true;
@@ -129,7 +129,7 @@ void add_slurm_settings(Settings& settings, SlurmOptions& options) {
   };
   more.get = [&options] { return SettingValue(options.sbatch_options); };
   settings.path("program", options.program, "FILE",
-                "The vantage program on the nodes, where it is not this one");
+                "Path to the vantage program on the nodes; default: this one");
 }
 
 }  // namespace vantage::apps

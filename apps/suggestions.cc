@@ -47,67 +47,67 @@ const auto& option_words() {
              "num-disparities", "num-disp", "ndisp", "numdisparities", "disp-range",
              "disparity-range", "search-range"},
             "--disparities",
-            "--disparities MIN:MAX gives the range to search, both ends included"},
+            "--disparities MIN:MAX is the range to search, both ends included"},
       Words{{"block-size", "blocksize", "window-size", "win-size", "sad-window", "kernel-size"},
             "--window",
-            "--window PX is the side of the window of --method ssd; the presets have none"},
+            "--window PX is the side of the window of --method ssd; presets have no window"},
       Words{{"uniqueness", "uniqueness-ratio"},
             "--confidence-threshold",
-            "--confidence-threshold X leaves out what is unsure"},
+            "--confidence-threshold X rejects uncertain pixels"},
       Words{{"speckle-window", "speckle-window-size", "speckle-range", "speckles"},
             "--speckle-size",
-            "--speckle-size PX leaves out small islands"},
+            "--speckle-size PX rejects small regions"},
       Words{{"disp12-max-diff", "max-diff", "lr-check", "left-right-check", "lrc", "consistency"},
             "--cross-check",
             "--cross-check PX compares the left map with the right one"},
       Words{{"p1", "p2", "smoothness"},
             "--epsilon-prior",
-            "--epsilon-prior and --sigma-prior say how smooth the maps of bayes are"},
+            "--epsilon-prior and --sigma-prior set the smoothness of maps"},
       Words{{"color", "colors", "use-color"},
             "--colour",
-            "--colour luma|channels says what is compared of colour images"},
+            "--colour luma|channels selects what is compared in colour images"},
       Words{{"colormap", "color-map", "colourmap", "colour-map", "cmap", "jet", "visualize"},
             "--preview",
-            "--preview FILE writes the map in colours, of which there is one scale"},
+            "--preview FILE writes the map in false colours; there is one colour scale"},
       Words{{"colormap", "color-map", "colourmap", "colour-map", "cmap", "jet", "visualize"},
             "--sequence",
-            "--save preview writes the maps in colours, of which there is one scale"},
+            "--save preview writes the maps in false colours; there is one colour scale"},
       Words{{"every", "stride", "skip", "nth", "subsample", "frame-step"},
             "--sequence",
-            "all frames of the input are taken; a glob such as 'left/0000*0.png' or a list "
-            "(--pairs) takes every Nth, --frames A-B those from A to B"},
+            "a glob such as 'left/0000*0.png' or a list (--pairs) selects every Nth frame, "
+            "--frames A-B the frames from A to B"},
       Words{{"start", "end", "start-frame", "end-frame", "first-frame", "last-frame", "num-frames",
              "frame-range", "from", "to"},
             "--sequence",
-            "--frames A-B takes the frames from A to B, counted from 0"},
+            "--frames A-B selects the frames from A to B, counted from 0"},
       Words{{"depth", "depth-map", "depthmap", "point-cloud", "pointcloud", "ply"},
             "--disparities",
-            "maps hold disparities d in pixels; of rectified cameras the depth is focal length * "
-            "baseline / (d + doffs), doffs the difference of the principal points (right - left)"},
+            "maps hold disparities d in pixels; depth is focal length * baseline / (d + doffs), "
+            "where doffs is the difference of the principal points (right - left)"},
       Words{{"resize", "scale", "downscale", "downsample", "resolution"},
             "--disparities",
-            "images are matched in the size they have; resize them before"},
+            "images are matched at their size; resize them first"},
       Words{{"jobs", "cores", "workers", "nproc", "cpus", "num-threads", "nthreads", "j"},
             "--threads",
-            "--threads N says on how many threads the work is done"},
+            "--threads N is the number of threads"},
       Words{{"gpu", "cuda", "device", "opencl"},
             "--threads",
-            "all work is done by the processor, on --threads N"},
+            "all work runs on the processor, on --threads N"},
       Words{{"verbose", "debug", "v", "log-level"},
             "--report",
-            "remarks are printed without --quiet; --report FILE writes all figures"},
+            "messages are printed without --quiet; --report FILE writes all figures"},
       Words{{"silent", "q"}, "--quiet", "--quiet prints errors only"},
       Words{{"out", "outfile", "out-dir", "outdir", "output-dir", "output-file", "output-folder"},
             "--output",
-            "-o or --output says where results go"},
+            "-o or --output is the path to the results"},
       Words{{"algorithm", "algo", "matcher", "mode", "sgbm", "bm", "fast", "balanced", "quality",
              "best"},
             "--preset",
-            "--preset fast|balanced|quality says how pairs are matched"},
+            "--preset fast|balanced|quality selects how pairs are matched"},
       Words{{"calib", "camera", "cameras", "intrinsics", "extrinsics"},
             "--calibration",
-            "--calibration FILE names the cameras"},
-      Words{{"version"}, "", "'vantage --version' tells the version"},
+            "--calibration FILE is the path to the cameras"},
+      Words{{"version"}, "", "'vantage --version' prints the version"},
   };
   return kWords;
 }
@@ -117,10 +117,10 @@ const auto& command_words() {
       Words{{"disparity", "disparities", "stereo", "disp", "sgbm", "sgm", "bm", "compute",
              "matching"},
             "",
-            "'vantage match' makes disparity maps"},
+            "'vantage match' computes disparity maps"},
       Words{{"depth", "pointcloud", "point-cloud"},
             "",
-            "'vantage match' makes disparity maps, of which depths follow"},
+            "'vantage match' computes disparity maps, from which depth follows"},
       Words{{"calibrate", "calibration", "undistort", "align"},
             "",
             "'vantage rectify' estimates cameras and rectifies photographs"},
@@ -129,7 +129,7 @@ const auto& command_words() {
             "'vantage synth' renders new views of a pair"},
       Words{{"video", "movie", "sequence", "batch", "process"},
             "",
-            "'vantage run' makes maps and views of sequences and videos"},
+            "'vantage run' computes maps and views of sequences and videos"},
       Words{{"viewer", "html", "web", "show", "display"},
             "",
             "'vantage view' writes a page that shows new views in a browser"},
@@ -138,11 +138,13 @@ const auto& command_words() {
             "'vantage eval' compares a map or a view with the truth"},
       Words{{"benchmark", "bench", "perf", "time"},
             "",
-            "'vantage profile' tells where the time of match or run goes"},
-      Words{{"slurm", "cluster", "sbatch"}, "", "'vantage submit' has a Slurm cluster do a run"},
-      Words{{"join", "concat"}, "", "'vantage merge' joins what parts of a run have made"},
-      Words{{"resume", "continue"}, "", "'vantage run' goes on with --resume"},
-      Words{{"version"}, "", "'vantage --version' tells the version"},
+            "'vantage profile' shows where the time of match or run goes"},
+      Words{{"slurm", "cluster", "sbatch"},
+            "",
+            "'vantage submit' runs a sequence on a Slurm cluster"},
+      Words{{"join", "concat"}, "", "'vantage merge' joins the parts of a run"},
+      Words{{"resume", "continue"}, "", "'vantage run --resume' continues a run"},
+      Words{{"version"}, "", "'vantage --version' prints the version"},
       Words{{"commands", "list", "usage"}, "", "'vantage help' lists the commands"},
   };
   return kWords;
@@ -171,7 +173,7 @@ std::string hint(const std::string& name, const AllWords& words,
   if (const std::string nearest = nearest_name(name, known); !nearest.empty()) {
     return fmt::format(", the nearest known one is '{}'", nearest);
   }
-  return fmt::format("; '{}' lists those there are", list);
+  return fmt::format("; '{}' lists all", list);
 }
 
 }  // namespace
@@ -195,7 +197,7 @@ std::string nearest_name(std::string_view text, const std::vector<std::string>& 
 
 std::string hint_for_option(const std::string& command, const std::string& name,
                             const std::vector<std::string>& known) {
-  return hint(name, option_words(), known, fmt::format("vantage {} --help", command));
+  return hint(name, option_words(), known, fmt::format("vantage {} --help-all", command));
 }
 
 std::string hint_for_command(const std::string& name, const std::vector<std::string>& known) {

@@ -16,32 +16,32 @@ bool is_video(const std::string& path) { return has_extension(path, {".mp4"}); }
 void add_view_file_settings(Settings& settings, ViewOutputOptions& options) {
   Setting& file =
       settings.path("output", options.output, "FILE",
-                    "Image to write; for several views a pattern (views/%03d.png) or an .mp4");
+                    "Path to the image; for several views a pattern (views/%03d.png) or an .mp4");
   file.short_name = 'o';
   file.required = true;
   settings.path("hole-mask", options.hole_mask, "MASK.png",
-                "Write a mask of the pixels that no image shows; a pattern for several views");
+                "Write a mask of the pixels that no image shows; for several views a pattern");
   settings.path("source-mask", options.source_mask, "MASK.png",
-                "Write which images the pixels are made of: 0 none, 85 the left one (of three the "
-                "first two), 170 the right or last one, 255 both");
+                "Write a mask of the images that each pixel comes from: 0 none, 85 left (of three "
+                "images the first two), 170 right (the last), 255 both");
 }
 
 void add_view_display_settings(Settings& settings, ViewOutputOptions& options,
                                const std::string& unit) {
   settings.choice<StereoDisplay>("stereo-packing", options.stereo_packing, stereo_display_names(),
-                                 "Two eyes for every view, in one picture: side by side, one above "
-                                 "the other, interleaved or as an anaglyph",
+                                 "Write two eyes per view in one image: side by side, above/below, "
+                                 "interleaved or anaglyph, using ffmpeg's stereo3d names",
                                  "none");
   settings.number("eye-separation", options.eye_separation, "S",
-                  fmt::format("Distance of the two eyes in {}, the view in their middle", unit));
-  add_frame_rate_setting(settings, "fps", options.frame_rate, "Views per second of a video");
+                  fmt::format("Distance between the two eyes in {}, centred on the view", unit));
+  add_frame_rate_setting(settings, "fps", options.frame_rate, "Frames per second of a video");
 }
 
 ViewOutput::ViewOutput(const std::string& path, int views) : path_(path), views_(views) {
   if (is_pattern(path)) {
     expand_pattern(path, 0);  // throws for a malformed one
     if (is_video(path)) {
-      throw UsageError(fmt::format("'{}' is a pattern for videos, expected one video name", path));
+      throw UsageError(fmt::format("'{}' is a pattern for videos, expected one video file", path));
     }
   } else if (views > 1 && !is_video(path)) {
     throw UsageError(fmt::format(

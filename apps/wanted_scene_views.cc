@@ -62,7 +62,7 @@ std::vector<ScenePosition> positions_of_path(const std::string& file) {
 
 void add_wanted_scene_views(Settings& settings, WantedSceneViews& wanted) {
   Setting& at = settings.add("at", "X,Y",
-                             "Position of a new view, in the unit of the images' positions, up to "
+                             "Position of a new view, in the unit of the image positions; at most "
                              "16 lengths of the nearest edge outside; repeatable");
   at.list = true;
   at.set = [&wanted](const SettingValue& value) {
@@ -80,7 +80,7 @@ void add_wanted_scene_views(Settings& settings, WantedSceneViews& wanted) {
     return values;
   };
   Setting& sweep =
-      settings.add("sweep", "A:B:N", "N views at equal steps from position A to position B");
+      settings.add("sweep", "A:B:N", "N views in equal steps from position A to position B");
   sweep.set = [&wanted](const SettingValue& value) { wanted.sweep = to_scene_sweep(value); };
   sweep.get = [&wanted]() -> SettingValue {
     return wanted.sweep
@@ -88,8 +88,9 @@ void add_wanted_scene_views(Settings& settings, WantedSceneViews& wanted) {
                                           text_of(wanted.sweep->last), wanted.sweep->views))
                : SettingValue();
   };
-  settings.input_path("path", wanted.path_file, "FILE",
-                      "A movie along the positions of a TOML or JSON file, each with its frame");
+  settings.input_path(
+      "path", wanted.path_file, "FILE",
+      "TOML or JSON file of positions, each with a frame number: one view that moves along them");
 }
 
 std::vector<ScenePosition> scene_positions_of(const WantedSceneViews& wanted) {

@@ -111,10 +111,9 @@ BaselinePosition to_position(const SettingValue& value) {
 }
 
 void add_view_setting(Settings& settings, std::vector<BaselinePosition>& views) {
-  Setting& view =
-      settings.add("view", "XS[,YS]",
-                   "Position of a new view in baselines: 0 left camera, 1 right camera, "
-                   "0.5 between them; YS above 0 is below; repeatable");
+  Setting& view = settings.add("view", "XS[,YS]",
+                               "Position of a new view in baselines: 0 left camera, 1 right "
+                               "camera; YS is positive downwards; repeatable");
   view.list = true;
   view.set = [&views](const SettingValue& value) {
     std::vector<BaselinePosition> positions;
@@ -135,22 +134,24 @@ void add_view_setting(Settings& settings, std::vector<BaselinePosition>& views) 
 
 void add_pose_settings(Settings& settings, const std::string& turned,
                        std::optional<double>& look_at_px, PoseList& poses, PoseList& path) {
-  settings.number("look-at", look_at_px, "PX",
-                  fmt::format("Turn the cameras of {} towards the point at this disparity in the "
-                              "middle; needs --calibration",
-                              turned),
-                  "ahead");
+  settings.number(
+      "look-at", look_at_px, "PX",
+      fmt::format(
+          "Turn the cameras of {} towards the central point at disparity PX; needs --calibration",
+          turned),
+      "ahead");
   add_pose_list(settings, "pose", poses,
-                "A view for every pose in a TOML or JSON file: positions, or cameras by K, R and "
-                "t, which need --calibration");
-  add_pose_list(settings, "path", path,
-                "A moving view along the poses of such a file, each with its frame");
+                "TOML or JSON file of poses, one view each: positions, or cameras by K, R and t, "
+                "which need --calibration");
+  add_pose_list(
+      settings, "path", path,
+      "File of poses as for --pose, each with a frame number: one view that moves along them");
 }
 
 void add_wanted_views(Settings& settings, WantedViews& wanted) {
   add_view_setting(settings, wanted.at);
   Setting& sweep =
-      settings.add("sweep", "A:B:N", "N views at equal steps from position A to position B");
+      settings.add("sweep", "A:B:N", "N views in equal steps from position A to position B");
   sweep.set = [&wanted](const SettingValue& value) { wanted.sweep = to_sweep(value); };
   sweep.get = [&wanted]() -> SettingValue {
     return wanted.sweep
@@ -159,7 +160,8 @@ void add_wanted_views(Settings& settings, WantedViews& wanted) {
                : SettingValue();
   };
   Setting& orbit = settings.add(
-      "orbit", "R:N", "N views on a circle of R baselines about the middle between the cameras");
+      "orbit", "R:N",
+      "N views on a circle with a radius of R baselines around the midpoint of the cameras");
   orbit.set = [&wanted](const SettingValue& value) { wanted.orbit = to_orbit(value); };
   orbit.get = [&wanted]() -> SettingValue {
     return wanted.orbit ? SettingValue(fmt::format("{}:{}", wanted.orbit->radius_baselines,

@@ -273,10 +273,10 @@ TEST_F(InputRunCommand, WrongUsageIsOneLineAndExit2) {
       {{"--save", "preview", "--format", "npy"}, "--format has no effect where --save has no"},
       {{"--gamma", "1"}, "--gamma has no effect where --save has no views"},
       {{"--temporal-threshold", "5"}, "--temporal-threshold has no effect without"},
-      {{"--stride", "2"}, "'--stride': all frames of the input are taken"},
+      {{"--stride", "2"}, "'--stride': a glob such as"},
       {{"--step", "2"}, "step"},
       {{"--stereo", "x.mp4"}, "stereo"},
-      {{"-p", "2"}, "unknown option '-p'; 'vantage run --help' lists those there are"},
+      {{"-p", "2"}, "unknown option '-p'; 'vantage run --help-all' lists all"},
       {{"--overwrite", "--resume"}, "--overwrite and --resume"},
       {{"--overwrite", "--shard", "1/2"}, "--overwrite with --shard"}};
   SCOPED_TRACE(test::sample_name());

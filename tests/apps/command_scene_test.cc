@@ -143,7 +143,7 @@ TEST_F(SceneCommand, MakesMoviesAndSaysWhatLiesOutside) {
   const ProcessResult movie =
       view({"--sweep", "0,0:1.1,0.5:8", "--fps", "8", "-o", folder_ / "movie.mp4"});
   ASSERT_EQ(movie.exit_code, 0) << movie.err;
-  EXPECT_THAT(movie.err, HasSubstr("1 of 8 views are outside of what the images enclose"));
+  EXPECT_THAT(movie.err, HasSubstr("1 of 8 views are outside the area of the images"));
   EXPECT_EQ(VideoReader(folder_ / "movie.mp4").frame_count(), 8);
   EXPECT_THAT(view({"--at=-0.1,-0.1", "-o", folder_ / "v.png"}).err,
               HasSubstr("1 of 1 view is outside"));
@@ -233,7 +233,7 @@ TEST_F(SceneCommand, AKilledBuildGoesOnWhereItStopped) {
     const ProcessResult ended = process.wait();
     if (signal == SIGINT && ended.exit_code != 0) {  // 0: it was too late
       EXPECT_EQ(ended.exit_code, 130);
-      EXPECT_THAT(ended.err, HasSubstr("the same command goes on there"));
+      EXPECT_THAT(ended.err, HasSubstr("run the same command to continue"));
     }
     EXPECT_EQ(build_grid().exit_code, 0);
     EXPECT_EQ(contents(), complete) << signal;

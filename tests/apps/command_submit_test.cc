@@ -213,7 +213,7 @@ TEST_F(SubmitCommand, WhatSlurmRefusesIsOneLine) {
   EXPECT_FALSE(std::filesystem::exists(slurm(out, "submitted.json")));
 
   add_program("sbatch", "echo 'good morning'");
-  EXPECT_THAT(submit(out).err, HasSubstr("expected the number of a job"));
+  EXPECT_THAT(submit(out).err, HasSubstr("expected a job number"));
 
   ::setenv("PATH", (folder_ / "nothing").c_str(), 1);
   const ProcessResult missing = submit(folder_ / "other");

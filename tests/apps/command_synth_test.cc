@@ -174,7 +174,7 @@ TEST_F(InputSynthCommand, WrongUsageIsOneLineAndExit2) {
       {{"-o", out, "--sweep", "0:1:1"}, "--sweep is '0:1:1'"},
       {{"-o", outputs_ + "/%s.png", "--sweep", "0:1:3"}, "expected one %d"},
       {{"-o", outputs_ + "/%d%d.png", "--sweep", "0:1:3"}, "expected one %d"},
-      {{"-o", outputs_ + "/%d.mp4", "--sweep", "0:1:3"}, "expected one video name"},
+      {{"-o", outputs_ + "/%d.mp4", "--sweep", "0:1:3"}, "expected one video file"},
       {{"-o", outputs_ + "/v.mp4", "--sweep", "0:1:3", "--fps", "0"}, "--fps is"},
       {{"-o", outputs_ + "/v.mp4", "--sweep", "0:1:3", "--fps", "30/0"}, "--fps is"},
       {{"-o", outputs_ + "/v.gif", "--view", "0.5"}, "v.gif"},

@@ -77,7 +77,7 @@ TEST_F(SlowTuneTest, FindsStoresAndTells) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("squared box about 8 px, 8-bit grey"));
   EXPECT_THAT(result.out, HasSubstr("median ms"));
-  EXPECT_THAT(result.out, HasSubstr("kept in " + file_.string()));
+  EXPECT_THAT(result.out, HasSubstr("saved in " + file_.string()));
   const TuningFileContent content = read_tuning_file(file_);
   ASSERT_EQ(content.entries.size(), 1U);
   ASSERT_TRUE(content.entries[0].match);
@@ -195,7 +195,7 @@ TEST_F(TuneTest, GivenOptionsGoFirst) {
 TEST_F(TuneTest, WithoutAnEntryTheReportSaysWhatWasWanted) {
   ASSERT_EQ(match_tuned().exit_code, 0);
   EXPECT_EQ(report()["tuning"]["wanted"], key().text());
-  EXPECT_EQ(report()["tuning"]["reason"], "there is no entry for this work");
+  EXPECT_EQ(report()["tuning"]["reason"], "no entry for this work");
 }
 
 TEST_F(InputTuneCommand, ADamagedFileIsAWarning) {
@@ -219,7 +219,7 @@ TEST_F(SlowTuneTest, AnotherFileCanBeNamed) {
   EXPECT_EQ(report()["tuning"]["file"], other);
   const ProcessResult result = match_tuned({"--tuning", folder_ / "none.json"});
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_THAT(result.err, HasSubstr("there is no such file"));
+  EXPECT_THAT(result.err, HasSubstr("no such file"));
 }
 
 TEST_F(TuneTest, RunUsesItsEntryAndTheFilesAreTheSame) {

@@ -1,7 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
+#include <iterator>
 #include <regex>
+#include <set>
+#include <sstream>
 
 #include "tests/apps/pair_fixture.h"
 
@@ -98,28 +103,97 @@ TEST_F(Config, PrintedSettingsFedBackAreTheSame) {
   }
 }
 
-TEST_F(Config, EveryOptionOfTheHelpIsPrinted) {
-  const std::vector<std::vector<std::string>> commands = {
-      {"match"}, {"synth"}, {"run"}, {"eval"}, {"generate", "book"}, {"generate", "scene"}};
-  const std::regex option("(^|\\n)  (-.,)?--([a-z-]+)");
-  for (auto arguments : commands) {
-    arguments.push_back("--help");
-    const std::string help = run_vantage(arguments).out;
-    arguments.back() = "--print-config";
-    const std::string config = run_vantage(arguments).out;
-    int options = 0;
-    for (std::sregex_iterator it(help.begin(), help.end(), option), end; it != end; ++it) {
-      const std::string name = (*it)[3];
-      if (name != "help" && name != "config" && name != "print-config") {
-        ++options;
-        EXPECT_TRUE(config.find("\n" + name + " = ") != std::string::npos ||
-                    config.find("\n# " + name + " is not set\n") != std::string::npos)
-            << arguments.front() << ' ' << name;
-      }
+/// The words of every command.
+std::vector<std::vector<std::string>> all_commands() {
+  const std::string help = run_vantage({"help"}).out;
+  const std::regex command("\n  ([a-z]+)( [a-z]+)? {2,}[A-Z]");
+  std::vector<std::vector<std::string>> commands;
+  for (std::sregex_iterator it(help.begin(), help.end(), command), end; it != end; ++it) {
+    commands.push_back({(*it)[1]});
+    if ((*it)[2].matched) {
+      commands.back().push_back((*it)[2].str().substr(1));
     }
-    EXPECT_GT(options, 8);
-    EXPECT_FALSE(std::regex_search(help, std::regex("(^|\n) {30}[^\n]{71}"))) << arguments.front();
   }
+  return commands;
+}
+
+std::string output_of(std::vector<std::string> words, const std::string& option) {
+  words.push_back(option);
+  const ProcessResult result = run_vantage(words);
+  EXPECT_EQ(result.exit_code, 0) << words.front() << ' ' << option << ": " << result.err;
+  return result.out;
+}
+
+/// Long names of the options in a help.
+std::set<std::string> options_in(const std::string& help) {
+  const std::regex option("(^|\n)  (-.,)?--([a-z-]+)");
+  std::set<std::string> names;
+  for (std::sregex_iterator it(help.begin(), help.end(), option), end; it != end; ++it) {
+    names.insert((*it)[3]);
+  }
+  for (const char* name : {"help", "help-all", "config", "print-config"}) {
+    EXPECT_EQ(names.erase(name), 1U) << name;
+  }
+  return names;
+}
+
+TEST_F(Config, HelpAllHasTheOptionsThatAreReadFromFiles) {
+  int options = 0;
+  const auto commands = all_commands();
+  EXPECT_GT(commands.size(), 15U);
+  for (const auto& words : commands) {
+    const std::string help = output_of(words, "--help-all");
+    const std::string config = output_of(words, "--print-config");
+    const std::set<std::string> names = options_in(help);
+    const std::regex key("\n(# )?([a-z-]+)( = | is not set\n)");
+    for (std::sregex_iterator it(config.begin(), config.end(), key), end; it != end; ++it) {
+      const std::string name = (*it)[2];
+      std::string positional = name == "more" ? "OTHER" : name == "profiles" ? "PROFILE" : name;
+      std::ranges::transform(positional, positional.begin(), ::toupper);
+      ++options;
+      EXPECT_TRUE(names.contains(name) || help.find("\n  " + positional) != std::string::npos)
+          << words.back() << ' ' << name;
+    }
+    for (const std::string& name : names) {
+      EXPECT_TRUE(config.find("\n" + name + " = ") != std::string::npos ||
+                  config.find("\n# " + name + " is not set\n") != std::string::npos)
+          << words.back() << ' ' << name;
+    }
+    EXPECT_FALSE(std::regex_search(help, std::regex("(^|\n) {30}[^\n]{71}"))) << words.back();
+  }
+  EXPECT_GT(options, 300);
+}
+
+TEST_F(Config, HelpIsOneScreenOfOptionsThatHelpAllHas) {
+  constexpr int kMaxLines = 45;
+  constexpr std::size_t kMaxColumns = 100;
+  for (const auto& words : all_commands()) {
+    const std::string help = output_of(words, "--help");
+    EXPECT_LE(std::ranges::count(help, '\n'), kMaxLines) << words.back();
+    std::istringstream lines(help);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(line.size(), kMaxColumns) << words.back() << ": " << line;
+    }
+    const std::set<std::string> all = options_in(output_of(words, "--help-all"));
+    for (const std::string& name : options_in(help)) {
+      EXPECT_TRUE(all.contains(name)) << words.back() << ' ' << name;
+    }
+  }
+}
+
+TEST_F(Config, ExamplesOfTheHelpAreAccepted) {
+  const std::regex example("\n  vantage ([^\n]*)");
+  int examples = 0;
+  for (const auto& words : all_commands()) {
+    const std::string help = output_of(words, "--help");
+    for (std::sregex_iterator it(help.begin(), help.end(), example), end; it != end; ++it) {
+      ++examples;
+      std::istringstream text((*it)[1]);
+      const std::vector<std::string> arguments(std::istream_iterator<std::string>(text), {});
+      output_of(arguments, "--print-config");
+    }
+  }
+  EXPECT_GT(examples, 40);
 }
 
 using InputConfig = Config;
@@ -136,7 +210,7 @@ TEST_F(InputConfig, CommandLineOverridesFileOverridesDefault) {
   EXPECT_THAT(result.out, HasSubstr("\nraw = false\n"));
   EXPECT_THAT(result.out, HasSubstr("\nthreads = 'auto'\n"));
   EXPECT_THAT(result.out, HasSubstr("\ncross-check = 2.0\n"));
-  EXPECT_THAT(result.out, HasSubstr("\nsubpixel = 'auto'\n"));
+  EXPECT_THAT(result.out, HasSubstr("\nsubpixel = 'auto'  # 'parabola'\n"));
 }
 
 TEST_F(InputConfig, AFileCanHoldTheWholeJob) {

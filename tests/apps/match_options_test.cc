@@ -94,8 +94,8 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--raw", "--fill", "none"}, "fill is set but has no effect with raw"},
       {{"--baselines", "1", "--cross-check", "2"}, "--cross-check has no effect with several"},
       {{"--tuning", "t.json", "--no-tuning"}, "--tuning has no effect with --no-tuning"},
-      {{"--max-disp", "64"}, "'--max-disp': --disparities MIN:MAX gives the range to search"},
-      {{"--xyzzy"}, "'--xyzzy'; 'vantage match --help' lists those there are"},
+      {{"--max-disp", "64"}, "'--max-disp': --disparities MIN:MAX is the range to search"},
+      {{"--xyzzy"}, "'--xyzzy'; 'vantage match --help-all' lists all"},
       {{"--sigma-pior", "1"}, "'--sigma-pior', the nearest known one is '--sigma-prior'"},
       {{"--agregate", "box"}, "'--agregate', the nearest known one is '--aggregate'"},
       {{"--confidence", folder_ / "c.png"}, "PNG holds no floats"},
@@ -270,19 +270,16 @@ TEST_F(MatchCommandOptions, ReportShowsWhatWasEstimated) {
   }
 }
 
-TEST_F(MatchCommandOptions, ThePresetIsWhatItsHelpSays) {
-  const std::string help =
-      std::regex_replace(run_vantage({"match", "--help"}).out, std::regex("\n {12,}"), " ");
+TEST_F(MatchCommandOptions, ThePresetIsWhatPrintConfigSays) {
+  const std::regex meaning("\n([a-z-]+) = 'auto'  # '?([^\n']+)");
   for (const std::string preset : {"fast", "balanced", "quality"}) {
-    const std::size_t begin = help.find("; " + preset + ": ") + 4 + preset.size();
-    const std::string text = help.substr(begin, help.find_first_of(";\n", begin) - begin);
-    std::vector<std::string> options = {"--method"};
-    for (std::size_t at = 0; at < text.size();) {
-      const std::size_t end = std::min(text.find(' ', at), text.size());
-      options.push_back(text.substr(at, end - at));
-      at = end + 1;
+    const std::string config = run_vantage({"match", "--preset", preset, "--print-config"}).out;
+    std::vector<std::string> options = {"--method", "bayes"};
+    for (std::sregex_iterator it(config.begin(), config.end(), meaning), end; it != end; ++it) {
+      options.insert(options.end(), {"--" + (*it)[1].str(), (*it)[2]});
     }
-    ASSERT_EQ(match(folder_ / "a.pfm", options).exit_code, 0) << text;
+    EXPECT_GT(options.size(), 40U);
+    ASSERT_EQ(match(folder_ / "a.pfm", options).exit_code, 0) << config;
     ASSERT_EQ(match(folder_ / "b.pfm", {"--preset", preset}).exit_code, 0);
     EXPECT_EQ(read_file(folder_ / "a.pfm"), read_file(folder_ / "b.pfm")) << preset;
   }

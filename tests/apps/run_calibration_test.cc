@@ -85,7 +85,8 @@ using InputRunCalibration = RunCalibration;
 
 TEST_F(InputRunCalibration, RefusesAnOutlineThatCannotBeKept) {
   for (const auto& [more, says] :
-       {std::pair{std::vector<std::string>{"--kept-outline", "1"}, "expected --calibration"},
+       {std::pair{std::vector<std::string>{"--kept-outline", "1"},
+                  "--kept-outline has no effect without --calibration"},
         {with_rig({"--kept-outline", "1.5"}), "kept-outline is 1.5, expected 0 to 1"}}) {
     const ProcessResult result = run(folder_ / "out", joined(more, {"--quiet"}));
     EXPECT_EQ(result.exit_code, 2);
