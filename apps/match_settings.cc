@@ -122,8 +122,8 @@ void add_aggregation_settings(Settings& settings, MethodOverrides& parameters) {
                    "10; each level halves width and height and has its own iterations; " +
                        shared(book.levels));
   settings.integer("candidate-blocks", parameters.candidate_blocks, "K",
-                   "With bayes and several levels: search only K blocks of 16 disparities, 1 to 8, "
-                   "around what the coarser level found; 0: search all; " +
+                   "With bayes, several levels and prior-smoothing maximum: search only K blocks of "
+                   "16 disparities, 1 to 8, around what the coarser level found; 0: search all; " +
                        shared(book.candidate_blocks));
   settings.integer(
       "pruned-levels", parameters.pruned_levels, "N",

@@ -28,7 +28,7 @@
 #include "engine/matching/levels/stage_fixed_energies.h"
 #include "engine/matching/levels/stage_level_energies.h"
 #include "engine/matching/levels/stage_level_likelihoods.h"
-#include "engine/matching/selection/stage_block_selection.h"
+#include "engine/matching/selection/stage_cell_selection.h"
 #include "engine/matching/selection/stage_displacement_selection.h"
 #include "engine/matching/selection/stage_energy_selection.h"
 #include "engine/matching/selection/stage_window_selection.h"
@@ -219,7 +219,7 @@ std::unique_ptr<scheduler::RowStage> MatchChain::level_costs(const MethodParamet
     return make_level_fixed_energy_stage(geometry_, *level.costs, EnergyFormat(parameters),
                                          level.blocks);
   }
-  return make_level_likelihood_stage(geometry_, *level.costs, level.blocks);
+  return make_level_likelihood_stage(geometry_, *level.costs);
 }
 
 /// Of the images, for some of the candidates: energies, for Bayesian diffusion likelihoods.
@@ -359,14 +359,14 @@ void MatchChain::add_aggregation(const MethodParameters& parameters, const Chain
       break;
     case Aggregation::kBayes: {
       iterations_ = parameters.iterations;
-      const CoarserResult coarser{.volume = level.coarser, .blocks = level.coarser_blocks};
       const kernels::CandidatePlane plane =
           input.grid != nullptr ? input.grid->plane() : kernels::CandidatePlane{};
-      add_all(uses_fixed_energies(parameters)
-                  ? make_max_product_stages(parameters, geometry_, height_, coarser, edges,
-                                            level.blocks, plane)
-                  : make_bayes_stages(parameters, geometry_, height_, coarser, edges, level.blocks,
-                                      plane));
+      add_all(
+          uses_fixed_energies(parameters)
+              ? make_max_product_stages(parameters, geometry_, height_,
+                                        {.volume = level.coarser, .blocks = level.coarser_blocks},
+                                        edges, level.blocks, plane)
+              : make_bayes_stages(parameters, geometry_, height_, level.coarser, edges, plane));
       ++first_iteration_;  // behind the start
       break;
     }
@@ -380,7 +380,7 @@ void MatchChain::add_result(const MethodParameters& parameters, const ChainLevel
   } else if (uses_fixed_energies(parameters)) {
     add(make_level_energy_result_stage(geometry_, result, EnergyFormat(parameters), level.blocks));
   } else {
-    add(make_level_probability_stage(geometry_, result, level.blocks));
+    add(make_level_probability_stage(geometry_, result));
   }
 }
 
@@ -395,10 +395,6 @@ void MatchChain::add_selection(const MethodParameters& parameters, const ChainIn
     add(make_energy_selection_stage(geometry_, parameters.subpixel,
                                     EnergyFormat(parameters).steps_per_nat(), outputs_,
                                     level.blocks));
-    return;
-  }
-  if (level.blocks != nullptr) {
-    add(make_block_selection_stage(geometry_, parameters.subpixel, outputs_, *level.blocks));
     return;
   }
   CellSelectionSettings settings;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <span>
 
 #include "kernels/candidates.h"
 #include "kernels/cells/exp_log.h"
@@ -52,12 +51,8 @@ struct BayesRow {
   /// kLaneMultiple.
   std::ptrdiff_t source_pitch = 0;
   std::ptrdiff_t output_pitch = 0;
-  /// Where runs of lanes end whose candidates follow each other: the prior does not reach from one
-  /// to the next. Multiples of kLaneMultiple, ascending, the last one star.lanes; empty: all lanes
-  /// are one run.
-  std::span<const int> segment_ends;
   /// Where candidates are displacements in two dimensions: the prior's taps then multiply, which
-  /// makes it a contaminated Gaussian of the length of an offset. segment_ends is empty then.
+  /// makes it a contaminated Gaussian of the length of an offset.
   CandidatePlane plane = {};
   /// bayes_work_floats() floats, 64-byte aligned; any contents.
   float* work = nullptr;
@@ -75,10 +70,9 @@ inline int bayes_work_margin(int prior_radius) {
   return (prior_radius + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
 }
 
-/// `segments`: of lanes, see BayesRow::segment_ends. `plane`: of a search in two dimensions.
-inline int bayes_work_floats(int lanes, int prior_radius, int segments = 1,
-                             const CandidatePlane& plane = {}) {
-  return bayes_work_columns(lanes) * (lanes + (segments + 1) * bayes_work_margin(prior_radius)) +
+/// `plane`: of a search in two dimensions.
+inline int bayes_work_floats(int lanes, int prior_radius, const CandidatePlane& plane = {}) {
+  return bayes_work_columns(lanes) * (lanes + 2 * bayes_work_margin(prior_radius)) +
          (plane.is_given() ? plane.work_cells(bayes_work_margin(prior_radius)) : 0);
 }
 

@@ -7,12 +7,6 @@
 namespace vantage::kernels {
 namespace {
 
-/// Whether candidates `a` and `b` ≥ a lie in one run of lanes.
-bool in_one_segment(const BayesRow& row, int a, int b) {
-  return std::none_of(row.segment_ends.begin(), row.segment_ends.end(),
-                      [a, b](int end) { return a < end && end <= b; });
-}
-
 double state_of(const BayesRow& row, double smoothed) {
   return row.state == BayesState::kSmoothed ? smoothed : row.mu * std::log2(smoothed);
 }
@@ -54,8 +48,7 @@ void make_column(const BayesRow& row, int x, Weight weight) {
       continue;
     }
     for (int k = -row.prior.radius; k <= row.prior.radius; ++k) {
-      if (i + k >= 0 && i + k < row.count &&
-          in_one_segment(row, std::min(i, i + k), std::max(i, i + k))) {
+      if (i + k >= 0 && i + k < row.count) {
         smoothed += row.prior.taps[std::abs(k)] * p(i + k);
       }
     }

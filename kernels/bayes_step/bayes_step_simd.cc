@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
-#include <span>
 
 #include "kernels/bayes_step/bayes_step.h"
 #include "kernels/bayes_step/powers-inl.h"
@@ -68,13 +67,12 @@ HWY_INLINE void half_row_in_registers(const BayesRow& row) {
                        HWY_ATTR { half_column_in_registers<kBlocks>(at, scale, floor, output); });
 }
 
-// Unnormalised probabilities of a few columns in memory, with zeros on both sides of each segment
-// of lanes: candidates there are none beside it, or are taken for impossible. First
-// all of them are made, then all are normalised: one column after the other would wait for the sum
-// over its lanes each time.
+// Unnormalised probabilities of a few columns in memory, with zeros on both sides of each: there
+// are no candidates there. First all columns are made, then all are normalised: one column after
+// the other would wait for the sum over its lanes each time.
 //
-// kBlocks · kLaneMultiple lanes that are one segment, so that loops over them are written out: with
-// few lanes they would take as long as what is in them. 0: any lanes.
+// kBlocks · kLaneMultiple lanes, so that loops over them are unrolled: with few lanes the loop
+// overhead would cost as much as the body. 0: any lanes.
 template <int kBlocks>
 class WorkColumns {
  public:
@@ -82,17 +80,11 @@ class WorkColumns {
       : row_(row),
         columns_(bayes_work_columns(row.star.lanes)),
         margin_(bayes_work_margin(row.prior.radius)),
-        segment_ends_(row.segment_ends.empty() ? std::span<const int>(&row.star.lanes, 1)
-                                               : row.segment_ends),
-        pitch_(row.star.lanes + (static_cast<int>(segment_ends_.size()) + 1) * margin_),
+        pitch_(row.star.lanes + 2 * margin_),
         logarithm_(row.mu) {
     for (int j = 0; j < std::min(columns_, row.star.columns); ++j) {
       clear_margin(p(j) - margin_);
-      float* behind = p(j);
-      for (const int end : segment_ends_) {
-        clear_margin(behind + end);
-        behind += margin_;
-      }
+      clear_margin(p(j) + row.star.lanes);
     }
   }
 
@@ -128,21 +120,8 @@ class WorkColumns {
     return row_.output + (row_.star.columns - 1) * row_.output_pitch;
   }
 
-  // Calls segment(begin, end, gaps) for each segment of lanes, which begins so many floats farther
-  // on in work memory.
-  template <class Segment>
-  HWY_INLINE void each_segment(Segment segment) const {
-    if constexpr (kBlocks > 0) {
-      segment(0, kBlocks * kLaneMultiple, 0);
-    } else {
-      int begin = 0;
-      int gaps = 0;
-      for (const int end : segment_ends_) {
-        segment(begin, end, gaps);
-        begin = end;
-        gaps += margin_;
-      }
-    }
+  [[nodiscard]] HWY_INLINE int lanes() const {
+    return kBlocks > 0 ? kBlocks * kLaneMultiple : row_.star.lanes;
   }
 
   // Returns the factor that normalises the column.
@@ -152,69 +131,59 @@ class WorkColumns {
     const auto weight_of_lanes = weight(at);
     LaneBlock16 sums;
     sums.fill(hn::Zero(df));
-    each_segment([&](int begin, int end, int gaps) HWY_ATTR {
-      for (int lane = begin; lane < end; lane += kLaneMultiple) {
-        for (int part = 0; part < kParts; ++part) {
-          const int first = lane + part * kFloatLanes;
-          const FloatVec value = weight_of_lanes(first);
-          hn::Store(value, df, p + gaps + first);
-          sums.part[part] = hn::Add(sums.part[part], value);
-        }
+    for (int lane = 0; lane < lanes(); lane += kLaneMultiple) {
+      for (int part = 0; part < kParts; ++part) {
+        const int first = lane + part * kFloatLanes;
+        const FloatVec value = weight_of_lanes(first);
+        hn::Store(value, df, p + first);
+        sums.part[part] = hn::Add(sums.part[part], value);
       }
-    });
+    }
     return hn::Div(hn::Set(df, 1.0F), sum_lanes(sums));
   }
 
   HWY_INLINE void finish(const float* p, FloatVec normalise, float* output) const {
-    each_segment([&](int begin, int end, int gaps) HWY_ATTR {
-      finish_segment(p + gaps + begin, normalise, output + begin, end - begin);
-    });
-  }
-
-  HWY_INLINE void finish_segment(const float* p, FloatVec normalise, float* output,
-                                 int lanes) const {
     const FloatTag df;
     if (row_.plane.is_given() && row_.state != BayesState::kProbability) {
       return smooth_plane(p, normalise, output);
     }
     if (row_.state == BayesState::kProbability) {
-      for (int lane = 0; lane < lanes; lane += kFloatLanes) {
+      for (int lane = 0; lane < lanes(); lane += kFloatLanes) {
         hn::Store(hn::Mul(hn::Load(df, p + lane), normalise), df, output + lane);
       }
       return;
     }
     if (row_.state == BayesState::kSmoothed) {
-      smooth(p, normalise, output, lanes, [](FloatVec smoothed) HWY_ATTR { return smoothed; });
+      smooth(p, normalise, output, [](FloatVec smoothed) HWY_ATTR { return smoothed; });
     } else {
-      smooth(p, normalise, output, lanes,
+      smooth(p, normalise, output,
              [this](FloatVec smoothed) HWY_ATTR { return logarithm_.of(smoothed); });
     }
   }
 
   template <class State>
-  HWY_INLINE void smooth(const float* p, FloatVec normalise, float* output, int lanes,
-                         State state) const {
+  HWY_INLINE void smooth(const float* p, FloatVec normalise, float* output, State state) const {
     switch (row_.prior.radius) {
       case 0:
-        return smooth_with<0>(p, normalise, output, lanes, state);
+        return smooth_with<0>(p, normalise, output, state);
       case 1:
-        return smooth_with<1>(p, normalise, output, lanes, state);
+        return smooth_with<1>(p, normalise, output, state);
       case 2:
-        return smooth_with<2>(p, normalise, output, lanes, state);
+        return smooth_with<2>(p, normalise, output, state);
       default:
-        return smooth_with<-1>(p, normalise, output, lanes, state);
+        return smooth_with<-1>(p, normalise, output, state);
     }
   }
 
   // kRadius: of the prior, −1: any.
   template <int kRadius, class State>
-  HWY_INLINE void smooth_with(const float* p, FloatVec normalise, float* output, int lanes,
+  HWY_INLINE void smooth_with(const float* p, FloatVec normalise, float* output,
                               State state) const {
     const FloatTag df;
     const float* const taps = row_.prior.taps;
     const int radius = kRadius >= 0 ? kRadius : row_.prior.radius;
     const FloatVec floor = hn::Set(df, row_.prior.floor);
-    for (int lane = 0; lane < lanes; lane += kFloatLanes) {
+    for (int lane = 0; lane < lanes(); lane += kFloatLanes) {
       FloatVec sum = hn::Mul(hn::Load(df, p + lane), hn::Set(df, taps[0]));
       for (int k = 1; k <= radius; ++k) {
         const FloatVec both = hn::Add(hn::LoadU(df, p + lane - k), hn::LoadU(df, p + lane + k));
@@ -275,26 +244,22 @@ class WorkColumns {
   const BayesRow& row_;
   int columns_;
   int margin_;
-  std::span<const int> segment_ends_;
   int pitch_;
   ScaledLogarithm logarithm_;
 };
 
 template <class Weight>
 HWY_INLINE void run_columns(const BayesRow& row, Weight weight) {
-  if (row.segment_ends.size() <= 1) {
-    switch (row.star.lanes) {
-      case kLaneMultiple:
-        return WorkColumns<1>(row).run(weight);
-      case 2 * kLaneMultiple:
-        return WorkColumns<2>(row).run(weight);
-      case 3 * kLaneMultiple:
-        return WorkColumns<3>(row).run(weight);
-      default:
-        break;
-    }
+  switch (row.star.lanes) {
+    case kLaneMultiple:
+      return WorkColumns<1>(row).run(weight);
+    case 2 * kLaneMultiple:
+      return WorkColumns<2>(row).run(weight);
+    case 3 * kLaneMultiple:
+      return WorkColumns<3>(row).run(weight);
+    default:
+      return WorkColumns<0>(row).run(weight);
   }
-  WorkColumns<0>(row).run(weight);
 }
 
 void bayes_start_row_simd(const BayesRow& row) {

@@ -172,17 +172,17 @@ TEST(BlockSegments, EndWhereCandidatesAreLeftOut) {
 TEST(CopyBlocks, FillsWhatIsMissing) {
   const std::vector<std::uint16_t> from = {1, 2, 5};
   const std::vector<std::uint16_t> to = {0, 2, 5, 7};
-  std::vector<float> source(48);
+  std::vector<std::int16_t> source(48);
   for (std::size_t k = 0; k < source.size(); ++k) {
-    source[k] = static_cast<float>(candidate_of(from, static_cast<int>(k)));
+    source[k] = static_cast<std::int16_t>(candidate_of(from, static_cast<int>(k)));
   }
-  std::vector<float> target(64);
-  copy_blocks(source.data(), from, to, -1.0F, target.data());
+  std::vector<std::int16_t> target(64);
+  copy_blocks(source.data(), from, to, std::int16_t{-1}, target.data());
   for (int lane = 0; lane < 64; ++lane) {
     const int block = lane / 16;
     const bool is_there = block == 1 || block == 2;
     EXPECT_EQ(target[static_cast<std::size_t>(lane)],
-              is_there ? static_cast<float>(candidate_of(to, lane)) : -1.0F);
+              is_there ? static_cast<std::int16_t>(candidate_of(to, lane)) : -1);
   }
 }
 

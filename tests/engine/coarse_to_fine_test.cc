@@ -330,6 +330,7 @@ TEST(CoarseToFineMatcher, PruningOfVerticalSearchIsRefused) {
   Execution execution({.threads = 1});
   MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 3, {0, 9});
   options.disparities_y = DisparityRange{-1, 1};
+  options.parameters.prior_smoothing = PriorSmoothing::kMaximum;
   options.parameters.candidate_blocks = 2;
   try {
     const StereoMatcher matcher(options, execution);

@@ -209,7 +209,6 @@ TEST_P(CrossCheckLevel, OfTooFewLevelsItIsTheCoarsest) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, CrossCheckLevel,
                          ::testing::Values(Kind{PriorSmoothing::kSum, 0},
-                                           Kind{PriorSmoothing::kSum, 2},
                                            Kind{PriorSmoothing::kMaximum, 0},
                                            Kind{PriorSmoothing::kMaximum, 2}),
                          [](const auto& instance) { return name_of(instance.param); });

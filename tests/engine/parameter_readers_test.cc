@@ -209,6 +209,9 @@ MethodParameters parameters_of(const test::SampleRow& row) {
   overrides.iterations = 3;
   overrides.final_iterations = 2;
   overrides.levels = situation.levels;
+  if (situation.candidate_blocks > 0) {
+    overrides.prior_smoothing = PriorSmoothing::kMaximum;  // only that is pruned
+  }
   overrides.edge_weight = situation.edge_weight;
   overrides.certainty = situation.certainty;
   overrides.estimate_sigma_measurement = false;

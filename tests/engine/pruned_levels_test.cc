@@ -13,13 +13,10 @@
 
 #include "engine/error.h"
 #include "engine/matching/aggregation/edge_weights.h"
-#include "engine/matching/aggregation/stage_bayes.h"
 #include "engine/matching/aggregation/stage_max_product.h"
 #include "engine/matching/levels/candidate_blocks.h"
 #include "engine/matching/levels/stage_block_source.h"
 #include "engine/matching/levels/stage_fixed_energies.h"
-#include "engine/matching/levels/stage_level_likelihoods.h"
-#include "engine/matching/selection/stage_block_selection.h"
 #include "engine/matching/stereo_matcher.h"
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
 #include "tests/engine/cell_stages.h"
@@ -31,10 +28,11 @@ namespace vantage {
 namespace pruned_levels_test {
 
 using kernels::CandidateGeometry;
+using kernels::FixedEnergy;
 using scheduler::Extent;
 using test::CellSource;
-using test::CellVolume;
 using test::identical;
+using Energies = test::CellVolume<FixedEnergy>;
 
 constexpr Extent kExtent{41, 19};
 
@@ -98,6 +96,7 @@ MethodParameters bayes_parameters(double sigma_prior, double mu) {
   overrides.sigma_prior = sigma_prior;
   overrides.mu = mu;
   overrides.edge_weight = 0.2;
+  overrides.prior_smoothing = PriorSmoothing::kMaximum;
   return resolve(MatchMethod::kBayes, overrides);
 }
 
@@ -117,17 +116,17 @@ EdgeWeights random_edges(const MethodParameters& parameters) {
 }
 
 /// Keeps the cells of the last stage, in all lanes that `blocks` has.
-template <typename Cell>
 class BlockSink final : public scheduler::RowStage {
  public:
-  BlockSink(CellVolume<Cell>& volume, const CandidateBlocks* blocks, int lanes)
+  BlockSink(Energies& volume, const CandidateBlocks* blocks, int lanes)
       : RowStage(volume.extent), volume_(volume), blocks_(blocks), lanes_(lanes) {}
   [[nodiscard]] std::string_view name() const override { return "block sink"; }
   [[nodiscard]] std::size_t bytes_per_column() const override { return 0; }
   void make_row(const scheduler::RowTask& task) const override {
     for (int x = task.columns.begin; x < task.columns.end; ++x) {
-      const Cell* cells = task.input.row<Cell>(task.y) +
-                          static_cast<std::ptrdiff_t>(x - task.input.columns().begin) * lanes_;
+      const FixedEnergy* cells =
+          task.input.row<FixedEnergy>(task.y) +
+          static_cast<std::ptrdiff_t>(x - task.input.columns().begin) * lanes_;
       for (int lane = 0; lane < volume_.lanes; ++lane) {
         if (blocks_ == nullptr) {
           volume_.at(x, task.y, lane) = cells[lane];
@@ -143,32 +142,26 @@ class BlockSink final : public scheduler::RowStage {
   }
 
  private:
-  CellVolume<Cell>& volume_;
+  Energies& volume_;
   const CandidateBlocks* blocks_;
   int lanes_;
 };
 
 /// Makes candidates that are not looked at impossible.
-template <typename Cell>
 class MaskedSource final : public scheduler::RowStage {
  public:
-  MaskedSource(std::unique_ptr<scheduler::RowStage> inner, const CandidateBlocks& blocks, int lanes,
-               Cell impossible)
-      : RowStage(inner->extent()),
-        inner_(std::move(inner)),
-        blocks_(blocks),
-        lanes_(lanes),
-        impossible_(impossible) {}
+  MaskedSource(std::unique_ptr<scheduler::RowStage> inner, const CandidateBlocks& blocks, int lanes)
+      : RowStage(inner->extent()), inner_(std::move(inner)), blocks_(blocks), lanes_(lanes) {}
   [[nodiscard]] std::string_view name() const override { return "masked source"; }
   [[nodiscard]] std::size_t bytes_per_column() const override { return inner_->bytes_per_column(); }
   void make_row(const scheduler::RowTask& task) const override {
     inner_->make_row(task);
-    auto* cells = reinterpret_cast<Cell*>(task.output);
+    auto* cells = reinterpret_cast<FixedEnergy*>(task.output);
     for (int x = task.columns.begin; x < task.columns.end; ++x, cells += lanes_) {
       const BlockList list = blocks_.at(x, task.y);
       for (int lane = 0; lane < lanes_; ++lane) {
         if (std::ranges::find(list, lane / 16) == list.end()) {
-          cells[lane] = impossible_;
+          cells[lane] = kernels::kMostEnergy;
         }
       }
     }
@@ -178,104 +171,58 @@ class MaskedSource final : public scheduler::RowStage {
   std::unique_ptr<scheduler::RowStage> inner_;
   const CandidateBlocks& blocks_;
   int lanes_;
-  Cell impossible_;
 };
 
-/// What differs between sums, whose cells are likelihoods, and maxima, whose cells are energies.
-template <typename Cell>
-struct Smoothing;
-
-template <>
-struct Smoothing<float> {
-  static constexpr PriorSmoothing kKind = PriorSmoothing::kSum;
-  static constexpr float kImpossible = 0;
-  static constexpr float kBound = 2e-5F;  ///< of differences by rounding
-  static auto source(const Level& level, const MethodParameters& /*parameters*/,
-                     const CandidateBlocks* blocks) {
-    return make_level_likelihood_stage(level.geometry, level.energies, blocks);
+/// What a level ends with, all candidates of it; pruned, or as if all were looked at but those
+/// not in blocks were impossible. Where nothing is looked at, pruned cells are impossible.
+Energies cells_of(const Level& level, const MethodParameters& parameters, bool pruned,
+                  const EdgeWeights* edges = nullptr, bool every_way = false) {
+  Energies result(kExtent, level.geometry.lanes());
+  std::ranges::fill(result.cells, kernels::kMostEnergy);
+  const CandidateBlocks* const blocks = pruned ? &level.blocks : nullptr;
+  std::vector<std::unique_ptr<scheduler::RowStage>> stages;
+  stages.push_back(make_level_fixed_energy_stage(level.geometry, level.energies,
+                                                 EnergyFormat(parameters), blocks));
+  if (!pruned) {
+    stages.back() = std::make_unique<MaskedSource>(std::move(stages.back()), level.blocks,
+                                                   level.geometry.lanes());
   }
-  static constexpr auto kIterations = make_bayes_stages;
-};
-
-template <>
-struct Smoothing<kernels::FixedEnergy> {
-  static constexpr PriorSmoothing kKind = PriorSmoothing::kMaximum;
-  static constexpr kernels::FixedEnergy kImpossible = kernels::kMostEnergy;
-  static constexpr kernels::FixedEnergy kBound = 0;
-  static auto source(const Level& level, const MethodParameters& parameters,
-                     const CandidateBlocks* blocks) {
-    return make_level_fixed_energy_stage(level.geometry, level.energies, EnergyFormat(parameters),
-                                         blocks);
+  for (auto& stage : make_max_product_stages(parameters, level.geometry, kExtent.rows,
+                                             {.volume = &level.coarser}, edges, blocks, {})) {
+    stages.push_back(std::move(stage));
   }
-  static constexpr auto kIterations = make_max_product_stages;
-};
-
-template <typename Cell>
-class PrunedLevel : public ::testing::Test {
- protected:
-  static MethodParameters parameters(double sigma_prior, double mu) {
-    MethodParameters parameters = bayes_parameters(sigma_prior, mu);
-    parameters.prior_smoothing = Smoothing<Cell>::kKind;
-    return parameters;
+  stages.push_back(std::make_unique<BlockSink>(
+      result, blocks, pruned ? level.blocks.lanes() : level.geometry.lanes()));
+  std::vector<const scheduler::RowStage*> chain;
+  for (const auto& stage : stages) {
+    chain.push_back(stage.get());
   }
-
-  /// What a level ends with, all candidates of it; pruned, or as if all were looked at but those
-  /// not in blocks were impossible. Where nothing is looked at, pruned cells are impossible.
-  static CellVolume<Cell> cells_of(const Level& level, const MethodParameters& parameters,
-                                   bool pruned, const EdgeWeights* edges = nullptr,
-                                   bool every_way = false) {
-    CellVolume<Cell> result(kExtent, level.geometry.lanes());
-    std::ranges::fill(result.cells, Smoothing<Cell>::kImpossible);
-    const CandidateBlocks* const blocks = pruned ? &level.blocks : nullptr;
-    std::vector<std::unique_ptr<scheduler::RowStage>> stages;
-    stages.push_back(Smoothing<Cell>::source(level, parameters, blocks));
-    if (!pruned) {
-      stages.back() = std::make_unique<MaskedSource<Cell>>(std::move(stages.back()), level.blocks,
-                                                           level.geometry.lanes(),
-                                                           Smoothing<Cell>::kImpossible);
-    }
-    for (auto& stage :
-         Smoothing<Cell>::kIterations(parameters, level.geometry, kExtent.rows,
-                                      {.volume = &level.coarser}, edges, blocks, {})) {
-      stages.push_back(std::move(stage));
-    }
-    stages.push_back(std::make_unique<BlockSink<Cell>>(
-        result, blocks, pruned ? level.blocks.lanes() : level.geometry.lanes()));
-    std::vector<const scheduler::RowStage*> chain;
-    for (const auto& stage : stages) {
-      chain.push_back(stage.get());
-    }
-    scheduler::run_whole_image(chain);
-    if (every_way) {
-      const CellVolume<Cell> expected = result;
-      test::run_in_strips(chain, [&] { ASSERT_EQ(result.cells, expected.cells); });
-    }
-    return result;
+  scheduler::run_whole_image(chain);
+  if (every_way) {
+    const Energies expected = result;
+    test::run_in_strips(chain, [&] { ASSERT_EQ(result.cells, expected.cells); });
   }
-};
-
-using CellTypes = ::testing::Types<float, kernels::FixedEnergy>;
-TYPED_TEST_SUITE(PrunedLevel, CellTypes);
+  return result;
+}
 
 /// With a prior that does not reach from one candidate to the next, what is not looked at is the
 /// same as what is impossible.
-TYPED_TEST(PrunedLevel, EqualsALevelWhereTheOthersAreImpossible) {
+TEST(PrunedLevel, EqualsALevelWhereTheOthersAreImpossible) {
   for (const int candidates : {5, 40, 100, 200}) {
     for (const double mu : {0.5, 0.7}) {
       Level level(candidates, 3, false);
       level.mask_coarser();
-      const MethodParameters parameters = this->parameters(0.1, mu);
+      const MethodParameters parameters = bayes_parameters(0.1, mu);
       const EdgeWeights edges = random_edges(parameters);
       for (const EdgeWeights* const weights : {kNoEdges, &edges}) {
-        const auto pruned = this->cells_of(level, parameters, true, weights);
-        const auto masked = this->cells_of(level, parameters, false, weights);
+        const auto pruned = cells_of(level, parameters, true, weights);
+        const auto masked = cells_of(level, parameters, false, weights);
         for (int y = 0; y < kExtent.rows; ++y) {
           for (int x = 0; x < kExtent.columns; ++x) {
             const BlockList list = level.blocks.at(x, y);
             for (int lane = 0; lane < level.blocks.count(list); ++lane) {
               const int candidate = candidate_of(list, lane);
-              ASSERT_NEAR(pruned.at(x, y, candidate), masked.at(x, y, candidate),
-                          Smoothing<TypeParam>::kBound)
+              ASSERT_EQ(pruned.at(x, y, candidate), masked.at(x, y, candidate))
                   << candidates << " candidates, mu " << mu << ", " << candidate << " of " << x
                   << ", " << y;
             }
@@ -286,28 +233,28 @@ TYPED_TEST(PrunedLevel, EqualsALevelWhereTheOthersAreImpossible) {
   }
 }
 
-TYPED_TEST(PrunedLevel, DoesNotDependOnHowItIsCut) {
+TEST(PrunedLevel, DoesNotDependOnHowItIsCut) {
   const Level level(100, 3, false);
-  const MethodParameters parameters = this->parameters(0.4, 0.5);
+  const MethodParameters parameters = bayes_parameters(0.4, 0.5);
   const EdgeWeights edges = random_edges(parameters);
   for (const EdgeWeights* const weights : {kNoEdges, &edges}) {
-    this->cells_of(level, parameters, true, weights, true);
+    cells_of(level, parameters, true, weights, true);
   }
 }
 
 /// Where all blocks are looked at, bit for bit the same.
-TYPED_TEST(PrunedLevel, WithAllCandidatesIsTheFullLevel) {
+TEST(PrunedLevel, WithAllCandidatesIsTheFullLevel) {
   for (const int candidates : {3, 16, 30, 61}) {
     const Level level(candidates, 8, true);
     ASSERT_EQ(level.blocks.cells(),
               static_cast<double>(kExtent.columns) * kExtent.rows * candidates);
     for (const double sigma_prior : {0.1, 0.4, 2.0}) {
       for (const double mu : {0.5, 0.7}) {
-        const MethodParameters parameters = this->parameters(sigma_prior, mu);
+        const MethodParameters parameters = bayes_parameters(sigma_prior, mu);
         const EdgeWeights edges = random_edges(parameters);
         for (const EdgeWeights* const weights : {kNoEdges, &edges}) {
-          EXPECT_EQ(this->cells_of(level, parameters, true, weights).cells,
-                    this->cells_of(level, parameters, false, weights).cells)
+          EXPECT_EQ(cells_of(level, parameters, true, weights).cells,
+                    cells_of(level, parameters, false, weights).cells)
               << candidates << " candidates";
         }
       }
@@ -315,8 +262,7 @@ TYPED_TEST(PrunedLevel, WithAllCandidatesIsTheFullLevel) {
   }
 }
 
-MatchOptions pruned_options(DisparityRange range, int blocks,
-                            PriorSmoothing smoothing = PriorSmoothing::kSum) {
+MatchOptions pruned_options(DisparityRange range, int blocks) {
   MatchOptions options;
   options.method = MatchMethod::kBayes;
   options.disparities = range;
@@ -327,7 +273,7 @@ MatchOptions pruned_options(DisparityRange range, int blocks,
   options.parameters.iterations = 3;
   options.parameters.levels = 4;
   options.parameters.candidate_blocks = blocks;
-  options.parameters.prior_smoothing = smoothing;
+  options.parameters.prior_smoothing = PriorSmoothing::kMaximum;
   options.raw = true;
   return options;
 }
@@ -341,27 +287,20 @@ DisparityMaps maps_of(const test::PhotographPair& pair, const MatchOptions& opti
   return maps;
 }
 
-class PrunedMatchingOf : public ::testing::TestWithParam<PriorSmoothing> {};
-INSTANTIATE_TEST_SUITE_P(Smoothing, PrunedMatchingOf,
-                         ::testing::Values(PriorSmoothing::kSum, PriorSmoothing::kMaximum),
-                         [](const auto& instance) {
-                           return instance.param == PriorSmoothing::kSum ? "sum" : "maximum";
-                         });
-
-TEST_P(PrunedMatchingOf, SixteenCandidatesIsFullMatching) {
+TEST(PrunedMatching, SixteenCandidatesIsFullMatching) {
   for (const Extent extent : {Extent{1, 1}, Extent{1, 7}, Extent{13, 11}, Extent{70, 37}}) {
     const DisparityRange range{0, std::min(15, extent.columns - 1)};
     const auto pair =
         test::textured_pair(extent.columns, extent.rows, range, test::PixelKind::kGrey8, 3);
-    EXPECT_TRUE(identical(maps_of(pair, pruned_options(range, 1, GetParam())),
-                          maps_of(pair, pruned_options(range, 0, GetParam()))));
+    EXPECT_TRUE(identical(maps_of(pair, pruned_options(range, 1)),
+                          maps_of(pair, pruned_options(range, 0))));
   }
 }
 
-TEST_P(PrunedMatchingOf, ManyCandidatesDoesNotDependOnExecution) {
+TEST(PrunedMatching, ManyCandidatesDoesNotDependOnExecution) {
   const DisparityRange range{-3, 60};
   const auto pair = test::textured_pair(83, 37, range, test::PixelKind::kGrey8, 3);
-  const MatchOptions options = pruned_options(range, 2, GetParam());
+  const MatchOptions options = pruned_options(range, 2);
   const DisparityMaps expected =
       maps_of(pair, options, {.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   constexpr int kStrips[] = {5, 16, 1000};
@@ -379,11 +318,11 @@ TEST_P(PrunedMatchingOf, ManyCandidatesDoesNotDependOnExecution) {
   }
 }
 
-TEST_P(PrunedMatchingOf, WiderRangesThanImagesHasADisparityEverywhere) {
+TEST(PrunedMatching, WiderRangesThanImagesHasADisparityEverywhere) {
   for (const Extent extent : {Extent{1, 1}, Extent{5, 3}, Extent{33, 17}}) {
     const auto pair =
         test::textured_pair(extent.columns, extent.rows, {0, 3}, test::PixelKind::kGrey8, 3);
-    const DisparityMaps maps = maps_of(pair, pruned_options({-90, 120}, 1, GetParam()));
+    const DisparityMaps maps = maps_of(pair, pruned_options({-90, 120}, 1));
     for (int y = 0; y < extent.rows; ++y) {
       for (int x = 0; x < extent.columns; ++x) {
         EXPECT_FALSE(std::isnan(maps.left.disparity_px.at(x, y)));
@@ -394,7 +333,7 @@ TEST_P(PrunedMatchingOf, WiderRangesThanImagesHasADisparityEverywhere) {
 }
 
 /// A bar 3 pixels wide far in front of a background.
-TEST_P(PrunedMatchingOf, ThinObjectsStayFound) {
+TEST(PrunedMatching, ThinObjectsStayFound) {
   constexpr int kWidth = 220;
   constexpr int kHeight = 60;
   constexpr int kBar = 71;
@@ -417,7 +356,7 @@ TEST_P(PrunedMatchingOf, ThinObjectsStayFound) {
   const test::PhotographPair pair{Photograph{std::move(left)}, Photograph{std::move(right)}};
   MatchReport full_report;
   MatchReport pruned_report;
-  MatchOptions options = pruned_options({0, 127}, 0, GetParam());
+  MatchOptions options = pruned_options({0, 127}, 0);
   options.parameters.cost = MatchCost::kContaminated;
   options.parameters.sigma_measurement = 5;
   options.parameters.epsilon_measurement = 1e-3;
@@ -473,6 +412,18 @@ TEST(PrunedMatching, IsRefusedWhereItHasNoMeaning) {
   EXPECT_EQ(message([](MethodOverrides& p) { p.cost = MatchCost::kGradient; }),
             "candidate-blocks is 2, expected 0 with the cost gradient: its likelihoods compare a "
             "candidate with the best of all");
+  EXPECT_EQ(message([](MethodOverrides& p) { p.prior_smoothing = PriorSmoothing::kSum; }),
+            "candidate-blocks is 2, expected 0 with prior-smoothing sum: pruning needs "
+            "prior-smoothing maximum");
+}
+
+TEST(PrunedMatching, OfAPresetIsDroppedWithSums) {
+  MatchOptions options;
+  options.preset = MatchPreset::kBalanced;
+  EXPECT_GT(options.resolved().candidate_blocks, 0);
+  options.parameters.prior_smoothing = PriorSmoothing::kSum;
+  EXPECT_EQ(options.resolved().candidate_blocks, 0);
+  options.validate();
 }
 
 }  // namespace pruned_levels_test

@@ -56,10 +56,7 @@ class BayesStep : public EveryTarget {
           row.star.source = source.row(0);
           row.source_pitch = source_pitch;
           row.output_pitch = output_pitch;
-          const std::vector<int> ends =
-              segment_ends(lanes, is_in_plane ? 0 : static_cast<int>(seed % 4));
           row.plane = is_in_plane ? plane_of(shape.count, seed) : CandidatePlane{};
-          row.segment_ends = ends;
           row.prior = {taps.data(), radius, floor};
           row.state = state;
           row.mu = 0.7F;
@@ -70,10 +67,7 @@ class BayesStep : public EveryTarget {
                            .above = weights.data() + shape.columns + 1,
                            .below = weights.data() + 2 * shape.columns + 1};
           }
-          Image<float> work(
-              bayes_work_floats(lanes, radius, std::max(1, static_cast<int>(ends.size())),
-                                row.plane),
-              1);
+          Image<float> work(bayes_work_floats(lanes, radius, row.plane), 1);
           work.fill(-7);  // any contents
           row.work = work.row(0);
           Image<float> expected(output_pitch * shape.columns, 1);

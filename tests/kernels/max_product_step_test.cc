@@ -36,6 +36,20 @@ constexpr Shape kShapes[] = {{1, 1},  {2, 3},   {3, 16}, {40, 16}, {5, 17},  {1,
                              {4, 64}, {2, 113}, {1, 64}, {3, 128}, {20, 80}, {9, 300}, {2, 2100}};
 constexpr int kRadii[] = {0, 1, 2, 3, 4, 5, 20};
 
+/// Runs of lanes: one, every kLaneMultiple lanes one, or a cut behind the first ones.
+std::vector<int> segment_ends(int lanes, int kind) {
+  std::vector<int> ends;
+  for (int end = kLaneMultiple; kind > 0 && end < lanes; end += kLaneMultiple) {
+    if (kind == 1 || ends.empty()) {
+      ends.push_back(end);
+    }
+  }
+  if (kind > 0) {
+    ends.push_back(lanes);
+  }
+  return ends;
+}
+
 struct Case {
   Shape shape;
   int radius;

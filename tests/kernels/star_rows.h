@@ -57,20 +57,6 @@ class CellStarRows {
 
 using StarRows = CellStarRows<float>;
 
-/// Runs of lanes: one, every kLaneMultiple lanes one, or a cut behind the first ones.
-inline std::vector<int> segment_ends(int lanes, int kind) {
-  std::vector<int> ends;
-  for (int end = kLaneMultiple; kind > 0 && end < lanes; end += kLaneMultiple) {
-    if (kind == 1 || ends.empty()) {
-      ends.push_back(end);
-    }
-  }
-  if (kind > 0) {
-    ends.push_back(lanes);
-  }
-  return ends;
-}
-
 /// `count` candidates as displacements in two dimensions, in runs as `choice` says; not given where
 /// they cannot be.
 inline CandidatePlane plane_of(int count, unsigned choice) {

@@ -7,6 +7,7 @@
 
 #include "engine/column_work.h"
 #include "engine/matching/aggregation/bayes_step_stage.h"
+#include "engine/matching/levels/stage_from_coarser.h"
 #include "kernels/bayes_step/bayes_step.h"
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
 
@@ -45,19 +46,12 @@ enum class Form { kStart, kHalf, kGeneral };
 /// What stands for neighbours outside the image: factors of 1, or logarithms of those.
 float neutral_state(Form form) { return form == Form::kHalf ? 1 : 0; }
 
-/// What neighbours have in place of candidates that were not looked at: the state of p = 0.
-float absent_state(const MethodParameters& parameters, Form form) {
-  const auto floor = static_cast<float>(parameters.epsilon_prior);
-  return form == Form::kHalf ? floor : static_cast<float>(parameters.mu) * std::log2(floor);
-}
-
 class BayesStage final : public BayesStepStage<float> {
  public:
   BayesStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
              int height, Form form, BayesState state, const EdgeWeights* edges,
-             const CandidateBlocks* blocks, const kernels::CandidatePlane& plane)
-      : BayesStepStage(geometry, height, form == Form::kStart, neutral_state(form),
-                       absent_state(parameters, form), blocks),
+             const kernels::CandidatePlane& plane)
+      : BayesStepStage(geometry, height, form == Form::kStart, neutral_state(form)),
         form_(form),
         state_(state),
         mu_(static_cast<float>(parameters.mu)),
@@ -67,28 +61,27 @@ class BayesStage final : public BayesStepStage<float> {
         plane_(plane) {}
 
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
-    return vantage::column_work(kernel_work(), candidates());
+    return vantage::column_work(kernel_work(), count());
+  }
+  /// Of the kernel.
+  [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
+                                        scheduler::Extent /*input*/) const override {
+    return sizeof(float) *
+           static_cast<std::size_t>(kernels::bayes_work_floats(lanes(), radius(), plane_));
   }
 
- protected:
-  [[nodiscard]] std::size_t work_cells() const override {
-    return static_cast<std::size_t>(
-        kernels::bayes_work_floats(lanes(), radius(), most_segments(), plane_));
-  }
-
-  void make_columns(const Columns& columns) const override {
+  void make_row(const scheduler::RowTask& task) const override {
     kernels::BayesRow row;
-    row.star = columns.star;
+    row.star = step_star(task);
     row.prior = {taps_.data(), radius(), floor_};
     row.state = state_;
     row.mu = mu_;
-    row.weights = weights(columns.x, columns.y);
-    row.count = columns.candidates;
-    row.segment_ends = columns.segment_ends;
+    row.weights = weights(task.columns.begin, task.y);
+    row.count = count();
     row.plane = plane_;
-    row.output = columns.output;
+    row.output = reinterpret_cast<float*>(task.output);
     row.source_pitch = row.output_pitch = lanes();
-    row.work = columns.work;
+    row.work = reinterpret_cast<float*>(task.state);
     switch (form_) {
       case Form::kStart:
         kernels::bayes_start_row(row);
@@ -142,9 +135,8 @@ class BayesFromCoarserStage final : public FromCoarserStage<float> {
  public:
   BayesFromCoarserStage(const MethodParameters& parameters,
                         const kernels::CandidateGeometry& geometry, int height, BayesState state,
-                        const CoarserResult& coarser, const CandidateBlocks* blocks,
-                        const kernels::CandidatePlane& plane)
-      : FromCoarserStage(geometry, height, coarser, blocks),
+                        const CoarserResult& coarser, const kernels::CandidatePlane& plane)
+      : FromCoarserStage(geometry, height, coarser, nullptr),
         state_(state),
         mu_(static_cast<float>(parameters.mu)),
         taps_(prior_taps(parameters, geometry.count)),
@@ -162,11 +154,10 @@ class BayesFromCoarserStage final : public FromCoarserStage<float> {
   /// Probabilities, and what smoothing needs.
   [[nodiscard]] std::size_t work_cells() const override {
     return kCoarserColumns * static_cast<std::size_t>(lanes()) +
-           static_cast<std::size_t>(kernels::bayes_work_floats(
-               lanes(), radius(), most_segments(lanes(), blocks()), plane_));
+           static_cast<std::size_t>(kernels::bayes_work_floats(lanes(), radius(), plane_));
   }
 
-  void make_states(const kernels::CompactRow& coarser, std::span<const int> segment_ends,
+  void make_states(const kernels::CompactRow& coarser, std::span<const int> /*segment_ends*/,
                    float* states, float* work) const override {
     float* const probabilities = work;
     kernels::probabilities_of_compact_row(coarser, probabilities);
@@ -181,11 +172,7 @@ class BayesFromCoarserStage final : public FromCoarserStage<float> {
     row.count = coarser.count;
     row.output = states;
     row.source_pitch = row.output_pitch = coarser.lanes;
-    if (plane_.is_given()) {
-      row.plane = plane_;
-    } else {
-      row.segment_ends = segment_ends;
-    }
+    row.plane = plane_;
     row.work = work + kCoarserColumns * static_cast<std::size_t>(lanes());
     kernels::bayes_start_row(row);
   }
@@ -204,8 +191,7 @@ class BayesFromCoarserStage final : public FromCoarserStage<float> {
 
 std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const CoarserResult& coarser, const EdgeWeights* edges, const CandidateBlocks* blocks,
-    const kernels::CandidatePlane& plane) {
+    const LevelVolume* coarser, const EdgeWeights* edges, const kernels::CandidatePlane& plane) {
   const bool half = parameters.mu == 0.5 && edges == nullptr &&
                     parameters.epsilon_prior >= kLeastEpsilonOfProductForm;
   const BayesState between = half ? BayesState::kSmoothed : BayesState::kLogSmoothed;
@@ -213,13 +199,13 @@ std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
   for (int i = 0; i <= parameters.iterations; ++i) {
     const Form form = i == 0 ? Form::kStart : half ? Form::kHalf : Form::kGeneral;
     const BayesState state = i == parameters.iterations ? BayesState::kProbability : between;
-    if (i == 0 && coarser.volume != nullptr) {
+    if (i == 0 && coarser != nullptr) {
       stages.push_back(std::make_unique<BayesFromCoarserStage>(parameters, geometry, height, state,
-                                                               coarser, blocks, plane));
+                                                               CoarserResult{coarser}, plane));
       continue;
     }
-    stages.push_back(std::make_unique<BayesStage>(parameters, geometry, height, form, state, edges,
-                                                  blocks, plane));
+    stages.push_back(
+        std::make_unique<BayesStage>(parameters, geometry, height, form, state, edges, plane));
   }
   return stages;
 }

@@ -4,8 +4,7 @@
 #include <vector>
 
 #include "engine/matching/aggregation/edge_weights.h"
-#include "engine/matching/levels/candidate_blocks.h"
-#include "engine/matching/levels/stage_from_coarser.h"
+#include "engine/matching/levels/level_volume.h"
 #include "engine/matching/options/method_parameters.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
@@ -19,24 +18,19 @@ namespace vantage {
 ///
 /// `coarser`, the probabilities that the next coarser level ended with (stage_level_likelihoods),
 /// must outlive the stages; the start is made of it instead of the likelihoods, which
-/// then only the iterations look at.
-///
-/// `blocks`: the candidates that are looked at, in whose lanes the cells of all stages lie; all
-/// others have the probability 0. Null: all, and always so without a coarser level. Must outlive
-/// the stages.
+/// then only the iterations look at. Null: there is no coarser level.
 ///
 /// `edges`: of the image of this level, which must outlive the stages: they weight neighbours
 /// (7.3), p ∝ p0 · Π pS^(μ·w) with w = 1 for the column itself. Null: all neighbours count 1.
 ///
-/// `plane`: of a search in two dimensions, without blocks; the prior is then one of the length of
-/// an offset.
+/// `plane`: of a search in two dimensions; the prior is then one of the length of an offset.
 ///
 /// μ = ½ takes the form without exponentials and logarithms, unless neighbours are weighted or εP
 /// is so small (below 1e-7) that the product of five smoothed probabilities could leave the range
 /// of normal floats.
 std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const CoarserResult& coarser = {}, const EdgeWeights* edges = nullptr,
-    const CandidateBlocks* blocks = nullptr, const kernels::CandidatePlane& plane = {});
+    const LevelVolume* coarser = nullptr, const EdgeWeights* edges = nullptr,
+    const kernels::CandidatePlane& plane = {});
 
 }  // namespace vantage

@@ -1,11 +1,14 @@
 #include "engine/matching/aggregation/stage_max_product.h"
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "engine/column_work.h"
 #include "engine/matching/aggregation/bayes_step_stage.h"
+#include "engine/matching/levels/block_star.h"
 #include "engine/matching/levels/energy_format.h"
+#include "engine/matching/levels/stage_from_coarser.h"
 #include "kernels/max_product_step/max_product_step.h"
 
 namespace vantage {
@@ -41,27 +44,71 @@ class MaxProductStage final : public BayesStepStage<FixedEnergy> {
   MaxProductStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
                   int height, bool is_start, bool smooths, const EdgeWeights* edges,
                   const CandidateBlocks* blocks, const kernels::CandidatePlane& plane)
-      : BayesStepStage(geometry, height, is_start, 0, EnergyFormat(parameters).ceiling(), blocks),
+      : BayesStepStage(cell_geometry(geometry, blocks), height, is_start, 0),
         smooths_(smooths),
         mu_(kernels::fixed_weight(static_cast<float>(parameters.mu))),
         rises_(parameters, geometry.count, plane),
-        edges_(edges) {}
+        edges_(edges),
+        blocks_(blocks) {
+    if (blocks != nullptr) {
+      stars_.emplace(*blocks, EnergyFormat(parameters).ceiling());
+    }
+  }
 
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     const kernels::KernelWork work =
         is_start()
             ? kernels::max_product_start_work(rises_.radius_of_work())
             : kernels::max_product_work(rises_.radius_of_work(), smooths_, edges_ != nullptr);
-    return vantage::column_work(work, candidates());
+    return vantage::column_work(work, candidates_in(blocks_, count()));
+  }
+  /// Of the kernel and of stars.
+  [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
+                                        scheduler::Extent /*input*/) const override {
+    return sizeof(FixedEnergy) * (work_cells() + (stars_ ? stars_->work_cells() : 0));
   }
 
- protected:
-  [[nodiscard]] std::size_t work_cells() const override {
-    return static_cast<std::size_t>(
-        kernels::max_product_work_cells(lanes(), rises_.radius(), most_segments(), rises_.plane()));
+  void make_row(const scheduler::RowTask& task) const override {
+    Columns columns;
+    columns.output = reinterpret_cast<FixedEnergy*>(task.output);
+    columns.work = reinterpret_cast<FixedEnergy*>(task.state);
+    columns.x = task.columns.begin;
+    columns.y = task.y;
+    if (blocks_ == nullptr) {
+      columns.star = step_star(task);
+      make_columns(columns);
+      return;
+    }
+    FixedEnergy* const star_work = columns.work + work_cells();
+    while (columns.x < task.columns.end) {
+      const CandidateBlocks::Run run = blocks_->run_at(columns.x, task.y, task.columns.end);
+      const BlockSegments segments(run.blocks);
+      columns.star = stars_->star(task, run, neutral(), star_work);
+      columns.segment_ends = segments.ends();
+      make_columns(columns);
+      columns.output += static_cast<std::ptrdiff_t>(run.columns.size()) * lanes();
+      columns.x = run.columns.end;
+    }
   }
 
-  void make_columns(const Columns& columns) const override {
+ private:
+  /// Columns of a row that look at the same candidates.
+  struct Columns {
+    kernels::CellStarRow<FixedEnergy> star;
+    int x = 0;  ///< of the first one
+    int y = 0;
+    std::span<const int> segment_ends;  ///< where runs of neighbouring candidates end; empty: one
+    FixedEnergy* output = nullptr;      ///< lanes() from column to column, as star.source
+    FixedEnergy* work = nullptr;        ///< work_cells(), 64-byte aligned
+  };
+
+  /// What the kernel needs.
+  [[nodiscard]] std::size_t work_cells() const {
+    return static_cast<std::size_t>(kernels::max_product_work_cells(
+        lanes(), rises_.radius(), most_segments(lanes(), blocks_), rises_.plane()));
+  }
+
+  void make_columns(const Columns& columns) const {
     kernels::MaxProductRow row;
     row.star = columns.star;
     row.prior = rises_.prior();
@@ -84,11 +131,12 @@ class MaxProductStage final : public BayesStepStage<FixedEnergy> {
     kernels::max_product_row(row);
   }
 
- private:
   bool smooths_;
   FixedWeight mu_;
   PriorRises rises_;
   const EdgeWeights* edges_;
+  const CandidateBlocks* blocks_;
+  std::optional<BlockStars> stars_;  ///< where there are blocks
 };
 
 class MaxProductFromCoarserStage final : public FromCoarserStage<FixedEnergy> {

@@ -22,8 +22,11 @@ namespace vantage {
 /// must outlive the stages; the start is made of it instead of the first stage's energies, which
 /// then only the iterations look at.
 ///
-/// `edges`, `blocks`, `plane`: as make_bayes_stages() takes them, prepared with the same
-/// parameters; candidates that are not looked at have the energy of the ceiling.
+/// `blocks`: the candidates that are looked at, in whose lanes the cells of all stages lie; all
+/// others have the energy of the ceiling. Null: all, and always so without a coarser level and with
+/// `plane`. Must outlive the stages.
+///
+/// `edges`, `plane`: as make_bayes_stages() takes them, prepared with the same parameters.
 std::vector<std::unique_ptr<scheduler::RowStage>> make_max_product_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
     const CoarserResult& coarser = {}, const EdgeWeights* edges = nullptr,

@@ -2,14 +2,11 @@
 
 #include <algorithm>
 
-#include "kernels/cells/fixed_energy.h"
-
 namespace vantage {
 
-template <typename Cell>
-kernels::CellStarRow<Cell> BlockStars<Cell>::star(const scheduler::RowTask& task,
-                                                  const CandidateBlocks::Run& run,
-                                                  const Cell* neutral, Cell* work) const {
+kernels::CellStarRow<BlockStars::Cell> BlockStars::star(const scheduler::RowTask& task,
+                                                        const CandidateBlocks::Run& run,
+                                                        const Cell* neutral, Cell* work) const {
   const scheduler::InputRows& input = task.input;
   const auto lanes = static_cast<std::ptrdiff_t>(run.blocks.size()) * kernels::kLaneMultiple;
   kernels::CellStarRow<Cell> star;
@@ -44,9 +41,9 @@ kernels::CellStarRow<Cell> BlockStars<Cell>::star(const scheduler::RowTask& task
 }
 
 /// Column x of the row, for a run beside it.
-template <typename Cell>
-const Cell* BlockStars<Cell>::beside(const scheduler::RowTask& task,
-                                     const CandidateBlocks::Run& run, int x, Cell* work) const {
+const BlockStars::Cell* BlockStars::beside(const scheduler::RowTask& task,
+                                           const CandidateBlocks::Run& run, int x,
+                                           Cell* work) const {
   const Cell* const cells = column(task.input, x, task.y);
   const BlockList own = blocks_.at(x, task.y);
   if (std::ranges::equal(own, run.blocks)) {
@@ -55,8 +52,5 @@ const Cell* BlockStars<Cell>::beside(const scheduler::RowTask& task,
   copy_blocks(cells, own, run.blocks, absent_, work);
   return work;
 }
-
-template class BlockStars<float>;
-template class BlockStars<kernels::FixedEnergy>;
 
 }  // namespace vantage

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "engine/matching/levels/candidate_blocks.h"
+#include "kernels/cells/fixed_energy.h"
 #include "kernels/star_row.h"
 #include "scheduler/row_stage.h"
 
@@ -10,10 +11,11 @@ namespace vantage {
 
 /// Stars of runs of columns of a level of which only some candidates are looked at. Neighbours in
 /// tiles with other blocks are brought to the blocks of the run; a cell that such a neighbour lacks
-/// is `absent`. Cell: float or kernels::FixedEnergy.
-template <typename Cell>
+/// is `absent`.
 class BlockStars {
  public:
+  using Cell = kernels::FixedEnergy;
+
   /// `blocks` must outlive the stars.
   BlockStars(const CandidateBlocks& blocks, Cell absent) : blocks_(blocks), absent_(absent) {}
 

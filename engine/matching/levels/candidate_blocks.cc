@@ -178,7 +178,6 @@ void copy_blocks(const Cell* source, BlockList from, BlockList to, Cell absent, 
     target += kLaneMultiple;
   }
 }
-template void copy_blocks(const float*, BlockList, BlockList, float, float*);
 template void copy_blocks(const std::uint8_t*, BlockList, BlockList, std::uint8_t, std::uint8_t*);
 template void copy_blocks(const std::int16_t*, BlockList, BlockList, std::int16_t, std::int16_t*);
 

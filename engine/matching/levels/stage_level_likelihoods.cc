@@ -65,23 +65,13 @@ class ByteEnergyReductionStage final : public LevelReductionStage {
 
 class LevelLikelihoodStage final : public LevelSourceStage {
  public:
-  LevelLikelihoodStage(const kernels::CandidateGeometry& geometry, const LevelVolume& energies,
-                       const CandidateBlocks* blocks)
-      : LevelSourceStage(geometry, energies), blocks_(blocks) {}
+  using LevelSourceStage::LevelSourceStage;
 
-  [[nodiscard]] std::size_t bytes_per_column() const override {
-    return blocks_ == nullptr ? LevelSourceStage::bytes_per_column()
-                              : sizeof(float) * static_cast<std::size_t>(blocks_->lanes());
-  }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
-    return vantage::column_work(kernels::kExpandCompactWork, candidates_in(blocks_, count()));
+    return vantage::column_work(kernels::kExpandCompactWork, count());
   }
 
   void make_row(const scheduler::RowTask& task) const override {
-    if (blocks_ != nullptr) {
-      make_blocks(task);
-      return;
-    }
     kernels::likelihoods_of_compact_row(
         {.cells = volume().column<std::uint8_t>(task.columns.begin, task.y),
          .columns = task.columns.size(),
@@ -89,29 +79,6 @@ class LevelLikelihoodStage final : public LevelSourceStage {
          .count = count()},
         reinterpret_cast<float*>(task.output));
   }
-
- private:
-  void make_blocks(const scheduler::RowTask& task) const {
-    auto* output = reinterpret_cast<float*>(task.output);
-    for (int x = task.columns.begin; x < task.columns.end; ++x, output += blocks_->lanes()) {
-      const BlockList blocks = blocks_->at(x, task.y);
-      const BlockSegments segments(blocks);
-      int lane = 0;
-      for (const int end : segments.ends()) {
-        const int first = blocks[static_cast<std::size_t>(lane / kernels::kLaneMultiple)] *
-                          kernels::kLaneMultiple;
-        kernels::likelihoods_of_compact_row(
-            {.cells = volume().column<std::uint8_t>(x, task.y) + first,
-             .columns = 1,
-             .lanes = end - lane,
-             .count = std::min(end - lane, count() - first)},
-            output + lane);
-        lane = end;
-      }
-    }
-  }
-
-  const CandidateBlocks* blocks_;
 };
 
 /// The candidates with the largest cells: all `count` of them count, whatever partners they have.
@@ -127,34 +94,18 @@ void write_winners(const float* cells, int columns, int count, std::int32_t* win
 
 class LevelProbabilityStage final : public LevelStoreStage {
  public:
-  LevelProbabilityStage(const kernels::CandidateGeometry& geometry, const LevelResult& result,
-                        const CandidateBlocks* blocks)
-      : LevelStoreStage(geometry, *result.cells), winners_(result.winners), blocks_(blocks) {}
+  LevelProbabilityStage(const kernels::CandidateGeometry& geometry, const LevelResult& result)
+      : LevelStoreStage(geometry, *result.cells), winners_(result.winners) {}
 
-  /// The cells of one run, one column behind the other.
-  [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
-                                        scheduler::Extent /*input*/) const override {
-    return blocks_ == nullptr ? 0
-                              : sizeof(float) * CandidateBlocks::kMostRunColumns *
-                                    static_cast<std::size_t>(blocks_->lanes());
-  }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     kernels::KernelWork work = kernels::kCompactProbabilitiesWork;
     if (winners_ != nullptr) {
       work = work + kernels::cell_winner_work(true, false);
     }
-    return vantage::column_work(work, candidates_in(blocks_, count()));
+    return vantage::column_work(work, count());
   }
 
   void make_row(const scheduler::RowTask& task) const override {
-    if (blocks_ != nullptr) {
-      for (int x = task.columns.begin; x < task.columns.end;) {
-        const CandidateBlocks::Run run = blocks_->run_at(x, task.y, task.columns.end);
-        store_run(task, run);
-        x = run.columns.end;
-      }
-      return;
-    }
     const int x = task.columns.begin;
     kernels::compact_probabilities_row(cells<float>(task, x), cell_count(task),
                                        volume().column<std::uint8_t>(x, task.y));
@@ -164,26 +115,7 @@ class LevelProbabilityStage final : public LevelStoreStage {
   }
 
  private:
-  void store_run(const scheduler::RowTask& task, const CandidateBlocks::Run& run) const {
-    const int lanes = static_cast<int>(run.blocks.size()) * kernels::kLaneMultiple;
-    auto* const packed = reinterpret_cast<float*>(task.state);
-    const float* column = cells<float>(task, run.columns.begin);
-    for (int j = 0; j < run.columns.size(); ++j, column += blocks_->lanes()) {
-      std::copy_n(column, lanes, packed + static_cast<std::ptrdiff_t>(j) * lanes);
-      kernels::compact_probabilities_row(
-          column, lanes, volume().column<std::uint8_t>(run.columns.begin + j, task.y));
-    }
-    if (winners_ == nullptr) {
-      return;
-    }
-    std::int32_t* const winners = winners_->row(task.y) + run.columns.begin;
-    write_winners(packed, run.columns.size(), blocks_->count(run.blocks), winners);
-    std::transform(winners, winners + run.columns.size(), winners,
-                   [&run](std::int32_t lane) { return candidate_of(run.blocks, lane); });
-  }
-
   Image<std::int32_t>* winners_;
-  const CandidateBlocks* blocks_;
 };
 
 }  // namespace
@@ -205,15 +137,13 @@ void reduce_energy_row(const LevelVolume& finer, int y, float weight, std::uint1
 }
 
 std::unique_ptr<scheduler::RowStage> make_level_likelihood_stage(
-    const kernels::CandidateGeometry& geometry, const LevelVolume& energies,
-    const CandidateBlocks* blocks) {
-  return std::make_unique<LevelLikelihoodStage>(geometry, energies, blocks);
+    const kernels::CandidateGeometry& geometry, const LevelVolume& energies) {
+  return std::make_unique<LevelLikelihoodStage>(geometry, energies);
 }
 
 std::unique_ptr<scheduler::RowStage> make_level_probability_stage(
-    const kernels::CandidateGeometry& geometry, const LevelResult& result,
-    const CandidateBlocks* blocks) {
-  return std::make_unique<LevelProbabilityStage>(geometry, result, blocks);
+    const kernels::CandidateGeometry& geometry, const LevelResult& result) {
+  return std::make_unique<LevelProbabilityStage>(geometry, result);
 }
 
 }  // namespace vantage

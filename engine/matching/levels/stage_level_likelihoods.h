@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "engine/image/image.h"
-#include "engine/matching/levels/candidate_blocks.h"
 #include "engine/matching/levels/level_volume.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
@@ -28,11 +27,9 @@ std::unique_ptr<scheduler::RowStage> make_byte_energy_reduction_stage(
 void reduce_energy_row(const LevelVolume& finer, int y, float weight, std::uint16_t* work,
                        LevelVolume& coarser);
 
-/// Source stage: the likelihoods of a coarse level, from its energies. `blocks`: the candidates
-/// that are looked at, in whose lanes the cells then lie; null: all. Must outlive the stage.
+/// Source stage: the likelihoods of a coarse level, from its energies.
 std::unique_ptr<scheduler::RowStage> make_level_likelihood_stage(
-    const kernels::CandidateGeometry& geometry, const LevelVolume& energies,
-    const CandidateBlocks* blocks = nullptr);
+    const kernels::CandidateGeometry& geometry, const LevelVolume& energies);
 
 /// What becomes of the probabilities, or energies, that a level ends with.
 struct LevelResult {
@@ -40,10 +37,8 @@ struct LevelResult {
   /// The most probable candidates, the smallest of equals; of the level's size. Null: not wanted.
   Image<std::int32_t>* winners = nullptr;
 };
-/// Last stage: keeps the probabilities that a level ends with. `blocks`: as above; the volume has
-/// as many lanes as they have.
+/// Last stage: keeps the probabilities that a level ends with.
 std::unique_ptr<scheduler::RowStage> make_level_probability_stage(
-    const kernels::CandidateGeometry& geometry, const LevelResult& result,
-    const CandidateBlocks* blocks = nullptr);
+    const kernels::CandidateGeometry& geometry, const LevelResult& result);
 
 }  // namespace vantage

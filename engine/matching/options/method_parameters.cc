@@ -33,6 +33,8 @@ void validate_pruning(const MethodParameters& parameters) {
           "no value that is neutral to their neighbours");
   require(!is_evidence(parameters), "candidate-blocks", blocks,
           "0 with the cost gradient: its likelihoods compare a candidate with the best of all");
+  require(parameters.prior_smoothing == PriorSmoothing::kMaximum, "candidate-blocks", blocks,
+          "0 with prior-smoothing sum: pruning needs prior-smoothing maximum");
 }
 
 void validate_step(const MethodParameters& parameters) {
@@ -122,7 +124,7 @@ MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides) {
 
 bool can_prune(const MethodParameters& parameters) {
   return parameters.levels > 1 && parameters.aggregation == Aggregation::kBayes &&
-         !is_evidence(parameters);
+         !is_evidence(parameters) && parameters.prior_smoothing == PriorSmoothing::kMaximum;
 }
 
 MethodParameters at_level(const MethodParameters& parameters, int level) {

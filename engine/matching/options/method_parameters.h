@@ -154,8 +154,8 @@ MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides);
 /// Throws UsageError naming field, value and limit, or why a combination makes no sense.
 void validate(const MethodParameters& parameters);
 
-/// Whether candidates of fine levels can be left out (candidate_blocks): Bayes with several levels
-/// and any cost but the gradient.
+/// Whether candidates of fine levels can be left out (candidate_blocks): Bayes with several levels,
+/// the prior's maximum and any cost but the gradient.
 bool can_prune(const MethodParameters& parameters);
 
 /// What is in force on one level, the image's own being 0: iterations and σP.
