@@ -9,6 +9,7 @@
 #include "apps/rectification_check.h"
 #include "engine/error.h"
 #include "engine/io/disparity_io.h"
+#include "engine/io/map_formats.h"
 
 namespace vantage::apps {
 namespace {
@@ -58,17 +59,20 @@ void add_file_settings(Settings& settings, MatchJob& job) {
                 "Cameras one above the other: LEFT is the image of the upper one, --disparities "
                 "are y_upper - y_lower, --disparities-y are x_upper - x_lower, and --baselines are "
                 "positive downwards");
-  Setting& output = settings.path("output", job.output, "FILE",
-                                  "Path to the disparity map: .pfm .png .tiff .exr .npy; with "
-                                  "--disparities-y displacements: .flo .npy .tiff .exr");
+  Setting& output = settings.path(
+      "output", job.output, "FILE",
+      fmt::format("Path to the disparity map: {}; with --disparities-y displacements: {}",
+                  listed_map_formats(MapContent::kDisparity),
+                  listed_map_formats(MapContent::kDisplacements)));
   output.short_name = 'o';
   output.required = true;
   settings.path("output-right", job.output_right, "FILE",
                 "Also write the disparity map of the right image");
   settings.path("confidence", job.confidence, "FILE",
-                "Write the confidence before refinement: .pfm .tiff .exr .npy; evidence with cost "
-                "gradient, maximum probability with bayes and the presets, certainty with "
-                "local-stopping, else the winner's margin");
+                fmt::format("Write the confidence before refinement: {}; evidence with cost "
+                            "gradient, maximum probability with bayes and the presets, certainty "
+                            "with local-stopping, else the winner's margin",
+                            listed_map_formats(MapContent::kConfidence)));
   settings.path("unmatched", job.unmatched, "MASK.png", "Write a mask of the unmatched pixels");
   settings.path("unmatched-right", job.unmatched_right, "MASK.png",
                 "Write a mask of the unmatched pixels of the right map");
@@ -146,9 +150,8 @@ void check(const MatchJob& job, const Settings& settings) {
   if (has_extension(job.confidence, {".png"})) {
     throw UsageError(
         fmt::format("--confidence is '{}', but PNG holds no floats and confidences have no fixed "
-                    "range, expected "
-                    ".pfm .tiff .exr or .npy",
-                    job.confidence));
+                    "range, expected {}",
+                    job.confidence, listed_map_formats(MapContent::kConfidence)));
   }
   const OutputKind map_kind =
       job.match.disparities_y ? OutputKind::kDisplacements : OutputKind::kDisparity;

@@ -121,10 +121,11 @@ void add_aggregation_settings(Settings& settings, MethodOverrides& parameters) {
                    "Number of pyramid levels of the coarse-to-fine search, 1 (full size only) to "
                    "10; each level halves width and height and has its own iterations; " +
                        shared(book.levels));
-  settings.integer("candidate-blocks", parameters.candidate_blocks, "K",
-                   "With bayes, several levels and prior-smoothing maximum: search only K blocks of "
-                   "16 disparities, 1 to 8, around what the coarser level found; 0: search all; " +
-                       shared(book.candidate_blocks));
+  settings.integer(
+      "candidate-blocks", parameters.candidate_blocks, "K",
+      "With bayes, several levels and prior-smoothing maximum: search only K blocks of "
+      "16 disparities, 1 to 8, around what the coarser level found; 0: search all; " +
+          shared(book.candidate_blocks));
   settings.integer(
       "pruned-levels", parameters.pruned_levels, "N",
       "Number of finest levels on which --candidate-blocks limits the search, 1 to 10; " +

@@ -10,20 +10,32 @@
 
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
+#include "engine/io/file_bytes.h"
+#include "engine/io/map_formats.h"
 
 namespace vantage::apps {
 namespace {
 
 namespace fs = std::filesystem;
 
+std::vector<std::string> map_extensions(MapContent content) {
+  std::vector<std::string> extensions;
+  for (const MapFormat& format : map_formats()) {
+    if (format.can_hold(content)) {
+      extensions.emplace_back(format.extension);
+    }
+  }
+  return extensions;
+}
+
 std::vector<std::string> extensions_of(OutputKind kind) {
   switch (kind) {
     case OutputKind::kDisparity:
-      return {".pfm", ".png", ".tiff", ".tif", ".exr", ".npy"};
+      return map_extensions(MapContent::kDisparity);
     case OutputKind::kDisplacements:
-      return {".flo", ".npy", ".tiff", ".tif", ".exr"};
+      return map_extensions(MapContent::kDisplacements);
     case OutputKind::kConfidence:
-      return {".pfm", ".tiff", ".tif", ".exr", ".npy"};
+      return map_extensions(MapContent::kConfidence);
     case OutputKind::kPhotograph:
       return {".png", ".jpg", ".jpeg", ".tiff", ".tif", ".bmp",
               ".ppm", ".pgm", ".webp", ".exr",  ".pfm"};
@@ -62,11 +74,7 @@ void require_writable(const fs::path& path) {
 }  // namespace
 
 bool has_extension(const fs::path& path, const std::vector<std::string>& extensions) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char letter) {
-    return static_cast<char>(std::tolower(letter));
-  });
-  return std::ranges::find(extensions, extension) != extensions.end();
+  return std::ranges::find(extensions, lower_case_extension(path)) != extensions.end();
 }
 
 FileChecks::FileChecks(const Settings& settings) {

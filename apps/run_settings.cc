@@ -13,6 +13,7 @@
 #include "apps/rectification_check.h"
 #include "apps/slurm_scripts.h"
 #include "engine/error.h"
+#include "engine/io/map_formats.h"
 
 namespace vantage::apps {
 namespace {
@@ -168,7 +169,7 @@ void add_output_settings(Settings& settings, RunJob& job) {
                                  "Layout of the stereo output: side by side, above/below, "
                                  "interleaved or anaglyph, using ffmpeg's stereo3d names");
   settings.text("format", job.sequence.map_format, "EXT",
-                "File format of the maps: pfm, png, tiff, exr or npy");
+                "File format of the maps: " + listed_map_formats(MapContent::kDisparity, ""));
   add_frame_rate_setting(settings, "fps", job.frame_rate,
                          "Frames per second of videos; auto: as the input, 25 for images");
   settings.integer("crf", job.sequence.crf, "N", "Constant rate factor of videos, 0 (best) to 51");

@@ -16,11 +16,11 @@ namespace vantage {
 /// negative scale. Thread rule: may be called concurrently.
 DisparityMap read_disparity(const std::filesystem::path& path, double scale = 0);
 
-/// Writes by extension: .pfm (little-endian, bottom-up, unknown = +inf), .png (16-bit, ×256,
-/// 0 = unknown; values that do not fit are an Error; what would round to 0 is known and becomes
-/// 1/256, as in KITTI's own files), .tiff/.exr (float, NaN), .npy (float32). NaN and ±inf in memory
-/// are unknown. Whole or not at all. Throws UsageError for another extension, Error when the file
-/// cannot be written.
+/// Writes by extension (map_formats.h): .pfm (little-endian, bottom-up, unknown = +inf), .png
+/// (16-bit, ×256, 0 = unknown; values that do not fit are an Error; what would round to 0 is known
+/// and becomes 1/256, as in KITTI's own files), .tiff/.exr (float, NaN), .npy (float32). NaN and
+/// ±inf in memory are unknown. Whole or not at all. Throws UsageError for another extension, Error
+/// when the file cannot be written.
 void write_disparity(const std::filesystem::path& path, ImageView<const float> disparity);
 
 /// Makes `bytes`, whose memory is reused, those of a file named `path` that holds the map: what
@@ -32,8 +32,5 @@ void encode_disparity(const std::filesystem::path& path, ImageView<const float> 
 /// to most_px: a 16-bit PNG holds 0 to 255.99. To be asked before the search, whose result would be
 /// lost otherwise.
 void require_holds_search(const std::filesystem::path& path, int least_px, int most_px);
-
-/// True when write_disparity() knows the extension.
-bool is_disparity_extension(const std::filesystem::path& path);
 
 }  // namespace vantage

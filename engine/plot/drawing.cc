@@ -1,9 +1,7 @@
 #include "engine/plot/drawing.h"
 
-#include <algorithm>
-#include <cctype>
-
 #include "engine/io/atomic_file.h"
+#include "engine/io/file_bytes.h"
 #include "engine/io/photograph_io.h"
 
 namespace vantage {
@@ -15,11 +13,7 @@ double text_width(const std::string& text, double size) {
 
 void write_drawing(const std::filesystem::path& path, const Drawing& drawing) {
   constexpr int kPixelsPerUnit = 2;
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char letter) {
-    return static_cast<char>(std::tolower(letter));
-  });
-  if (extension == ".svg") {
+  if (lower_case_extension(path) == ".svg") {
     write_text_file(path, to_svg(drawing));
   } else {
     write_photograph(path, {rasterize(drawing, kPixelsPerUnit)});

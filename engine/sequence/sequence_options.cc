@@ -8,6 +8,7 @@
 
 #include "engine/error.h"
 #include "engine/io/disparity_io.h"
+#include "engine/io/map_formats.h"
 #include "engine/quoted_text.h"
 
 namespace vantage {
@@ -87,20 +88,21 @@ void check_views(const SequenceOptions& options) {
 }
 
 void check_formats(const SequenceOptions& options) {
-  if (!is_disparity_extension("map." + options.map_format)) {
-    throw UsageError(fmt::format("format is '{}', expected pfm, png, tiff, exr or npy",
-                                 quotable(options.map_format)));
+  const std::string map_name = "map." + options.map_format;
+  if (find_map_format(map_name, MapContent::kDisparity) == nullptr) {
+    throw UsageError(fmt::format("format is '{}', expected {}", quotable(options.map_format),
+                                 listed_map_formats(MapContent::kDisparity, "")));
   }
   const bool saves_maps =
       options.saves(SequenceOutput::kDisparity) || options.saves(SequenceOutput::kRightDisparity);
   if (saves_maps && !options.match.disparities_auto) {
-    require_holds_search("map." + options.map_format, options.match.disparities.min,
-                         options.match.disparities.max);
+    require_holds_search(map_name, options.match.disparities.min, options.match.disparities.max);
   }
-  if (options.saves(SequenceOutput::kConfidence) && options.map_format == "png") {
+  if (options.saves(SequenceOutput::kConfidence) &&
+      find_map_format(map_name, MapContent::kConfidence) == nullptr) {
     throw UsageError(
-        "format is png, which holds no floats, but save has confidence; expected pfm, tiff, exr or "
-        "npy");
+        fmt::format("format is {}, which holds no floats, but save has confidence; expected {}",
+                    options.map_format, listed_map_formats(MapContent::kConfidence, "")));
   }
   for (const SequenceOutput output : options.video) {
     if (holds_floats(output)) {

@@ -65,8 +65,8 @@ struct SequenceOptions {
   bool preview_range_per_shot = false;        ///< else the range of the search
   TemporalOptions temporal;
   bool measure_flicker = false;
-  /// Extension of the disparity and confidence files without the dot: pfm, png (not with
-  /// kConfidence), tiff, exr or npy.
+  /// Extension of the disparity and confidence files without the dot, one of map_formats() that can
+  /// hold them: of all, png alone holds no confidences.
   std::string map_format = "pfm";
   FrameRate frame_rate;  ///< of videos written
   int crf = 18;          ///< of videos written, see VideoEncoding

@@ -235,10 +235,8 @@ TEST(DisparityIo, RefusesColourUnknownExtensionsAndEmptyMaps) {
   EXPECT_THAT(error_of([&] { read_disparity(folder / "c.png"); }), HasSubstr("3 channels"));
   const DisparityMap map = random_map(2, 2, 0);
   for (const char* name : {"d.jpg", "d.pgm", "d"}) {
-    EXPECT_FALSE(is_disparity_extension(name));
     EXPECT_THROW(write_disparity(folder / name, map.view()), UsageError);
   }
-  EXPECT_TRUE(is_disparity_extension("a/b.PFM"));
   EXPECT_THROW(write_disparity(folder / "d.pfm", {}), Error);
   EXPECT_EQ(folder.entries(), 1U);
 }
