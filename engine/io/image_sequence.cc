@@ -1,6 +1,7 @@
 #include "engine/io/image_sequence.h"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <algorithm>
 #include <array>
@@ -12,7 +13,6 @@
 #include "engine/io/file_bytes.h"
 #include "engine/io/file_identity.h"
 #include "engine/io/natural_order.h"
-#include "engine/io/wildcard.h"
 
 namespace vantage {
 namespace {
@@ -124,8 +124,10 @@ std::unique_ptr<FrameSource> open_image_pattern(const std::string& spec) {
 std::unique_ptr<FrameSource> open_image_glob(const std::string& spec) {
   const fs::path path = spec;
   const std::string pattern = path.filename().string();
-  std::vector<fs::path> names = list_names(
-      path.parent_path(), [&](const std::string& name) { return matches_wildcard(pattern, name); });
+  // No escapes: a backslash is a character of a name.
+  std::vector<fs::path> names = list_names(path.parent_path(), [&](const std::string& name) {
+    return ::fnmatch(pattern.c_str(), name.c_str(), FNM_PERIOD | FNM_NOESCAPE) == 0;
+  });
   if (names.empty()) {
     throw Error(fmt::format("{}: no file matches", spec));
   }

@@ -23,6 +23,11 @@ using CalibrationEntries = std::map<std::string, CalibrationEntry, std::less<>>;
 // Each takes the whole text of a file. Entries that hold no numbers are kept with their problem, so
 // that only those which are asked for have to make sense. Any text is accepted: what is not an
 // entry is skipped.
+//
+// Why not cv::FileStorage, which writes such files (rectification_file)? It refuses files without
+// its own "%YAML" line (ROS, KITTI), and a whole file for one entry that it cannot read. With
+// version 4.6 a file of nested brackets or tags overflows the stack, and rows and cols that are
+// wrong allocate their product. Its errors name OpenCV's source lines, not the file.
 
 /// `name: values` from the beginning of a line to the next name there, so YAML (sequences, and
 /// matrices with rows, cols and data as OpenCV writes them) as well as KITTI's text files.

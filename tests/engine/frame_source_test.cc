@@ -14,7 +14,6 @@
 #include "engine/io/file_identity.h"
 #include "engine/io/frame_number.h"
 #include "engine/io/natural_order.h"
-#include "engine/io/wildcard.h"
 #include "tests/engine/frame_test_support.h"
 
 namespace vantage {
@@ -319,37 +318,6 @@ TEST(Fnv1aHash, GivesThePublishedValues) {
   Fnv1aHash of_number;
   of_number.add(std::uint64_t{0x0201});
   EXPECT_EQ(of_number.value(), hash_of(std::string_view("\1\2\0\0\0\0\0\0", 8)));
-}
-
-TEST(Wildcard, MatchesAsTheShellDoes) {
-  struct Case {
-    const char* pattern;
-    const char* name;
-    bool matches;
-  };
-  for (const Case& c : {Case{"*", "", true},
-                        Case{"*", "abc", true},
-                        Case{"*", ".abc", false},
-                        Case{".*", ".abc", true},
-                        Case{"a*c", "abbbc", true},
-                        Case{"a*c", "abbb", false},
-                        Case{"*ab*ab", "abxabyab", true},
-                        Case{"*ab*ab", "xab", false},
-                        Case{"a?c", "abc", true},
-                        Case{"a?c", "ac", false},
-                        Case{"[0-9]x", "5x", true},
-                        Case{"[!0-9]x", "5x", false},
-                        Case{"[!0-9]x", "ax", true},
-                        Case{"[]a]", "]", true},
-                        Case{"[a-]", "-", true},
-                        Case{"[ab", "[ab", true},
-                        Case{"", "", true},
-                        Case{"", "a", false},
-                        Case{"a**", "a", true},
-                        Case{"a[", "a[", true},
-                        Case{"[!", "[!", true}}) {
-    EXPECT_EQ(matches_wildcard(c.pattern, c.name), c.matches) << c.pattern << " " << c.name;
-  }
 }
 
 TEST(NaturalOrder, CountsNumbersAndIsAStrictTotalOrder) {
