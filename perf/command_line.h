@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <optional>
@@ -61,6 +62,13 @@ class CommandLine {
       refuse();
     }
     return static_cast<int>(number);
+  }
+  /// WIDTHxHEIGHT; without the option both stay as they are.
+  void size(const std::string& name, int& width, int& height) {
+    const std::optional<std::string> value = text(name);
+    if (value && std::sscanf(value->c_str(), "%dx%d", &width, &height) != 2) {
+      refuse();
+    }
   }
   /// After all options were asked for: refuses those that are left.
   void finish() const {

@@ -3,9 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 
 #include "engine/matching/costs/candidate_geometry.h"
@@ -13,7 +11,10 @@
 #include "engine/matching/stereo_matcher.h"
 #include "engine/simd.h"
 #include "perf/bench_pair.h"
+#include "perf/command_line.h"
+#include "perf/figures.h"
 #include "perf/interleaved.h"
+#include "perf/map_runner.h"
 #include "perf/peers.h"
 #include "perf/tables.h"
 #include "scheduler/whole_image_pipeline.h"
@@ -21,36 +22,17 @@
 namespace vantage::perf {
 namespace {
 
-/// A matcher of one map on its own threads.
-class OneMap {
- public:
-  OneMap(int disparities, int window, Subpixel subpixel, int threads)
-      : execution_({.threads = threads}),
-        matcher_(options(disparities, window, subpixel), execution_) {}
-  void run(const Photograph& left, const Photograph& right) {
-    matcher_.match(left, right, {.left = true, .right = false, .unmatched = false}, maps_,
-                   &report_);
-  }
-  [[nodiscard]] const MatchReport& report() const { return report_; }
+MatchOptions ssd_options(int disparities, int window, Subpixel subpixel) {
+  MatchOptions result;
+  result.method = MatchMethod::kSsd;
+  result.disparities = {0, disparities - 1};
+  result.parameters.window_px = window;
+  result.parameters.subpixel = subpixel;
+  result.raw = true;
+  return result;
+}
 
-  static MatchOptions options(int disparities, int window, Subpixel subpixel) {
-    MatchOptions result;
-    result.method = MatchMethod::kSsd;
-    result.disparities = {0, disparities - 1};
-    result.parameters.window_px = window;
-    result.parameters.subpixel = subpixel;
-    result.raw = true;
-    return result;
-  }
-
- private:
-  Execution execution_;
-  StereoMatcher matcher_;
-  DisparityMaps maps_;
-  MatchReport report_;
-};
-
-/// The same chain by the whole-image executor: pass by pass, every row of every stage stored.
+/// A matcher's chain by the whole-image executor: pass by pass, every row of every stage stored.
 void run_whole_image_chain(const Photograph& left, const Photograph& right,
                            const MatchOptions& options, Execution& execution) {
   const auto geometry =
@@ -77,11 +59,11 @@ nlohmann::json against_peers(int rounds) {
   bm_winner_only->setUniquenessRatio(0);
   bm_winner_only->setTextureThreshold(0);
   const auto sgbm = make_sgbm({0, disparities - 1}, 5, 1, cv::StereoSGBM::MODE_SGBM_3WAY);
-  OneMap winner(disparities, 9, Subpixel::kNone, 1);
-  OneMap parabola(disparities, 9, Subpixel::kParabola, 1);
-  OneMap colour(disparities, 9, Subpixel::kNone, 1);
+  const MatchOptions options = ssd_options(disparities, 9, Subpixel::kNone);
+  MapRunner winner(options, {.threads = 1});
+  MapRunner parabola(ssd_options(disparities, 9, Subpixel::kParabola), {.threads = 1});
+  MapRunner colour(options, {.threads = 1});
   Execution serial({.threads = 1});
-  const MatchOptions options = OneMap::options(disparities, 9, Subpixel::kNone);
   const auto timings = time_interleaved(
       {{"StereoBM, block 9, its defaults", [&] { bm->compute(left, right, result); }},
        {"StereoBM, winner only", [&] { bm_winner_only->compute(left, right, result); }},
@@ -101,11 +83,12 @@ nlohmann::json over_threads(int rounds) {
   constexpr int height = 1110;
   constexpr int disparities = 256;
   const Pair pair = make_pair(width, height, disparities);
-  std::vector<std::unique_ptr<OneMap>> maps;
+  std::vector<std::unique_ptr<MapRunner>> maps;
   std::vector<Contender> contenders;
   const int hardware = scheduler::detect_machine().hardware_threads;
   for (int threads = 1; threads <= hardware; threads *= 2) {
-    maps.push_back(std::make_unique<OneMap>(disparities, 9, Subpixel::kNone, threads));
+    maps.push_back(std::make_unique<MapRunner>(ssd_options(disparities, 9, Subpixel::kNone),
+                                               ExecutionOptions{.threads = threads}));
     contenders.push_back(
         {fmt::format("{} thread{}", threads, threads > 1 ? "s" : ""),
          [&pair, map = maps.back().get()] { map->run(pair.left_grey, pair.right_grey); }});
@@ -120,10 +103,11 @@ nlohmann::json over_windows(int rounds) {
   constexpr int height = 480;
   constexpr int disparities = 64;
   const Pair pair = make_pair(width, height, disparities);
-  std::vector<std::unique_ptr<OneMap>> maps;
+  std::vector<std::unique_ptr<MapRunner>> maps;
   std::vector<Contender> contenders;
   for (const int window : {3, 5, 9, 15, 21, 31, 51, 101}) {
-    maps.push_back(std::make_unique<OneMap>(disparities, window, Subpixel::kNone, 1));
+    maps.push_back(std::make_unique<MapRunner>(ssd_options(disparities, window, Subpixel::kNone),
+                                               ExecutionOptions{.threads = 1}));
     contenders.push_back({fmt::format("window {}", window), [&pair, map = maps.back().get()] {
                             map->run(pair.left_grey, pair.right_grey);
                           }});
@@ -138,28 +122,17 @@ nlohmann::json over_windows(int rounds) {
 
 int main(int argc, char** argv) {
   using namespace vantage::perf;
+  CommandLine line(argc, argv, "match_speed [--json FILE] [--rounds N]");
+  const auto json_path = line.text("--json");
+  const int rounds = line.number("--rounds", 15);
+  line.finish();
   cv::setNumThreads(1);
-  std::optional<std::string> json_path;
-  int rounds = 15;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const std::string option = argv[i];
-    if (option == "--json") {
-      json_path = argv[i + 1];
-    } else if (option == "--rounds") {
-      rounds = std::max(1, std::atoi(argv[i + 1]));
-    } else {
-      fmt::print(stderr, "match_speed [--json FILE] [--rounds N]\n");
-      return 2;
-    }
-  }
   fmt::print("instruction set {}, {} hardware threads\n", vantage::instruction_set_in_use(),
              vantage::scheduler::detect_machine().hardware_threads);
   nlohmann::json tables = nlohmann::json::array();
   tables.push_back(against_peers(rounds));
   tables.push_back(over_threads(std::max(3, rounds / 3)));
   tables.push_back(over_windows(rounds));
-  if (json_path) {
-    std::ofstream(*json_path) << tables.dump(2) << '\n';
-  }
+  write_json(json_path, tables);
   return 0;
 }

@@ -4,16 +4,16 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 
 #include "engine/matching/costs/candidate_geometry.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/simd.h"
 #include "perf/bench_pair.h"
+#include "perf/command_line.h"
+#include "perf/figures.h"
 #include "perf/interleaved.h"
 #include "perf/map_runner.h"
 #include "perf/peers.h"
@@ -161,20 +161,11 @@ nlohmann::json over_iterations(const Pair& pair, int rounds) {
 
 int main(int argc, char** argv) {
   using namespace vantage::perf;
+  CommandLine line(argc, argv, "methods_speed [--json FILE] [--rounds N]");
+  const auto json_path = line.text("--json");
+  const int rounds = line.number("--rounds", 11);
+  line.finish();
   cv::setNumThreads(1);
-  std::optional<std::string> json_path;
-  int rounds = 11;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const std::string option = argv[i];
-    if (option == "--json") {
-      json_path = argv[i + 1];
-    } else if (option == "--rounds") {
-      rounds = std::max(1, std::atoi(argv[i + 1]));
-    } else {
-      fmt::print(stderr, "methods_speed [--json FILE] [--rounds N]\n");
-      return 2;
-    }
-  }
   fmt::print("instruction set {}, {} hardware threads\n", vantage::instruction_set_in_use(),
              vantage::scheduler::detect_machine().hardware_threads);
   const Pair pair = make_pair(kWidth, kHeight, kDisparities);
@@ -183,8 +174,6 @@ int main(int argc, char** argv) {
   for (auto& table : over_iterations(pair, std::max(3, rounds / 3))) {
     tables.push_back(std::move(table));
   }
-  if (json_path) {
-    std::ofstream(*json_path) << tables.dump(2) << '\n';
-  }
+  write_json(json_path, tables);
   return 0;
 }

@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -25,6 +24,7 @@
 #include "kernels/gradient/gradient.h"
 #include "kernels/row_sum/row_sum.h"
 #include "perf/command_line.h"
+#include "perf/figures.h"
 #include "perf/interleaved.h"
 #include "perf/tables.h"
 
@@ -279,8 +279,6 @@ int main(int argc, char** argv) {
   tables.push_back(gradients(rounds));
   tables.push_back(remaps(rounds, 1));
   tables.push_back(remaps(rounds, 3));
-  if (json_path) {
-    std::ofstream(*json_path) << tables.dump(2) << '\n';
-  }
+  write_json(json_path, tables);
   return 0;
 }

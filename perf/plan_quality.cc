@@ -11,7 +11,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -23,6 +22,8 @@
 #include "engine/simd.h"
 #include "engine/tuning/match_subject.h"
 #include "engine/tuning/tuner.h"
+#include "perf/command_line.h"
+#include "perf/figures.h"
 #include "perf/speed_methods.h"
 #include "perf/stopwatch.h"
 
@@ -222,17 +223,10 @@ class Case {
       }
       return values;
     };
-    const auto text = [](const std::vector<double>& values) {
-      return fmt::format("{:.3f} ({:.2f}-{:.2f})", median(values), least(values), most(values));
-    };
-    const auto figures = [](const std::vector<double>& values) {
-      return nlohmann::json{
-          {"median", median(values)}, {"least", least(values)}, {"most", most(values)}};
-    };
     const std::vector<double> of_default = over_best({});
     const std::string default_plan = plan_text();
     fmt::print("{:<24} {:>9.2f} {:>19}  {:<24} {}\n", method_.name, 1e3 * median(of_settings({})),
-               text(of_default), default_plan, to_string(best));
+               with_range(of_default, 3), default_plan, to_string(best));
     nlohmann::json result = {{"method", method_.name},
                              {"width", size_.width},
                              {"height", size_.height},
@@ -246,8 +240,9 @@ class Case {
       const auto starts = bad_starts();
       for (std::size_t i = 0; i < recovered.size(); ++i) {
         const auto& [name, found] = recovered[i];
-        fmt::print("  from {:<26} {:>19} to {:>19}  {}\n", name, text(over_best(starts[i].second)),
-                   text(over_best(found)), to_string(found));
+        fmt::print("  from {:<26} {:>19} to {:>19}  {}\n", name,
+                   with_range(over_best(starts[i].second), 3), with_range(over_best(found), 3),
+                   to_string(found));
         result["bad_starts"].push_back({{"start", name},
                                         {"start_over_best", figures(over_best(starts[i].second))},
                                         {"found", to_string(found)},
@@ -278,47 +273,33 @@ class Case {
   std::unique_ptr<MatchSubject> lower_;
 };
 
-int usage() {
-  fmt::print(stderr,
-             "plan_quality [--size WIDTHxHEIGHTxDISPARITIES] [--only NAME] [--rounds N] "
-             "[--seconds S] [--threads N] [--bad-starts] [--tune-seconds S] [--json FILE]\n");
-  return 2;
-}
-
 int run_benchmark(int argc, char** argv) {
+  CommandLine line(argc, argv,
+                   "plan_quality [--size WIDTHxHEIGHTxDISPARITIES] [--only NAME] [--rounds N] "
+                   "[--seconds S] [--threads N] [--bad-starts] [--tune-seconds S] [--json FILE]");
   Settings settings;
-  for (int i = 1; i < argc; ++i) {
-    const std::string option = argv[i];
-    if (option == "--bad-starts") {
-      settings.bad_starts = true;
-      continue;
+  settings.bad_starts = line.flag("--bad-starts");
+  if (const auto value = line.text("--size")) {
+    Size size;
+    if (std::sscanf(value->c_str(), "%dx%dx%d", &size.width, &size.height, &size.disparities) !=
+        3) {
+      line.refuse();
     }
-    if (++i == argc) {
-      return usage();
-    }
-    const char* value = argv[i];
-    if (option == "--size") {
-      Size size;
-      if (std::sscanf(value, "%dx%dx%d", &size.width, &size.height, &size.disparities) != 3) {
-        return usage();
-      }
-      settings.sizes = {size};
-    } else if (option == "--only") {
-      settings.only = value;
-    } else if (option == "--rounds") {
-      settings.rounds = std::max(1, std::atoi(value));
-    } else if (option == "--seconds") {
-      settings.seconds = std::max(0.1, std::atof(value));
-    } else if (option == "--threads") {
-      settings.threads = std::max(1, std::atoi(value));
-    } else if (option == "--tune-seconds") {
-      settings.tune_seconds = std::max(1.0, std::atof(value));
-    } else if (option == "--json") {
-      settings.json = value;
-    } else {
-      return usage();
-    }
+    settings.sizes = {size};
   }
+  const auto seconds = [&line](const char* name, double otherwise, double minimum) {
+    const auto value = line.text(name);
+    return value ? std::max(minimum, std::atof(value->c_str())) : otherwise;
+  };
+  settings.only = line.text("--only").value_or(settings.only);
+  settings.rounds = line.number("--rounds", settings.rounds);
+  settings.seconds = seconds("--seconds", settings.seconds, 0.1);
+  if (const auto value = line.text("--threads")) {
+    settings.threads = std::max(1, std::atoi(value->c_str()));
+  }
+  settings.tune_seconds = seconds("--tune-seconds", settings.tune_seconds, 1);
+  settings.json = line.text("--json");
+  line.finish();
   fmt::print("instruction set {}, {} threads\n", instruction_set_in_use(),
              settings.threads.value_or(scheduler::detect_machine().hardware_threads));
   nlohmann::json results = nlohmann::json::array();
@@ -329,9 +310,7 @@ int run_benchmark(int argc, char** argv) {
       results.push_back(Case(method, size, settings).run());
     }
   }
-  if (settings.json) {
-    std::ofstream(*settings.json) << results.dump(2) << '\n';
-  }
+  write_json(settings.json, results);
   return 0;
 }
 

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -15,6 +14,7 @@
 #include "engine/simd.h"
 #include "perf/bench_pair.h"
 #include "perf/command_line.h"
+#include "perf/figures.h"
 #include "perf/interleaved.h"
 #include "perf/map_runner.h"
 #include "perf/power_law.h"
@@ -192,8 +192,8 @@ class ThreadScaling {
       const double serial =
           threads > 1 ? (1 / median(speed_up) - 1 / threads) / (1 - 1 / threads) : 0;
       fmt::print("{:<26} {:>7} {:>10.1f} {:>20} {:>10.3f} {:>10.4f} {:>20}\n", name_, counts_[i],
-                 1e3 * strong.median(), range(speed_up), median(speed_up) / threads, serial,
-                 range(efficiency));
+                 1e3 * strong.median(), with_range(speed_up), median(speed_up) / threads, serial,
+                 with_range(efficiency));
       rows.push_back({{"name", strong.name},
                       {"threads", counts_[i]},
                       {"min_seconds", strong.least()},
@@ -213,12 +213,6 @@ class ThreadScaling {
       result.push_back(a[i] / b[i]);
     }
     return result;
-  }
-  static std::string range(const std::vector<double>& values) {
-    return fmt::format("{:.2f} ({:.2f}-{:.2f})", median(values), least(values), most(values));
-  }
-  static nlohmann::json figures(const std::vector<double>& values) {
-    return {{"median", median(values)}, {"least", least(values)}, {"most", most(values)}};
   }
 
   void add(std::string name, std::size_t runner, const GreyPair& pair) {
@@ -286,8 +280,6 @@ int main(int argc, char** argv) {
   if (wanted("1920x1080")) {
     tables.push_back(over_threads(1920, 1080, 128, counts, rounds));
   }
-  if (json_path) {
-    std::ofstream(*json_path) << tables.dump(2) << '\n';
-  }
+  write_json(json_path, tables);
   return 0;
 }

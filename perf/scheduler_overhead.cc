@@ -6,7 +6,6 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -15,6 +14,7 @@
 #include "engine/matching/stereo_matcher.h"
 #include "perf/bench_pair.h"
 #include "perf/command_line.h"
+#include "perf/figures.h"
 #include "perf/interleaved.h"
 #include "perf/tables.h"
 #include "scheduler/executor.h"
@@ -254,8 +254,6 @@ int main(int argc, char** argv) {
   for (auto& table : traced_maps(settings, idle_span_ns)) {
     tables.push_back(std::move(table));
   }
-  if (json_path) {
-    std::ofstream(*json_path) << tables.dump(2) << '\n';
-  }
+  write_json(json_path, tables);
   return 0;
 }

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -19,6 +18,7 @@
 #include "engine/simd.h"
 #include "engine/synthesis/view_synthesizer.h"
 #include "perf/default_paths.h"
+#include "perf/figures.h"
 #include "perf/opencv_loop.h"
 #include "perf/sequence_inputs.h"
 #include "perf/stopwatch.h"
@@ -374,9 +374,7 @@ int run_benchmark(int argc, char** argv) {
     }
   }
   fs::remove_all(folder);
-  if (settings.json) {
-    std::ofstream(*settings.json) << tables.dump(2) << '\n';
-  }
+  write_json(settings.json, tables);
   return 0;
 }
 

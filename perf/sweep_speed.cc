@@ -5,9 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -18,6 +16,8 @@
 #include "engine/io/video_io.h"
 #include "engine/simd.h"
 #include "engine/synthesis/view_synthesizer.h"
+#include "perf/command_line.h"
+#include "perf/figures.h"
 #include "perf/stopwatch.h"
 #include "perf/view_inputs.h"
 #include "scheduler/frame_pipeline.h"
@@ -165,41 +165,19 @@ nlohmann::json time_place(const SyntheticPair& pair, const ViewPlace& place,
   return {{"title", title}, {"rows", rows}};
 }
 
-int usage() {
-  fmt::print(stderr,
-             "sweep_speed [--size WIDTHxHEIGHT] [--frames N] [--rounds N] [--threads N] [--only "
-             "NAME] [--json FILE] [--output FOLDER]\n");
-  return 2;
-}
-
 int run_benchmark(int argc, char** argv) {
+  CommandLine line(argc, argv,
+                   "sweep_speed [--size WIDTHxHEIGHT] [--frames N] [--rounds N] [--threads N] "
+                   "[--only NAME] [--json FILE] [--output FOLDER]");
   Settings settings;
-  for (int i = 1; i < argc; i += 2) {
-    const std::string option = argv[i];
-    if (i + 1 == argc) {
-      return usage();
-    }
-    const char* value = argv[i + 1];
-    if (option == "--size") {
-      if (std::sscanf(value, "%dx%d", &settings.width, &settings.height) != 2) {
-        return usage();
-      }
-    } else if (option == "--frames") {
-      settings.frames = std::max(1, std::atoi(value));
-    } else if (option == "--rounds") {
-      settings.rounds = std::max(1, std::atoi(value));
-    } else if (option == "--threads") {
-      settings.threads = std::max(1, std::atoi(value));
-    } else if (option == "--only") {
-      settings.only = value;
-    } else if (option == "--json") {
-      settings.json = value;
-    } else if (option == "--output") {
-      settings.output = value;
-    } else {
-      return usage();
-    }
-  }
+  line.size("--size", settings.width, settings.height);
+  settings.frames = line.number("--frames", settings.frames);
+  settings.rounds = line.number("--rounds", settings.rounds);
+  settings.threads = line.number("--threads", settings.threads);
+  settings.only = line.text("--only").value_or("");
+  settings.json = line.text("--json");
+  settings.output = line.text("--output").value_or(settings.output);
+  line.finish();
   fmt::print("instruction set {}, {} threads\n", instruction_set_in_use(), settings.threads);
   Execution execution({.threads = settings.threads});
   const SyntheticPair pair = make_synthetic_pair(settings.width, settings.height, false, execution);
@@ -209,9 +187,7 @@ int run_benchmark(int argc, char** argv) {
       tables.push_back(time_place(pair, place, settings));
     }
   }
-  if (settings.json) {
-    std::ofstream(*settings.json) << tables.dump(2) << '\n';
-  }
+  write_json(settings.json, tables);
   return 0;
 }
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,6 +17,7 @@
 #include "engine/simd.h"
 #include "perf/bench_pair.h"
 #include "perf/command_line.h"
+#include "perf/figures.h"
 #include "perf/speed_methods.h"
 #include "perf/stopwatch.h"
 
@@ -101,13 +101,6 @@ class Row {
     const std::vector<double> speed_up = ratios(one_times_, all_times_);
     const std::vector<double> limit = ratios(one_times_, stranger_times_);
     const std::vector<double> share = ratios(stranger_times_, all_times_);
-    const auto text = [](const std::vector<double>& values) {
-      return fmt::format("{:.2f} ({:.2f}-{:.2f})", median(values), least(values), most(values));
-    };
-    const auto figures = [](const std::vector<double>& values) {
-      return nlohmann::json{
-          {"median", median(values)}, {"least", least(values)}, {"most", most(values)}};
-    };
     const auto wall = [](const std::vector<FrameTime>& times) {
       return of(times, &FrameTime::wall);
     };
@@ -115,8 +108,8 @@ class Row {
     const std::string plan = fmt::format("{}x{}, {} passes", pass.strip_columns, pass.band_rows,
                                          all_.report().plan.passes.size());
     fmt::print("{:<28} {:>8.1f} {:>8.1f} {:>17} {:>17} {:>17}  {}\n", name_,
-               1e3 * median(wall(one_times_)), 1e3 * median(wall(all_times_)), text(speed_up),
-               text(limit), text(share), plan);
+               1e3 * median(wall(one_times_)), 1e3 * median(wall(all_times_)), with_range(speed_up),
+               with_range(limit), with_range(share), plan);
     nlohmann::json parts = nlohmann::json::array();
     for (std::size_t i = 0; i < all_parts_.size() && all_parts_.size() > 2; ++i) {
       fmt::print("  {:<26} {:>8.1f} {:>8.1f} {:>6.2f}\n", all_parts_[i].first,
@@ -198,11 +191,7 @@ int run_benchmark(int argc, char** argv) {
                    "threads_speed [--size WIDTHxHEIGHT] [--disparities N] [--rounds N] "
                    "[--threads N] [--only NAME] [--json FILE]");
   Settings settings;
-  if (const std::optional<std::string> size = line.text("--size")) {
-    if (std::sscanf(size->c_str(), "%dx%d", &settings.width, &settings.height) != 2) {
-      line.refuse();
-    }
-  }
+  line.size("--size", settings.width, settings.height);
   settings.disparities = line.number("--disparities", settings.disparities);
   settings.rounds = line.number("--rounds", settings.rounds);
   settings.threads = line.number("--threads", settings.threads);
@@ -212,9 +201,7 @@ int run_benchmark(int argc, char** argv) {
   fmt::print("instruction set {}, {} hardware threads\n", instruction_set_in_use(),
              scheduler::detect_machine().hardware_threads);
   const nlohmann::json table = compare(settings);
-  if (settings.json) {
-    std::ofstream(*settings.json) << table.dump(2) << '\n';
-  }
+  write_json(settings.json, table);
   return 0;
 }
 

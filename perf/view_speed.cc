@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -17,6 +16,8 @@
 #include "engine/io/photograph_io.h"
 #include "engine/simd.h"
 #include "engine/synthesis/view_synthesizer.h"
+#include "perf/command_line.h"
+#include "perf/figures.h"
 #include "perf/stopwatch.h"
 #include "perf/view_inputs.h"
 
@@ -85,20 +86,13 @@ class Row {
     const std::array<std::vector<double>, 2> to_fixed = {ratios(ours_[0], fixed_[0]),
                                                          ratios(ours_[1], fixed_[1])};
     const std::vector<double> to_float = ratios(ours_[1], float_[1]);
-    const auto range = [](const std::vector<double>& values) {
-      return fmt::format("{:.2f} ({:.2f}-{:.2f})", median(values), least(values), most(values));
-    };
     const double processor_ratio = processor_ms(ours_[0]) / processor_ms(fixed_[0]);
     fmt::print(
         "{:<40} {:>7.1f} {:>7.1f} {:>7.1f} {:>7.1f} {:>16} {:>7.1f} {:>7.1f} {:>16} {:>7.2f}"
         " {:>7.2f}\n",
         name_, median_ms(ours_[0]), processor_ms(ours_[0]), median_ms(ours_[1]),
-        processor_ms(ours_[1]), range(speed_up), median_ms(fixed_[0]), median_ms(fixed_[1]),
-        range(to_fixed[1]), processor_ratio, median(to_float));
-    const auto figures = [](const std::vector<double>& values) {
-      return nlohmann::json{
-          {"median", median(values)}, {"least", least(values)}, {"most", most(values)}};
-    };
+        processor_ms(ours_[1]), with_range(speed_up), median_ms(fixed_[0]), median_ms(fixed_[1]),
+        with_range(to_fixed[1]), processor_ratio, median(to_float));
     return {{"name", name_},
             {"milliseconds", {median_ms(ours_[0]), median_ms(ours_[1])}},
             {"processor_milliseconds", {processor_ms(ours_[0]), processor_ms(ours_[1])}},
@@ -180,48 +174,23 @@ nlohmann::json compare(const Settings& settings) {
   return {{"title", title}, {"threads", threads}, {"rows", result}};
 }
 
-int usage() {
-  fmt::print(stderr,
-             "view_speed [--size WIDTHxHEIGHT] [--grey] [--rounds N] [--threads N] [--only NAME] "
-             "[--json FILE] [--pictures FOLDER]\n");
-  return 2;
-}
-
 int run_benchmark(int argc, char** argv) {
+  CommandLine line(argc, argv,
+                   "view_speed [--size WIDTHxHEIGHT] [--grey] [--rounds N] [--threads N] "
+                   "[--only NAME] [--json FILE] [--pictures FOLDER]");
   Settings settings;
-  for (int i = 1; i < argc; ++i) {
-    const std::string option = argv[i];
-    if (option == "--grey") {
-      settings.is_grey = true;
-      continue;
-    }
-    if (++i == argc) {
-      return usage();
-    }
-    if (option == "--size") {
-      if (std::sscanf(argv[i], "%dx%d", &settings.width, &settings.height) != 2) {
-        return usage();
-      }
-    } else if (option == "--rounds") {
-      settings.rounds = std::max(1, std::atoi(argv[i]));
-    } else if (option == "--threads") {
-      settings.threads = std::max(1, std::atoi(argv[i]));
-    } else if (option == "--only") {
-      settings.only = argv[i];
-    } else if (option == "--json") {
-      settings.json = argv[i];
-    } else if (option == "--pictures") {
-      settings.pictures = argv[i];
-    } else {
-      return usage();
-    }
-  }
+  line.size("--size", settings.width, settings.height);
+  settings.is_grey = line.flag("--grey");
+  settings.rounds = line.number("--rounds", settings.rounds);
+  settings.threads = line.number("--threads", settings.threads);
+  settings.only = line.text("--only").value_or("");
+  settings.json = line.text("--json");
+  settings.pictures = line.text("--pictures");
+  line.finish();
   fmt::print("instruction set {}, {} hardware threads\n", instruction_set_in_use(),
              scheduler::detect_machine().hardware_threads);
   const nlohmann::json table = compare(settings);
-  if (settings.json) {
-    std::ofstream(*settings.json) << table.dump(2) << '\n';
-  }
+  write_json(settings.json, table);
   return 0;
 }
 
