@@ -86,8 +86,6 @@ void locate_minima_row(const std::int32_t* cells, const std::int32_t* minima, in
                        int columns, std::int32_t* winners);
 
 /// The same, plainly.
-void locate_minima_row_ref(const std::int32_t* cells, const std::int32_t* minima, int lanes,
-                           int columns, std::int32_t* winners);
 void select_winners_row_ref(const WinnerRow& row, std::int32_t* winners);
 
 }  // namespace vantage::kernels

@@ -22,14 +22,4 @@ void select_winners_row_ref(const WinnerRow& row, std::int32_t* winners) {
   }
 }
 
-void locate_minima_row_ref(const std::int32_t* cells, const std::int32_t* minima, int lanes,
-                           int columns, std::int32_t* winners) {
-  for (int j = 0; j < columns; ++j) {
-    winners[j] = 0;
-    while (cells[j * lanes + winners[j]] != minima[j]) {
-      ++winners[j];
-    }
-  }
-}
-
 }  // namespace vantage::kernels

@@ -30,7 +30,7 @@ Bits packed(const std::vector<bool>& answers) {
 }
 
 /// What a function and its reference write, which must be the same and nothing else.
-template <typename Function, typename Side>
+template <typename Function, typename Reference>
 Bits written(int width, const Function& function, const Reference& reference) {
   GuardedRow<std::uint64_t> bits(static_cast<std::size_t>(row_words(width)), 1, kSentinel);
   GuardedRow<std::uint64_t> expected(static_cast<std::size_t>(row_words(width)), 1, kSentinel);
