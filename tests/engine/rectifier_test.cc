@@ -249,7 +249,7 @@ TEST(Rectifier, BringsBackRowsOfADistortedScene) {
   double sum_squares = 0;
   int blocks = 0;
   for (const Side side : {Side::kLeft, Side::kRight}) {
-    const int index = index_of(side);
+    const int index = static_cast<int>(index_of(side));
     const SceneRendering rendering = scene.render({static_cast<double>(index), 0}, 0);
     const auto& seen = std::get<Image<std::uint8_t>>(rendering.image.pixels);
     // Where a ray of the scene's own frame lies in its rendering.
