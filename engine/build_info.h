@@ -4,7 +4,7 @@
 
 namespace vantage {
 
-/// What this library was built from and with. Thread rule: pure.
+/// Version, compiler and libraries of this build. Thread rule: pure.
 struct BuildInfo {
   std::string version;   ///< of Vantage, "1.2.3"
   std::string compiler;  ///< "GCC 12.2.0"

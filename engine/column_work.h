@@ -6,7 +6,7 @@
 
 namespace vantage {
 
-/// What kernels do that work on one column of `count` candidates.
+/// Work of a kernel on one column of `count` candidates.
 inline scheduler::ColumnWork column_work(const kernels::KernelWork& work, int count) {
   constexpr double kValueBytes = 4;
   const int lanes = kernels::CandidateGeometry{.count = count}.lanes();

@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-// Rows of one task of for_each_band(): enough to hide the cost of a task, few enough to balance.
+// Rows per task of for_each_band(): enough to hide the cost of a task, few enough to balance.
 constexpr int kBandRows = 16;
 
 void require_positive(const char* field, const std::optional<int>& value) {

@@ -12,31 +12,31 @@
 
 namespace vantage {
 
-/// How work is spread over the machine. Nothing here changes a result.
+/// How work is distributed over the machine. Results do not depend on it.
 struct ExecutionOptions {
   std::optional<int> threads =
-      std::nullopt;  ///< 1..1024; default: the hardware threads this process may use
+      std::nullopt;  ///< 1..1024; default: the hardware threads available to this process
   scheduler::ExecutorKind executor = scheduler::ExecutorKind::kTbb;
-  /// Default: on nodes where the threads need more than one, else anywhere.
+  /// Default: bind to nodes where the threads need more than one, else no binding.
   std::optional<scheduler::ThreadBinding> binding = std::nullopt;
   std::optional<int> strip_width_px = std::nullopt;  ///< ≥ 1; default from the cost model
   std::optional<int> band_height_px = std::nullopt;  ///< ≥ 1; default from the cost model
   /// Iterations between two stores of the whole state, ≥ 1; default from the cost model.
   std::optional<int> iterations_per_pass = std::nullopt;
 
-  /// For what the iterations of one map store between passes, with the scratch of all threads; as
-  /// far as it can be kept. Default scheduler::kDefaultMemoryBytes.
+  /// Memory budget for what the iterations of one map store between passes plus the scratch of all
+  /// threads; a target, not a hard limit. Default scheduler::kDefaultMemoryBytes.
   std::optional<std::size_t> chain_memory_bytes = std::nullopt;
 
   /// Throws UsageError naming the field, its value and its limit.
   void validate() const;
 };
 
-/// How many threads an Execution with `options` has on `machine`.
+/// Number of threads of an Execution with `options` on `machine`.
 int thread_count(const ExecutionOptions& options, const scheduler::Machine& machine);
 
-/// The threads, the scratch memory and the knowledge of the machine that matchers and synthesisers
-/// share. Thread rule: may be used by several frames at once. Outlives everything that uses it.
+/// Threads, scratch memory and machine properties that matchers and synthesisers share. Must
+/// outlive everything that uses it. Thread rule: several frames may use it at once.
 class Execution {
  public:
   explicit Execution(const ExecutionOptions& options);
@@ -46,8 +46,8 @@ class Execution {
   [[nodiscard]] scheduler::Executor& executor() { return *executor_; }
   [[nodiscard]] scheduler::ScratchPool& scratch() { return scratch_; }
 
-  /// Calls body(first_row, end_row) for bands that cover [0, rows) exactly, in parallel. For row
-  /// work without cells (refinement, warping); the bands do not depend on the thread count.
+  /// Calls body(first_row, end_row) in parallel for bands that cover [0, rows) exactly. For row
+  /// work without cells (refinement, warping). Bands do not depend on the number of threads.
   void for_each_band(int rows, const std::function<void(int first_row, int end_row)>& body);
 
  private:

@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-/// Why the last call of a function of dlfcn.h in this thread failed.
+/// Reason for the last dlfcn.h failure in this thread.
 std::string last_failure() {
   const char* reason = ::dlerror();
   return reason == nullptr ? "no reason given" : reason;

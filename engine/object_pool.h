@@ -7,8 +7,8 @@
 
 namespace vantage {
 
-/// Lends working memory of type T to calls that run at the same time, and keeps it for the next
-/// ones. Thread rule: borrow() may be called concurrently. Loans must not outlive the pool.
+/// Lends working memory of type T to concurrent calls and keeps it for later ones. Loans must not
+/// outlive the pool. Thread rule: borrow() may be called concurrently.
 template <typename T>
 class ObjectPool {
  public:
@@ -29,7 +29,7 @@ class ObjectPool {
     std::unique_ptr<T> object_;
   };
 
-  /// Calls visit(object) for all that are not lent.
+  /// Calls visit(object) for all objects that are not lent.
   template <typename Visit>
   void for_each_idle(const Visit& visit) const {
     const std::lock_guard lock(mutex_);
@@ -41,7 +41,7 @@ class ObjectPool {
   [[nodiscard]] Loan borrow() {
     const std::lock_guard lock(mutex_);
     if (free_.empty()) {
-      free_.reserve(++created_);  // giving back cannot fail
+      free_.reserve(++created_);  // so that returning an object cannot fail
       return {*this, std::make_unique<T>()};
     }
     std::unique_ptr<T> object = std::move(free_.back());

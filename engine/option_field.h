@@ -5,19 +5,19 @@
 #include <optional>
 #include <string_view>
 
-// An options struct is a template over its fields: `Options<std::type_identity_t>` is what is in
-// force, `Options<OptionalField>` is what a user sets, with empty fields for the rest. Beside it
-// stands visit_fields(visit, options...), the one list of its fields: it calls
+// An options struct is a template over its fields: `Options<std::type_identity_t>` holds the values
+// in force, `Options<OptionalField>` what a user sets, with empty fields for the rest.
+// visit_fields(visit, options...), declared next to it, is the only list of its fields: it calls
 // visit(description, options.field...) for each field, with one or several structs of the template.
 // Everything that concerns all fields goes through that list.
 
 namespace vantage {
 
-/// Field of an options struct that a user may leave empty.
+/// Field of an options struct that may be left empty.
 template <typename T>
 using OptionalField = std::optional<T>;
 
-/// The default of a field: `value` in a struct of what is in force, empty in one of overrides.
+/// Default of a field: `value` in a struct of values in force, empty in one of overrides.
 template <template <typename> class Field, typename T>
 constexpr Field<T> by_default(T value) {
   if constexpr (std::same_as<Field<T>, T>) {
@@ -27,10 +27,10 @@ constexpr Field<T> by_default(T value) {
   }
 }
 
-/// The values that a field accepts.
+/// Values that a field accepts.
 struct Limits {
   bool (*contain)(double value) = [](double) { return true; };
-  std::string_view expected;  ///< in words, for messages: "an odd number from 1 to 181"
+  std::string_view expected;  ///< for messages: "an odd number from 1 to 181"
 };
 
 template <int min, int max>
@@ -41,7 +41,7 @@ constexpr bool is_within(double value) {
 /// Throws UsageError "OPTION is VALUE, expected …" for a value outside `limits`.
 void require_within(const Limits& limits, std::string_view option, double value);
 
-/// Throws UsageError for the first field of `options` with a value outside its limits.
+/// Throws UsageError for the first field of `options` outside its limits.
 template <typename Options>
 void require_within_limits(const Options& options) {
   visit_fields(
@@ -51,7 +51,7 @@ void require_within_limits(const Options& options) {
       options);
 }
 
-/// Gives `target`, which is of either kind, the fields that `overrides` have.
+/// Copies the fields set in `overrides` to `target`, which may be of either kind.
 template <typename Overrides, typename Options>
 void take_over(const Overrides& overrides, Options& target) {
   visit_fields(
@@ -63,7 +63,7 @@ void take_over(const Overrides& overrides, Options& target) {
       overrides, target);
 }
 
-/// Overrides with every field set, to what is in force.
+/// Overrides with every field set to the value in force.
 template <typename Overrides, typename Options>
 Overrides all_set(const Options& in_force) {
   Overrides result;
@@ -72,7 +72,7 @@ Overrides all_set(const Options& in_force) {
   return result;
 }
 
-/// Stands for the value of any field when fields are counted.
+/// Placeholder for the value of any field when fields are counted.
 struct AnyFieldValue {
   template <typename T>
   operator T() const;  // NOLINT(google-explicit-constructor)
@@ -88,8 +88,8 @@ consteval std::size_t count_fields() {
   }
 }
 
-/// Whether visit_fields() calls its visitor once for each field: for static_assert, so that a field
-/// that is forgotten there does not compile.
+/// Whether visit_fields() calls its visitor once for each field. For static_assert, so that code
+/// with a field missing there does not compile.
 template <typename Options>
 consteval bool visits_every_field() {
   std::size_t visited = 0;

@@ -5,8 +5,7 @@
 
 namespace vantage {
 
-/// Memory that the system does not give, and what it was wanted for. what(): "out of memory for
-/// ...".
+/// A failed allocation and its purpose. what(): "out of memory for ...".
 class OutOfMemory : public std::bad_alloc {
  public:
   explicit OutOfMemory(const std::string& purpose) : text_("out of memory for " + purpose) {}

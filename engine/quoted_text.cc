@@ -11,8 +11,8 @@ constexpr std::size_t kMostQuotedBytes = 100;
 
 bool is_continuation(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
 
-/// Bytes of the visible character that `text` begins with; 0 for a control character and for what
-/// is not UTF-8.
+/// Size in bytes of the visible character at the start of `text`; 0 for a control character or
+/// invalid UTF-8.
 std::size_t visible_bytes(std::string_view text) {
   const auto first = static_cast<unsigned char>(text[0]);
   if (first < 0x80) {

@@ -5,12 +5,12 @@
 
 namespace vantage {
 
-/// `text` as one line that cannot steer a terminal: control characters and bytes that are not UTF-8
-/// become \n, \t, \x1B and the like. Text that has none of them stays as it is.
+/// `text` as one line that cannot control a terminal: control characters and invalid UTF-8 become
+/// \n, \t, \x1B and so on. Other text is unchanged.
 std::string printable(std::string_view text);
 
-/// What a message shows of a value that somebody else wrote: printable, and of a long one only the
-/// beginning and its length.
+/// A foreign value as quoted in messages: printable; long values are shortened to their start and
+/// their length.
 std::string quotable(std::string_view text);
 
 }  // namespace vantage

@@ -6,14 +6,14 @@
 namespace vantage {
 namespace {
 
-/// The finaliser of the generator SplitMix64: every bit of the result depends on every bit given.
+/// Finaliser of the SplitMix64 generator: every result bit depends on every input bit.
 std::uint64_t mixed(std::uint64_t value) {
   value = (value ^ (value >> 30U)) * 0xbf58476d1ce4e5b9U;
   value = (value ^ (value >> 27U)) * 0x94d049bb133111ebU;
   return value ^ (value >> 31U);
 }
 
-/// Four chains, so that the multiplications of one need not wait for those of another.
+/// Four independent chains, so that their multiplications overlap.
 class Hash {
  public:
   void add(const void* data, std::size_t bytes) {

@@ -8,18 +8,18 @@
 
 namespace vantage {
 
-/// What matching finds for the pixels of one image, on its grid. Images that were not asked for are
-/// empty, or their contents mean nothing.
+/// Matching results for the pixels of one image, on its grid. Images that were not requested are
+/// empty or undefined.
 struct MatchedMap {
   DisparityMap disparity_px = {};
   DisparityMap disparity_y_px = {};  ///< y_left − y_right of a two-dimensional search, else empty
-  /// How sure the winners are, before refinement: M = max Ê for evidence (5.12), max p for Bayes,
+  /// Confidence of the winners, before refinement: M = max Ê for evidence (5.12), max p for Bayes,
   /// the certainty in use for local stopping, the winner margin (6.13) otherwise.
   Image<float> confidence = {};
-  Mask unmatched = {};  ///< 255 where refinement or border left the pixel without a match
+  Mask unmatched = {};  ///< 255 where refinement or the border left the pixel without a match
 };
 
-/// The maps of a pair. Reused from call to call without allocating.
+/// Maps of a pair. Can be reused without reallocation.
 struct DisparityMaps {
   MatchedMap left;
   MatchedMap right;

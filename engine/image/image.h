@@ -14,9 +14,9 @@
 
 namespace vantage {
 
-/// A window onto pixels owned elsewhere. Channels are interleaved: the value of channel c at
-/// column x is row(y)[x · channels + c]. Cheap to copy; does not keep the pixels alive.
-/// `T` may be const. Rows are `stride` values apart.
+/// A view of pixels owned elsewhere. Channels are interleaved: the value of channel c at column x
+/// is row(y)[x · channels + c]. Rows are `stride` values apart. Cheap to copy; does not keep the
+/// pixels alive. `T` may be const.
 template <typename T>
 class ImageView {
  public:
@@ -48,9 +48,9 @@ class ImageView {
   std::size_t stride_ = 0;
 };
 
-/// Owns pixels. Move-only: copies are made with copy(). Rows are 64-byte aligned and their pitch
-/// stays off multiples of 2 KiB, so that neighbouring rows do not compete for the same cache sets.
-/// T is uint8_t, uint16_t or float. Thread rule: as for a plain array.
+/// Owns pixels. Move-only; copy() makes copies. Rows are 64-byte aligned, and their pitch is never
+/// a multiple of 2 KiB, so that neighbouring rows do not compete for the same cache sets. T is
+/// uint8_t, uint16_t or float. Thread rule: as for a plain array.
 template <typename T>
 class Image {
  public:
@@ -65,7 +65,7 @@ class Image {
     return *this;
   }
 
-  /// Gives the image a new shape; contents are then undefined. Memory that suffices is kept.
+  /// Changes the shape; contents are then undefined. Memory is reused if it suffices.
   void resize(int width, int height, int channels = 1) {
     const std::size_t row_bytes =
         sizeof(T) * static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);

@@ -12,9 +12,8 @@
 
 namespace vantage {
 
-/// Bytes by what they are for. Each owner's figure is the most that it held, asked when its work is
-/// done; not all owners need have held their most at one time, so that sums can exceed the peak of
-/// a process.
+/// Bytes by purpose. Each figure is the maximum that its owner held, read when its work is done.
+/// Owners may reach their maxima at different times, so sums can exceed the peak of the process.
 struct MemoryUse {
   struct Owner {
     std::string name;
@@ -22,7 +21,7 @@ struct MemoryUse {
   };
   std::vector<Owner> owners;
 
-  /// Adds up when the name has been there before; owners of nothing are left out.
+  /// Adds to an existing entry of that name; 0 bytes add no entry.
   void add(const std::string& name, std::size_t bytes) {
     if (bytes == 0) {
       return;
@@ -36,7 +35,7 @@ struct MemoryUse {
   }
 };
 
-/// What the rows of an image take. Memory that a larger image has left behind in it is not told.
+/// Size of an image's rows. Spare memory left from a larger image is not counted.
 template <typename T>
 std::size_t held_bytes(const Image<T>& image) {
   return sizeof(T) * image.view().stride() * static_cast<std::size_t>(image.height());
@@ -49,8 +48,8 @@ std::size_t held_bytes(const std::vector<T>& values) {
   return sizeof(T) * values.capacity();
 }
 
-/// The scratch memory of strips ("rings"), between passes ("stored iterations") and of other row
-/// work ("row work").
+/// Scratch memory of strips ("rings"), between passes ("stored iterations") and of other row work
+/// ("row work").
 inline void add_scratch_use(Execution& execution, MemoryUse& use) {
   using scheduler::ScratchUse;
   const scheduler::ScratchPool& scratch = execution.scratch();

@@ -7,8 +7,8 @@
 
 namespace vantage {
 
-/// A picture as it was read: 8-bit, 16-bit or float values, 1 (grey), 3 (RGB order) or 4 channels
-/// (RGB and alpha). 8-bit values span 0..255, 16-bit 0..65535, float 0..1, all finite.
+/// A picture as read: 8-bit, 16-bit or float values, 1 (grey), 3 (RGB order) or 4 channels (RGB and
+/// alpha). 8-bit values span 0..255, 16-bit 0..65535, float 0..1, all finite.
 struct Photograph {
   std::variant<Image<std::uint8_t>, Image<std::uint16_t>, Image<float>> pixels;
 
@@ -23,8 +23,8 @@ struct Photograph {
   }
 };
 
-/// An image of that shape, in the memory that `photograph` has where it is of this type; contents
-/// are undefined. The photograph is not to be used before it has pixels again.
+/// An image of that shape in the memory of `photograph`, reused if the type matches; contents are
+/// undefined. Do not use the photograph before it has pixels again.
 struct ImageShape {
   int width = 0;
   int height = 0;

@@ -4,11 +4,11 @@
 
 namespace vantage {
 
-/// One image of a pair, or its camera: which grid a map is on, and where the background of an
-/// occlusion lies.
+/// Left or right image of a pair, or its camera: the grid a map is on, and the side on which the
+/// background of an occlusion lies.
 enum class Side { kLeft, kRight };
 
-/// Position in arrays that hold left, then right.
+/// Index into arrays ordered left, right.
 constexpr std::size_t index_of(Side side) { return side == Side::kLeft ? 0 : 1; }
 
 constexpr Side other_side(Side side) { return side == Side::kLeft ? Side::kRight : Side::kLeft; }

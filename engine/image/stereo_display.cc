@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-/// Rows give R, G and B of the anaglyph from R, G, B of the left and of the right image.
+/// Rows: R, G and B of the anaglyph; columns: R, G, B of the left, then of the right image.
 using AnaglyphMatrix = std::array<std::array<float, 6>, 3>;
 
 // As computed by Dubois for the primaries of a screen and the filters of common glasses.

@@ -10,10 +10,10 @@
 
 namespace vantage {
 
-/// One picture for glasses with filters of two colours, left first.
+/// One picture for two-colour filter glasses, left first.
 enum class Anaglyph { kRedCyan, kGreenMagenta, kYellowBlue };
 
-/// Rows (or columns) of both images in turn, all of them: twice as high (wide) as one image.
+/// Alternating rows (or columns) of both images, all of them: twice as high (wide) as one image.
 struct InterleavedStereo {
   bool columns = false;
   bool right_first = false;
@@ -21,18 +21,18 @@ struct InterleavedStereo {
   friend bool operator==(const InterleavedStereo&, const InterleavedStereo&) = default;
 };
 
-/// How both images of a pair become one picture for a viewer.
+/// How a viewer's single picture is made from both images of a pair.
 using StereoDisplay = std::variant<StereoPacking, Anaglyph, InterleavedStereo>;
 
-/// With the names of ffmpeg's stereo3d filter: those of stereo_packing_names(); arcd, agmd and aybd
-/// (anaglyphs after Dubois); irl, irr, icl and icr (interleaved).
+/// Names as in ffmpeg's stereo3d filter: those of stereo_packing_names(); arcd, agmd and aybd
+/// (Dubois anaglyphs); irl, irr, icl and icr (interleaved).
 const std::vector<std::pair<std::string_view, StereoDisplay>>& stereo_display_names();
 
-/// Puts both images (equal size, depth and channels) into one. Anaglyphs weigh the channels of both
-/// by the least-squares projection of E. Dubois, 2001, in the encoded values as they are; grey
-/// images count as equal R, G and B, an alpha channel is the mean. They have three channels at
-/// least. Throws Error when shapes differ. Memory of the result is reused. Thread rule:
-/// concurrently for different results.
+/// Combines both images (equal size, depth and channels) into one. Anaglyphs weigh the channels of
+/// both by the least-squares projection of E. Dubois, 2001, applied to the encoded values; grey
+/// images count as equal R, G and B, alpha is averaged. Anaglyphs have at least three channels.
+/// Reuses the memory of the result. Throws Error when shapes differ. Thread rule: concurrently for
+/// different results.
 void show_stereo(const Photograph& left, const Photograph& right, const StereoDisplay& display,
                  Photograph& shown);
 

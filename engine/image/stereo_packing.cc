@@ -12,7 +12,7 @@
 namespace vantage {
 namespace {
 
-/// Pixels in the memory of `photograph`, which is given the type if it has another.
+/// Pixels of type T in `photograph`, whose type changes to T if it differs.
 template <typename T>
 Image<T>& pixels_of(Photograph& photograph) {
   if (!std::holds_alternative<Image<T>>(photograph.pixels)) {
@@ -38,14 +38,14 @@ View half_of(const View& packed, bool above_below, bool second) {
   return {packed.row(y) + x * packed.channels(), width, height, packed.channels(), packed.stride()};
 }
 
-/// Interpolated values are held to these: cubic interpolation overshoots.
+/// Clamping range of interpolated values: cubic interpolation overshoots.
 template <typename T>
 struct ValueRange {
   T smallest;
   T largest;
 };
 
-/// That of the type, for floats that of the pixels.
+/// Range of the type; for floats, of the pixels.
 template <typename T>
 ValueRange<T> range_of(ImageView<const T> image) {
   if constexpr (!std::is_same_v<T, float>) {
@@ -61,8 +61,8 @@ ValueRange<T> range_of(ImageView<const T> image) {
   }
 }
 
-/// Catmull-Rom interpolation a quarter of the way from `near` to `next`: the cubic one that leaves
-/// ramps as they are. `before` lies in front of `near`, `after` behind `next`.
+/// Catmull-Rom interpolation a quarter of the way from `near` to `next`: the cubic one that
+/// preserves ramps. `before` precedes `near`, `after` follows `next`.
 template <typename T>
 T at_a_quarter(T before, T near, T next, T after, ValueRange<T> range) {
   if constexpr (std::is_same_v<T, float>) {
@@ -74,8 +74,8 @@ T at_a_quarter(T before, T near, T next, T after, ValueRange<T> range) {
   }
 }
 
-/// Makes the two pixels, or rows, of full size that a pixel, or row, of half size stands for.
-/// `sources` are it, in the middle, and its two neighbours to either side.
+/// Computes the two full-size pixels (or rows) for each half-size one. `sources`: the half-size one
+/// in the middle, with two neighbours on either side.
 template <typename T>
 void stretch_run(const std::array<const T*, 5>& sources, int count, ValueRange<T> range, T* first,
                  T* second) {
@@ -130,7 +130,7 @@ void unpack_half(ImageView<const T> half, StereoPacking packing, Image<T>& image
   }
 }
 
-/// Takes the first or second image, in full size, out of `packed`.
+/// Extracts the first or second image of `packed`, in full size.
 void unpack_image(const Photograph& packed, StereoPacking packing, bool second, Photograph& image) {
   const int divided = packing.above_below ? packed.height() : packed.width();
   if (divided < 2 || divided % 2 != 0) {

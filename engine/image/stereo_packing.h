@@ -9,7 +9,7 @@
 
 namespace vantage {
 
-/// How one picture holds both images of a pair, with the names of ffmpeg's stereo3d filter.
+/// Layout of both images in one picture, named as in ffmpeg's stereo3d filter.
 struct StereoPacking {
   bool above_below = false;  ///< else side by side
   bool half_size = false;    ///< each image is squeezed to half its width or height
@@ -21,22 +21,22 @@ struct StereoPacking {
 /// sbsl, sbsr, sbs2l, sbs2r, abl, abr, ab2l, ab2r and their synonyms tbl, tbr, tb2l, tb2r.
 const std::vector<std::pair<std::string_view, StereoPacking>>& stereo_packing_names();
 
-/// Takes `packed` apart. Images of half size are stretched to full size by cubic interpolation
-/// (Catmull-Rom, held to the range of the type, of the pixels for float).
-/// Throws Error when the size is not even in the direction of the packing. Memory of the results is
-/// reused. Thread rule: concurrently for different results.
+/// Splits `packed` into its images. Images of half size are stretched to full size by cubic
+/// interpolation (Catmull-Rom, clamped to the range of the type, or of the pixels for float).
+/// Reuses the memory of the results. Throws Error when the size is not even in the direction of the
+/// packing. Thread rule: concurrently for different results.
 void unpack_stereo(const Photograph& packed, StereoPacking packing, Photograph& left,
                    Photograph& right);
-/// unpack_stereo() of the left image alone.
+/// unpack_stereo() for the left image alone.
 void unpack_left(const Photograph& packed, StereoPacking packing, Photograph& left);
 /// The same for the left image alone.
 void unpack_left(const Photograph& packed, StereoPacking packing, Photograph& left);
 
-/// Throws Error unless both have one size, depth and number of channels.
+/// Throws Error unless both have the same size, depth and number of channels.
 void require_equal_shapes(const Photograph& left, const Photograph& right);
 
-/// Puts both images (equal size, depth and channels) into one. For half size each pixel is the mean
-/// of two (the last one of an odd size counts twice). Throws Error when shapes differ.
+/// Combines both images (equal size, depth and channels) into one. For half size each pixel is the
+/// mean of two (the last one of an odd size counts twice). Throws Error when shapes differ.
 void pack_stereo(const Photograph& left, const Photograph& right, StereoPacking packing,
                  Photograph& packed);
 

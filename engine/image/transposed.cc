@@ -7,7 +7,7 @@
 namespace vantage {
 namespace {
 
-// OpenCV does not change the source of a transposition, but has no view of constant pixels.
+// cv::transpose() does not change its source, but cv::Mat has no view of constant pixels.
 template <typename T>
 cv::Mat wrap(ImageView<const T> image) {
   return {image.height(), image.width(), CV_MAKETYPE(cv::DataType<T>::depth, image.channels()),

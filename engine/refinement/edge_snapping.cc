@@ -16,13 +16,14 @@ namespace {
 
 constexpr double kLowThreshold = 6;    // grey levels per pixel
 constexpr double kHighThreshold = 10;  // grey levels per pixel
-// Steps of a 16-bit gradient per grey level per pixel: 255/2 times this fits.
+// Units of a 16-bit gradient per grey level per pixel: 255/2 times this fits.
 constexpr float kGradientSteps = 128;
 
 constexpr int kRadius = 4;
 using HalfKernel = std::array<float, kRadius + 1>;
 
-/// Samples of the Gaussian of σ = 1 from the middle outwards, of sum 1 over both sides.
+/// Samples of the Gaussian of σ = 1 from the centre outwards, normalised to a sum of 1 over both
+/// sides.
 HalfKernel gaussian() {
   HalfKernel kernel{};
   double sum = 0;
@@ -35,7 +36,7 @@ HalfKernel gaussian() {
   return kernel;
 }
 
-/// `grey` is a row with kRadius columns of margin on either side, which this replicates.
+/// `grey` is a row with kRadius columns of margin on either side, which are replicated here.
 void smooth_along_row(float* grey, const HalfKernel& kernel, int width, float* smooth) {
   std::fill(grey - kRadius, grey, grey[0]);
   std::fill(grey + width, grey + width + kRadius, grey[width - 1]);
@@ -61,7 +62,7 @@ void smooth_across_rows(const Image<float>& rows, int y, const HalfKernel& kerne
   }
 }
 
-/// Half the difference of the neighbours in gradient steps.
+/// Half the difference of the neighbours, in gradient units.
 std::int16_t central_difference(float before, float after) {
   constexpr int kMost = std::numeric_limits<std::int16_t>::max();
   const float steps = (after - before) * (kGradientSteps / 2);

@@ -12,7 +12,7 @@ namespace vantage {
 
 /// Working memory of edge snapping, reused from call to call.
 struct EdgeSnappingWork {
-  Image<float> grey;      ///< grey levels between margins, then smoothed ones
+  Image<float> grey;      ///< grey levels with margins, then smoothed
   Image<float> smooth_x;  ///< grey levels smoothed along the rows
   Image<std::int16_t> gradient_x;
   Image<std::int16_t> gradient_y;
@@ -26,13 +26,13 @@ inline std::size_t held_bytes(const EdgeSnappingWork& work) {
 
 /// Marks the intensity edges of a photograph (255) by Canny's method: luma smoothed by a Gaussian
 /// of σ = 1 (border replicated), central differences ÷ 2, thresholds of 6 and 10 grey levels per
-/// pixel on their length (EQUATIONS §5.1). `work.edges` becomes as large as the photograph.
+/// pixel on the gradient's length (EQUATIONS §5.1). Resizes `work.edges` to the photograph.
 /// Identical for any `execution`.
 void find_edges(const Photograph& photograph, Execution& execution, EdgeSnappingWork& work);
 
-/// Moves the discontinuities of a map to edges of its own image, row by row, at most `most_px`
-/// columns far: kernels::snap_discontinuities_row() says which way. `edges` has the size of the
-/// map. Identical for any `execution`.
+/// Moves the discontinuities of a map to edges of its own image, row by row, by at most `most_px`
+/// columns; direction as in kernels::snap_discontinuities_row(). `edges` has the size of the map.
+/// Identical for any `execution`.
 void snap_discontinuities(const Mask& edges, int most_px, Execution& execution,
                           DisparityMap& map_px);
 

@@ -23,8 +23,8 @@ std::uint8_t grey_level(T value) {
   }
 }
 
-/// Gives `framed` the margins that the kernel reads: all its rows are `outside`, over which
-/// write_row(y, values) writes row y of a map of this size, from column 0 on.
+/// Builds `framed` with the kernel's margins: every row is filled with `outside`, then write_row(y,
+/// values) writes map row y from column 0.
 template <typename T, class WriteRow>
 void frame(int width, int height, int channels, T outside, const WriteRow& write_row,
            Execution& execution, Image<T>& framed) {
@@ -42,7 +42,7 @@ void frame(int width, int height, int channels, T outside, const WriteRow& write
   });
 }
 
-/// Three channels in grey levels and a 0 each.
+/// Three channels in grey levels, padded with a 0.
 template <typename T>
 void write_pixels(const T* photograph, int width, int channels, std::uint8_t* pixels) {
   const int second = channels == 1 ? 0 : 1;

@@ -21,20 +21,20 @@ namespace vantage {
 /// Wider than any search.
 inline constexpr DisparityRange kAnyDisparity{-(1 << 20), 1 << 20};
 
-/// One map on its way through refinement; all images have one size.
+/// One map to refine; all images have one size.
 struct MapToRefine {
   Side side = Side::kLeft;
   const Photograph* image = nullptr;  ///< the map's own; for edge snapping and medians
-  /// Winners, NaN = unknown, become the refined map. Without disparities there is none to be made,
-  /// only the other map to be checked. `disparity_y_px`: of a two-dimensional search, else empty.
-  /// `confidence`: read where uses_confidence(). `unmatched` is a result.
+  /// In: winners, NaN = unknown; out: the refined map. Without disparities there is no map to
+  /// refine, only the other one to check. `disparity_y_px`: of a two-dimensional search, else
+  /// empty. `confidence`: read if uses_confidence(). `unmatched` is output only.
   MatchedMap* map = nullptr;
-  /// What the other map is checked against in place of this one, of the same size; empty: this one.
+  /// Checks the other map in place of this one; same size as the map. Empty: the map itself.
   ImageView<const float> check_px = {};
-  /// false: the map is there for the cross-check of the other one alone; what becomes of it, and
-  /// its `unmatched`, mean nothing.
+  /// false: the map is only needed to cross-check the other; it and its `unmatched` are then
+  /// undefined.
   bool is_result = true;
-  /// What the disparities, and those of disparity_y_px, were searched in, and stay within.
+  /// Search range of the disparities (and of disparity_y_px); refined values stay within it.
   DisparityRange search = kAnyDisparity;
   DisparityRange search_y = kAnyDisparity;
 };
@@ -49,11 +49,11 @@ struct RefinementWork {
 
 std::size_t held_bytes(const RefinementWork& work);
 
-/// Makes dense maps of winners (EQUATIONS §5): edge snapping → cross-check → confidence → speckles
-/// → surface fit → fill, each as `options` says. `other`: the map of the other image, refined as
-/// well if it is a result; null: there is none, and no cross-check, the unknown pixels are
-/// unmatched instead. `begin_step` is told the name of each step that is taken ahead of it (static
-/// storage). Identical for any `execution`.
+/// Refines winners to dense maps (EQUATIONS §5): edge snapping → cross-check → confidence →
+/// speckles → surface fit → fill, as set in `options`. `other`: the map of the other image, also
+/// refined if it is a result; null: no cross-check, and unknown pixels are unmatched instead.
+/// `begin_step` is called with the name of each step before it runs (static storage). Identical for
+/// any `execution`.
 void refine_maps(const RefinementOptions& options, const MapToRefine& map, const MapToRefine* other,
                  Execution& execution, RefinementWork& work,
                  const std::function<void(std::string_view)>& begin_step);

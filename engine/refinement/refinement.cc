@@ -11,10 +11,10 @@
 namespace vantage {
 namespace {
 
-// Neighbours whose disparities differ by no more are one surface (EQUATIONS §6).
+// Neighbours whose disparities differ by at most this are one surface (EQUATIONS §6).
 constexpr float kFillSurfaceStepPx = 1;
 
-/// Whether the displacement of (x, y) leads to a pixel of `other` that has nearly the same.
+/// Whether the partner of (x, y) lies inside `other` and has nearly the same displacement.
 /// `direction` is −1 from the left map to the right one, +1 from right to left.
 bool agrees(const DisplacementView& own, const DisplacementView& other, int direction,
             double tolerance_px, int x, int y) {
@@ -32,7 +32,7 @@ bool agrees(const DisplacementView& own, const DisplacementView& other, int dire
          std::abs(own_y - other.y_px.at(column, row)) < tolerance_px;
 }
 
-/// Unknown instead of unmatched.
+/// Makes unmatched pixels unknown.
 void erase_unmatched(const Mask& unmatched, Execution& execution, DisparityMap& map_px) {
   execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
@@ -118,8 +118,8 @@ void fill_unmatched(const Mask& unmatched, Side side, Fill fill, Execution& exec
     }
   });
 
-  int above = -1;  // the last row with a match
-  int below = 0;   // the next one, or height
+  int above = -1;  // last row with a match
+  int below = 0;   // next one, or height
   for (int y = 0; y < height; ++y) {
     if (has_match[static_cast<std::size_t>(y)] != 0) {
       above = y;

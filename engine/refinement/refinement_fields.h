@@ -10,9 +10,9 @@
 
 namespace vantage {
 
-/// What is known of a field of RefinementOptions.
+/// Description of a field of RefinementOptions.
 struct RefinementField {
-  std::string_view option;  ///< its name on the command line, in files and in messages
+  std::string_view option;  ///< name on the command line, in files and in messages
   Limits limits = {};
 };
 
@@ -32,7 +32,7 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
   constexpr Limits kSize = {[](double v) { return v >= 0; }, "a number of pixels, at least 0"};
 
   visit(Field{"edge-snapping", kRadius}, options.edge_snapping_px...);
-  // Two fields of one option: a number, or that there is no check.
+  // One option sets two fields: a number, or no check.
   visit(Field{"cross-check"}, options.cross_check...);
   visit(Field{"cross-check", kAgreement}, options.cross_check_px...);
   visit(Field{"cross-check-level", {is_within<0, 9>, "a level from 0 to 9"}},

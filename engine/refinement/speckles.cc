@@ -15,8 +15,8 @@ constexpr float kSpeckleSurfaceStepPx = 1.0F;
 using Run = SpeckleWork::Run;
 using RowBits = SpeckleWork::RowBits;
 
-/// Finds the regions of one map: runs of connected pixels along each row, joined with those of the
-/// row above.
+/// Finds the regions of one map: runs of connected pixels in each row, joined with those of the row
+/// above.
 class Regions {
  public:
   Regions(ImageView<const float> map_px, ImageView<const float> map_y_px, SpeckleWork& work)
@@ -46,7 +46,7 @@ class Regions {
       }
       work_.row_begin.push_back(static_cast<std::int32_t>(work_.runs.size()));
     }
-    // An earlier run has been told the first one of its region when a later one asks it.
+    // `joined` leads to earlier runs only, so these already know the first run of their region.
     for (Run& run : work_.runs) {
       run.joined = run_at(run.joined).joined;
       run_at(run.joined).pixels += run.end - run.begin;
@@ -118,7 +118,7 @@ class Regions {
     }
   }
 
-  /// The first run known of a run's region; shortens the way to it.
+  /// The first known run of a run's region; compresses the path to it.
   std::int32_t first_of(std::int32_t index) {
     while (run_at(index).joined != index) {
       run_at(index).joined = run_at(run_at(index).joined).joined;
