@@ -14,12 +14,12 @@
 namespace vantage {
 namespace {
 
-/// Of levels in traces.
+/// Span names of the levels in traces.
 constexpr std::array<std::string_view, 10> kLevelNames = {
     "level 0", "level 1", "level 2", "level 3", "level 4",
     "level 5", "level 6", "level 7", "level 8", "level 9"};
 
-/// All but the coarsest at most.
+/// Never includes the coarsest level.
 int pruned_level_count(const MethodParameters& parameters, std::size_t levels) {
   return parameters.candidate_blocks == 0
              ? 0
@@ -30,8 +30,8 @@ int cell_bytes(const MethodParameters& parameters) {
   return parameters.aggregation == Aggregation::kBayes ? 1 : 2;
 }
 
-/// The costs of the next coarser level from those of a coarse one. Its rows need no strips: a block
-/// is all that a cell looks at.
+/// Reduces the costs of a coarse level to the next coarser one. Rows need no strips, because a cell
+/// reads one block only.
 void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
                   LevelVolume& coarser, Execution& execution) {
   const bool is_bayes = parameters.aggregation == Aggregation::kBayes;
@@ -48,7 +48,7 @@ void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
   });
 }
 
-/// The disparities of a level's winners, each repeated over the pixels of the image.
+/// Disparities of a level's winners, each repeated over the image pixels that it covers.
 void expand_winners(ImageView<const std::int32_t> winners, int level, int disparity_min,
                     ImageView<float> disparity_px, Execution& execution) {
   execution.for_each_band(disparity_px.height(), [&](int first_row, int end_row) {
@@ -88,7 +88,7 @@ LevelVolume& CoarseLevels::begin_result(int level) {
 
 void CoarseLevels::choose_blocks(int level, const kernels::CandidateGeometry& geometry,
                                  Execution& execution) {
-  // Only the finest level selects disparities, for which there must be partners.
+  // Only the finest level selects disparities, which must have partners.
   blocks_[static_cast<std::size_t>(level)].choose(
       winners_.view(), level == 0 ? std::optional(geometry) : std::nullopt, execution);
 }

@@ -16,12 +16,11 @@
 
 namespace vantage {
 
-/// What is stored of coarse levels while one map is computed: costs of each, results of two, and
-/// which candidates are looked at on levels that do not look at all.
-/// Working memory, reused from map to map without allocating.
+/// Coarse levels stored while one map is computed: costs of each level, results of two, and the
+/// candidate blocks of pruned levels. Working memory, reused without reallocation.
 class CoarseLevels {
  public:
-  /// For `extents` of levels, the image's own first, and so many candidates.
+  /// `extents`: sizes of the levels, the image's own first.
   void resize(const MethodParameters& parameters, const std::vector<scheduler::Extent>& extents,
               int candidates);
 
@@ -29,25 +28,26 @@ class CoarseLevels {
   [[nodiscard]] LevelVolume& costs(int level) {
     return costs_[static_cast<std::size_t>(level) - 1];
   }
-  /// The memory is that of level + 2, whose result nobody needs any more, too.
+  /// Shares its memory with level + 2, whose result is no longer needed.
   [[nodiscard]] LevelVolume& result(int level) {
     return results_[static_cast<std::size_t>(level) % 2];
   }
-  /// Gives the result of `level` its size.
+  /// Resizes the result of `level`.
   LevelVolume& begin_result(int level);
 
-  /// The candidates of `level`, null: all. Those of pruned levels have to be chosen first.
+  /// Candidate blocks of `level`; null: all candidates. choose_blocks() must come first on pruned
+  /// levels.
   [[nodiscard]] const CandidateBlocks* blocks(int level) const {
     return level < pruned_levels() ? &blocks_[static_cast<std::size_t>(level)] : nullptr;
   }
-  /// Chooses those of a pruned level from the winners of the next coarser one. `geometry`: the
-  /// image's.
+  /// Chooses the blocks of a pruned level from the winners of the next coarser one. `geometry`: of
+  /// the image.
   void choose_blocks(int level, const kernels::CandidateGeometry& geometry, Execution& execution);
-  /// Whether a finer level chooses its candidates from the winners of `level`.
+  /// Whether the next finer level chooses its candidates from the winners of `level`.
   [[nodiscard]] bool needs_winners(int level) const {
     return level > 0 && level <= pruned_levels();
   }
-  /// Where the winners of `level` ≥ 1 go, of its size.
+  /// Image for the winners of `level` ≥ 1, resized to the level.
   Image<std::int32_t>& begin_winners(int level);
 
   [[nodiscard]] std::size_t held_bytes() const;
@@ -58,48 +58,47 @@ class CoarseLevels {
   std::vector<LevelVolume> costs_;
   std::array<LevelVolume, 2> results_;
   std::vector<CandidateBlocks> blocks_;  ///< of pruned levels
-  Image<std::int32_t> winners_;          ///< of the level before
+  Image<std::int32_t> winners_;          ///< of the previous (coarser) level
 };
 
-/// Cells that were aggregated.
+/// Number of aggregated cells.
 struct LevelCells {
   double all_levels = 0;
   double finest_level = 0;
 };
 
-/// What CoarseLevels takes for images of `extent` and `candidates` disparities, with a CoarseMap or
-/// without; 0 for one level.
+/// Bytes of CoarseLevels for images of `extent` and `candidates` disparities; 0 for one level.
 std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
                                int candidates, bool has_coarse_map);
 
-/// The map of a coarse level, beside the image's own or in its place.
+/// The map of a coarse level, in addition to the image's own or instead of it.
 struct CoarseMap {
-  int level = 0;  ///< 1 to the coarsest there is; 0: none is wanted
-  /// Of the image's size: each winner for all the pixels that its own covers, in whole disparities,
-  /// those without a partner not left out.
+  int level = 0;  ///< 1 to the coarsest level; 0: not requested
+  /// Image-sized: each winner is repeated over all the pixels that it covers, in whole disparities;
+  /// pixels without a partner are included.
   ImageView<float> disparity_px = {};
-  /// Nothing finer is made: of the outputs, only the size counts.
+  /// No finer level is computed; of the outputs, only the size is used.
   bool is_all = false;
 };
 
-/// Computes one map coarse to fine (6.7): costs are reduced level by level, energies −ln p0 being
-/// added up over blocks of 2×2 columns for Bayesian diffusion (times level_weight) and averaged for
-/// other methods. Then each level is aggregated, the coarsest first, starting from what the coarser
-/// one ended with: Bayesian diffusion with its probabilities (or their energies) as the first state
+/// Computes one map coarse to fine (6.7). Costs are reduced level by level: energies −ln p0 are
+/// summed over blocks of 2×2 columns for Bayesian diffusion (times level_weight) and averaged for
+/// other methods. Then the levels are aggregated, coarsest first, each starting from the coarser
+/// level's result: Bayesian diffusion with its probabilities (or their energies) as the first state
 /// and its own likelihoods, the membrane with its energies and the pull of its own costs, all
-/// others with the mean of their own costs and its energies. Disparities keep their number and unit
-/// on all levels. The finest level's costs come from the images, twice, and are never stored.
-/// Iterations and σP differ from level to level (at_level).
+/// others with the mean of their own costs and its energies. Number and unit of disparities are the
+/// same on all levels. The finest level's costs are computed from the images twice and never
+/// stored. Iterations and σP depend on the level (at_level).
 ///
 /// `run` is called with one chain after the other: the first reduces the image's costs, the last
 /// selects winners into `outputs`. parameters.levels > 1; geometry and outputs are the image's;
 /// input without ChainInput::pair.
 ///
-/// With parameters.candidate_blocks > 0 the finest `pruned_levels` levels, all but the coarsest at
-/// most, look at few candidates of each tile only (CandidateBlocks): those near the winners of the
-/// next coarser level. Costs are reduced from all candidates all the same.
+/// With parameters.candidate_blocks > 0 the finest `pruned_levels` levels (never the coarsest)
+/// process only a few candidate blocks per tile (CandidateBlocks), near the winners of the next
+/// coarser level. Costs are still reduced from all candidates.
 ///
-/// `coarse_map`, of Bayesian diffusion only, is the same whether finer levels are made or not.
+/// `coarse_map` (Bayesian diffusion only) does not depend on whether finer levels are computed.
 LevelCells match_coarse_to_fine(const MethodParameters& parameters,
                                 const kernels::CandidateGeometry& geometry, const ChainInput& input,
                                 const MapOutputs& outputs, CoarseLevels& levels,

@@ -10,11 +10,11 @@
 
 namespace vantage {
 
-/// How `execution` works off a chain on so many threads.
+/// Execution plan of a chain on `threads` threads.
 scheduler::ChainPlan chain_plan(const MatchChain& chain, const ExecutionOptions& execution,
                                 int threads, const scheduler::Machine& machine);
 
-/// Working memory of MapSearch, reused from map to map without allocating.
+/// Working memory of MapSearch, reused without reallocation.
 struct MapSearchWork {
   CoarseLevels levels;
 };
@@ -22,8 +22,8 @@ struct MapSearchWork {
 /// Computes single maps: flat or coarse to fine, along rows or in two dimensions (5.5.3).
 class MapSearch {
  public:
-  /// `parameters`: those of `options`, with what was estimated from the images. All must outlive
-  /// the search. `report` gets plan and cells.
+  /// `parameters`: those of `options`, plus the values estimated from the images. All must outlive
+  /// the search. Fills plan and cells of `report`.
   MapSearch(const ResolvedMatchOptions& options, const MethodParameters& parameters,
             Execution& execution, MapSearchWork& work, MatchReport& report)
       : options_(options),
@@ -32,8 +32,8 @@ class MapSearch {
         work_(work),
         report_(report) {}
 
-  /// `outputs` of the image's size; where the coarse map is all, only that size counts. Throws
-  /// Error when no pixel has a candidate.
+  /// `outputs` have the image's size; with coarse.is_all only that size is used. Throws Error when
+  /// no pixel has a candidate.
   void compute(Side reference, const ChainInput& input, const MapOutputs& outputs,
                const CoarseMap& coarse);
 

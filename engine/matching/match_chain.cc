@@ -43,8 +43,8 @@ bool uses_column_ssd(const MethodParameters& parameters) {
 
 namespace {
 
-/// Half the bits of a candidate's index that fit below the sums of an 8-bit window without leaving
-/// 31 bits, or 0. Half, because they are made room for by scaling the intensities.
+/// Half the number of index bits that fit below the sums of an 8-bit window within 31 bits, or 0.
+/// Half, because scaling the intensities makes room for them.
 int index_shift(int window_px, const kernels::CandidateGeometry& geometry) {
   constexpr double largest_square = 255.0 * 255.0;
   int shift = 0;
@@ -71,15 +71,15 @@ ConfidenceMeasure confidence_measure(const MethodParameters& parameters) {
   }
 }
 
-/// Of a pixel's column, for the prior: squares of large differences would make single pixels decide
-/// for all around them.
+/// Maximum contrast of a column that the prior uses: squares of large differences would let single
+/// pixels decide for all around them.
 float most_contrast(const MethodParameters& parameters) {
   constexpr float kGreyLevels = 20;
   return parameters.cost == MatchCost::kSquared ? kGreyLevels * kGreyLevels
                                                 : std::numeric_limits<float>::infinity();
 }
 
-/// Of the costs of `input`, those drawn towards a prior included.
+/// Bounds of the costs of `input`, including the prior's term.
 CostBounds bounds_of(const MethodParameters& parameters, const ChainInput& input) {
   CostBounds bounds = cost_bounds(parameters, static_cast<int>(input.partners.size()));
   if (!input.prior_px.empty()) {
@@ -88,15 +88,15 @@ CostBounds bounds_of(const MethodParameters& parameters, const ChainInput& input
   return bounds;
 }
 
-/// Whether energies that coarse levels are made of fit bytes before they are summed up: of the
-/// costs that are few whole numbers.
+/// Whether the energies that coarse levels are made of fit bytes before they are summed: true for
+/// costs with few integer values.
 bool has_byte_energies(const MethodParameters& parameters, const ChainInput& input) {
   return parameters.aggregation == Aggregation::kBayes &&
          parameters.cost == MatchCost::kRayCensus && parameters.colour == ColourUse::kLuma &&
          input.partners.size() == 1 && input.prior_px.empty();
 }
 
-/// The cells of all displacements; of_partner makes the stage of one vertical disparity.
+/// Cells of all displacements; of_partner makes the stage of one vertical disparity.
 template <typename OfPartner>
 std::unique_ptr<scheduler::RowStage> of_all_rows(const ChainInput& input, unsigned char padding,
                                                  const OfPartner& of_partner) {
@@ -175,7 +175,7 @@ void MatchChain::add_all(std::vector<std::unique_ptr<scheduler::RowStage>> stage
   }
 }
 
-/// The way down to the next coarser level.
+/// Reduction to the next coarser level.
 void MatchChain::add_reduction(const MethodParameters& parameters, const ChainInput& input,
                                const ChainLevel& level) {
   const auto weight = static_cast<float>(parameters.level_weight);
@@ -191,7 +191,7 @@ void MatchChain::add_reduction(const MethodParameters& parameters, const ChainIn
           : make_energy_reduction_stage(geometry_, half_scale_, *level.reduced));
 }
 
-/// What the level starts from: costs of the images, or of the level as they were stored.
+/// First stage of the level: costs of the images, or stored costs of the level.
 void MatchChain::add_costs(const MethodParameters& parameters, const ChainInput& input,
                            const ChainLevel& level) {
   if (level.costs != nullptr) {
@@ -222,7 +222,7 @@ std::unique_ptr<scheduler::RowStage> MatchChain::level_costs(const MethodParamet
   return make_level_likelihood_stage(geometry_, *level.costs);
 }
 
-/// Of the images, for some of the candidates: energies, for Bayesian diffusion likelihoods.
+/// Costs of the images for some of the candidates: energies, or likelihoods for Bayesian diffusion.
 std::unique_ptr<scheduler::RowStage> MatchChain::plain_costs(const MethodParameters& parameters,
                                                              const ChainInput& input,
                                                              int first_candidate, int count) const {
@@ -230,7 +230,7 @@ std::unique_ptr<scheduler::RowStage> MatchChain::plain_costs(const MethodParamet
                                   ? CellMeaning::kLikelihood
                                   : CellMeaning::kEnergy;
   if (input.grid != nullptr) {
-    // Evidence is compared with that of all candidates.
+    // Evidence is relative to that of all candidates.
     const bool is_relative = is_evidence(parameters) && meaning == CellMeaning::kLikelihood;
     auto costs = of_all_rows(input, 0, [&](const CostPartner& partner) {
       return make_cost_stage(parameters, input.grid->along_rows, *input.reference, {&partner, 1},
@@ -249,7 +249,7 @@ std::unique_ptr<scheduler::RowStage> MatchChain::plain_costs(const MethodParamet
   return costs;
 }
 
-/// The same in the cells that the method aggregates.
+/// plain_costs() as the cell type that the method aggregates.
 std::unique_ptr<scheduler::RowStage> MatchChain::costs_of(const MethodParameters& parameters,
                                                           const ChainInput& input,
                                                           int first_candidate, int count) const {
@@ -265,7 +265,7 @@ std::unique_ptr<scheduler::RowStage> MatchChain::costs_of(const MethodParameters
                                  EnergySource::kLikelihoods, count, EnergyFormat(parameters));
 }
 
-/// Of costs that has_byte_energies().
+/// Only if has_byte_energies().
 std::unique_ptr<scheduler::RowStage> MatchChain::byte_energies(const MethodParameters& parameters,
                                                                const ChainInput& input,
                                                                int first_candidate,
@@ -367,7 +367,7 @@ void MatchChain::add_aggregation(const MethodParameters& parameters, const Chain
                                         {.volume = level.coarser, .blocks = level.coarser_blocks},
                                         edges, level.blocks, plane)
               : make_bayes_stages(parameters, geometry_, height_, level.coarser, edges, plane));
-      ++first_iteration_;  // behind the start
+      ++first_iteration_;  // after the start
       break;
     }
   }

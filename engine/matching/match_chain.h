@@ -19,57 +19,57 @@
 
 namespace vantage {
 
-/// Whether box sums of squared differences of luma can be made by the column SSD stage, which is
-/// faster than making costs first and summing them: the maps are the same. Levels need the costs.
+/// Whether the column SSD stage can compute box sums of squared luma differences: the same maps,
+/// faster than computing and then summing costs. Not with several levels, which need the costs.
 bool uses_column_ssd(const MethodParameters& parameters);
 
-/// What a chain compares: the pair, for the column SSD stage, or a reference and its partners.
+/// Input of a chain: the pair, for the column SSD stage, or a reference and its partners.
 struct ChainInput {
-  const PreparedPair* pair = nullptr;  ///< else the rest counts
+  const PreparedPair* pair = nullptr;  ///< null: the other members are used
   const CostImage* reference = nullptr;
   std::vector<CostPartner> partners;
-  /// Disparities that pixels are drawn towards, on the reference's grid; empty: none. Not beside
-  /// `pair`. See DisparityPrior.
+  /// Disparities that attract pixels, on the reference's grid; empty: none. Not with `pair`. See
+  /// DisparityPrior.
   ImageView<const float> prior_px = {};
   double prior_weight = 0;
-  /// How neighbours in the reference count for each other, one for each level, the image's own
-  /// first; empty: all alike. See EdgeWeightLevels.
+  /// Weights of neighbours in the reference, per level, the image's own first; empty: all 1. See
+  /// EdgeWeightLevels.
   std::span<const EdgeWeights> edges = {};
-  /// Of a search in two dimensions, of one partner and without a prior, whose disparity_y_px does
-  /// not count; the geometry is then that of the grid's columns. Null: along rows only.
+  /// Grid of a two-dimensional search with one partner (its disparity_y_px is ignored) and no
+  /// prior; the geometry is then that of the grid's columns. Null: search along rows only.
   const DisplacementGrid* grid = nullptr;
 };
 
-/// Where a chain stands in matching from coarse to fine. Volumes are of the format of the method
+/// Position of a chain in coarse-to-fine matching. Volumes have the format of the method
 /// (stage_level_likelihoods for Bayesian diffusion, whose results with the prior's largest term are
-/// those of stage_fixed_energies; stage_level_energies for others), of their level's size, and
-/// outlive the chain. As it is: the only level.
+/// those of stage_fixed_energies; stage_level_energies for others) and the size of their level, and
+/// outlive the chain. Default: the only level.
 struct ChainLevel {
   int number = 0;  ///< 0: the image's own
-  /// What levels above the image's own start from, in place of costs; null: costs of the input.
+  /// Input of levels coarser than the image; null: costs of the input.
   const LevelVolume* costs = nullptr;
-  const LevelVolume* coarser = nullptr;  ///< result of the next coarser level; null: there is none
-  LevelVolume* result = nullptr;         ///< where cells go in place of winners
-  /// Where costs go, reduced to the next coarser level: nothing else is made.
+  const LevelVolume* coarser = nullptr;  ///< result of the next coarser level; null: none
+  LevelVolume* result = nullptr;         ///< output for cells, instead of winners
+  /// Output for costs, reduced to the next coarser level; nothing else is computed.
   LevelVolume* reduced = nullptr;
-  /// Bayesian diffusion: the candidates that are looked at, here and on the coarser level; null:
-  /// all. Where this level has fewer than all, there is a coarser one.
+  /// Bayesian diffusion: the candidates processed, here and on the coarser level; null: all. If
+  /// this level is pruned, there is a coarser one.
   const CandidateBlocks* blocks = nullptr;
   const CandidateBlocks* coarser_blocks = nullptr;
-  /// Beside `result`: where the most probable candidates go; null: not wanted.
+  /// Output for the most probable candidates, in addition to `result`; null: not requested.
   Image<std::int32_t>* winners = nullptr;
 };
 
 /// The stages that compute one disparity map, or one level of it: cost → aggregation → selection.
 class MatchChain {
  public:
-  /// `parameters` must be valid. What `input` points at and the outputs must outlive the chain.
+  /// `parameters` must be valid. The targets of `input` and the outputs must outlive the chain.
   /// `geometry`: of the level.
   MatchChain(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
              const ChainInput& input, const MapOutputs& outputs, const ChainLevel& level = {});
 
   [[nodiscard]] scheduler::Chain stages() const { return pointers_; }
-  /// Stage counts after which to cut the chain so that each pass holds `iterations`, see
+  /// Stage counts at which to cut the chain so that each pass holds `iterations`; see
   /// scheduler::PlanRequest.
   [[nodiscard]] std::vector<int> pass_ends(int iterations) const;
 

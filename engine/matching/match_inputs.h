@@ -8,15 +8,15 @@
 
 namespace vantage {
 
-/// Disparities that pixels are drawn towards, such as those of the frame before where the image has
-/// not changed: the first stage of matching favours candidates near them (kernels/disparity_prior).
-/// Such a pixel keeps its disparity unless its own costs and its neighbours' speak against it.
+/// Disparities that attract pixels, such as those of the previous frame where the image has not
+/// changed: the first stage of matching favours candidates near them (kernels/disparity_prior). A
+/// pixel keeps its prior disparity unless its own costs and its neighbours' contradict it.
 struct DisparityPrior {
-  /// Size of the images; NaN, or a value outside the range, where a pixel has none. Empty: no pixel
-  /// of that map has one. Not owned.
+  /// Size of the images; NaN, or a value outside the range, where a pixel has no prior. Empty: no
+  /// priors for that map. Not owned.
   ImageView<const float> left_px = {};
   ImageView<const float> right_px = {};
-  double weight = 1;  ///< 0..100; 1 counts about as much as what a pixel's own costs say
+  double weight = 1;  ///< 0..100; 1 weighs about as much as the pixel's own costs
 
   [[nodiscard]] bool empty() const { return left_px.empty() && right_px.empty(); }
 };
@@ -24,16 +24,16 @@ struct DisparityPrior {
 /// One more image of a camera on the baseline of the reference (6.6).
 struct OtherView {
   const Photograph* photograph = nullptr;
-  /// Where its camera stands, from the reference's, to the right positive; in any unit, not 0.
+  /// Camera position relative to the reference, positive to the right; any unit, not 0.
   double baseline = 1;
 };
 
-// What matching cannot work with: each throws Error or UsageError, naming what it found and what it
+// Checks of matching inputs. Each throws Error or UsageError with the value found and the one
 // expected.
 
 void require_equal_sizes(const Photograph& first, std::string_view first_name,
                          const Photograph& second, std::string_view second_name);
-/// At least one other view, baselines finite, not 0 and different from each other.
+/// At least one other view; baselines finite, not 0 and distinct.
 void require_different_baselines(std::span<const OtherView> others);
 /// Weight in range, maps of the image's size.
 void require_usable(const DisparityPrior& prior, const Photograph& image);

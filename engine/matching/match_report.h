@@ -15,18 +15,18 @@ struct StageTime {
   double seconds = 0;
 };
 
-/// What matching says of itself.
+/// What a matcher reports about one call.
 struct MatchReport {
   std::vector<StageTime> stages;
-  /// Of one map; both maps use the same. With several levels the image's own: the others', which
-  /// are a third of the work, are made the same way, as is a map of coarse levels only.
+  /// Plan of one map; both maps use the same. With several levels it is the plan of the image's own
+  /// level; coarser levels, a third of the work, and coarse-only maps use the same settings.
   scheduler::ChainPlan plan;
-  /// Width × height × disparities × maps computed, of all levels; of levels that look at few
-  /// candidates those.
+  /// Width × height × disparities × maps computed, over all levels; on pruned levels only the
+  /// candidates processed.
   double cells = 0;
-  double finest_cells = 0;   ///< of these, the finest level's
+  double finest_cells = 0;   ///< of `cells`, those of the finest level
   double finest_pixels = 0;  ///< width × height × maps computed to the finest level
-  /// What was estimated from the images where parameters ask for it; of several, of the first.
+  /// Levels estimated from the images, if parameters ask for it; of several views, the first's.
   std::optional<PairLevels> levels;
 };
 

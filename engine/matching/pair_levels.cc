@@ -15,24 +15,24 @@
 namespace vantage {
 namespace {
 
-/// Rows of a band, and those at its ends whose windows and codes reach beyond it.
+/// Rows of a band, and the rows at its ends whose windows and codes reach outside it.
 constexpr int kBandRows = 24;
 constexpr int kBandMarginRows = 6;
 constexpr int kLeastBands = 4;
-/// Of the image's rows one in so many is matched, unless there are few.
+/// One of this many image rows is matched, except in small images.
 constexpr int kRowsPerMatchedRow = 8;
 constexpr std::size_t kMostMatches = 65536;
-/// Levels nearer to black or white than this may have been cut off.
+/// Levels nearer to black or white than this may be clipped.
 constexpr float kUnclippedMargin = 2;
 constexpr float kWhite = 255;
-/// What matches of even the cleanest photographs need: reflections, edges and slanted surfaces are
-/// not what sure matches are made of.
+/// Lower bound of σ even for noise-free photographs: reflections, edges and slanted surfaces are
+/// not represented among the sure matches.
 constexpr double kLeastNoiseSigma = 4;
 
-/// Rows that are matched, as one image.
+/// The rows to match, as one image.
 struct Bands {
-  std::vector<int> rows;        ///< of the image, for each row of the bands' image
-  std::vector<bool> is_inside;  ///< whether windows lie in the band, for each
+  std::vector<int> rows;        ///< image row of each row of `Bands`
+  std::vector<bool> is_inside;  ///< per row: whether its windows lie inside the band
 };
 
 Bands bands_of(int height) {
@@ -55,7 +55,7 @@ Bands bands_of(int height) {
   return bands;
 }
 
-/// Grey levels of the bands' rows: luma, then the channels where they are compared.
+/// Grey levels of the bands' rows: luma, then the channels if they are compared.
 class BandLevels {
  public:
   BandLevels(const Photograph& photograph, const Bands& bands, int planes)
@@ -78,7 +78,7 @@ class BandLevels {
     return planes_[plane].at(std::clamp(x, 0, width_ - 1), row);
   }
   [[nodiscard]] std::size_t planes() const { return planes_.size(); }
-  /// The luma as an image to match.
+  /// The luma as an image for matching.
   [[nodiscard]] Photograph photograph() const {
     Image<float> image(width_, planes_.front().height());
     for (int y = 0; y < image.height(); ++y) {
@@ -138,7 +138,7 @@ std::optional<LevelChange> change_of(const BandLevels& left, const BandLevels& r
   return fit_levels(pairs);
 }
 
-/// How far `value` lies outside what `levels`, changed, takes within half a pixel of x.
+/// Distance of `value` from the range of the (changed) levels within half a pixel of x.
 template <typename Level>
 float outside(float value, const Level& level_at, int x) {
   const float here = level_at(x);
@@ -148,7 +148,7 @@ float outside(float value, const Level& level_at, int x) {
       {0.0F, value - std::max({before, here, after}), std::min({before, here, after}) - value});
 }
 
-/// Birchfield and Tomasi's difference, the mean of the planes from `first_plane` on.
+/// Birchfield and Tomasi's difference, averaged over the planes from `first_plane` on.
 float residual(const BandLevels& left, const BandLevels& right, const Match& match,
                std::size_t first_plane, std::span<const LevelChange> changes) {
   float sum = 0;
@@ -163,7 +163,7 @@ float residual(const BandLevels& left, const BandLevels& right, const Match& mat
   return sum / static_cast<float>(left.planes() - first_plane);
 }
 
-/// Cheap, and sure where it gives anything.
+/// Fast; sparse but reliable.
 MatchOptions band_options(DisparityRange range) {
   MatchOptions options;
   options.method = MatchMethod::kSsd;

@@ -13,34 +13,34 @@ namespace vantage {
 
 class StereoMatcher;
 
-/// What a pair tells about its grey levels.
+/// Grey level statistics of a pair.
 struct PairLevels {
-  /// Turns the right image's levels into the left's; none where the pair does not tell.
+  /// Maps the right image's levels to the left's; empty if the pair does not determine it.
   LevelChanges of_right;
   bool has_levels = false;
-  /// σM in grey levels, at least 4: that of Birchfield and Tomasi's difference at matches, levels
-  /// changed. Empty where there are few matches.
+  /// σM in grey levels, at least 4: σ of Birchfield and Tomasi's difference at matches after the
+  /// level change. Empty if there are too few matches.
   std::optional<double> sigma_measurement;
-  int matches = 0;  ///< that were looked at
+  int matches = 0;  ///< number of matches examined
 
   friend bool operator==(const PairLevels&, const PairLevels&) = default;
 };
 
-/// Finds out by how much the exposure of a pair's cameras differs, and how noisy they are: bands of
-/// rows are matched by census codes, which no exposure changes, and the levels of pixels that both
-/// maps agree on are compared. A part of the whole matching's time: at most an eighth of the rows
-/// of large images, 96 of small ones.
+/// Estimates the exposure difference and the noise of a pair's cameras: matches bands of rows by
+/// census codes, which are invariant to exposure, and compares the levels of pixels that both maps
+/// agree on. Uses at most an eighth of the rows of large images, 96 rows of small ones, so it takes
+/// a fraction of the matching time.
 ///
 /// Thread rule: estimate() may be called concurrently. Identical for any `execution`.
 class PairLevelsEstimator {
  public:
-  /// `range`: of the disparities of the pairs. `execution` must outlive the estimator.
+  /// `range`: disparity range of the pairs. `execution` must outlive the estimator.
   PairLevelsEstimator(DisparityRange range, Execution& execution);
   ~PairLevelsEstimator();
 
-  /// Equal sizes. `colour`: what the costs compare: luma, or also the channels where both images
-  /// have them. `change_levels`: else none are changed, and σ is that of levels as they are.
-  /// Throws Error when no pixel has a candidate in the range.
+  /// Images of equal size. `colour`: compare luma, or also the channels where both images have
+  /// them. `change_levels`: false: no level change, and σ refers to unchanged levels. Throws Error
+  /// when no pixel has a candidate in the range.
   [[nodiscard]] PairLevels estimate(const Photograph& left, const Photograph& right,
                                     ColourUse colour, bool change_levels) const;
 

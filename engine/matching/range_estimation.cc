@@ -16,40 +16,41 @@
 namespace vantage {
 namespace {
 
-/// Images are reduced by at most this factor while they stay at least kLeastWidthPx wide, and by
-/// more where they would stay wider than kMostWidthPx. A search takes 1/factor³ of the time that it
-/// takes on whole images, so these are what the range costs.
+/// Images are reduced by at most this factor as long as they stay at least kLeastWidthPx wide, and
+/// by more if they would stay wider than kMostWidthPx. A search takes 1/factor³ of its time on full
+/// images, so these determine the cost of the estimate.
 constexpr int kUsualFactor = 4;
 constexpr int kLeastWidthPx = 128;
 constexpr int kMostWidthPx = 320;
 
-// In pixels of the reduced images.
+// Pixels of the reduced images.
 constexpr int kLeastRegionPixels = 10;
-/// Winners of less certain pixels say nothing: of uniform areas all disparities are as likely.
+/// Winners below this confidence are ignored: in uniform areas all disparities are equally likely.
 constexpr double kLeastConfidence = 0.3;
-/// Disparities with no others this near, plus this part of them, stand apart.
+/// Disparities separated from all others by more than this, plus this fraction of them, are
+/// outliers.
 constexpr float kGapPx = 2;
 constexpr float kGapRatio = 0.1F;
-/// Winners of surfaces at infinity are this near to 0.
+/// Winners of surfaces at infinity are within this of 0.
 constexpr float kExactnessPx = 0.4F;
 
-// Shares of what is matched in both images.
-/// So many at either end may be wrong.
+// Shares of the pixels matched in both images.
+/// This share at either end may be wrong.
 constexpr double kStrayShare = 0.0002;
-/// What stands apart counts from here on: repeated texture matches elsewhere in small areas. What
-/// is far behind everything, but not behind infinity, is a background of which little is seen.
+/// Separate groups count from this share on: repeated texture causes wrong matches in small areas.
+/// A group far behind everything else, but not behind infinity, is a background with little of it
+/// visible.
 constexpr double kApartShare = 0.0025;
 constexpr double kBehindShare = 0.0003;
-/// Of an untextured sky a little may be found at any disparity.
+/// A small part of an untextured sky may match at any disparity.
 constexpr double kNegativeShare = 0.02;
-/// Share of both images: unrelated ones agree by chance.
+/// Share of both images; unrelated images agree by chance.
 constexpr double kLeastMatchedShare = 0.05;
 
-/// Winners that are spread over a larger part of the search are everywhere, as those of texture
-/// that repeats itself.
+/// Winners spread over a larger part of the search range are random, as with repeated texture.
 constexpr double kMostSpread = 0.75;
 
-/// The range is widened by this and this part of it: winners are as exact as reduced pixels.
+/// The range is widened by this plus this fraction of it: winners are accurate to reduced pixels.
 constexpr double kMarginReducedPx = 0.5;
 constexpr double kMarginPx = 1;
 constexpr double kMarginRatio = 0.03;
@@ -59,7 +60,7 @@ int reduction_of(int width) {
   return std::max({1, std::min(kUsualFactor, parts(kLeastWidthPx)), parts(kMostWidthPx)});
 }
 
-/// Grey levels, averaged over squares of `factor` pixels a side; what is left over at the right and
+/// Grey levels averaged over blocks of `factor` × `factor` pixels; the remainder at the right and
 /// lower sides is dropped.
 Photograph reduced(const Photograph& photograph, int factor, Execution& execution) {
   const int width = photograph.width() / factor;
@@ -88,16 +89,16 @@ Photograph reduced(const Photograph& photograph, int factor, Execution& executio
   return {std::move(result)};
 }
 
-/// What is searched in images of this width.
+/// Search range for reduced images of this width.
 DisparityRange search_in(int width) { return {-width / 8, width / 3}; }
 
-/// Of images reduced by `factor`.
+/// `range` in images reduced by `factor`.
 DisparityRange reduced(DisparityRange range, int factor) {
   return {static_cast<int>(std::lround(static_cast<double>(range.min) / factor)),
           static_cast<int>(std::lround(static_cast<double>(range.max) / factor))};
 }
 
-/// The disparities that both images agree on, in pixels of `left` and `right`, sorted.
+/// Disparities that both images agree on, in pixels of `left` and `right`, sorted.
 std::vector<float> agreed_disparities(const Photograph& left, const Photograph& right,
                                       DisparityRange vertical, Execution& execution) {
   MatchOptions options;
@@ -107,9 +108,9 @@ std::vector<float> agreed_disparities(const Photograph& left, const Photograph& 
     options.disparities_y = vertical;
   }
   if (options.disparities.count() == 1) {
-    return {};  // winners without others say nothing
+    return {};  // a single candidate always wins
   }
-  options.parameters.levels = 4;  // more would be for larger images
+  options.parameters.levels = 4;  // more suit larger images
   options.refinement.cross_check_level = 0;
   options.refinement.confidence_threshold = kLeastConfidence;
   options.refinement.speckle_size_px = kLeastRegionPixels;
@@ -133,7 +134,7 @@ struct Span {
   float most = 0;
 };
 
-/// What holds the values, sorted and at least one, but for stray ones and for few that stand apart.
+/// Span of the sorted values (at least one) without stray ones and small separate groups.
 Span span_of(const std::vector<float>& values) {
   const auto count = static_cast<double>(values.size());
   const auto stray = static_cast<std::size_t>(kStrayShare * count);
@@ -187,7 +188,7 @@ std::optional<DisparityRange> find_disparity_range(const Photograph& left, const
   DisparityRange range{
       std::clamp(static_cast<int>(std::floor(least_px - margin_px)), -farthest, farthest),
       std::clamp(static_cast<int>(std::ceil(most_px + margin_px)), -farthest, farthest)};
-  // Infinity is at 0 in rectified pairs, so what is below is to be believed where it is not little.
+  // Infinity is at 0 in rectified pairs, so negative values count only if there are many.
   const auto negative = std::lower_bound(values.begin(), values.end(), -kExactnessPx);
   if (static_cast<double>(negative - values.begin()) <
       kNegativeShare * static_cast<double>(values.size())) {

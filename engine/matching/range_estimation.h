@@ -8,16 +8,16 @@
 
 namespace vantage {
 
-/// The range of disparities to search in a rectified pair: what a search of the reduced images from
-/// −width/8 to width/3 finds in both of them, but for small areas far from all others, and a
-/// margin. It begins at 0 or above unless a fiftieth of what is matched is negative. None where the
-/// images agree on next to nothing: constant images, or unrelated ones.
+/// Disparity range to search in a rectified pair: the disparities found in both reduced images by a
+/// search from −width/8 to width/3, without small areas far from all others, plus a margin. It
+/// starts at 0 or above unless at least a fiftieth of the matches is negative. Empty if the images
+/// agree on almost nothing: constant or unrelated images.
 ///
 /// Images of 512 to 1280 pixels width are reduced to a quarter, larger ones to a width of 320, so
-/// that the time is a few per cent of what matching takes; surfaces of fewer than some 10 reduced
+/// that the time is a few per cent of the matching time; surfaces of fewer than about 10 reduced
 /// pixels can be missed.
 ///
-/// `vertical` holds the y_left − y_right of a pair whose rows do not correspond.
+/// `vertical`: range of y_left − y_right of an unrectified pair.
 ///
 /// Throws Error when sizes differ. Identical for any `execution` and on every instruction set.
 /// Thread rule: may be called concurrently.
@@ -25,7 +25,7 @@ std::optional<DisparityRange> find_disparity_range(const Photograph& left, const
                                                    Execution& execution,
                                                    DisparityRange vertical = {0, 0});
 
-/// The same; throws Error when there is none.
+/// As find_disparity_range(); throws Error instead of returning an empty result.
 DisparityRange estimate_disparity_range(const Photograph& left, const Photograph& right,
                                         Execution& execution);
 

@@ -9,14 +9,14 @@
 
 namespace vantage {
 
-/// Times one stage after the other for a report, and shows them in traces.
+/// Times consecutive stages for a report and emits them as trace spans.
 class StageClock {
  public:
   explicit StageClock(MatchReport& report) : report_(report) {}
   StageClock(const StageClock&) = delete;
   StageClock& operator=(const StageClock&) = delete;
   ~StageClock() { end(); }
-  /// Ends the stage before. `name` is of static storage.
+  /// Ends the previous stage. `name` has static storage.
   void begin(std::string_view name) {
     end();
     name_ = name;

@@ -47,10 +47,10 @@ bool StereoMatcher::wants_confidence(const MatchRequest& request) const {
   return request.confidence || (in_force_.refinement && uses_confidence(*in_force_.refinement));
 }
 
-/// What is estimated from a pair's grey levels.
+/// Estimates grey level parameters from a pair.
 void StereoMatcher::settle_levels(const Photograph& left, const Photograph& right,
                                   Prepared& prepared, MatchReport& report) const {
-  // Throws for the whole images, where bands of them would be named otherwise.
+  // Throws for the whole images: the bands' own message would name the size of the bands.
   candidate_geometry(in_force_, Side::kLeft, left.width(), left.height());
   const PairLevels levels = levels_->estimate(left, right, in_force_.parameters.colour,
                                               in_force_.parameters.match_exposure);
@@ -61,7 +61,7 @@ void StereoMatcher::settle_levels(const Photograph& left, const Photograph& righ
   report.levels = levels;
 }
 
-/// The same of each other image beside the reference; σ is that of the noisiest.
+/// Estimates each other image against the reference; σ is that of the noisiest.
 std::vector<LevelChanges> StereoMatcher::settle_levels(const Photograph& reference,
                                                        std::span<const OtherView> others,
                                                        Prepared& prepared,
@@ -93,7 +93,7 @@ std::vector<LevelChanges> StereoMatcher::settle_levels(const Photograph& referen
   return changes;
 }
 
-/// What the chains of both maps read.
+/// Prepares the inputs of both maps' chains.
 void StereoMatcher::prepare_inputs(MapTask& left, MapTask& right, bool uses_prior,
                                    Prepared& prepared) const {
   const bool needs_left = left.need.any();
@@ -129,7 +129,7 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
   const auto prepared = prepared_.borrow();
   prepared->parameters = in_force_.parameters;
   prepared->of_right = {};
-  DisparityMaps maps;  // nobody looks into them
+  DisparityMaps maps;  // never read
   MapTask of_left{.side = Side::kLeft, .image = &left, .map = &maps.left};
   MapTask of_right{.side = Side::kRight, .image = &right, .map = &maps.right};
   of_left.need = {.whole = true};
@@ -141,7 +141,7 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
     of_left.input.grid = &*grid;
     geometry = grid->columns();
   }
-  const LevelVolume coarser;  // nobody looks into it
+  const LevelVolume coarser;  // never read
   const auto extents = level_extents({left.width(), left.height()}, in_force_.parameters.levels);
   const bool is_pruned = in_force_.parameters.candidate_blocks > 0 && extents.size() > 1;
   CandidateBlocks blocks;
@@ -160,8 +160,8 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
   return plans;
 }
 
-/// What is made of each image's map: all of it where it or, for a check of the other one, all of it
-/// is wanted; the coarse level where the other is checked against that.
+/// What is computed of each image's map: the whole map if it is requested or needed whole to check
+/// the other one; the coarse level if the other is checked against it.
 std::pair<StereoMatcher::MapNeed, StereoMatcher::MapNeed> StereoMatcher::needs(
     const MatchRequest& request, int check_level) const {
   const bool is_checked = in_force_.refinement && in_force_.refinement->cross_check;
@@ -172,7 +172,7 @@ std::pair<StereoMatcher::MapNeed, StereoMatcher::MapNeed> StereoMatcher::needs(
   return {need(request.left, request.right), need(request.right, request.left)};
 }
 
-/// Gives the images of the task's map their sizes and computes what is needed of it.
+/// Resizes the images of the task's map and computes what is needed of it.
 void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_confidence,
                             int check_level, Prepared& prepared, StageClock& clock,
                             MatchReport& report) const {

@@ -25,8 +25,8 @@ namespace vantage {
 
 class StageClock;
 
-/// What the caller wants. A map that is not wanted may be there all the same, for the cross-check
-/// of the other one: its contents mean nothing. Maps do not depend on whether the other is wanted.
+/// Requested outputs. A map that is not requested may still be computed for the cross-check of the
+/// other one; its contents are undefined. Maps do not depend on whether the other is requested.
 struct MatchRequest {
   bool left = true;
   bool right = true;
@@ -38,75 +38,74 @@ struct MatchRequest {
 /// Computes disparity maps of rectified pairs (EQUATIONS §1, §3, §5).
 ///
 /// Thread rule: match() may be called concurrently for different results. Results are identical for
-/// any ExecutionOptions, and on any instruction set but for Bayesian diffusion with
-/// PriorSmoothing::kSum, whose probabilities agree to 1e-5 between instruction sets and between
-/// processors of different makers (with several levels: where the rounding of what is stored
-/// between them does).
+/// any ExecutionOptions and any instruction set, except for Bayesian diffusion with
+/// PriorSmoothing::kSum: its probabilities agree to 1e-5 between instruction sets and processor
+/// makers (with several levels: unless values stored between levels round differently).
 class StereoMatcher {
  public:
   /// Throws UsageError for invalid options. `execution` must outlive the matcher.
   StereoMatcher(const MatchOptions& options, Execution& execution);
 
-  /// left and right: equal size, at least 1×1, any depth and channels; depths may differ.
-  /// Throws Error when sizes differ or no pixel has a candidate in the range, UsageError for a
-  /// prior's weight out of range or a prior beside a vertical search.
+  /// left and right: equal size, at least 1×1, any depth and channels; depths may differ. Throws
+  /// Error when sizes differ or no pixel has a candidate in the range, UsageError for a prior's
+  /// weight out of range or a prior with a vertical search.
   void match(const Photograph& left, const Photograph& right, const MatchRequest& request,
              DisparityMaps& maps, MatchReport* report = nullptr) const;
 
   /// Execution plan for the left map (its finest level, if there are several), as match() reports
   /// it. Errors as match().
   [[nodiscard]] scheduler::ChainPlan plan(const Photograph& left, const Photograph& right) const;
-  /// One plan for each of `executions` in place of the matcher's own, on the same machine.
+  /// One plan for each of `executions` instead of the matcher's own, on the same machine.
   [[nodiscard]] std::vector<scheduler::ChainPlan> plans(
       const Photograph& left, const Photograph& right,
       std::span<const ExecutionOptions> executions) const;
 
-  /// The map of `reference` from all of `others` at once (6.6): the partner of column x in the
-  /// k-th of them is x − d · baseline_k / |baseline_1|, so that candidates are the disparities
-  /// between the reference and the first. The map is maps.left where the first stands to the right
-  /// of the reference, maps.right where it stands to the left. At least one other; all images of
-  /// equal size; baselines that differ from each other and from 0. Errors as match().
+  /// Matches `reference` against all of `others` at once (6.6): the partner of column x in the k-th
+  /// of them is x − d · baseline_k / |baseline_1|, so candidates are disparities between the
+  /// reference and the first. The result is maps.left if the first is to the right of the
+  /// reference, maps.right if it is to the left. At least one other; all images of equal size;
+  /// baselines distinct and not 0. Errors as match().
   void match_several(const Photograph& reference, std::span<const OtherView> others,
                      const MatchRequest& request, DisparityMaps& maps,
                      MatchReport* report = nullptr) const;
 
-  /// Working memory that is kept from call to call, as far as no call uses it at the moment:
-  /// "prepared images", "coarse levels" and "refinement". Strips work in the scratch memory of the
-  /// execution.
+  /// Working memory kept between calls and not in use at the moment: "prepared images", "coarse
+  /// levels" and "refinement". Strips use the scratch memory of the execution.
   void add_memory_use(MemoryUse& use) const;
 
   [[nodiscard]] const ResolvedMatchOptions& in_force() const { return in_force_; }
 
  private:
-  /// What a pair or several images become before they are matched, and what matching works in.
+  /// Inputs prepared for matching, and its working memory.
   struct Prepared {
     PreparedPair pair;
     std::vector<CostImage> images;
-    MethodParameters parameters;  ///< in force, with what was estimated from the images
+    MethodParameters parameters;  ///< in force, plus the values estimated from the images
     LevelChanges of_right;
-    EdgeWeightLevels edges;  ///< of the map that is being computed
+    EdgeWeightLevels edges;  ///< of the map being computed
     MapSearchWork search;
-    /// Of the left and the right image: what maps are checked against; empty: maps themselves.
+    /// Coarse maps of the left and the right image for the cross-check; empty: the maps themselves
+    /// are checked.
     std::array<DisparityMap, 2> coarse_px;
   };
-  /// What is made of an image's map: all of it, and, or, the level that the other is checked
-  /// against.
+  /// What is computed of an image's map: the whole map and/or the level used to check the other
+  /// map.
   struct MapNeed {
     bool whole = false;
     bool coarse = false;
     [[nodiscard]] bool any() const { return whole || coarse; }
   };
-  /// One image on the way to its map.
+  /// One image and the map to compute for it.
   struct MapTask {
     Side side;
     const Photograph* image;
     MatchedMap* map;
     MapNeed need = {};
     ChainInput input = {};
-    ImageView<const float> check_px = {};  ///< of the coarse level; empty: not needed
+    ImageView<const float> check_px = {};  ///< coarse level; empty: not needed
   };
 
-  /// The level that maps are checked against, 0: maps themselves.
+  /// Level that maps are checked against; 0: the maps themselves.
   [[nodiscard]] int check_level(scheduler::Extent image) const;
   [[nodiscard]] std::pair<MapNeed, MapNeed> needs(const MatchRequest& request,
                                                   int check_level) const;

@@ -20,13 +20,13 @@ constexpr int kMostFeatures = 1000;
 constexpr int kLargestSide_px = 640;
 constexpr int kMinMatches = 20;
 
-// Shares of the matches. A few per cent of them are wrong, each by another number of rows.
+// Shares of the matches. A few per cent are wrong, each by a different number of rows.
 constexpr double kStrayMatches = 0.02;
 constexpr double kApartMatches = 0.02;
-// In pixels of the images that features are looked for in.
+// Pixels of the images in which features are detected.
 constexpr double kMatchGap_px = 1;
 constexpr double kMargin_px = 0.5;
-/// Rows that spread over no more say nothing about where the cameras are.
+/// Row offsets that spread by no more do not determine the camera positions.
 constexpr double kOffsetsSpread_px = 4;
 
 struct MatchSpan {
@@ -35,8 +35,7 @@ struct MatchSpan {
   [[nodiscard]] double length_px() const { return max_px - min_px; }
 };
 
-/// What holds the values but for stray ones and groups that are small and apart. None where all
-/// groups are small.
+/// Span of the values without stray ones and small separate groups. Empty if all groups are small.
 std::optional<MatchSpan> span_of_matches(std::vector<double> values, double gap_px) {
   std::sort(values.begin(), values.end());
   const auto count = static_cast<double>(values.size());
@@ -94,7 +93,7 @@ std::optional<DisparityRange> find_vertical_range(const Photograph& left, const 
   if (down->length_px() <= std::max(across->length_px(), kOffsetsSpread_px * scale)) {
     return range;
   }
-  // Rows depend on depth, and small surfaces have few points.
+  // Row offsets depend on depth, and small surfaces have few points.
   const std::optional<DisparityRange> of_surfaces = find_disparity_range(
       transposed(left), transposed(right), execution, whole_pixels(*across, margin_px));
   return of_surfaces ? DisparityRange{std::min(range.min, of_surfaces->min),

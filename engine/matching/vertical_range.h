@@ -8,12 +8,11 @@
 
 namespace vantage {
 
-/// The range of vertical disparities y_left − y_right to search in a pair whose rows do not
-/// correspond: that of the points which both images show (features that are each other's nearest),
-/// but for few that stand apart, and half a pixel, so that positions between whole pixels have
-/// neighbours. Where they spread over more rows than columns, as of cameras one above the other, it
-/// also holds what find_disparity_range() says of the transposed images: small surfaces have few
-/// such points. None where the images have too few points in common.
+/// Range of vertical disparities y_left − y_right to search in an unrectified pair: that of points
+/// found in both images (mutually nearest features) without small outlying groups, widened by half
+/// a pixel so that sub-pixel positions have neighbours. If it spans more rows than columns, as with
+/// cameras one above the other, it also includes find_disparity_range() of the transposed images,
+/// because small surfaces have few such points. Empty if the images share too few points.
 ///
 /// Images with a side beyond 640 pixels are reduced. Throws Error when sizes differ. Identical for
 /// any `execution`. Thread rule: may be called concurrently.

@@ -9,15 +9,15 @@
 
 namespace vantage {
 
-/// The start or an iteration of Bayesian diffusion: what its forms have in common, whatever their
-/// cells are. The start makes the state before the first iteration of its input; iterations look at
-/// that input again. Cell: float or kernels::FixedEnergy.
+/// Common base of the stages of Bayesian diffusion, for any cell format: the start, which makes the
+/// state before the first iteration from its input, and the iterations, which read that input
+/// again. Cell: float or kernels::FixedEnergy.
 template <typename Cell>
 class BayesStepStage : public CellStarStage<Cell> {
   using Star = CellStarStage<Cell>;
 
  public:
-  /// neutral: cells of neighbours outside the image.
+  /// neutral: cell value of neighbours outside the image.
   BayesStepStage(const kernels::CandidateGeometry& geometry, int height, bool is_start,
                  Cell neutral)
       : Star(geometry, height), is_start_(is_start), neutral_(Star::lanes(), 1) {
@@ -40,9 +40,9 @@ class BayesStepStage : public CellStarStage<Cell> {
 
  protected:
   [[nodiscard]] bool is_start() const { return is_start_; }
-  /// The column that stands for neighbours outside the image.
+  /// The column used for neighbours outside the image.
   [[nodiscard]] const Cell* neutral() const { return neutral_.row(0); }
-  /// The star of all columns of the task. Of the start: star.source is star.centre.
+  /// The star of all columns of the task. In the start, star.source is star.centre.
   [[nodiscard]] kernels::CellStarRow<Cell> step_star(const scheduler::RowTask& task) const {
     kernels::CellStarRow<Cell> star = Star::star(task, Star::lanes(), neutral());
     if (is_start_) {

@@ -125,7 +125,7 @@ std::size_t edge_weight_bytes(const MethodParameters& parameters, std::size_t pi
   if (!uses_edge_weights(parameters)) {
     return 0;
   }
-  // Two weights and a grey level a pixel, of all levels.
+  // Two weights and one grey level per pixel, on all levels.
   const std::size_t weight =
       uses_fixed_energies(parameters) ? sizeof(kernels::FixedWeight) : sizeof(float);
   return (2 * weight + sizeof(float)) * (pixels + pixels / 3);

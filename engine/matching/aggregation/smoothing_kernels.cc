@@ -8,7 +8,8 @@
 namespace vantage {
 namespace {
 
-/// Weights in any unit, from the middle of a symmetric kernel outwards; smallest are added first.
+/// Unnormalised weights from the centre of a symmetric kernel outwards; the smallest are added
+/// first.
 std::vector<float> normalised(const std::vector<double>& from_middle) {
   double sum = 0;
   for (std::size_t k = from_middle.size(); k-- > 1;) {

@@ -16,13 +16,13 @@ namespace {
 
 using kernels::BayesState;
 
-// Below this the product of five floors of the prior is no normal float.
+// Below this the product of five floors of the prior is not a normal float.
 constexpr double kLeastEpsilonOfProductForm = 1e-7;
-// Taps of the prior this much smaller than its floor are left out: σP = 0.1 needs none beside the
+// Taps of the prior this much smaller than its floor are left out: σP = 0.1 needs none besides the
 // centre, 0.4 one on each side.
 constexpr double kNegligibleTap = 1e-3;
 
-/// Taps (1−ε) exp(−k²/2σ²) of the prior, as many as matter.
+/// Taps (1−ε) exp(−k²/2σ²) of the prior, without negligible ones.
 std::vector<float> prior_taps(const MethodParameters& parameters, int count) {
   std::vector<float> taps;
   for (int k = 0; k < count; ++k) {
@@ -36,14 +36,15 @@ std::vector<float> prior_taps(const MethodParameters& parameters, int count) {
   return taps;
 }
 
-/// Of smoothing along lanes that takes as many operations: in two dimensions there are two passes.
+/// Radius of one-dimensional smoothing with the same number of operations: two dimensions take two
+/// passes.
 int radius_of_work(int radius, const kernels::CandidatePlane& plane) {
   return plane.is_given() ? 2 * radius : radius;
 }
 
 enum class Form { kStart, kHalf, kGeneral };
 
-/// What stands for neighbours outside the image: factors of 1, or logarithms of those.
+/// Value for neighbours outside the image: factors of 1, or their logarithms.
 float neutral_state(Form form) { return form == Form::kHalf ? 1 : 0; }
 
 class BayesStage final : public BayesStepStage<float> {
@@ -63,7 +64,7 @@ class BayesStage final : public BayesStepStage<float> {
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     return vantage::column_work(kernel_work(), count());
   }
-  /// Of the kernel.
+  /// Working memory of the kernel.
   [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
                                         scheduler::Extent /*input*/) const override {
     return sizeof(float) *
@@ -129,8 +130,8 @@ class BayesStage final : public BayesStepStage<float> {
   kernels::CandidatePlane plane_;
 };
 
-/// The state before the first iteration of a level, from the probabilities that the next coarser
-/// one ended with.
+/// The state before a level's first iteration, from the final probabilities of the next coarser
+/// level.
 class BayesFromCoarserStage final : public FromCoarserStage<float> {
  public:
   BayesFromCoarserStage(const MethodParameters& parameters,
@@ -151,7 +152,7 @@ class BayesFromCoarserStage final : public FromCoarserStage<float> {
   }
 
  protected:
-  /// Probabilities, and what smoothing needs.
+  /// Probabilities and smoothing buffers.
   [[nodiscard]] std::size_t work_cells() const override {
     return kCoarserColumns * static_cast<std::size_t>(lanes()) +
            static_cast<std::size_t>(kernels::bayes_work_floats(lanes(), radius(), plane_));

@@ -13,7 +13,7 @@ namespace {
 using scheduler::Extent;
 using scheduler::Range;
 
-/// The window in one direction: the mean of the runs of cells that lie in the image.
+/// The window in one direction: the mean of the runs of cells inside the image.
 class BoxMeanStage : public scheduler::RowStage {
  public:
   BoxMeanStage(const kernels::CandidateGeometry& geometry, int height, int radius)
@@ -26,7 +26,7 @@ class BoxMeanStage : public scheduler::RowStage {
   [[nodiscard]] std::size_t bytes_per_column() const override {
     return sizeof(float) * static_cast<std::size_t>(lanes_);
   }
-  /// Addresses and weights of the runs to be summed.
+  /// Addresses and weights of the runs to sum.
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
     const auto radius = static_cast<std::size_t>(radius_);
     return sizeof(const float*) * (2 * radius + 1) + sizeof(float) * (radius + 1);
@@ -39,8 +39,8 @@ class BoxMeanStage : public scheduler::RowStage {
   [[nodiscard]] int lanes() const { return lanes_; }
   [[nodiscard]] int radius() const { return radius_; }
 
-  /// Means of `columns` columns over the places within the radius of `middle` that lie in [0, end);
-  /// address(place): the run there.
+  /// Means of `columns` columns over the positions within the radius of `middle` that lie in [0,
+  /// end); address(position): the run there.
   template <typename Address>
   void mean(const scheduler::RowTask& task, int middle, int end, int columns,
             const Address& address, float* output) const {

@@ -14,7 +14,7 @@ using kernels::CandidateGeometry;
 using scheduler::Extent;
 using scheduler::Range;
 
-/// What both depths share; `Pixel` is uint8_t or float.
+/// Common part of both depths; `Pixel` is uint8_t or float.
 template <typename Pixel>
 class ColumnSsdStage : public scheduler::RowStage {
  public:
@@ -61,7 +61,7 @@ class ColumnSsdStage : public scheduler::RowStage {
 
   [[nodiscard]] bool mirrored() const { return geometry_.direction < 0; }
   [[nodiscard]] int partner_step() const { return mirrored() ? -1 : 1; }
-  /// Where the partner of candidate 0 of column x lies in a row of the partner plane.
+  /// Position in a row of the partner plane of the partner of candidate 0 of column x.
   [[nodiscard]] int partner_offset(int x) const {
     return (mirrored() ? geometry_.width - 1 - x : x) + geometry_.disparity_min;
   }

@@ -31,7 +31,7 @@ class ColumnSumStage : public scheduler::RowStage {
   [[nodiscard]] std::size_t bytes_per_column() const override {
     return sizeof(std::int32_t) * static_cast<std::size_t>(geometry_.lanes());
   }
-  /// The window and the row that has just left it.
+  /// The window and the row that just left it.
   [[nodiscard]] Range input_rows(int y, Extent input) const override {
     return {std::max(0, y - radius_ - 1), std::min(input.rows, y + radius_ + 1)};
   }
@@ -66,10 +66,10 @@ class ColumnSumStage : public scheduler::RowStage {
  protected:
   [[nodiscard]] const kernels::CandidateGeometry& geometry() const { return geometry_; }
   [[nodiscard]] int radius() const { return radius_; }
-  /// A cost that adds nothing to sums.
+  /// A cost that contributes 0 to sums.
   [[nodiscard]] float nothing() const { return -offset_; }
-  /// What a window has of input row y, in the columns to be made; null: nothing. `place`: 0 or 1,
-  /// rows of one place are not looked at together.
+  /// Costs of input row y for the output columns; null: nothing to add. `place`: 0 or 1; two rows
+  /// with the same place are never used together.
   [[nodiscard]] virtual const float* window_row(const scheduler::RowTask& task, int y,
                                                 int /*place*/) const {
     return input_row(task, y);
@@ -77,7 +77,7 @@ class ColumnSumStage : public scheduler::RowStage {
   virtual void clear_columns(Range columns, std::int32_t* sums) const {
     clear_without_partner(geometry_, radius_, columns, geometry_.lanes(), sums);
   }
-  /// The columns to be made of input row y; null outside the image.
+  /// The output columns of input row y; null outside the image.
   [[nodiscard]] const float* input_row(const scheduler::RowTask& task, int y) const {
     if (y < 0 || y >= extent().rows) {
       return nullptr;
@@ -99,7 +99,7 @@ class DisplacementSumStage final : public ColumnSumStage {
   DisplacementSumStage(const DisplacementGrid& grid, int radius, float offset, float scale)
       : ColumnSumStage(grid.columns(), grid.height, radius, offset, scale), grid_(grid) {}
 
-  /// An entering and a leaving row, without the costs that do not count.
+  /// An entering and a leaving row, with the costs that do not count removed.
   [[nodiscard]] std::size_t state_bytes(Range columns, Extent /*input*/) const override {
     return 2 * bytes_per_column() * static_cast<std::size_t>(columns.size());
   }
@@ -141,16 +141,16 @@ class DisplacementSumStage final : public ColumnSumStage {
 
 ColumnSumScale column_sum_scale(float least, float largest, int window_px) {
   const float offset = -least;
-  const double cost_range = largest + offset;  // as the kernel rounds it
+  const double cost_range = largest + offset;  // as rounded by the kernel
   if (!(cost_range > 0)) {
     return {offset, 1};
   }
-  // A rounded cost may be half a unit larger.
+  // Rounding can add half a unit per cost.
   const double samples = static_cast<double>(window_px) * window_px;
   const double limit = std::min(static_cast<double>(kernels::kColumnSumCellLimit),
                                 std::numeric_limits<std::int32_t>::max() / samples) -
                        0.5;
-  // Beyond 2^100 a scale would only resolve rounding errors, and leave the range of floats.
+  // Beyond 2^100 a scale would only resolve rounding errors and leave the range of floats.
   int exponent = std::min(100, std::ilogb(limit / cost_range));
   if (std::ldexp(cost_range, exponent) >= limit) {
     --exponent;

@@ -9,21 +9,21 @@
 namespace vantage {
 
 /// One simultaneous (Jacobi) iteration of linear diffusion (6.7), or of the membrane (6.9) if
-/// `parameters.aggregation` says so. Cells are energies, float, geometry.lanes() a column; missing
-/// neighbours at the border of the image are absent. The membrane pulls towards the chain's first
-/// stage, which must be the cost stage with the energies E0.
+/// `parameters.aggregation` says so. Cells are energies, float, geometry.lanes() per column;
+/// neighbours outside the image are left out. The membrane pulls towards the chain's first stage,
+/// which must be the cost stage with the energies E0.
 std::unique_ptr<scheduler::RowStage> make_diffusion_stage(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height);
 
-/// Where an iteration stands in its chain.
+/// Position of an iteration in its chain.
 struct IterationPlace {
   bool is_first = false;
   bool is_last = false;
 };
 
-/// One iteration of diffusion with local stopping (6.4). Between iterations a column carries its
-/// certainty and is a cache line longer than its cells; the first one's input and the last one's
-/// output are cells only.
+/// One iteration of diffusion with local stopping (6.4). Between iterations a column also holds its
+/// certainty and is one cache line longer than its cells; the first input and the last output are
+/// cells only.
 std::unique_ptr<scheduler::RowStage> make_local_stopping_stage(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
     IterationPlace place);

@@ -17,7 +17,7 @@ namespace {
 using kernels::FixedEnergy;
 using kernels::FixedWeight;
 
-/// What all stages know of the prior.
+/// Properties of the prior that all stages share.
 class PriorRises {
  public:
   PriorRises(const MethodParameters& parameters, int count, const kernels::CandidatePlane& plane)
@@ -28,8 +28,8 @@ class PriorRises {
   [[nodiscard]] int radius() const { return static_cast<int>(rises_.size()); }
   [[nodiscard]] kernels::EnergyPrior prior() const { return {rises_.data(), radius(), ceiling_}; }
   [[nodiscard]] const kernels::CandidatePlane& plane() const { return plane_; }
-  /// Of smoothing along lanes that takes as many operations: in two dimensions there are two
-  /// passes.
+  /// Radius of one-dimensional smoothing with the same number of operations: two dimensions take
+  /// two passes.
   [[nodiscard]] int radius_of_work() const { return plane_.is_given() ? 2 * radius() : radius(); }
 
  private:
@@ -62,7 +62,7 @@ class MaxProductStage final : public BayesStepStage<FixedEnergy> {
             : kernels::max_product_work(rises_.radius_of_work(), smooths_, edges_ != nullptr);
     return vantage::column_work(work, candidates_in(blocks_, count()));
   }
-  /// Of the kernel and of stars.
+  /// Working memory of the kernel and of stars.
   [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
                                         scheduler::Extent /*input*/) const override {
     return sizeof(FixedEnergy) * (work_cells() + (stars_ ? stars_->work_cells() : 0));
@@ -92,17 +92,17 @@ class MaxProductStage final : public BayesStepStage<FixedEnergy> {
   }
 
  private:
-  /// Columns of a row that look at the same candidates.
+  /// Columns of a row with the same candidates.
   struct Columns {
     kernels::CellStarRow<FixedEnergy> star;
-    int x = 0;  ///< of the first one
+    int x = 0;  ///< first column
     int y = 0;
-    std::span<const int> segment_ends;  ///< where runs of neighbouring candidates end; empty: one
-    FixedEnergy* output = nullptr;      ///< lanes() from column to column, as star.source
+    std::span<const int> segment_ends;  ///< ends of runs of consecutive candidates; empty: one run
+    FixedEnergy* output = nullptr;      ///< lanes() per column, as star.source
     FixedEnergy* work = nullptr;        ///< work_cells(), 64-byte aligned
   };
 
-  /// What the kernel needs.
+  /// Working cells of the kernel.
   [[nodiscard]] std::size_t work_cells() const {
     return static_cast<std::size_t>(kernels::max_product_work_cells(
         lanes(), rises_.radius(), most_segments(lanes(), blocks_), rises_.plane()));
@@ -136,7 +136,7 @@ class MaxProductStage final : public BayesStepStage<FixedEnergy> {
   PriorRises rises_;
   const EdgeWeights* edges_;
   const CandidateBlocks* blocks_;
-  std::optional<BlockStars> stars_;  ///< where there are blocks
+  std::optional<BlockStars> stars_;  ///< set if there are blocks
 };
 
 class MaxProductFromCoarserStage final : public FromCoarserStage<FixedEnergy> {
@@ -157,7 +157,7 @@ class MaxProductFromCoarserStage final : public FromCoarserStage<FixedEnergy> {
   }
 
  protected:
-  /// Energies, and what smoothing needs.
+  /// Energies and smoothing buffers.
   [[nodiscard]] std::size_t work_cells() const override {
     return energy_cells() +
            static_cast<std::size_t>(kernels::max_product_work_cells(

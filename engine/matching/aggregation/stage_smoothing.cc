@@ -15,7 +15,7 @@ namespace {
 using scheduler::Extent;
 using scheduler::Range;
 
-/// What the stages share: float cells in and out, of one size.
+/// Common base: float cells in and out, of the same size.
 class SmoothingStage : public scheduler::RowStage {
  public:
   SmoothingStage(const kernels::CandidateGeometry& geometry, int height)
@@ -29,7 +29,7 @@ class SmoothingStage : public scheduler::RowStage {
   [[nodiscard]] int lanes() const { return lanes_; }
   [[nodiscard]] int count() const { return count_; }
 
-  /// Column x of input row y, x in the columns asked for; null outside the image.
+  /// Column x of input row y, x in the requested columns; null outside the image.
   [[nodiscard]] const float* input_cells(const scheduler::RowTask& task, int x, int y) const {
     if (x < 0 || x >= extent().columns || y < 0 || y >= extent().rows) {
       return nullptr;
@@ -50,7 +50,7 @@ class ConvolutionStage : public SmoothingStage {
                    std::vector<float> weights)
       : SmoothingStage(geometry, height), weights_(std::move(weights)) {}
 
-  /// The addresses of the runs to be summed.
+  /// Addresses of the runs to sum.
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
     return sizeof(const float*) * (2 * weights_.size() - 1);
   }

@@ -8,15 +8,15 @@
 
 namespace vantage {
 
-/// The stages that convolve float cells (geometry.lanes() a column) with a Gaussian of
-/// `sigma_px` in x and y, cells outside the image being 0: sampled, normalised, radius ⌈4σ⌉.
+/// Convolves float cells (geometry.lanes() per column) with a Gaussian of `sigma_px` in x and y,
+/// cells outside the image being 0: sampled, normalised, radius ⌈4σ⌉.
 std::vector<std::unique_ptr<scheduler::RowStage>> make_gaussian_stages(
     const kernels::CandidateGeometry& geometry, int height, double sigma_px);
 
-/// The same with Wells' cascade: four box filters of odd widths whose variances add up to σ² as
-/// nearly as odd widths allow (σ = 2: 3, 3, 3, 5, exactly); one composite kernel, so that cells
-/// outside the image count once, as 0. Normalised, like the Gaussian. 3, 3, 3, 5 is one stage that
-/// stores nothing between the two directions; other widths cost as much as a Gaussian of their
+/// As make_gaussian_stages() with Wells' cascade: four box filters of odd widths whose variances
+/// add up to σ² as closely as odd widths allow (σ = 2: 3, 3, 3, 5, exactly). It is one composite
+/// kernel, so that cells outside the image count once, as 0. Normalised. 3, 3, 3, 5 is one stage
+/// that stores nothing between the two directions; other widths cost as much as a Gaussian of their
 /// radius.
 std::vector<std::unique_ptr<scheduler::RowStage>> make_box_cascade_stages(
     const kernels::CandidateGeometry& geometry, int height, double sigma_px);

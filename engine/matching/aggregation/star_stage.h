@@ -8,9 +8,8 @@
 
 namespace vantage {
 
-/// What all iterations on a disparity space have in common: a cell depends on itself, its four
-/// neighbours of equal disparity and perhaps on the chain's first stage. Cell: float or
-/// kernels::FixedEnergy.
+/// Common base of iterations on a disparity space: a cell depends on itself, its four neighbours of
+/// equal disparity and optionally on the chain's first stage. Cell: float or kernels::FixedEnergy.
 template <typename Cell>
 class CellStarStage : public scheduler::RowStage {
  public:
@@ -33,8 +32,8 @@ class CellStarStage : public scheduler::RowStage {
   [[nodiscard]] int lanes() const { return lanes_; }
   [[nodiscard]] int count() const { return count_; }
 
-  /// The star of a task whose input columns are `pitch` cells apart. `neutral` is the column that
-  /// stands for neighbours outside the image; null: the centre itself does.
+  /// The star of a task whose input columns are `pitch` cells apart. `neutral`: the column used for
+  /// neighbours outside the image; null: the centre column is used.
   [[nodiscard]] kernels::CellStarRow<Cell> star(const scheduler::RowTask& task, int pitch,
                                                 const Cell* neutral) const;
 

@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-// Blocks that evidence_sum() adds in float.
+// Block size up to which evidence_sum() adds in float.
 constexpr int kBlockColumns = 256;
 constexpr int kBlockRows = 16;
 

@@ -16,31 +16,31 @@ struct PixelBlock {
   int y_end = 0;
 };
 
-/// By how much things are displaced between the images of a pair: position in the left image minus
-/// position in the right one, pixels. x is the disparity.
+/// Displacement between the images of a pair: position in the left image minus position in the
+/// right one, pixels. x is the disparity.
 struct Displacement {
   int x_px = 0;
   int y_px = 0;
   friend bool operator==(Displacement, Displacement) = default;
 };
 
-/// Gradients of both images of a pair, from which the evidence for displacements (5.5) is summed.
-/// Thread rule: sums may be asked for concurrently.
+/// Gradients of both images of a pair, for summing the evidence for displacements (5.5). Thread
+/// rule: sums may be computed concurrently.
 class EvidencePair {
  public:
-  /// Luma, and the gradient parameters of `parameters`. Throws UsageError when these are invalid,
-  /// Error when sizes differ. Identical for any `execution`.
+  /// Uses luma and the gradient parameters of `parameters`. Throws UsageError when these are
+  /// invalid, Error when sizes differ. Identical for any `execution`.
   EvidencePair(const Photograph& left, const Photograph& right, MethodParameters parameters,
                Execution& execution);
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
 
-  /// Σ E over those pixels of a block of the reference image whose partner lies inside the other
-  /// one; others count 0. Added in an order that depends on the block alone.
+  /// Σ E over the pixels of a block of the reference image whose partner lies inside the other one;
+  /// others count 0. The order of summation depends on the block alone.
   [[nodiscard]] double evidence(Side reference, const PixelBlock& block,
                                 Displacement displacement) const;
-  /// Σ |g| over a block: what evidence() reaches for a perfect match.
+  /// Σ |g| over a block: the value of evidence() for a perfect match.
   [[nodiscard]] double contrast(Side reference, const PixelBlock& block) const;
 
  private:

@@ -7,12 +7,12 @@ namespace vantage {
 namespace {
 
 constexpr int kRounds = 20;
-/// Residuals beyond this many σ have no weight (95 % efficiency for Gaussian noise).
+/// Residuals beyond this many σ have zero weight (95 % efficiency for Gaussian noise).
 constexpr double kBiweightReach = 4.685;
 constexpr double kLeastResidualSigma = 1;
 constexpr double kLeastContrast = 2;  ///< standard deviation, grey levels
 constexpr double kLargestGain = 4;
-constexpr double kLeastShare = 0.5;  ///< of the pairs: weight on the line
+constexpr double kLeastShare = 0.5;  ///< of the pairs: total weight on the line
 constexpr double kLeastCorrelation = 0.7;
 
 /// Weighted moments.
@@ -65,7 +65,7 @@ double residual(const LevelPair& pair, const LevelChange& line) {
   return pair.reference - (line.gain * pair.other + line.offset);
 }
 
-/// The value that a share `kTenths` / 10 of the residuals is below.
+/// The quantile at `kTenths` / 10 of the residuals.
 template <std::size_t kTenths>
 double quantile(std::span<float> residuals) {
   const auto at = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() * kTenths / 10);
@@ -81,7 +81,7 @@ double robust_sigma(std::span<float> residuals) {
 }
 
 double noise_sigma(std::span<float> residuals) {
-  constexpr double kSigmas = 1.6449;  // that 90 % of a Gaussian's magnitudes are within
+  constexpr double kSigmas = 1.6449;  // 90 % quantile of a unit Gaussian's magnitudes
   return quantile<9>(residuals) / kSigmas;
 }
 

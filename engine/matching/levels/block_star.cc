@@ -40,7 +40,7 @@ kernels::CellStarRow<BlockStars::Cell> BlockStars::star(const scheduler::RowTask
   return star;
 }
 
-/// Column x of the row, for a run beside it.
+/// Column x of the row, as neighbour of a run.
 const BlockStars::Cell* BlockStars::beside(const scheduler::RowTask& task,
                                            const CandidateBlocks::Run& run, int x,
                                            Cell* work) const {

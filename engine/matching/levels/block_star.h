@@ -9,9 +9,8 @@
 
 namespace vantage {
 
-/// Stars of runs of columns of a level of which only some candidates are looked at. Neighbours in
-/// tiles with other blocks are brought to the blocks of the run; a cell that such a neighbour lacks
-/// is `absent`.
+/// Stars for runs of columns of a pruned level. Neighbours in tiles with other blocks are
+/// rearranged to the blocks of the run; cells that such a neighbour lacks become `absent`.
 class BlockStars {
  public:
   using Cell = kernels::FixedEnergy;
@@ -19,14 +18,14 @@ class BlockStars {
   /// `blocks` must outlive the stars.
   BlockStars(const CandidateBlocks& blocks, Cell absent) : blocks_(blocks), absent_(absent) {}
 
-  /// Of working memory, for one star at a time.
+  /// Working memory for one star at a time.
   [[nodiscard]] std::size_t work_cells() const {
     return static_cast<std::size_t>(2 * CandidateBlocks::kMostRunColumns + 2) *
            static_cast<std::size_t>(blocks_.lanes());
   }
-  /// The star of `run` in row task.y, its source as far as the task has one. `neutral`: the column
-  /// that stands for neighbours outside the image. `work`: work_cells(), 64-byte aligned; the star
-  /// may point there.
+  /// The star of `run` in row task.y, with its source if the task has one. `neutral`: the column
+  /// used for neighbours outside the image. `work`: work_cells(), 64-byte aligned; the star may
+  /// point into it.
   [[nodiscard]] kernels::CellStarRow<Cell> star(const scheduler::RowTask& task,
                                                 const CandidateBlocks::Run& run,
                                                 const Cell* neutral, Cell* work) const;

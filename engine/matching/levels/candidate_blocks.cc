@@ -9,11 +9,11 @@ namespace {
 using kernels::kLaneMultiple;
 using scheduler::Range;
 
-/// Candidates on both sides of a coarse winner that belong to it: the finer level is to find the
-/// best one between them.
+/// Candidates on both sides of a coarse winner to include: the finer level finds the best one among
+/// them.
 constexpr int kReach = 2;
 
-/// Blocks in which every one of `columns` that has candidates with partners at all has one.
+/// Range of blocks in which each of `columns` that has candidates with partners has one.
 Range blocks_with_partners(const kernels::CandidateGeometry& geometry, Range columns, int blocks) {
   Range allowed{0, blocks};
   for (int x = columns.begin; x < columns.end; ++x) {
@@ -129,7 +129,7 @@ void CandidateBlocks::choose_tile(ImageView<const std::int32_t> winners, Range a
 
 int CandidateBlocks::count(BlockList blocks) const {
   const int lanes = static_cast<int>(blocks.size()) * kLaneMultiple;
-  // Only the last block of all can lack candidates.
+  // Only the last block of all can be incomplete.
   const int behind = (blocks.back() + 1) * kLaneMultiple - candidates_;
   return lanes - std::max(0, behind);
 }

@@ -16,56 +16,55 @@
 
 namespace vantage {
 
-/// Numbers of blocks of kLaneMultiple candidates, ascending, at least one: block b holds the
-/// candidates [b · kLaneMultiple, (b + 1) · kLaneMultiple). Candidates of the k-th one lie in lanes
-/// [k · kLaneMultiple, …) of a column.
+/// Indices of blocks of kLaneMultiple candidates, ascending, at least one: block b holds candidates
+/// [b · kLaneMultiple, (b + 1) · kLaneMultiple). Candidates of the k-th entry lie in lanes [k ·
+/// kLaneMultiple, …) of a column.
 using BlockList = std::span<const std::uint16_t>;
 
-/// The candidates that are looked at on a level of matching from coarse to fine: of each tile of
-/// 8×8 pixels, aligned to the image, a few blocks. Columns of cells have the same number of lanes
-/// everywhere; those behind the blocks of their tile hold anything.
-/// Thread rule: as for a plain array.
+/// The candidates processed on a level of coarse-to-fine matching: a few blocks for each tile of
+/// 8×8 pixels, aligned to the image. All columns of cells have the same number of lanes; lanes
+/// after the blocks of their tile are undefined. Thread rule: as for a plain array.
 class CandidateBlocks {
  public:
   static constexpr int kTilePx = 8;
-  /// Columns of a run: what stages work on at a time.
+  /// Maximum columns of a run, which stages process at a time.
   static constexpr int kMostRunColumns = 32;
 
-  /// Columns of a row whose tiles have the same blocks.
+  /// Consecutive columns of a row whose tiles have the same blocks.
   struct Run {
     scheduler::Range columns;
     BlockList blocks;
   };
 
-  /// `most`: blocks of a tile, 1..kMaxCandidateBlocks. Memory is reused.
+  /// `most`: maximum number of blocks per tile, 1..kMaxCandidateBlocks. Memory is reused.
   void resize(scheduler::Extent extent, int candidates, int most);
 
-  /// Chooses the blocks of all tiles from the winning candidates of the next coarser level. Every
-  /// one of its pixels within a tile or beside it votes for the blocks that its winner, or a
-  /// candidate up to two from it, lies in; of more than `most` those with the most votes stay, the
-  /// smaller one of equals. `selected`: the level's candidates where disparities are going to be
-  /// selected; every pixel that has candidates with partners then has one in a block of its tile,
-  /// as votes go to the nearest such block. Identical for any `execution`.
+  /// Chooses the blocks of all tiles from the winning candidates of the next coarser level. Each of
+  /// its pixels in or next to a tile votes for the blocks that contain its winner or a candidate
+  /// within two of it; the `most` blocks with the most votes are kept, ties going to the smaller
+  /// one. `selected`: the level's candidates if disparities will be selected on it: votes then go
+  /// to the nearest block with partners, so that every pixel that has candidates with partners has
+  /// one in a block of its tile. Identical for any `execution`.
   void choose(ImageView<const std::int32_t> winners,
               const std::optional<kernels::CandidateGeometry>& selected, Execution& execution);
 
   [[nodiscard]] scheduler::Extent extent() const { return extent_; }
-  /// Of a column, for the blocks of any tile.
+  /// Lanes of a column, for any tile.
   [[nodiscard]] int lanes() const { return most_ * kernels::kLaneMultiple; }
   [[nodiscard]] BlockList at(int x, int y) const {
     return of_tile(tile_at(x / kTilePx, y / kTilePx));
   }
-  /// The run that begins at column x of row y and ends at `end` or before.
+  /// The run that starts at column x of row y and ends at or before `end`.
   [[nodiscard]] Run run_at(int x, int y, int end) const {
     const std::size_t tile = tile_at(x / kTilePx, y / kTilePx);
     const int run_end = run_ends_[tile] * kTilePx;
     return {{x, std::min({run_end, end, x + kMostRunColumns})}, of_tile(tile)};
   }
-  /// Whether row y, another one than that of `run` but at most one away, has its blocks there, too.
+  /// Whether row y, adjacent to the row run_y of `run`, has the same blocks along the run.
   [[nodiscard]] bool has_blocks_of(const Run& run, int run_y, int y) const;
-  /// Candidates among the lanes of `blocks`, which come first.
+  /// Number of candidates in the lanes of `blocks`; they come first.
   [[nodiscard]] int count(BlockList blocks) const;
-  /// Cells that are looked at, of all pixels.
+  /// Number of cells processed, over all pixels.
   [[nodiscard]] double cells() const;
   [[nodiscard]] double cells_per_pixel() const {
     return cells() / (static_cast<double>(extent_.columns) * extent_.rows);
@@ -92,38 +91,38 @@ class CandidateBlocks {
   int most_ = 1;
   int tile_columns_ = 0;
   int tile_rows_ = 0;
-  std::vector<std::uint16_t> blocks_;  ///< most_ a tile
+  std::vector<std::uint16_t> blocks_;  ///< most_ per tile
   std::vector<std::uint8_t> counts_;
-  std::vector<int> run_ends_;              ///< the first tile to the right with other blocks
-  std::vector<std::uint8_t> is_as_above_;  ///< whether a tile has the blocks of the one above
+  std::vector<int> run_ends_;              ///< first tile to the right with other blocks
+  std::vector<std::uint8_t> is_as_above_;  ///< whether a tile has the blocks of the tile above
 };
 
-/// The candidate in a lane of the columns of some blocks.
+/// The candidate in `lane` of columns with these blocks.
 inline int candidate_of(BlockList blocks, int lane) {
   return blocks[static_cast<std::size_t>(lane / kernels::kLaneMultiple)] * kernels::kLaneMultiple +
          lane % kernels::kLaneMultiple;
 }
 
-/// Candidates that a pixel has on average: of `blocks`, or, where it is null, all `count` of them.
+/// Mean number of candidates per pixel: of `blocks` or, if null, all `count`.
 int candidates_in(const CandidateBlocks* blocks, int count);
 
-/// Where runs of neighbouring candidates end among the lanes of some blocks.
+/// Ends of runs of consecutive candidates in the lanes of some blocks.
 class BlockSegments {
  public:
   explicit BlockSegments(BlockList blocks);
-  /// Ascending, the last one the number of lanes. They lie in this object.
+  /// Ascending; the last one is the number of lanes. Stored in this object.
   [[nodiscard]] std::span<const int> ends() const& {
     return {ends_.data(), static_cast<std::size_t>(count_)};
   }
-  std::span<const int> ends() && = delete;  // a loop over them would outlive the object
+  std::span<const int> ends() && = delete;  // would dangle in a range-based for
 
  private:
   std::array<int, kMaxCandidateBlocks> ends_;
   int count_ = 0;
 };
 
-/// Copies one column of cells from the lanes of blocks `from` to those of blocks `to`; blocks that
-/// `from` lacks become `absent`.
+/// Copies one column of cells from the lanes of blocks `from` to those of blocks `to`; blocks
+/// missing in `from` become `absent`.
 template <typename Cell>
 void copy_blocks(const Cell* source, BlockList from, BlockList to, Cell absent, Cell* target);
 

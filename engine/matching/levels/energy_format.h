@@ -11,46 +11,48 @@
 
 namespace vantage {
 
-/// Whether Bayesian diffusion takes the largest term of the prior's sum, and energies in fixed
-/// point are what its cells hold.
+/// Whether Bayesian diffusion uses the largest term of the prior's sum, with fixed-point energies
+/// as cells.
 inline bool uses_fixed_energies(const MethodParameters& parameters) {
   return parameters.aggregation == Aggregation::kBayes &&
          parameters.prior_smoothing == PriorSmoothing::kMaximum;
 }
 
-/// The fixed point of energies on all levels of a map: steps as small as the largest sums have room
-/// for, at least 1/kMostStepsPerNat.
+/// Fixed-point format of energies on all levels of a map: the smallest steps that leave room for
+/// the largest sums, but at least 1/kMostStepsPerNat.
 class EnergyFormat {
  public:
   explicit EnergyFormat(const MethodParameters& parameters) {
-    // In terms that are finite for every ε. From ε = ½ on contamination is more likely than any
-    // offset: neighbours say nothing.
+    // Terms finite for every ε. From ε = ½ on contamination is more likely than any offset, and
+    // neighbours carry no information.
     const double epsilon = parameters.epsilon_prior;
     const double ceiling_nats = std::max(std::log1p(-epsilon) - std::log(epsilon), 0.0);
-    // Of a star whose cells all are at the ceiling, its source, and a ceiling more that sums must
-    // stay away from the end of the range.
+    // Worst case: five neighbours at the ceiling plus the source, with one ceiling of headroom
+    // against overflow.
     const double most_nats = (5 * parameters.mu + 1) * ceiling_nats + kMostSourceNats;
     constexpr double kRounding = 0.99;
     const double steps =
         std::min<double>(kMostStepsPerNat, kRounding * kernels::kMostEnergy / most_nats);
     steps_per_nat_ = static_cast<float>(steps);
     ceiling_ = static_cast<kernels::FixedEnergy>(std::lround(steps * ceiling_nats));
-    // Without an iteration behind it a result is the map's own, ceiling or not.
+    // Without final iterations the coarse result is the final map, which must not be cut at the
+    // ceiling.
     const double most_nats_of_result = parameters.final_iterations == 0 ? kUnseenNats : 0;
     result_range_ = static_cast<kernels::FixedEnergy>(std::max<long>(
         {ceiling_, kernels::kMostCompact + 1, std::lround(steps * most_nats_of_result)}));
   }
 
   [[nodiscard]] float steps_per_nat() const { return steps_per_nat_; }
-  /// What the prior says of all offsets, ln((1 − εP)/εP): 1 − εP is what it says of none.
+  /// Energy of the prior's floor, the same for all offsets: ln((1 − εP)/εP), relative to 1 − εP for
+  /// no offset.
   [[nodiscard]] kernels::FixedEnergy ceiling() const { return ceiling_; }
-  /// Of bytes that count steps of so many nats.
+  /// Bytes in steps of `nats`.
   [[nodiscard]] kernels::ByteSteps of_bytes(float nats) const {
     return kernels::ByteSteps(steps_per_nat_ * nats);
   }
 
-  // What a level ends with is kept in bytes up to the ceiling, beyond which no iteration looks. The
-  // last byte stands for the ceiling or a step more, never less.
+  // A level's result is stored in bytes up to the ceiling; iterations do not read beyond it. The
+  // last byte stands for the ceiling or up to one step more, never less.
   [[nodiscard]] kernels::ByteSteps of_result() const {
     constexpr float kHalfStep = 0.5F;
     return kernels::ByteSteps((static_cast<float>(result_range_) + kHalfStep) /
@@ -61,7 +63,7 @@ class EnergyFormat {
                                  static_cast<float>(result_range_));
   }
 
-  /// k²/2σP², k from 1 to where it reaches the ceiling, below `count`.
+  /// k²/2σP² for k from 1 until the ceiling, k < `count`.
   [[nodiscard]] std::vector<kernels::FixedEnergy> prior_rises(double sigma_prior, int count) const {
     std::vector<kernels::FixedEnergy> rises;
     for (int k = 1; k < count; ++k) {
@@ -77,9 +79,9 @@ class EnergyFormat {
 
  private:
   static constexpr double kMostStepsPerNat = 256;
-  /// Likelihoods end there; bytes before.
+  /// Largest energy of a float likelihood; that of bytes is smaller.
   static constexpr double kMostSourceNats = 87.4;
-  /// As far as bytes of probabilities reach, too.
+  /// Also the range of probabilities stored in bytes.
   static constexpr double kUnseenNats = 22;
 
   float steps_per_nat_ = 0;

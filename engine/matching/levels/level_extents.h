@@ -11,8 +11,8 @@ inline scheduler::Extent coarser_extent(scheduler::Extent extent) {
   return {(extent.columns + 1) / 2, (extent.rows + 1) / 2};
 }
 
-/// The grids of an image of `extent` and of its coarser levels, half as many columns and rows each,
-/// rounded up: `levels` of them, or fewer where a level would be a single pixel.
+/// Sizes of an image and its coarser levels, each half as many columns and rows, rounded up:
+/// `levels` of them, or fewer if a level would be a single pixel.
 std::vector<scheduler::Extent> level_extents(scheduler::Extent extent, int levels);
 
 }  // namespace vantage

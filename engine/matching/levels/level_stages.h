@@ -12,7 +12,7 @@
 
 namespace vantage {
 
-/// Rows of `finer` whose blocks are the columns of row y of the next coarser level.
+/// Rows of `finer` whose 2×2 blocks are the columns of row y of the next coarser level.
 template <typename Cell>
 kernels::BlockRow<Cell> block_row(const LevelVolume& finer, int y) {
   return {.upper = finer.column<Cell>(0, 2 * y),
@@ -21,8 +21,8 @@ kernels::BlockRow<Cell> block_row(const LevelVolume& finer, int y) {
           .lanes = finer.lanes()};
 }
 
-/// Last stage that makes the volume of the next coarser level: what all formats share. Input cells
-/// have geometry.lanes() a column.
+/// Common base of last stages that make the volume of the next coarser level. Input cells:
+/// geometry.lanes() per column.
 class LevelReductionStage : public scheduler::RowStage {
  public:
   LevelReductionStage(const kernels::CandidateGeometry& geometry, LevelVolume& coarser)
@@ -67,8 +67,8 @@ class LevelReductionStage : public scheduler::RowStage {
   LevelVolume& coarser_;
 };
 
-/// Last stage that keeps the cells of a level in a volume, columns one behind the other, of as many
-/// lanes.
+/// Last stage that stores the cells of a level in a volume: consecutive columns with the same
+/// number of lanes.
 class LevelStoreStage : public scheduler::RowStage {
  public:
   LevelStoreStage(const kernels::CandidateGeometry& geometry, LevelVolume& volume)
@@ -99,7 +99,7 @@ class LevelStoreStage : public scheduler::RowStage {
   LevelVolume& volume_;
 };
 
-/// Source stage that makes cells of a volume, float where nothing else is said.
+/// Source stage that reads cells from a volume; float unless stated otherwise.
 class LevelSourceStage : public scheduler::RowStage {
  public:
   LevelSourceStage(const kernels::CandidateGeometry& geometry, const LevelVolume& volume)

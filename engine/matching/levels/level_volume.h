@@ -9,9 +9,9 @@
 
 namespace vantage {
 
-/// What is kept of a coarse level between two chains: cells of one or two bytes, `lanes` a column,
-/// columns of a row one behind the other. What they mean is up to those who write and read them.
-/// Working memory, reused without allocating. Thread rule: as for a plain array.
+/// Storage of a coarse level between two chains: cells of one or two bytes, `lanes` per column, the
+/// columns of a row contiguous. Writer and reader agree on the meaning. Working memory, reused
+/// without reallocation. Thread rule: as for a plain array.
 class LevelVolume {
  public:
   /// Contents are then undefined. cell_bytes: 1 or 2.
@@ -27,7 +27,7 @@ class LevelVolume {
   [[nodiscard]] int cell_bytes() const { return cell_bytes_; }
   [[nodiscard]] std::size_t held_bytes() const { return vantage::held_bytes(bytes_); }
 
-  /// First cell of column x in row y. Cell: as wide as resize() said.
+  /// First cell of column x in row y. sizeof(Cell) is the cell_bytes of resize().
   template <typename Cell>
   [[nodiscard]] Cell* column(int x, int y) {
     return reinterpret_cast<Cell*>(bytes_.row(y) + offset(x));

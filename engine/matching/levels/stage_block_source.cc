@@ -24,7 +24,7 @@ class BlockSourceStage final : public scheduler::RowStage {
   [[nodiscard]] std::size_t bytes_per_column() const override {
     return block_bytes_ * static_cast<std::size_t>(blocks_.lanes() / kLaneMultiple);
   }
-  /// The cells of one block of a run, and what its stage needs.
+  /// The cells of one block of a run, and the state of its stage.
   [[nodiscard]] std::size_t state_bytes(scheduler::Range columns,
                                         scheduler::Extent input) const override {
     return cell_bytes() + of_blocks_.front()->state_bytes(columns, input);
@@ -60,7 +60,7 @@ class BlockSourceStage final : public scheduler::RowStage {
   }
 
   std::vector<std::unique_ptr<scheduler::RowStage>> of_blocks_;
-  std::size_t block_bytes_;  ///< of a column of one block
+  std::size_t block_bytes_;  ///< of one block's column
   const CandidateBlocks& blocks_;
 };
 

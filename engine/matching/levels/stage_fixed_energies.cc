@@ -32,7 +32,7 @@ class FixedEnergyStage final : public scheduler::RowStage {
   [[nodiscard]] std::size_t bytes_per_column() const override {
     return sizeof(FixedEnergy) * static_cast<std::size_t>(lanes_);
   }
-  /// The costs of a few columns, and what making them needs.
+  /// The costs of a few columns, and the working memory to compute them.
   [[nodiscard]] std::size_t state_bytes(scheduler::Range columns,
                                         scheduler::Extent input) const override {
     return cost_bytes() + costs_->state_bytes(columns, input);
@@ -62,7 +62,7 @@ class FixedEnergyStage final : public scheduler::RowStage {
   }
 
  private:
-  /// Columns that are still in the level-1 cache when they are looked at again.
+  /// Columns that are still in the level-1 cache when they are read again.
   [[nodiscard]] int part_columns() const {
     constexpr std::size_t kPartBytes = 16384;
     constexpr std::size_t kMostColumns = 32;
@@ -183,8 +183,8 @@ class LevelEnergyResultStage final : public LevelStoreStage {
   }
 
  private:
-  /// The lanes with the least energies: all `count` candidates may win, whatever partners they
-  /// have.
+  /// The lanes with the smallest energies: all `count` candidates can win, with or without a
+  /// partner.
   std::int32_t* write_winners(const scheduler::RowTask& task, scheduler::Range columns,
                               int count) const {
     kernels::EnergyRow row;

@@ -16,14 +16,14 @@
 
 namespace vantage {
 
-/// What the next coarser level ended with, a byte a cell, large where a candidate is unlikely.
+/// Result of the next coarser level, one byte per cell, large for unlikely candidates.
 struct CoarserResult {
-  const LevelVolume* volume = nullptr;  ///< null: there is no coarser level
-  /// The candidates that were looked at there, in whose lanes they lie; null: all.
+  const LevelVolume* volume = nullptr;  ///< null: no coarser level
+  /// The candidates processed there, whose lanes the cells occupy; null: all.
   const CandidateBlocks* blocks = nullptr;
 };
 
-/// As many candidates as columns of cells have room for.
+/// A geometry whose candidates are the cells of a column.
 inline kernels::CandidateGeometry cell_geometry(const kernels::CandidateGeometry& geometry,
                                                 const CandidateBlocks* blocks) {
   kernels::CandidateGeometry cells = geometry;
@@ -33,16 +33,15 @@ inline kernels::CandidateGeometry cell_geometry(const kernels::CandidateGeometry
   return cells;
 }
 
-/// Runs of neighbouring candidates that columns of so many lanes can consist of.
+/// Maximum number of runs of consecutive candidates in columns of `lanes` lanes.
 inline int most_segments(int lanes, const CandidateBlocks* blocks) {
   return blocks == nullptr ? 1 : lanes / kernels::kLaneMultiple;
 }
 
-/// The state before the first iteration of a level, from what the next coarser one ended with:
-/// column x of row y lies in column x/2 of row y/2 there. Takes part in the chain like the start
-/// from likelihoods, so that iterations find their source, but looks at no input. `blocks`: the
-/// candidates that are looked at, in whose lanes cells lie; null: all. Volumes and blocks must
-/// outlive the stage.
+/// The state before a level's first iteration, from the result of the next coarser level: column x
+/// of row y reads column x/2 of row y/2 there. It takes the place of the start from likelihoods in
+/// the chain, so that iterations find their source, but reads no input. `blocks`: the candidates
+/// processed, whose lanes the cells occupy; null: all. Volumes and blocks must outlive the stage.
 template <typename Cell>
 class FromCoarserStage : public scheduler::RowStage {
  public:
@@ -60,7 +59,7 @@ class FromCoarserStage : public scheduler::RowStage {
   [[nodiscard]] std::size_t bytes_per_column() const override {
     return sizeof(Cell) * static_cast<std::size_t>(lanes_);
   }
-  /// Of a few coarser columns: states, what making them needs, and their bytes.
+  /// For a few coarser columns: states, working memory for making them, and their bytes.
   [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
                                         scheduler::Extent /*input*/) const override {
     return kCoarserColumns * bytes_per_column() + sizeof(Cell) * work_cells() +
@@ -69,7 +68,7 @@ class FromCoarserStage : public scheduler::RowStage {
 
   void make_row(const scheduler::RowTask& task) const override {
     if (task.y % 2 == 1 && task.previous != nullptr) {
-      // Both rows are the same one of the coarser level.
+      // Both rows come from the same coarser row.
       if (task.previous != task.output) {
         std::memcpy(task.output, task.previous,
                     bytes_per_column() * static_cast<std::size_t>(task.columns.size()));
@@ -92,13 +91,13 @@ class FromCoarserStage : public scheduler::RowStage {
 
   [[nodiscard]] int lanes() const { return lanes_; }
   [[nodiscard]] const CandidateBlocks* blocks() const { return blocks_; }
-  /// That a pixel has on average.
+  /// Mean per pixel.
   [[nodiscard]] int candidates() const { return candidates_in(blocks_, count_); }
 
-  /// What make_states() needs of `work`.
+  /// Cells of `work` in make_states().
   [[nodiscard]] virtual std::size_t work_cells() const = 0;
-  /// States of at most kCoarserColumns columns, one behind the other. segment_ends: where runs of
-  /// lanes end whose candidates follow each other.
+  /// States of at most kCoarserColumns columns, contiguous. segment_ends: ends of runs of lanes
+  /// with consecutive candidates.
   virtual void make_states(const kernels::CompactRow& coarser, std::span<const int> segment_ends,
                            Cell* states, Cell* work) const = 0;
 
@@ -130,7 +129,7 @@ class FromCoarserStage : public scheduler::RowStage {
     }
   }
 
-  /// Columns of the coarser level, brought to the lanes of `blocks`.
+  /// Columns of the coarser level, rearranged to the lanes of `blocks`.
   void fetch(int coarser_y, BlockList blocks, scheduler::Range coarser_columns,
              std::uint8_t* bytes) const {
     for (int x = coarser_columns.begin; x < coarser_columns.end; ++x) {

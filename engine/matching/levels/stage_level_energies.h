@@ -9,15 +9,15 @@
 
 namespace vantage {
 
-// Coarse levels of methods that keep energies, in half floats (kernels/half_energies). All stages
-// see float cells, geometry.lanes() a column; volumes must have that many lanes of two bytes and
+// Coarse levels of methods that store energies, in half floats (kernels/half_energies). All stages
+// have float cells, geometry.lanes() per column; volumes must have that many lanes of two bytes and
 // outlive the stages. `scale`: of halves, see half_scale().
 
-/// The power of two, at most 1, that brings costs within `bounds` into the range of half floats.
+/// The power of two, at most 1, that scales costs within `bounds` to the range of half floats.
 float half_scale(const CostBounds& bounds);
 
-/// Last stage: the energies of the next coarser level, each the mean of those of four columns
-/// (BlockRow), from those of a level of geometry.width columns.
+/// Last stage: the energies of the next coarser level, each the mean over four columns (BlockRow),
+/// from those of a level of geometry.width columns.
 std::unique_ptr<scheduler::RowStage> make_energy_reduction_stage(
     const kernels::CandidateGeometry& geometry, float scale, LevelVolume& coarser);
 /// Row y of `coarser` from the energies of a coarse level.
@@ -27,18 +27,18 @@ void reduce_half_energy_row(const LevelVolume& finer, int y, LevelVolume& coarse
 std::unique_ptr<scheduler::RowStage> make_level_energy_stage(
     const kernels::CandidateGeometry& geometry, float scale, const LevelVolume& energies);
 
-/// What a level makes of the energies that the coarser one ended with.
+/// How a level uses the final energies of the coarser one.
 enum class CoarserUse {
-  kStart,    ///< iterations begin with them instead of the level's own
-  kSupport,  ///< the mean of both is what the level goes on with
+  kStart,    ///< they replace the level's own energies as the start of iterations
+  kSupport,  ///< the level continues with the mean of both
 };
-/// Stage of the size of its input, the level's own energies. Column x of row y lies in column x/2
-/// of row y/2 of `coarser`.
+/// Input: the level's own energies; output of the same size. Column x of row y reads column x/2 of
+/// row y/2 of `coarser`.
 std::unique_ptr<scheduler::RowStage> make_coarser_energy_stage(
     const kernels::CandidateGeometry& geometry, int height, CoarserUse use, float scale,
     const LevelVolume& coarser);
 
-/// Last stage: keeps the energies that a level ends with.
+/// Last stage: stores a level's final energies.
 std::unique_ptr<scheduler::RowStage> make_energy_store_stage(
     const kernels::CandidateGeometry& geometry, float scale, LevelVolume& energies);
 

@@ -19,7 +19,7 @@ class LikelihoodReductionStage final : public LevelReductionStage {
                            LevelVolume& coarser)
       : LevelReductionStage(geometry, coarser), weight_(weight) {}
 
-  /// Of one block.
+  /// One block.
   [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
                                         scheduler::Extent /*input*/) const override {
     return sizeof(float) * static_cast<std::size_t>(lanes());
@@ -44,7 +44,7 @@ class ByteEnergyReductionStage final : public LevelReductionStage {
                            LevelVolume& coarser)
       : LevelReductionStage(geometry, coarser), weight_(weight * (step / kernels::kEnergyStep)) {}
 
-  /// Of one block.
+  /// One block.
   [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
                                         scheduler::Extent /*input*/) const override {
     return sizeof(std::uint16_t) * static_cast<std::size_t>(lanes());
@@ -60,7 +60,7 @@ class ByteEnergyReductionStage final : public LevelReductionStage {
   }
 
  private:
-  float weight_;  ///< of sums in steps of `step`, to compact ones
+  float weight_;  ///< of sums in steps of `step`, relative to compact ones
 };
 
 class LevelLikelihoodStage final : public LevelSourceStage {
@@ -81,7 +81,7 @@ class LevelLikelihoodStage final : public LevelSourceStage {
   }
 };
 
-/// The candidates with the largest cells: all `count` of them count, whatever partners they have.
+/// The candidates with the largest cells, among all `count`, with or without a partner.
 void write_winners(const float* cells, int columns, int count, std::int32_t* winners) {
   kernels::CellRow row;
   row.cells = cells;

@@ -10,34 +10,35 @@
 
 namespace vantage {
 
-// Coarse levels of Bayesian diffusion, in a byte a cell (kernels/compact_likelihoods). Stages see
-// float cells where nothing else is said, geometry.lanes() a column; volumes must have that many
+// Coarse levels of Bayesian diffusion, one byte per cell (kernels/compact_likelihoods). Stages have
+// float cells unless stated otherwise, geometry.lanes() per column; volumes must have that many
 // lanes of one byte and outlive the stages.
 
 /// Last stage: the energies −ln p0 of the next coarser level, each `weight` (above 0, at most 1)
-/// times the sum of those of four columns (BlockRow), from the likelihoods of a level of
-/// geometry.width columns.
+/// times the sum over four columns (BlockRow), from the likelihoods of a level of geometry.width
+/// columns.
 std::unique_ptr<scheduler::RowStage> make_likelihood_reduction_stage(
     const kernels::CandidateGeometry& geometry, float weight, LevelVolume& coarser);
-/// The same from energies in bytes, in steps of `step`, at most those of compact energies. Lanes
-/// that are no candidates hold nothing less than any candidate does.
+/// As make_likelihood_reduction_stage(), from byte energies in steps of `step`, at most the range
+/// of compact energies. Padding lanes hold at least as much as any candidate.
 std::unique_ptr<scheduler::RowStage> make_byte_energy_reduction_stage(
     const kernels::CandidateGeometry& geometry, float step, float weight, LevelVolume& coarser);
-/// Row y of `coarser` from the energies of a coarse level. `work`: one number a lane.
+/// Row y of `coarser` from the energies of a coarse level. `work`: one number per lane.
 void reduce_energy_row(const LevelVolume& finer, int y, float weight, std::uint16_t* work,
                        LevelVolume& coarser);
 
-/// Source stage: the likelihoods of a coarse level, from its energies.
+/// Source stage: the likelihoods of a coarse level, computed from its energies.
 std::unique_ptr<scheduler::RowStage> make_level_likelihood_stage(
     const kernels::CandidateGeometry& geometry, const LevelVolume& energies);
 
-/// What becomes of the probabilities, or energies, that a level ends with.
+/// Outputs for the final probabilities, or energies, of a level.
 struct LevelResult {
   LevelVolume* cells = nullptr;
-  /// The most probable candidates, the smallest of equals; of the level's size. Null: not wanted.
+  /// The most probable candidates, ties going to the smallest; size of the level. Null: not
+  /// requested.
   Image<std::int32_t>* winners = nullptr;
 };
-/// Last stage: keeps the probabilities that a level ends with.
+/// Last stage: stores a level's final probabilities.
 std::unique_ptr<scheduler::RowStage> make_level_probability_stage(
     const kernels::CandidateGeometry& geometry, const LevelResult& result);
 

@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-/// The neighbours of winners in one direction, as rows of three candidates each.
+/// The neighbours of winners in one direction, in rows of three candidates each.
 class NeighbourCells {
  public:
   explicit NeighbourCells(bool probabilities) {
@@ -22,8 +22,8 @@ class NeighbourCells {
     row_.probabilities = probabilities;
   }
 
-  /// The next column's winner, its neighbours `step` cells away; both_count: whether they are
-  /// candidates, without which the winner is not moved.
+  /// Adds the next column's winner, whose neighbours are `step` cells away. both_count: whether
+  /// both are candidates; otherwise the winner is not refined.
   void add(const float* winner, std::ptrdiff_t step, bool both_count) {
     float* const cells = cells_.data() + row_.columns * row_.geometry.lanes();
     cells[0] = both_count ? winner[-step] : 1;
@@ -32,7 +32,7 @@ class NeighbourCells {
     ++row_.columns;
   }
 
-  /// How far the lowest points of the parabolas are from the winners.
+  /// Offsets of the parabolas' minima from the winners.
   void offsets(float* offset_px) const {
     std::array<std::int32_t, DisplacementSelector::kMostColumns> winners;
     winners.fill(kWinner);
@@ -59,7 +59,7 @@ PartneredCandidates DisplacementSelector::candidates(int x, int y) const {
                    : PartneredCandidates{};
 }
 
-/// Among the first `count` cells of some columns, all of which count.
+/// Selects among the first `count` cells of some columns, all of which are eligible.
 void DisplacementSelector::choose(const float* cells, int count, int columns, std::int32_t* winners,
                                   float* best, float* confidence) const {
   kernels::CellRow row;
@@ -131,7 +131,7 @@ DisplacementSelector::Values DisplacementSelector::select(const Cells& columns,
   return best;
 }
 
-/// Disparities of the winners, moved to the lowest points of parabolas where that is wanted.
+/// Disparities of the winners, refined by parabolas if requested.
 void DisplacementSelector::refine(const Cells& columns, const Winners& winners, float* disparity_px,
                                   float* disparity_y_px) const {
   const int in_row = grid_.along_rows.count;

@@ -10,8 +10,8 @@
 
 namespace vantage {
 
-/// Chooses displacements among float cells of all of them, a few columns at a time.
-/// Thread rule: immutable.
+/// Selects displacements from float cells of all displacements, a few columns at a time. Thread
+/// rule: immutable.
 class DisplacementSelector {
  public:
   static constexpr int kMostColumns = 32;
@@ -25,17 +25,18 @@ class DisplacementSelector {
     int columns = 0;  ///< at most kMostColumns
   };
 
-  /// window_radius: only candidates count whose windows lie in both images; 0: all with a partner.
+  /// window_radius: only candidates whose windows lie in both images count; 0: all with a partner.
   DisplacementSelector(const DisplacementGrid& grid, const CellSelectionSettings& settings,
                        int window_radius)
       : grid_(grid), settings_(settings), window_radius_(window_radius) {}
 
-  /// Floats of working memory.
+  /// Working memory, in floats.
   [[nodiscard]] std::size_t work_floats() const {
     return static_cast<std::size_t>(grid_.columns().lanes());
   }
 
-  /// Writes what is wanted of the columns. Returns the winners' cells, NaN where there is none.
+  /// Writes the requested outputs of the columns. Returns the winners' cells, NaN where there is
+  /// none.
   Values select(const Cells& columns, const MapOutputs& outputs, float* work) const;
 
  private:

@@ -66,7 +66,7 @@ class CellSelectionStage final : public scheduler::RowStage {
   }
 
  private:
-  /// Columns chosen at a time: few enough to be in the level-1 cache still when looked at again.
+  /// Columns per block: few enough to stay in the level-1 cache until they are read again.
   static constexpr int kBlockColumns = 32;
 
   void select_block(const kernels::CellRow& row, int y) const {
@@ -98,7 +98,7 @@ class CellSelectionStage final : public scheduler::RowStage {
     }
   }
 
-  /// All measures but the margin, which comes with the winner.
+  /// All measures except the margin, which comes with the winner.
   void write_confidence(const kernels::CellRow& row, const float* best, float* confidence) const {
     switch (settings_.confidence) {
       case ConfidenceMeasure::kEvidence:

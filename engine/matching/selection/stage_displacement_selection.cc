@@ -20,7 +20,7 @@ using kernels::FixedEnergy;
 using scheduler::Extent;
 using scheduler::Range;
 
-/// What all of them share: columns are worked on a few at a time.
+/// Common base: processes a few columns at a time.
 class DisplacementSelectionStage : public scheduler::RowStage {
  public:
   DisplacementSelectionStage(const DisplacementGrid& grid, const CellSelectionSettings& settings,
@@ -62,7 +62,7 @@ class DisplacementSelectionStage : public scheduler::RowStage {
   [[nodiscard]] std::size_t lanes() const {
     return static_cast<std::size_t>(grid_.columns().lanes());
   }
-  /// The first of `columns`.
+  /// First cell of `columns`.
   template <typename Cell>
   [[nodiscard]] const Cell* cells(const scheduler::RowTask& task, Range columns) const {
     return task.input.row<Cell>(task.y) +
@@ -142,7 +142,7 @@ class EnergyDisplacementStage final : public DisplacementSelectionStage {
   }
 
  private:
-  /// It is made of all cells, those of candidates without a partner too.
+  /// The confidence covers all cells, including those of candidates without a partner.
   static MapOutputs without_confidence(MapOutputs outputs) {
     outputs.confidence = {};
     return outputs;
@@ -170,8 +170,8 @@ class WindowDisplacementStage final : public DisplacementSelectionStage {
   [[nodiscard]] Range input_columns(Range columns, Extent input) const override {
     return columns.widened(settings_.radius, input.all_columns());
   }
-  /// Of some columns: sums of windows, those of one vertical disparity and their means, all means;
-  /// and the window's sums from some columns to the next.
+  /// For some columns: window sums, those of one vertical disparity and their means, all means; and
+  /// the running window sums.
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
     return sizeof(float) *
            (kColumns * 2 * (lanes() + row_lanes()) + lanes() + selector().work_floats());
@@ -210,7 +210,7 @@ class WindowDisplacementStage final : public DisplacementSelectionStage {
     for (int r = 0; r < grid().rows; ++r) {
       const int window_rows = rows_in_both(task.y, r);
       if (window_rows == 0) {
-        continue;  // no candidates: there are none without their own row
+        continue;  // no candidates: their own row must lie in both images
       }
       each_column(r, [&](std::size_t of_all, std::size_t of_row) {
         std::copy_n(sums + of_all, count, row_sums + of_row);
@@ -228,7 +228,7 @@ class WindowDisplacementStage final : public DisplacementSelectionStage {
   [[nodiscard]] std::size_t row_lanes() const {
     return static_cast<std::size_t>(grid().along_rows.lanes());
   }
-  /// Rows of a window that lie in both images at the vertical disparity number `candidate_row`.
+  /// Rows of a window that lie in both images at the vertical disparity with index `candidate_row`.
   [[nodiscard]] int rows_in_both(int y, int candidate_row) const {
     const Range window = Range{y, y + 1}.widened(settings_.radius, extent().all_rows());
     int rows = 0;

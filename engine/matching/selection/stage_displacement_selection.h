@@ -9,22 +9,21 @@
 
 namespace vantage {
 
-// Last stages of a search in two dimensions: each chooses among all displacements of a grid that
-// have a partner, the first of equals, and optionally refines both components by a parabola (§3)
-// through the neighbours in their direction. Confidence is that of all these candidates. Input
-// columns have grid.columns().lanes() cells. Both components are written, NaN where there is no
-// candidate.
+// Last stages of a two-dimensional search: each selects among all displacements of a grid that have
+// a partner, ties going to the first, and optionally refines both components by a parabola (§3)
+// through the neighbours in their direction. Confidence covers all these candidates. Input columns
+// have grid.columns().lanes() cells. Both components are written, NaN where there is no candidate.
 
-/// Of float cells, as make_cell_selection_stage().
+/// From float cells, as make_cell_selection_stage().
 std::unique_ptr<scheduler::RowStage> make_displacement_selection_stage(
     const DisplacementGrid& grid, const CellSelectionSettings& settings, const MapOutputs& outputs);
 
-/// Of energies in fixed point, as make_energy_selection_stage().
+/// From fixed-point energies, as make_energy_selection_stage().
 std::unique_ptr<scheduler::RowStage> make_displacement_energy_selection_stage(
     const DisplacementGrid& grid, Subpixel subpixel, float steps_per_nat,
     const MapOutputs& outputs);
 
-/// Of the sums of make_displacement_sum_stage(), as make_window_selection_stage(); candidates are
+/// From the sums of make_displacement_sum_stage(), as make_window_selection_stage(); candidates are
 /// compared by their mean costs, rounded to float. settings.index_bits is 0.
 std::unique_ptr<scheduler::RowStage> make_displacement_window_selection_stage(
     const DisplacementGrid& grid, const WindowSelectionSettings& settings,

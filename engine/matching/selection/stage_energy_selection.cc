@@ -68,10 +68,10 @@ class EnergySelectionStage final : public scheduler::RowStage {
  private:
   static constexpr int kMostColumns = CandidateBlocks::kMostRunColumns;
 
-  /// Some columns of a row, and what has been chosen there so far.
+  /// Some columns of a row, and their selection so far.
   struct Part {
     Range columns;
-    int lanes = 0;  ///< that hold something
+    int lanes = 0;  ///< number of lanes in use
     std::array<float, kMostColumns> disparity_px = {};
     std::array<FixedEnergy, kMostColumns> least = {};
   };
@@ -84,8 +84,8 @@ class EnergySelectionStage final : public scheduler::RowStage {
            static_cast<std::ptrdiff_t>(x - task.input.columns().begin) * lanes_ + lane;
   }
 
-  /// Chooses among the neighbouring candidates of some lanes, the smallest ones first, and what was
-  /// chosen before.
+  /// Selects among consecutive candidates in some lanes, the smallest ones first, and the previous
+  /// selection.
   void select(const scheduler::RowTask& task, Part& part, Range lanes, int first_candidate) const {
     kernels::EnergyRow row;
     row.cells = cells(task, part.columns.begin, lanes.begin);

@@ -10,10 +10,10 @@
 
 namespace vantage {
 
-/// Last stage: the candidates with the least energies, which cells hold in fixed point
-/// (kernels::FixedEnergy), above the least of their column. The confidence is the winner's
-/// probability, p ∝ exp(−E); the energy output its −ln p. `blocks`: the candidates that are looked
-/// at, in whose lanes cells lie; a winner is refined where both of its neighbours are among them.
+/// Last stage: selects the candidates with the smallest energies. Cells are fixed-point
+/// (kernels::FixedEnergy), relative to the minimum of their column. The confidence is the winner's
+/// probability, p ∝ exp(−E); the energy output is its −ln p. `blocks`: the candidates processed,
+/// whose lanes the cells occupy; a winner is refined if both of its neighbours are among them.
 /// Null: all. Must outlive the stage.
 std::unique_ptr<scheduler::RowStage> make_energy_selection_stage(
     const kernels::CandidateGeometry& geometry, Subpixel subpixel, float steps_per_nat,

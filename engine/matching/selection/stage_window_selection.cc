@@ -40,13 +40,13 @@ class WindowSelectionStage final : public scheduler::RowStage {
   [[nodiscard]] Range input_columns(Range columns, Extent input) const override {
     return columns.widened(settings_.radius, input.all_columns());
   }
-  /// Of one block of columns: sums, lane-by-lane minima, minima and winners; the window's sums from
-  /// block to block; and the mean energies of a block where all are wanted.
+  /// For one block of columns: sums, lane-by-lane minima, minima and winners; the running window
+  /// sums from block to block; and the mean energies of a block if all are needed.
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
     return sizeof(std::int32_t) * (kBlockColumns * (lanes_ + kernels::kLaneMultiple + 2) + lanes_) +
            (compares_energies() ? sizeof(float) * kBlockColumns * lanes_ : 0);
   }
-  /// Of rows and columns that have whole windows.
+  /// For rows and columns with complete windows.
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     const bool indexed = settings_.index_bits > 0;
     kernels::KernelWork work =
@@ -93,7 +93,8 @@ class WindowSelectionStage final : public scheduler::RowStage {
   }
 
  private:
-  /// Columns whose sums are kept at a time: few enough for the level-1 cache beside the input row.
+  /// Columns whose sums are stored at a time: few enough for the level-1 cache along with the input
+  /// row.
   static constexpr int kBlockColumns = 32;
 
   [[nodiscard]] bool has_parabola() const { return settings_.subpixel == Subpixel::kParabola; }
@@ -101,16 +102,17 @@ class WindowSelectionStage final : public scheduler::RowStage {
   [[nodiscard]] bool wants_energies() const {
     return wants_confidence() || !outputs_.energy.empty();
   }
-  /// Whether columns with whole windows need more of their sums than the least.
+  /// Whether columns with complete windows need more of their sums than the minimum.
   [[nodiscard]] bool keeps_sums() const {
     return settings_.index_bits == 0 || has_parabola() || wants_energies();
   }
-  /// Whether the confidence looks at the energies of all candidates.
+  /// Whether the confidence needs the energies of all candidates.
   [[nodiscard]] bool compares_energies() const {
     return wants_confidence() && settings_.confidence != ConfidenceMeasure::kEvidence;
   }
 
-  /// Makes `columns` of the row, all of them plain (every candidate has its whole window) or none.
+  /// Selects `columns` of the row, either all plain (every candidate has its complete window) or
+  /// none.
   void select(const scheduler::RowTask& task, const kernels::WinnerRow& row, Range columns,
               bool plain) const {
     for (int x = columns.begin; x < columns.end; x += kBlockColumns) {
