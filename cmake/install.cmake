@@ -6,12 +6,9 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Vantage)
 install(TARGETS vantage_kernels vantage_scheduler vantage_engine EXPORT VantageTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS vantage RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/kernels ${PROJECT_SOURCE_DIR}/scheduler
-                  ${PROJECT_SOURCE_DIR}/engine
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vantage FILES_MATCHING PATTERN "*.h"
-  # FFmpeg's headers and those of the JSON library are for .cc files.
-  PATTERN libav_functions.h EXCLUDE
-  PATTERN json_text.h EXCLUDE)
+install(CODE "set(SOURCE_DIR \"${PROJECT_SOURCE_DIR}\")
+              set(INCLUDE_DIR \"${CMAKE_INSTALL_INCLUDEDIR}/vantage\")")
+install(SCRIPT ${PROJECT_SOURCE_DIR}/cmake/install_headers.cmake)
 install(EXPORT VantageTargets NAMESPACE vantage:: DESTINATION ${package_dir})
 
 configure_package_config_file(

@@ -11,6 +11,7 @@
 #include "engine/rectification/rectifier.h"
 #include "engine/sequence/busy_clock.h"
 #include "engine/sequence/frame_slot.h"
+#include "engine/sequence/pair_source.h"
 #include "engine/sequence/sequence_layout.h"
 #include "engine/sequence/sequence_options.h"
 #include "engine/sequence/shots.h"
@@ -19,12 +20,6 @@
 #include "engine/synthesis/pose_renderer.h"
 
 namespace vantage {
-
-/// Size of all images of a run.
-struct ImageExtent {
-  int width_px = 0;
-  int height_px = 0;
-};
 
 /// Size of a new view of images of size `images`: that of its cameras if they have one.
 ImageExtent extent_of(const ViewPath& view, ImageExtent images);

@@ -12,6 +12,12 @@
 
 namespace vantage {
 
+/// Size of all images of a run.
+struct ImageExtent {
+  int width_px = 0;
+  int height_px = 0;
+};
+
 /// A pair of frames on its way from a source: fetched in order by one thread, decoded by any.
 /// Memory is reused from pair to pair.
 struct FramePair {

@@ -10,8 +10,6 @@
 #include "engine/image/memory_use.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/rectification/rectifier.h"
-#include "engine/sequence/flicker.h"
-#include "engine/sequence/frame_worker.h"
 #include "engine/sequence/pair_source.h"
 #include "engine/sequence/run_journal.h"
 #include "engine/sequence/sequence_layout.h"

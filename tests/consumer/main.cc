@@ -5,10 +5,7 @@
 #include <random>
 #include <utility>
 
-#include "engine/execution.h"
-#include "engine/image/image.h"
-#include "engine/image/photograph.h"
-#include "engine/matching/stereo_matcher.h"
+#include "engine/vantage.h"
 
 int main() {
   constexpr int kWidth = 97;

@@ -1,0 +1,55 @@
+#pragma once
+
+// The library for its users. These headers and those that they include are installed; nothing else
+// is (cmake/install_headers.cmake). Include this one, or those that are needed.
+
+// Images, what they are read from and written to, and threads.
+#include "engine/build_info.h"
+#include "engine/error.h"
+#include "engine/execution.h"
+#include "engine/image/image.h"
+#include "engine/image/memory_use.h"
+#include "engine/image/photograph.h"
+#include "engine/io/disparity_io.h"
+#include "engine/io/displacement_io.h"
+#include "engine/io/frame_source.h"
+#include "engine/io/map_formats.h"
+#include "engine/io/photograph_io.h"
+#include "engine/io/video_io.h"
+
+// Disparity maps of rectified pairs.
+#include "engine/matching/match_report.h"
+#include "engine/matching/options/match_options.h"
+#include "engine/matching/options/match_presets.h"
+#include "engine/matching/range_estimation.h"
+#include "engine/matching/stereo_matcher.h"
+
+// Cameras, and pairs that are not rectified.
+#include "engine/rectification/feature_matches.h"
+#include "engine/rectification/rectification_file.h"
+#include "engine/rectification/rectified_pair.h"
+#include "engine/rectification/rectifier.h"
+#include "engine/rectification/stereo_calibration.h"
+#include "engine/rectification/uncalibrated_rig.h"
+#include "engine/rectification/vertical_error.h"
+
+// New views of pairs, and of scenes of many images.
+#include "engine/scene_graph/scene_builder.h"
+#include "engine/scene_graph/scene_viewer.h"
+#include "engine/synthesis/synthesis_options.h"
+#include "engine/synthesis/view_synthesizer.h"
+#include "engine/view_geometry/new_view.h"
+#include "engine/view_geometry/posed_camera.h"
+#include "engine/view_geometry/view_path.h"
+#include "engine/view_geometry/view_pose.h"
+
+// Sequences of pairs.
+#include "engine/sequence/pair_source.h"
+#include "engine/sequence/run_journal.h"
+#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/sequence_options.h"
+#include "engine/sequence/sequence_runner.h"
+
+// How good maps and views are.
+#include "engine/evaluation/disparity_evaluation.h"
+#include "engine/evaluation/view_evaluation.h"
