@@ -25,7 +25,7 @@ std::string without_quotes(std::string text) {
   return text;
 }
 
-/// The next line without its end; takes it off `text`.
+/// The next line without its end; removes it from `text`.
 std::string_view take_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
   const std::string_view line = text.substr(0, end);
@@ -38,8 +38,8 @@ bool is_name_character(char c) {
          c == '-' || c == '.';
 }
 
-/// The name before `separator` at the beginning of a line, with what follows; none if the line
-/// begins otherwise.
+/// The name before `separator` at the start of a line, and the text after it; none if the line
+/// starts otherwise.
 std::optional<std::pair<std::string_view, std::string_view>> named(std::string_view line,
                                                                    char separator) {
   std::size_t end = 0;
@@ -60,7 +60,7 @@ int dimension_of(std::string_view text) {
   return is_small ? static_cast<int>(number.values[0]) : 0;
 }
 
-/// A matrix made of the texts of its parts.
+/// A matrix from the texts of its parts.
 CalibrationEntry matrix_of(std::string_view rows, std::string_view columns, std::string_view data) {
   CalibrationEntry entry = numbers_of(data);
   entry.rows = dimension_of(rows);
@@ -74,7 +74,7 @@ CalibrationEntry matrix_of(std::string_view rows, std::string_view columns, std:
   return entry;
 }
 
-/// What follows `name:` in a block, up to the end of the line, or of the brackets if it has some.
+/// The text after `name:` in a block, up to the end of the line or of its brackets.
 std::optional<std::string_view> block_part(std::string_view block, std::string_view name) {
   for (std::size_t at = block.find(name); at != std::string_view::npos;
        at = block.find(name, at + 1)) {
@@ -153,7 +153,7 @@ CalibrationEntries yaml_entries(std::string_view text) {
     if (!first) {
       continue;
     }
-    // The block goes on to the line before the next name.
+    // The block continues to the line before the next name.
     const char* begin = first->second.data();
     const char* end = begin + first->second.size();
     for (std::string_view rest = text; !rest.empty();) {

@@ -25,8 +25,8 @@ class CalibrationFile {
  public:
   explicit CalibrationFile(CalibrationEntries entries) : entries_(std::move(entries)) {}
 
-  /// The entry of the first of these names that is there, null if none is. Throws Error when it
-  /// does not hold numbers.
+  /// The first of these entries that exists, null if none does. Throws Error when it does not hold
+  /// numbers.
   [[nodiscard]] const CalibrationEntry* find(std::initializer_list<std::string_view> names) const {
     for (const std::string_view name : names) {
       const auto entry = entries_.find(name);
@@ -40,7 +40,7 @@ class CalibrationFile {
     return nullptr;
   }
 
-  /// Like find(), but it has to be there, with as many values (rows · columns of them).
+  /// Like find(), but the entry is required, with rows · columns values.
   [[nodiscard]] const std::vector<double>& values(std::initializer_list<std::string_view> names,
                                                   int rows, int columns) const {
     const CalibrationEntry* entry = find(names);
@@ -67,7 +67,7 @@ class CalibrationFile {
   }
   [[nodiscard]] double number(std::string_view name) const { return values({name}, 1, 1)[0]; }
 
-  /// Throws Error when the file says that its lenses are fisheyes.
+  /// Throws Error when the file names a fisheye model.
   void refuse_fisheyes() const {
     for (const auto& [name, entry] : entries_) {
       const bool is_switch = name == "fisheye_model" && entry.values != std::vector<double>{0};
@@ -94,7 +94,8 @@ int whole_pixels(double value) {
   return static_cast<int>(value);
 }
 
-/// The rotation nearest to what a file gives to a few digits. Leaves what is none as it is.
+/// The nearest rotation, because files have few digits. Returns matrices that are far from a
+/// rotation unchanged.
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
@@ -151,7 +152,7 @@ StereoCalibration from_middlebury(const CalibrationFile& file) {
   return calibration;
 }
 
-/// Two cameras of a rig of which each is P = K · (I | t).
+/// Two cameras of a rig, each given as P = K · (I | t).
 StereoCalibration from_projections(const Matrix34& left, const Matrix34& right) {
   StereoCalibration calibration{.is_rectified = true};
   calibration.left.matrix = left.leftCols<3>();
@@ -180,8 +181,8 @@ StereoCalibration from_kitti(const CalibrationFile& file) {
   return calibration;
 }
 
-/// KITTI's odometry sequences are passed on with and without names: lines of 12 numbers. Empty if
-/// the text is anything else.
+/// KITTI's odometry sequences are distributed with and without names: lines of 12 numbers. Empty
+/// for any other text.
 CalibrationEntries nameless_projections(std::string_view text) {
   const CalibrationEntry all = numbers_of(text);
   CalibrationEntries entries;
@@ -211,7 +212,7 @@ StereoCalibration parse(std::string_view text) {
   }
   CalibrationEntries entries = yaml_entries(text);
   for (const char* name : {"P0", "P1", "P2", "P3", "P_rect_00", "P_rect_02"}) {
-    // OpenCV's files have P1 and P2 of their own beside the cameras they come from.
+    // OpenCV's files contain their own P1 and P2 besides the cameras they come from.
     if (entries.contains(name) && !entries.contains("R") && !entries.contains("T")) {
       return from_kitti(CalibrationFile(std::move(entries)));
     }

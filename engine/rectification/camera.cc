@@ -13,7 +13,7 @@ namespace {
 
 // tan 80°: a plane cannot show much more.
 constexpr double kLargestRay = 5.67;
-// How finely the radius is searched for the fold of the polynomial.
+// Step of the radius in the search for the fold of the polynomial.
 constexpr double kRayStep = 1.0 / 512;
 
 enum Coefficient { kK1, kK2, kP1, kP2, kK3, kK4, kK5, kK6, kS1, kS2, kS3, kS4, kTauX, kTauY };
@@ -24,8 +24,8 @@ std::array<double, 14> all_coefficients(const Camera& camera) {
   return coefficients;
 }
 
-/// The sensor turned by τx about its x axis, then by τy about its y axis, and the projection from
-/// the lens' image plane onto it.
+/// Rotation of the sensor by τx about its x axis, then by τy about its y axis, and the projection
+/// from the lens' image plane onto it.
 Eigen::Matrix3d tilt_projection(double tau_x, double tau_y) {
   Eigen::Matrix3d about_x;
   about_x << 1, 0, 0, 0, std::cos(tau_x), std::sin(tau_x), 0, -std::sin(tau_x), std::cos(tau_x);
@@ -37,7 +37,7 @@ Eigen::Matrix3d tilt_projection(double tau_x, double tau_y) {
   return onto_sensor * turn;
 }
 
-/// Numerator and denominator of the factor by which a ray of squared length r2 is stretched.
+/// Numerator and denominator of the radial scale of a ray of squared length r2.
 struct RadialFactor {
   double numerator;
   double denominator;
@@ -138,7 +138,7 @@ std::optional<Eigen::Vector2d> LensModel::ray_of(const Eigen::Vector2d& position
       jacobian.col(axis) = (distorted(ray + step) - distorted(ray - step)) / (2 * kDifference);
     }
     const Eigen::Vector2d full_step = -jacobian.inverse() * residual;
-    // Halved until it brings the ray closer without leaving the part that can be inverted.
+    // Halved until the step brings the ray closer without leaving the invertible part.
     double share = 1;
     for (; share > 1e-6; share /= 2) {
       const Eigen::Vector2d next = ray + share * full_step;

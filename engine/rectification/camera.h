@@ -9,7 +9,8 @@
 namespace vantage {
 
 /// A pinhole camera with lens distortion. A point (X, Y, Z) of its own frame (X right, Y down, Z
-/// forward) lies on the ray (X/Z, Y/Z), is distorted there and meets the pixel `matrix` · ray.
+/// forward) has the ray (X/Z, Y/Z), which is distorted and then projected to the pixel `matrix` ·
+/// ray.
 struct Camera {
   /// K, pixel ← ray: rows (fx, skew, cx), (0, fy, cy), (0, 0, 1), in pixels. Principal points are
   /// positions as in EQUATIONS §0: pixel centres at integers.
@@ -18,28 +19,28 @@ struct Camera {
   /// 4, 5, 8, 12 or 14 of them. Radial, tangential, rational, thin prism, tilted sensor.
   std::vector<double> distortion = {};
 
-  /// True when no coefficient is other than 0.
+  /// True if all coefficients are 0.
   [[nodiscard]] bool is_without_distortion() const;
   /// Throws Error naming `name` ("left camera"), the quantity, its value and its limit.
   void validate(const std::string& name) const;
 };
 
-/// Where a camera sees rays, and back. Thread rule: may be used concurrently.
+/// Projects rays to pixels, and back. Thread rule: may be used concurrently.
 class LensModel {
  public:
   /// `camera` is valid.
   explicit LensModel(const Camera& camera);
 
   /// Pixel position of the point on `ray` (X/Z, Y/Z). None beyond the radius up to which the
-  /// distortion grows with the ray: further out the polynomial folds back and the image would be
-  /// seen again, mirrored.
+  /// distortion is monotonic: farther out the polynomial folds back and the image would repeat,
+  /// mirrored.
   [[nodiscard]] std::optional<Eigen::Vector2d> position_of(const Eigen::Vector2d& ray) const;
 
-  /// The inverse, to 1e-10 of a focal length (damped Newton). None where no ray is found, as at
+  /// The inverse, to 1e-10 of a focal length (damped Newton). None if no ray is found, as at
   /// positions that only the folded part of the polynomial reaches.
   [[nodiscard]] std::optional<Eigen::Vector2d> ray_of(const Eigen::Vector2d& position_px) const;
 
-  /// |ray| up to which position_of() answers; at most tan 80°.
+  /// |ray| up to which position_of() has a result; at most tan 80°.
   [[nodiscard]] double largest_ray() const { return largest_ray_; }
 
  private:

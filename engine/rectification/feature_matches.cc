@@ -18,29 +18,29 @@
 namespace vantage {
 namespace {
 
-// Images are divided into so many cells, of which each may keep its share of the features.
+// Cells per image side; each cell may keep its share of the features.
 constexpr int kCellsAlongSide = 12;
-// The nearest descriptor is to be nearer than this part of the distance of the second nearest.
+// The nearest descriptor must be closer than this fraction of the second nearest distance.
 constexpr float kRatio = 0.7F;
 constexpr int kRefinementWindow_px = 15;
 constexpr float kMostRefinement_px = 2;
 
-/// cv::calcOpticalFlowPyrLK(). Its library, which brings neural networks along, is opened by the
-/// first call. Throws Error when it cannot be opened.
+/// cv::calcOpticalFlowPyrLK(). Its library, which loads neural networks too, is opened by the first
+/// call. Throws Error when it cannot be opened.
 decltype(&cv::calcOpticalFlowPyrLK) optical_flow() {
   static const LateLibrary library(VANTAGE_TRACKING_LIBRARY,
                                    "cannot refine points that images share");
-  // What the Itanium C++ ABI makes of the declaration whose type is above.
+  // Itanium C++ ABI name of the function declared with the type above.
   static const auto function = library.function<decltype(&cv::calcOpticalFlowPyrLK)>(
       "_ZN2cv20calcOpticalFlowPyrLKERKNS_11_InputArrayES2_S2_RKNS_17_InputOutputArrayERKNS_12_"
       "OutputArrayES8_NS_5Size_IiEEiNS_12TermCriteriaEid");
   return function;
 }
 
-/// A photograph as features are looked for in it.
+/// A photograph prepared for feature detection.
 struct SearchImage {
   cv::Mat levels;     ///< 8-bit grey, stretched to its range
-  cv::Mat contrast;   ///< 8-bit: how far a level is from the mean of its surroundings
+  cv::Mat contrast;   ///< 8-bit: difference from the local mean
   cv::Point2d scale;  ///< pixels of the photograph per pixel of `levels`
 };
 
@@ -72,7 +72,8 @@ cv::Mat stretched(const cv::Mat& grey) {
 
 cv::Mat local_contrast(const cv::Mat& levels) {
   constexpr int kSurroundings_px = 21;
-  constexpr double kFlat = 16;  // variance that counts as no structure, in grey levels squared
+  constexpr double kFlat = 16;  // variance below which there is no structure, in grey levels
+                                // squared
   const cv::Size window(kSurroundings_px, kSurroundings_px);
   cv::Mat mean;
   cv::Mat mean_of_squares;
@@ -110,7 +111,7 @@ Eigen::Vector2d in_photograph(const SearchImage& image, const cv::Point2f& point
   return {(point.x + 0.5) * image.scale.x - 0.5, (point.y + 0.5) * image.scale.y - 0.5};
 }
 
-/// The strongest of every cell, in an order of their own.
+/// The strongest features of every cell, reordered.
 std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> points, const cv::Size& size, int most) {
   const auto cell_of = [&](const cv::KeyPoint& point) {
     const auto along = [](float position, int side_px) {
@@ -124,7 +125,7 @@ std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> points, const cv::Siz
     const std::array<float, 5> second = {-b.response, b.pt.y, b.pt.x, b.size, b.angle};
     return first < second;
   });
-  // What empty cells leave may be used by others, up to twice a share.
+  // Empty cells leave their share to others, up to twice a share.
   const int share = std::max(2 * most / (kCellsAlongSide * kCellsAlongSide), 1);
   std::array<int, kCellsAlongSide * kCellsAlongSide> kept_of_cell{};
   std::vector<cv::KeyPoint> kept;
@@ -160,7 +161,7 @@ Features features_of(const SearchImage& image, const FeatureMatchOptions& option
   return features;
 }
 
-/// Pairs of features that are each other's nearest by a clear margin.
+/// Mutually nearest features, by a clear margin.
 std::vector<cv::DMatch> mutual_matches(const Features& left, const Features& right,
                                        FeatureKind kind) {
   if (left.points.empty() || right.points.size() < 2) {
@@ -215,7 +216,7 @@ std::vector<PointMatch> match_features(const Photograph& left, const Photograph&
   std::vector<cv::Point2f> refined = right_points;
   std::vector<std::uint8_t> found;
   std::vector<float> unused_errors;
-  constexpr double kLeastEigenvalue = 1e-4;  // OpenCV's own
+  constexpr double kLeastEigenvalue = 1e-4;  // OpenCV's default
   optical_flow()(left_image.contrast, right_image.contrast, left_points, refined, found,
                  unused_errors, cv::Size(kRefinementWindow_px, kRefinementWindow_px), 0,
                  cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 1e-3),

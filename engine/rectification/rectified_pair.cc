@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMostBaselineAngleDegrees = 45;
 constexpr double kMostViewingAngleDegrees = 90;
-/// A window that shows less than this part of a camera's height and width is next to nothing.
+/// A window that shows less than this share of a camera's height and width is too small.
 constexpr double kLeastShare = 0.1;
 
 double degrees_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -59,7 +59,7 @@ Eigen::Matrix3d camera_of(const RayWindow& window, int width_px, int height_px) 
   return matrix;
 }
 
-/// The pixels whose centres lie in `inner`, in the image that shows `shown`.
+/// The pixels of the image that shows `shown` whose centres lie in `inner`.
 PixelRectangle pixels_within(const RayWindow& inner, const RayWindow& shown, int width_px,
                              int height_px) {
   const auto interval = [&](int axis, int size_px) {
@@ -90,7 +90,7 @@ RectifiedPair unchanged_pair(const StereoCalibration& calibration, int width_px,
           .valid = {.x = 0, .y = 0, .width = width_px, .height = height_px}};
 }
 
-/// Throws without naming the calibration's file.
+/// Throws errors that do not name the calibration's file.
 RectifiedPair pair_of(const StereoCalibration& calibration, int width_px, int height_px,
                       const RectificationOptions& options) {
   calibration.validate();

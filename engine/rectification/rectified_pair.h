@@ -6,10 +6,10 @@
 
 namespace vantage {
 
-/// What rectified images show.
+/// Field of view of rectified images.
 struct RectificationOptions {
-  /// 0: as much as fits without a pixel that the cameras did not see (default); 1: all that either
-  /// camera saw, with black around it; between them the window grows evenly.
+  /// 0: the largest window without pixels that the cameras did not see (default); 1: everything
+  /// that either camera saw, with black around it; in between, the window is interpolated.
   double kept_outline = 0;
 
   /// Throws UsageError naming the field, its value and its limit.
@@ -24,11 +24,11 @@ struct PixelRectangle {
   int height = 0;
 };
 
-/// A camera turned so that it forms a rectified pair with another one.
+/// A camera rotated to form a rectified pair with another one.
 struct RectifiedCamera {
   Eigen::Matrix3d matrix;      ///< K of the rectified image
   Eigen::Matrix3d rotation;    ///< rectified frame ← frame of the camera
-  Eigen::Matrix3d homography;  ///< rectified pixel ← pixel of the camera, freed of its distortion
+  Eigen::Matrix3d homography;  ///< rectified pixel ← undistorted pixel of the camera
 };
 
 /// Rectified cameras side by side on a common X axis: a point (X, Y, Z) of the left one's frame is
@@ -39,9 +39,9 @@ struct RectifiedPair {
   RectifiedCamera left;
   RectifiedCamera right;
   double baseline = 0;  ///< in the calibration's unit
-  /// cx of the right − cx of the left camera. 0 unless the calibration was of rectified images.
+  /// cx of the right − cx of the left camera. 0 unless the calibration is of rectified images.
   double doffs_px = 0;
-  /// Without a black pixel in either image.
+  /// The area without black pixels in either image.
   PixelRectangle valid;
 
   [[nodiscard]] const RectifiedCamera& camera(Side side) const {
@@ -51,15 +51,14 @@ struct RectifiedPair {
 
 /// The rectified cameras of images of this size, which is also the size of the rectified images.
 ///
-/// X is the direction of the baseline, Z the part of the mean viewing direction orthogonal to it,
-/// Y = Z × X (EQUATIONS §6), so both cameras turn about equally far. Both rectified cameras have
-/// one focal length, the same in x and y, and one principal point: infinity has disparity 0. A
-/// rectified calibration is passed on as it is.
+/// X is the direction of the baseline, Z the part of the mean viewing direction orthogonal to it, Y
+/// = Z × X (EQUATIONS §6), so both cameras rotate by about the same angle. Both rectified cameras
+/// have one focal length, the same in x and y, and one principal point: infinity has disparity 0. A
+/// rectified calibration is returned unchanged.
 ///
 /// Throws Error, naming the calibration's file, quantity and limit, for an image size that
 /// contradicts the calibration, a baseline more than 45° off the cameras' x axes (cameras one above
-/// or behind the other, or swapped), viewing directions 90° apart, or views that have next to
-/// nothing in common.
+/// or behind the other, or swapped), viewing directions 90° apart, or views with almost no overlap.
 RectifiedPair rectified_pair(const StereoCalibration& calibration, int width_px, int height_px,
                              const RectificationOptions& options = {});
 

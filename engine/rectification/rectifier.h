@@ -13,22 +13,22 @@
 
 namespace vantage {
 
-/// Where each pixel of a rectified image lies in the photograph; NaN where the camera does not see
+/// Position in the photograph of each pixel of a rectified image; NaN where the camera does not see
 /// it. Nothing is owned.
 struct PhotographPositions {
   ImageView<const float> x_px;
   ImageView<const float> y_px;
 };
 
-/// Turns photographs of a calibrated pair of cameras into rectified ones of the same size: rows
-/// correspond, and lens distortion is gone. By default nothing black comes in (see
-/// RectificationOptions): matchers and new views take every pixel for a picture, and black borders
-/// would match each other. Where each rectified pixel comes from is worked out once.
-/// Thread rule: after construction everything may be called concurrently.
+/// Rectifies photographs of a calibrated pair of cameras at the same size: rows correspond, and
+/// lens distortion is removed. By default without black areas (see RectificationOptions): matching
+/// and view synthesis treat every pixel as image content, and black borders would match each other.
+/// The position map is computed once. Thread rule: after construction everything may be called
+/// concurrently.
 class Rectifier {
  public:
-  /// For images of this size. Throws as rectified_pair() does. 8 bytes per pixel and image, about
-  /// 0.1 µs per pixel.
+  /// For images of this size. Throws as rectified_pair() does. Takes 8 bytes per pixel and image,
+  /// about 0.1 µs per pixel.
   Rectifier(const StereoCalibration& calibration, int width_px, int height_px,
             const RectificationOptions& options = {});
 
@@ -37,8 +37,8 @@ class Rectifier {
   /// Cameras, baseline, homographies and the valid part of the rectified images.
   [[nodiscard]] const RectifiedPair& pair() const { return pair_; }
 
-  /// Where a position of the rectified image lies in the photograph, and back; either may be
-  /// between pixels or outside. None where the camera cannot see it.
+  /// Converts a position of the rectified image to the photograph, and back; both may be sub-pixel
+  /// or outside. None if the camera cannot see it.
   [[nodiscard]] std::optional<Eigen::Vector2d> source_position(
       Side side, const Eigen::Vector2d& rectified_px) const;
   [[nodiscard]] std::optional<Eigen::Vector2d> rectified_position(
@@ -49,18 +49,18 @@ class Rectifier {
     return {view(side).x_px.view(), view(side).y_px.view()};
   }
 
-  /// The rectified image of `source`, by bicubic interpolation (Keys, a = −½) with exact positions;
+  /// The rectified image of `source`, by bicubic interpolation (Keys, a = −½) at exact positions;
   /// alpha like a colour; 0 in all channels where the camera saw nothing. `result` gets the depth
-  /// and channels of `source` and keeps its memory where that suffices, so nothing is allocated
-  /// from the second frame on. `result` is not `source`. Parallel over rows; the same bits for
-  /// every executor and instruction set. Throws Error if `source` has another size than said.
+  /// and channels of `source` and reuses its memory, so nothing is allocated from the second frame
+  /// on; it must not be `source`. Parallel over rows; bit-identical for every executor and
+  /// instruction set. Throws Error if `source` has another size than the rectifier's.
   void apply(const Photograph& source, Side side, Photograph& result, Execution& execution) const;
 
  private:
   struct View {
     LensModel lens;
     Eigen::Matrix3d ray_from_pixel;  ///< ray of the camera ← rectified pixel, homogeneous
-    Image<float> x_px;               ///< where each rectified pixel lies; NaN = not seen
+    Image<float> x_px;               ///< position of each rectified pixel; NaN = not seen
     Image<float> y_px;
   };
 

@@ -9,11 +9,11 @@
 namespace vantage {
 namespace {
 
-/// What the parameters are, each in units of what is usual for it (its standard deviation).
+/// The parameters, each in units of its prior standard deviation.
 enum Parameter {
   kFocal,        // logarithm of the focal length over the usual one, of both cameras
   kFocalRatio,   // logarithm of right over left
-  kLeftCentreX,  // principal point, off the image's centre, over the longer side
+  kLeftCentreX,  // principal point, offset from the image's centre, over the longer side
   kLeftCentreY,
   kRightCentreX,
   kRightCentreY,
@@ -23,12 +23,12 @@ enum Parameter {
   kTurnY,
   kTurnZ,
   kBaselineUp,      // angle of the baseline out of the x-z plane
-  kBaselineForward  // and out of the x-y plane
+  kBaselineForward  // angle of the baseline out of the x-y plane
 };
 
 constexpr std::array<double, RigModel::kParameters> kUsual = {
     0.25, 0.05, 0.03, 0.03, 0.03, 0.03, 0.15, 0.02, 0.1, 0.05, 0.1, 0.1, 0.1};
-/// Over the longer side; an angle of view of 49 degrees.
+/// Over the longer side; a field of view of 49 degrees.
 constexpr double kUsualFocal = 1.1;
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& t) {
@@ -37,13 +37,13 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& t) {
   return matrix;
 }
 
-/// A position freed of distortion, and how much larger the photograph shows its surroundings.
+/// An undistorted position, and the local magnification of the photograph there.
 struct IdealPosition {
   Eigen::Vector3d ray;
   double magnification;
 };
 
-/// A lens that shows the ray r at r / (1 + k4 r²), which has a closed inverse.
+/// A lens that maps the ray r to r / (1 + k4 r²), which has a closed-form inverse.
 struct SimpleCamera {
   double focal_px;
   Eigen::Vector2d centre_px;
@@ -51,7 +51,7 @@ struct SimpleCamera {
 
   [[nodiscard]] IdealPosition ideal(const Eigen::Vector2d& position_px) const {
     const Eigen::Vector2d seen = (position_px - centre_px) / focal_px;
-    // Beyond the fold there is no ray; the last one there is keeps the distance continuous.
+    // Beyond the fold there is no ray; the last one keeps the distance continuous.
     const double root = std::sqrt(std::max(1 - 4 * k4 * seen.squaredNorm(), 0.0));
     const double stretch = 2 / (1 + root);
     return {(stretch * seen).homogeneous(), 1 / stretch};
@@ -68,7 +68,7 @@ struct SimpleCamera {
   }
 };
 
-/// The residuals as the minimiser wants them: those of matches, then the parameters themselves.
+/// Residuals for the minimiser: those of matches, then the parameters themselves.
 struct Problem {
   const RigModel::Residuals& residuals_of;
   Eigen::Index residuals;
@@ -81,7 +81,7 @@ struct Problem {
     return 0;
   }
   int df(const Eigen::VectorXd& parameters, Eigen::MatrixXd& jacobian) const {
-    // Parameters are all of the order of 1, also those that happen to be 0.
+    // All parameters are of the order of 1, even if their value is 0.
     constexpr double kStep = 1e-4;
     for (int i = 0; i < RigModel::kParameters; ++i) {
       const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(RigModel::kParameters, i);
@@ -115,7 +115,7 @@ RigModel::Cameras RigModel::cameras(const Parameters& parameters) const {
         .focal_px = kUsualFocal * side_px * focal,
         .centre_px = {(width_px_ - 1) / 2 + side_px * value(centre_x),
                       (height_px_ - 1) / 2 + side_px * value(centre_y)},
-        // What is bent in the image says nothing about the focal length.
+        // Scaled so that curvature in the image does not depend on the focal length.
         .k4 = (value(kDistortion) + sign / 2 * value(kDistortionDifference)) * focal * focal};
   };
   const Eigen::Vector3d turn(value(kTurnX), value(kTurnY), value(kTurnZ));
@@ -167,7 +167,7 @@ Eigen::VectorXd RigModel::epipolar_distances(const Parameters& parameters,
     const IdealPosition right = rig.right.ideal(match.right);
     const Eigen::Vector3d right_line = essential * left.ray;
     const Eigen::Vector3d left_line = essential.transpose() * right.ray;
-    // Lines in pixels of ideal images, then shortened as the photographs show them.
+    // Lines in pixels of ideal images, then scaled to the photographs.
     const double gradient =
         std::hypot(right_line.head<2>().norm() / (rig.right.focal_px * right.magnification),
                    left_line.head<2>().norm() / (rig.left.focal_px * left.magnification));

@@ -9,12 +9,11 @@
 
 namespace vantage {
 
-/// Two cameras about which nothing is known but their images of one size, described by few numbers
-/// of which is known what they usually are: what point matches leave open, and a single pair
-/// leaves much open, stays usual. Such cameras rectify with homographies that turn the images and
-/// hardly stretch them (Fusiello and Irsara, Quasi-Euclidean epipolar rectification, 2011, with the
-/// lens added).
-/// Thread rule: may be used concurrently.
+/// Two uncalibrated cameras with images of one size, described by few parameters with prior
+/// distributions: parameters that the point matches do not determine, and a single pair leaves
+/// many, stay near their usual values. Such cameras rectify by homographies that rotate the images
+/// and hardly stretch them (Fusiello and Irsara, Quasi-Euclidean epipolar rectification, 2011, with
+/// the lens added). Thread rule: may be used concurrently.
 class RigModel {
  public:
   static constexpr int kParameters = 13;
@@ -24,37 +23,37 @@ class RigModel {
   /// `width_px` and `height_px` ≥ 2.
   RigModel(int width_px, int height_px);
 
-  /// Cameras side by side that look into the same direction, with usual lenses.
+  /// Parallel cameras side by side, with usual lenses.
   [[nodiscard]] static Parameters usual() { return Parameters::Zero(); }
   /// Usual lenses; x_right = rotation · x_left + translation. The translation's length and sign do
   /// not matter.
   [[nodiscard]] static Parameters with_pose(const Eigen::Matrix3d& rotation,
                                             const Eigen::Vector3d& translation);
 
-  /// The cameras. The baseline is 1 long, and the right camera stands in the positive x direction:
-  /// images alone do not tell scale, and hardly which camera is the left one. One coefficient of
-  /// distortion, k4.
+  /// The cameras. The baseline has length 1, and the right camera is in the positive x direction:
+  /// images alone do not determine scale, and hardly which camera is the left one. One distortion
+  /// coefficient, k4.
   [[nodiscard]] StereoCalibration calibration(const Parameters& parameters) const;
 
-  /// Distance of every match from agreeing with the epipolar geometry, in pixels of the photographs
-  /// (Sampson's approximation), with a sign.
+  /// Signed distance of every match from the epipolar geometry, in pixels of the photographs
+  /// (Sampson's approximation).
   [[nodiscard]] Eigen::VectorXd epipolar_distances(const Parameters& parameters,
                                                    const std::vector<PointMatch>& matches) const;
-  /// Distance, in pixels, of every right position from where it would be if the camera had only
-  /// turned.
+  /// Distance, in pixels, of every right position from its prediction by a pure rotation of the
+  /// camera.
   [[nodiscard]] Eigen::VectorXd turning_distances(const Parameters& parameters,
                                                   const std::vector<PointMatch>& matches) const;
 
-  /// The likeliest parameters (Levenberg–Marquardt from `start`) given matches whose distances have
-  /// this standard deviation, each counted `weights` times.
+  /// The most likely parameters (Levenberg–Marquardt from `start`) given matches with this standard
+  /// deviation of the distances, each weighted by `weights`.
   [[nodiscard]] Parameters fit(const Parameters& start, const std::vector<PointMatch>& matches,
                                const Eigen::VectorXd& weights, double deviation_px) const;
-  /// The same of turning_distances(): the likeliest camera that only turned.
+  /// As fit() on turning_distances(): the most likely camera under pure rotation.
   [[nodiscard]] Parameters fit_turning(const Parameters& start,
                                        const std::vector<PointMatch>& matches,
                                        const Eigen::VectorXd& weights, double deviation_px) const;
 
-  /// Minus the logarithm of how likely the parameters are before any match is seen.
+  /// Negative logarithm of the prior probability of the parameters.
   [[nodiscard]] static double surprise(const Parameters& parameters) {
     return parameters.squaredNorm() / 2;
   }

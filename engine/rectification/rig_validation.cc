@@ -10,8 +10,8 @@
 namespace vantage {
 namespace {
 
-// Tiles on each side. What is left out lies far enough from what is kept that a wrong lens or
-// rotation shows, and near enough that half of the photograph is still known all over.
+// Tiles on each side. Held-out points are far enough from the others that a wrong lens or rotation
+// shows, and near enough that half of the points still cover the whole photograph.
 constexpr int kHeldOutTiles = 4;
 constexpr int kCoverageTiles = 8;
 

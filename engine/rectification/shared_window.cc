@@ -43,7 +43,7 @@ Box bounds(const RayPolygon& polygon) {
   return box;
 }
 
-/// The least max(|x|, |y|) on the line from `a` to `b`. Convex, so at an end or a kink.
+/// Minimum of max(|x|, |y|) on the line from `a` to `b`. Convex, so it is at an end or a kink.
 double least_extent(const Eigen::Array2d& a, const Eigen::Array2d& b, double limit) {
   double least = std::min(a.abs().maxCoeff(), b.abs().maxCoeff());
   const Eigen::Array2d line = b - a;
@@ -63,7 +63,7 @@ double least_extent(const Eigen::Array2d& a, const Eigen::Array2d& b, double lim
   return least;
 }
 
-/// How large a window around `centre` may be: it grows until it touches a polygon.
+/// The largest scale of a window around `centre`: it grows until it touches a polygon.
 double largest_scale(const std::array<RayPolygon, 2>& polygons, const Eigen::Vector2d& centre,
                      const Eigen::Array2d& half_px) {
   double scale = std::numeric_limits<double>::infinity();
@@ -89,7 +89,7 @@ RayPolygon seen_rays(const LensModel& lens, int width_px, int height_px) {
     return position && position->x() >= -0.5 && position->x() <= width_px - 0.5 &&
            position->y() >= -0.5 && position->y() <= height_px - 0.5;
   };
-  // Evenly all around, and to the corners of the image, where the outline has its own.
+  // Evenly spaced, plus the corners of the image, where the outline has its own.
   std::vector<double> angles;
   angles.reserve(kDirections + 4);
   for (int i = 0; i < kDirections; ++i) {
@@ -106,7 +106,7 @@ RayPolygon seen_rays(const LensModel& lens, int width_px, int height_px) {
 
   RayPolygon polygon;
   constexpr int kSteps = 64;
-  const double step = lens.largest_ray() / kSteps;  // 0 where the lens folds back at once
+  const double step = lens.largest_ray() / kSteps;  // 0 if the lens folds back at once
   for (const double angle : angles) {
     const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
     int steps = 0;
@@ -125,7 +125,7 @@ RayPolygon seen_rays(const LensModel& lens, int width_px, int height_px) {
 }
 
 std::optional<RayPolygon> turned(const RayPolygon& polygon, const Eigen::Matrix3d& rotation) {
-  constexpr double kLeastCosine = 0.087;  // of 85°
+  constexpr double kLeastCosine = 0.087;  // cos 85°
   RayPolygon result;
   result.reserve(polygon.size());
   for (const Eigen::Vector2d& ray : polygon) {
@@ -155,7 +155,7 @@ std::optional<RayWindow> largest_window_inside(const std::array<RayPolygon, 2>& 
   double best_value = 0;
   const auto attempt = [&](const Eigen::Array2d& centre) {
     const double scale = largest_scale(polygons, centre.matrix(), half_px);
-    // Of windows equally large up to a ten thousandth, the one closest to the middle.
+    // Among windows equally large up to a ten thousandth, the one closest to the middle.
     const double value = scale - 1e-4 * ((centre - middle).abs() / half_px).maxCoeff();
     if (scale > 0 && value > best_value) {
       best_value = value;
@@ -168,7 +168,7 @@ std::optional<RayWindow> largest_window_inside(const std::array<RayPolygon, 2>& 
       attempt(low + step * Eigen::Array2d(column, row));
     }
   }
-  // Uphill among the eight neighbours, with half the step from each summit on.
+  // Hill climbing among the eight neighbours; each maximum halves the step.
   for (int i = 0; i < kSteps && best_value > 0; ++i) {
     const Eigen::Array2d centre = best.centre.array();
     const double value = best_value;

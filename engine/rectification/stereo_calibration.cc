@@ -12,11 +12,11 @@
 namespace vantage {
 namespace {
 
-/// R and t of a file with four significant digits still pass.
+/// Accepts R and t of files with four significant digits.
 constexpr double kOrthonormalTolerance = 1e-3;
-/// Rows of rectified images may be off by so much.
+/// Tolerance for corresponding rows of rectified images.
 constexpr double kRowTolerancePx = 0.01;
-/// So much of the baseline may point up or forward in rectified pairs; KITTI's have half of it.
+/// Share of the baseline that may point up or forward in rectified pairs; KITTI's have half of it.
 constexpr double kMostOffAxis = 0.01;
 constexpr double kLeastFocalPerSide = 0.05;
 

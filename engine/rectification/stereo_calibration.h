@@ -15,48 +15,48 @@ struct ImageSize {
   int height_px = 0;
 };
 
-/// Two cameras and how they stand to each other: x_right = rotation · x_left + translation for a
-/// point in the left and right camera's frame.
+/// Two cameras and their relative pose: x_right = rotation · x_left + translation for a point in
+/// the left and right camera's frame.
 struct StereoCalibration {
   Camera left = {};
   Camera right = {};
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< R, proper
-  /// t, in the calibration's unit (as used for the target: often m or mm). The right camera stands
-  /// at −Rᵀ·t in the left one's frame.
+  /// t, in the calibration's unit (that of the target: often m or mm). The right camera is at −Rᵀ·t
+  /// in the left one's frame.
   Eigen::Vector3d translation = Eigen::Vector3d(-1, 0, 0);
-  std::optional<ImageSize> image_size = std::nullopt;  ///< of both images, if the file says it
-  /// The images are rectified: row y of the left one shows what row y of the right one shows.
+  std::optional<ImageSize> image_size = std::nullopt;  ///< of both images, if given in the file
+  /// The images are rectified: rows of both images correspond.
   bool is_rectified = false;
   std::string format = "calibration";  ///< for messages: "KITTI, cameras 0 and 1"
-  std::string file = {};               ///< for messages: that it was read from, if any
+  std::string file = {};               ///< for messages: source file, if any
 
   /// Distance of the cameras, in the calibration's unit.
   [[nodiscard]] double baseline() const { return translation.norm(); }
-  /// cx of the right camera − cx of the left one. Of a rectified pair the disparity at infinity is
+  /// cx of the right camera − cx of the left one. In a rectified pair the disparity at infinity is
   /// −doffs_px(): Z = fx · baseline / (d + doffs_px()).
   [[nodiscard]] double doffs_px() const { return right.matrix(0, 2) - left.matrix(0, 2); }
 
   /// Throws Error of one line that names the quantity, its value and its limit.
   void validate() const;
-  /// Throws Error when images of this size cannot have been taken by these cameras: another size
-  /// than the calibration's, without the principal points inside, or with focal lengths below a
-  /// twentieth of a side (84 degrees off the optical axis).
+  /// Throws Error when images of this size cannot come from these cameras: size other than the
+  /// calibration's, principal points outside, or focal lengths below a twentieth of a side (84
+  /// degrees off the optical axis).
   void check_image_size(int width_px, int height_px) const;
 };
 
 /// Reads a calibration; its content, not its name, decides the format:
 ///  - OpenCV YAML or XML: matrices M1 or K1 or cameraMatrix1 (3×3), D1 or distCoeffs1 (absent: no
-///    distortion), the same with 2, R (3×3) and T (3×1 or 1×3), all in one file; optionally
-///    image_width and image_height, or imageSize, or image_size. Rectified if the cameras are
-///    equal up to cx, without distortion, and displaced along x only.
+///  distortion), the same with 2, R (3×3) and T (3×1 or 1×3), all in one file; optionally
+///  image_width and image_height, or imageSize, or image_size. Rectified if the cameras are equal
+///  up to cx, without distortion, and displaced along x only.
 ///  - Middlebury calib.txt: cam0, cam1, baseline, width, height, and doffs, which must agree with
-///    the cameras to 0.1 px. Rectified.
-///  - KITTI calib.txt: P0 and P1 (grey) if they are there, else P2 and P3 (colour), or the same
-///    under the names P_rect_00 …, or two or four lines of 12 numbers without names. Rectified.
-/// Fisheye models are refused where the file names them (fisheye_model of OpenCV's samples,
-/// distortion_model, camera_model or model); their four coefficients alone look like a lens's.
-/// The result is valid. Throws Error of one line naming the file for whatever it cannot read.
-/// Thread rule: may be called concurrently.
+///  the cameras to 0.1 px. Rectified.
+///  - KITTI calib.txt: P0 and P1 (grey) if present, else P2 and P3 (colour), or the same under the
+///  names P_rect_00 …, or two or four lines of 12 numbers without names. Rectified.
+/// Fisheye models are refused if the file names them (fisheye_model of OpenCV's samples,
+/// distortion_model, camera_model or model); their four coefficients alone look like those of other
+/// lenses. The result is valid. Throws Error of one line naming the file for anything it cannot
+/// read. Thread rule: may be called concurrently.
 StereoCalibration read_stereo_calibration(const std::filesystem::path& path);
 
 }  // namespace vantage

@@ -21,13 +21,13 @@ constexpr std::size_t kMostMatches = 3000;
 constexpr double kLeastShare = 0.3;
 constexpr double kRigDeviations = 4.5;
 constexpr double kLeastParallax_px = 0.5;
-/// Matches of less than this are never told from exact ones.
+/// Matches below this distance count as exact.
 constexpr double kExact_px = 1e-3;
-/// What lens models leave over is alike for matches beside each other, so that more of them do not
-/// tell more: they count as so many independent ones at most, and as a ninth of their number.
+/// Residual lens errors of neighbouring matches are correlated, so more matches add little
+/// information: they count as at most this many independent ones, and as a ninth of their number.
 constexpr double kMostIndependent = 50;
 constexpr double kAlike = 9;
-/// Of a longer side of 640 pixels: what lenses bend, and how far wrong positions may be.
+/// For a longer side of 640 pixels: lens curvature, and the error of wrong positions.
 constexpr double kTolerancePerSide = 2.0 / 640;
 
 std::vector<PointMatch> thinned(const std::vector<PointMatch>& matches) {
@@ -58,7 +58,7 @@ RobustFundamental robust_fundamental(const std::vector<PointMatch>& matches, dou
     matrix =
         cv::findFundamentalMat(left, right, cv::USAC_MAGSAC, tolerance_px, 0.9999, 10000, is_near);
   } catch (const cv::Exception&) {
-    matrix.release();  // it gives up so, too, when no sample makes sense
+    matrix.release();  // USAC also gives up this way when no sample is plausible
   }
   RobustFundamental result;
   result.matrix.setZero();
@@ -77,8 +77,8 @@ RobustFundamental robust_fundamental(const std::vector<PointMatch>& matches, dou
   return result;
 }
 
-/// The pose that the fundamental matrix stands for if the lenses are usual ones; of the two that
-/// there are, the one with less rotation.
+/// The pose of the fundamental matrix for usual lenses; of the two solutions, the one with less
+/// rotation.
 RigModel::Parameters pose_of(const Eigen::Matrix3d& fundamental, const RigModel& model) {
   const StereoCalibration usual = model.calibration(RigModel::usual());
   const Eigen::Matrix3d essential =
@@ -93,7 +93,7 @@ RigModel::Parameters pose_of(const Eigen::Matrix3d& fundamental, const RigModel&
   return RigModel::with_pose(first.trace() > second.trace() ? first : second, svd.matrixU().col(2));
 }
 
-/// Parameters with the matches that agree with them.
+/// Parameters and the matches that agree with them.
 struct Fit {
   RigModel::Parameters parameters;
   Eigen::VectorXd weights;
@@ -102,10 +102,10 @@ struct Fit {
   [[nodiscard]] int inliers() const { return static_cast<int>((weights.array() > 0).count()); }
 };
 
-/// By how much deviations are to be raised for matches that err alike.
+/// Factor by which deviations are raised for correlated matches.
 double alike(int matches) { return std::sqrt(std::max(kAlike, matches / kMostIndependent)); }
 
-/// Fits, chooses anew which matches count and how exact they are, and again.
+/// Alternates between fitting and reselecting the matches and their deviation.
 Fit epipolar_fit(const RigModel& model, const std::vector<PointMatch>& matches, Fit fit,
                  double tolerance_px) {
   constexpr int kMostRounds = 40;
@@ -121,10 +121,10 @@ Fit epipolar_fit(const RigModel& model, const std::vector<PointMatch>& matches, 
       }
     }
     const double deviation_px = std::max(1.4826 * upper_median(std::move(near)), 1e-9);
-    // While the cameras are still on their way from the usual ones, exact matches may be far.
+    // As long as the cameras move away from the usual ones, exact matches may be far off.
     const double patience_px =
         std::max(std::ldexp(tolerance_px, 3 * std::min(kPatientRounds - round, 0)), kExact_px);
-    // Whatever deviates by more than this does not agree, however many do.
+    // Larger deviations do not agree, however many there are.
     const double most_px = round < kPatientRounds ? HUGE_VAL : 2 * tolerance_px;
     const double limit_px = std::min(std::max(kRigDeviations * deviation_px, patience_px), most_px);
     const Eigen::ArrayXd share = (distances.array() / limit_px).square();
@@ -139,8 +139,8 @@ Fit epipolar_fit(const RigModel& model, const std::vector<PointMatch>& matches, 
   return fit;
 }
 
-/// How bad a fit is: matches that it does not explain, a little for those it explains badly, and
-/// for cameras that are not usual.
+/// Cost of a fit: unexplained matches, plus a little for poorly explained ones and for unusual
+/// cameras.
 double cost_of(const Fit& fit, const RigModel& model, const std::vector<PointMatch>& matches,
                double tolerance_px) {
   const Eigen::ArrayXd share =
@@ -148,8 +148,8 @@ double cost_of(const Fit& fit, const RigModel& model, const std::vector<PointMat
   return (share / (1 + share)).sum() + 0.05 * RigModel::surprise(fit.parameters);
 }
 
-/// What 9 of 10 matches are from where a camera with a usual lens that only turned would show them,
-/// at most; in pixels. The fit begins at `start`.
+/// 90th percentile of the matches' distance, in pixels, from the prediction of a usual lens that
+/// only rotated. The fit starts at `start`.
 double distance_from_turning_px(const RigModel& model, const std::vector<PointMatch>& matches,
                                 const RigModel::Parameters& start, double tolerance_px) {
   constexpr int kRounds = 6;
@@ -163,7 +163,7 @@ double distance_from_turning_px(const RigModel& model, const std::vector<PointMa
     for (Eigen::Index i = 0; i < count; ++i) {
       distances[static_cast<std::size_t>(i)] = apart.segment<2>(2 * i).norm();
     }
-    // Of a camera that only turned, wrong matches may lie on an epipolar line by chance.
+    // Under pure rotation, wrong matches may lie on an epipolar line by chance.
     const double limit_px = std::max(6 * upper_median(distances), kExact_px);
     for (Eigen::Index i = 0; i < count; ++i) {
       weights[i] = distances[static_cast<std::size_t>(i)] < limit_px ? 1 : 0;
@@ -237,7 +237,7 @@ UncalibratedRig estimate_rig(const std::vector<PointMatch>& matches, int width_p
   std::vector<Fit> starts = {{RigModel::usual(), all, tolerance_px}};
   if (!fundamental.matrix.isZero(0)) {
     starts.push_back({RigModel::usual(), fundamental.weights, tolerance_px});
-    // Near enough to the truth that the usual cameras need not be believed so much.
+    // Close enough to the truth to weigh the prior less.
     starts.push_back({pose_of(fundamental.matrix, model), fundamental.weights, tolerance_px / 8});
   }
   Fit best;

@@ -20,7 +20,7 @@ constexpr double kNegative_px = -0.5;
 constexpr int kTerms = 7;
 using Terms = Eigen::Matrix<double, Eigen::Dynamic, kTerms>;
 
-/// What the error may consist of, per match: 1, x, y, d, x², xy, y², each from −1 to 1.
+/// Terms of the error per match: 1, x, y, d, x², xy, y², each normalised to −1..1.
 Terms terms_of(const std::vector<PointMatch>& matches) {
   const auto count = static_cast<Eigen::Index>(matches.size());
   Eigen::ArrayX3d values(count, 3);
@@ -40,8 +40,8 @@ Terms terms_of(const std::vector<PointMatch>& matches) {
   return terms;
 }
 
-/// The smooth part of `errors` at every match, by least squares whose weights fall with the
-/// distance from the fit so far; begins at the median, then takes in more terms.
+/// The smooth part of `errors` at every match, by least squares with weights that decrease with the
+/// distance from the previous fit; starts at the median, then adds terms.
 Eigen::VectorXd smooth_part(const Terms& terms, const Eigen::VectorXd& errors) {
   constexpr int kRounds = 12;
   constexpr std::array<int, 3> kTermsOfDegree = {1, 4, kTerms};
@@ -54,7 +54,7 @@ Eigen::VectorXd smooth_part(const Terms& terms, const Eigen::VectorXd& errors) {
       std::transform(residuals.begin(), residuals.end(), distances.begin(),
                      [](double residual) { return std::abs(residual); });
       const double deviation = std::max(1.4826 * upper_median(std::move(distances)), 1e-6);
-      // Tukey's weights: nothing beyond six deviations counts.
+      // Tukey's weights: zero beyond six deviations.
       const Eigen::ArrayXd share = (residuals / (6 * deviation)).square();
       const Eigen::ArrayXd weights = (share < 1).select((1 - share).square(), 0);
       const auto used = terms.leftCols(count);

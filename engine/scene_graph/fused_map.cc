@@ -9,7 +9,7 @@
 namespace vantage {
 namespace {
 
-/// What some edges say about one pixel, in pixels of the wanted length.
+/// Disparities of one pixel from several edges, in pixels of the requested length.
 struct PixelVotes {
   std::vector<float> matched;
   float farthest_guess = std::numeric_limits<float>::quiet_NaN();
@@ -27,9 +27,9 @@ struct PixelVotes {
     }
   }
 
-  /// Of the matched ones, of which there is at least one.
+  /// From the matched ones, at least one.
   [[nodiscard]] float decide(float tolerance_px) {
-    // Ascending, so that of equally large groups the farthest is met first, and sums do not depend
+    // Ascending, so that of equally large groups the farthest comes first, and sums do not depend
     // on the order of the edges.
     std::sort(matched.begin(), matched.end());
     float best = matched.front();

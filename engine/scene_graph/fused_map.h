@@ -10,20 +10,21 @@ namespace vantage {
 /// A disparity map of an image from one of its edges.
 struct MapOfEdge {
   ImageView<const float> disparity_px;         ///< in pixels of that edge
-  ImageView<const std::uint8_t> is_unmatched;  ///< 255 where the disparity is a guess
+  ImageView<const std::uint8_t> is_unmatched;  ///< 255 where the disparity is estimated by filling
   double edge_length = 1;
   bool is_own = true;  ///< the edge belongs to what the view is made from
 };
 
-/// One map of an image, for a baseline of `length`, from those of all its edges, at least one, all
-/// of one size. A pixel has the first of these that there is:
-/// - the disparities that own edges matched: the mean of those that agree within `tolerance_px`, of
-///   the largest group that does around one of them, of equal ones the farthest;
-/// - the same of the other edges: what one neighbour does not see of an image another one often
-///   does;
-/// - the farthest guess of own edges: it is hidden from the neighbours; of others; NaN.
-/// Own edges go first because a pair's own maps fit its images best. `fused_px` is of the same
-/// size. Identical for any execution.
+/// Fuses the maps of an image from all its edges (at least one, all of one size) to one for a
+/// baseline of `length`. A pixel gets the first of these that exists:
+/// - matched disparities of own edges: the mean of the largest group that agrees within
+/// `tolerance_px` around one of them, ties going to the farthest group;
+/// - matched disparities of the other edges: what is hidden from one neighbour is often visible to
+/// another;
+/// - the farthest filled disparity of own edges, because the pixel is hidden from the neighbours;
+/// of other edges; NaN.
+/// Own edges go first because a pair's own maps fit its images best. `fused_px` has the same size.
+/// Identical for any execution.
 void fuse_maps(std::span<const MapOfEdge> maps, double length, double tolerance_px,
                ImageView<float> fused_px, Execution& execution);
 

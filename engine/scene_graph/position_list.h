@@ -8,9 +8,9 @@
 
 namespace vantage {
 
-/// Parses a list of images and where their cameras stand: lines image,x,y (CsvRecords), with or
-/// without that heading. Relative names are relative to the folder of `file`. Throws Error naming
-/// `file` and the line.
+/// Parses a list of images and camera positions: lines image,x,y (CsvRecords), with or without that
+/// heading. Relative names are relative to the folder of `file`. Throws Error naming `file` and the
+/// line.
 std::vector<SceneImage> parse_position_list(std::string_view text,
                                             const std::filesystem::path& file);
 

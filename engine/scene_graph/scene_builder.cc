@@ -63,8 +63,8 @@ void require_same_shape(const SceneImage& image, const Photograph& photograph,
   }
 }
 
-/// As the scene's folder sees it, so that folder and images can be moved together. A link to an
-/// image stays one.
+/// Relative to the scene's folder, so that folder and images can be moved together. Links to images
+/// are not resolved.
 std::string path_from(const fs::path& folder, const fs::path& file) {
   const fs::path parent = fs::weakly_canonical(fs::absolute(file).parent_path());
   return (parent / file.filename())
@@ -80,7 +80,7 @@ void make_folder(const fs::path& folder) {
   }
 }
 
-/// What whoever builds the scene locks.
+/// Lock of the process that builds the scene.
 fs::path lock_file(const fs::path& folder) {
   make_folder(folder / "maps");
   const fs::path file = folder / ".lock";
@@ -88,7 +88,7 @@ fs::path lock_file(const fs::path& folder) {
   return file;
 }
 
-/// "maps/003-004-first": what the files of an edge's maps are called, but for their ends.
+/// "maps/003-004-first": file names of an edge's maps without extension.
 std::string map_name(const SceneEdge& edge, std::size_t side) {
   return fmt::format("maps/{:03}-{:03}-{}", edge.first, edge.second,
                      side == 0 ? "first" : "second");
@@ -97,7 +97,7 @@ std::string map_name(const SceneEdge& edge, std::size_t side) {
 constexpr const char* kMapEnd = ".pfm";
 constexpr const char* kMaskEnd = "-unmatched.png";
 
-/// From pixels along x to pixels along the edge.
+/// Converts pixels along x to pixels along the edge.
 void scale(ImageView<float> disparity, double factor) {
   for (int y = 0; y < disparity.height(); ++y) {
     std::transform(disparity.row(y), disparity.row(y) + disparity.width(), disparity.row(y),
@@ -163,7 +163,7 @@ SceneBuilder::SceneBuilder(fs::path folder, std::vector<SceneImage> images,
   keep_finished_edges();
 }
 
-/// What a process that was killed had not finished. No other one works on the folder.
+/// Unfinished files of a killed process. No other process uses the folder.
 void SceneBuilder::remove_leftovers() const {
   remove_temporary_files_of(folder_ / "scene.json");
   std::set<std::string> maps;
@@ -222,7 +222,7 @@ void SceneBuilder::keep_finished_edges() {
       edges_to_match_.push_back(static_cast<int>(i));
     }
   }
-  // Before any map is replaced: scene.json must never tell of one that is being made anew.
+  // Before any map is replaced: scene.json must never list one that is being rewritten.
   write_scene(folder_, scene_);
   if (!before) {
     return;
@@ -257,7 +257,7 @@ MatchOptions SceneBuilder::options_for(const SceneEdge& edge, const Photograph& 
   } else {
     const double scale = edge.length_along() / scene_.unit_length;
     const DisparityRange range = options.disparities;
-    // A length like 0.1 · 3 must not widen a range by one.
+    // Rounding errors of a length like 0.1 · 3 must not widen a range by one.
     const auto outward = [&](double value) { return std::ceil(value * scale - 1e-6); };
     options.disparities = {.min = static_cast<int>(-outward(-range.min)),
                            .max = static_cast<int>(outward(range.max))};

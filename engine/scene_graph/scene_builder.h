@@ -15,44 +15,43 @@
 
 namespace vantage {
 
-/// An image that a scene is built from.
+/// An input image of a scene.
 struct SceneImage {
   std::filesystem::path file;
   ScenePosition position;
 };
 
 struct SceneBuildOptions {
-  /// How edges are matched. `disparities` is the range of the shortest edges; that of longer ones
-  /// is as much wider. With `disparities_auto` every edge has its own.
+  /// Matching options. `disparities` is the range of the shortest edges, scaled for longer ones.
+  /// With `disparities_auto` every edge has its own range.
   MatchOptions match;
-  std::string settings = "{}";  ///< a JSON object: what of `match` decides the maps
-  /// Whether images are copied into the folder, which then depends on nothing else.
+  std::string settings = "{}";  ///< a JSON object: the fields of `match` that affect maps
+  /// Copies the images into the folder, which then depends on nothing else.
   bool copy_images = false;
-  bool check_rectification = true;  ///< whether to look if rows and columns correspond
+  bool check_rectification = true;  ///< checks that rows and columns correspond
 
   /// Throws UsageError as MatchOptions does, and for a search in two dimensions.
   void validate() const;
 };
 
-/// Matches the edges of a scene and stores them, one after the other, in a folder:
-/// scene.json, and two maps and two masks of each edge in maps/. Every file is whole or not there
-/// at all, and scene.json tells of an edge when its maps are safe, so that building can be stopped
-/// and continued. Edges that the folder has already, of the same images, places and settings, are
-/// kept. scene.json names images as seen from the folder. Copies are in images/, with names made of
-/// the image's own and its content; those that are no longer of use stay.
+/// Matches the edges of a scene, one after the other, and stores them in a folder: scene.json, and
+/// two maps and two masks of each edge in maps/. Files are written atomically, and scene.json lists
+/// an edge when its maps are safe, so that building can be interrupted and continued. Edges already
+/// in the folder, of the same images, positions and settings, are kept. scene.json names images
+/// relative to the folder. Copies are in images/, named after the image and its content; unused
+/// ones stay.
 ///
 /// Columns are matched as rows of transposed images, oblique edges as rows of sheared ones
 /// (sheared_images.h). Both maps of an edge are on the grids of its images and count pixels along
-/// the edge: d ≥ 0 for the usual scene, near is large.
+/// the edge: d ≥ 0 for usual scenes, larger is nearer.
 ///
 /// Thread rule: one thread at a time; one process per folder, which locks it.
 class SceneBuilder {
  public:
-  /// Reads all images and what the folder holds, which is made if it is missing; removes from
-  /// scene.json what does not hold any more. Throws Error naming the file for images that cannot be
-  /// read or differ in size, depth or channels, for a damaged scene.json, while another process
-  /// builds the scene, and as SceneLayout does;
-  /// UsageError for invalid options. `execution` must outlive the builder.
+  /// Reads all images and the state of the folder, which is created if missing; removes outdated
+  /// entries from scene.json. Throws Error naming the file for images that cannot be read or differ
+  /// in size, depth or channels, for a damaged scene.json, while another process builds the scene,
+  /// and as SceneLayout does; UsageError for invalid options. `execution` must outlive the builder.
   SceneBuilder(std::filesystem::path folder, std::vector<SceneImage> images,
                SceneBuildOptions options, Execution& execution);
 
@@ -60,17 +59,16 @@ class SceneBuilder {
   [[nodiscard]] const std::filesystem::path& image_file(int vertex) const {
     return images_.at(static_cast<std::size_t>(vertex)).file;
   }
-  /// Those of layout().edges() that have to be matched, by number.
+  /// Indices into layout().edges() of the edges still to match.
   [[nodiscard]] const std::vector<int>& edges_to_match() const { return edges_to_match_; }
 
-  /// What an edge has become.
+  /// Result for one edge.
   struct BuiltEdge {
     StoredEdge stored;
-    /// How far its rows, or columns, are from corresponding; disparities that are below 0 tell that
-    /// images are not where they are said to be. None unless wanted, and where too few points were
-    /// found.
+    /// Misalignment of its rows or columns; negative disparities indicate wrong camera positions.
+    /// None unless requested, or if too few points were found.
     std::optional<VerticalError> rectification;
-    double check_seconds = 0;  ///< that finding this out took
+    double check_seconds = 0;  ///< duration of this check
   };
 
   /// Matches and stores an edge of the layout. Throws Error naming the images.

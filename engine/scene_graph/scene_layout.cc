@@ -22,8 +22,8 @@ constexpr double kAlignment = 1e-3;    // of neighbours in a row, relative to th
 constexpr double kOnBorder = 1e-6;     // of the unit length
 constexpr double kFlattest = 1e-3;     // height of a triangle, relative to its longest side
 constexpr double kLongestOblique = 2;  // relative to the distance of the nearest neighbour
-constexpr float kGridSide = 1000;      // of the positions as the triangulation gets them
-constexpr int kFarAway = 50 * 1000;    // where its own auxiliary vertices lie
+constexpr float kGridSide = 1000;      // of the positions given to the triangulation
+constexpr int kFarAway = 50 * 1000;    // position of its auxiliary vertices
 
 double distance(ScenePosition a, ScenePosition b) { return std::hypot(b.x - a.x, b.y - a.y); }
 
@@ -132,7 +132,7 @@ void SceneLayout::join_obliquely() {
         neighbour = other;
       }
     }
-    add_side(vertex, neighbour);  // flat triangles have been left out, so it need not be on one
+    add_side(vertex, neighbour);  // flat triangles were left out, so it need not be on one
   }
   const auto is_near = [&](int vertex, double length) {
     return length <= kLongestOblique * nearest[static_cast<std::size_t>(vertex)];

@@ -14,8 +14,8 @@ namespace vantage {
 namespace {
 
 constexpr double kSameDirection = 1e-9;  // of an edge
-// What is kept beside that of views under way: vertices, of which a view of two eyes needs up to
-// six, and sources.
+// Objects kept in addition to those of views in progress: vertices, of which a stereo view needs up
+// to six, and sources.
 constexpr std::size_t kMostLoaded = 8;
 constexpr std::size_t kMostSources = 2;
 
@@ -83,7 +83,7 @@ void SceneViewer::require_near(ScenePosition position) const {
   }
 }
 
-// A reference holds until kMostLoaded others have been asked for.
+// A reference is valid until kMostLoaded others have been requested.
 const std::shared_ptr<const SceneVertex>& SceneViewer::vertex(int number) {
   const auto found = std::find_if(loaded_.begin(), loaded_.end(),
                                   [&](const Loaded& loaded) { return loaded.number == number; });
@@ -198,8 +198,8 @@ NewView SceneViewer::pair_view(const SceneSources& sources, ScenePosition positi
   view.from_right = warp_to(position, sources.vertices[1], sources.length);
   view.distance_from_left = view.from_left.parallax.norm();
   view.distance_from_right = view.from_right.parallax.norm();
-  // Two images of a row are a rectified pair as they are, without rounding errors: what works along
-  // scanlines can then take it.
+  // Two images of a row are a rectified pair as they are, without rounding errors, so the scanline
+  // warper can be used.
   const Eigen::Vector3d baseline = view.from_right.parallax - view.from_left.parallax;
   if ((baseline - Eigen::Vector3d::UnitX()).norm() <= kSameDirection) {
     const double view_x = -view.from_left.parallax.x();

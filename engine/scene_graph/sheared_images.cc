@@ -14,17 +14,17 @@ namespace {
 constexpr std::uint8_t kUnmatched = 255;
 constexpr float kOneSurface_px = 1;
 
-/// Row of the sheared image where position (x, y) of the image lies: ≥ 0.
+/// Row of the sheared image for position (x, y) of the image: ≥ 0.
 double sheared_row(const Shear& shear, int x, int y) { return y - shear.slope * x + shear.offset; }
 
-/// The disparity at `row` of a column.
+/// The disparity at the fractional `row` of a column.
 float between_rows(ImageView<const float> map, int x, double row) {
   const int upper = std::min(static_cast<int>(row), map.height() - 1);
   const int lower = std::min(upper + 1, map.height() - 1);
   const auto share = static_cast<float>(row - upper);
   const float above = map.at(x, upper);
   const float below = map.at(x, lower);
-  if (std::abs(below - above) <= kOneSurface_px) {  // never for unknown ones
+  if (std::abs(below - above) <= kOneSurface_px) {  // false if one is unknown
     return above + share * (below - above);
   }
   return share < 0.5F ? above : below;

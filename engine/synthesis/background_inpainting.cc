@@ -12,12 +12,12 @@ namespace vantage {
 namespace {
 
 constexpr int kRadiusPx = 5;
-constexpr int kReachPx = kRadiusPx + 1;  // the method takes differences of neighbours
-constexpr int kWidestRunPx = 64;         // beyond it, marking would take longer than painting
+constexpr int kReachPx = kRadiusPx + 1;  // the method uses differences of neighbours
+constexpr int kWidestRunPx = 64;         // beyond it, marking would take longer than inpainting
 
-// Marks what is nearer than the run [begin, end) of row y, which is to be painted, and so close
-// that it could be painted with. The method works its way inwards from all sides at one speed: what
-// is farther from a pixel than the background and the reach together comes too late for it.
+// Marks pixels nearer than the run [begin, end) of row y, which is to be inpainted, that could
+// contribute to it. The method works inwards from all sides at one speed: pixels farther away than
+// the background plus the reach do not contribute.
 void mark_around(int y, int begin, int end, ImageView<const float> disparity_px, float limit,
                  cv::Mat& avoided) {
   const float nearest = disparity_px.at(begin, y) + limit;  // NaN: all is background
@@ -61,7 +61,7 @@ void mark_avoided(ImageView<const std::uint8_t> wanted, ImageView<const float> d
 }  // namespace
 
 std::size_t inpainting_bytes(int width, int height, int channels) {
-  // Mask, planes before and after, and what OpenCV keeps per pixel: distances, states and queues.
+  // Mask, planes before and after, and OpenCV's data per pixel: distances, states and queues.
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   return pixels * (1 + 2 * sizeof(float) * static_cast<std::size_t>(channels == 1 ? 1 : 3) + 32);
 }
@@ -79,7 +79,7 @@ void inpaint_background(ImageView<T> image, ImageView<const std::uint8_t> wanted
   }
   const cv::Mat pixels(height, width, CV_MAKETYPE(cv::DataType<T>::depth, image.channels()),
                        image.data(), image.stride() * sizeof(T));
-  // The method adds up to two units to what it finds, and ½ for a rounding that floats do without.
+  // The method adds up to two units to its result, plus ½ for rounding except for floats.
   constexpr bool kIsFloat = std::is_floating_point_v<T>;
   constexpr double kUnit = kIsFloat ? 1 / 255.0 : 1;
   constexpr double kBias = kIsFloat ? 0.5 : 0;

@@ -91,7 +91,7 @@ std::size_t ImageWarper<T>::scratch_floats() const {
   return 5 * row_floats(width(), 1);
 }
 
-// The nearest pixel's, which for samples that are no gaps is the one that was moved there.
+// Moves the nearest pixel: for samples outside gaps, the one that was mapped there.
 template <typename T>
 void ImageWarper<T>::move_to_whole_pixels(const kernels::SourcePositions& positions) const {
   const auto move = [&](std::int32_t* whole, float* fraction, int size) {

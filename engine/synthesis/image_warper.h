@@ -14,45 +14,45 @@
 
 namespace vantage {
 
-/// The picture plane that images are brought to.
+/// Image plane that images are warped to.
 struct ViewFrame {
   int width_px = 0;
   int height_px = 0;
   double infinity_disparity_px = 0;  ///< see NewView
 };
 
-/// Brings one photograph to any new view in one pass (3.2.7): its disparities are mapped forward
-/// into the view, and colours are fetched backward from it with one bicubic interpolation, however
-/// many homographies lie between; with WarpColour::kForward, from the nearest pixel.
+/// Warps one photograph to any new view in one pass (3.2.7): its disparities are mapped forward
+/// into the view, and colours are fetched backward with one bicubic interpolation, however many
+/// homographies are composed; with WarpColour::kForward, from the nearest pixel.
 ///
 /// Thread rule: warp() may be called concurrently. Does not own any memory it is given, which must
 /// outlive it. T is uint8_t, uint16_t or float.
 template <typename T>
 class ImageWarper {
  public:
-  /// Maps the disparities, in parallel. `disparity_px` is of the image's size. Where the image is
-  /// the photograph that the map's image was made from, `photograph` says so. Throws Error for a
-  /// view without pixels, with a side above 65500, or a warp that cannot be inverted.
+  /// Maps the disparities, in parallel. `disparity_px` has the image's size. `photograph`: set if
+  /// the image is the photograph that the map's image was rectified from. Throws Error for a view
+  /// without pixels or with a side above 65500, or a warp that cannot be inverted.
   ImageWarper(ImageView<const T> image, ImageView<const float> disparity_px, const ViewWarp& warp,
               const ViewFrame& frame, const SynthesisOptions& options, Execution& execution,
               const PhotographGeometry& photograph = {});
 
-  /// Memory that it holds for a view.
+  /// Bytes held for a view.
   static std::size_t held_bytes(int view_width, int view_height);
 
   [[nodiscard]] int width() const { return nearness_.width(); }
   [[nodiscard]] int height() const { return nearness_.height(); }
   [[nodiscard]] int channels() const { return colours_.pixels.channels(); }
 
-  /// What a call of warp() works in; it holds nothing afterwards.
+  /// Scratch memory of one call of warp(), in floats; not kept between calls.
   [[nodiscard]] std::size_t scratch_floats() const;
 
   /// Row y of the new view: pixel_lanes(channels) values per pixel, 0 at holes, and nearness, NaN
   /// at holes.
   void warp(int y, std::span<float> scratch, float* colours, float* nearness) const;
 
-  /// What this image knows of a surface's outline (kernels::surface_coverage()); NaN where it does
-  /// not show the surface.
+  /// Coverage of a surface's outline in this image (kernels::surface_coverage()); NaN if the image
+  /// does not show the surface.
   [[nodiscard]] double coverage(const SurfaceEdge& edge) const;
 
  private:
@@ -62,7 +62,7 @@ class ImageWarper {
   bool takes_whole_pixels_;
   kernels::SourceProjection back_;
   scheduler::ScratchPool::Lease nearness_memory_;
-  ImageView<float> nearness_;  // −inf where nothing lands
+  ImageView<float> nearness_;  // −inf where nothing was mapped
 };
 
 }  // namespace vantage

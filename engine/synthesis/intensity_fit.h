@@ -14,14 +14,14 @@ struct IntensityFit {
   friend bool operator==(const IntensityFit&, const IntensityFit&) = default;
 };
 
-/// Least squares (3.10) from the sums (3.11) of one channel, whose values are worth
-/// `grey_levels_per_unit` each. The identity where the fit is degenerate: fewer than two pixels, a
-/// left image without contrast, or a gain outside 1/16..16, which includes b ≤ 0 and is no
-/// difference between two cameras of one rig.
+/// Least squares (3.10) from the sums (3.11) of one channel, whose unit is `grey_levels_per_unit`
+/// grey levels. The identity if the fit is degenerate: fewer than two pixels, a left image without
+/// contrast, or a gain outside 1/16..16, which includes b ≤ 0 and cannot occur between two cameras
+/// of one rig.
 IntensityFit fit_intensities(const kernels::IntensitySums& sums, int channel,
                              double grey_levels_per_unit);
 
-/// The fits of all colours of images with so many channels; an alpha channel has the identity.
+/// The fits of all colour channels; the identity for an alpha channel.
 std::array<IntensityFit, 4> fit_channels(const kernels::IntensitySums& sums, int channels,
                                          double grey_levels_per_unit);
 

@@ -14,11 +14,12 @@ namespace vantage {
 namespace {
 
 constexpr int kPatchPx = 8;
-/// Up to which a patch counts as bilinear: half a pixel decides.
+/// Deviation up to which a patch counts as bilinear; small against half a pixel, which changes the
+/// nearest pixel.
 constexpr double kLargestBend = 0.03;  // px
 
-/// The rectified positions of a photograph's pixels. Lenses are smooth: between the corners of
-/// small patches they are interpolated, except where the lens bends even those.
+/// The rectified positions of a photograph's pixels. Lenses are smooth: positions are interpolated
+/// between the corners of small patches, unless the lens bends even those.
 class PatchRow {
  public:
   PatchRow(const Rectifier& rectifier, Side side)
@@ -68,7 +69,8 @@ class PatchRow {
       patch.corners[1] = upper_right;
       patch.corners[3] = lower_right;
       const Eigen::Vector2d centre = exact(left + kPatchPx / 2.0, top + kPatchPx / 2.0);
-      patch.is_smooth = (patch.position(0.5, 0.5) - centre).norm() <= kLargestBend;  // not if NaN
+      patch.is_smooth = (patch.position(0.5, 0.5) - centre).norm() <= kLargestBend;  // false for
+                                                                                     // NaN
       left += kPatchPx;
     }
   }

@@ -13,39 +13,39 @@
 
 namespace vantage {
 
-/// Brings the disparity maps of rectified images onto the pixels of the photographs, so that new
-/// views can be made from an UnrectifiedPair. Which rectified pixel is nearest to each pixel of a
-/// photograph is worked out once.
+/// Resamples the disparity maps of rectified images to the pixels of the photographs, so that new
+/// views can be made from an UnrectifiedPair. The rectified pixel nearest to each photograph pixel
+/// is computed once.
 ///
 /// Thread rule: after construction everything may be called concurrently, for different results.
 /// Identical for any execution.
 class PhotographGrid {
  public:
-  /// 4 bytes per pixel and image, and some 12 after a view from the image's camera has looked
-  /// beyond the rectified image; rectified positions are interpolated between every eighth
-  /// pixel where the lens allows it. `rectifier` needs rectification; it and `execution` outlive
-  /// the grid.
+  /// 4 bytes per pixel and image, and about 12 more once a view from the image's camera extends
+  /// beyond the rectified image; rectified positions are interpolated between every eighth pixel
+  /// where the lens allows it. `rectifier` must need rectification; it and `execution` outlive the
+  /// grid.
   PhotographGrid(const Rectifier& rectifier, Execution& execution);
 
-  /// Memory that it holds for images of this size, without whole photographs.
+  /// Bytes held for images of this size, without whole photographs.
   static std::size_t held_bytes(int width, int height);
 
-  /// `map`, a disparity map of the rectified image of that side, as seen by the photograph's
-  /// pixels: each has the disparity of the rectified pixel nearest to it. Those beyond the outline
-  /// of the rectified image take the nearest pixel of the outline, so that surfaces go on there;
-  /// NaN where the lens model has no rectified position. `result` keeps its memory where that
-  /// suffices. Throws Error if the map has another size than the rectifier's images.
+  /// Resamples `map`, a disparity map of the rectified image of that side, to the photograph's
+  /// pixels: each gets the disparity of the nearest rectified pixel. Pixels beyond the outline of
+  /// the rectified image get the nearest pixel of the outline, which extends the surfaces; NaN
+  /// where the lens model has no rectified position. Reuses the memory of `result`. Throws Error if
+  /// the map's size is not that of the rectifier's images.
   void bring(Side side, ImageView<const float> map, Image<float>& result) const;
-  /// The same of both maps of a pair; `results` are the left and the right one's.
+  /// bring() for both maps of a pair; `results`: left, right.
   void bring(const DisparityMaps& maps, std::array<Image<float>, 2>& results) const;
 
-  /// What views are made from: photographs, and their maps from bring(), which outlive it, as the
-  /// grid does.
+  /// Input of view synthesis: photographs, and their maps from bring(), which must outlive it, as
+  /// must the grid.
   [[nodiscard]] UnrectifiedPair pair_of(const Photograph& left, const Photograph& right,
                                         const std::array<Image<float>, 2>& photograph_maps) const;
 
  private:
-  /// Of all pixels of a photograph, row by row.
+  /// For all pixels of a photograph, row by row.
   [[nodiscard]] std::vector<kernels::PixelPlace> find_nearest_pixels(Side side) const;
 
   const Rectifier& rectifier_;

@@ -11,11 +11,11 @@ namespace {
 
 bool is_known(float disparity_px) { return std::isfinite(disparity_px); }
 
-/// Whether a view at the place of a camera, whose `homography` (view pixel ← image pixel) is given,
-/// shows nothing but the image of this size.
+/// Whether a view at a camera's position with `homography` (view pixel ← image pixel) stays inside
+/// an image of this size.
 bool is_within(const Eigen::Matrix3d& homography, const NewView& view,
                ImageView<const float> image) {
-  constexpr double kBeyondPx = 0.5 + 1e-3;  // cameras are computed, with rounding
+  constexpr double kBeyondPx = 0.5 + 1e-3;  // cameras are computed, with rounding errors
   const Eigen::Matrix3d back = homography.inverse();
   for (const double u : {-0.5, view.width_px - 0.5}) {
     for (const double v : {-0.5, view.height_px - 0.5}) {
@@ -31,10 +31,9 @@ bool is_within(const Eigen::Matrix3d& homography, const NewView& view,
   return true;
 }
 
-/// What a view at the place of a camera is made from. All that the camera's photograph shows is
-/// seen there: unknown pixels of its map count as infinitely far away, and where the view looks
-/// beyond the rectified image, the photograph goes on (WholePhotograph). Any other view is left as
-/// it is.
+/// Sources of a view at a camera's position. It shows the whole photograph of the camera: unknown
+/// pixels of its map count as infinitely far away, and beyond the rectified image the photograph
+/// continues (WholePhotograph). Any other view is unchanged.
 class SourceAtCamera {
  public:
   SourceAtCamera(const NewView& view, const ViewSource& source, Execution& execution)
@@ -95,7 +94,7 @@ class SourceAtCamera {
   Execution& execution_;
   NewView view_;
   ViewSource source_;
-  std::array<Image<float>, 2> maps_;  // of the image, of its photograph; empty where not needed
+  std::array<Image<float>, 2> maps_;  // of the image, of its photograph; empty if not needed
 };
 
 }  // namespace

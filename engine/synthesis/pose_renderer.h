@@ -16,45 +16,45 @@
 
 namespace vantage {
 
-/// What the views of one frame are made from. Nothing is owned.
+/// Inputs for the views of one frame. Nothing is owned.
 struct ViewSource {
-  const Photograph& left;  ///< rectified, as `right`
+  const Photograph& left;  ///< rectified, as is `right`
   const Photograph& right;
   ImageView<const float> left_disparity_px;
   ImageView<const float> right_disparity_px;
-  /// The photographs that `left` and `right` were rectified from, for colours in one
-  /// interpolation; none where there are none, or colours move by whole pixels.
+  /// The photographs that `left` and `right` were rectified from, for colours in one interpolation;
+  /// empty if there are none, or if colours move by whole pixels.
   std::optional<UnrectifiedPair> photographs;
 };
 
-/// Renders a pair from wherever a pose says, in the way that suits the pose and the options: with
-/// WarpColour::kForward cameras take the book's three steps, everything else is one pass, from the
-/// photographs where the source has them. At the place of a camera a view is that camera's
-/// photograph, resampled by the view's homography alone, also where its map is unknown and outside
-/// the rectified image (with γ = α; forward warps of cameras aside).
+/// Renders a pair from any pose, by the method that suits the pose and the options: with
+/// WarpColour::kForward, PosedCamera poses take the book's three steps; everything else is one
+/// pass, from the photographs if the source has them. At a camera's own position the view is that
+/// camera's photograph, resampled by the view's homography alone, also where its map is unknown and
+/// outside the rectified image (with γ = α; except for forward warps of PosedCamera poses).
 ///
 /// Thread rule: everything may be called concurrently for different results. Identical for any
 /// ExecutionOptions.
 class PoseRenderer {
  public:
-  /// `cameras` are those of the rectified pair; null: poses are positions on and beside the
-  /// baseline. They and `execution` outlive the renderer. Throws UsageError for invalid options.
+  /// `cameras` are those of the rectified pair; null: poses are positions on or off the baseline.
+  /// They and `execution` must outlive the renderer. Throws UsageError for invalid options.
   PoseRenderer(const SynthesisOptions& options, const RectifiedPair* cameras, Execution& execution);
 
-  /// Throws what render() would throw for such a pose, from images of this size.
+  /// Throws the errors of render() for this pose and images of this size.
   void check(const ViewPose& pose, int width_px, int height_px) const;
 
   /// Errors as new_view() and the synthesizers.
   void render(const ViewSource& source, const ViewPose& pose, SynthesizedView& view,
               const std::array<IntensityFit, 4>* given_fit) const;
 
-  /// The sums of the intensity regression half-way between the cameras.
+  /// The sums of the intensity regression for the view midway between the cameras.
   [[nodiscard]] kernels::IntensitySums intensity_sums(const ViewSource& source) const;
 
   [[nodiscard]] const SynthesisOptions& options() const { return synthesizer_.options(); }
 
  private:
-  /// The camera of a pose that is rendered in three steps; null: in one.
+  /// The camera of a pose that is rendered in three steps; null: one pass.
   [[nodiscard]] const PosedCamera* three_step_camera(const ViewPose& pose) const;
 
   const RectifiedPair* cameras_;

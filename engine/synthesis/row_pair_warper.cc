@@ -16,7 +16,7 @@
 namespace vantage {
 namespace {
 
-/// What SourcePositions has.
+/// Rows of SourcePositions.
 constexpr std::size_t kPositionRows = 6;
 
 }  // namespace
@@ -24,7 +24,7 @@ constexpr std::size_t kPositionRows = 6;
 template <typename T>
 struct RowPairWarper<T>::SourceRows {
   float* pixels;        // of x = 0; margins on both sides
-  float* disparity_px;  // likewise
+  float* disparity_px;  // also with margins
   float* column;
 };
 

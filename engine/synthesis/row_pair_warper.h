@@ -11,8 +11,8 @@
 
 namespace vantage {
 
-/// A rectified pair of photographs of one depth and its disparity maps; all of equal size. Or the
-/// photographs that the pair was made from, whose geometry is then not empty.
+/// A rectified pair of photographs of one depth and its disparity maps, all of equal size; or the
+/// unrectified photographs, if the geometries are not empty.
 template <typename T>
 struct StereoSource {
   ImageView<const T> left;
@@ -23,8 +23,8 @@ struct StereoSource {
   PhotographGeometry right_photograph = {};
 };
 
-/// Brings both images of a pair to a new view on the baseline, a scanline at a time: disparities
-/// along the rows of the rectified images, colours from them or from the photographs behind them.
+/// Warps both images of a pair to a new view on the baseline, one scanline at a time: disparities
+/// along the rows of the rectified images, colours from them or from their photographs.
 ///
 /// Thread rule: immutable. Does not own any memory it is given, which must outlive it. T is
 /// uint8_t, uint16_t or float.
@@ -33,18 +33,18 @@ class RowPairWarper {
  public:
   RowPairWarper(const StereoSource<T>& source, const SynthesisOptions& options, double view_x);
 
-  /// Of the new view, which is of the images' size.
+  /// Size of the new view: that of the images.
   [[nodiscard]] int width() const { return source_.left.width(); }
   [[nodiscard]] int height() const { return source_.left.height(); }
   /// Share of the left image (3.14) for YS = 0.
   [[nodiscard]] double alpha() const;
-  /// s of the left and the right camera.
+  /// Distance s of the view from the left and the right camera, signed, in baselines.
   [[nodiscard]] std::array<double, 2> camera_offsets() const { return {view_x_, view_x_ - 1}; }
 
-  /// What a call of warp() works in; it holds nothing afterwards.
+  /// Scratch memory of one call of warp(), in floats; not kept between calls.
   [[nodiscard]] std::size_t scratch_floats() const;
 
-  /// Both scanlines y at the new view, in `memory`, laid out as WarpedPairLayout has it.
+  /// Warps scanline y of both images into `memory`, laid out by WarpedPairLayout.
   void warp(int y, std::span<float> scratch, float* memory) const;
 
  private:

@@ -13,7 +13,7 @@
 namespace vantage {
 namespace {
 
-// Columns of a row that are looked at together.
+// Columns of a row that are processed together.
 constexpr int kBlock = 1024;
 constexpr std::size_t kMostChannels = 4;
 
@@ -27,7 +27,7 @@ std::size_t row_bytes(int width, int channels, std::size_t value_bytes) {
   return (bytes + kLine - 1) / kLine * kLine;
 }
 
-/// The pixels of a row that change. They are put into the image once no row needs the old ones.
+/// The changed pixels of a row. They are written to the image when no row needs the old ones.
 template <typename T>
 struct ChangedRow {
   std::int32_t* count;
@@ -68,7 +68,7 @@ class OutlineSoftener {
   }
 
  private:
-  /// A neighbour of a pixel that shows another surface.
+  /// A neighbouring pixel that shows another surface.
   struct Neighbour {
     int x;
     int y;
@@ -94,7 +94,8 @@ class OutlineSoftener {
     std::uint64_t like_right[kernels::row_words(kBlock)];
     std::uint64_t like_above[kernels::row_words(kBlock)];
     std::uint64_t like_below[kernels::row_words(kBlock)];
-    bool unlike_before = false;  // the last column of the words before and the first of the next
+    bool unlike_before = false;  // between the last column of the previous words and the first of
+                                 // the next
     for (int begin = 0; begin < width; begin += kBlock) {
       const int count = std::min(kBlock, width - begin);
       const int pairs = std::min(count, width - 1 - begin);
@@ -169,7 +170,7 @@ class OutlineSoftener {
     changed.column[(*changed.count)++] = x;
   }
 
-  // What the pixel's own surface leaves free shows its farther neighbours.
+  // Fills the uncovered fraction of the pixel with its farther neighbours.
   void mix_farther(const Neighbours& farther, const Neighbour& own, Colour& colour) const {
     if (farther.count == 0) {
       return;
@@ -191,7 +192,7 @@ class OutlineSoftener {
     }
   }
 
-  // What nearer surfaces cover of the pixel shows them.
+  // Fills the fraction covered by nearer surfaces with them.
   void mix_nearer(const Neighbours& nearer, const Neighbour& own, Colour& colour) const {
     double most_covered = 0;
     double sum = 0;

@@ -8,8 +8,8 @@
 
 namespace vantage {
 
-/// What a new view's colours are fetched from: an image, or the photograph that it was made from.
-/// Thread rule: may be used concurrently. Nothing is owned. T is uint8_t, uint16_t or float.
+/// Source of a new view's colours: an image, or the photograph that it was made from. Thread rule:
+/// may be used concurrently. Nothing is owned. T is uint8_t, uint16_t or float.
 template <typename T>
 struct SurfaceColours {
   ImageView<const T> pixels;            ///< of the photograph, if there is one
@@ -17,9 +17,9 @@ struct SurfaceColours {
   PhotographGeometry photograph = {};   ///< empty: the pixels are the image's
   float gradient_limit_px = 1;
 
-  /// One bicubic interpolation at each of `count` positions in the image (fetch_surface_row());
-  /// pixel_lanes(channels) values each. With a photograph, `positions` are then those in it, and
-  /// places that it does not show are 0.
+  /// One bicubic interpolation at each of `count` positions in the image (fetch_surface_row()),
+  /// pixel_lanes(channels) values each. With a photograph, `positions` are converted to positions
+  /// in it; positions outside it give 0.
   void fetch(const kernels::SourcePositions& positions, int count, float* colours) const;
 };
 

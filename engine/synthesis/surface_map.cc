@@ -13,24 +13,24 @@
 namespace vantage {
 namespace {
 
-// A band of the view looks at the tiles of the image that can reach it.
+// A band of the view processes the tiles of the image that can reach it.
 constexpr int kTileColumns = 64;
 constexpr int kTileRows = 16;
 
-// Bands with fewer lines would look at most tiles twice; a few bands per thread balance the load.
+// Bands with fewer lines would process most tiles twice; a few bands per thread balance the load.
 constexpr int kLeastBandLines = 64;
 constexpr int kBandsPerThread = 4;
 constexpr std::int64_t kMostBandPixels = std::int64_t{1} << 30;
 
 int tiles_in(int size, int tile_size) { return (size + tile_size - 1) / tile_size; }
 
-/// The lines of the view that the pixels of a tile and the gaps behind them can land on.
+/// Lines of the view that the pixels of a tile, and the gaps after them, can be mapped to.
 struct Reach {
   int first_line = 0;
-  int end_line = 0;  ///< none if not above first_line
+  int end_line = 0;  ///< empty if not above first_line
 };
 
-/// Positions and their disparities, borders included.
+/// Range of positions and disparities, bounds included.
 struct PositionBox {
   double first_x;
   double last_x;
@@ -39,8 +39,8 @@ struct PositionBox {
   kernels::KnownRange disparity_px;
 };
 
-// u and v are quotients of linear functions of x, y and d: as long as λ > 0 their extremes are at
-// corners of the box.
+// u and v are quotients of linear functions of x, y and d: for λ > 0 their extremes are at corners
+// of the box.
 Reach reach_of(const PositionBox& box, const kernels::ViewProjection& view,
                ImageView<const float> target) {
   if (!(box.disparity_px.least <= box.disparity_px.most)) {
@@ -69,7 +69,7 @@ Reach reach_of(const PositionBox& box, const kernels::ViewProjection& view,
   if (behind > 0) {
     return {.first_line = 0, .end_line = target.height()};
   }
-  constexpr double kMargin = 2;  // rounding to whole pixels, and of the numbers themselves
+  constexpr double kMargin = 2;  // rounding to whole pixels, and rounding errors
   if (most_u < -kMargin || least_u > target.width() + kMargin) {
     return {};
   }
@@ -80,7 +80,7 @@ Reach reach_of(const PositionBox& box, const kernels::ViewProjection& view,
           .end_line = limited(std::ceil(most_v + kMargin))};
 }
 
-/// Memory for two rows of pixels on their way into the view.
+/// Memory for two rows of projected pixels.
 class ProjectedRows {
  public:
   static std::size_t bytes(int width) { return 8 * sizeof(float) * floats(width); }
@@ -99,7 +99,7 @@ class ProjectedRows {
   kernels::ProjectedRow lower;
 
  private:
-  // One more on either side, which do not exist.
+  // One more pixel on either side, both invalid.
   static std::size_t floats(int width) {
     return static_cast<std::size_t>(width + 2 + kernels::kSplatPadding);
   }
@@ -143,8 +143,8 @@ class SurfaceMapper {
   }
 
   void find_reaches(int tile_row) {
-    // One pixel more to the right and below: gaps reach as far as them. Torn surfaces reach half a
-    // pixel beyond the image.
+    // One more pixel to the right and below, because gaps reach that far. Torn surfaces extend half
+    // a pixel beyond the image.
     const double beyond = 0.5 * border_px_;
     const int first_y = tile_row * kTileRows;
     const int last_y = std::min(first_y + kTileRows, disparity_px_.height() - 1);
@@ -194,10 +194,10 @@ class SurfaceMapper {
     }
   }
 
-  // The tiles [begin, end) of a row of tiles.
+  // Maps the tiles [begin, end) of a row of tiles.
   void map_tiles(int tile_row, int begin, int end, ProjectedRows& rows,
                  const kernels::SplatBand& band) {
-    // The quads before the first column and row count to the tiles there.
+    // Quads before the first column and row belong to the tiles there.
     const int first_x = begin == 0 ? -border_px_ : begin * kTileColumns;
     const int count = std::min(end * kTileColumns, disparity_px_.width()) - first_x;
     const int first_y = tile_row == 0 ? -border_px_ : tile_row * kTileRows;
@@ -223,7 +223,7 @@ class SurfaceMapper {
     }
   }
 
-  // Pixels first_x … first_x + count of row y; those outside the image do not exist.
+  // Projects pixels first_x … first_x + count of row y; those outside the image are invalid.
   void project(int first_x, int count, int y, const kernels::ProjectedRow& row) {
     const bool has_row = y >= 0 && y < disparity_px_.height();
     const int before = has_row ? std::max(-first_x, 0) : count + 1;
@@ -254,7 +254,7 @@ class SurfaceMapper {
   float gradient_limit_px_;
   ImageView<float> nearness_;
   Execution& execution_;
-  int border_px_;  // pixels around the image that quads are looked at with
+  int border_px_;  // pixels around the image at which quads are formed
   int tile_columns_;
   int tile_rows_;
   scheduler::ScratchPool::Lease reaches_memory_;

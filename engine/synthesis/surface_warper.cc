@@ -16,8 +16,8 @@ ViewFrame frame_of(const NewView& view) {
           .infinity_disparity_px = view.infinity_disparity_px};
 }
 
-// For an image whose camera is `distance` baselines away. At its own place nothing moves, whatever
-// its disparity: parallax tears nothing, and all of the image is one surface.
+// Options for an image whose camera is `distance` baselines away. At its own position nothing
+// moves: there is no parallax to tear surfaces, and the whole image is one surface.
 SynthesisOptions options_at(double distance, SynthesisOptions options) {
   if (distance < kSamePlace) {
     options.disparity_gradient_limit_px = std::numeric_limits<double>::infinity();

@@ -4,7 +4,7 @@
 
 namespace vantage {
 
-/// How positions that neither warped image covers are filled (EQUATIONS §6, hole filling).
+/// How holes, which neither warped image covers, are filled (EQUATIONS §6, hole filling).
 enum class HoleFilling {
   kMirror,  ///< the background side mirrored along the scanline
   kSpread,  ///< the background side's border pixel repeated
@@ -12,25 +12,25 @@ enum class HoleFilling {
   kInpaint  ///< continued from the background around them in all directions
 };
 
-/// How colour reaches the new view once disparity has been forward-mapped.
+/// How colour is transferred to the new view after the forward mapping of disparities.
 enum class WarpColour {
   kOnePass,  ///< fetched backward from the source image, one bicubic interpolation (3.2.7)
-  kForward   ///< the source pixel itself, moved to the nearest position: the book's method
+  kForward   ///< the source pixel moved to the nearest position: the book's method
 };
 
 struct SynthesisOptions {
   WarpColour warp = WarpColour::kOnePass;
   HoleFilling holes = HoleFilling::kMirror;
-  /// γ of (3.12), 0..1: which camera's brightness the view has (1 = left). Empty: γ = α, so that a
-  /// view at a camera's place has the brightness of its photograph.
+  /// γ of (3.12), 0..1: blends the brightness of the two cameras (1 = left). Empty: γ = α, so that
+  /// a view at a camera's position has the brightness of its photograph.
   std::optional<double> gamma = std::nullopt;
   /// Neighbours whose disparities differ by at most this are one surface; ≥ 0, in pixels.
   double disparity_gradient_limit_px = 1.0;
   /// Regress the right image's intensities on the left's (3.9–3.11); off: a = 0, b = 1.
   bool match_intensities = true;
-  /// Outlines like a photograph's: pixels beside them that are mixtures of two surfaces count less
-  /// than clean ones, and the surfaces on both sides are mixed over a pixel (kernels/soft_edges).
-  /// Off: surfaces meet without a transition.
+  /// Soft outlines like a photograph's: pixels next to them that are mixtures of two surfaces weigh
+  /// less than clean ones, and the surfaces on both sides are mixed over a pixel
+  /// (kernels/soft_edges). Off: surfaces meet without a transition.
   bool soft_edges = true;
 
   /// Throws UsageError naming the field, its value and its limit.

@@ -27,7 +27,7 @@ PosedCamera camera_of(const RectifiedPair& pair, Side side) {
   return camera;
 }
 
-// Where pixel (x, y) of the result lies in the source; NaN behind its camera.
+// Position in the source of pixel (x, y) of the result; NaN behind its camera.
 Eigen::Vector2f source_position(const Eigen::Matrix3d& source_from_result, int x, int y) {
   const Eigen::Vector3d position = source_from_result * Eigen::Vector3d(x, y, 1);
   if (!(position.z() > 0)) {
@@ -75,7 +75,7 @@ Photograph moved_by(const Photograph& source, const Eigen::Matrix3d& source_from
 }
 
 // Calls body(x, y, source x, source y) for all pixels of the result whose nearest source pixel
-// there is.
+// exists.
 template <typename Body>
 void for_each_source_pixel(const Eigen::Matrix3d& source_from_result, int width_px, int height_px,
                            int source_width, int source_height, Execution& execution,
@@ -95,8 +95,8 @@ void for_each_source_pixel(const Eigen::Matrix3d& source_from_result, int width_
   });
 }
 
-// Disparities are taken from the nearest pixel: between two surfaces there is nothing to
-// interpolate. A pixel (x, y) of depth Z has depth Z w in the common frame, where w is the third
+// Disparities are taken from the nearest pixel, because they must not be interpolated between
+// surfaces. A pixel (x, y) of depth Z has depth Z w in the common frame, where w is the third
 // component of its homography; the focal length and the unit differ, too.
 DisparityMap rectified_map(ImageView<const float> map_px, const RectifiedPair& pair,
                            const TrifocalRectification& rig, const Eigen::Matrix3d& homography,
@@ -114,7 +114,7 @@ DisparityMap rectified_map(ImageView<const float> map_px, const RectifiedPair& p
   return result;
 }
 
-// A mask's nearest pixel; `outside` where there is none.
+// Warps a mask by nearest pixels; `outside` where there is none.
 Mask moved_mask(const Mask& source, std::uint8_t outside, const Eigen::Matrix3d& source_from_result,
                 const PosedCamera& camera, Execution& execution) {
   Mask result(camera.width_px, camera.height_px);

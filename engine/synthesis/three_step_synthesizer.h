@@ -11,10 +11,10 @@
 
 namespace vantage {
 
-/// The view of any camera in the three steps of the book's chapter 3: both images and their maps
-/// are rectified together with the new camera (3.8), moved to its place (3.5) and combined, and the
-/// result is derectified. Colours are resampled in each step, where a NewView from camera_view()
-/// does it once: this is the book's method, to compare with.
+/// Renders the view of any camera in the three steps of the book's chapter 3: both images and their
+/// maps are rectified together with the new camera (3.8), warped to its position (3.5) and
+/// combined, and the result is derectified. Colours are resampled in each step, where a NewView
+/// from camera_view() resamples once: this is the book's method, for comparison.
 ///
 /// Thread rule: synthesize() may be called concurrently for different results. Identical for any
 /// ExecutionOptions.
@@ -25,15 +25,15 @@ class ThreeStepSynthesizer {
 
   /// left, right and maps as for ViewSynthesizer; `pair` is their geometry, `camera` the new one in
   /// the frame of the left. The view has the camera's size. Throws Error as
-  /// trifocal_rectification() does, above all where the plane through the three cameras cuts what
-  /// one of them sees; otherwise as ViewSynthesizer.
+  /// trifocal_rectification() does, in particular if the plane through the three cameras intersects
+  /// the field of view of one; otherwise as ViewSynthesizer.
   void synthesize(const Photograph& left, const Photograph& right,
                   ImageView<const float> left_disparity, ImageView<const float> right_disparity,
                   const RectifiedPair& pair, const PosedCamera& camera, SynthesizedView& view,
                   const std::array<IntensityFit, 4>* given_fit = nullptr) const;
 
-  /// At most the memory that synthesize() works in, for photographs of so many channels and bytes
-  /// per value. Throws Error as trifocal_rectification().
+  /// Upper bound of the working memory of synthesize() in bytes, for photographs with this many
+  /// channels and bytes per value. Throws Error as trifocal_rectification().
   [[nodiscard]] static std::size_t working_bytes(const SynthesisOptions& options,
                                                  const RectifiedPair& pair,
                                                  const PosedCamera& camera, int channels,

@@ -22,7 +22,7 @@ double share(const TripleView& view, double of_wanted, double of_others) {
   return sum > 0 ? std::clamp(of_wanted / sum, kLeastShare, 1 - kLeastShare) : 0.5;
 }
 
-/// Where the parts of the scratch memory lie.
+/// Offsets of the parts of the scratch memory.
 struct ScratchLayout {
   WarpedPairLayout pair;  ///< the first two images
   std::size_t holes;
@@ -99,7 +99,8 @@ void TripleWarper<T>::warp(int y, std::span<float> scratch, float* memory) const
   float* pair = scratch.data();
   images_[0].warp(y, warping, pair + at.pair.left_colours, pair + at.pair.left_nearness);
   images_[1].warp(y, warping, pair + at.pair.right_colours, pair + at.pair.right_nearness);
-  // Beforehand, so that the blend stays within its two values: it limits others to a photograph's.
+  // Before blending, which only keeps results within its two inputs; other weights would limit them
+  // to a photograph's range.
   transform(first_, pair + at.pair.left_colours);
   transform(second_, pair + at.pair.right_colours);
 

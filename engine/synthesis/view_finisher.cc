@@ -11,10 +11,10 @@
 namespace vantage {
 namespace {
 
-// Beside a hole, the last pixel of the background is mixed with what hid the rest.
+// At a hole, the last background pixel is mixed with the surface that occluded the rest.
 constexpr int kMixedPx = 1;
 
-// What an image counts where its surface ends, beside one in which it goes on.
+// Weight of an image whose surface ends at a pixel, relative to one where it continues.
 constexpr float kTrustAtEnds = 0.1F;
 
 }  // namespace

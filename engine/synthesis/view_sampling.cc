@@ -17,16 +17,16 @@ namespace {
 constexpr int kMostSamples = 8;
 constexpr int kLargestSide = 65500;
 
-// Up to this much above a whole number the next one is not needed: little would alias.
+// Excess over a whole number that needs no further sample: there is little aliasing.
 constexpr double kToleratedReduction = 0.2;
 
-// Pixels this far apart along both axes tell how much a view reduces an image.
+// Grid spacing along both axes at which the reduction is measured.
 constexpr int kGridPx = 32;
 
-// Disparities that are planned for, as a share of the image's width.
+// Largest expected disparity, as a share of the image's width.
 constexpr double kLargestDisparity = 0.25;
 
-/// Area of a view, and how much images are reduced there: a sum over that area.
+/// Area of a view, and the sum over that area of the images' reduction.
 struct Reduction {
   double area = 0;
   double sum = 0;
@@ -38,7 +38,7 @@ struct Reduction {
   [[nodiscard]] double mean() const { return area > 0 ? sum / area : 1; }
 };
 
-// disparity(x, y): NaN or ±inf where it is unknown.
+// disparity(x, y): NaN or ±inf where unknown.
 template <typename Disparity>
 Reduction reduction_of(const ViewWarp& warp, const NewView& view, int width, int height,
                        const Disparity& disparity) {
@@ -59,8 +59,7 @@ Reduction reduction_of(const ViewWarp& warp, const NewView& view, int width, int
       const Eigen::Matrix2d growth = (warp.homography.topLeftCorner<2, 2>() -
                                       target * warp.homography.bottomLeftCorner<1, 2>()) /
                                      at.z();
-      // A small circle becomes an ellipse, which is reduced by 1 / `least` and covers the area
-      // `least` · `most`.
+      // A small circle becomes an ellipse of area `least` · `most`, which reduces by 1 / `least`.
       const double area = std::abs(growth.determinant());
       const double squares = growth.squaredNorm();
       const double most = std::sqrt(
@@ -83,16 +82,16 @@ bool keeps_sizes(const NewView& view) {
   return view.from_left.is_translation() && view.from_right.is_translation();
 }
 
-/// Weights of the samples along a line through a pixel, the outermost of which are the neighbours'.
+/// Weights of the samples along a line through a pixel; the outermost samples are the neighbours'.
 ///
-/// Variances of what samples stand for add up: that of a pixel of the view is m²/12 in pixels of
-/// the images, m the reduction; interpolated samples bring 1/12, so that their places must spread
-/// by (m² − 1)/12. Equal weights for a pixel's own samples do so if there are m of them.
+/// Variances add up: a pixel of the view has m²/12 in image pixels, where m is the reduction;
+/// interpolated samples contribute 1/12, so their positions must contribute (m² − 1)/12. Equal
+/// weights for m samples of a pixel do.
 class SampleWeights {
  public:
   explicit SampleWeights(const ViewSampling& sampling) : count_(sampling.samples + 2) {
     const double samples = sampling.samples;
-    const double distance = sampling.reduction / samples;  // of two samples, in image pixels
+    const double distance = sampling.reduction / samples;  // between two samples, in image pixels
     const double wanted =
         (sampling.reduction * sampling.reduction - 1) / (12 * distance * distance);
     const double own = (samples * samples - 1) / 12;  // with equal weights
@@ -112,7 +111,7 @@ class SampleWeights {
   std::array<float, kMostSamples + 2> weights_{};
 };
 
-// `line` is memory for the values of a row of `fine`.
+// `line`: memory for the values of a row of `fine`.
 template <typename T>
 void reduce_row(const Image<T>& fine, const SampleWeights& weights, int y, float* line,
                 Image<T>& image) {

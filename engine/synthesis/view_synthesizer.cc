@@ -25,8 +25,9 @@ namespace {
 
 constexpr double kFarthestView = 16;  // baselines
 
-/// Warped rows are kept between the two passes over an image as long as the caches hold a good part
-/// of them: more would take several times the memory of all inputs, and as long as warping again.
+/// Warped rows are kept between the two passes over an image as long as they largely fit in the
+/// caches: more would take several times the memory of all inputs, and as much time as warping
+/// again.
 constexpr std::size_t kMostKeptBytes = std::size_t{32} << 20;
 
 void require_size_of_left(const Photograph& left, const char* what, int width, int height) {
@@ -53,7 +54,7 @@ void require_same_shape(const Photograph& left, const Photograph& right) {
   }
 }
 
-/// `map_px` is that of an image of the size of `left`.
+/// `map_px` belongs to an image of the size of `left`.
 void require_map(const Photograph& left, const char* what, ImageView<const float> map_px) {
   require_size_of_left(left, what, map_px.width(), map_px.height());
   if (map_px.channels() != 1) {
@@ -61,13 +62,13 @@ void require_map(const Photograph& left, const char* what, ImageView<const float
   }
 }
 
-// What the parallel passes leave behind per row; reduced in the order of rows.
+// Results of the parallel passes per row; reduced in row order.
 struct RowRecord {
   kernels::IntensitySums sums;
   int holes = 0;
 };
 
-// (3.12): each image's colours move towards the other's by its share of γ.
+// (3.12): each image's colours are adjusted towards the other's by its share of γ.
 kernels::BlendWeights blend_weights(const std::array<IntensityFit, 4>& intensity, double alpha,
                                     std::optional<double> chosen_gamma,
                                     double grey_levels_per_unit) {
@@ -86,7 +87,7 @@ kernels::BlendWeights blend_weights(const std::array<IntensityFit, 4>& intensity
   return weights;
 }
 
-/// Makes one view from what `Warper`, RowPairWarper or SurfaceWarper, makes of the two images.
+/// Makes one view from the rows of `Warper`, RowPairWarper or SurfaceWarper.
 template <typename T, typename Warper>
 class Synthesis {
  public:
@@ -140,7 +141,7 @@ class Synthesis {
   }
 
  private:
-  // So that they need not be warped again.
+  // Avoids warping them a second time.
   void keep_warped_rows() {
     const std::size_t bytes = ViewSynthesizer::working_bytes(width_, height_, channels_);
     if (bytes > 0) {
@@ -172,7 +173,7 @@ class Synthesis {
     });
   }
 
-  // The same once they have been warped, if they were kept.
+  // As for_each_warped_row() in a second pass; reads the rows if they were kept.
   template <typename Body>
   void for_each_warped_row_again(const Body& body) {
     if (kept_ == nullptr) {
@@ -221,7 +222,7 @@ class Synthesis {
     return records_[static_cast<std::size_t>(y)].holes == width_;
   }
 
-  // A row without any pixel takes the nearest row that has one, the upper of two.
+  // A row without pixels copies the nearest row that has some; the upper one on a tie.
   void fill_empty_rows(Image<T>& image) {
     const std::size_t values =
         static_cast<std::size_t>(width_) * static_cast<std::size_t>(channels_);
@@ -251,7 +252,7 @@ class Synthesis {
   scheduler::ScratchPool::Lease records_memory_;
   std::span<RowRecord> records_;
   scheduler::ScratchPool::Lease kept_memory_;
-  float* kept_ = nullptr;  // warped scanline pairs of all rows, where they are kept
+  float* kept_ = nullptr;  // warped scanline pairs of all rows, if kept
 };
 
 /// The photographs and maps of one call.
@@ -264,8 +265,7 @@ struct PairOfMaps {
   PhotographGeometry right_geometry = {};
 };
 
-/// Photographs as they were read, and maps of their rectified images. Throws Error where they do
-/// not go together.
+/// Original photographs with maps of their rectified images. Throws Error if they do not match.
 PairOfMaps pair_of(const UnrectifiedPair& photographs, ImageView<const float> left_disparity,
                    ImageView<const float> right_disparity, const SynthesisOptions& options) {
   if (options.warp != WarpColour::kOnePass) {
@@ -289,7 +289,7 @@ PairOfMaps pair_of(const UnrectifiedPair& photographs, ImageView<const float> le
           right_disparity,  photographs.left_geometry, photographs.right_geometry};
 }
 
-/// Forward mapping moves whole pixels, so it has no use for several samples.
+/// Forward mapping moves whole pixels, so supersampling does not apply.
 ViewSampling sampling_of(const PairOfMaps& pair, const SynthesisOptions& options,
                          const NewView& view) {
   return options.warp == WarpColour::kOnePass
@@ -298,8 +298,8 @@ ViewSampling sampling_of(const PairOfMaps& pair, const SynthesisOptions& options
 }
 
 /// XS of a view that RowPairWarper can make: on the baseline, with the images' orientation, focal
-/// length and size. At a camera's place colours of a photograph that is not rectified go the
-/// general way, which knows that nothing is hidden there.
+/// length and size. At a camera's position, colours of an unrectified photograph need
+/// SurfaceWarper, where nothing is occluded.
 std::optional<double> scanline_position(const NewView& view, const PairOfMaps& pair) {
   const auto moves_along_rows = [](const ViewWarp& warp) {
     return warp.is_translation() && warp.parallax.y() == 0;
@@ -317,11 +317,11 @@ std::optional<double> scanline_position(const NewView& view, const PairOfMaps& p
   return std::nullopt;
 }
 
-/// Checks the pair, then calls body(source) with its images of their pixel type.
+/// Checks the pair, then calls body(source) with its images in their pixel type.
 template <typename Body>
 void with_source(const PairOfMaps& pair, const Body& body) {
   require_same_shape(pair.left, pair.right);
-  // Geometries of photographs have been checked with their maps.
+  // Geometries of photographs were checked with their maps.
   if (pair.left_geometry.empty()) {
     require_map(pair.left, "left disparity map", pair.left_disparity);
   }
@@ -354,7 +354,7 @@ void with_synthesis(const PairOfMaps& pair, const SynthesisOptions& options, dou
   });
 }
 
-/// The same for any view.
+/// As above for any view.
 template <typename Body>
 void with_synthesis(const PairOfMaps& pair, const SynthesisOptions& options, const NewView& view,
                     Execution& execution, const Body& body) {
@@ -391,7 +391,7 @@ void with_synthesis(const PhotographTriple& triple, const SynthesisOptions& opti
       first.pixels);
 }
 
-/// `position`: XS or a NewView that needs no more than one sample per pixel.
+/// `position`: XS, or a NewView that needs only one sample per pixel.
 template <typename Position>
 void sample_at(const PairOfMaps& pair, const SynthesisOptions& options, const Position& position,
                Execution& execution, SynthesizedView& view,
@@ -424,7 +424,7 @@ void synthesize_at(const PairOfMaps& pair, const SynthesisOptions& options, cons
   reduce_view(fine, sampling, view, execution);
 }
 
-/// In grey levels.
+/// Sums in grey levels.
 template <typename T, typename Warper>
 kernels::IntensitySums grey_level_sums(Synthesis<T, Warper>& synthesis) {
   kernels::IntensitySums sums = synthesis.intensity_sums();
@@ -470,7 +470,7 @@ ViewSynthesizer::ViewSynthesizer(const SynthesisOptions& options, Execution& exe
 }
 
 std::size_t ViewSynthesizer::working_bytes(int width, int height, int channels) {
-  // Of any pixel type: rows are floats.
+  // Independent of the pixel type: rows are floats.
   const std::size_t bytes =
       WarpedPairLayout(width, channels).floats * sizeof(float) * static_cast<std::size_t>(height);
   return bytes <= kMostKeptBytes ? bytes : 0;

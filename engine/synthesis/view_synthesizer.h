@@ -14,44 +14,44 @@
 
 namespace vantage {
 
-/// One new view and how it came about. Reused from call to call without allocating, but by views
-/// that are reduced from several samples per pixel.
+/// A new view and statistics of its synthesis. Can be reused without reallocation, except for views
+/// reduced from several samples per pixel.
 struct SynthesizedView {
   Photograph image;  ///< depth and channels of the left photograph
   Mask holes;        ///< 255 where neither image is defined, before filling
-  /// Which images a pixel is made of: 0 none (filled or black), 85 the left, 170 the right one, 255
-  /// both. Of three images, 85 is what the first two have become.
+  /// Sources of a pixel: 0 none (filled or black), 85 the left image, 170 the right one, 255 both.
+  /// With three images, 85 is the combined first two.
   Mask sources;
   std::array<IntensityFit, 4> intensity;  ///< per channel; a = 0, b = 1 where degenerate or alpha
-  double hole_fraction = 0;               ///< share of all positions
+  double hole_fraction = 0;               ///< share of all pixels
 };
 
-/// Three photographs of one size, depth and number of channels whose cameras stand in one plane and
-/// look the same way, and their disparity maps, in pixels for one common baseline. Nothing is
-/// owned.
+/// Three photographs of one size, depth and number of channels whose cameras are in one plane and
+/// have the same orientation, and their disparity maps, in pixels for one common baseline. Nothing
+/// is owned.
 struct PhotographTriple {
   std::array<const Photograph*, 3> images{};
   std::array<ImageView<const float>, 3> disparity_px;
 };
 
-/// How the intensities of three photographs follow from each other.
+/// Intensity regressions among three photographs.
 struct TripleFit {
   std::array<IntensityFit, 4> second_on_first;
-  std::array<IntensityFit, 4> third_on_others;  ///< on what the first two become in the view
+  std::array<IntensityFit, 4> third_on_others;  ///< on the combined first two in the view
 };
 
 /// Renders new views from a rectified pair and its two disparity maps (EQUATIONS §6).
 ///
-/// Both images are warped to the view: along scanlines where it is on the baseline and looks as the
-/// images do (RowPairWarper), else in one pass through all homographies (SurfaceWarper). Their
+/// Both images are warped to the view: along scanlines if it is on the baseline with the images'
+/// orientation (RowPairWarper), else in one pass through all homographies (SurfaceWarper). Their
 /// colours are regressed on each other over the whole view (3.9–3.11), combined (3.12–3.14), and
-/// the holes filled along its scanlines. What images of a surface agree on within the gradient
-/// limit is disparity, or off the baseline nearness (NewView). Views that reduce the images are
-/// made of several samples per pixel (view_sampling.h). At the place of a camera, XS = 0 or 1, the
-/// view shows that camera's own photograph wherever its map is known, as the homography alone moves
-/// it; with γ = α, the default, unaltered. A row that neither image reaches takes the nearest row
-/// that has pixels, unless holes are left black (all channels 0). An alpha channel is warped and
-/// blended like a colour, but not regressed.
+/// the holes filled along its scanlines. Images show the same surface if their disparities, or off
+/// the baseline their nearness (NewView), agree within the gradient limit. Views that reduce the
+/// images are made of several samples per pixel (view_sampling.h). At a camera's position, XS = 0
+/// or 1, the view shows that camera's own photograph wherever its map is known, transformed by the
+/// homography alone; with γ = α, the default, unaltered. A row without pixels from either image
+/// copies the nearest row that has some, unless holes are left black (all channels 0). An alpha
+/// channel is warped and blended like a colour, but not regressed.
 ///
 /// Thread rule: synthesize() may be called concurrently for different results. Results are
 /// identical for any ExecutionOptions and on any instruction set.
@@ -62,43 +62,41 @@ class ViewSynthesizer {
 
   /// left, right: equal size, depth and channels. Maps: same size, NaN or ±inf = unknown (such
   /// pixels are not warped). view_x = XS in baselines, 0 = left camera, 1 = right camera; within
-  /// ±16. `view` shares no memory with the inputs. Throws Error when shapes differ, UsageError for
-  /// a view_x out of range. `given_fit`: takes the place of the regression, also where the options
-  /// do without one.
+  /// ±16. `view` shares no memory with the inputs. `given_fit` replaces the regression, even if the
+  /// options disable it. Throws Error when shapes differ, UsageError for a view_x out of range.
   void synthesize(const Photograph& left, const Photograph& right,
                   ImageView<const float> left_disparity, ImageView<const float> right_disparity,
                   double view_x, SynthesizedView& view,
                   const std::array<IntensityFit, 4>* given_fit = nullptr) const;
 
-  /// The same for any view, of any size, whose result has the view's size. A view from
-  /// baseline_view(XS, 0) of the images' size is that at view_x = XS. With
-  /// WarpColour::kForward other views show the nearest source pixel everywhere. Throws Error for a
-  /// view without pixels, larger than 65500 pixels in width or height, or that cannot be inverted.
+  /// As above for any view, of any size; the result has the view's size. baseline_view(XS, 0) of
+  /// the images' size gives the view at view_x = XS. With WarpColour::kForward other views show the
+  /// nearest source pixel everywhere. Throws Error for a view without pixels, larger than 65500
+  /// pixels in width or height, or that cannot be inverted.
   void synthesize(const Photograph& left, const Photograph& right,
                   ImageView<const float> left_disparity, ImageView<const float> right_disparity,
                   const NewView& new_view, SynthesizedView& view,
                   const std::array<IntensityFit, 4>* given_fit = nullptr) const;
 
-  /// The same with colours from the photographs that the rectified pair was made from: one
-  /// interpolation instead of two. Maps are those of the rectified images. Where a photograph shows
-  /// nothing the rectified image is black, and so is its share of the view. Throws Error unless the
-  /// options have WarpColour::kOnePass: the book moves pixels of rectified images.
+  /// As above with colours from the photographs that the pair was rectified from: one interpolation
+  /// instead of two. Maps are those of the rectified images. Where a photograph shows nothing the
+  /// rectified image is black, and so is its share of the view. Throws Error unless the options
+  /// have WarpColour::kOnePass: the book moves pixels of rectified images.
   void synthesize(const UnrectifiedPair& photographs, ImageView<const float> left_disparity,
                   ImageView<const float> right_disparity, const NewView& new_view,
                   SynthesizedView& view,
                   const std::array<IntensityFit, 4>* given_fit = nullptr) const;
 
-  /// A view among three cameras (TripleWarper), with γ = α whatever the options say: the brightness
-  /// moves with the weights, to the photograph's own where one of them is 1. Errors as above.
+  /// A view among three cameras (TripleWarper), always with γ = α: the brightness follows the
+  /// weights and equals a photograph's where its weight is 1. Errors as above.
   void synthesize(const PhotographTriple& triple, const TripleView& new_view, SynthesizedView& view,
                   const TripleFit& fit) const;
-  /// The regressions that such views need, as they are at `new_view`; identities without
-  /// match_intensities.
+  /// The regressions for such views, estimated at `new_view`; identities without match_intensities.
   [[nodiscard]] TripleFit fit_triple(const PhotographTriple& triple,
                                      const TripleView& new_view) const;
 
-  /// The sums of the regression (3.11) at view_x, in grey levels: those of several pairs can be
-  /// added up for one fit_channels(sums, channels, 1). Errors as synthesize(). Identical for any
+  /// The sums of the regression (3.11) at view_x, in grey levels: sums of several pairs can be
+  /// added for one fit_channels(sums, channels, 1). Errors as synthesize(). Identical for any
   /// execution.
   [[nodiscard]] kernels::IntensitySums intensity_sums(const Photograph& left,
                                                       const Photograph& right,
@@ -115,17 +113,17 @@ class ViewSynthesizer {
                                                       ImageView<const float> right_disparity,
                                                       const NewView& new_view) const;
 
-  /// Memory that synthesize() works in for an image of this shape, unless it is given a fit; beside
-  /// rows per thread.
+  /// Working memory of synthesize() in bytes for an image of this shape without a given fit,
+  /// besides rows per thread.
   [[nodiscard]] static std::size_t working_bytes(int width, int height, int channels);
-  /// At most the same for any view of images of this shape; the kept rows, which a given fit
-  /// spares, and maps of both images.
+  /// Upper bound of the same for any view of images of this shape, including maps of both images
+  /// and the kept rows, which a given fit does not need.
   [[nodiscard]] static std::size_t working_bytes(const NewView& view, int width, int height,
                                                  int channels);
-  /// What filling the holes takes beside that.
+  /// Additional bytes for filling the holes.
   [[nodiscard]] static std::size_t filling_bytes(const SynthesisOptions& options, int width,
                                                  int height, int channels);
-  /// The same for any view of images of this shape.
+  /// As above for any view of images of this shape.
   [[nodiscard]] static std::size_t filling_bytes(const SynthesisOptions& options,
                                                  const NewView& view, int width, int height,
                                                  int channels);

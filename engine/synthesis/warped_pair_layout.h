@@ -7,14 +7,14 @@
 
 namespace vantage {
 
-/// Floats of a row that is padded to whole cache lines.
+/// Floats of a row padded to whole cache lines.
 [[nodiscard]] constexpr std::size_t row_floats(int columns, int lanes) {
   constexpr std::size_t kFloatsPerLine = 16;
   const std::size_t floats = static_cast<std::size_t>(columns) * static_cast<std::size_t>(lanes);
   return (floats + kFloatsPerLine - 1) / kFloatsPerLine * kFloatsPerLine;
 }
 
-/// Where the parts of a pair of warped scanlines lie in one piece of memory.
+/// Offsets of the parts of a pair of warped scanlines in one block of memory.
 struct WarpedPairLayout {
   int width = 0;
   int lanes = 0;
@@ -22,7 +22,7 @@ struct WarpedPairLayout {
   std::size_t right_colours;
   std::size_t left_nearness;
   std::size_t right_nearness;
-  std::size_t floats;  ///< in all
+  std::size_t floats;  ///< total
 
   WarpedPairLayout(int width_px, int channels)
       : width(width_px),

@@ -21,7 +21,7 @@ struct Extent {
     first = std::min(first, position);
     last = std::max(last, position);
   }
-  /// Whole pixels, at most `size` more than 0 … size − 1 on either side.
+  /// Whole pixels, at most `size` beyond 0 … size − 1 on either side.
   [[nodiscard]] Extent limited(int size) const {
     return {std::max(std::floor(first), -1.0 * size), std::min(std::ceil(last), 2.0 * size - 1)};
   }
@@ -73,7 +73,7 @@ void WholePhotograph::make_window() const {
   execution_.for_each_band(window_height, [&](int first_row, int end_row) {
     std::vector<char> upper(static_cast<std::size_t>(window_width + 1));
     std::vector<char> lower(upper.size());
-    // Whether the photograph shows the corners above the pixels of row y.
+    // Whether the photograph covers the corners above the pixels of row y.
     const auto find_corners = [&](int y, std::vector<char>& seen) {
       for (std::size_t x = 0; x < seen.size(); ++x) {
         seen[x] =

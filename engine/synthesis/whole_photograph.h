@@ -9,27 +9,25 @@
 
 namespace vantage {
 
-/// A rectified image shows the part of its photograph that the other camera sees, too. This is the
-/// rectified image widened to all of the photograph, for views from the place of its camera: they
-/// show the photograph wherever it looks, and need no disparities. Made by the first call of
-/// window().
+/// The rectified image extended to the whole photograph. A rectified image covers only the part
+/// that the other camera sees too; views from the camera's own position show the photograph
+/// everywhere and need no disparities. Made by the first call of window().
 ///
 /// Thread rule: may be used concurrently.
 class WholePhotograph {
  public:
-  /// Valid as long as the WholePhotograph. Both images are of one size, which is at most three
-  /// times that of the rectified image in either direction.
+  /// Valid as long as the WholePhotograph. Both images have the same size, at most three times that
+  /// of the rectified image in either direction.
   struct Window {
     Eigen::Vector2d first_px;       ///< rectified position of its first pixel, ≤ 0
     PhotographPositions positions;  ///< of its pixels
-    /// 0 where the photograph shows the whole pixel, else NaN: the disparities of points at
-    /// infinity.
+    /// 0 where the photograph covers the whole pixel (disparity of points at infinity), else NaN.
     ImageView<const float> disparity_px;
-    /// Those of the photograph's pixels: 0.
+    /// Disparities of the photograph's pixels: 0.
     ImageView<const float> photograph_disparity_px;
   };
 
-  /// `rectifier` needs rectification; it and `execution` outlive the WholePhotograph.
+  /// `rectifier` must need rectification; it and `execution` outlive the WholePhotograph.
   WholePhotograph(const Rectifier& rectifier, Side side, Execution& execution);
 
   [[nodiscard]] const Window& window() const;

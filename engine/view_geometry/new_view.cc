@@ -20,7 +20,7 @@ ViewWarp from_right(const ViewWarp& from_left) {
           .parallax = from_left.parallax + from_left.homography.col(0)};
 }
 
-// λ is linear in x, y and d: it is largest at a corner.
+// λ is linear in x, y and d: its maximum is at a corner.
 double largest_depth_ratio(const NewView& view, const RectifiedPair& pair) {
   double largest = -1;
   const double nearest = view.infinity_disparity_px + pair.width_px;

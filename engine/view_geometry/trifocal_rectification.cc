@@ -20,8 +20,8 @@ constexpr std::array<std::string_view, 3> kNames = {"first camera", "second came
                                                     "camera of the new view"};
 constexpr double kLargestRectifiedSide = 16384;
 constexpr double kLeastElevationDegrees = 5;
-// C3 is on the baseline when it is off by less than this share of its distance: the plane would
-// follow rounding errors.
+// C3 counts as on the baseline if it is off by less than this share of its distance: otherwise
+// rounding errors would determine the plane.
 constexpr double kOnBaseline = 1e-9;
 constexpr double kRounding = 1e-6;  // pixels
 
@@ -60,8 +60,7 @@ Eigen::Matrix3d frame_of(const std::array<const PosedCamera*, 3>& cameras) {
   return frame;
 }
 
-// √ of how many square pixels of X/Z, Y/Z a square pixel in the middle of the image covers,
-// inverted.
+// Resolution at the image centre: 1 / √(area of a pixel on the plane of X/Z, Y/Z).
 double resolution(const Eigen::Matrix3d& ray_from_pixel, const PosedCamera& camera) {
   const Eigen::Vector3d middle((camera.width_px - 1) / 2.0, (camera.height_px - 1) / 2.0, 1);
   const double depth = ray_from_pixel.row(2).dot(middle);
@@ -110,8 +109,8 @@ TrifocalRectification trifocal_rectification(const PosedCamera& first, const Pos
 
   result.focal_length_px =
       std::max(resolution(ray_from_pixel[0], first), resolution(ray_from_pixel[1], second));
-  // The box grows to whole pixels from the first image's corner, so that cameras which are
-  // rectified already keep their pixels.
+  // The box is extended to whole pixels from the first image's corner, so that already rectified
+  // cameras keep their pixel grid.
   const Eigen::Vector2d corner_px =
       result.focal_length_px * (ray_from_pixel[0] * corners_of(first).front()).hnormalized().eval();
   const Eigen::Array2d above_px = result.focal_length_px * least - corner_px;

@@ -51,7 +51,7 @@ void ViewPath::validate() const {
 
 ViewPath parse_view_path(std::string_view text) {
   ViewPath path;
-  bool may_have_y = false;  // XS of the last key has just been read
+  bool may_have_y = false;  // the XS of the last key was just parsed
   for (std::string_view rest = text;;) {
     const std::size_t end = rest.find(',');
     const std::string_view part = rest.substr(0, end);
