@@ -1,5 +1,5 @@
-// Sums of the sixteen taps of bicubic interpolation, read from pixels of any type; included by
-// dispatched files, once per target.
+// Sums over the sixteen taps of bicubic interpolation, read from pixels of any type. Included once
+// per target by dispatched files.
 
 #if defined(VANTAGE_KERNELS_BICUBIC_TAPS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VANTAGE_KERNELS_BICUBIC_TAPS_INL_H_
@@ -17,35 +17,36 @@
 #include "kernels/pixel_row/load_as_float-inl.h"
 #include "kernels/pixel_row/pixel_row.h"
 
-// One lane cannot hold the taps.
+// A single lane cannot hold the taps.
 #if HWY_TARGET != HWY_SCALAR
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-// New pixels that are worked on at a time, step by step; a multiple of every vector's length.
+// New pixels processed at a time, step by step; a multiple of every vector length.
 constexpr int kTapBlock = 64;
-// Room for four taps of four channels.
+// Four taps of four channels.
 constexpr int kTapLanes = 16;
-// Values that sum_down() loads in each line, from the first tap on: whole vectors, at times more
-// than the taps.
+// Values that sum_down() loads per line, starting at the first tap. Whole vectors, so sometimes
+// more than the taps.
 template <int kChannels>
 constexpr int kTapsLoaded = kChannels == 1 ? 4 : kTapLanes;
-// Pixels behind the last tap that it reads for this.
+// Pixels that sum_down() reads after the last tap.
 template <int kChannels>
 constexpr int kPixelsReadBehind =
     (kTapsLoaded<kChannels> - 4 * kChannels + kChannels - 1) / kChannels;
 
-// What the steps hand on. All of it stays in the level 1 cache.
+// Intermediate results between the steps. All of it stays in the level 1 cache.
 struct TapSums {
   float weight_x[4][kTapBlock];
-  float weight_y[4 * kTapBlock];            // the four of a pixel side by side
-  float sum_down[kTapLanes * kTapBlock];    // [i · taps + tap · channels + c], of its four lines
-  float least_down[kTapLanes * kTapBlock];  // for floats only
+  float weight_y[4 * kTapBlock];  // a pixel's four weights are adjacent
+  float
+      sum_down[kTapLanes * kTapBlock];  // [i · taps + tap · channels + c], sums over the four lines
+  float least_down[kTapLanes * kTapBlock];  // floats only
   float most_down[kTapLanes * kTapBlock];
 };
 
-// Weights of new pixels i, i + 1, … for the fractions of their positions.
+// Weights of new pixels i, i + 1, … from the fractions of their positions.
 template <class D, class V = hwy::HWY_NAMESPACE::VFromD<D>>
 HWY_INLINE void store_weights(D d, V fraction_x, V fraction_y, int i, TapSums& sums) {
   namespace hn = hwy::HWY_NAMESPACE;
@@ -58,11 +59,11 @@ HWY_INLINE void store_weights(D d, V fraction_x, V fraction_y, int i, TapSums& s
                         sums.weight_y + 4 * i);
 }
 
-// Sums down the four lines of the four taps of pixel i, whose first is at `tap`.
+// Sums over the four lines for each of the four taps of pixel i; `tap` is the first tap.
 template <int kChannels, typename T>
 HWY_INLINE void sum_down(const T* HWY_RESTRICT tap, std::ptrdiff_t stride, int i, TapSums& sums) {
   namespace hn = hwy::HWY_NAMESPACE;
-  constexpr int kTaps = kTapsLoaded<kChannels>;  // those of three channels are 12
+  constexpr int kTaps = kTapsLoaded<kChannels>;  // three channels use 12 of them
   const hn::CappedTag<float, kTaps> d;
   const float* weight = sums.weight_y + 4 * i;
   const auto weight0 = hn::Set(d, weight[0]);
@@ -95,7 +96,7 @@ HWY_INLINE V limited(D d, V sum, V least, V most) {
   return hn::Min(hn::Max(sum, smallest), largest);
 }
 
-// Values of grey pixels i, i + 1, …: sums along their four taps.
+// Values of grey pixels i, i + 1, …: sums over their four taps.
 template <typename T, class D>
 HWY_INLINE hwy::HWY_NAMESPACE::VFromD<D> sum_along_grey(D d, const TapSums& sums, int i) {
   namespace hn = hwy::HWY_NAMESPACE;
@@ -119,7 +120,7 @@ HWY_INLINE hwy::HWY_NAMESPACE::VFromD<D> sum_along_grey(D d, const TapSums& sums
   return limited<T>(d, sum, least, most);
 }
 
-// Colour pixel i, one vector. The fourth lane of three channels means nothing.
+// Colour pixel i, one vector. With three channels the fourth lane is meaningless.
 template <int kChannels, typename T>
 HWY_INLINE hwy::HWY_NAMESPACE::VFromD<hwy::HWY_NAMESPACE::FixedTag<float, 4>> sum_along_colour(
     const TapSums& sums, int i) {

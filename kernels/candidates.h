@@ -4,8 +4,8 @@
 
 namespace vantage::kernels {
 
-/// Lanes of a cell column are padded to a multiple of this many disparities, on every instruction
-/// set: the layout of the disparity space does not depend on the processor.
+/// Cell columns are padded to a multiple of this many lanes (disparities) on every instruction set,
+/// so the layout of the disparity space does not depend on the processor.
 inline constexpr int kLaneMultiple = 16;
 
 /// Half-open interval of candidate indices.
@@ -33,11 +33,11 @@ struct CandidateGeometry {
     return x + direction * (disparity_min + candidate);
   }
   /// Candidates of column x whose partner lies in columns [margin, width − margin) of the other
-  /// image. (With margin = window radius: those whose whole window has partners.)
+  /// image. With margin = window radius: candidates whose whole window has partners.
   [[nodiscard]] CandidateRange with_partner(int x, int margin = 0) const {
     return with_partners(x, x, margin);
   }
-  /// Candidates for which all columns first..last have a partner inside the other image.
+  /// Candidates for which every column first..last has a partner inside the other image.
   [[nodiscard]] CandidateRange with_partners(int first, int last, int margin = 0) const {
     const int low = margin;
     const int high = width - 1 - margin;
@@ -47,8 +47,8 @@ struct CandidateGeometry {
     return {std::clamp(least - disparity_min, 0, count),
             std::clamp(most - disparity_min + 1, 0, count)};
   }
-  /// The columns [begin, end) at which every candidate has a partner for all columns within
-  /// `radius` that lie in the reference image (begin may exceed end, both may exceed the image).
+  /// Columns [begin, end) where every candidate has a partner for all columns within `radius` that
+  /// lie in the reference image. `begin` may exceed `end`; both may exceed the image width.
   [[nodiscard]] CandidateRange columns_with_all_partners(int radius = 0) const {
     // partner = x − shift for shifts in [least, most].
     const int least = direction < 0 ? disparity_min : -(disparity_min + count - 1);
@@ -57,18 +57,18 @@ struct CandidateGeometry {
   }
 };
 
-/// The candidates of a cell column that are displacements in two dimensions: `rows` runs of
-/// `row_candidates` horizontal ones each, a run for each vertical one, without gaps.
+/// Layout of a cell column whose candidates are two-dimensional displacements: `rows` contiguous
+/// runs, one per vertical displacement, of `row_candidates` horizontal displacements each.
 struct CandidatePlane {
-  int row_candidates = 0;  ///< 0: candidates are displacements in one dimension
+  int row_candidates = 0;  ///< 0: one-dimensional search
   int rows = 0;
 
   [[nodiscard]] bool is_given() const { return row_candidates > 0; }
   [[nodiscard]] int count() const { return row_candidates * rows; }
-  /// Lanes that a run takes in whole vectors.
+  /// Lanes of one run, padded to whole vectors.
   [[nodiscard]] int row_lanes() const { return CandidateGeometry{.count = row_candidates}.lanes(); }
   /// Cells of working memory to smooth one column in both directions: its runs with `margin` cells
-  /// around each, the runs smoothed, and the column.
+  /// around each, the smoothed runs, and the column.
   [[nodiscard]] int work_cells(int margin) const {
     return margin + rows * (row_lanes() + margin) + rows * row_lanes() +
            CandidateGeometry{.count = count()}.lanes() + kLaneMultiple;

@@ -1,5 +1,5 @@
-// The loop of all matching costs over columns and lanes; included by dispatched files, once per
-// target.
+// The loop over columns and lanes that all matching costs share. Included once per target by
+// dispatched files.
 
 #if defined(VANTAGE_KERNELS_FEATURE_PAIRS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VANTAGE_KERNELS_FEATURE_PAIRS_INL_H_
@@ -19,13 +19,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-// What the planes of one channel hold at one column, or at one vector of candidates.
+// Values of one channel's planes at one column, or for one vector of candidates.
 template <typename T, int kPlanes>
 using Features =
     std::array<hwy::HWY_NAMESPACE::VFromD<hwy::HWY_NAMESPACE::ScalableTag<T>>, kPlanes>;
 
-// kVectors vectors of neighbouring lanes over all columns. `compare` maps features of reference and
-// partner to a float vector and, in finish(), the mean over the channels to cells.
+// Processes kVectors neighbouring vectors of lanes over all columns. `compare` maps the features of
+// reference and partner to a float vector; its finish() maps the mean over the channels to cells.
 template <int kVectors, int kChannels, bool kClear, typename T, int kPlanes, typename Compare>
 HWY_INLINE void compare_lanes(const FeaturePairs<T, kPlanes>& row, const Compare& compare,
                               int first_lane, float* cells) {
@@ -104,7 +104,7 @@ HWY_INLINE void compare_columns(const FeaturePairs<T, kPlanes>& row, const Compa
   }
 }
 
-// All cells of `row`. kClearBehind: 0 in the lanes from row.count on.
+// Computes all cells of `row`. kClearBehind: writes 0 to lanes ≥ row.count.
 template <bool kClearBehind, typename T, int kPlanes, typename Compare>
 HWY_INLINE void compare_row(const FeaturePairs<T, kPlanes>& row, const Compare& compare,
                             float* cells) {

@@ -8,22 +8,22 @@
 
 namespace vantage::kernels {
 
-// What the kernels of matching do, counted from their vector forms, so that profiles can say how
-// near they are to what a machine can do. Whoever changes a kernel changes its figure here.
+// Work of the matching kernels, counted from their vector code, so that profiles can relate them to
+// the machine's peak. When you change a kernel, update its numbers here.
 //
-// Operations are additions, multiplications, divisions, roots, comparisons, minima and maxima, of
-// floats, doubles and integers alike, a multiply-add being two; of census codes also exclusive or
-// and the counting of bits. Not counted: conversions, shifts, signs, masks and choices by them.
-// Columns near the borders of the image, where candidates lack partners, count like all others.
+// Operations are additions, multiplications, divisions, square roots, comparisons, minima and
+// maxima of floats, doubles and integers; a multiply-add counts two. For census codes, exclusive or
+// and bit counts are included. Not counted: conversions, shifts, signs, masks and selects. Columns
+// near the image border, where candidates lack partners, count like all others.
 
-/// Work on one column of cells.
+/// Work per column of cells.
 struct KernelWork {
   double operations = 0;             ///< per candidate
-  double operations_per_column = 0;  ///< beside those
-  /// Numbers of 4 bytes loaded from or stored to rows of cells or pixels, per lane. Not working
-  /// memory of a few columns, which stays in level 1.
+  double operations_per_column = 0;  ///< in addition to those
+  /// 4-byte values loaded from or stored to rows of cells or pixels, per lane. Excludes working
+  /// memory of a few columns, which stays in the level 1 cache.
   double values = 0;
-  double values_per_column = 0;  ///< beside those
+  double values_per_column = 0;  ///< in addition to those
 
   friend constexpr KernelWork operator+(const KernelWork& a, const KernelWork& b) {
     return {a.operations + b.operations, a.operations_per_column + b.operations_per_column,
@@ -33,32 +33,32 @@ struct KernelWork {
 
 // --- parts of kernels -------------------------------------------------------------------------
 
-/// cells/exp_log-inl.h, cell_winner/logarithm-inl.h: operations of one value.
+/// cells/exp_log-inl.h, cell_winner/logarithm-inl.h: operations per value.
 inline constexpr double kExp2Operations = 17;
 inline constexpr double kLogOperations = 24;
-/// bayes_step/powers-inl.h; the power without its least exponent.
+/// bayes_step/powers-inl.h; the power without clamping its exponent.
 inline constexpr double kFusedPowerOperations = 13;
 inline constexpr double kScaledLogOperations = 20;
 inline constexpr double kDoubleLogOperations = 30;
-/// A sum or an extreme over the sixteen partial ones of a column.
+/// Reduction (sum, minimum or maximum) of a column's sixteen partial results.
 inline constexpr double kLaneTreeOperations = kLaneMultiple - 1;
-/// The measurement model (6.26 ff.) at a squared residual.
+/// The measurement model (6.26 ff.) for a squared residual.
 inline constexpr double kMeasurementOperations = kExp2Operations + 3;
 
 // --- costs ------------------------------------------------------------------------------------
 
-/// A kernel over FeaturePairs: `operations` per channel, and the mean over three channels.
+/// A kernel over FeaturePairs: `operations` per channel, plus the mean over three channels.
 constexpr KernelWork compare_work(double operations, int planes, int channels) {
   const double pixels = static_cast<double>(planes) * channels;
   const double mean = channels == 1 ? 0 : channels;
   return {channels * operations + mean, 0, pixels + 1, pixels};
 }
-/// What becomes of a cell in place.
+/// In-place change of a cell.
 constexpr KernelWork cell_work(double operations) { return {operations, 0, 2, 0}; }
 
 constexpr KernelWork squared_work(int channels) { return compare_work(2, 1, channels); }
 constexpr KernelWork absolute_work(int channels) { return compare_work(2, 1, channels); }
-/// Two distances of four operations each, and the least of them.
+/// Two distances of four operations each, and their minimum.
 constexpr KernelWork sampling_insensitive_work(int channels) {
   return compare_work(9, 3, channels);
 }
@@ -68,22 +68,22 @@ constexpr KernelWork contaminated_energy_work(int channels) {
 constexpr KernelWork contaminated_likelihood_work(int channels) {
   return squared_work(channels) + KernelWork{kMeasurementOperations};
 }
-/// Two differences, their norm, and the difference to the two halves of norms.
+/// Two differences, their norm, and its difference to the two half norms.
 constexpr KernelWork negated_evidence_work(bool octagon, int channels) {
   return compare_work(octagon ? 9 : 8, 3, channels);
 }
-/// Twice exclusive or and counting the bits of bytes, and three additions of those counts.
+/// Two exclusive ors and byte bit counts, and three additions of those counts.
 constexpr KernelWork hamming_work(int channels) { return compare_work(7, 2, channels); }
-/// The same of bytes, a quarter of a value each: those of a channel, and of three channels the
-/// mean. With three thresholds there are two numbers to count bits of, and one counts twice.
+/// Same per byte (a quarter of a value), for each channel, plus the mean over three channels. With
+/// three thresholds two numbers have their bits counted, one of them with weight 2.
 constexpr KernelWork ray_hamming_work(int channels, int thresholds) {
   const double bytes = static_cast<double>(channels) * ray_census_bytes(thresholds);
   const double sums = bytes - (thresholds == 1 ? 1 : 0);
   const double mean = channels * thresholds == 1 ? 0 : 1;
   return {2 * bytes + sums + mean, 0, bytes / 4 + 1, bytes / 4};
 }
-/// With one channel, and a value looked up by distance in a table of two or five parts, which are
-/// chosen by their first distances.
+/// One channel. Values are looked up by distance in a table of two or five parts; the part is
+/// selected by its first distance.
 constexpr KernelWork ray_census_look_up_work(int thresholds, double values_per_cell) {
   const double bytes = ray_census_bytes(thresholds);
   const double choices = thresholds == 1 ? 1 : 4;
@@ -97,10 +97,10 @@ constexpr KernelWork ray_census_energy_work(int thresholds) {
   return ray_census_look_up_work(thresholds, 0.25);
 }
 
-/// Of grey levels two distances of three operations and the least of them; of gradients two
-/// differences of two joined by or, and their sum; both scaled and cut off to steps. Then the sum
-/// or product of the terms, and two operations that make floats of them. Planes but those of codes
-/// are 16-bit.
+/// Grey levels: two distances of three operations and their minimum. Gradients: two differences of
+/// two operations joined by or, and their sum. Both are scaled and clamped to steps. Then the sum
+/// or product of the terms, and two operations that convert to float. All planes except codes are
+/// 16-bit.
 constexpr KernelWork combined_work(int channels, bool has_census, bool has_gradient) {
   const double levels = 3.0 / 2 * channels;
   const KernelWork grey = {7.0 * channels + (channels - 1) + 2 + 2, 0, levels + 1, levels};
@@ -111,15 +111,15 @@ constexpr KernelWork combined_work(int channels, bool has_census, bool has_gradi
 
 inline constexpr KernelWork kLikelihoodOfCostsWork = cell_work(1 + kMeasurementOperations);
 inline constexpr KernelWork kLikelihoodOfEnergiesWork = cell_work(1 + kExp2Operations);
-/// The least of the column first.
+/// Starts with the column's minimum.
 inline constexpr KernelWork kLikelihoodOfEvidenceWork =
     cell_work(4 + kExp2Operations) + KernelWork{1, kLaneTreeOperations, 1, 0};
-/// add_cells(), multiply_cells(): another partner's cells are loaded beside those in place.
+/// add_cells(), multiply_cells(): also loads another partner's cells.
 inline constexpr KernelWork kCombineCellsWork = cell_work(1) + KernelWork{0, 0, 1, 0};
-/// Of one channel: two pixels and a shift (two numbers) per lane.
+/// One channel: two pixels and a shift (two numbers) per lane.
 inline constexpr KernelWork kInterpolateCandidatesWork = {3, 0, 5, 0};
 
-/// Mean and least of the column, then the parabola of four operations.
+/// Mean and minimum of the column, then the parabola of four operations.
 inline constexpr KernelWork kEnergiesWithPriorWork =
     cell_work(5 + 2) + KernelWork{2, 2 * kLaneTreeOperations + 9, 1, 1};
 inline constexpr KernelWork kLikelihoodsWithPriorWork =
@@ -127,66 +127,67 @@ inline constexpr KernelWork kLikelihoodsWithPriorWork =
 
 // --- box sums ---------------------------------------------------------------------------------
 
-/// 16-bit pairs of (entering, leaving): differences, their product with (1, −1), the multiply-add
-/// of pairs, and the running sum. Interleaving the pairs loads two bytes and stores four per pixel
-/// of either image.
+/// 16-bit pairs (entering, leaving): differences, their product with (1, −1), the multiply-add of
+/// pairs, and the running sum. Interleaving loads two bytes and stores four per pixel of each
+/// image.
 inline constexpr KernelWork kColumnSsdPairsWork = {8, 0, 3, 1 + 3};
-/// Either row: a difference, its square, rounded; then the running sum.
+/// Per row: a difference, its square, rounding; then the running sum.
 inline constexpr KernelWork kColumnSsdFloatWork = {2 * 3 + 2, 0, 4, 2};
-/// Either row: offset, scale, rounding; then the running sum.
+/// Per row: offset, scale, rounding; then the running sum.
 inline constexpr KernelWork kColumnSumWork = {2 * 3 + 2, 0, 4, 0};
 
-/// One column enters the window, one leaves it; minima on the way.
+/// One column enters the window and one leaves it; minima are taken along the way.
 constexpr KernelWork row_sum_work(bool stores_sums) {
   return {3, kLaneTreeOperations, stores_sums ? 3.0 : 2.0, 0};
 }
 inline constexpr KernelWork kLocateMinimaWork = {1, kLaneTreeOperations, 1, 0};
 inline constexpr KernelWork kMeanEnergyWork = {2, 1, 2, 0};
-/// Of the winner alone; the result is stored.
+/// The winner only; the result is stored.
 inline constexpr KernelWork kWinnerEnergyWork = {0, 4, 0, 1};
 
 // --- smoothing --------------------------------------------------------------------------------
 
-/// The middle run, and pairs of runs.
+/// The middle run, then pairs of runs.
 constexpr KernelWork symmetric_sum_work(int radius) {
   return {1 + 3.0 * radius, 0, 2.0 * radius + 2, 0};
 }
-/// Down the rows, then three boxes of three (two additions each), one of five (three) and the gain.
+/// Sum over the rows, then three boxes of three (two additions each), one of five (three) and the
+/// gain.
 inline constexpr KernelWork kBoxCascadeWork = {1 + 3.0 * BoxCascade::kRadius + 3 * 2 + 3 + 1, 0,
                                                2 * BoxCascade::kRadius + 2, 0};
 
 // --- iterations -------------------------------------------------------------------------------
 
-/// The five cells of a star, and the result.
+/// Five cells of a star and the result.
 inline constexpr double kStarValues = 6;
 
 inline constexpr KernelWork kDiffusionWork = {6, 0, kStarValues, 0};
-/// The pull towards the source.
+/// Diffusion plus the pull towards the source.
 inline constexpr KernelWork kMembraneWork = kDiffusionWork + KernelWork{2, 0, 1, 0};
 
-/// Certainty of a column that is looked at again; `loads`: how often.
+/// Certainty of a column that is read again `loads` times.
 constexpr KernelWork certainty_work(CertaintyMeasure measure, int loads) {
   if (measure == CertaintyMeasure::kMargin) {
-    // Least, second least and sum; then their trees, and that of ties.
+    // Minimum, second minimum and sum; then their trees, and the tree that counts ties.
     return {4, 4 * kLaneTreeOperations + 2 * kLaneMultiple + 4, 1.0 * loads, 0};
   }
-  // The least; exponent, weight and two sums.
+  // Minimum; exponent, weight and two sums.
   return {1 + 3 + kExp2Operations + 3, 3 * kLaneTreeOperations + 3 + kLogOperations, 1.0 * loads,
           0};
 }
-/// carries: what columns of input and output have behind their lanes. Columns that keep their cells
-/// (up to two values per lane more) depend on the images and are not counted.
+/// carries: whether input and output columns store their certainty after their lanes. Columns that
+/// keep their cells (up to two more values per lane) depend on the images and are not counted.
 constexpr KernelWork local_stopping_work(CertaintyMeasure measure, bool input_carries,
                                          bool output_carries) {
   const bool margin = measure == CertaintyMeasure::kMargin;
   KernelWork work = kDiffusionWork + KernelWork{0, 1, 0, 0};
-  // The margin of the result is found while it is made.
+  // The result's margin is computed together with the result.
   work = work + certainty_work(measure, margin ? 0 : 2);
   work = work + (input_carries ? KernelWork{0, 0, 0, 1} : certainty_work(measure, margin ? 1 : 2));
   return output_carries ? work + KernelWork{0, 0, 0, kCertaintyFloats} : work;
 }
 
-/// Normalising a column and leaving it as `state`.
+/// Normalises a column and stores it as `state`.
 constexpr KernelWork bayes_state_work(BayesState state, int prior_radius) {
   const double sum = 1;
   const double normalise = kLaneTreeOperations + 1;
@@ -200,14 +201,14 @@ constexpr KernelWork bayes_state_work(BayesState state, int prior_radius) {
 constexpr KernelWork bayes_start_work(BayesState state, int prior_radius) {
   return bayes_state_work(state, prior_radius) + KernelWork{0, 0, 2, 0};
 }
-/// Four products of the star, the estimate of a root and its Newton step, two products. Where the
-/// prior is one tap and columns stay in registers, the tap is part of the normalising factor: one
-/// operation less than here.
+/// Four products of the star, the estimate of the square root and its Newton step, two products.
+/// Where the prior has one tap and columns stay in registers, the tap is folded into the
+/// normalising factor: one operation fewer than counted here.
 constexpr KernelWork bayes_half_work(BayesState state, int prior_radius) {
   return bayes_state_work(state, prior_radius) + KernelWork{4 + 1 + 3 + 2, 0, kStarValues + 1, 0};
 }
-/// Sum of the star, power, product. scaled: the largest sum of the column first, and powers have a
-/// least exponent. weighted: four neighbours are multiplied by weights, which are loaded per
+/// Sum of the star, power, product. scaled: first the column's maximum sum; powers are clamped at a
+/// minimum exponent. weighted: four neighbours are multiplied by weights, which are loaded per
 /// column.
 constexpr KernelWork bayes_general_work(BayesState state, int prior_radius, bool scaled,
                                         bool weighted) {
@@ -219,17 +220,16 @@ constexpr KernelWork bayes_general_work(BayesState state, int prior_radius, bool
                 : work;
 }
 
-/// Energies in fixed point, half a value a cell. The least of the column and what lies above it;
-/// of an output that is looked at again two neighbours, their least, the rise and the least so far
-/// for each offset, then the ceiling.
+/// Fixed-point energies, half a value per cell. Subtracts the column's minimum. With `smooths`, for
+/// each offset: minimum of two neighbours, plus the rise, running minimum; then the ceiling.
 constexpr KernelWork energy_state_work(int prior_radius, bool smooths) {
   return {1 + 1 + (smooths ? 3.0 * prior_radius + 1 : 0), kLaneTreeOperations, 0, 0};
 }
 constexpr KernelWork max_product_start_work(int prior_radius) {
   return energy_state_work(prior_radius, true) + KernelWork{0, 0, 2 * 0.5, 0};
 }
-/// Five weighted cells (a product and a rounding each), their sum, and the source. Weights, where
-/// there are any, are loaded per column.
+/// Five weighted cells (a product and a rounding each), their sum, and the source. Weights, if any,
+/// are loaded per column.
 constexpr KernelWork max_product_work(int prior_radius, bool smooths, bool weighted) {
   return energy_state_work(prior_radius, smooths) +
          KernelWork{5 * 2 + 4 + 1, 0, (kStarValues + 1) * 0.5, weighted ? 4 * 0.5 : 0.0};
@@ -237,17 +237,17 @@ constexpr KernelWork max_product_work(int prior_radius, bool smooths, bool weigh
 
 // --- levels -----------------------------------------------------------------------------------
 
-/// Of a coarse column: the least likelihood that counts and the product of four, its logarithm and
-/// the largest of them; then the difference in steps, cut. A byte is a quarter of a value.
+/// Per coarse column: minimum likelihood clamp, product of four, logarithm and maximum; then the
+/// difference in steps, clamped. A byte is a quarter of a value.
 inline constexpr KernelWork kReduceLikelihoodsWork = {4 + 3 + kLogOperations + 1 + 3,
                                                       kLaneTreeOperations, 4 + 0.25, 0};
-/// The same of bytes: their sum and the least of them, then the difference times the weight.
+/// Same for bytes: sum and minimum, then the difference times the weight.
 inline constexpr KernelWork kReduceCompactEnergiesWork = {3 + 1 + 2, kLaneTreeOperations,
                                                           4 * 0.25 + 0.25, 0};
 inline constexpr KernelWork kExpandCompactWork = {1 + kExp2Operations, 0, 0.25 + 1, 0};
 inline constexpr KernelWork kCompactProbabilitiesWork = {1 + kLogOperations + 3, 0, 1 + 0.25, 0};
-/// Start of four columns from one of the coarser level: made once, then copied, along the row and
-/// down to the next one.
+/// Starts four columns from one column of the coarser level: computed once, then copied along the
+/// row and to the row below.
 constexpr KernelWork bayes_start_from_coarser_work(BayesState state, int prior_radius) {
   const KernelWork work = kExpandCompactWork + bayes_state_work(state, prior_radius);
   return {work.operations / 4, work.operations_per_column / 4, 2, 0};
@@ -255,36 +255,36 @@ constexpr KernelWork bayes_start_from_coarser_work(BayesState state, int prior_r
 
 /// A product and a rounding.
 inline constexpr KernelWork kFixedEnergiesOfBytesWork = {2, 0, 0.25 + 0.5, 0};
-/// The least likelihood that counts, the logarithm in steps, not below 0.
+/// Minimum likelihood clamp, logarithm in steps, clamped at 0.
 inline constexpr KernelWork kFixedEnergiesOfLikelihoodsWork = {1 + kLogOperations + 2, 0, 1 + 0.5,
                                                                0};
-/// As of bytes; these saturate by themselves.
+/// As for bytes; these conversions saturate.
 inline constexpr KernelWork kBytesOfFixedEnergiesWork = {2, 0, 0.5 + 0.25, 0};
-/// As bayes_start_from_coarser_work().
+/// See bayes_start_from_coarser_work().
 constexpr KernelWork max_product_start_from_coarser_work(int prior_radius) {
   const KernelWork work = kFixedEnergiesOfBytesWork + energy_state_work(prior_radius, true);
   return {work.operations / 4, work.operations_per_column / 4, 2 * 0.5, 0};
 }
 
-/// Rounding a magnitude to a half float: the largest one, the exponent, two additions.
+/// Rounds a magnitude to a half float: maximum, exponent, two additions.
 inline constexpr double kToHalfOperations = 4;
 inline constexpr KernelWork kReduceEnergiesWork = {3 + 1 + kToHalfOperations, 0, 4 + 0.5, 0};
 inline constexpr KernelWork kHalfEnergiesWork = {1 + kToHalfOperations, 0, 1 + 0.5, 0};
-/// The exponent and the unit.
+/// Exponent and unit.
 inline constexpr KernelWork kExpandHalfWork = {2, 0, 0.5 + 1, 0};
-/// And the mean with the level's own.
+/// Plus the mean with the level's own energies.
 inline constexpr KernelWork kCoarserSupportWork = kExpandHalfWork + KernelWork{2, 0, 1, 0};
 
 // --- selection --------------------------------------------------------------------------------
 
-/// The least cell of a column; `places`: and where it is, which looks at the cells again.
+/// Minimum cell of a column. `places`: also its position, which reads the cells again.
 constexpr KernelWork cell_winner_work(bool places, bool margin) {
   KernelWork work = {1, kLaneTreeOperations, 1, 1};
   if (places) {
     work = work + KernelWork{1, kLaneTreeOperations, 1, 1};
   }
   if (margin) {
-    // Second least and sum, their trees (three operations more for the two least of both sides).
+    // Second minimum and sum, and their trees (three more operations to merge two pairs of minima).
     work = work + KernelWork{3, 4 * kLaneTreeOperations + 5, 0, 1};
   }
   return work;
@@ -292,16 +292,16 @@ constexpr KernelWork cell_winner_work(bool places, bool margin) {
 inline constexpr KernelWork kCellEntropyWork = {3 + kExp2Operations + 3,
                                                 2 * kLaneTreeOperations + 6 + kLogOperations, 1, 2};
 inline constexpr KernelWork kIntegerDisparityWork = {0, 1, 0, 2};
-/// From three cells of each column.
+/// Uses three cells of each column.
 constexpr KernelWork parabola_work(bool of_probabilities) {
   return {0, 14 + (of_probabilities ? 3 * (kDoubleLogOperations + 1) : 0), 0, 5};
 }
-/// The least of a column of energies in fixed point, then the first place where it is, places being
-/// counted on the way.
+/// Minimum of a column of fixed-point energies, then its first position; positions are counted
+/// along the way.
 constexpr KernelWork energy_winner_work() {
   return {1 + 3, 2 * kLaneTreeOperations, 2 * 0.5, 1 + 0.5};
 }
-/// From three cells of each column, if the winner has neighbours.
+/// Uses three cells of each column, if the winner has neighbours.
 inline constexpr KernelWork kEnergyDisparityWork = {0, 3 + 9, 0, 2 + 3 * 0.5};
 /// Likelihoods of the column, their sum, and the winner's share.
 inline constexpr KernelWork kEnergyProbabilityWork = {

@@ -1,4 +1,4 @@
-// The function of keys_weights.h for vectors; included by dispatched files, once per target.
+// Vector form of keys_weights.h. Included once per target by dispatched files.
 
 #if defined(VANTAGE_KERNELS_KEYS_WEIGHTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VANTAGE_KERNELS_KEYS_WEIGHTS_INL_H_

@@ -1,4 +1,4 @@
-// The dispatch tables of this file show which targets the build has and which one is chosen.
+// The dispatch tables of this file show which targets are built and which one is chosen.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/simd_target.cc"
 #include <hwy/foreach_target.h>
@@ -20,7 +20,7 @@ HWY_EXPORT(this_target);
 long long built_targets() { return HWY_TARGETS; }
 
 long long available_targets() {
-  // Highway only tells after giving up its choice.
+  // Highway reports all targets only after its choice is reset.
   const long long in_use = target_in_use();
   hwy::SetSupportedTargetsForTest(0);
   const long long available = hwy::SupportedTargets() & HWY_TARGETS;
@@ -31,7 +31,7 @@ long long available_targets() {
 long long target_in_use() { return HWY_DYNAMIC_DISPATCH(this_target)(); }
 
 void force_target(long long target) {
-  // Highway has this call for tests; its other one, DisableTargets(), cannot be undone.
+  // Highway provides this call for tests; the alternative, DisableTargets(), cannot be undone.
   hwy::SetSupportedTargetsForTest(target);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }

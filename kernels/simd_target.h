@@ -4,8 +4,8 @@
 
 namespace vantage::kernels {
 
-/// Instruction sets this build has kernels for, whatever the processor, as a bit mask of Highway
-/// targets.
+/// Instruction sets this build has kernels for, independent of the processor, as a bit mask of
+/// Highway targets.
 long long built_targets();
 
 /// Instruction sets this build has kernels for and this processor can run, best first, as a bit
@@ -13,10 +13,10 @@ long long built_targets();
 /// thread while no kernel runs.
 long long available_targets();
 
-/// The one that kernels run on.
+/// The target that kernels run on.
 long long target_in_use();
 
-/// Makes kernels run on `target`, one bit of available_targets(); 0 = the best again.
+/// Makes kernels run on `target`, one bit of available_targets(). 0 restores the best one.
 void force_target(long long target);
 
 /// Highway's name of one target: "AVX3", "AVX2", "SSE4", "SSSE3", "SSE2", …

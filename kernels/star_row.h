@@ -5,11 +5,11 @@
 namespace vantage::kernels {
 
 /// One row of a simultaneous (Jacobi) iteration on a disparity space: every cell and its four
-/// neighbours of equal disparity. Rows are `[column][lane]`, columns aligned to kLaneMultiple
+/// neighbours of equal disparity. Rows are `[column][lane]`; columns are aligned to kLaneMultiple
 /// cells.
 ///
-/// A missing neighbour at the border of the image is replaced by whatever column is neutral for the
-/// iteration: up_pitch and down_pitch are 0 where a whole row is replaced by one column.
+/// A neighbour outside the image is replaced by a column that is neutral for the iteration.
+/// up_pitch and down_pitch are 0 where one such column replaces a whole row.
 template <typename Cell>
 struct CellStarRow {
   const Cell* centre = nullptr;
@@ -17,11 +17,11 @@ struct CellStarRow {
   const Cell* down = nullptr;
   const Cell* left_of_first = nullptr;  ///< left neighbour of the first column
   const Cell* right_of_last = nullptr;  ///< right neighbour of the last column
-  std::ptrdiff_t pitch = 0;             ///< cells from column to column of the input
+  std::ptrdiff_t pitch = 0;             ///< cells between columns of the input
   std::ptrdiff_t up_pitch = 0;
   std::ptrdiff_t down_pitch = 0;
-  /// The disparity space before the first iteration, `lanes` cells a column; for iterations that
-  /// look at it again.
+  /// The disparity space before the first iteration, `lanes` cells per column; for iterations that
+  /// read it.
   const Cell* source = nullptr;
   int columns = 0;
   int lanes = 0;  ///< a multiple of kLaneMultiple

@@ -11,8 +11,8 @@ double state_of(const BayesRow& row, double smoothed) {
   return row.state == BayesState::kSmoothed ? smoothed : row.mu * std::log2(smoothed);
 }
 
-/// What the taps of both directions make of the candidates around the i-th one; 0 where that is
-/// none.
+/// Weighted sum over the candidates around candidate i with the taps of both directions; candidates
+/// outside the plane count 0.
 template <class Probability>
 double plane_sum(const BayesRow& row, int i, Probability p) {
   const CandidatePlane& plane = row.plane;
@@ -27,7 +27,8 @@ double plane_sum(const BayesRow& row, int i, Probability p) {
   return sum;
 }
 
-/// p(lane) = p0 · weight(x, lane), normalised, smoothed along the column, written as the state.
+/// p(lane) = p0 · weight(x, lane), normalised, smoothed along the column and stored as the row's
+/// state.
 template <class Weight>
 void make_column(const BayesRow& row, int x, Weight weight) {
   const float* const source = row.star.source + x * row.source_pitch;
@@ -90,7 +91,7 @@ void bayes_general_row_ref(const BayesRow& row) {
            weight(row.weights.below, x) * star.down[x * star.down_pitch + i];
   };
   all_columns(row, [&](int x, int i) {
-    // A factor that cancels, so that not all of a column can underflow.
+    // Subtracted from all lanes (it cancels), so that a column cannot underflow completely.
     double largest = sum(x, 0);
     for (int k = 1; k < star.lanes; ++k) {
       largest = std::max(largest, sum(x, k));

@@ -18,7 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// p0 · sqrt(product of the star), times a factor that is the same for all lanes.
+// p0 · sqrt(product of the star), up to a factor common to all lanes.
 HWY_INLINE FloatVec half_weight(const StarColumns<float>& at, int lane) {
   const FloatTag df;
   const auto load = [&](const float* cells) HWY_ATTR { return hn::Load(df, cells + lane); };
@@ -28,8 +28,8 @@ HWY_INLINE FloatVec half_weight(const StarColumns<float>& at, int lane) {
 #if HWY_TARGET == HWY_SCALAR
   return hn::Mul(load(at.source), hn::Sqrt(product));
 #else
-  // One Newton step on the estimate y of 1/sqrt(x): 2 sqrt(x) = (x·y) (3 − (x·y)·y). Square roots
-  // themselves take 10 to 12 cycles a vector, all of this 5.
+  // One Newton step on the estimate y of 1/sqrt(x): 2 sqrt(x) = (x·y) (3 − (x·y)·y). This takes 5
+  // cycles per vector; a square root takes 10 to 12.
   const FloatVec estimate = hn::ApproximateReciprocalSqrt(product);
   const FloatVec root = hn::Mul(product, estimate);
   const FloatVec correction = hn::NegMulAdd(root, estimate, hn::Set(df, 3.0F));
@@ -37,7 +37,7 @@ HWY_INLINE FloatVec half_weight(const StarColumns<float>& at, int lane) {
 #endif
 }
 
-// Columns of kBlocks · 16 lanes whose prior has no neighbours: all in registers.
+// Columns of kBlocks · 16 lanes whose prior has one tap: everything stays in registers.
 template <int kBlocks>
 HWY_INLINE void half_column_in_registers(const StarColumns<float>& at, float scale, float floor,
                                          float* output) {
@@ -67,12 +67,12 @@ HWY_INLINE void half_row_in_registers(const BayesRow& row) {
                        HWY_ATTR { half_column_in_registers<kBlocks>(at, scale, floor, output); });
 }
 
-// Unnormalised probabilities of a few columns in memory, with zeros on both sides of each: there
-// are no candidates there. First all columns are made, then all are normalised: one column after
-// the other would wait for the sum over its lanes each time.
+// Unnormalised probabilities of a few columns in memory, with zeros on both sides of each column,
+// where there are no candidates. First all columns are computed, then all are normalised; one by
+// one, each column would wait for the sum over its lanes.
 //
-// kBlocks · kLaneMultiple lanes, so that loops over them are unrolled: with few lanes the loop
-// overhead would cost as much as the body. 0: any lanes.
+// Columns have kBlocks · kLaneMultiple lanes, so that loops are unrolled: with few lanes the loop
+// overhead would equal the cost of the body. kBlocks = 0: any number of lanes.
 template <int kBlocks>
 class WorkColumns {
  public:
@@ -88,7 +88,7 @@ class WorkColumns {
     }
   }
 
-  // Makes p = weight(columns)(lane) for all columns of the row and leaves the row's state.
+  // Computes p = weight(columns)(lane) for all columns of the row and stores the row's state.
   template <class Weight>
   HWY_INLINE void run(Weight weight) const {
     FloatVec normalise[kMostColumns];
@@ -108,7 +108,7 @@ class WorkColumns {
   }
 
  private:
-  static constexpr int kMostColumns = 8;  // of bayes_work_columns()
+  static constexpr int kMostColumns = 8;  // maximum of bayes_work_columns()
 
   void clear_margin(float* margin) const {
     for (int lane = 0; lane < margin_; lane += kFloatLanes) {
@@ -124,7 +124,7 @@ class WorkColumns {
     return kBlocks > 0 ? kBlocks * kLaneMultiple : row_.star.lanes;
   }
 
-  // Returns the factor that normalises the column.
+  // Returns the normalising factor of the column.
   template <class Weight>
   HWY_INLINE FloatVec make(const StarColumns<float>& at, Weight weight, float* p) const {
     const FloatTag df;
@@ -175,7 +175,7 @@ class WorkColumns {
     }
   }
 
-  // kRadius: of the prior, −1: any.
+  // kRadius: radius of the prior; −1 for any.
   template <int kRadius, class State>
   HWY_INLINE void smooth_with(const float* p, FloatVec normalise, float* output,
                               State state) const {
@@ -193,8 +193,7 @@ class WorkColumns {
     }
   }
 
-  // The states of a column whose candidates are displacements in two dimensions: smoothed along the
-  // horizontal ones, then along the vertical ones.
+  // States of a column of a two-dimensional search: smoothed horizontally, then vertically.
   HWY_NOINLINE void smooth_plane(const float* p, FloatVec normalise, float* output) const {
     const FloatTag df;
     const CandidatePlane& plane = row_.plane;
@@ -232,7 +231,7 @@ class WorkColumns {
             }
           }
         }
-        // What is stored behind the candidates of a run is overwritten by those of the next one.
+        // Values stored after a run's candidates are overwritten by the next run.
         hn::StoreU(state(hn::MulAdd(sum, normalise, floor)), df,
                    states + r * plane.row_candidates + lane);
       }
@@ -269,7 +268,7 @@ void bayes_start_row_simd(const BayesRow& row) {
 }
 
 void bayes_half_row_simd(const BayesRow& row) {
-  // Up to 64 lanes a column fits the registers of AVX-512 beside the rest.
+  // On AVX-512, columns of up to 64 lanes fit into registers.
   if (row.state == BayesState::kProbability ||
       (row.state == BayesState::kSmoothed && row.prior.radius == 0)) {
     switch (row.star.lanes / kLaneMultiple) {
@@ -296,7 +295,7 @@ void bayes_half_row_simd(const BayesRow& row) {
   });
 }
 
-// The sum of a star's states.
+// Sum of a star's states.
 struct StarSum {
   StarSum(const BayesRow& /*row*/, const StarColumns<float>& columns) : at(columns) {}
   HWY_INLINE FloatVec of(int lane) const {
@@ -309,7 +308,7 @@ struct StarSum {
   const StarColumns<float>& at;
 };
 
-// The same with a weight for each of the neighbours.
+// Same with a weight per neighbour.
 struct WeightedStarSum {
   WeightedStarSum(const BayesRow& row, const StarColumns<float>& columns)
       : at(columns),
@@ -332,8 +331,8 @@ struct WeightedStarSum {
   float down;
 };
 
-// The largest sum of a column, in every lane. Lanes that are no candidates have the state of p = 0,
-// which no candidate is below.
+// Maximum sum of a column, in every lane. Lanes that are not candidates have the state of p = 0; no
+// candidate is below it.
 template <class Sum>
 HWY_INLINE FloatVec largest_sum(const Sum& star, int lanes) {
   const FloatTag df;
@@ -347,12 +346,11 @@ HWY_INLINE FloatVec largest_sum(const Sum& star, int lanes) {
   return max_lanes(most);
 }
 
-// kScaled: the largest sum becomes 0, so that some lane stays above the underflow.
+// kScaled: shifts the maximum sum to 0, so that at least one lane does not underflow.
 template <class Sum, bool kScaled>
 HWY_INLINE void general_columns(const BayesRow& row) {
   run_columns(row, [&row](const StarColumns<float>& at) HWY_ATTR {
-    // Made where they stay: copies would go through memory, in pieces of another size than they are
-    // loaded in.
+    // Constructed in place: copies would go through memory, stored and loaded in different sizes.
     return [star = Sum(row, at), largest = kScaled ? largest_sum(Sum(row, at), row.star.lanes)
                                                    : hn::Zero(FloatTag())](int lane) HWY_ATTR {
       FloatVec exponent = star.of(lane);

@@ -1,6 +1,6 @@
-// Powers and logarithms of Bayesian diffusion for vectors, in fewer steps than exp_log-inl.h takes
-// and with fused operations where the instruction set has them; included by dispatched files, once
-// per target. Both polynomials are minimax fits made for these functions.
+// Powers and logarithms of Bayesian diffusion for vectors. They take fewer steps than exp_log-inl.h
+// and use fused operations where available. Included once per target by dispatched files. Both
+// polynomials are minimax fits for these functions.
 
 #if defined(VANTAGE_KERNELS_BAYES_STEP_POWERS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VANTAGE_KERNELS_BAYES_STEP_POWERS_INL_H_
@@ -21,8 +21,8 @@ namespace vantage::kernels::HWY_NAMESPACE {
 
 using PowerBits = hwy::HWY_NAMESPACE::RebindToSigned<FloatTag>;
 
-// 2^exponent, relative error below 3.2e-6, for exponents up to 0, which may be exceeded by
-// rounding. kClamped: those below kLeastExponent count as that; else there must be none.
+// 2^exponent, relative error below 3.2e-6, for exponents ≤ 0 (or above by rounding only). kClamped:
+// exponents below kLeastExponent are clamped to it; otherwise there must be none.
 template <bool kClamped>
 HWY_INLINE FloatVec power_of_two(FloatVec exponent) {
   namespace hn = hwy::HWY_NAMESPACE;
@@ -42,7 +42,7 @@ HWY_INLINE FloatVec power_of_two(FloatVec exponent) {
       df, hn::Add(hn::BitCast(d32, power), hn::ShiftLeft<23>(hn::BitCast(d32, shifted))));
 }
 
-// factor · log₂ of normal numbers; error below |factor| · 5e-7 · max(1, |log₂|).
+// factor · log₂ of normal floats; error below |factor| · 5e-7 · max(1, |log₂|).
 class ScaledLogarithm {
  public:
   explicit ScaledLogarithm(float factor) {
@@ -50,7 +50,7 @@ class ScaledLogarithm {
     for (int k = 0; k < kTerms; ++k) {
       terms_[k] = hn::Set(FloatTag(), factor * kPolynomial[k]);
     }
-    // Of exponents that are still in their place among the bits.
+    // For exponents left in place among the bits of the float.
     exponent_ = hn::Set(FloatTag(), factor * 0x1p-23F);
   }
 

@@ -14,7 +14,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 #if HWY_TARGET == HWY_SCALAR
-// Has no vector of four lanes to hold the taps.
+// HWY_SCALAR has no four-lane vector to hold the taps.
 template <typename T>
 void remap_any(const RemapRow<T>& row, T* result) {
   remap_bicubic_row_ref(row, result);
@@ -22,16 +22,16 @@ void remap_any(const RemapRow<T>& row, T* result) {
 #else
 namespace hn = hwy::HWY_NAMESPACE;
 
-// What the steps hand on. All of it stays in the level 1 cache.
+// Intermediate results between the steps. All of it stays in the level 1 cache.
 struct Block {
   TapSums sums;
   std::int32_t column[kTapBlock];   // of the tap left of the position
   std::int32_t line[kTapBlock];     // of the tap above it
-  std::int32_t is_seen[kTapBlock];  // other than 0: the position is in the image
+  std::int32_t is_seen[kTapBlock];  // non-zero: the position is inside the image
 };
 
-// Taps and weights of `count` pixels from `begin`. Returns whether all their taps lie in the image,
-// with `spare` columns to the right of them.
+// Taps and weights of `count` pixels starting at `begin`. Returns whether all their taps lie inside
+// the image with `spare` more columns to their right.
 template <class D, typename T>
 HWY_INLINE bool locate(D d, const RemapRow<T>& row, int begin, int first, int count, int spare,
                        Block& block) {
@@ -65,8 +65,8 @@ HWY_INLINE bool locate(D d, const RemapRow<T>& row, int begin, int first, int co
   return hn::AllTrue(d, all_within);
 }
 
-// Sums down the taps of pixel i where they may lie outside: they are gathered first, each with the
-// nearest pixel's value.
+// Sums over the lines for pixel i where taps may lie outside the image: gathers them first,
+// replacing those outside by the nearest pixel.
 template <int kChannels, typename T>
 HWY_NOINLINE void sum_down_at_border(const RemapRow<T>& row, int i, Block& block) {
   T taps[4 * kTapLanes] = {};
@@ -95,7 +95,7 @@ HWY_INLINE void store_values(D d, hn::VFromD<D> sum, T* values) {
   }
 }
 
-// Values of whole vectors of grey pixels.
+// Stores whole vectors of grey pixels.
 template <class D, typename T>
 HWY_INLINE void store_grey(D d, const TapSums& sums, int first, int count, T* values) {
   const int step = static_cast<int>(hn::Lanes(d));
@@ -104,7 +104,7 @@ HWY_INLINE void store_grey(D d, const TapSums& sums, int first, int count, T* va
   }
 }
 
-// Of three channels the fourth value is the next pixel's first, which is written after it.
+// With three channels the fourth value falls on the next pixel, which is written afterwards.
 template <int kChannels, typename T>
 HWY_INLINE void store_colour(const TapSums& sums, int count, T* values) {
   const hn::FixedTag<float, 4> d;

@@ -22,7 +22,7 @@ void symmetric_sum_ref(const SymmetricSum& sum, float* output) {
 
 namespace {
 
-// One lane of a cascade; each function is the row at column x after one more filter.
+// One lane of a cascade. Each function returns the row at column x after one more filter.
 struct Lane {
   const BoxCascade& cascade;
   std::ptrdiff_t lane;

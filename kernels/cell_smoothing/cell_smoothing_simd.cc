@@ -17,7 +17,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::ScalableTag<float>;
 using Vec = hn::VFromD<Tag>;
 
-// kVectors vectors of the sum.
+// Computes kVectors vectors of the sum.
 template <int kVectors>
 HWY_INLINE void sum_block(const SymmetricSum& sum, std::ptrdiff_t first, float* output) {
   const Tag d;
@@ -67,9 +67,8 @@ void sum_runs(const SymmetricSum& sum, float* output) {
   }
 }
 
-// The four boxes along a row, column by column: what is kept of the columns before. A box of three
-// is the sum of the two columns before plus the new one; a box of five is the sum of the new two
-// and the three before them.
+// State of the four boxes along a row, column by column. A box of three is the sum of the previous
+// two columns and the new one; a box of five is the sum of the newest two and the previous three.
 class BoxesAlong {
  public:
   HWY_INLINE BoxesAlong()
@@ -77,7 +76,7 @@ class BoxesAlong {
         two_before_(before_),
         three_before_(before_),
         three_2_before_(before_) {}
-  // The result of the column kRadius before `cell`, once 2 · kRadius columns went in.
+  // Returns the result kRadius columns before `cell`, once 2 · kRadius columns were added.
   HWY_INLINE Vec add(Vec cell) {
     const Vec third = third_.add(second_.add(first_.add(cell)));
     const Vec two = hn::Add(third, before_);
@@ -114,8 +113,8 @@ class BoxesAlong {
   Vec three_2_before_;
 };
 
-// A vector of neighbouring lanes over all columns. down(k) is that of column input_begin + k after
-// the sum over rows.
+// Processes one vector of neighbouring lanes over all columns. down(k) is the sum over rows at
+// column input_begin + k.
 template <typename Down>
 HWY_INLINE void cascade_lanes(const BoxCascade& cascade, const Down& down, float* output) {
   const Tag d;
@@ -143,13 +142,13 @@ HWY_INLINE void cascade_lanes(const BoxCascade& cascade, const Down& down, float
   }
 }
 
-// Both directions at once: what is summed down the rows stays in registers.
+// Both directions in one pass: sums over the rows stay in registers.
 HWY_INLINE void cascade_in_registers(const BoxCascade& cascade, float* output) {
   const Tag d;
   constexpr int kRadius = BoxCascade::kRadius;
   constexpr int step = static_cast<int>(hn::MaxLanes(d));
   const std::ptrdiff_t lanes = cascade.lanes;
-  // Constants after unrolling, so that they all stay in registers.
+  // Constants after unrolling, so that all stay in registers.
   Vec weights[kRadius];
 #pragma GCC unroll 5
   for (int k = 0; k < kRadius; ++k) {
@@ -170,7 +169,7 @@ HWY_INLINE void cascade_in_registers(const BoxCascade& cascade, float* output) {
             hn::Add(hn::LoadU(d, rows[kRadius - k] + cell), hn::LoadU(d, rows[kRadius + k] + cell));
         sum = hn::Add(sum, hn::Mul(weights[k], pair));
       }
-      return hn::Add(sum, hn::Add(hn::LoadU(d, rows[0] + cell),  // its weight is 1
+      return hn::Add(sum, hn::Add(hn::LoadU(d, rows[0] + cell),  // weight 1
                                   hn::LoadU(d, rows[2 * kRadius] + cell)));
     };
     cascade_lanes(cascade, down, output + lane);
@@ -180,7 +179,7 @@ HWY_INLINE void cascade_in_registers(const BoxCascade& cascade, float* output) {
 void cascade_row(const BoxCascade& cascade, float* work, float* output) {
   const Tag d;
   constexpr int step = static_cast<int>(hn::MaxLanes(d));
-  // Where a vector is a cache line and there are registers enough for both directions.
+  // Where a vector is a cache line and there are enough registers for both directions.
   if constexpr (step == kLaneMultiple) {
     const float* const* const rows_end = cascade.rows + 2 * BoxCascade::kRadius + 1;
     if (std::find(cascade.rows, rows_end, nullptr) == rows_end) {

@@ -14,7 +14,7 @@ const float* cells_of(const CellRow& row, int j) {
   return row.cells + static_cast<std::ptrdiff_t>(j) * row.geometry.lanes();
 }
 
-/// Adds neighbours until one sum is left.
+/// Adds pairs of neighbours until one sum is left.
 float pairwise_sum(float (&partial)[kLaneMultiple]) {
   for (int count = kLaneMultiple / 2; count > 0; count /= 2) {
     for (int k = 0; k < count; ++k) {

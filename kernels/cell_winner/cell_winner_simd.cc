@@ -22,17 +22,17 @@ using MaskF = decltype(hn::Eq(hn::Zero(TagF()), hn::Zero(TagF())));
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-// Places of lanes without any: beyond every candidate, exact as float and as integer.
+// Position for lanes without a match: beyond every candidate, exact as float and as integer.
 constexpr float kNowhere = 1 << 24;
 
-// 0, 1, … per lane. (Highway's Iota of floats goes through memory, value by value.)
+// 0, 1, … per lane. (Highway's Iota for floats goes through memory, value by value.)
 HWY_INLINE VecF cell_lane_numbers() {
   alignas(64) static constexpr float numbers[kLaneMultiple] = {0, 1, 2,  3,  4,  5,  6,  7,
                                                                8, 9, 10, 11, 12, 13, 14, 15};
   return hn::Load(TagF(), numbers);
 }
 
-// The candidates of a column, as lane numbers.
+// Candidates of a column, as lane numbers.
 struct LaneRange {
   VecF begin;
   VecF end;
@@ -41,7 +41,7 @@ struct LaneRange {
         end(hn::Set(TagF(), static_cast<float>(candidates.end))) {}
 };
 
-// What lies among the kStep lanes from `first` on: candidates only, or those of a range.
+// Tests which of the kStep lanes from `first` are candidates: all, or those in a range.
 struct EveryLane {
   HWY_INLINE EveryLane(const LaneRange& /*candidates*/, int /*first*/) {}
   [[nodiscard]] HWY_INLINE VecF cells_or(VecF cells, VecF /*other*/) const { return cells; }
@@ -62,14 +62,14 @@ class SomeLanes {
   MaskF is_candidate_;
 };
 
-// Cells as energies: probabilities are negated, so that the least is the best.
+// Cells as energies: probabilities are negated, so that the minimum is the best.
 template <bool kNegated>
 HWY_INLINE VecF energies(const float* cells) {
   const VecF v = hn::LoadU(TagF(), cells);
   return kNegated ? hn::Neg(v) : v;
 }
 
-// The least of each lane, and what the margin needs beside it.
+// Minimum per lane, and what the margin needs in addition.
 template <bool kNegated, bool kMargin>
 class Spread {
  public:
@@ -93,10 +93,10 @@ class Spread {
       least_ = hn::Min(least_, candidate);
     }
   }
-  // kStep values.
+  // Stores kStep values.
   HWY_INLINE void store_least(float* least) const { hn::Store(least_, TagF(), least); }
   HWY_INLINE void store_second(float* second) const { hn::Store(second_, TagF(), second); }
-  // kLaneMultiple values.
+  // Stores kLaneMultiple values.
   HWY_INLINE void store_sums(float* sums) const {
     for (int p = 0; p < kParts; ++p) {
       hn::Store(sum_[p], TagF(), sums + p * kStep);
@@ -109,13 +109,13 @@ class Spread {
   VecF sum_[kParts];
 };
 
-// Lane by lane, the first candidate whose energy is `wanted`. Without leaving early: where the
-// winner is, is as good as random, and a wrongly predicted branch costs more than all vectors.
+// Per lane, the first candidate whose energy is `wanted`. Does not stop early: the winner's
+// position is as good as random, and a mispredicted branch costs more than all vectors.
 template <bool kNegated>
 class Places {
  public:
   HWY_INLINE explicit Places(VecF wanted) : wanted_(wanted), first_(hn::Set(TagF(), kNowhere)) {}
-  // Lanes must come from the last to the first, so that the first place stays.
+  // Lanes must be added from last to first, so that the first position remains.
   template <class Lanes>
   HWY_INLINE void add(const float* cells, const LaneRange& range, int lane) {
     const TagF d;
@@ -138,7 +138,7 @@ class Places {
   VecF first_;
 };
 
-// Lane by lane, sums of e and e·t with e = 2^−t, t = scale · (E − Emin).
+// Per lane, sums of e and e·t with e = 2^−t, t = scale · (E − Emin).
 class Weights {
  public:
   HWY_INLINE Weights(float least, float scale)
@@ -150,21 +150,21 @@ class Weights {
   template <class Lanes>
   HWY_INLINE void add(const float* cells, const LaneRange& range, int lane) {
     const TagF d;
-    // What it leaves of e is nothing beside the winner's 1.
+    // At this limit e is negligible beside the winner's 1.
     const VecF most = hn::Set(d, -kLeastExponent);
 #pragma GCC unroll 4
     for (int p = 0; p < kParts; ++p) {
       const int first = lane + p * kStep;
       const VecF above = hn::Mul(scale_, hn::Sub(hn::LoadU(d, cells + first), least_));
       const Lanes counts(range, first);
-      // Before the exponential too: what else lanes hold need not be a number.
+      // Also masked before the exponential: other lanes may hold NaN.
       const VecF t = counts.cells_or(hn::Min(above, most), most);
       const VecF weight = counts.cells_or(exp2_of_negative(hn::Neg(t)), hn::Zero(d));
       sum_[p] = hn::Add(sum_[p], weight);
       weighted_[p] = hn::Add(weighted_[p], hn::Mul(weight, t));
     }
   }
-  // kLaneMultiple values each.
+  // Stores kLaneMultiple values each.
   HWY_INLINE void store(float* sums, float* weighted) const {
     for (int p = 0; p < kParts; ++p) {
       hn::Store(sum_[p], TagF(), sums + p * kStep);
@@ -179,8 +179,8 @@ class Weights {
   VecF weighted_[kParts];
 };
 
-// Shows `visitor` all lanes of a column. Where every candidate counts (kAll), only the last
-// kLaneMultiple lanes can hold others.
+// Passes all lanes of a column to `visitor`. Where every candidate counts (kAll), only the last
+// kLaneMultiple lanes can contain others.
 template <bool kAll, class Visitor>
 HWY_INLINE void visit_up(Visitor& visitor, const float* cells, const LaneRange& range, int lanes) {
   const int last = lanes - kLaneMultiple;
@@ -209,7 +209,7 @@ HWY_INLINE void visit_down(Visitor& visitor, const float* cells, const LaneRange
   }
 }
 
-// The first `columns` values of a vector.
+// Stores the first `columns` values of a vector.
 template <class D>
 HWY_INLINE void store_first(D d, hn::VFromD<D> v, int columns, hn::TFromD<D>* output) {
   if (columns == kStep) {
@@ -221,7 +221,7 @@ HWY_INLINE void store_first(D d, hn::VFromD<D> v, int columns, hn::TFromD<D>* ou
   std::copy_n(values, columns, output);
 }
 
-// Columns [begin, end) of a row, in all of which every candidate counts (kAll), or not.
+// Columns [begin, end) of a row. kAll: every candidate counts in all of them.
 template <bool kAll>
 class Stretch {
  public:
@@ -296,7 +296,7 @@ class Stretch {
       const VecF weighted = joined_lanes<Sum, kLaneMultiple>(lane_weighted);
       const VecF mean = hn::Mul(hn::Div(weighted, sum), hn::Set(d, kLn2));
       const VecF value = hn::Sub(hn::Zero(d), hn::Add(mean, log_of_normal(sum)));
-      // The winner alone contributes 1.
+      // The sum is at least 1 where there is a winner, which contributes 1.
       const auto none = hn::Lt(sum, hn::Set(d, 0.5F));
       store_first(d, hn::IfThenElse(none, hn::Set(d, kUnknown), hn::Min(value, hn::Zero(d))),
                   columns, output + j);

@@ -1,5 +1,5 @@
-// Reduces lane-by-lane results of cell columns, several columns together; included by dispatched
-// files, once per target.
+// Reduces per-lane results of several cell columns together. Included once per target by dispatched
+// files.
 
 #if defined(VANTAGE_KERNELS_LANE_TREES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VANTAGE_KERNELS_LANE_TREES_INL_H_
@@ -28,7 +28,8 @@ struct Minimum {
   static HWY_INLINE VecF joined(VecF a, VecF b) { return hwy::HWY_NAMESPACE::Min(a, b); }
 };
 
-// Every second lane of `low` and, behind them, of `high`, from the first on (even) or the second.
+// Every second lane of `low` followed by `high`, starting at the first lane (even) or the second
+// (odd).
 HWY_INLINE VecF even_lanes(VecF low, VecF high) {
 #if HWY_TARGET == HWY_SCALAR
   (void)high;
@@ -46,9 +47,9 @@ HWY_INLINE VecF odd_lanes(VecF low, VecF high) {
 #endif
 }
 
-// Joins neighbours among kCount vectors of values, until one vector is left. `values` holds kCount
-// values for each of kStep columns, column by column: lane k of the result is that of column k. The
-// tree over a column's values is the same for every kStep.
+// Joins neighbours among kCount vectors of values until one vector is left. `values` holds kCount
+// values for each of kStep columns, column by column; lane k of the result is the result of column
+// k. The tree over a column's values is the same for every kStep.
 template <class Operation, int kCount>
 HWY_INLINE VecF joined_lanes(const float* values) {
   if constexpr (kCount == 1) {
@@ -60,13 +61,13 @@ HWY_INLINE VecF joined_lanes(const float* values) {
   }
 }
 
-/// The smallest and the second smallest element of some values.
+/// The smallest and second smallest of some values.
 struct TwoLeast {
   VecF least;
   VecF second;
 };
 
-// The same of values that come as the two least of some values each.
+// Same for values that are given as pairs (smallest, second smallest).
 template <int kCount>
 HWY_INLINE TwoLeast joined_two_least(const float* least, const float* second) {
   namespace hn = hwy::HWY_NAMESPACE;

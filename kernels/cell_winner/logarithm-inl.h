@@ -1,5 +1,5 @@
-// Natural logarithm that is the same on every instruction set; included by dispatched files, once
-// per target.
+// Natural logarithm that is identical on every instruction set. Included once per target by
+// dispatched files.
 
 #if defined(VANTAGE_KERNELS_LOGARITHM_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VANTAGE_KERNELS_LOGARITHM_INL_H_
@@ -15,8 +15,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-// log x for positive normal doubles, to a few units of the last place. (Highway's own fuses
-// multiplications and additions where it can, and so differs between instruction sets.)
+// log x for positive normal doubles, accurate to a few units in the last place. (Highway's version
+// fuses multiplications and additions where it can, so it differs between instruction sets.)
 template <class D64>
 HWY_INLINE auto natural_logarithm(D64 d64, hwy::HWY_NAMESPACE::VFromD<D64> x) {
   namespace hn = hwy::HWY_NAMESPACE;

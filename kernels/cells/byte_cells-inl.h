@@ -1,4 +1,4 @@
-// Cells in vectors of bytes, one byte a cell; included by dispatched files, once per target.
+// Cells in vectors of bytes, one byte per cell. Included once per target by dispatched files.
 
 #if defined(VANTAGE_KERNELS_BYTE_CELLS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VANTAGE_KERNELS_BYTE_CELLS_INL_H_
@@ -16,9 +16,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-// Cells are made in vectors of bytes, one byte a cell, in `grouped` order: of the four float
-// vectors that the cells become, group g of four lanes of vector s is group s of 128-bit block g.
-// Interleaving bytes to words and words to floats then gives the lanes in order.
+// Cells are computed in vectors of bytes, one byte per cell, in `grouped` order: group g (four
+// lanes) of float vector s of the four result vectors is group s of 128-bit block g. Interleaving
+// bytes to words and words to floats then gives the lanes in order.
 
 template <class D8>
 using Tag16 = hwy::HWY_NAMESPACE::Repartition<std::uint16_t, D8>;
@@ -29,7 +29,7 @@ using TagFloat = hwy::HWY_NAMESPACE::Repartition<float, D8>;
 template <class D>
 using VecOf = hwy::HWY_NAMESPACE::VFromD<D>;
 
-// Bytes in lane order to grouped order.
+// Converts bytes from lane order to grouped order.
 template <class D8>
 HWY_INLINE VecOf<D8> grouped(D8 d, VecOf<D8> bytes) {
   namespace hn = hwy::HWY_NAMESPACE;
@@ -49,7 +49,7 @@ HWY_INLINE VecOf<D8> grouped(D8 d, VecOf<D8> bytes) {
   }
 }
 
-// The bits that are set in each byte.
+// Number of set bits in each byte.
 template <class D8>
 HWY_INLINE VecOf<D8> bits_of_bytes(D8 d, VecOf<D8> bytes) {
   namespace hn = hwy::HWY_NAMESPACE;

@@ -1,4 +1,4 @@
-// Vectors of energies in fixed point; included by dispatched files, once per target.
+// Vectors of fixed-point energies. Included once per target by dispatched files.
 
 #if defined(VANTAGE_KERNELS_CELLS_ENERGY_VECTORS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VANTAGE_KERNELS_CELLS_ENERGY_VECTORS_INL_H_
@@ -18,18 +18,18 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-// At most kLaneMultiple lanes: columns are whole vectors everywhere.
+// At most kLaneMultiple lanes, so that columns are always whole vectors.
 using EnergyTag = hwy::HWY_NAMESPACE::CappedTag<FixedEnergy, kLaneMultiple>;
 using EnergyVec = hwy::HWY_NAMESPACE::VFromD<EnergyTag>;
 inline constexpr int kEnergyLanes = static_cast<int>(hwy::HWY_NAMESPACE::MaxLanes(EnergyTag()));
 
-// The least lane, in every lane.
+// Minimum over the lanes, in every lane.
 template <class Vec>
 HWY_INLINE Vec least_of_lanes(Vec energies) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::DFromV<Vec> d;
-  // Energies are not negative: unsigned numbers, of which processors find the least in one step,
-  // eight at a time.
+  // Energies are not negative, so unsigned: processors find the minimum of eight unsigned words in
+  // one instruction.
   const hn::CappedTag<std::uint16_t, 8> d8;
   const hn::RebindToSigned<decltype(d8)> signed8;
   if constexpr (hn::MaxLanes(hn::DFromV<Vec>()) == 16) {

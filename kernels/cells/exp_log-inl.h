@@ -1,4 +1,4 @@
-// The functions of exp_log.h for vectors; included by dispatched files, once per target.
+// Vector form of exp_log.h. Included once per target by dispatched files.
 
 #if defined(VANTAGE_KERNELS_CELLS_EXP_LOG_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VANTAGE_KERNELS_CELLS_EXP_LOG_INL_H_
@@ -18,7 +18,7 @@ namespace vantage::kernels::HWY_NAMESPACE {
 
 using ExpLogVec = hwy::HWY_NAMESPACE::VFromD<hwy::HWY_NAMESPACE::ScalableTag<float>>;
 
-// a · b + c in two roundings, as exp_log.h does.
+// a · b + c with two roundings, as in exp_log.h.
 HWY_INLINE ExpLogVec multiply_add(ExpLogVec a, ExpLogVec b, ExpLogVec c) {
   namespace hn = hwy::HWY_NAMESPACE;
   return hn::Add(hn::Mul(a, b), c);

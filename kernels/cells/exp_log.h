@@ -6,8 +6,8 @@
 namespace vantage::kernels {
 
 // Exponential and logarithm of floats without fused multiply-add, so that every instruction set
-// gives the same bits; exp_log-inl.h holds the same steps for vectors. Both polynomials are minimax
-// fits made for these functions, evaluated in parts that do not wait for each other.
+// gives the same bits. exp_log-inl.h performs the same steps on vectors. Both polynomials are
+// minimax fits for these functions, evaluated in independent parts.
 
 /// 2^f = 1 + f · (…), f in [−½, ½]; relative error of the fit 9.2e-8.
 inline constexpr float kExp2Polynomial[] = {0.693146978F, 0.240222421F, 0.0555073374F,
@@ -16,16 +16,16 @@ inline constexpr float kExp2Polynomial[] = {0.693146978F, 0.240222421F, 0.055507
 inline constexpr float kLogPolynomial[] = {0.333341659F, -0.250016987F, 0.199548758F, -0.165644256F,
                                            0.14977992F,  -0.143790087F, 0.0867219099F};
 
-/// Exponents below this count as this: 2^−125 is still a normal number.
+/// Exponents are clamped to at least this: 2^−125 is still a normal float.
 inline constexpr float kLeastExponent = -125.0F;
-/// 1.5 · 2²³: adding it to a small number rounds that to an integer, found in the low bits.
+/// 1.5 · 2²³: adding it to a small number rounds that to an integer, which is then in the low bits.
 inline constexpr float kRoundToInteger = 12582912.0F;
-/// Bits of √½, from which the significands of logarithms are counted.
+/// Bits of √½, the lower end of the significand range of logarithms.
 inline constexpr std::int32_t kRootHalfBits = 0x3F3504F3;
 inline constexpr float kLn2 = 0.693147181F;
 inline constexpr float kLog2E = 1.44269504F;
 
-/// 2^exponent for exponents up to 0; relative error below 3e-7, exactly 1 at 0.
+/// 2^exponent for exponents ≤ 0; relative error below 3e-7, exactly 1 at 0.
 inline float exp2_of_negative(float exponent) {
   exponent = exponent > kLeastExponent ? exponent : kLeastExponent;
   const float shifted = exponent + kRoundToInteger;
@@ -39,7 +39,7 @@ inline float exp2_of_negative(float exponent) {
                               (std::bit_cast<std::uint32_t>(shifted) << 23U));
 }
 
-/// Natural logarithm of a normal number above 0; error below 2e-7 · max(1, |result|).
+/// Natural logarithm of a positive normal float; error below 2e-7 · max(1, |result|).
 inline float log_of_normal(float value) {
   const auto bits = std::bit_cast<std::int32_t>(value);
   const std::int32_t exponent = (bits - kRootHalfBits) >> 23;

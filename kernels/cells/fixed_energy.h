@@ -6,28 +6,28 @@
 
 namespace vantage::kernels {
 
-// Energies −ln p in fixed point, which vectors of 16-bit numbers add, weight and compare: the same
-// on every instruction set.
+// Energies −ln p in fixed point: added, weighted and compared as vectors of 16-bit integers,
+// identical on every instruction set.
 
-/// A whole number of steps, 0..kMostEnergy. Lanes that are no candidates hold kMostEnergy.
+/// Number of steps, 0..kMostEnergy. Lanes that are not candidates hold kMostEnergy.
 using FixedEnergy = std::int16_t;
 inline constexpr FixedEnergy kMostEnergy = 32767;
 
-/// A factor from 0 to nearly 1, in steps of 2^−15.
+/// Factor in [0, 1), in steps of 2^−15.
 using FixedWeight = std::int16_t;
 inline constexpr float kFixedWeightUnits = 32768;
 
-/// weight: 0..1; the even one of two that are equally near.
+/// weight: 0..1. Ties round to even.
 inline FixedWeight fixed_weight(float weight) {
   return static_cast<FixedWeight>(std::min(std::nearbyint(weight * kFixedWeightUnits), 32767.0F));
 }
 
-/// weight · energy, halves of a step rounded up.
+/// weight · energy; halves of a step round up.
 constexpr FixedEnergy weighted(FixedEnergy energy, FixedWeight weight) {
   return static_cast<FixedEnergy>((energy * weight + 0x4000) >> 15);
 }
 
-/// At most kMostEnergy.
+/// Clamped to kMostEnergy.
 constexpr FixedEnergy saturated_sum(FixedEnergy a, FixedEnergy b) {
   return static_cast<FixedEnergy>(std::min(a + b, static_cast<int>(kMostEnergy)));
 }

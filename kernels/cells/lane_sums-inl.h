@@ -1,5 +1,5 @@
-// Sums and extremes over the lanes of a cell column in an order that does not depend on the vector
-// length; included by dispatched files, once per target.
+// Sums, minima and maxima over the lanes of a cell column, in an order that does not depend on the
+// vector length. Included once per target by dispatched files.
 
 #if defined(VANTAGE_KERNELS_LANE_SUMS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VANTAGE_KERNELS_LANE_SUMS_INL_H_
@@ -23,7 +23,7 @@ inline constexpr int kFloatLanes = static_cast<int>(hwy::HWY_NAMESPACE::MaxLanes
 inline constexpr int kParts = kLaneMultiple / kFloatLanes;
 static_assert(kParts * kFloatLanes == kLaneMultiple);
 
-/// kLaneMultiple partial results, one for every lane of a block of a cell column.
+/// kLaneMultiple partial results, one per lane of a block of a cell column.
 struct LaneBlock16 {
   FloatVec part[kParts];
 
@@ -34,7 +34,7 @@ struct LaneBlock16 {
   }
 };
 
-/// The tree ((l + (l+8)) + (l+4)) + … over the lanes of `block`, in every lane.
+/// Reduces the lanes of `block` by the tree ((l + (l+8)) + (l+4)) + …; the result is in every lane.
 template <class Operation>
 HWY_INLINE FloatVec fold_lanes(LaneBlock16 block, Operation operation) {
   namespace hn = hwy::HWY_NAMESPACE;

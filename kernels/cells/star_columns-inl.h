@@ -1,5 +1,4 @@
-// The columns of a row of stars, one after the other; included by dispatched files, once per
-// target.
+// Iterates over the columns of a row of stars. Included once per target by dispatched files.
 
 #if defined(VANTAGE_KERNELS_CELLS_STAR_COLUMNS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VANTAGE_KERNELS_CELLS_STAR_COLUMNS_INL_H_
@@ -17,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-// The columns of a star.
+// Pointers to the columns of a star.
 template <typename Cell>
 struct StarColumns {
   const Cell* centre;
@@ -29,7 +28,7 @@ struct StarColumns {
   int x;
 };
 
-// Calls column(columns, output) for each column of the row, left to right. Row: has a star,
+// Calls column(columns, output) for each column of the row, left to right. Row must have star,
 // source_pitch, output and output_pitch.
 template <class Row, class Column>
 HWY_INLINE void each_column(const Row& row, Column column) {
