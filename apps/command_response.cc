@@ -8,6 +8,7 @@
 #include "apps/input_limits.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
+#include "apps/parameter_settings.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
 #include "apps/tell.h"

@@ -18,8 +18,6 @@ MatchOptions options_with_found_range();
 
 /// All of MatchOptions but `reference`.
 void add_match_settings(Settings& settings, MatchOptions& options);
-/// Those of them that say what gradient evidence is.
-void add_gradient_settings(Settings& settings, MethodOverrides& parameters);
 void add_reference_setting(Settings& settings, MatchOptions& options);
 
 /// What a report shows: the values of `settings` and, under `resolved`, those of

@@ -32,9 +32,9 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
   constexpr Limits kSize = {[](double v) { return v >= 0; }, "a number of pixels, at least 0"};
 
   visit(Field{"edge-snapping", kRadius}, options.edge_snapping_px...);
-  // One option sets two fields: a number, or no check.
-  visit(Field{"cross-check"}, options.cross_check...);
+  // One option sets two fields, the number first: a number, or no check.
   visit(Field{"cross-check", kAgreement}, options.cross_check_px...);
+  visit(Field{"cross-check"}, options.cross_check...);
   visit(Field{"cross-check-level", {is_within<0, 9>, "a level from 0 to 9"}},
         options.cross_check_level...);
   visit(Field{"confidence-threshold", kThreshold}, options.confidence_threshold...);

@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <set>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "engine/build_info.h"
+#include "engine/matching/options/method_fields.h"
 
 namespace vantage {
 namespace tuning_key_test {
@@ -115,6 +119,75 @@ TEST_F(TuningKeyTest, DifferentWorkHasDifferentKeys) {
   add(key());
   execution_.binding = scheduler::ThreadBinding::kCores;
   add(key());
+}
+
+/// A value of another class of work, if any.
+template <typename T>
+T other_value(T value) {
+  if constexpr (std::is_same_v<T, bool>) {
+    return !value;
+  } else if constexpr (std::is_enum_v<T>) {
+    return static_cast<T>(static_cast<int>(value) == 0 ? 1 : 0);
+  } else {
+    return static_cast<T>(value * 4 + 1);
+  }
+}
+
+// A field that is added is part of the key, or stands here as one that leaves the work of a cell as
+// it is.
+TEST_F(TuningKeyTest, HasEveryFieldThatChangesTheWork) {
+  const std::set<std::string_view> same_work = {"truncation",
+                                                "sigma-measurement",
+                                                "epsilon-measurement",
+                                                "sigma-census",
+                                                "sigma-gradient",
+                                                "alpha",
+                                                "norm",
+                                                "gradient",
+                                                "prefilter",
+                                                "border",
+                                                "lambda",
+                                                "beta",
+                                                "certainty",
+                                                "mu",
+                                                "sigma-prior",
+                                                "epsilon-prior",
+                                                "prior-growth",
+                                                "level-weight",
+                                                "edge-weight",
+                                                "edge-contrast",
+                                                "subpixel"};
+  std::set<std::string_view> options;
+  std::set<std::string_view> in_key;
+  for (const bool has_levels : {false, true}) {
+    for (const MatchMethod method :
+         {MatchMethod::kSsd, MatchMethod::kGradient, MatchMethod::kBayes}) {
+      match_.method = method;
+      match_.parameters = {};
+      if (has_levels) {
+        match_.parameters.cost = MatchCost::kRayCensus;
+        match_.parameters.levels = 3;
+        match_.parameters.candidate_blocks = 2;
+        match_.parameters.prior_smoothing = PriorSmoothing::kMaximum;
+      }
+      const MethodParameters before = match_.resolved();
+      const TuningKey key_before = key();
+      visit_fields(
+          [&](const MethodField& field, const auto& value, auto& override_value) {
+            const auto unchanged = override_value;
+            override_value = other_value(value);
+            options.insert(field.option);
+            if (key() != key_before) {
+              in_key.insert(field.option);
+            }
+            override_value = unchanged;
+          },
+          before, match_.parameters);
+    }
+  }
+  for (const std::string_view option : options) {
+    EXPECT_NE(in_key.contains(option), same_work.contains(option)) << option;
+  }
 }
 
 TEST_F(TuningKeyTest, HasTextForEveryMethodAndSize) {

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "apps/settings.h"
+#include "engine/matching/options/match_options.h"
+
+namespace vantage::apps {
+
+/// An option for each field of MethodParameters, in groups.
+void add_method_parameters(Settings& settings, MethodOverrides& parameters);
+/// Those of them that only the cost gradient reads, in the present group.
+void add_gradient_settings(Settings& settings, MethodOverrides& parameters);
+/// An option for each field of RefinementOptions, in the present group.
+void add_refinement_options(Settings& settings, RefinementOverrides& refinement);
+
+}  // namespace vantage::apps
