@@ -15,14 +15,14 @@
 
 namespace vantage {
 
-/// The algorithms that Figs. 6.10, 6.16 and 6.17 compare.
+/// The algorithms compared in Figs. 6.10, 6.16 and 6.17.
 enum class ExperimentMethod {
-  kSsd,                   ///< windows of 5×5
+  kSsd,                   ///< 5×5 windows
   kDiffusion,             ///< (6.7)
   kMembrane,              ///< β = 0.5
   kLocalStoppingMargin,   ///< certainty (6.13)
   kLocalStoppingEntropy,  ///< certainty (6.15)
-  kBayes,                 ///< εP .01, σP .1, εM .1, σM by the texture
+  kBayes,                 ///< εP .01, σP .1, εM .1, σM depending on the texture
 };
 std::string_view experiment_method_name(ExperimentMethod method);
 
@@ -40,7 +40,7 @@ inline constexpr std::array<ExperimentMethod, 4> kIterationMethods = {
 struct BookExperimentOptions {
   std::vector<std::string> pairs = {kBookPairNames.begin(), kBookPairNames.end()};
   int size_px = 100;    ///< width and height, 16..4096
-  int iterations = 10;  ///< of the comparison against noise, 0..10000
+  int iterations = 10;  ///< in the comparison against noise, 0..10000
   std::uint64_t seed = 1;
 
   /// Throws UsageError naming the field, its value and its limit.
@@ -53,26 +53,26 @@ struct ExperimentRun {
   double noise_sigma = 0;
   ExperimentMethod method = ExperimentMethod::kSsd;
   int iterations = 0;
-  /// Errors of the raw map over the pixels of the reference image that are not occluded.
+  /// Errors of the raw map over the non-occluded pixels of the reference image.
   DisparityScores scores;
   DisparityMap map;  ///< on the grid of the reference image
 };
 
-/// How a series of runs is followed: `on_run` after each run, from any thread but never
-/// concurrently; raising `stop` begins no further run.
+/// Callbacks during a series of runs: `on_run` is called after each run, from any thread but never
+/// concurrently; setting `stop` prevents further runs from starting.
 struct ExperimentWatch {
   std::function<void(int done, int total)> on_run = {};
   const std::atomic<bool>* stop = nullptr;
 };
 
 /// All pairs × noise levels × kNoiseMethods, in this order (Figs. 6.16, 6.17). Empty when stopped.
-/// Runs are spread over the threads; identical for any `execution`. Throws UsageError for invalid
-/// options.
+/// Runs are distributed over the threads; identical for any `execution`. Throws UsageError for
+/// invalid options.
 std::vector<ExperimentRun> run_noise_experiment(const BookExperimentOptions& options,
                                                 Execution& execution, const ExperimentWatch& watch);
 
 /// kIterationMethods × kExperimentIterations on the pair ramp-square without noise (Fig. 6.10).
-/// `pairs` and `iterations` of the options are not used. Otherwise as above.
+/// `pairs` and `iterations` of the options are ignored. Otherwise as above.
 std::vector<ExperimentRun> run_iteration_experiment(const BookExperimentOptions& options,
                                                     Execution& execution,
                                                     const ExperimentWatch& watch);

@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-// Displacements of one task.
+// Displacements per task.
 constexpr int kTaskDisplacements = 32;
 
 void require_range(const char* field, DisparityRange range) {
@@ -25,7 +25,7 @@ void require_range(const char* field, DisparityRange range) {
   }
 }
 
-// What one task adds up while it is in the cache: a tile, for so many displacements.
+// Tile that a task sums while it is in the cache, for all its displacements.
 constexpr int kTileColumns = 256;
 constexpr int kTileRows = 16;
 
@@ -60,8 +60,8 @@ PixelBlock with_partner(const PixelBlock& block, Displacement displacement, int 
           std::min(block.y_end, height + displacement.y_px)};
 }
 
-/// Adds the evidence of a block for neighbouring displacements to `sums`, in an order that is the
-/// same for each of them.
+/// Adds the evidence of a block for neighbouring displacements to `sums`, in the same order for
+/// each of them.
 void add_evidence(const EvidencePair& pair, const PixelBlock& block,
                   std::span<const Displacement> displacements, double* sums) {
   for (int y = block.y_begin; y < block.y_end; y += kTileRows) {

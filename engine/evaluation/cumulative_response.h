@@ -19,10 +19,11 @@ inline constexpr std::array<std::string_view, 5> kImagePartNames = {
     "whole", "top-left", "top-right", "bottom-left", "bottom-right"};
 
 struct CumulativeResponseOptions {
-  /// Displacements left − right; together at most kMaxDisplacements. Beyond the image they count 0.
+  /// Displacements left − right; at most kMaxDisplacements in total. Outside the image the sum is
+  /// 0.
   DisparityRange displacements_x;
   DisparityRange displacements_y = {0, 0};
-  /// Their alpha, norm, gradient and prefilter.
+  /// Uses alpha, norm, gradient and prefilter.
   MethodParameters parameters = book_parameters(MatchMethod::kGradient);
 
   static constexpr int kMaxDisplacements = 1 << 20;
@@ -36,15 +37,15 @@ struct CumulativeResponse {
   DisparityRange displacements_y;
   int width_px = 0;  ///< of the images
   int height_px = 0;
-  /// By ImagePart; rows of equal y displacement, one after the other, beginning at the least.
+  /// By ImagePart; rows of equal y displacement, contiguous, starting at the smallest.
   std::array<std::vector<double>, 5> surfaces;
 
   [[nodiscard]] double at(ImagePart part, Displacement displacement) const;
-  /// Pixels of a part.
+  /// Number of pixels of a part.
   [[nodiscard]] double pixels(ImagePart part) const;
-  /// Where the surface is largest, the first of equals in its order, among the displacements for
-  /// which at least half of the part's pixels have a partner: sums over fewer pixels are small
-  /// whatever they show. None where there is no such displacement, or all of them have equal sums.
+  /// Maximum of the surface, ties going to the first, among the displacements for which at least
+  /// half of the part's pixels have a partner, because sums over fewer pixels are always small.
+  /// None if there is no such displacement, or all have equal sums.
   [[nodiscard]] std::optional<Displacement> dominant(ImagePart part) const;
 };
 

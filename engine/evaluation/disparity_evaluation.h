@@ -7,33 +7,33 @@
 
 namespace vantage {
 
-/// Which pixels of a disparity map are judged.
+/// Selection of the pixels to evaluate.
 struct DisparityEvaluationOptions {
-  /// Of the maps' size; only pixels of value 255 count. Empty: all do.
+  /// Of the maps' size; only pixels of value 255 count. Empty: all pixels.
   std::optional<ImageView<const std::uint8_t>> mask = std::nullopt;
-  /// Rows and columns left out at each side of the image, ≥ 0.
+  /// Rows and columns excluded at each side of the image, ≥ 0.
   int ignore_border_px = 0;
 };
 
-/// How far a disparity map is from the truth. The *evaluated* pixels are those with finite truth,
-/// inside the mask and not in the ignored border; the *valid* ones are those of them whose
-/// estimate is finite.
+/// Errors of a disparity map against the truth. The *evaluated* pixels are those with finite truth,
+/// inside the mask and outside the ignored border; the *valid* ones are those of them with a finite
+/// estimate.
 struct DisparityScores {
   std::int64_t evaluated_pixels = 0;  ///< ≥ 1
   std::int64_t valid_pixels = 0;
   double coverage_percent = 0;  ///< 100 · valid / evaluated
 
-  // Percentage of the evaluated pixels whose error exceeds the threshold (strictly) or that have
-  // no valid estimate: leaving a pixel out never improves these.
+  // Percentage of the evaluated pixels whose error exceeds the threshold (strictly) or that have no
+  // valid estimate: omitting a pixel never improves these.
   double bad_0_5_percent = 0;
   double bad_1_percent = 0;
   double bad_2_percent = 0;
   double bad_4_percent = 0;
 
-  // Over the valid pixels alone, in pixels; NaN when there is none.
+  // Over the valid pixels only, in pixels; NaN when there is none.
   double average_px = 0;  ///< mean |error|
   double rms_px = 0;
-  // Smallest error that is not exceeded by 50, 90, 95 and 99 % of the valid pixels.
+  // Quantiles: smallest error that 50, 90, 95 and 99 % of the valid pixels do not exceed.
   double a50_px = 0;
   double a90_px = 0;
   double a95_px = 0;

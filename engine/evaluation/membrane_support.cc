@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kLeastBeta = 0.01;
 constexpr int kMostRadius = 256;
-/// Side of the torus: at least this, and so many times the support's radius.
+/// Side of the torus: at least this, and at least this multiple of the support's radius.
 constexpr int kLeastTorusSide = 128;
 constexpr int kTorusRadii = 4;
 

@@ -4,7 +4,7 @@
 
 namespace vantage {
 
-/// A function of whole offsets dx and dy, −radius..radius each.
+/// A function of integer offsets dx and dy, −radius..radius each.
 class SupportFunction {
  public:
   explicit SupportFunction(int radius);
@@ -24,13 +24,13 @@ class SupportFunction {
   std::vector<double> values_;
 };
 
-/// Where the membrane's iterations (6.9) converge to from an impulse: the inverse Fourier transform
-/// of β / (β + 4 − 2 cos ωx − 2 cos ωy) (6.12), on a torus far larger than the support.
-/// 0.01 ≤ β, 1 ≤ radius ≤ 256: UsageError otherwise. Thread rule: pure.
+/// Limit of the membrane's iterations (6.9) from an impulse: the inverse Fourier transform of β /
+/// (β + 4 − 2 cos ωx − 2 cos ωy) (6.12), on a torus much larger than the support. 0.01 ≤ β, 1 ≤
+/// radius ≤ 256: UsageError otherwise. Thread rule: pure.
 SupportFunction membrane_support(double beta, int radius);
 
-/// What n iterations of (6.9) make of an impulse, cell by cell, on a grid of that radius whose
-/// border cells miss neighbours. 0 < λ ≤ 1/(4 + β), iterations ≥ 0; else UsageError.
+/// Result of n iterations of (6.9) on an impulse, cell by cell, on a grid of that radius whose
+/// border cells lack neighbours. 0 < λ ≤ 1/(4 + β), iterations ≥ 0; else UsageError.
 SupportFunction membrane_impulse_response(double beta, double lambda, int iterations, int radius);
 
 /// Largest |a − b| over the offsets; equal radii.

@@ -21,7 +21,7 @@ constexpr double kC2 = (0.03 * kLevelRange) * (0.03 * kLevelRange);
 
 int colour_channels(const Photograph& photograph) { return photograph.channels() >= 3 ? 3 : 1; }
 
-// One row in grey levels: the colour channels interleaved, or their luma when one is asked for.
+// One row in grey levels: the colour channels interleaved, or their luma for one channel.
 void read_row(const Photograph& photograph, int y, int channels, std::vector<double>& levels) {
   std::visit(
       [&]<typename T>(const Image<T>& image) {
@@ -124,7 +124,7 @@ class WindowRow {
   }
 
  private:
-  // Windowed means of a, b, a², b², ab to the index of equation (13) of the 2004 paper.
+  // Equation (13) of the 2004 paper, from the windowed means of a, b, a², b², ab.
   static double similarity(const std::array<double, 5>& m) {
     const auto [a, b, aa, bb, ab] = m;
     const double covariance = ab - a * b;

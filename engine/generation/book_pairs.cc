@@ -23,7 +23,7 @@ constexpr double kGrassMean = 112;
 constexpr double kGrassDeviation = 22;
 constexpr int kSearchMarginPx = 3;
 
-// Streams of random numbers drawn from one seed. Textures take theirs from kTextureStream on.
+// Random streams of one seed. Textures use kTextureStream and the following ones.
 enum Stream : std::uint64_t { kLeftNoiseStream, kRightNoiseStream, kTextureStream };
 
 // A fronto-parallel rectangle, half-open, on the grid of the reference image.
@@ -37,7 +37,7 @@ int fraction_of(int size, double fraction) {
   return static_cast<int>(std::lround(size * fraction));
 }
 
-// Nearest first. The background comes last and has no end.
+// Nearest first. The background comes last and is unbounded.
 std::vector<Layer> make_layers(const BookPairOptions& options) {
   const int width = options.width_px;
   const int height = options.height_px;
@@ -64,8 +64,8 @@ std::vector<Layer> make_layers(const BookPairOptions& options) {
   return layers;
 }
 
-// Position x of the left (right) grid holds the point of a layer that is at x + shift on the grid
-// of the reference image.
+// Shift from a position on the reference grid to the position x of the same point of a layer on
+// `grid`.
 int shift_to_reference(const Layer& layer, Side grid, Side reference) {
   if (grid == reference) {
     return 0;
@@ -116,7 +116,7 @@ Mask occluded_pixels(const std::vector<Layer>& layers, const Image<std::uint8_t>
   return occluded;
 }
 
-// The infinite texture of one layer, cut to the columns that either image can show.
+// The infinite texture of one layer, cropped to the columns that either image can show.
 class Texture {
  public:
   Texture(const BookPairOptions& options, int first_x, int end_x, std::uint64_t stream)
@@ -135,8 +135,8 @@ class Texture {
   [[nodiscard]] double at(int x, int y) const { return values_.at(x - first_x_, y); }
 
  private:
-  // White noise under a small kernel that is longer along y, as blades are. The kernel's squares
-  // sum to one, so the variance is that of the white noise.
+  // White noise filtered by a small kernel that is elongated along y, like blades. The kernel's
+  // squares sum to one, so the variance is that of the white noise.
   void fill_with_grass(PortableRandom& random) {
     constexpr int kRadiusX = 1;
     constexpr int kRadiusY = 2;
@@ -177,8 +177,8 @@ struct Intensities {
   Image<float> right;
 };
 
-// The ramp has no texture of its own per layer: the reference image looks its values up in the
-// other one, where the ramp is unbroken.
+// The ramp has no separate texture per layer: the reference image samples the other one, where the
+// ramp is unbroken.
 Intensities make_ramp(const BookPairOptions& options, const std::vector<Layer>& layers,
                       const Image<std::uint8_t>& visible_in_reference) {
   const int step = direction_of(options.reference);
@@ -193,7 +193,7 @@ Intensities make_ramp(const BookPairOptions& options, const std::vector<Layer>& 
       last = std::max(last, partner_of(x, y));
     }
   }
-  // As steep as in the book where that stays within 0..255.
+  // As steep as in the book if that stays within 0..255.
   const double slope = std::min(kRampSlopePerPx, 255.0 / std::max(1, last - first));
   const double at_zero = 127.5 - slope * (first + last) / 2.0;
   const auto ramp = [&](int x) { return static_cast<float>(at_zero + slope * x); };

@@ -12,13 +12,13 @@
 namespace vantage {
 
 enum class BookPattern {
-  kRamp,        ///< rises by 2.5 grey levels per pixel along x, less where that leaves 0..255
+  kRamp,        ///< rises by 2.5 grey levels per pixel along x, or less to stay within 0..255
   kRandomDots,  ///< 64 or 192 with equal probability, one pixel per dot
   kGrass        ///< grass-like noise of standard deviation 22 about 112
 };
 
 enum class BookShape {
-  kSquare,  ///< a square before a background
+  kSquare,  ///< a square in front of a background
   kBars     ///< a rectangle above, and below it a bar displaced by more than twice its width
 };
 
@@ -26,17 +26,17 @@ enum class BookShape {
 /// experiments'.
 struct BookPairOptions {
   BookPattern pattern = BookPattern::kRandomDots;
-  BookShape shape = BookShape::kSquare;  ///< kBars does not go with kRamp: no unique match
+  BookShape shape = BookShape::kSquare;  ///< not kBars with kRamp: no unique match
   int width_px = 100;                    ///< 1..16384; shapes take fixed fractions of the image
   int height_px = 100;                   ///< 1..16384
   int background_disparity_px = 2;       ///< −4096..4096
-  /// Above the background's; default 6 (square) or 7 (bars).
+  /// Relative to the background's; default 6 (square) or 7 (bars).
   std::optional<int> front_disparity_px = std::nullopt;
-  /// Of the narrow bar, above the front's; default 16.
+  /// Of the narrow bar, relative to the front's; default 16.
   std::optional<int> narrow_disparity_px = std::nullopt;
   double noise_sigma = 0;     ///< grey levels, Gaussian, independent in both images; 0..255
-  bool float_pixels = false;  ///< float pixels without noise too (noise always gives them)
-  /// The image on whose grid the shapes are placed. For kRamp the other one is the unbroken ramp.
+  bool float_pixels = false;  ///< float pixels even without noise (noise always gives them)
+  /// The image whose grid the shapes are placed on. For kRamp the other one is the unbroken ramp.
   Side reference = Side::kLeft;
   std::uint64_t seed = 1;
 
@@ -46,14 +46,14 @@ struct BookPairOptions {
   [[nodiscard]] int narrow_disparity_or_default() const;
 };
 
-/// A grey pair with its truth. Float pixels are grey levels / 255, not rounded nor clipped, so that
-/// noise can take them out of 0..1.
+/// A grey pair with its truth. Float pixels are grey levels / 255, neither rounded nor clipped, so
+/// noise can take them outside 0..1.
 struct BookPair {
   Photograph left;
   Photograph right;
   DisparityMap left_disparity;  ///< known everywhere
   DisparityMap right_disparity;
-  Mask left_occluded;  ///< 255 where the partner is hidden in, or outside, the other image
+  Mask left_occluded;  ///< 255 where the partner is occluded in, or outside, the other image
   Mask right_occluded;
   DisparityRange search;  ///< 0..9 and 0..19 for the default pairs
 };
@@ -62,10 +62,10 @@ struct BookPair {
 inline constexpr std::array<std::string_view, 5> kBookPairNames = {
     "ramp-square", "rds-square", "real-square", "rds-bars", "real-bars"};
 
-/// The defaults of one pair by its name. Throws UsageError that lists the known names.
+/// The default options of a named pair. Throws UsageError that lists the known names.
 BookPairOptions book_pair_options(std::string_view name);
 
-/// Same options, same pictures, on every platform. Throws UsageError for invalid options.
+/// Equal options give equal pictures on every platform. Throws UsageError for invalid options.
 /// Thread rule: pure.
 BookPair make_book_pair(const BookPairOptions& options);
 

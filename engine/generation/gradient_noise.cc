@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-// The component of (x, y, z) along one of the twelve directions to the edges of a cube.
+// Dot product of (x, y, z) with one of the twelve directions to the edges of a cube.
 double along_gradient(unsigned hash, double x, double y, double z) {
   constexpr signed char kGradients[16][3] = {{1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0},
                                              {1, 0, 1}, {-1, 0, 1}, {1, 0, -1}, {-1, 0, -1},

@@ -5,9 +5,9 @@
 
 namespace vantage {
 
-/// Smooth noise in space, a random gradient at each integer lattice point (Perlin), repeating
-/// every 256 units. Mean 0, within about ±1, hardly any power above one cycle per unit.
-/// Thread rule: immutable.
+/// Smooth 3D noise with a random gradient at each integer lattice point (Perlin), with a period of
+/// 256 units. Mean 0, within about ±1, hardly any power above one cycle per unit. Thread rule:
+/// immutable.
 class GradientNoise {
  public:
   explicit GradientNoise(std::uint64_t seed);
@@ -16,7 +16,7 @@ class GradientNoise {
   [[nodiscard]] double at(double x, double y, double z) const;
 
  private:
-  std::array<std::uint8_t, 512> permutation_{};  // of 0..255, twice
+  std::array<std::uint8_t, 512> permutation_{};  // of 0..255, repeated
 };
 
 }  // namespace vantage

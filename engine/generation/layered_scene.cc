@@ -23,14 +23,14 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kMaxBaselines = 16;
-// A point is hidden when something is met before this share of the way to it; the rest is for the
-// rounding of the two rays.
+// A point is occluded if a surface is hit before this fraction of the distance to it; the rest
+// allows for rounding errors of the two rays.
 constexpr double kVisibleShare = 1 - 1e-7;
 
 // Rays and image positions of a camera.
 class RayCaster {
  public:
-  // Adding 0 leaves no −0: noise is seeded with the bits of the position.
+  // Adding 0 removes −0, because noise is seeded with the bits of the position.
   explicit RayCaster(const PosedCamera& camera)
       : camera_(camera), position_(camera.centre() + Vector3d::Zero()) {}
 
@@ -42,7 +42,7 @@ class RayCaster {
     const double u = (x_px - k(0, 2) - k(0, 1) * v) / k(0, 0);
     return {position_, camera_.rotation.transpose() * Vector3d(u, v, 1)};
   }
-  /// Right, down and forward of the camera.
+  /// Right, down and forward in the camera's frame.
   [[nodiscard]] Vector3d relative(const Vector3d& point) const {
     return camera_.rotation * (point - position_);
   }
@@ -65,7 +65,7 @@ struct Hit {
   int object = 0;
 };
 
-// Image rectangle outside of which a camera cannot see an object.
+// Image rectangle outside which a camera cannot see an object.
 struct Box {
   Vector2d low, high;
 
@@ -89,7 +89,7 @@ Box box_of(const Ball& ball, const RayCaster& camera) {
   return box;
 }
 
-// One camera before the scene at one time.
+// One camera and the scene at one time.
 class Shot {
  public:
   Shot(const std::vector<SceneObject>& objects, const PosedCamera& camera)
@@ -101,7 +101,7 @@ class Shot {
 
   [[nodiscard]] const RayCaster& camera() const { return camera_; }
 
-  /// `ray` begins at the camera and passes through the image position.
+  /// `ray` starts at the camera and passes through the image position.
   [[nodiscard]] Hit first_hit(const Ray& ray, double x_px, double y_px) const {
     Hit first;
     for (std::size_t i = 0; i < objects_.size(); ++i) {
@@ -116,7 +116,7 @@ class Shot {
     return first;
   }
 
-  /// In its frame and not hidden.
+  /// Inside its frame and not occluded.
   [[nodiscard]] bool sees(const Vector3d& point) const {
     const Vector3d relative = camera_.relative(point);
     const Vector2d position = camera_.project(relative);
@@ -219,7 +219,7 @@ SceneRendering LayeredScene::render(const PosedCamera& camera, int frame) const 
     const SceneObject& object = objects[static_cast<std::size_t>(hit.object)];
     const Vector3d colour =
         content_->texture.colour(object.palette, object.surface->detail(ray.at(hit.t)));
-    // A sample is as bright as a sensor can tell, like the pixels it makes up.
+    // A sample is clipped like a sensor's, as are the pixels.
     return Vector3d(colour.cwiseMax(0.0).cwiseMin(255.0));
   };
 

@@ -2,7 +2,7 @@
 
 namespace vantage {
 
-/// Longest side of a generated image.
+/// Maximum side of a generated image.
 inline constexpr int kMaxGeneratedSidePx = 16384;
 
 /// Throws UsageError, naming `field`, when `value` is not in [low, high] or is NaN.

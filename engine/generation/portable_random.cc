@@ -32,7 +32,7 @@ PortableRandom::PortableRandom(std::uint64_t seed, std::uint64_t stream)
 
 double PortableRandom::uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
 
-// The polar method of Marsaglia: two normal numbers from a point inside the unit circle.
+// Marsaglia's polar method: two normal numbers from a point inside the unit circle.
 double PortableRandom::normal() {
   if (has_spare_) {
     has_spare_ = false;

@@ -5,12 +5,12 @@
 
 namespace vantage {
 
-/// Random numbers that are the same on every platform, which the distributions of the standard
-/// library are not: a standard engine, and transforms made of exactly rounded operations only.
-/// Thread rule: one thread per object.
+/// Random numbers that are identical on every platform, unlike the distributions of the standard
+/// library: a standard engine, and transforms that use exactly rounded operations only. Thread
+/// rule: one thread per object.
 class PortableRandom {
  public:
-  /// Streams of one seed are independent of each other.
+  /// Streams of one seed are independent.
   explicit PortableRandom(std::uint64_t seed, std::uint64_t stream = 0);
 
   /// Uniform in [0, 1).
@@ -24,7 +24,7 @@ class PortableRandom {
   bool has_spare_ = false;
 };
 
-/// A well-mixed function of `value`, for seeds and for hashes of lattice points.
+/// A bit mixer for seeds and for hashes of lattice points.
 [[nodiscard]] constexpr std::uint64_t mix_bits(std::uint64_t value) {
   value += 0x9E3779B97F4A7C15U;
   value = (value ^ (value >> 30)) * 0xBF58476D1CE4E5B9U;

@@ -13,8 +13,8 @@ using Eigen::AngleAxisd;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Positions are laid out in the centre view, in fractions of the image, so that any image size
-// shows the same scene; depths in fractions of the way from the far to the near disparity.
+// Positions are laid out in the centre view, in fractions of the image, so that images of any size
+// show the same scene; depths in fractions of the range from the far to the near disparity.
 class Composer {
  public:
   Composer(const LayeredSceneOptions& options, CentreView centre, int frame)
@@ -37,7 +37,7 @@ class Composer {
   }
 
  private:
-  // −1..1, once to and fro per cycle and `turns`.
+  // −1..1, `turns` oscillations per cycle.
   [[nodiscard]] double sway(int turns, double phase) const {
     return std::sin(turns * cycle_ + phase);
   }
@@ -45,7 +45,7 @@ class Composer {
   [[nodiscard]] Vector3d place(double u, double v, double nearness) const {
     return centre_.world(u * width_, v * height_, disparity(nearness));
   }
-  // Of something that looks `fraction` of the image's shorter side long.
+  // Length of an object that appears `fraction` of the image's shorter side long.
   [[nodiscard]] double length(double fraction, double nearness) const {
     return fraction * side_ / disparity(nearness);
   }
@@ -125,7 +125,7 @@ class Composer {
   }
 
   void add_room() {
-    // The floor meets the wall above its lower quarter and ends half-way to the near disparity.
+    // The floor meets the wall above its lower quarter and ends midway to the near disparity.
     constexpr double kHorizon = 0.14;
     const double at_wall = disparity(0) * 1.1;
     const double dv = (disparity(0.55) - at_wall) / ((0.5 - kHorizon) * height_);

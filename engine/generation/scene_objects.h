@@ -14,8 +14,8 @@ struct SceneObject {
   Palette palette;
 };
 
-/// The surfaces of the layered scene as they are at `frame`, always the same ones in the same
-/// order. `options` are valid. Thread rule: pure.
+/// The surfaces of the layered scene at `frame`, always the same ones in the same order. `options`
+/// are valid. Thread rule: pure.
 std::vector<SceneObject> compose_scene(const LayeredSceneOptions& options, CentreView centre,
                                        int frame);
 

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// 0 below −1, 1 above 1, smooth between.
+// 0 below −1, 1 above 1, smooth in between.
 double soft_step(double x) {
   const double t = std::clamp((x + 1) / 2, 0.0, 1.0);
   return t * t * (3 - 2 * t);
@@ -28,7 +28,7 @@ class WavyWall final : public Surface {
         wave_number_x_(2 * std::numbers::pi / (0.55 * far_z)),
         wave_number_y_(2 * std::numbers::pi / (0.7 * far_z)) {}
 
-  // Newton's method on depth minus wall, kept inside a bracket of the two extreme depths.
+  // Newton's method on depth minus wall, bracketed by the two extreme depths.
   [[nodiscard]] double intersect(const Ray& ray) const override {
     if (ray.direction.z() <= 0) {
       return kNoHit;
@@ -73,7 +73,7 @@ class WavyWall final : public Surface {
     double z, dz_dx, dz_dy;
   };
   static constexpr int kMaxIterations = 60;
-  // Newton's next step is the square of this one: below rounding.
+  // Newton's next step is about the square of this one: below rounding.
   static constexpr double kRelativeStep = 1e-9;
 
   [[nodiscard]] Wave wave_at(const Vector3d& point) const {
@@ -120,7 +120,7 @@ class Floor final : public Surface {
   }
 
  private:
-  // A chequerboard whose edges are as soft as a few pixels at the point's depth.
+  // A chequerboard with edges a few pixels wide at the point's depth.
   [[nodiscard]] double tiles(const Vector3d& point) const {
     const double softness = 2.5 * point.z() / centre_.focal_length_px;
     const auto wave = [&](double position, double stretch) {
@@ -128,7 +128,7 @@ class Floor final : public Surface {
       return std::clamp(std::sin(phase) * tile_size_ / (std::numbers::pi * softness * stretch),
                         -1.0, 1.0);
     };
-    // Depth is foreshortened, so edges across it need to be softer.
+    // Depth is foreshortened, so edges across it must be softer.
     return soft_step(wave(point.x(), 1) * wave(point.z(), 6));
   }
 

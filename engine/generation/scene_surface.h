@@ -8,7 +8,7 @@
 
 namespace vantage {
 
-/// Half a line: origin + t · direction, t > 0. The direction need not have unit length.
+/// A ray: origin + t · direction, t > 0. The direction need not have unit length.
 struct Ray {
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
@@ -18,18 +18,18 @@ struct Ray {
 
 inline constexpr double kNoHit = std::numeric_limits<double>::infinity();
 
-/// Encloses a surface; of infinite radius for surfaces without end.
+/// Bounding sphere of a surface; infinite radius for unbounded surfaces.
 struct Ball {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double radius = std::numeric_limits<double>::infinity();
 };
 
-/// What the colour of a surface point depends on.
+/// Properties of a surface point that determine its colour.
 struct SurfaceDetail {
-  Eigen::Vector3d normal;   ///< unit length, to the side that is lit
-  Eigen::Vector3d texture;  ///< moves with the surface; about in pixels of the centre view
-  double pattern = 0;       ///< 0..1, from one set of colours to another
-  double light = 1;         ///< share of the light that reaches the point, 0..1
+  Eigen::Vector3d normal;   ///< unit length, towards the lit side
+  Eigen::Vector3d texture;  ///< moves with the surface; unit: about a pixel of the centre view
+  double pattern = 0;       ///< 0..1, blends between two sets of colours
+  double light = 1;         ///< fraction of the light that reaches the point, 0..1
 };
 
 /// One opaque surface at one time, in world coordinates. Thread rule: immutable.
@@ -47,7 +47,7 @@ class Surface {
   [[nodiscard]] virtual Ball bounds() const { return {}; }
 };
 
-/// The camera half-way between left and right, where the scene is laid out: maps between its image
+/// The camera midway between left and right, in which the scene is laid out: maps between its image
 /// (pixels from the principal point, and disparity) and the world.
 struct CentreView {
   double focal_length_px = 1;
@@ -55,15 +55,15 @@ struct CentreView {
   [[nodiscard]] Eigen::Vector3d world(double u_px, double v_px, double disparity_px) const {
     return {0.5 + u_px / disparity_px, v_px / disparity_px, focal_length_px / disparity_px};
   }
-  /// Texture coordinates of unmoving surfaces: where the centre view sees the point.
+  /// Texture coordinates of static surfaces: position of the point in the centre view.
   [[nodiscard]] Eigen::Vector3d image_position(const Eigen::Vector3d& point) const {
     const double scale = focal_length_px / point.z();
     return {(point.x() - 0.5) * scale, point.y() * scale, 0};
   }
 };
 
-/// A wall across the view whose depth is a wave along x plus one along y. Nearest hits are found
-/// for rays within 45° of the Z axis or so; its extremes are far_z and near_z.
+/// A wall across the view whose depth is a wave along x plus one along y, with extremes far_z and
+/// near_z. Nearest hits are found for rays within about 45° of the Z axis.
 std::unique_ptr<Surface> make_wavy_wall(CentreView centre, double near_z, double far_z);
 
 /// The plane whose disparity in the centre view is d0 + du · u_px + dv · v_px, tiled, with a soft
@@ -71,11 +71,11 @@ std::unique_ptr<Surface> make_wavy_wall(CentreView centre, double near_z, double
 std::unique_ptr<Surface> make_floor(CentreView centre, double d0, double du, double dv,
                                     double tile_size, std::vector<Ball> shadows);
 
-/// `rotation` turns the texture with the sphere. texture_scale: texture units per world unit.
+/// `rotation` rotates the texture with the sphere. texture_scale: texture units per world unit.
 std::unique_ptr<Surface> make_sphere(const Ball& ball, const Eigen::Matrix3d& rotation,
                                      double texture_scale, double stripes);
 
-/// An upright cylinder without end about the axis through `centre`.
+/// An infinite upright cylinder whose axis passes through `centre`.
 std::unique_ptr<Surface> make_column(const Eigen::Vector3d& centre, double radius,
                                      double texture_scale);
 
@@ -83,7 +83,7 @@ enum class Outline { kRectangle, kStar, kFlower, kRing };
 
 /// A flat card: the points centre + s · half_width · X + t · half_height · Y, X and Y the first
 /// columns of `rotation`, with (s, t) inside the outline, which lies within [−1, 1]².
-/// `texture_origin` sets the textures of equal cards apart.
+/// `texture_origin` gives equal cards different textures.
 struct Card {
   Outline outline = Outline::kRectangle;
   Eigen::Vector3d centre;

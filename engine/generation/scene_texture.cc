@@ -17,7 +17,7 @@ constexpr double kCoarseLevels = 44;
 // Wavelengths of the noise that mixes the two colours of a set.
 constexpr double kMixWavelength = 48;
 constexpr double kWideMixWavelength = 104;
-// How much the fine noise leans to yellow and the medium noise to blue.
+// How much the fine noise tends to yellow and the medium noise to blue.
 constexpr double kTint = 0.22;
 
 constexpr double kAmbientLight = 0.5;

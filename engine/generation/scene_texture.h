@@ -14,13 +14,13 @@ struct Palette {
   Eigen::Vector3d a, b, c, d;
 };
 
-/// Colours of surface points: matte surfaces under one fixed light, with noise between 5 and 100
-/// pixels of wavelength so that every neighbourhood can be matched. Thread rule: immutable.
+/// Colours of surface points: matte surfaces under one fixed light, with noise of wavelengths from
+/// 5 to 100 pixels so that every neighbourhood can be matched. Thread rule: immutable.
 class SceneTexture {
  public:
   explicit SceneTexture(std::uint64_t seed) : noise_(seed) {}
 
-  /// RGB in grey levels, not clipped. Does not depend on where the point is seen from.
+  /// RGB in grey levels, not clipped. Independent of the viewpoint.
   [[nodiscard]] Eigen::Vector3d colour(const Palette& palette, const SurfaceDetail& detail) const;
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMostSteps = 6;
 
-/// The least of 1, 2 and 5 times a power of ten that covers `span` in at most kMostSteps steps.
+/// The smallest of 1, 2 and 5 times a power of ten that covers `span` in at most kMostSteps steps.
 double round_step(double span) {
   const double power = std::pow(10, std::floor(std::log10(span / kMostSteps)));
   for (const double factor : {1.0, 2.0, 5.0}) {
@@ -57,7 +57,7 @@ double Axis::place(double value) const {
 }
 
 void Axis::make_linear_ticks(bool round_ends) {
-  // Where all values are equal, their size tells how wide a range is worth showing.
+  // If all values are equal, their magnitude determines a reasonable range.
   const double size = std::max(std::abs(begin_), std::abs(end_));
   if (end_ - begin_ <= 1e-12 * size || end_ == begin_) {
     const double half = size > 0 ? size / 2 : 0.5;
@@ -122,7 +122,7 @@ void draw_chart_frame(const ChartArea& area, const std::string& title, const Axi
     }
     shapes.emplace_back(StrokeShape{{{x, bottom}, {x, bottom + kTick}}, kInk, 1});
     const double half = text_width(tick.label, kTextSize) / 2;
-    if (x - half > last_label_end) {  // labels that would overlap are left out
+    if (x - half > last_label_end) {  // omits labels that would overlap
       shapes.emplace_back(
           TextShape{{x, bottom + kTick + kTextSize}, tick.label, kTextSize, Anchor::kMiddle, kInk});
       last_label_end = x + half + 2;
@@ -141,7 +141,7 @@ void draw_chart_frame(const ChartArea& area, const std::string& title, const Axi
       {{left, top}, {right, top}, {right, bottom}, {left, bottom}, {left, top}}, kInk, 1});
 
   shapes.emplace_back(TextShape{{left, top - 22}, title, kTextSize + 2, Anchor::kBegin, kInk});
-  // Beside the axis it would have to be turned; above it reads as well.
+  // Next to the axis it would have to be rotated; above it is easier to read.
   shapes.emplace_back(TextShape{{left, top - 6}, y_axis.title(), kTextSize, Anchor::kBegin, kInk});
   shapes.emplace_back(TextShape{{(left + right) / 2, bottom + kTick + 2.2 * kTextSize + 2},
                                 x_axis.title(),

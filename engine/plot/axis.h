@@ -9,32 +9,33 @@ namespace vantage {
 
 enum class AxisScale {
   kLinear,
-  kLogarithmic,  ///< of positive values; others are not drawn
-  kCategories    ///< value i is the i-th category, at equal distances
+  kLogarithmic,  ///< positive values only; others are not drawn
+  kCategories    ///< value i is the i-th category, equally spaced
 };
 
 struct AxisOptions {
   std::string title;
   AxisScale scale = AxisScale::kLinear;
   std::vector<std::string> categories = {};  ///< for kCategories
-  bool downwards = false;                    ///< from its end to its begin, as rows of an image
+  bool downwards = false;                    ///< from its end to its start, like the rows of an
+                                             ///< image
 };
 
-/// From values to places along an axis, with ticks at round values.
+/// Maps values to positions along an axis, with ticks at round values.
 class Axis {
  public:
   struct Tick {
-    double place = 0;  ///< 0 at the axis' begin, 1 at its end
+    double place = 0;  ///< 0 at the start of the axis, 1 at its end
     std::string label;
   };
 
-  /// An axis that shows values from `least` to `most` (equal, reversed or not finite: some range
-  /// around them). `round_ends`: it begins and ends at ticks.
+  /// An axis for values from `least` to `most` (equal, reversed or not finite: some range around
+  /// them). `round_ends`: it starts and ends at ticks.
   Axis(AxisOptions options, double least, double most, bool round_ends);
 
   [[nodiscard]] const std::string& title() const { return options_.title; }
   [[nodiscard]] const std::vector<Tick>& ticks() const { return ticks_; }
-  /// 0..1 for values the axis shows; NaN for those it cannot.
+  /// 0..1 for values that the axis shows; NaN for those it cannot.
   [[nodiscard]] double place(double value) const;
 
  private:
@@ -47,9 +48,9 @@ class Axis {
   std::vector<Tick> ticks_;
 };
 
-/// Where the inside of a chart is on a drawing.
+/// Position of a chart's interior in a drawing.
 struct ChartArea {
-  DrawingPoint corner;  ///< least x and y
+  DrawingPoint corner;  ///< minimum x and y
   double width = 0;
   double height = 0;
 };
@@ -57,13 +58,14 @@ struct ChartArea {
 inline constexpr Colour kInk{40, 40, 40};
 inline constexpr Colour kGridInk{225, 225, 225};
 inline constexpr double kTextSize = 11;
-/// Room that draw_chart_frame() takes outside the area.
+/// Margins that draw_chart_frame() uses outside the area.
 inline constexpr double kFrameLeft = 62;
 inline constexpr double kFrameRight = 14;
 inline constexpr double kFrameTop = 40;
 inline constexpr double kFrameBottom = 38;
 
-/// Title above, grid lines if `grid`, ticks with labels and the titles of both axes around `area`.
+/// Draws the title, grid lines if `grid`, ticks with labels and the titles of both axes around
+/// `area`.
 void draw_chart_frame(const ChartArea& area, const std::string& title, const Axis& x_axis,
                       const Axis& y_axis, bool grid, Drawing& drawing);
 

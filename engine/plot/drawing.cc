@@ -7,7 +7,7 @@
 namespace vantage {
 
 double text_width(const std::string& text, double size) {
-  constexpr double kMeanLetterWidth = 0.56;  // of the common sans-serif fonts
+  constexpr double kMeanLetterWidth = 0.56;  // of common sans-serif fonts
   return kMeanLetterWidth * size * static_cast<double>(text.size());
 }
 

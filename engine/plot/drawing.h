@@ -17,7 +17,7 @@ struct Colour {
   std::uint8_t blue = 0;
 };
 
-/// A place on a drawing: x to the right, y down, in drawing units (pixels of its SVG file).
+/// A position in a drawing: x to the right, y down, in drawing units (pixels of its SVG file).
 struct DrawingPoint {
   double x = 0;
   double y = 0;
@@ -39,23 +39,23 @@ struct DiscShape {
 
 /// A filled rectangle.
 struct BoxShape {
-  DrawingPoint corner;  ///< least x and y
+  DrawingPoint corner;  ///< minimum x and y
   double width = 0;
   double height = 0;
   Colour colour;
 };
 
-/// One line of text. ASCII: pictures of pixels know no other letters.
+/// One line of text, ASCII only: rasterize() has no other characters.
 struct TextShape {
   enum class Anchor { kBegin, kMiddle, kEnd };
-  DrawingPoint baseline;  ///< of the text's begin, middle or end
+  DrawingPoint baseline;  ///< at the text's start, middle or end
   std::string text;
-  double size = 12;  ///< height of the font
+  double size = 12;  ///< font height
   Anchor anchor = Anchor::kBegin;
   Colour colour;
 };
 
-/// A small picture, 8-bit RGB, stretched without smoothing.
+/// A small picture, 8-bit RGB, scaled without smoothing.
 struct PictureShape {
   DrawingPoint corner;
   double width = 0;
@@ -65,14 +65,14 @@ struct PictureShape {
 
 using DrawingShape = std::variant<StrokeShape, DiscShape, BoxShape, TextShape, PictureShape>;
 
-/// Shapes on a white ground, painted in order.
+/// Shapes on a white background, painted in order.
 struct Drawing {
   int width = 0;  ///< drawing units
   int height = 0;
   std::vector<DrawingShape> shapes;
 };
 
-/// About how wide a text is drawn.
+/// Approximate width of a text.
 double text_width(const std::string& text, double size);
 
 /// A complete SVG document; pictures are embedded as PNG.
@@ -81,8 +81,8 @@ std::string to_svg(const Drawing& drawing);
 /// 8-bit RGB, anti-aliased, `pixels_per_unit` ≥ 1 times as large as the drawing.
 Image<std::uint8_t> rasterize(const Drawing& drawing, int pixels_per_unit);
 
-/// Writes .svg, or a picture of two pixels per unit in any format of write_photograph(); whole or
-/// not at all. Throws as write_photograph() does.
+/// Writes .svg, or a picture of two pixels per unit in any format of write_photograph(),
+/// atomically. Throws as write_photograph() does.
 void write_drawing(const std::filesystem::path& path, const Drawing& drawing);
 
 }  // namespace vantage

@@ -13,7 +13,7 @@ namespace {
 // OpenCV takes coordinates in sixteenths of a pixel.
 constexpr int kFractionBits = 4;
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
-// Height of capital letters of that font at scale 1, and of common fonts of size 1.
+// Cap height of that font at scale 1, and of common fonts of size 1.
 constexpr double kFontCapitalHeight = 22;
 constexpr double kCapitalHeight = 0.68;
 

@@ -74,7 +74,7 @@ void draw_map(const HeatMap& map, const ChartArea& area, Drawing& drawing) {
   drawing.shapes.emplace_back(
       PictureShape{area.corner, area.width, area.height,
                    colour_preview(map.values.view(), range.min_px, range.max_px)});
-  // A value's square reaches half a step to either side.
+  // A value's square extends half a step to either side.
   const double x_end = map.x_first + map.values.width() - 0.5;
   const double y_end = map.y_first + map.values.height() - 0.5;
   const Axis x_axis({.title = map.x_title}, map.x_first - 0.5, x_end, false);

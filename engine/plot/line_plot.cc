@@ -28,7 +28,7 @@ struct Bounds {
   double most = -std::numeric_limits<double>::infinity();
 };
 
-/// Of the values an axis can show.
+/// Extends `bounds` by the values that an axis can show.
 void include(const std::vector<double>& values, AxisScale scale, Bounds& bounds) {
   for (const double value : values) {
     if (std::isfinite(value) && (scale != AxisScale::kLogarithmic || value > 0)) {

@@ -8,8 +8,8 @@
 
 namespace vantage {
 
-/// One curve: equally many x and y. Where a value cannot be drawn (NaN; not positive on a
-/// logarithmic axis) the curve is interrupted.
+/// One curve: equally many x and y. Gaps where a value cannot be drawn (NaN; not positive on a
+/// logarithmic axis).
 struct PlotSeries {
   std::string name;
   std::vector<double> x;
@@ -21,14 +21,14 @@ struct LinePlot {
   std::string title;
   AxisOptions x_axis;
   AxisOptions y_axis;
-  bool y_from_zero = false;  ///< a linear y axis includes 0
+  bool y_from_zero = false;  ///< the linear y axis includes 0
   bool markers = true;       ///< a dot at every value
   std::vector<PlotSeries> series;
 };
 
-/// Charts side by side, `columns` ≥ 1 in a row, under one title and one legend: curves of equal
-/// name have equal colours in all of them. Throws UsageError when a curve has unequally many x and
-/// y. Thread rule: pure.
+/// Charts in a grid of `columns` ≥ 1, under one title and one legend: curves of equal name have
+/// equal colours in all of them. Throws UsageError when a curve has different numbers of x and y.
+/// Thread rule: pure.
 Drawing draw_line_plots(const std::string& title, const std::vector<LinePlot>& plots, int columns);
 
 }  // namespace vantage

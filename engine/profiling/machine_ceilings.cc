@@ -19,10 +19,10 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Does its work once and returns how much that was.
+/// Does its work once and returns the amount.
 using Work = std::function<double(int thread)>;
 
-/// The most work per second of `threads` at a time that was seen in `seconds`.
+/// The highest rate of `threads` concurrent threads observed within `seconds`.
 double best_rate(Execution& execution, int threads, double seconds, const Work& work) {
   double best = 0;
   const Clock::time_point begin = Clock::now();
@@ -31,7 +31,8 @@ double best_rate(Execution& execution, int threads, double seconds, const Work& 
     std::atomic<int> arrived{0};
     const Clock::time_point start = Clock::now();
     execution.executor().parallel_for(threads, [&](int task) {
-      // Whoever is first waits for the others, for a while: that they come is not promised.
+      // The first threads wait for the others, but only for a while: their arrival is not
+      // guaranteed.
       arrived.fetch_add(1);
       const Clock::time_point arrival = Clock::now();
       while (arrived.load() < threads && seconds_since(arrival) < 1e-3) {
@@ -56,8 +57,8 @@ MachineCeilings measure_ceilings(Execution& execution, double seconds) {
   const int threads = execution.executor().thread_count();
   const auto all = static_cast<std::size_t>(threads);
 
-  // Loads come from level 2 when the values fill half of it; the triad from memory when its arrays
-  // are several times the last cache.
+  // Loads come from level 2 when the values fill half of it; the triad uses memory when its arrays
+  // are several times the size of the last-level cache.
   const std::size_t l2_floats = std::max<std::size_t>(machine.l2_bytes / 2, 64) / sizeof(float);
   const std::size_t last_cache = std::max(machine.l3_bytes, machine.l2_bytes * all);
   const std::size_t memory_floats =
@@ -67,7 +68,7 @@ MachineCeilings measure_ceilings(Execution& execution, double seconds) {
     float sink = 0;
   };
   std::vector<Arrays> arrays(all);
-  // Filled by the threads that use them, so that memory is near them.
+  // Filled by the threads that use them, so that the memory is local to them.
   execution.executor().parallel_for(threads, [&](int thread) {
     Arrays& own = arrays[static_cast<std::size_t>(thread)];
     own.a.assign(memory_floats, 0);

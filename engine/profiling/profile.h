@@ -19,26 +19,26 @@ struct ProfileSample {
   bool operator==(const ProfileSample&) const = default;
 };
 
-/// What the stages of one name did in one run, summed over all threads, passes, strips and frames.
-/// Medians over the runs where they vary. 0 cells: it does not know its work.
+/// Work of the stages of one name in one run, summed over all threads, passes, strips and frames.
+/// Medians over the runs where they vary. 0 cells: the stage does not report its work.
 struct StageProfile {
   std::string name;
   ProfileSample seconds;   ///< of processor time
-  double columns = 0;      ///< made
-  double own_columns = 0;  ///< of them, those that are results and no halo or repetition
+  double columns = 0;      ///< computed
+  double own_columns = 0;  ///< of these, results: without halo and repetition
   double cells = 0;
   double operations = 0;
-  double bytes = 0;  ///< loaded and stored by the kernel, whichever cache they lie in
+  double bytes = 0;  ///< loaded and stored by the kernel, from any cache level
 
   bool operator==(const StageProfile&) const = default;
 };
 
-/// A named part of the work, or of the waiting. Stages of chains are within the parts that sweep
+/// A named part of the work, or of the waiting. Stages of chains are inside the parts that sweep
 /// them ("match left").
 struct PartProfile {
   std::string name;
-  ProfileSample seconds;  ///< over all threads, without the parts within it
-  double count = 0;       ///< of spans
+  ProfileSample seconds;  ///< over all threads, excluding nested parts
+  double count = 0;       ///< number of spans
 
   bool operator==(const PartProfile&) const = default;
 };
@@ -52,49 +52,48 @@ struct ThreadProfile {
   bool operator==(const ThreadProfile&) const = default;
 };
 
-/// What the waiting threads of the pool waited for, in seconds over all of them; see
-/// waiting_causes().
+/// Causes of waiting of the pool's threads, in seconds over all of them; see waiting_causes().
 struct WaitingProfile {
-  ProfileSample reading_s;    ///< frames or images being read or decoded
+  ProfileSample reading_s;    ///< reading or decoding of frames or images
   ProfileSample computing_s;  ///< other work
-  ProfileSample writing_s;    ///< results being encoded or written
-  ProfileSample nothing_s;    ///< no thread did anything that is recorded
+  ProfileSample writing_s;    ///< encoding or writing of results
+  ProfileSample nothing_s;    ///< no thread was doing anything recorded
 
   bool operator==(const WaitingProfile&) const = default;
 };
 
-/// One thread doing one thing, for drawing: the innermost of what was recorded.
+/// One activity of one thread, for drawing: the innermost recorded span.
 struct TimelineSpan {
   std::string name;
   bool is_wait = false;
   double begin_s = 0;
   double end_s = 0;
-  int frame = -1;  ///< −1: about none
+  int frame = -1;  ///< −1: none
 
   bool operator==(const TimelineSpan&) const = default;
 };
 
-/// A thread's row in the timeline. Spans that are too short to be seen are joined with neighbours
-/// of their kind.
+/// A thread's row in the timeline. Spans too short to be visible are merged with neighbours of
+/// their kind.
 struct TimelineRow {
   std::string thread;
   bool is_in_pool = false;
-  std::vector<TimelineSpan> spans;  ///< in order, apart
+  std::vector<TimelineSpan> spans;  ///< in order, disjoint
 
   bool operator==(const TimelineRow&) const = default;
 };
 
-/// What was measured on one number of threads.
+/// Measurements on one number of threads.
 struct ThreadCountProfile {
   int threads = 1;
   int runs = 0;
   ProfileSample wall_s;     ///< of the whole command
-  ProfileSample compute_s;  ///< without reading and writing files, as --report tells
+  ProfileSample compute_s;  ///< without reading and writing files, as reported by --report
   ProfileSample cells_per_s;
   ProfileSample frames_per_s;  ///< 0 for one pair
   ProfileSample work_share;    ///< of the pool's time, 0..1
   ProfileSample peak_memory_bytes;
-  /// Greatest ÷ mean work of a thread of the pool, ≥ 1.
+  /// Maximum ÷ mean work of a thread of the pool, ≥ 1.
   ProfileSample imbalance;
   std::vector<StageProfile> stages;    ///< most time first
   std::vector<PartProfile> parts;      ///< most time first
@@ -105,18 +104,18 @@ struct ThreadCountProfile {
   bool operator==(const ThreadCountProfile&) const = default;
 };
 
-/// How much faster more threads are.
+/// Speed-up by more threads.
 struct SpeedUp {
   int threads = 1;
-  ProfileSample ratio;  ///< wall time of the fewest threads ÷ that of these, run by run
+  ProfileSample ratio;  ///< wall time on the fewest threads ÷ that on these, run by run
   double efficiency = 0;
-  /// Karp and Flatt's serial fraction; none for the fewest threads.
+  /// Karp and Flatt's serial fraction; empty for the fewest threads.
   std::optional<double> serial_fraction;
 
   bool operator==(const SpeedUp&) const = default;
 };
 
-/// What the memory belonged to at its peak, or as much of it as is known.
+/// Owners of the memory at its peak, as far as known.
 struct MemoryOwner {
   std::string name;
   std::uint64_t bytes = 0;
@@ -124,35 +123,35 @@ struct MemoryOwner {
   bool operator==(const MemoryOwner&) const = default;
 };
 
-/// Counts of the processor over one run, all threads. Empty where the system keeps none.
+/// Processor counters over one run, all threads. Empty where the system provides none.
 struct HardwareCounts {
   std::map<std::string, ProfileSample> counts;  ///< "instructions", "cycles", …
-  std::string absence;                          ///< why there are none or not all; empty: all there
+  std::string absence;                          ///< why some or all are missing; empty: all present
 
   bool operator==(const HardwareCounts&) const = default;
 };
 
-/// What `vantage profile` has found out.
+/// Result of `vantage profile`.
 struct Profile {
   std::string version;
-  std::string command;  ///< as it would be typed
+  std::string command;  ///< as typed
   std::string date;     ///< ISO 8601, UTC
   std::string processor;
   std::string isa;
   int hardware_threads = 1;
-  std::uint64_t peak_memory_bytes = 0;  ///< the most of the runs on the most threads
-  /// For each number of threads that was measured, in that order.
+  std::uint64_t peak_memory_bytes = 0;  ///< maximum over the runs on the most threads
+  /// For each measured number of threads, in that order.
   std::vector<MachineCeilings> ceilings;
   std::vector<ThreadCountProfile> thread_counts;  ///< fewest first
-  /// What the user can do about the time, most first (profile_advice); none in a profile that was
+  /// Advice to the user about the time, largest saving first (profile_advice); empty in a profile
   /// read from a file.
   std::vector<std::string> advice = {};
   std::vector<SpeedUp> speed_ups;
-  /// Least-squares fit of Amdahl's law to speed_ups; none with a single number of threads.
+  /// Least-squares fit of Amdahl's law to speed_ups; empty with a single number of threads.
   std::optional<double> serial_fraction;
   std::vector<TimelineRow> timeline;  ///< of the most threads, run with the median wall time
   double timeline_s = 0;              ///< its wall time
-  std::vector<MemoryOwner> memory;    ///< most first
+  std::vector<MemoryOwner> memory;    ///< largest first
   HardwareCounts hardware;            ///< of the most threads
 
   bool operator==(const Profile&) const = default;

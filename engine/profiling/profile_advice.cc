@@ -9,13 +9,13 @@
 namespace vantage {
 namespace {
 
-/// Of the time that the preset takes for its maps, what `fast` takes (docs/QUALITY.md).
+/// Time of `fast` relative to that of the preset (docs/QUALITY.md).
 constexpr double kFastOfBalanced = 0.5;
 constexpr double kFastOfQuality = 0.35;
-/// Of the time of a whole map, what one at half the size takes with all coarser levels.
+/// Time of a map at half size, with all coarser levels, relative to that of a whole map.
 constexpr double kHalfSizeMap = 0.5;
 constexpr double kLeastShare = 0.05;
-/// More threads that save less are not worth it.
+/// More threads must save more than this.
 constexpr double kAsFast = 1.05;
 constexpr int kManyCandidates = 64;
 
@@ -109,7 +109,7 @@ Advice about_one_map(const Steps& steps, const ProfiledChoices& choices) {
                       less, steps.text(other_s))};
 }
 
-/// Fewer threads that are as fast, or more where there are more.
+/// Advises fewer threads that are as fast, or more if available.
 Advice about_threads(const Profile& profile) {
   const ThreadCountProfile& most = profile.thread_counts.back();
   const auto best = std::ranges::min_element(

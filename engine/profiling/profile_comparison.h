@@ -12,12 +12,12 @@ enum class FigureUnit { kSeconds, kBytes };
 
 enum class Verdict {
   kNoDifference,  ///< ranges overlap
-  kLess,          ///< the second needs less: faster, or smaller
+  kLess,          ///< the second needs less: it is faster, or smaller
   kMore,
   kTooFewRuns
 };
 
-/// A figure of two profiles on the same number of threads, of which less is better.
+/// A figure of two profiles on the same number of threads; smaller is better.
 struct ComparedFigure {
   int threads = 1;
   std::string name;  ///< "wall", "compute", "stage NAME", "peak memory"
@@ -26,26 +26,26 @@ struct ComparedFigure {
   ProfileSample second;
   Verdict verdict = Verdict::kNoDifference;
 
-  /// Median of the second ÷ median of the first; 0 where that is none.
+  /// Median of the second ÷ median of the first; 0 if undefined.
   [[nodiscard]] double ratio() const { return first.median > 0 ? second.median / first.median : 0; }
 };
 
 struct ProfileComparison {
-  /// What makes it doubtful: other machines, commands, instruction sets, missing counterparts.
+  /// Reasons for doubt: other machines, commands, instruction sets, missing counterparts.
   std::vector<std::string> warnings;
   std::vector<ComparedFigure> figures;  ///< by threads, then wall, compute, stages, memory
 };
 
-/// Runs that a verdict takes on each side.
+/// Runs required on each side for a verdict.
 inline constexpr int kRunsForVerdict = 3;
 
-/// Ranges that have a point in common are no difference.
+/// Overlapping ranges are no difference.
 Verdict verdict_of(const ProfileSample& first, const ProfileSample& second);
 
-/// `second` beside `first`. Thread rule: pure.
+/// Compares `second` with `first`. Thread rule: pure.
 ProfileComparison compare_profiles(const Profile& first, const Profile& second);
 
-/// "1.25x faster", "1.02x slower", "no difference seen", "too few runs"; of bytes "smaller" and
+/// "1.25x faster", "1.02x slower", "no difference seen", "too few runs"; for bytes "smaller" and
 /// "larger".
 std::string verdict_text(const ComparedFigure& figure);
 

@@ -157,7 +157,7 @@ void visit_fields(T& profile, const Visit& visit) {
   visit("timeline", profile.timeline);
 }
 
-// To JSON.
+// Conversion to JSON.
 
 template <typename T>
 requires std::is_arithmetic_v<T> || std::same_as<T, std::string> Json to_value(const T& value) {
@@ -197,7 +197,7 @@ requires std::is_class_v<T> &&(!std::same_as<T, std::string>)Json to_value(const
   return object;
 }
 
-// What is computed from a profile for those who show it. It is not read again.
+// Derived values for display. They are not read back.
 
 Json roofline_of(const StageProfile& stage, const std::optional<ThreadRoofs>& roofs) {
   const auto place = roofs ? place_on_roofline(stage, *roofs) : std::nullopt;
@@ -241,7 +241,7 @@ void add_figures(const Profile& profile, Json& document) {
   }
 }
 
-// From JSON; `where` names the value in messages.
+// Conversion from JSON; `where` names the value in messages.
 
 [[noreturn]] void reject(const std::string& where, std::string_view expected) {
   throw Error(fmt::format("{} is missing or wrong, expected {}", where, expected));
@@ -332,7 +332,7 @@ std::string profile_json(const Profile& profile) {
   Json document = {{kSchemaKey, kSchema}};
   document.update(to_value(profile));
   add_figures(profile, document);
-  // File names need not be UTF-8, JSON must be.
+  // File names may be invalid UTF-8; JSON must be valid.
   return document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

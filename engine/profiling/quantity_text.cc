@@ -24,7 +24,7 @@ Prefix prefix_for(double value) {
     return {"", 1};
   }
   for (const Prefix& prefix : kPrefixes) {
-    if (size >= 0.9995 * prefix.factor) {  // what rounds to it
+    if (size >= 0.9995 * prefix.factor) {  // values that round to it
       return prefix;
     }
   }

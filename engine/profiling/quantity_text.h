@@ -7,16 +7,16 @@
 
 namespace vantage {
 
-/// Quantities as people read them: three significant digits, "–" for what is not finite.
+/// Human-readable quantities: three significant digits, "–" for non-finite values.
 
 /// With an SI prefix from nano to tera before `unit`: "1.24 ms", "310 MB", "0 s".
 std::string quantity_text(double value, std::string_view unit);
 
-/// The median, followed by the range where the shown digits differ, all in one unit:
-/// "1.24 (1.21–1.30) ms".
+/// The median, followed by the range if the displayed digits differ, all in one unit: "1.24
+/// (1.21–1.30) ms".
 std::string sample_text(const ProfileSample& sample, std::string_view unit);
 
-/// Of a share, 1 being all: "43 %", "4.3 %", "0.43 %".
+/// A fraction of 1 as percentage: "43 %", "4.3 %", "0.43 %".
 std::string percent_text(double share);
 
 /// Three significant digits without exponent up to a million: "12.4", "0.031", "1240".

@@ -35,7 +35,7 @@ std::set<std::string> names_in(Runs runs, Entries<Entry> entries) {
   return names;
 }
 
-/// Of a figure of what is called `name`.
+/// Sample of a figure of the entry called `name`.
 template <typename Entry>
 ProfileSample sample_of_entry(Runs runs, Entries<Entry> entries, const std::string& name,
                               double Entry::*figure) {

@@ -11,7 +11,7 @@
 
 namespace vantage {
 
-/// What one run of a profiled command told. Names as in ThreadCountProfile.
+/// Measurements of one run of a profiled command. Names as in ThreadCountProfile.
 struct RunMeasurement {
   struct Stage {
     double seconds = 0;
@@ -32,7 +32,7 @@ struct RunMeasurement {
   double frames_per_s = 0;  ///< 0 for one pair
   double work_share = 0;
   std::vector<ThreadProfile> workers;
-  /// Seconds of the command's steps as its report tells them: "read", "check", "match left", …
+  /// Seconds of the command's steps from its report: "read", "check", "match left", …
   std::map<std::string, double> steps;
   std::map<std::string, Stage> stages;
   std::map<std::string, Part> parts;
@@ -43,21 +43,21 @@ struct RunMeasurement {
   std::map<std::string, double> hardware_counts;
 };
 
-/// Index of the run with the median wall time, of an even number the faster of the two in the
+/// Index of the run with the median wall time; of an even number the faster of the two in the
 /// middle. `runs`: at least one.
 std::size_t median_run(std::span<const RunMeasurement> runs);
 
-/// Medians and ranges over `runs` (at least one) on `threads` threads. A stage, part or wait that a
-/// run does not have counts as 0 there. Thread rule: pure.
+/// Medians and ranges over `runs` (at least one) on `threads` threads. A stage, part or wait
+/// missing in a run counts as 0 there. Thread rule: pure.
 ThreadCountProfile summarise_runs(int threads, std::span<const RunMeasurement> runs);
 
-/// Medians of the steps' seconds; a step that a run does not have counts as 0 there.
+/// Medians of the steps' seconds; a step missing in a run counts as 0 there.
 std::map<std::string, double> median_steps(std::span<const RunMeasurement> runs);
 
-/// Greatest ÷ mean work of a thread of the pool; 1 without any.
+/// Maximum ÷ mean work of a thread of the pool; 1 if empty.
 double imbalance_of(std::span<const ThreadProfile> workers);
 
-/// Medians and ranges of what the processor counted; names that all runs have.
+/// Medians and ranges of the processor counters that all runs have.
 std::map<std::string, ProfileSample> summarise_counts(std::span<const RunMeasurement> runs);
 
 }  // namespace vantage

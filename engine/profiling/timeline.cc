@@ -15,7 +15,7 @@ using Activity = std::tuple<std::string_view, bool, int>;
 
 Activity activity_of(const ThreadPiece& piece) { return {piece.name, piece.is_wait, piece.frame}; }
 
-/// Neighbours that are joined into one span.
+/// Neighbours merged into one span.
 class Group {
  public:
   [[nodiscard]] bool empty() const { return durations_ns_.empty(); }
@@ -52,7 +52,8 @@ void append(const ThreadPiece& piece, std::vector<ThreadPiece>& pieces) {
   }
 }
 
-/// `pieces` in order; none but the last of a run of short ones is shorter than `shortest_ns`.
+/// `pieces` in order; merges runs of pieces shorter than `shortest_ns`; only the last of a run may
+/// still be shorter.
 std::vector<ThreadPiece> with_short_ones_joined(const std::vector<ThreadPiece>& pieces,
                                                 std::int64_t shortest_ns) {
   std::vector<ThreadPiece> joined;

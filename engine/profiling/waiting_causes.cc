@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 6> kWritingSpans = {"write",       "encod
                                                            "write frame", "deliver",      "join"};
 constexpr std::string_view kDiskWait = "disk";
 
-/// A change of how many threads do something, at a moment.
+/// A change in the number of active threads of a kind.
 struct Change {
   enum Counter : std::uint8_t {
     kPoolReading,  // in the order of WorkKind
@@ -61,7 +61,7 @@ std::vector<Change> changes_in(const scheduler::TraceData& trace) {
 
 using Counts = std::array<int, Change::kCounters>;
 
-/// Divides `waiting_s` by the counts of the three kinds of work from `first` on; false if nobody
+/// Divides `waiting_s` by the counts of the three kinds of work from `first` on; false if no thread
 /// works.
 bool divide(double waiting_s, const Counts& counts, std::size_t first, WaitingCauses& causes) {
   const int all = counts[first] + counts[first + 1] + counts[first + 2];
@@ -90,7 +90,7 @@ std::vector<ThreadPiece> thread_pieces(const scheduler::ThreadTrace& thread) {
   std::vector<ThreadPiece> pieces;
   std::vector<const SpanRecord*> open;
   std::int64_t covered_to_ns = 0;
-  // What the innermost open span does until `end_ns`.
+  // Attributes the time until `end_ns` to the innermost open span.
   const auto cover = [&](std::int64_t end_ns) {
     if (!open.empty() && open.back()->kind != SpanKind::kJoin && end_ns > covered_to_ns) {
       const SpanRecord& span = *open.back();

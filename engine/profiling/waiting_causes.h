@@ -8,7 +8,7 @@
 
 namespace vantage {
 
-/// What a thread does from begin_ns to end_ns: the innermost of its spans that are work or waiting.
+/// Activity of a thread from begin_ns to end_ns: its innermost span that is work or waiting.
 struct ThreadPiece {
   std::string_view name;  ///< of the span
   bool is_wait = false;
@@ -18,19 +18,19 @@ struct ThreadPiece {
 };
 
 /// The pieces of a thread whose waits have been added (scheduler::add_waits) and whose spans are
-/// therefore sorted from outside; in order, apart, none empty. Time in joins alone is no piece.
+/// therefore sorted from outside; in order, disjoint, none empty. Time in joins alone is no piece.
 std::vector<ThreadPiece> thread_pieces(const scheduler::ThreadTrace& thread);
 
-/// Kinds of work, by the names of spans.
+/// Kinds of work, by span names.
 enum class WorkKind {
-  kReading,    ///< reads or decodes images
+  kReading,    ///< reading or decoding images
   kComputing,  ///< anything else
-  kWriting     ///< encodes or writes results
+  kWriting     ///< encoding or writing results
 };
 
 WorkKind work_kind(std::string_view span_name);
 
-/// Seconds that threads of the pool waited, by what they waited for.
+/// Seconds that threads of the pool waited, by cause.
 struct WaitingCauses {
   double reading_s = 0;
   double computing_s = 0;
@@ -40,11 +40,11 @@ struct WaitingCauses {
   [[nodiscard]] double sum_s() const { return reading_s + computing_s + writing_s + nothing_s; }
 };
 
-/// Whoever waits, waits for those who work at that moment: the waiting of the pool's threads is
-/// divided equally among the threads of the pool that work meanwhile, by the kind of what they do.
-/// Where none of the pool works, threads outside of it count; where these do not either, it is
-/// waiting for nothing. Waits for the disk ("disk") are for writing. All of it is the waiting of
-/// the trace, whose waits have been added. Thread rule: pure.
+/// Attributes waiting to the work going on at the same time: the waiting time of the pool's threads
+/// is divided equally among the working threads of the pool, by their kind of work. If none of the
+/// pool works, threads outside of it are used; if those do not work either, the cause is nothing.
+/// Waits for the disk ("disk") count as writing. The total is the waiting time of the trace, whose
+/// waits have been added. Thread rule: pure.
 WaitingCauses waiting_causes(const scheduler::TraceData& trace);
 
 }  // namespace vantage

@@ -11,30 +11,30 @@
 
 namespace vantage {
 
-/// All that is known of one way to do the work.
+/// Measurements of one setting.
 struct TuningTrial {
   TunedSettings settings;
-  std::string_view coordinate;        ///< that was being searched; "default", "final"
+  std::string_view coordinate;        ///< searched at the time; "default", "final"
   std::vector<double> frame_seconds;  ///< of all measurements, in order
-  /// Time of a frame ÷ that of the default plan, from pairs of measurements next to each other,
-  /// along the chain of incumbents; empty as long as there is no such pair.
+  /// Time of a frame ÷ that of the default plan, from pairs of consecutive measurements, along the
+  /// chain of incumbents; empty until there is such a pair.
   std::optional<double> ratio_to_default = std::nullopt;
 
-  /// Of frame_seconds, which must not be empty.
+  /// Median of frame_seconds, which must not be empty.
   [[nodiscard]] double median_seconds() const;
 };
 
-/// The middle of `values`, which must not be empty; the mean of the two middle ones.
+/// Median of `values` (not empty); the mean of the two middle ones for even sizes.
 double median(std::vector<double> values);
 
-/// Half the width of what holds the middle half of `values`, scaled to a standard deviation.
+/// Half the interquartile range of `values`, scaled to a standard deviation.
 double spread(const std::vector<double>& values);
 
-/// Measures a subject for as long as there is time, and keeps a record of it.
+/// Measures a subject until time is up, and records the results.
 class BudgetedTrials {
  public:
-  /// `subject` and `clock` must outlive this object. No measurement begins that is expected to end
-  /// after `deadline` (of `clock`), none at all once `stop` is raised.
+  /// `subject` and `clock` must outlive this object. No measurement starts that is expected to end
+  /// after `deadline` (of `clock`), or once `stop` is set.
   BudgetedTrials(TuningSubject& subject, const TuningClock& clock, double deadline,
                  const std::atomic<bool>* stop)
       : subject_(subject), clock_(clock), deadline_(deadline), stop_(stop) {}
@@ -42,15 +42,15 @@ class BudgetedTrials {
   /// Called after each measurement.
   void on_measured(std::function<void()> callback) { on_measured_ = std::move(callback); }
   void set_deadline(double deadline) { deadline_ = deadline; }
-  /// What the next measurements are recorded as.
+  /// Name under which the next measurements are recorded.
   void set_coordinate(std::string_view name) { coordinate_ = name; }
 
   [[nodiscard]] bool is_affordable(const TunedSettings& settings) const;
   [[nodiscard]] bool is_stopped() const { return stop_ != nullptr && stop_->load(); }
-  /// Seconds of a frame; empty when there is not enough time left.
+  /// Seconds per frame; empty if not enough time is left.
   std::optional<double> measure(const TunedSettings& settings);
 
-  /// The record of `settings`, made if there is none; stays where it is.
+  /// The record of `settings`, created if missing; the reference stays valid.
   TuningTrial& trial(const TunedSettings& settings);
   [[nodiscard]] const std::deque<TuningTrial>& trials() const { return trials_; }
   [[nodiscard]] int measurements() const { return measurements_; }
@@ -62,7 +62,7 @@ class BudgetedTrials {
   const std::atomic<bool>* stop_;
   std::function<void()> on_measured_;
   std::string_view coordinate_ = "default";
-  std::deque<TuningTrial> trials_;  // deque: trial() hands out references
+  std::deque<TuningTrial> trials_;  // deque: trial() returns references
   int measurements_ = 0;
 };
 

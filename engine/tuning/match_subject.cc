@@ -9,28 +9,29 @@
 namespace vantage {
 namespace {
 
-// What the cost model expects to take so many times as long as the best candidate is left out; the
-// model is not trusted further.
+// Candidates that the cost model expects to take this many times as long as the best are left out;
+// the model is not trusted further.
 constexpr double kHopelessModelRatio = 4;
-// Expected durations are stretched by so much; those that only the cost model tells by more, also
-// because the first measurement warms up.
+// Expected durations are multiplied by this, and by more if only the cost model predicts them,
+// because the first measurement also warms up.
 constexpr double kMeasuredMargin = 1.2;
 constexpr double kModelMargin = 2.5;
-// Frames that take less are repeated for so long: short times are mostly noise.
+// Faster frames are repeated for this long: short times are mostly noise.
 constexpr std::chrono::milliseconds kLeastMeasurement{25};
-// Runners keep their scratch memory and threads; the least recently used ones go.
+// Runners keep their scratch memory and threads; the least recently used ones are evicted.
 constexpr std::size_t kMostRunners = 12;
 constexpr std::size_t kMostRunnerBytes = std::size_t{3} << 29;
-// Neither narrower strips nor lower bands are tried, nor more bands per thread.
+// Limits of the search: narrower strips, lower bands and more bands per thread are not tried.
 constexpr int kLeastStripColumns = 16;
 constexpr int kLeastBandRows = 8;
 constexpr int kMostBandsPerThread = 16;
-// Longer chains are cut at least once by the planner, too.
+// The planner cuts longer chains at least once.
 constexpr int kMostPasses = 32;
 
 int divide_up(int total, int part) { return (total + part - 1) / part; }
 
-/// Sizes of parts of `total`: of all numbers of parts up to `most_parts`, or near parts of `size`.
+/// Part sizes of `total`: for all numbers of parts up to `most_parts`, or only near parts of
+/// `size`.
 std::vector<int> part_sizes(int total, int size, int most_parts, bool finely) {
   most_parts = std::max(1, most_parts);
   std::vector<int> sizes;
@@ -149,7 +150,7 @@ std::vector<TunedSettings> MatchSubject::candidates(const TuningCoordinate& coor
     settings.*coordinate.field = value;
     add(settings);
     if (decides_strips) {
-      // The best strips are others then: let the cost model choose them anew.
+      // The best strips change: let the cost model choose them again.
       settings.strip_width_px.reset();
       settings.band_height_px.reset();
       add(settings);
@@ -184,7 +185,7 @@ double MatchSubject::expected_seconds(const TunedSettings& settings) {
   if (wanted.work_seconds) {
     return kMeasuredMargin * *wanted.work_seconds;
   }
-  double most = 0;  // of what is known, seconds per unit of the model
+  double most = 0;  // maximum of the measured ones, seconds per unit of the model
   for (const Known& one : known_) {
     if (one.work_seconds) {
       most = std::max(most, *one.work_seconds / one.model_time);
@@ -198,7 +199,7 @@ double MatchSubject::measure(const TunedSettings& settings) {
   plan_all({settings});
   Runner& runner = runner_of(settings);
   if (!runner.is_warm) {
-    // The first frame also gets its memory from the system, which takes half as long again.
+    // The first frame also allocates memory from the system, which takes half as long again.
     runner.matcher.match(pair_.left, pair_.right, {.right = false, .unmatched = false},
                          runner.maps);
     runner.is_warm = true;

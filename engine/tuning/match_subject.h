@@ -14,23 +14,23 @@
 
 namespace vantage {
 
-/// What is timed, and what of it may be changed.
+/// What is timed, and which of its settings may be varied.
 struct MatchSubjectOptions {
   MatchOptions match;          ///< disparities known
-  ExecutionOptions execution;  ///< what is set here stays
-  /// False where images are lower than those that plans are for: the height of bands then cannot
-  /// be told from them.
+  ExecutionOptions execution;  ///< fields that are set stay fixed
+  /// False if images are lower than those that plans are for: they cannot determine the height of
+  /// bands.
   bool searches_bands = true;
 };
 
-/// One disparity map of a pair, without refinement: what plans make a difference to. Candidates
-/// come from the sizes of equal strips, bands and passes; those that the cost model
-/// thinks hopeless are left out, and so are those that come to the same plan as the incumbent.
+/// One disparity map of a pair, without refinement: the part that depends on plans. Candidates are
+/// the sizes of equal strips, bands and passes, without those that the cost model rates hopeless
+/// and those that give the same plan as the incumbent.
 ///
 /// Thread rule: one thread at a time.
 class MatchSubject : public TuningSubject {
  public:
-  /// `pair` must outlive the subject. Throws UsageError for invalid options, Error where no pixel
+  /// `pair` must outlive the subject. Throws UsageError for invalid options, Error when no pixel
   /// has a candidate.
   MatchSubject(const MatchSubjectOptions& options, const TuningPair& pair);
   ~MatchSubject() override;
@@ -41,7 +41,7 @@ class MatchSubject : public TuningSubject {
   double measure(const TunedSettings& settings) override;
 
  protected:
-  /// What runs one way to do the work; kept from measurement to measurement.
+  /// Runs one setting; kept from measurement to measurement.
   struct Runner {
     Runner(const MatchOptions& match, const TunedSettings& tuned, const ExecutionOptions& options)
         : settings(tuned), execution(options), matcher(match, execution) {}
@@ -49,12 +49,12 @@ class MatchSubject : public TuningSubject {
     Execution execution;
     StereoMatcher matcher;
     DisparityMaps maps;
-    bool is_warm = false;  ///< has worked before
+    bool is_warm = false;  ///< has run before
   };
 
-  /// Works once, and tells how many frames that were.
+  /// Runs once and returns the number of frames.
   virtual int work(Runner& runner);
-  /// Values of a coordinate that this class knows nothing of.
+  /// Values of a coordinate that this class does not know.
   virtual std::vector<int> more_values(const TuningCoordinate& coordinate,
                                        const TunedSettings& incumbent, bool finely) const;
 
@@ -62,15 +62,16 @@ class MatchSubject : public TuningSubject {
   [[nodiscard]] int threads_of(const TunedSettings& settings) const;
 
  private:
-  /// What is known of one way to do the work.
+  /// State of one setting.
   struct Known {
     TunedSettings settings;
     scheduler::ChainPlan plan;
-    double model_time = 0;                              ///< as the cost model expects, any unit
+    double model_time = 0;                              ///< predicted by the cost model, in any
+                                                        ///< unit
     std::optional<double> work_seconds = std::nullopt;  ///< of the last measurement, all frames
   };
 
-  /// Plans what has not been planned yet. References stay valid.
+  /// Plans the settings that have no plan yet. References stay valid.
   void plan_all(const std::vector<TunedSettings>& settings);
   Known& known(const TunedSettings& settings);
   Runner& runner_of(const TunedSettings& settings);
@@ -81,7 +82,7 @@ class MatchSubject : public TuningSubject {
   MatchSubjectOptions options_;
   const TuningPair& pair_;
   std::list<Known> known_;
-  std::list<std::unique_ptr<Runner>> runners_;  ///< the last used first
+  std::list<std::unique_ptr<Runner>> runners_;  ///< most recently used first
   scheduler::Machine machine_;
 };
 

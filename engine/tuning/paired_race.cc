@@ -7,22 +7,22 @@
 namespace vantage {
 namespace {
 
-// A gain of less is not worth a difference from the default.
+// A smaller gain does not justify a difference from the default.
 constexpr double kLeastGain = 0.01;
 constexpr double kStandardErrors = 2;
 // A winner may lose none of the first kRoundsToWin rounds, and one of each kRoundsPerLoss more: by
-// chance alone that happens once in twenty times.
+// chance that happens once in twenty times.
 constexpr int kRoundsToWin = 3;
 constexpr int kRoundsPerLoss = 4;
 constexpr int kLeastRounds = 5;
 constexpr int kMostRounds = 15;
-// Whether time ran out or not, fewer rounds decide nothing.
+// Fewer rounds decide nothing, even if time ran out.
 constexpr int kFewestRounds = 3;
-// The first measurement of a plan only tells whether it is hopeless.
+// The first measurement of a plan only shows whether it is hopeless.
 constexpr double kHopelessTimeRatio = 1.4;
-// In a round's ranking, so far behind the best and beyond twice the noise is clearly behind.
+// In a round's ranking, this share behind the best and beyond twice the noise is clearly slower.
 constexpr double kClearlyBehind = 0.03;
-// Noise as long as there are too few rounds to tell.
+// Assumed noise until there are enough rounds to estimate it.
 constexpr double kNoiseAtFirst = 0.08;
 
 struct Runner {
@@ -31,7 +31,7 @@ struct Runner {
   PairedComparison comparison;
 };
 
-/// Measures every candidate once; empty where there was no time for any.
+/// Measures every candidate once; empty if there was no time for any.
 std::vector<Runner> scout(const TunedSettings& incumbent,
                           const std::vector<TunedSettings>& candidates, BudgetedTrials& trials) {
   std::vector<Runner> runners;
@@ -41,7 +41,7 @@ std::vector<Runner> scout(const TunedSettings& incumbent,
   }
   double least = *incumbent_seconds;
   for (const TunedSettings& candidate : candidates) {
-    // Candidates that cost too much time may stand before others that do not.
+    // Slow candidates may precede fast ones, so the search continues after one without enough time.
     if (const std::optional<double> seconds = trials.measure(candidate)) {
       least = std::min(least, *seconds);
       runners.push_back({candidate, *seconds, {}});
@@ -60,8 +60,8 @@ std::vector<Runner> scout(const TunedSettings& incumbent,
   return runners;
 }
 
-/// One round; false when time ran out in it. What was measured in it counts all the same, for those
-/// that have been measured.
+/// One round; false when time ran out in it. Its measurements so far count for the runners
+/// measured.
 bool run_round(const TunedSettings& incumbent, std::vector<Runner>& runners, bool incumbent_first,
                BudgetedTrials& trials) {
   std::vector<std::optional<double>> seconds(runners.size());
@@ -97,8 +97,7 @@ void note_ratios(const TunedSettings& incumbent, const std::vector<Runner>& runn
   }
 }
 
-/// Leaves the better half of the runners, from the second round on, less those clearly behind; the
-/// best first.
+/// Drops the clearly slower runners and, from the second round on, the slower half; best first.
 void drop_slow(std::vector<Runner>& runners, int round) {
   std::ranges::stable_sort(runners, {},
                            [](const Runner& runner) { return runner.comparison.median_ratio(); });
@@ -113,7 +112,7 @@ void drop_slow(std::vector<Runner>& runners, int round) {
                 [&](const Runner& runner) { return runner.comparison.median_ratio() > limit; });
 }
 
-/// Whether more rounds would hardly make a winner of the challenger.
+/// Whether the challenger is unlikely to win with more rounds.
 bool is_lost(const PairedComparison& comparison) {
   return comparison.rounds() >= kFewestRounds && 2 * comparison.wins() <= comparison.rounds();
 }
@@ -178,11 +177,11 @@ PairedComparison compare(const TunedSettings& incumbent, const TunedSettings& ch
   std::vector<Runner> runners(1);
   runners.front().settings = challenger;
   PairedComparison& comparison = runners.front().comparison;
-  // The first measurements also allocate: they do not count.
+  // The first measurements also allocate, so they do not count.
   if (!trials.measure(incumbent) || !trials.measure(challenger)) {
     return comparison;
   }
-  // Whoever stopped as soon as it looks good would be taken in by chance more often.
+  // Stopping as soon as it looks good would accept chance results more often.
   for (int round = 1; round <= rounds && !is_lost(comparison); ++round) {
     const auto before = trials.measure(incumbent);
     const auto seconds = before ? trials.measure(challenger) : std::nullopt;

@@ -7,17 +7,17 @@
 
 namespace vantage {
 
-/// What comparing one plan with another, measured in turn, says.
+/// Result of comparing two plans, measured alternately.
 struct PairedComparison {
   std::vector<double> ratios;  ///< challenger ÷ incumbent, one per round
-  /// Where the incumbent is measured twice in a round, before and behind the challenger: the second
-  /// time ÷ the first. All that is not 1 in them is noise.
+  /// If the incumbent is measured twice in a round, before and after the challenger: the second
+  /// time ÷ the first. Deviations from 1 are noise.
   std::vector<double> repeats = {};
 
   [[nodiscard]] int rounds() const { return static_cast<int>(ratios.size()); }
   [[nodiscard]] int wins() const;  ///< rounds in which the challenger was faster
   [[nodiscard]] double median_ratio() const { return median(ratios); }
-  /// By how much the incumbent differs from itself, as a standard deviation; 0 without repeats.
+  /// Standard deviation of the incumbent's repeats; 0 without repeats.
   [[nodiscard]] double noise() const;
   /// Whether the challenger is faster beyond noise: by at least 1 %, twice the standard error and
   /// noise(), in all but a few of at least `least_rounds` rounds.
@@ -30,14 +30,14 @@ struct RaceResult {
   bool complete = true;                 ///< false: time ran out before it was decided
 };
 
-/// Times `candidates` and `incumbent` in turn, round by round, so that a machine that slows down or
-/// speeds up meanwhile does so for all of them. After each round those clearly behind are dropped,
-/// and of the others the slower half. The last one must beat the incumbent beyond noise.
+/// Times `candidates` and `incumbent` alternately, round by round, so that changes in the machine's
+/// speed affect all of them. After each round those clearly slower are dropped, and of the others
+/// the slower half. The last one must beat the incumbent beyond noise.
 RaceResult race(const TunedSettings& incumbent, const std::vector<TunedSettings>& candidates,
                 BudgetedTrials& trials);
 
-/// Compares two plans in `rounds` rounds, in each of which the incumbent goes before and behind the
-/// challenger; ends early when the challenger cannot win any more.
+/// Compares two plans in `rounds` rounds, each with the incumbent before and after the challenger;
+/// ends early when the challenger cannot win any more.
 PairedComparison compare(const TunedSettings& incumbent, const TunedSettings& challenger,
                          int rounds, BudgetedTrials& trials);
 

@@ -7,18 +7,18 @@
 
 namespace vantage {
 
-/// Several frames that go through a pipeline as in a run: decoded, matched (one map, without
-/// refinement) and encoded, from memory to memory. Searches the frames in flight, too.
+/// Several frames in a pipeline as in a run: decoded, matched (one map, without refinement) and
+/// encoded, from memory to memory. Also searches the number of frames in flight.
 class SequenceSubject final : public MatchSubject {
  public:
   /// As MatchSubject.
   SequenceSubject(const MatchSubjectOptions& options, const TuningPair& pair);
 
-  /// Of one measurement.
+  /// Frames per measurement.
   [[nodiscard]] int frames() const { return frames_; }
 
  private:
-  /// What a frame under way holds.
+  /// Buffers of a frame in flight.
   struct Slot {
     Photograph left;
     Photograph right;

@@ -9,7 +9,7 @@
 
 namespace vantage {
 
-/// What changes speed and nothing else. An empty field is left to the cost model.
+/// Settings that affect speed only. Empty fields are left to the cost model.
 struct TunedSettings {
   std::optional<int> threads = std::nullopt;              ///< 1..1024
   std::optional<int> strip_width_px = std::nullopt;       ///< 1..65500
@@ -25,12 +25,12 @@ struct TunedSettings {
 
 /// One field of TunedSettings.
 struct TuningCoordinate {
-  std::string_view name;  ///< as the command line's option
+  std::string_view name;  ///< as the option on the command line
   std::optional<int> TunedSettings::*field;
   int most = 1;  ///< the largest value
 };
 
-/// All of them, in the order in which a search goes through them.
+/// All coordinates, in search order.
 inline constexpr std::array<TuningCoordinate, 5> kTuningCoordinates = {
     TuningCoordinate{"threads", &TunedSettings::threads, 1024},
     TuningCoordinate{"in-flight", &TunedSettings::frames_in_flight, 64},
@@ -38,10 +38,10 @@ inline constexpr std::array<TuningCoordinate, 5> kTuningCoordinates = {
     TuningCoordinate{"iterations-per-pass", &TunedSettings::iterations_per_pass, 10000},
     TuningCoordinate{"band-height", &TunedSettings::band_height_px, 65500}};
 
-/// "threads 2, strip-width 321", or "default" where all is left to the cost model.
+/// "threads 2, strip-width 321", or "default" if all is left to the cost model.
 std::string to_string(const TunedSettings& settings);
 
-/// `given`, and where it leaves something to the cost model what `tuned` says.
+/// `given`, with empty fields taken from `tuned`.
 ExecutionOptions with_tuned(const ExecutionOptions& given, const TunedSettings& tuned);
 
 }  // namespace vantage

@@ -14,17 +14,17 @@ namespace {
 
 // The final comparison: a measurement of the best plan between two of the default one.
 constexpr int kFinalRounds = 9;
-constexpr int kFewestFinalRounds = 5;  // where time is short; three are won by chance too often
-// The time of so many of them is set aside, at most such a share of the budget.
+constexpr int kFewestFinalRounds = 5;  // if time is short; three are won by chance too often
+// The time for this many of them is reserved, up to this share of the budget.
 constexpr int kReservedRounds = 5;
 constexpr double kMostFinalShare = 0.3;
-// Coordinates are gone through so often; what improves by then does so by less than noise.
+// Maximum number of sweeps over the coordinates; later improvements are below noise.
 constexpr int kMostSweeps = 5;
 constexpr int kSearches = 2;
 
 }  // namespace
 
-/// Pairs that have been raced, in either role, need not be again.
+/// Pairs that have raced, in either role, do not race again.
 class Tuner::RacedPairs {
  public:
   void add(const TunedSettings& incumbent, const std::vector<TunedSettings>& candidates) {
@@ -60,7 +60,7 @@ void Tuner::report(const BudgetedTrials& trials, std::string_view coordinate,
 }
 
 bool Tuner::search(BudgetedTrials& trials, TunedSettings& incumbent) {
-  // The second time confirms: noise may have hidden a gain from the first.
+  // The second search confirms: noise may have hidden a gain from the first.
   for (int time = 0; time < kSearches; ++time) {
     RacedPairs raced;
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
@@ -125,7 +125,7 @@ TuningOutcome Tuner::tune() {
     const PairedComparison comparison = compare(by_default, incumbent, kFinalRounds, final_trials);
     outcome.rounds = comparison.rounds();
     outcome.noise = comparison.noise();
-    // A tie, and what there was no time to compare, is the default's.
+    // Ties and unfinished comparisons go to the default.
     if (comparison.is_won(kFewestFinalRounds)) {
       outcome.settings = incumbent;
       outcome.ratio_to_default = comparison.median_ratio();

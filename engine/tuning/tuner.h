@@ -13,43 +13,43 @@ namespace vantage {
 inline constexpr double kMostBudgetSeconds = 1e6;
 
 struct TunerOptions {
-  /// From the call of tune() on; measurements that are not expected to end in time do not begin.
+  /// From the call of tune() on; measurements that are not expected to end in time do not start.
   double budget_seconds = 60;
-  /// Where the search begins; the default plan, unless something better is known.
+  /// Starting point of the search; the default plan unless a better one is known.
   TunedSettings start = {};
-  const std::atomic<bool>* stop = nullptr;  ///< once raised, nothing more is measured; not owned
+  const std::atomic<bool>* stop = nullptr;  ///< once set, no further measurement starts; not owned
 };
 
-/// Where a search stands.
+/// Progress of a search.
 struct TunerProgress {
   double elapsed_seconds = 0;
   int measurements = 0;
-  std::string_view coordinate;  ///< being searched; "final" for the comparison at the end
+  std::string_view coordinate;  ///< being searched; "final" for the final comparison
   TunedSettings incumbent;      ///< the best so far
 };
 
 struct TuningOutcome {
-  TunedSettings settings;  ///< to be used; all empty where nothing beats the default plan
-  /// Of a frame, medians of the final comparison; both that of the default where nothing was better
-  /// in the search. 0 where nothing could be measured.
+  TunedSettings settings;  ///< to be used; all empty if nothing beats the default plan
+  /// Per frame, medians of the final comparison; both are the default's if the search found nothing
+  /// better. 0 if nothing could be measured.
   double frame_seconds = 0;
   double default_frame_seconds = 0;
   double ratio_to_default = 1;  ///< median of pairs
   int rounds = 0;               ///< of the final comparison
-  /// By how much the default plan differed from itself in them, as a share of its time.
+  /// Noise of the default plan in the final comparison, relative to its time.
   double noise = 0;
   int measurements = 0;
   double elapsed_seconds = 0;
-  bool complete = false;           ///< the search ended by itself, not by the budget
+  bool complete = false;           ///< the search converged within the budget
   bool interrupted = false;        ///< `stop` was raised
-  std::deque<TuningTrial> trials;  ///< all that was tried in the search, the default first
+  std::deque<TuningTrial> trials;  ///< all settings tried in the search, the default first
 };
 
-/// Looks for settings that make `subject` fast: one coordinate after the other, the candidates of
-/// each timed in turn with the best so far (race()), until nothing improves any more or time is
-/// up. What was found is then compared once more with the default plan, in pairs on
-/// `final_subject`, which may be the same or a more faithful one; unless it wins beyond noise, the
-/// default stays. So the outcome is not slower than the default plan.
+/// Searches for settings that make `subject` fast: one coordinate after the other, with the
+/// candidates of each raced against the best so far (race()), until nothing improves or time is up.
+/// The result is then compared with the default plan once more, in pairs on `final_subject`, which
+/// may be the same or a more faithful one; unless it wins beyond noise, the default is kept. So the
+/// result is not slower than the default plan.
 class Tuner {
  public:
   /// All must outlive the tuner. Throws UsageError for a budget that is not a positive number of
@@ -67,9 +67,9 @@ class Tuner {
  private:
   class RacedPairs;
 
-  /// True when nothing is left that could improve; false when time is up.
+  /// True when nothing can improve any more; false when time is up.
   bool search(BudgetedTrials& trials, TunedSettings& incumbent);
-  /// The same of one coordinate, in one race.
+  /// Searches one coordinate in one race; returns as search().
   bool search_coordinate(const TuningCoordinate& coordinate, bool finely, RacedPairs& raced,
                          BudgetedTrials& trials, TunedSettings& incumbent);
   void report(const BudgetedTrials& trials, std::string_view coordinate,

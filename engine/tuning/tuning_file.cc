@@ -28,7 +28,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kKind = "vantage tuning";
 constexpr int kTuningFormat = 1;
-// More is no tuning file.
+// Larger files are not tuning files.
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{16} << 20;
 
 Json json_of(const TunedPlan& plan) {
@@ -71,7 +71,7 @@ std::string text_of(const std::vector<TuningEntry>& entries) {
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// A whole number of `field`; not a fraction, a truth value or a text.
+/// An integer of `field`; no fraction, boolean or string.
 int whole_number(const Json& json, const std::string& field) {
   if (!json.is_number_integer() || json.get<double>() < 0 || json.get<double>() > 1e9) {
     throw UsageError(fmt::format("{} is {}, expected a whole number", field, quoted_json(json)));
@@ -88,7 +88,7 @@ double number(const Json& json, const std::string& field, double least) {
   return value;
 }
 
-/// Throws what nlohmann throws, or UsageError.
+/// Throws nlohmann's exceptions, or UsageError.
 TunedPlan plan_of(const Json& json) {
   TunedPlan plan;
   for (const auto& [name, value] : json.at("settings").items()) {
@@ -148,7 +148,7 @@ std::optional<std::string> text_of_file(const fs::path& path) {
   return text;
 }
 
-/// The list of entries; throws Error where the document is none of this format.
+/// The list of entries; throws Error if the document has another format.
 Json entries_of(const std::string& text, const std::string& name) {
   const Json document = parse_json(text, name);
   if (!document.is_object() || document.value("kind", Json()) != kKind) {
@@ -164,7 +164,7 @@ Json entries_of(const std::string& text, const std::string& name) {
   return document["entries"];
 }
 
-/// Keeps other processes from changing the file; file systems that know no locks do without.
+/// Keeps other processes from changing the file; not on file systems without locks.
 class FileLock {
  public:
   explicit FileLock(const fs::path& path)
@@ -181,7 +181,7 @@ class FileLock {
   FileDescriptor file_;  // closing it unlocks
 };
 
-/// Reads, lets `change` change and writes, if it returns true, the entries of `path`.
+/// Reads the entries of `path`, calls `change`, and writes them if it returns true.
 void change_entries(const fs::path& path,
                     const std::function<bool(std::vector<TuningEntry>&)>& change) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");

@@ -27,12 +27,12 @@ std::string_view name_of(scheduler::ExecutorKind kind) {
   return "";
 }
 
-/// The power of 2^(1/`steps`) nearest to `value`, rounded; 0 stays.
+/// The power of 2^(1/`steps`) nearest to `value`, rounded; 0 stays 0.
 long class_of(double value, int steps) {
   return value <= 0 ? 0 : std::lround(std::exp2(std::round(steps * std::log2(value)) / steps));
 }
 
-/// How far the aggregation reaches, in its own unit.
+/// Reach of the aggregation, in its own unit.
 std::string reach_of(const MethodParameters& parameters) {
   switch (parameters.aggregation) {
     case Aggregation::kNone:
@@ -59,7 +59,7 @@ std::string method_text(const MatchOptions& match, const TunedImages& images) {
     text += fmt::format(", {} thresholds", parameters.census_thresholds);
   }
   if (uses_fixed_energies(parameters)) {
-    text += ", largest term";  // cells are half as large, and take less time
+    text += ", largest term";  // cells are half as large and faster
   }
   if (parameters.levels > 1) {
     text += fmt::format(", {} levels", parameters.levels);

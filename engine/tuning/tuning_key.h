@@ -15,24 +15,24 @@ struct TunedImages {
   bool is_8_bit_grey = false;
 };
 
-/// What decides which plan is the fastest, in classes: work of one class shares its tuning. All
-/// parts are plain text, meant to be read.
+/// Properties that determine the fastest plan, in classes: work of one class shares its tuning. All
+/// parts are human-readable text.
 struct TuningKey {
   std::string machine;  ///< processor, caches, threads and cores, NUMA nodes if there are several
-  std::string threads;  ///< that may be used, executor, instruction set, binding if it was given
+  std::string threads;  ///< number available, executor, instruction set, binding if given
   /// Cost and aggregation; sizes of windows, smoothing and iterations as powers of two; whether
   /// cells are integers.
   std::string method;
   std::string size;     ///< width, height and candidates as powers of √2
   std::string version;  ///< of Vantage
 
-  /// All of it in one line; equal for equal keys only.
+  /// One line; equal only for equal keys.
   [[nodiscard]] std::string text() const;
   friend bool operator==(const TuningKey&, const TuningKey&) = default;
 };
 
 /// The key of matching such images with `match`, whose disparities are known, on `machine`.
-/// `execution`: as the user gave it. Uses the instruction set in use.
+/// `execution`: as given by the user. Uses the instruction set in use.
 TuningKey make_tuning_key(const scheduler::Machine& machine, const MatchOptions& match,
                           const ExecutionOptions& execution, const TunedImages& images);
 

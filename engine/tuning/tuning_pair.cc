@@ -15,10 +15,10 @@
 namespace vantage {
 namespace {
 
-// Rendering takes longer than fast methods take to match: structure need not go on for ever.
+// Rendering takes longer than fast methods take to match, so only this many rows are rendered.
 constexpr int kRenderedRows = 192;
 
-/// Row y of an image of `rows` rows that is continued by its mirror images.
+/// Row y of an image of `rows` rows that is extended by reflection.
 int mirrored_row(int y, int rows) {
   const int place = y % (2 * rows);
   return place < rows ? place : 2 * rows - 1 - place;

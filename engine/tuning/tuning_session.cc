@@ -15,27 +15,27 @@
 namespace vantage {
 namespace {
 
-constexpr int kMostSide = 16384;  // of made-up scenes
-// A use's budget is to be enough for so many measurements, and the final comparison for so many of
-// its higher images in so much of the budget.
+constexpr int kMostSide = 16384;  // of synthetic scenes
+// A use's budget should suffice for this many measurements, and this share of it for the final
+// comparison with this many of its higher images.
 constexpr double kMeasurements = 150;
 constexpr double kFinalMeasurements = 14;
 constexpr double kFinalShare = 0.3;
-// A pilot measures images of so many rows, and lower ones are never used: starting up would count
-// for too much.
+// A pilot measures images of this many rows, which is also the minimum: for lower ones start-up
+// costs dominate.
 constexpr int kPilotRows = 64;
-// So near the full height, the full height is taken.
+// From this share of the full height on, the full height is used.
 constexpr double kNearlyAll = 0.7;
-// With less than this, nothing can be said.
+// Less time than this is not enough for a result.
 constexpr double kLeastSeconds = 0.05;
 
 double now_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The subject of a use, with the images it needs.
+/// The subject of a use, with its images.
 struct Bench {
-  std::unique_ptr<const TuningPair> pair;  // stays where it is when the bench moves
+  std::unique_ptr<const TuningPair> pair;  // address stays the same when the bench moves
   std::unique_ptr<MatchSubject> subject;
   int frames = 1;
 };
@@ -67,7 +67,7 @@ class Session {
     std::optional<Bench> higher;
     if (report.final_rows > report.search_rows) {
       higher.emplace(make_bench(use, report.final_rows, false));
-      higher->subject->measure({});  // tells how much time to set aside
+      higher->subject->measure({});  // shows how much time to reserve
     }
     report.frames = search.frames;
     TunerOptions options;
@@ -80,7 +80,7 @@ class Session {
   }
 
  private:
-  /// Whole windows need that many rows.
+  /// Complete windows need this many rows.
   static int windows_height(const MatchOptions& match) {
     const MethodParameters parameters = match.resolved();
     return parameters.aggregation == Aggregation::kBox ? parameters.window_px : 0;
@@ -101,7 +101,7 @@ class Session {
     return bench;
   }
 
-  /// Seconds that one measurement of the lowest images takes.
+  /// Seconds of one measurement of the lowest images.
   double pilot(TunedUse use) const {
     const Bench bench = make_bench(use, least_rows_, false);
     const double first = bench.subject->measure({});  // also allocates
@@ -109,7 +109,7 @@ class Session {
     return least * bench.frames;
   }
 
-  /// The height at which a measurement takes about `seconds`, when the lowest images take
+  /// The height at which a measurement takes about `seconds`, if the lowest images take
   /// `least_seconds`.
   [[nodiscard]] int rows_for(double seconds, double least_seconds) const {
     const double rows = least_rows_ * seconds / std::max(1e-9, least_seconds);

@@ -7,10 +7,10 @@
 
 namespace vantage {
 
-/// Seconds since any fixed moment; never runs backwards.
+/// Seconds since any fixed time; monotonic.
 using TuningClock = std::function<double()>;
 
-/// What is to become faster, and which ways of doing it are worth a try.
+/// The work to speed up, and candidate settings for it.
 class TuningSubject {
  public:
   TuningSubject() = default;
@@ -18,16 +18,16 @@ class TuningSubject {
   TuningSubject& operator=(const TuningSubject&) = delete;
   virtual ~TuningSubject() = default;
 
-  /// Settings that differ from `incumbent` in `coordinate` (and may leave to the cost model what
-  /// depends on it), the most promising first. `finely`: only near the incumbent, else over all of
-  /// its range. Empty where the coordinate is not to be searched.
+  /// Settings that differ from `incumbent` in `coordinate` (and may leave dependent ones to the
+  /// cost model), the most promising first. `finely`: only near the incumbent, else over the whole
+  /// range. Empty if the coordinate is not searched.
   virtual std::vector<TunedSettings> candidates(const TuningCoordinate& coordinate,
                                                 const TunedSettings& incumbent, bool finely) = 0;
 
-  /// How long measure() is going to take, in seconds; rather too much than too little.
+  /// Expected duration of measure(), in seconds; an upper estimate.
   virtual double expected_seconds(const TunedSettings& settings) = 0;
 
-  /// Does the work once and tells how long a frame took, in seconds.
+  /// Does the work once and returns the seconds per frame.
   virtual double measure(const TunedSettings& settings) = 0;
 };
 
