@@ -20,7 +20,7 @@ using TagCode = hn::ScalableTag<std::uint32_t>;
 using VecCode = hn::VFromD<TagCode>;
 using Code = Features<std::uint32_t, 2>;
 
-// Shifts `half` to the left and puts in whether the neighbours are less than the centre.
+// Shifts `half` left and inserts the bit "neighbour is less than the centre".
 HWY_INLINE void append(const float* neighbours, Vec centre, VecCode& half) {
   const Tag d;
   const TagCode d32;
@@ -55,7 +55,7 @@ void census_codes(const CensusRows& rows, int width, std::uint32_t* first_half,
   }
 }
 
-// The three bytes of a code's 24 bits.
+// Stores the three bytes of a 24-bit code.
 HWY_INLINE void store_code(VecCode code, int x, std::uint8_t* const* bytes) {
   const TagCode d32;
   const hn::Rebind<std::uint8_t, TagCode> d8;
@@ -94,7 +94,7 @@ void ray_census_codes(const RayCensusRows& rows, int width, int thresholds,
     for (const PixelOffset& offset : kRayCensusOffsets) {
       const Vec level = hn::LoadU(d, neighbours(rows, x, offset));
       const auto is_upper = hn::Lt(level, centre);
-      // Of the two other thresholds, the one on its side of the centre.
+      // Of the two other thresholds, uses the one on the neighbour's side of the centre.
       const auto is_lower = hn::Lt(level, hn::IfThenElse(is_upper, less, more));
       upper = hn::Sub(hn::Add(upper, upper), hn::BitCast(d32, hn::VecFromMask(d, is_upper)));
       lower = hn::Sub(hn::Add(lower, lower), hn::BitCast(d32, hn::VecFromMask(d, is_lower)));
@@ -105,7 +105,7 @@ void ray_census_codes(const RayCensusRows& rows, int width, int thresholds,
 }
 
 #if HWY_TARGET != HWY_SCALAR
-// Sums of the four bytes of each lane, none above 255.
+// Sums the four bytes of each lane; no sum exceeds 255.
 HWY_INLINE VecCode add_bytes(hn::VFromD<hn::Repartition<std::uint8_t, TagCode>> counts) {
   const TagCode d32;
   const VecCode of_bytes = hn::BitCast(d32, counts);
@@ -114,7 +114,7 @@ HWY_INLINE VecCode add_bytes(hn::VFromD<hn::Repartition<std::uint8_t, TagCode>> 
 }
 #endif
 
-// Bits set in the lanes of the vectors of a code together.
+// Number of set bits per lane, over all vectors of a code.
 HWY_INLINE VecCode count_bits(const Code& code) {
 #if HWY_TARGET == HWY_SCALAR
   return hn::Add(hn::PopulationCount(code[0]), hn::PopulationCount(code[1]));

@@ -5,37 +5,37 @@ namespace vantage::kernels {
 /// Colours of one warped scanline, fetched backward from the source (3.2.7): position n of the new
 /// view shows source column n + s·d.
 ///
-/// `pixels` and `source_disparity_px` are rows with margins (pixel_row.h), `warped_disparity_px`
-/// and the result rows without. `lanes` is pixel_lanes(channels).
+/// `pixels` and `source_disparity_px` are rows with margins (pixel_row.h); `warped_disparity_px`
+/// and the result rows have none. `lanes` is pixel_lanes(channels).
 struct BicubicFetchRow {
   const float* pixels = nullptr;               ///< [x · lanes + c]
-  const float* source_disparity_px = nullptr;  ///< of the same columns
-  const float* warped_disparity_px = nullptr;  ///< as forward_warp_row() makes it; NaN = hole
+  const float* source_disparity_px = nullptr;  ///< for the same columns
+  const float* warped_disparity_px = nullptr;  ///< output of forward_warp_row(); NaN = hole
   int width = 0;
   int lanes = 0;                ///< 1 or 4
   double camera_offset = 0;     ///< s, as in forward_warp_row()
-  float gradient_limit_px = 1;  ///< taps whose disparity differs by more show another surface
-  float largest_value = 255;    ///< of the pixel type
-  bool is_in_range = false;     ///< all pixels are known to lie in 0..largest_value
+  float gradient_limit_px = 1;  ///< taps whose disparity differs by more are on another surface
+  float largest_value = 255;    ///< maximum of the pixel type
+  bool is_in_range = false;     ///< true: all pixels are known to lie in 0..largest_value
 };
 
 /// One bicubic interpolation (Keys, a = −½) along the row. A tap outside the image or on another
-/// surface counts with the value of its neighbour towards the centre, so colours do not mix across
-/// depth discontinuities. Results stay in 0..largest_value, or the range of the taps where that is
-/// wider. Holes become 0. Identical on every instruction set and to the reference.
+/// surface takes the value of its neighbour towards the centre, so colours do not mix across depth
+/// discontinuities. Results are clamped to 0..largest_value, or to the range of the taps where that
+/// is wider. Holes become 0. Identical on every instruction set and to the reference.
 void fetch_bicubic_row(const BicubicFetchRow& row, float* colours);
 void fetch_bicubic_row_ref(const BicubicFetchRow& row, float* colours);
 
-/// Colours of one warped scanline as the book moves them: the source pixel itself, or in sampling
-/// gaps the two nearest ones interpolated linearly.
+/// Colours of one warped scanline, moved as in the book: the source pixel itself, or, in sampling
+/// gaps, linear interpolation between the two nearest ones.
 struct ForwardFetchRow {
   const float* pixels = nullptr;         ///< with margins
-  const float* source_column = nullptr;  ///< as forward_warp_row() makes it; NaN = hole
+  const float* source_column = nullptr;  ///< output of forward_warp_row(); NaN = hole
   int width = 0;
   int lanes = 0;
 };
 
-/// Holes become 0. One plain version: it is little more than a copy.
+/// Holes become 0. Scalar code only: it is little more than a copy.
 void fetch_forward_row(const ForwardFetchRow& row, float* colours);
 
 }  // namespace vantage::kernels

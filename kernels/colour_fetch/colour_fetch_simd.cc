@@ -13,14 +13,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 #if HWY_TARGET == HWY_SCALAR
-// Has no vector of four lanes to hold a pixel.
+// HWY_SCALAR has no four-lane vector to hold a pixel.
 void fetch_bicubic(const BicubicFetchRow& row, float* colours) {
   fetch_bicubic_row_ref(row, colours);
 }
 #else
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Positions whose columns and weights are computed at a time; a multiple of every vector's length.
+// Positions whose columns and weights are computed at a time; a multiple of every vector length.
 constexpr int kBlock = 64;
 
 struct BlockWeights {
@@ -29,7 +29,8 @@ struct BlockWeights {
   float weight[4][kBlock];
 };
 
-// Source columns n + s·d and tap weights for `count` positions from `begin`; meaningless at holes.
+// Source columns n + s·d and tap weights of `count` positions starting at `begin`; meaningless at
+// holes.
 template <class D64>
 HWY_INLINE void weigh_taps(D64 d64, const BicubicFetchRow& row, int begin, int first, int count,
                            BlockWeights& block) {
@@ -58,13 +59,13 @@ HWY_INLINE void weigh_taps(D64 d64, const BicubicFetchRow& row, int begin, int f
   }
 }
 
-constexpr int kGroup = 4;  // positions whose taps are looked at together
+constexpr int kGroup = 4;  // positions whose taps are processed together
 using Group = hn::FixedTag<float, kGroup>;
 using GroupInt = hn::FixedTag<std::int32_t, kGroup>;
 using GroupVec = hn::VFromD<Group>;
 using GroupMask = hn::MFromD<Group>;
 
-// Four values from each of four places: tap k of all positions in element k.
+// Four values at each of four positions: tap k of all positions is in element k.
 struct FourTaps {
   GroupVec tap[4];
 };
@@ -84,14 +85,15 @@ HWY_INLINE FourTaps load_taps(const float* row, const std::int32_t* HWY_RESTRICT
            hn::InterleaveUpper(d, even_high, odd_high)}};
 }
 
-// Where taps come from. Branches would be mispredicted wherever surfaces end or are rough.
+// Selects where taps come from. Branches would be mispredicted at surface ends and on rough
+// surfaces.
 struct TapChoice {
-  GroupMask own0;      // tap 0 is on the surface, else it is as tap 1
-  GroupMask own1;      // tap 1 is, else it is as tap 2, or as the nearest where `neither`
-  GroupMask own2;      // likewise, as tap 1
-  GroupMask own3;      // as tap 0, for tap 2
-  GroupMask neither;   // tap 1 nor tap 2 is
-  GroupMask nearest1;  // of these two inside the image, tap 1 is the nearest
+  GroupMask own0;      // taps 0 and 1 are on the surface; else tap 0 copies tap 1
+  GroupMask own1;      // tap 1 is; else it copies tap 2, or the nearest where `neither`
+  GroupMask own2;      // tap 2 is; else it copies tap 1
+  GroupMask own3;      // taps 2 and 3 are; else tap 3 copies tap 2
+  GroupMask neither;   // neither tap 1 nor tap 2 is
+  GroupMask nearest1;  // of taps 1 and 2, limited to the image, tap 1 is nearest
 };
 
 HWY_INLINE TapChoice choose_taps(const BicubicFetchRow& row, const BlockWeights& block, int i,
@@ -118,7 +120,7 @@ HWY_INLINE TapChoice choose_taps(const BicubicFetchRow& row, const BlockWeights&
           hn::Or(hn::AndNot(at_left_border, first_half), at_right_border)};
 }
 
-// Applies a choice to what the four taps hold: values or columns.
+// Applies a choice to the four taps' contents: values or columns.
 template <class V, class M>
 HWY_INLINE void apply_choice(const M (&own)[4], M neither, M nearest1, V (&tap)[4]) {
   const auto nearest = hn::IfThenElse(nearest1, tap[1], tap[2]);
@@ -130,7 +132,8 @@ HWY_INLINE void apply_choice(const M (&own)[4], M neither, M nearest1, V (&tap)[
   tap[2] = tap2;
 }
 
-// Weighted taps, kept within the range of values. kInRange: that of the pixel type holds all taps.
+// Weighted taps, clamped to the range of values. kInRange: all taps lie within the pixel type's
+// range.
 template <bool kInRange, class D, class V>
 HWY_INLINE V interpolate(D d, const V (&value)[4], const V (&weight)[4], V largest_value) {
   // Mul and Add, never MulAdd: results must not depend on the instruction set.
@@ -146,7 +149,7 @@ HWY_INLINE V interpolate(D d, const V (&value)[4], const V (&weight)[4], V large
   return hn::Min(hn::Max(sum, smallest), largest);
 }
 
-// One value per position: the group's four positions are a vector.
+// One value per position: the group's four positions form a vector.
 template <bool kInRange>
 HWY_INLINE void fetch_grey_group(const BicubicFetchRow& row, const BlockWeights& block, int i,
                                  GroupVec disparity_px, float* HWY_RESTRICT colours) {
@@ -161,7 +164,7 @@ HWY_INLINE void fetch_grey_group(const BicubicFetchRow& row, const BlockWeights&
   hn::StoreU(hn::IfThenElseZero(hn::Eq(disparity_px, disparity_px), colour), d, colours);
 }
 
-// Four values per position: a vector is a pixel, whose taps are neighbours in memory.
+// Four values per position: a vector is one pixel; its taps are adjacent in memory.
 template <bool kInRange>
 HWY_INLINE void fetch_colour_group(const BicubicFetchRow& row, const BlockWeights& block, int i,
                                    GroupVec disparity_px, float* HWY_RESTRICT colours) {
@@ -176,7 +179,7 @@ HWY_INLINE void fetch_colour_group(const BicubicFetchRow& row, const BlockWeight
   };
   const TapChoice choice = choose_taps(row, block, i, disparity_px);
   if (hn::AllTrue(d, hn::And(choice.own0, choice.own3))) {
-    // Inside a surface; so no position is a hole.
+    // Inside a surface, so no position is a hole.
     for (int p = 0; p < kGroup; ++p) {
       const float* first = row.pixels + (block.whole[i + p] - 1) * 4;
       const GroupVec value[4] = {hn::LoadU(d, first), hn::LoadU(d, first + 4),
@@ -212,7 +215,7 @@ HWY_INLINE void fetch_colour_group(const BicubicFetchRow& row, const BlockWeight
 
 template <int kLanes, bool kInRange>
 HWY_INLINE void fetch_any(const BicubicFetchRow& given, float* HWY_RESTRICT colours) {
-  const BicubicFetchRow row = given;  // which stores to colours cannot change
+  const BicubicFetchRow row = given;  // a copy: stores to colours cannot alias it
   const hn::ScalableTag<double> d64;
   const hn::FixedTag<double, 1> d64_one;
   const Group d;
@@ -234,7 +237,7 @@ HWY_INLINE void fetch_any(const BicubicFetchRow& given, float* HWY_RESTRICT colo
       fetch(i, hn::LoadU(d, row.warped_disparity_px + begin + i), colours + (begin + i) * kLanes);
     }
     if (i < count) {
-      // A group that is not full: the places behind it are holes.
+      // Partial group: the positions after its end are holes.
       HWY_ALIGN float disparity_px[kGroup];
       HWY_ALIGN float last_colours[kGroup * kLanes];
       for (int p = 0; p < kGroup; ++p) {

@@ -18,7 +18,7 @@ void fetch(const ForwardFetchRow& row, float* colours) {
     const float fraction = column - static_cast<float>(whole);
     const float* pixel = row.pixels + whole * kLanes;
     for (int c = 0; c < kLanes; ++c) {
-      // At a fraction of 0 the second pixel may be the margin: 0 · 0 leaves the first one exact.
+      // At fraction 0 the second pixel may be the margin; 0 · 0 leaves the first one exact.
       colours[c] = (1.0F - fraction) * pixel[c] + fraction * pixel[kLanes + c];
     }
   }

@@ -16,7 +16,7 @@ std::int32_t rounded_square(const float* reference, const float* partner, int j,
   return static_cast<std::int32_t>(std::lrint(difference * difference));
 }
 
-// Modulo 2³²: the row that enters may carry a sum past 2³¹ before the other one leaves.
+// Modulo 2³²: the entering row may carry a sum past 2³¹ before the leaving one is subtracted.
 std::int32_t changed(std::int32_t sum, std::int32_t enters, std::int32_t leaves) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(sum) +
                                    static_cast<std::uint32_t>(enters) -

@@ -44,7 +44,7 @@ HWY_INLINE Vec32 add_change(Vec32 a, Vec32 b, Vec32 sum) {
   const Tag32 d32;
   const hn::Repartition<std::int16_t, Tag32> d16;
   const auto difference = hn::Sub(hn::BitCast(d16, a), hn::BitCast(d16, b));
-  // (entering, leaving) · (1, −1). A second, negated row of pairs to subtract from would save this
+  // (entering, leaving) · (1, −1). Subtracting from a second, negated row of pairs would save this
   // product but cost a load across cache lines, which is slower.
   const auto signs = hn::BitCast(d16, hn::Set(d32, static_cast<std::int32_t>(0xFFFF0001U)));
   Vec32 odd_sum = hn::Zero(d32);
@@ -53,7 +53,7 @@ HWY_INLINE Vec32 add_change(Vec32 a, Vec32 b, Vec32 sum) {
 }
 #endif
 
-// kVectors vectors of neighbouring lanes over all columns.
+// Processes kVectors neighbouring vectors of lanes over all columns.
 template <int kVectors>
 HWY_INLINE void pair_lanes(const ColumnSsdPairs& row, const std::int32_t* previous,
                            std::int32_t* sums, int first_lane) {
@@ -90,8 +90,9 @@ void column_ssd_pairs(const ColumnSsdPairs& row, const std::int32_t* previous, s
   }
 }
 
-// A float between 2²³ and 2²⁴ is an integer and its bits grow by one from each to the next: adding
-// this rounds a square to an integer, and differences of bits are differences of rounded squares.
+// A float in [2²³, 2²⁴) is an integer, and its bits increase by one from each integer to the next.
+// Adding this constant rounds a square to an integer; differences of bits are then differences of
+// rounded squares.
 constexpr float kRounder = 12582912.0F;  // 1.5 · 2²³
 
 HWY_INLINE Vec32 square_bits(hn::VFromD<TagFloat> reference, const float* partner) {

@@ -17,8 +17,9 @@ using Vec32 = hn::VFromD<Tag32>;
 using TagFloat = hn::ScalableTag<float>;
 using VecFloat = hn::VFromD<TagFloat>;
 
-// A float between 2²³ and 2²⁴ is an integer and its bits grow by one from each to the next: adding
-// this rounds a cost to an integer, and differences of bits are differences of rounded costs.
+// A float in [2²³, 2²⁴) is an integer, and its bits increase by one from each integer to the next.
+// Adding this constant rounds a cost to an integer; differences of bits are then differences of
+// rounded costs.
 constexpr float kRounder = 12582912.0F;  // 1.5 · 2²³
 
 HWY_INLINE Vec32 cost_bits(const float* costs, VecFloat offset, VecFloat scale) {

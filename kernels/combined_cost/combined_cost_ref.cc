@@ -8,7 +8,7 @@
 namespace vantage::kernels {
 namespace {
 
-/// How far `value` lies outside [low, high].
+/// Distance of `value` from [low, high]; 0 inside.
 int distance(int value, int low, int high) { return std::max({value - high, low - value, 0}); }
 
 int step_of(int residual, const CombinedTerm& term) {

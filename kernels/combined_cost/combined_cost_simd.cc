@@ -37,8 +37,8 @@ HWY_INLINE VecOf<D8> residual_steps(D8 d, VecOf<Tag16<D8> > first, VecOf<Tag16<D
   return grouped(d, hn::Combine(d, bytes(second), bytes(first)));
 }
 
-// Sums of neighbouring kBits / 8 bytes of a in the lower, of b in the upper halves of lanes of
-// 2 · kBits bits.
+// Sums of kBits / 8 neighbouring bytes, in lanes of 2 · kBits bits: those of a in the lower halves,
+// those of b in the upper halves.
 template <int kBits, class D8, class DWide>
 HWY_INLINE VecOf<D8> pair_sums(D8 d, DWide wide, VecOf<D8> a, VecOf<D8> b) {
   using T = hn::TFromD<DWide>;
@@ -51,7 +51,7 @@ HWY_INLINE VecOf<D8> pair_sums(D8 d, DWide wide, VecOf<D8> a, VecOf<D8> b) {
   return hn::Add(lower, upper);
 }
 
-// One column's values of the reference.
+// Reference values of one column.
 template <class D8>
 struct ReferencePixel {
   VecOf<Tag16<D8> > level[3][3];
@@ -118,7 +118,7 @@ HWY_INLINE VecOf<D8> census_steps(D8 d, const CensusPairs& row, const ReferenceP
     };
     return hn::Add(half(0), half(1));
   };
-  // Four bytes of each lane are added; byte v of lane i is then the count of lane i of vector v.
+  // Adds the four bytes of each lane; byte v of lane i is then the count of lane i of vector v.
   const auto sums = pair_sums<16>(d, d32, pair_sums<8>(d, d16, bits(0), bits(1)),
                                   pair_sums<8>(d, d16, bits(2), bits(3)));
   alignas(16) static constexpr std::uint8_t kTransposed[16] = {0, 4, 8,  12, 1, 5, 9,  13,
@@ -139,7 +139,7 @@ HWY_INLINE VecOf<D8> looked_up(D8 d, const std::uint8_t* table, VecOf<D8> steps)
                         hn::IfThenElse(odd, quarter(1), quarter(0)));
 }
 
-// The 16-bit values of a vector of cells.
+// 16-bit values of a vector of cells.
 template <class D8>
 struct Values {
   VecOf<Tag16<D8> > lower;
@@ -165,7 +165,7 @@ class EnergyCells {
     sum_.upper = hn::Add(sum_.upper, term.upper);
   }
   HWY_INLINE void store(D8 /*d*/, float* cells) const {
-    // 0x4B00 above a 16-bit number makes a float of it: 2²³ + the number.
+    // The bits 0x4B00 above a 16-bit number make the float 2²³ + the number.
     const Tag16<D8> d16;
     const TagFloat<D8> df;
     const auto exponent = hn::Set(d16, 0x4B00);
@@ -220,8 +220,8 @@ class LikelihoodCells {
   VecOf<TagFloat<D8> > product_[4];
 };
 
-// The cells of one column in vectors of D8's size, as long as whole ones fit; returns the first
-// lane that is left.
+// Processes the cells of one column in vectors of D8's size while whole vectors fit. Returns the
+// first remaining lane.
 template <template <class> class Cells, class D8>
 HWY_INLINE int combine_lanes(D8 d, const CombinedRow& row, const CombinedModel& model, int column,
                              int lane, float* cells) {

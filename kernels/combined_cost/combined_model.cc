@@ -8,14 +8,14 @@
 namespace vantage::kernels {
 namespace {
 
-/// Residuals are told apart up to where the Gaussian is this part of ε.
+/// Residuals are resolved up to where the Gaussian is this fraction of ε.
 constexpr double kSmallestPart = 1.0 / 16;
 
 double measurement(double residual_sigmas, double epsilon) {
   return (1 - epsilon) * std::exp(-residual_sigmas * residual_sigmas / 2) + epsilon;
 }
 
-/// In σ.
+/// In units of σ.
 double most_residual(double epsilon) {
   const double ratio = (1 - epsilon) / (epsilon * kSmallestPart);
   return std::sqrt(2 * std::max(2.0, std::log(ratio)));
@@ -29,7 +29,7 @@ std::uint32_t table_value(double likelihood, CombinedCells cells) {
   return (std::bit_cast<std::uint32_t>(static_cast<float>(likelihood)) + kHalf) >> 16U;
 }
 
-/// residual_of(step): in σ.
+/// residual_of(step): in units of σ.
 template <typename ResidualOfStep>
 TermTable term_table(double epsilon, CombinedCells cells, const ResidualOfStep& residual_of) {
   TermTable table;
@@ -41,14 +41,14 @@ TermTable term_table(double epsilon, CombinedCells cells, const ResidualOfStep& 
   return table;
 }
 
-/// `sigma`: in units of the fixed residual.
+/// `sigma`: in units of the fixed-point residual.
 CombinedTerm fixed_term(double sigma, double epsilon, CombinedCells cells) {
   constexpr double kOne = 65536;
   CombinedTerm term;
   const double multiplier = kResidualSteps * kOne / (most_residual(epsilon) * sigma);
   term.multiplier = static_cast<std::uint16_t>(std::clamp(multiplier, 1.0, kOne - 1));
   term.table = term_table(epsilon, cells, [&](int step) {
-    // The middle of those whole residuals that fall into the step.
+    // Midpoint of the integer residuals in this step.
     const double first = std::ceil(step * kOne / term.multiplier);
     const double end = std::ceil((step + 1) * kOne / term.multiplier);
     return (first + end - 1) / 2 / sigma;

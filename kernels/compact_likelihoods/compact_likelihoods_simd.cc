@@ -22,7 +22,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using IntTag = hn::RebindToSigned<FloatTag>;
 using ByteTag = hn::Rebind<std::uint8_t, FloatTag>;
 
-// Rounds numbers of steps ≥ 0 and stores them as bytes.
+// Rounds step numbers ≥ 0 and stores them as bytes.
 HWY_INLINE void store_steps(FloatVec steps, std::uint8_t* bytes) {
   const FloatVec most = hn::Set(FloatTag(), static_cast<float>(kMostCompact));
   hn::StoreU(hn::DemoteTo(ByteTag(), hn::NearestInt(hn::Min(steps, most))), ByteTag(), bytes);
@@ -69,8 +69,7 @@ void reduce_compact_energies(const BlockRow<std::uint8_t>& row, float weight,
 #else
 using SumTag = hn::CappedTag<std::uint16_t, 8>;
 
-// Cells of bytes as sums of 16 bits: those in even lanes, and those in odd ones. Neither needs to
-// leave its 128-bit block.
+// 16-bit sums of byte cells, even and odd lanes separately; neither leaves its 128-bit block.
 template <class D8>
 struct BlockSums {
   VecOf<Tag16<D8> > even;
@@ -93,7 +92,7 @@ HWY_INLINE BlockSums<D8> block_sums(D8 d, const BlockRow<std::uint8_t>& row, int
                   hn::Add(hn::ShiftRight<8>(c), hn::ShiftRight<8>(e)))};
 }
 
-// The least of each lane of 128-bit blocks.
+// Minimum per lane over the 128-bit blocks.
 template <class D16>
 HWY_INLINE VecOf<SumTag> fold_least(D16 d16, VecOf<D16> sums) {
   if constexpr (hn::MaxLanes(D16()) == hn::MaxLanes(SumTag())) {
@@ -104,8 +103,8 @@ HWY_INLINE VecOf<SumTag> fold_least(D16 d16, VecOf<D16> sums) {
   }
 }
 
-// Sums of one block, to `work`, in vectors of D8's size as long as whole ones fit; `lane` becomes
-// the first that is left, `least` that of each lane.
+// Writes the sums of one block to `work`, in vectors of D8's size while whole vectors fit. `lane`
+// becomes the first remaining lane, `least` the minimum per lane.
 template <class D8>
 HWY_INLINE void sum_block(D8 d, const BlockRow<std::uint8_t>& row, int block, std::uint16_t* work,
                           int& lane, VecOf<SumTag>& least) {
@@ -124,7 +123,7 @@ HWY_INLINE void sum_block(D8 d, const BlockRow<std::uint8_t>& row, int block, st
   least = hn::Min(least, fold_least(d16, of_lanes));
 }
 
-// What the sums of `work` are above `bottom`, times units / kCompactWeightUnits.
+// (sums in `work` − `bottom`) · units / kCompactWeightUnits.
 template <class D8>
 HWY_INLINE void weigh_block(D8 d, const std::uint16_t* work, int lanes, std::uint16_t bottom,
                             std::int16_t units, int& lane, std::uint8_t* energies) {
@@ -168,7 +167,7 @@ void reduce_compact_energies(const BlockRow<std::uint8_t>& row, float weight, st
 }
 #endif
 
-// 2^(step · exponent_of_step) of the candidates of each column, 0 in the other lanes.
+// 2^(step · exponent_of_step) for the candidates of each column, 0 in the other lanes.
 HWY_INLINE void powers(const CompactRow& row, float exponent_of_step, float* output) {
   const FloatTag df;
   const FloatVec scale = hn::Set(df, exponent_of_step);

@@ -19,7 +19,7 @@ struct Check {
   std::uint8_t* unmatched;
 };
 
-// The columns [begin, end), as many as are whole vectors. Returns the first column left over.
+// Processes columns [begin, end) while whole vectors fit. Returns the first remaining column.
 template <class D>
 HWY_INLINE int check_columns(D d, const Check& check, int begin, int end) {
   const hn::Rebind<float, D> d_float;

@@ -4,21 +4,21 @@
 
 namespace vantage::kernels {
 
-/// One row of linear diffusion: output = own · centre + step · (left + right + up + down)
-/// + pull · source, with own = 1 − 4·step − pull. step = λ; pull = λβ for the membrane (6.9), 0 for
-/// plain diffusion (6.7), which does not look at the source. Neutral columns are the centre's own:
-/// a neighbour that is missing then changes nothing.
-/// Lane-wise and without fused operations: identical on every instruction set.
+/// One row of linear diffusion: output = own · centre + step · (left + right + up + down) + pull ·
+/// source, with own = 1 − 4·step − pull. step = λ; pull = λβ for the membrane (6.9), 0 for plain
+/// diffusion (6.7), which does not read the source. Neutral columns equal the centre column, so a
+/// missing neighbour has no effect. Lane-wise and without fused operations: identical on every
+/// instruction set.
 struct DiffusionRow {
   StarRow star;
   float step = 0.15F;
   float pull = 0;
-  float* output = nullptr;  ///< star.lanes floats a column; not an input
+  float* output = nullptr;  ///< star.lanes floats per column; must not overlap the input
 };
 
 void diffusion_row(const DiffusionRow& row);
 
-/// The same, plainly.
+/// Scalar reference.
 void diffusion_row_ref(const DiffusionRow& row);
 
 }  // namespace vantage::kernels

@@ -6,14 +6,14 @@
 namespace vantage::kernels {
 namespace {
 
-/// min(k²/4, 1) of candidate i.
+/// min(k²/4, 1) for candidate i.
 float share_of_depth(const DisparityPriorRow& row, int column, int i) {
   const float offset = row.prior_px[column] - static_cast<float>(row.disparity_min);
   const float k = (static_cast<float>(i) - offset) * (1 / kPriorReachPx);
   return std::min(k * k, 1.0F);
 }
 
-/// Sums every sixteenth lane, then the sixteen sums as the tree of lane_sums-inl.h does.
+/// Sums every sixteenth lane, then reduces the sixteen sums by the tree of lane_sums-inl.h.
 float mean_above_least(const float* cells, int count) {
   float sums[kLaneMultiple] = {};
   float least = cells[0];

@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// min(k²/4, 1) of the candidates that a vector of lanes holds.
+// min(k²/4, 1) for the candidates of a vector of lanes.
 class ShareOfDepth {
  public:
   HWY_INLINE ShareOfDepth(const DisparityPriorRow& row, int column)

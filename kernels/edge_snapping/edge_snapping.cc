@@ -8,7 +8,7 @@ namespace {
 
 constexpr float kSurfaceStepPx = 1;
 
-/// The first discontinuity at `place` or right of it; width − 1 when there is none.
+/// First discontinuity at or to the right of `place`; width − 1 if there is none.
 int next_discontinuity(const float* disparity_px, int place, int width) {
   while (place + 1 < width &&
          !(std::abs(disparity_px[place + 1] - disparity_px[place]) > kSurfaceStepPx)) {
@@ -27,7 +27,7 @@ struct Row {
   [[nodiscard]] bool is_known(int column) const { return !std::isnan(disparity_px[column]); }
 };
 
-/// Where the discontinuity at `place` belongs, strictly between the places `first` and `last`.
+/// New position of the discontinuity at `place`, strictly between `first` and `last`.
 int nearest_edge(const Row& row, int place, int first, int last, int most_px) {
   if (row.is_at_edge(place)) {
     return place;
@@ -51,10 +51,10 @@ int nearest_edge(const Row& row, int place, int first, int last, int most_px) {
 
 void snap_discontinuities_row(const std::uint8_t* edges, int most_px, int width,
                               float* disparity_px) {
-  const int end = width - 1;  // places are left of it
+  const int end = width - 1;  // positions are to its left
   int first = -1;
   for (int place = next_discontinuity(disparity_px, 0, width); place < end;) {
-    // Found before this one moves: it stands still until its own turn.
+    // Found before this one moves: the next one does not move until its own turn.
     const int next = next_discontinuity(disparity_px, place + 1, width);
     const int moved = nearest_edge({edges, disparity_px}, place, first, next, most_px);
     if (moved < place) {

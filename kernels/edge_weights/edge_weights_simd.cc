@@ -43,7 +43,7 @@ void fixed_weights(const float* weights, int count, float factor, FixedWeight* f
   for (int x = 0; x + step <= count; x += step) {
     make(x);
   }
-  make(count - step);  // what is left, and some once more
+  make(count - step);  // the rest; recomputes some values
 }
 
 }  // namespace vantage::kernels::HWY_NAMESPACE

@@ -30,8 +30,8 @@ HWY_INLINE EnergyVec energy_lane_numbers() {
   return hn::Load(EnergyTag(), numbers);
 }
 
-// The least energy among the candidates of one column and the first place of it. kAll: every
-// candidate counts, and no other lane is below them.
+// Minimum energy among the candidates of one column and its first position. kAll: every candidate
+// counts, and no other lane is below them.
 template <bool kAll>
 HWY_INLINE void select(const FixedEnergy* cells, int lanes, CandidateRange candidates,
                        std::int32_t& winner, FixedEnergy& least) {
@@ -55,7 +55,7 @@ HWY_INLINE void select(const FixedEnergy* cells, int lanes, CandidateRange candi
     lowest = hn::Min(lowest, load(lane));
   }
   lowest = least_of_lanes(lowest);
-  // Looks at all: where the winner is, is as good as random, and a wrongly predicted branch costs
+  // Reads all lanes: the winner's position is as good as random, and a mispredicted branch costs
   // more than the vectors.
   EnergyVec place = most;
   EnergyVec number = energy_lane_numbers();
@@ -63,7 +63,7 @@ HWY_INLINE void select(const FixedEnergy* cells, int lanes, CandidateRange candi
     place = hn::Min(place, hn::IfThenElse(hn::Eq(load(lane), lowest), number, most));
     number = hn::Add(number, hn::Set(d, kEnergyLanes));
   }
-  // Where the least is kMostEnergy, lanes that do not count hold it too.
+  // If the minimum is kMostEnergy, lanes that do not count hold it too.
   winner = std::max<std::int32_t>(hn::GetLane(least_of_lanes(place)), candidates.begin);
   least = hn::GetLane(lowest);
 }

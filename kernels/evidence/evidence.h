@@ -12,7 +12,7 @@ using GradientPairs = FeaturePairs<float, 3>;
 inline constexpr float kOctagonSum = 0.3978247F;
 inline constexpr float kOctagonMost = 0.5626091F;
 
-/// A row of gradients g, to be made into those planes: x and y hold gx, gy.
+/// A row of gradients, converted to those planes. On input x and y hold gx and gy.
 struct GradientRowPlanes {
   float* x = nullptr;
   float* y = nullptr;
@@ -21,27 +21,28 @@ struct GradientRowPlanes {
 };
 
 /// Fills half_norm and multiplies x and y by α, in place. All three are read and written up to the
-/// next multiple of kLaneMultiple behind `width`. Identical on every instruction set.
+/// first multiple of kLaneMultiple ≥ `width`. Identical on every instruction set.
 void evidence_planes_row(const GradientRowPlanes& row, float alpha, bool octagon);
 void evidence_planes_row_ref(const GradientRowPlanes& row, float alpha, bool octagon);
 
-/// Negated evidence for a match (5.5): α |gL − gR| − (|gL| + |gR|)/2, |·| being L2 or the octagon.
-/// Of three channels: the mean. Writes columns × lanes floats, identical on every instruction set.
+/// Negated evidence for a match (5.5): α |gL − gR| − (|gL| + |gR|)/2, where |·| is L2 or the
+/// octagon. With three channels: the mean. Writes columns × lanes floats. Identical on every
+/// instruction set.
 void negated_evidence_row(const GradientPairs& row, bool octagon, float* cells);
 void negated_evidence_row_ref(const GradientPairs& row, bool octagon, float* cells);
 
-/// Cells of negated evidence, geometry.lanes() a column.
+/// Cells of negated evidence, geometry.lanes() per column.
 struct EvidenceRow {
   CandidateGeometry geometry;
   int first_column = 0;
   int columns = 0;
 };
 
-/// Least σ with which differences of evidence over σ stay finite.
+/// Smallest σ for which differences of evidence divided by σ stay finite.
 inline constexpr double kLeastEvidenceSigma = 1e-30;
 
-/// In place: (1−ε) exp((E − max E) / σ) + ε, the maximum being over the column's candidates with a
-/// partner; ε for those without, 0 for the lanes behind. σ and ε in (0, ∞) and (0, 1).
+/// In place: (1−ε) exp((E − max E) / σ) + ε, with the maximum over the column's candidates with a
+/// partner; ε for those without, 0 in the lanes after them. σ in (0, ∞), ε in (0, 1).
 void likelihood_of_evidence(const EvidenceRow& row, float sigma, float epsilon, float* cells);
 void likelihood_of_evidence_ref(const EvidenceRow& row, float sigma, float epsilon, float* cells);
 

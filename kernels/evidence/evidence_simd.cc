@@ -74,7 +74,7 @@ void negated_evidence(const GradientPairs& row, bool octagon, float* cells) {
   }
 }
 
-/// The lanes of a vector, beginning at `first`, that lie in `range`.
+/// Mask of the lanes of a vector starting at `first` that lie in `range`.
 HWY_INLINE auto lanes_in(CandidateRange range, int first) {
   const hn::ScalableTag<std::int32_t> d32;
   const auto lane = hn::Add(hn::Iota(d32, 0), hn::Set(d32, first));

@@ -15,7 +15,7 @@ void interpolate(int begin, int end, float* disparity_px) {
   }
 }
 
-/// The first unmatched pixel from `x` on, or `width`.
+/// First unmatched pixel at or after `x`, or `width`.
 int next_unmatched(const std::uint8_t* unmatched, int x, int width) {
   constexpr int kWordBytes = 8;
   for (; x + kWordBytes <= width; x += kWordBytes) {

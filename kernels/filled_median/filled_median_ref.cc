@@ -30,14 +30,14 @@ int difference(const std::uint8_t* a, const std::uint8_t* b) {
   return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
 }
 
-/// `count` ≥ 1 samples with `total` > 0 weight, which are put into another order: a quickselect
-/// that counts weights. Samples that are equal, of which there are many, are set apart together.
+/// Quickselect that counts weights. `count` ≥ 1 samples with `total` > 0 weight; they are
+/// reordered. Equal samples, which are frequent, are separated together.
 float weighted_median(WeightedSample* samples, int count, int total) {
-  int below = 0;  // weight of what is known to be less than the median
+  int below = 0;  // weight of samples known to be less than the median
   for (;;) {
     const float pivot = samples[count / 2].disparity_px;
-    int less = 0;         // samples in front that are less than the pivot
-    int greater = count;  // from here on they are greater
+    int less = 0;         // samples at the front that are less than the pivot
+    int greater = count;  // samples from here on are greater
     int weight_of_less = 0;
     int weight_of_equal = 0;
     for (int i = 0; i < greater;) {
@@ -94,7 +94,7 @@ void take_filled_medians_row_ref(const FilledRow& row, float* filled_px) {
       }
     }
     if (count > 0) {
-      // −0 becomes 0 by the sum.
+      // The addition turns −0 into 0.
       filled_px[x] = weighted_median(samples.data(), count, total) + 0.0F;
     }
   }

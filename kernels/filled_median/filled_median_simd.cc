@@ -16,7 +16,7 @@ namespace vantage::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
-// Looking at all samples in every round pays by lanes only.
+// Scanning all samples in every round is worthwhile only with several lanes.
 void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
   take_filled_medians_row_ref(row, filled_px);
 }
@@ -30,27 +30,27 @@ static_assert(kStep - 1 <= kFilledRowSlack);
 constexpr int kSamples = kFilledMedianSamples * kFilledMedianSamples;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// Of as many neighbouring pixels as a vector has lanes: [sample · kStep + lane]. What does not
-// count weighs 0 and is infinite, so that no bracket grows by it.
+// Samples of one vector of neighbouring pixels: [sample · kStep + lane]. Unused samples have weight
+// 0 and are infinite, so they do not widen any bracket.
 struct Samples {
   HWY_ALIGN float disparity_px[kSamples * kStep];
   HWY_ALIGN std::int32_t weight[kSamples * kStep];
 };
 
-// A median is one of the samples from `least` to `most`: those below `least` have less than half of
-// all weight, those up to `most` have it.
+// The median is one of the samples in [`least`, `most`]: samples below `least` have less than half
+// of the total weight, samples up to `most` have at least half.
 struct Brackets {
   Vec least, most;
   VecI total;  // weight of all samples
 };
 
-// Sums of the absolute differences of channels.
+// Sums of absolute differences of channels.
 HWY_INLINE VecI differences(const std::uint8_t* a, const std::uint8_t* b) {
   const TagI d;
   const hn::Repartition<std::uint8_t, TagI> d8;
   const auto of_a = hn::LoadU(d8, a);
   const auto of_b = hn::LoadU(d8, b);
-  // One of both is 0.
+  // One of the two is 0.
   const VecI of_bytes =
       hn::BitCast(d, hn::Or(hn::SaturatedSub(of_a, of_b), hn::SaturatedSub(of_b, of_a)));
   const VecI every_other = hn::Set(d, 0x00FF00FF);
@@ -92,8 +92,8 @@ HWY_INLINE Brackets take_samples(const FilledRow& row, int x, const std::int32_t
   return brackets;
 }
 
-// Leaves out the samples on the wrong side of `pivots`. Pivots from `least` on and below `most`
-// leave out at least one.
+// Removes the samples on the wrong side of `pivots`. Pivots in [`least`, `most`) remove at least
+// one.
 HWY_INLINE void narrow(const Samples& samples, Vec pivots, Brackets& brackets) {
   const TagF d;
   const TagI di;
@@ -128,24 +128,25 @@ void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
       ++x;
       continue;
     }
-    // The pixels from here on, matched ones among them: they mostly come in runs.
+    // Pixels from x on, including matched ones: unmatched pixels mostly come in runs.
     const int lanes = std::min(kStep, row.width - x);
     std::fill_n(taken, kStep, 0);
     std::copy_n(row.unmatched + x, lanes, taken);
     Brackets brackets = take_samples(row, x, weights, samples);
     const auto is_taken =
         hn::And(hn::Gt(hn::Load(di, taken), hn::Zero(di)), hn::Gt(brackets.total, hn::Zero(di)));
-    // Pixels that keep their values have nothing to search for.
+    // Pixels that keep their values need no search.
     brackets.most = hn::IfThenElse(hn::RebindMask(d, is_taken), brackets.most, brackets.least);
     while (!hn::AllFalse(d, hn::Lt(brackets.least, brackets.most))) {
       const Vec middle = hn::Add(hn::Mul(brackets.least, half), hn::Mul(brackets.most, half));
-      // The least sample itself where no number is between: that leaves out it or all others.
+      // If there is no float in between, the pivot is the smallest sample: that removes it or all
+      // others.
       const auto is_between =
           hn::And(hn::Ge(middle, brackets.least), hn::Lt(middle, brackets.most));
       narrow(samples, hn::IfThenElse(is_between, middle, brackets.least), brackets);
     }
     hn::Store(hn::VecFromMask(di, is_taken), di, taken);
-    // −0 becomes 0 by the sum.
+    // The addition turns −0 into 0.
     hn::Store(hn::Add(brackets.most, hn::Zero(d)), d, medians_px);
     for (int i = 0; i < lanes; ++i) {
       filled_px[x + i] = taken[i] != 0 ? medians_px[i] : filled_px[x + i];

@@ -30,7 +30,7 @@ void to_bytes(const FixedEnergy* energies, int cells, FixedWeight bytes_per_step
 
 using ByteTag = hn::Rebind<std::uint8_t, EnergyTag>;
 
-// Lanes that are no candidates are made like the others first.
+// Non-candidate lanes are first computed like the others, then overwritten here.
 template <class Row>
 HWY_INLINE void close_lanes(const Row& row, FixedEnergy* energies) {
   if (row.count < row.lanes) {
@@ -45,7 +45,7 @@ void of_bytes(const CompactRow& row, ByteSteps steps, FixedEnergy* energies) {
   const hn::RebindToUnsigned<EnergyTag> du;
   const EnergyVec units = hn::Set(d, steps.units());
   for (int k = 0; k < row.columns * row.lanes; k += kEnergyLanes) {
-    // Products of fixed-point numbers lose 15 bits: 7 that bytes are shifted by and 8 of the steps.
+    // Fixed-point products lose 15 bits: 7 from the shift of bytes and 8 from ByteSteps.
     const auto bytes = hn::PromoteTo(du, hn::LoadU(ByteTag(), row.cells + k));
     const EnergyVec shifted = hn::BitCast(d, hn::ShiftLeft<7>(bytes));
     hn::StoreU(hn::MulFixedPoint15(shifted, units), d, energies + k);

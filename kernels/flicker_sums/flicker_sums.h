@@ -4,24 +4,24 @@
 
 namespace vantage::kernels {
 
-/// Of one row of two disparity maps.
+/// Change between one row of two disparity maps.
 struct DisparityChange {
   /// Pixels where `mask` is set and both disparities are known.
   std::int64_t compared = 0;
-  std::int64_t jumped = 0;  ///< of them: |difference| > 1 px
+  std::int64_t jumped = 0;  ///< of these: |difference| > 1 px
   std::int64_t change = 0;  ///< Σ min(|difference|, 1024) in 1/1024 px, each rounded
-  /// Of all known disparities of both maps; +infinity and −infinity where there is none.
+  /// Range of all known disparities of both maps; +infinity and −infinity if there are none.
   float least_px = 0;
   float most_px = 0;
 };
 
-/// Of one row of two images of grey levels.
+/// Change between one row of two images of grey levels.
 struct LevelChange {
   std::int64_t compared = 0;  ///< pixels where `mask` is set
   std::int64_t change = 0;    ///< Σ |difference| over them
 };
 
-/// NaN: unknown; mask: 255 or 0. All equal to the reference on every instruction set.
+/// NaN: unknown; mask: 255 or 0. All functions equal the reference on every instruction set.
 DisparityChange disparity_change_row(const float* now_px, const float* before_px,
                                      const std::uint8_t* mask, int width);
 DisparityChange disparity_change_row_ref(const float* now_px, const float* before_px,

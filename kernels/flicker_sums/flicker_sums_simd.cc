@@ -31,7 +31,7 @@ HWY_INLINE std::int64_t sum_of(D d, hn::VFromD<D> v) {
   });
 }
 
-/// Columns [begin, end), a multiple of the vector, few enough for sums of 32 bits.
+/// Columns [begin, end), a whole number of vectors, few enough for 32-bit sums.
 HWY_INLINE void add_disparity_change(const float* HWY_RESTRICT now,
                                      const float* HWY_RESTRICT before,
                                      const std::uint8_t* HWY_RESTRICT mask, int begin, int end,
@@ -90,7 +90,7 @@ DisparityChange disparity_change(const float* now, const float* before, const st
   return sums;
 }
 
-/// Sums of bytes: lanes of 16 bits take 256 of them.
+/// Sums bytes; 16-bit lanes can hold the sum of 256 bytes.
 class ByteSum {
  public:
   using D = hn::ScalableTag<std::uint16_t>;

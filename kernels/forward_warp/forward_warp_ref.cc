@@ -9,7 +9,7 @@ namespace {
 
 struct WarpedSample {
   int column = 0;
-  int target = 0;           // −1 and width stand for everything outside the view
+  int target = 0;           // −1 and width represent everything outside the view
   double exact_target = 0;  // x − s·d
   float disparity_px = std::numeric_limits<float>::quiet_NaN();
 };
@@ -40,7 +40,7 @@ void forward_warp_row_ref(const ForwardWarpRow& row, float* warped_disparity_px,
       sample.exact_target = sample.column - shift;
       sample.target = static_cast<int>(
           std::clamp(sample.column + std::floor(0.5 - shift), -1.0, 1.0 * row.width));
-      // Targets in the opposite order are a surface seen from behind: it has no gaps to fill.
+      // Targets in reverse order are a surface seen from behind: it has no gaps to fill.
       if ((sample.target - previous.target) * step > 1 &&
           std::abs(sample.disparity_px - previous.disparity_px) <= row.gradient_limit_px) {
         const double spacing = sample.exact_target - previous.exact_target;

@@ -14,20 +14,20 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Columns whose targets are computed at a time; a multiple of every vector's length.
+// Columns whose targets are computed at a time; a multiple of every vector length.
 constexpr int kBlock = 64;
-// Farther than any row is wide, and safe to convert and to add to a column.
+// Farther than any row width, and safe to convert and to add to a column.
 constexpr double kFarColumns = 1 << 29;
 
-// Neighbouring columns with one more on either side: those at the ends of the blocks beside it.
+// Neighbouring columns plus one on each side: the end columns of the adjacent blocks.
 struct Block {
   int begin = 0;  // column of element 1
   int count = 0;
-  float disparity_px[kBlock + 2];   // NaN where unknown
-  std::int32_t target[kBlock + 2];  // −1 and width stand for everything outside the view
+  float disparity_px[kBlock + 2];   // NaN = unknown
+  std::int32_t target[kBlock + 2];  // −1 and width represent everything outside the view
 };
 
-// floor(x − s·d + ½) for the columns [first, first + count) of a block.
+// floor(x − s·d + ½) for columns [first, first + count) of a block.
 template <class D64>
 HWY_INLINE void find_targets(D64 d64, const ForwardWarpRow& row, int first, int count,
                              Block& block) {
@@ -54,7 +54,7 @@ HWY_INLINE void find_targets(D64 d64, const ForwardWarpRow& row, int first, int 
   }
 }
 
-// Bit i: the sampling gap between column i and the one walked before it is to be filled.
+// Bit i: the sampling gap between column i and the column processed before it must be filled.
 template <int kStep>
 HWY_INLINE std::uint64_t find_gaps(float gradient_limit_px, const Block& block) {
   const hn::CappedTag<float, 16> d;
@@ -80,7 +80,7 @@ HWY_INLINE std::uint64_t find_gaps(float gradient_limit_px, const Block& block) 
   return block.count < kBlock ? gaps & ((std::uint64_t{1} << block.count) - 1) : gaps;
 }
 
-// Where a walk writes; kColumns: whether source columns are wanted.
+// Output of a pass; kColumns: whether source columns are requested.
 template <bool kColumns>
 struct Output {
   float* HWY_RESTRICT disparity_px;
@@ -94,7 +94,7 @@ struct Output {
   }
 };
 
-// Between column i of a block and its neighbour i − step.
+// Fills the gap between column i of a block and its neighbour i − step.
 template <bool kColumns>
 HWY_NOINLINE void fill_sampling_gap(const ForwardWarpRow& row, const Block& block, int i, int step,
                                     Output<kColumns> output) {
@@ -115,7 +115,7 @@ HWY_NOINLINE void fill_sampling_gap(const ForwardWarpRow& row, const Block& bloc
   }
 }
 
-// Columns [first, end) of a block, in the direction kStep.
+// Writes columns [first, end) of a block, in direction kStep.
 template <int kStep, bool kColumns>
 HWY_INLINE void write_columns(const Block& block, int first, int end, int width,
                               Output<kColumns> output) {
@@ -129,7 +129,7 @@ HWY_INLINE void write_columns(const Block& block, int first, int end, int width,
   }
 }
 
-// Walks one scanline; kStep is the direction.
+// Processes one scanline in direction kStep.
 template <int kStep, bool kColumns>
 HWY_INLINE void walk(const ForwardWarpRow& row, Output<kColumns> output) {
   const hn::ScalableTag<double> d64;
@@ -152,7 +152,7 @@ HWY_INLINE void walk(const ForwardWarpRow& row, Output<kColumns> output) {
     int first = 0;
     int end = block.count;
     while (gaps != 0) {
-      // Everything up to the gap, then the gap, as its column comes behind it.
+      // Everything up to the gap, then the gap, because its column comes after it.
       if (kStep > 0) {
         const auto gap = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(gaps));
         write_columns<kStep>(block, first, gap, row.width, output);
