@@ -9,22 +9,22 @@
 
 namespace vantage::kernels {
 
-// Energies as half floats (sign, 5 bits of exponent, 10 of significand): what methods that keep
-// energies keep of coarse levels. Winners are small differences between small energies, which half
-// floats resolve to 1/2048 of their size; numbers of as many bits with fewer for the significand
-// or with equal steps over the whole range of a cost do not. Converted in steps that are the same
-// on every instruction set, so all results are identical.
+// Energies as half floats (sign, 5-bit exponent, 10-bit significand): methods that store energies
+// keep coarse levels in this form. Winners are small differences between small energies, which half
+// floats resolve to 1/2048 of their size. 16-bit formats with a shorter significand, or with equal
+// steps over the whole range of a cost, do not. The conversion uses the same steps on every
+// instruction set, so all results are identical.
 
-/// Half floats of larger magnitude would be infinite: larger energies count as this.
+/// Larger magnitudes would be infinite as half floats; they are clamped to this.
 inline constexpr float kLargestHalf = 65504.0F;
-/// The exponents of floats and half floats are 112 apart.
+/// The exponent biases of floats and half floats differ by 112.
 inline constexpr float kHalfToFloat = 0x1p112F;
 inline constexpr float kFloatToHalf = 0x1p-112F;
-/// Bits that the significand of a half float has less.
+/// Significand bits of a float minus those of a half float.
 inline constexpr int kHalfShift = 13;
 
-/// The half float nearest to `value`, the even one of two; below 2^−14, where floats of this scale
-/// lose bits themselves, to half a step and a 2^−13th.
+/// Half float nearest to `value`, ties to even. Below 2^−14, where scaled floats are denormal,
+/// accurate to half a step plus 2^−13 of a step.
 inline std::uint16_t to_half(float value) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
   const float magnitude = std::min(std::bit_cast<float>(bits & 0x7FFFFFFFU), kLargestHalf);
@@ -47,13 +47,14 @@ void half_energies_row_ref(const float* energies, int cells, float scale, std::u
 void energies_of_half_row(const std::uint16_t* halves, int cells, float unit, float* energies);
 void energies_of_half_row_ref(const std::uint16_t* halves, int cells, float unit, float* energies);
 
-/// The mean of the four columns of each block, times `scale`, as half floats.
+/// Mean of the four columns of each block, times `scale`, as half floats.
 void reduce_energies_row(const BlockRow<float>& row, float scale, std::uint16_t* halves);
 void reduce_energies_row_ref(const BlockRow<float>& row, float scale, std::uint16_t* halves);
 void reduce_half_energies_row(const BlockRow<std::uint16_t>& row, std::uint16_t* halves);
 void reduce_half_energies_row_ref(const BlockRow<std::uint16_t>& row, std::uint16_t* halves);
 
-/// Columns of a level, over columns of the next coarser one: column x lies in column x / 2 of that.
+/// Columns of a level and the columns of the next coarser level that cover them: column x lies in
+/// coarser column x / 2.
 struct CoarserRow {
   const std::uint16_t* coarser = nullptr;  ///< column first_column / 2
   int first_column = 0;

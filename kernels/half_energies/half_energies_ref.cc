@@ -5,7 +5,8 @@
 namespace vantage::kernels {
 namespace {
 
-/// Writes cell(column of `row` by its two rows, lane) for each cell of the coarser row.
+/// Writes the mean of the four columns of each block, read by `value` and times `scale`, as half
+/// floats.
 template <typename Cell, typename Value>
 void reduce(const BlockRow<Cell>& row, float scale, const Value& value, std::uint16_t* halves) {
   for (int b = 0; b < row.blocks(); ++b) {

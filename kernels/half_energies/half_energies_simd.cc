@@ -18,7 +18,7 @@ using Vec = hn::VFromD<Tag>;
 using IntTag = hn::RebindToSigned<Tag>;
 using HalfTag = hn::Rebind<std::uint16_t, Tag>;
 
-// The steps of to_half().
+// Same steps as to_half().
 HWY_INLINE void store_halves(Vec value, std::uint16_t* halves) {
   const Tag df;
   const IntTag d32;
@@ -31,7 +31,7 @@ HWY_INLINE void store_halves(Vec value, std::uint16_t* halves) {
   hn::StoreU(hn::DemoteTo(HalfTag(), hn::Or(rounded, sign)), HalfTag(), halves);
 }
 
-// The steps of of_half().
+// Same steps as of_half().
 HWY_INLINE Vec load_halves(const std::uint16_t* halves) {
   const Tag df;
   const IntTag d32;

@@ -6,11 +6,11 @@
 namespace vantage::kernels {
 namespace {
 
-// Pixels from `start` onward in direction `step` that are one surface, at most `wanted`.
+// Number of pixels, at most `wanted`, from `start` in direction `step` that are on one surface.
 int run_length(const float* disparity_px, int width, int start, int step, int wanted, float limit) {
   int length = 1;
   for (int x = start + step; x >= 0 && x < width && length < wanted; x += step, ++length) {
-    // Not "greater than": a NaN on the way, which is another hole, must end the run too.
+    // Not ">": a NaN (another hole) must also end the run.
     if (!(std::abs(disparity_px[x] - disparity_px[x - step]) <= limit)) {
       break;
     }
@@ -45,7 +45,7 @@ void fill_hole(const HoleFillRow<T>& row, int begin, int end, bool mirror) {
   if (row.filled != nullptr) {
     std::fill_n(row.filled + begin, count, std::uint8_t{255});
   }
-  int position = 0;  // within s0 … s(run−1), which is walked to and fro
+  int position = 0;  // within s0 … s(run−1), traversed back and forth
   int direction = 1;
   for (int k = 0; k < count; ++k) {
     const int target = from_left ? begin + k : end - 1 - k;

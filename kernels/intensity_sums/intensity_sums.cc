@@ -9,7 +9,7 @@ template <int kLanes>
 IntensitySums sums_of(const WarpedPairRow& row) {
   IntensitySums sums;
   for (int x = 0; x < row.width; ++x) {
-    // False where either is NaN.
+    // False if either is NaN.
     if (std::abs(row.left_disparity_px[x] - row.right_disparity_px[x]) <= row.gradient_limit_px) {
       ++sums.pixels;
       for (int c = 0; c < kLanes; ++c) {

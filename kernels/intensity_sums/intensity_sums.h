@@ -12,7 +12,7 @@ struct WarpedPairRow {
   const float* right_disparity_px = nullptr;
   int width = 0;
   int lanes = 0;                ///< 1 or 4: pixel_lanes(channels)
-  float gradient_limit_px = 1;  ///< disparities that differ by at most this show the same surface
+  float gradient_limit_px = 1;  ///< disparities that differ by at most this are on the same surface
 };
 
 /// The sums of (3.11), per channel.
@@ -23,7 +23,7 @@ struct IntensitySums {
   double left_right[4] = {};
   double left_left[4] = {};
 
-  /// Adds the sums of further rows. Callers fix the order, so that rounding is always the same.
+  /// Adds the sums of other rows. Callers fix the order, so that rounding is reproducible.
   void add(const IntensitySums& other);
 };
 

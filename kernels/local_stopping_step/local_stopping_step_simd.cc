@@ -18,7 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Which lanes of the last, perhaps partly filled block of a column are candidates.
+// Masks the candidates in the last, possibly partial block of a column.
 class CandidateLanes {
  public:
   explicit CandidateLanes(int count) : whole_(count / kLaneMultiple * kLaneMultiple) {
@@ -40,7 +40,7 @@ class CandidateLanes {
   bool has_part_;
 };
 
-// Smallest and second smallest element and sum of a column, lane by lane.
+// Smallest and second smallest element and sum of a column, per lane.
 struct Margin {
   LaneBlock16 least;
   LaneBlock16 second;
@@ -78,8 +78,8 @@ struct Margin {
   }
 
  private:
-  // The second smallest element overall: the least of the lanes' second ones and of the lanes'
-  // least but one occurrence of the best.
+  // Second smallest element overall: the minimum of the lanes' second smallest and of the lanes'
+  // smallest without one occurrence of the best.
   [[nodiscard]] HWY_INLINE FloatVec second_of_lanes(FloatVec best) const {
     const FloatTag df;
     LaneBlock16 others = least;
@@ -96,7 +96,7 @@ struct Margin {
   }
 };
 
-// The diffusion step (6.7) of one column.
+// Diffusion step (6.7) of one column.
 struct ColumnStep {
   const float* centre;
   const float* left;
@@ -116,8 +116,8 @@ struct ColumnStep {
   }
 };
 
-// Calls visit(part, cells) for each vector of the candidates and visit_where(mask, part, cells) for
-// those of a partly filled block.
+// Calls visit(part, cells) for each full vector of candidates and visit_where(mask, part, cells)
+// for those of a partial block.
 template <class Cells, class Visit, class VisitWhere>
 HWY_INLINE void each_candidate(const CandidateLanes& lanes, Cells cells, Visit visit,
                                VisitWhere visit_where) {
@@ -167,7 +167,7 @@ HWY_INLINE FloatVec negative_entropy(const CandidateLanes& lanes, float scale, c
     total.part[part] = hn::Add(total.part[part], weight);
     moment.part[part] = hn::Add(moment.part[part], hn::Mul(weight, exponent));
   };
-  // Beyond the least exponent the weight is nothing, and the product must stay a number.
+  // Beyond the minimum exponent the weight is negligible; the clamp keeps the product finite.
   const auto exponent_of = [&](FloatVec energy) HWY_ATTR {
     return hn::Min(hn::Mul(scales, hn::Sub(energy, best)), hn::Set(df, -kLeastExponent));
   };
@@ -186,7 +186,7 @@ HWY_INLINE FloatVec negative_entropy(const CandidateLanes& lanes, float scale, c
   return hn::Neg(hn::Add(mean_exponent, log_of_normal(z)));
 }
 
-// Makes the step of one column in `output` and returns the certainty of the result.
+// Writes the step of one column to `output` and returns the certainty of the result.
 HWY_INLINE FloatVec step_with_margin(const ColumnStep& column, const CandidateLanes& lanes,
                                      int count, int all_lanes, float* output) {
   const FloatTag df;

@@ -15,7 +15,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 double MultiplyAndAdd(std::int64_t rounds, float& sink) {
   const hn::ScalableTag<float> d;
-  // Four cycles of latency times two units, and half as many again.
+  // Four cycles of latency times two units, plus half as many.
   constexpr int kChains = 12;
   constexpr int kSteps = 16;
   hn::VFromD<decltype(d)> sums[kChains];

@@ -8,7 +8,7 @@
 namespace vantage::kernels {
 namespace {
 
-// ES of the i-th of the candidates that are displacements in two dimensions.
+// ES of candidate i in a two-dimensional search.
 FixedEnergy smoothed_in_plane(const MaxProductRow& row, std::span<const FixedEnergy> energies,
                               int i) {
   const CandidatePlane& plane = row.plane;
@@ -25,8 +25,7 @@ FixedEnergy smoothed_in_plane(const MaxProductRow& row, std::span<const FixedEne
   return static_cast<FixedEnergy>(smoothed);
 }
 
-// Subtracts the least of the column in work memory from all of it and leaves the row's kind of
-// result.
+// Subtracts the minimum of the column in work memory and stores the row's kind of result.
 void finish_column(const MaxProductRow& row, FixedEnergy* output) {
   const std::span<FixedEnergy> energies(row.work, static_cast<std::size_t>(row.star.lanes));
   const FixedEnergy least = *std::min_element(energies.begin(), energies.end());

@@ -25,7 +25,7 @@ void step(const MaxProductRow& row) { max_product_row_ref(row); }
 
 using EnergyColumns = StarColumns<FixedEnergy>;
 
-// E0.
+// Energies E0.
 class SourceEnergies {
  public:
   SourceEnergies(const MaxProductRow& /*row*/, const EnergyColumns& at) : source_(at.source) {}
@@ -37,7 +37,7 @@ class SourceEnergies {
   const FixedEnergy* source_;
 };
 
-// E0 and what the star says.
+// E0 plus the weighted sum over the star.
 template <bool kWeighted>
 class StarEnergies {
  public:
@@ -69,7 +69,7 @@ class StarEnergies {
   EnergyVec down_;
 };
 
-// The least of what lies kOffset lanes before and behind those of vector v.
+// Minimum of the energies kOffset lanes before and after those of vector v.
 template <int kOffset, int kVectors>
 HWY_INLINE EnergyVec least_beside(const EnergyVec (&energies)[kVectors], int v) {
   const EnergyTag d;
@@ -78,7 +78,7 @@ HWY_INLINE EnergyVec least_beside(const EnergyVec (&energies)[kVectors], int v) 
   EnergyVec before = v > 0 ? energies[v - 1] : most;
   EnergyVec behind = v + 1 < kVectors ? energies[v + 1] : most;
   if constexpr (kEnergyLanes > 8) {
-    // Bytes are shifted within blocks of 16: first what lies a block away.
+    // Byte shifts work within 16-byte blocks: first fetches the adjacent block.
     before = hn::ConcatLowerUpper(d, here, before);
     behind = hn::ConcatLowerUpper(d, behind, here);
   }
@@ -87,12 +87,12 @@ HWY_INLINE EnergyVec least_beside(const EnergyVec (&energies)[kVectors], int v) 
                  hn::CombineShiftRightBytes<kBytes>(d, behind, here));
 }
 
-// ES of columns of kVectors vectors that are one segment, all in registers: three quarters of the
-// time they take in memory. kRadius: of the prior, 1 or 2.
+// ES of columns of kVectors vectors and a single segment, entirely in registers: takes three
+// quarters of the time in memory. kRadius: radius of the prior, 1 or 2.
 template <class Energies, int kVectors, int kRadius>
 HWY_INLINE void run_in_registers(const MaxProductRow& given) {
   const EnergyTag d;
-  const MaxProductRow row = given;  // which no store can change
+  const MaxProductRow row = given;  // a copy: stores cannot alias it
   const EnergyVec ceiling = hn::Set(d, row.prior.ceiling);
   const EnergyVec first_rise = hn::Set(d, row.prior.rises[0]);
   const EnergyVec second_rise = kRadius >= 2 ? hn::Set(d, row.prior.rises[1]) : ceiling;
@@ -114,7 +114,7 @@ HWY_INLINE void run_in_registers(const MaxProductRow& given) {
       if constexpr (kRadius >= 2) {
         smoothed = hn::Min(smoothed, hn::SaturatedAdd(least_beside<2>(energies, v), second_rise));
       }
-      // Sums with rises that were cut do not count: the lane's own energy is not above them.
+      // Saturated sums do not matter: the lane's own energy is not above them.
       hn::Store(hn::Min(hn::Sub(smoothed, least), ceiling), d, output + v * kEnergyLanes);
     }
   };
@@ -122,9 +122,8 @@ HWY_INLINE void run_in_registers(const MaxProductRow& given) {
 }
 
 // Energies of a few columns in memory, with unreachable cells on both sides of each segment of
-// lanes. First all of them are made, then all are smoothed: one column after the other would wait
-// for the least of its lanes each time, and for cells that are loaded from between two stored
-// vectors.
+// lanes. First all are computed, then all are smoothed. One by one, each column would wait for the
+// minimum over its lanes and for loads that straddle two stored vectors.
 class EnergyWork {
  public:
   explicit EnergyWork(const MaxProductRow& row)
@@ -163,7 +162,7 @@ class EnergyWork {
   }
 
  private:
-  static constexpr int kMostColumns = 16;  // of max_product_work_columns()
+  static constexpr int kMostColumns = 16;  // maximum of max_product_work_columns()
 
   void clear_margin(FixedEnergy* margin) const {
     for (int lane = 0; lane < margin_; lane += kEnergyLanes) {
@@ -174,7 +173,7 @@ class EnergyWork {
     return row_.work + column * pitch_ + margin_;
   }
 
-  // Returns the least of the column, in every lane.
+  // Returns the column's minimum, in every lane.
   template <class Energies>
   HWY_INLINE EnergyVec make(const Energies& of_lanes, FixedEnergy* energies) const {
     const EnergyTag d;
@@ -192,7 +191,7 @@ class EnergyWork {
     return least_of_lanes(least);
   }
 
-  // Leaves the row's kind of result of the first so many columns in work memory.
+  // Stores the row's kind of result for the first `columns` columns in work memory.
   HWY_NOINLINE void finish(const EnergyVec* least, int columns, FixedEnergy* output) const {
     if (!row_.smooths) {
       return finish_columns<false, 0>(least, columns, output);
@@ -213,11 +212,11 @@ class EnergyWork {
     }
   }
 
-  // kRadius: of the prior, −1: any.
+  // kRadius: radius of the prior; −1 for any.
   template <bool kSmooths, int kRadius>
   HWY_INLINE void finish_columns(const EnergyVec* least, int columns, FixedEnergy* output) const {
     const EnergyTag d;
-    const MaxProductRow row = row_;  // which no store can change
+    const MaxProductRow row = row_;  // a copy: stores cannot alias it
     const int radius = kRadius >= 0 ? kRadius : row.prior.radius;
     const EnergyVec ceiling = hn::Set(d, row.prior.ceiling);
     const EnergyVec first_rise = radius >= 1 ? hn::Set(d, row.prior.rises[0]) : ceiling;
@@ -242,8 +241,7 @@ class EnergyWork {
     }
   }
 
-  // ES of a column whose candidates are displacements in two dimensions: the least along the
-  // horizontal ones, then along the vertical ones.
+  // ES of a column of a two-dimensional search: the minimum horizontally, then vertically.
   HWY_INLINE void finish_plane(const FixedEnergy* energies, EnergyVec least,
                                FixedEnergy* output) const {
     const EnergyTag d;
@@ -281,7 +279,7 @@ class EnergyWork {
             }
           }
         }
-        // What is stored behind the candidates of a run is overwritten by those of the next one.
+        // Values stored after a run's candidates are overwritten by the next run.
         hn::StoreU(hn::Min(hn::Sub(result, least), ceiling), d,
                    smoothed + r * plane.row_candidates + lane);
       }
@@ -297,7 +295,7 @@ class EnergyWork {
   int pitch_;
 };
 
-// Returns false for columns that do not fit.
+// Returns false for columns that are too long.
 template <class Energies, int kRadius>
 HWY_INLINE bool run_if_short(const MaxProductRow& row) {
   constexpr int kVectorsOfBlock = kLaneMultiple / kEnergyLanes;

@@ -6,23 +6,23 @@
 
 namespace vantage::kernels {
 
-/// What sums of windows mean: mean over the samples · scale − offset.
+/// Converts window sums to energies: mean over the samples · scale − offset.
 struct EnergyUnit {
-  int window_rows = 1;  ///< rows of this row's windows inside the image
+  int window_rows = 1;  ///< rows of this row's windows that lie inside the image
   double scale = 1;     ///< > 0
   double offset = 0;
 };
 
-/// energies(x, i) = mean cost over the samples of candidate i inside both images (§1):
-/// sum / samples · scale − offset, in double, for the candidates of each column; 0 in the other
-/// lanes. row.geometry.lanes() a column. Identical on every instruction set.
+/// energies(x, i) = mean cost over the samples of candidate i inside both images (§1): sum /
+/// samples · scale − offset, in double, for the candidates of each column; 0 in the other lanes.
+/// row.geometry.lanes() per column. Identical on every instruction set.
 void mean_energy_row(const WinnerRow& row, const EnergyUnit& unit, float* energies);
 
-/// energy[j] = the same of candidate winners[j] alone; NaN for kNoWinner.
+/// energy[j] = energy of candidate winners[j] only; NaN for kNoWinner.
 void winner_energy_row(const WinnerRow& row, const EnergyUnit& unit, const std::int32_t* winners,
                        float* energy);
 
-/// The first, plainly.
+/// Scalar reference of mean_energy_row().
 void mean_energy_row_ref(const WinnerRow& row, const EnergyUnit& unit, float* energies);
 
 }  // namespace vantage::kernels

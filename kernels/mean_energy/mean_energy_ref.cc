@@ -6,7 +6,7 @@
 namespace vantage::kernels {
 namespace {
 
-// With one factor for the same samples: equal sums then are equal energies.
+// Uses the same factor for the same number of samples, so that equal sums give equal energies.
 float mean_energy(const WinnerRow& row, const EnergyUnit& unit, int x, std::int32_t cell,
                   int candidate) {
   const double factor = unit.scale / (unit.window_rows * row.window_columns(x, candidate));

@@ -24,7 +24,7 @@ HWY_INLINE hn::VFromD<TagF> means(const WinnerRow& row, const std::int32_t* cell
                       hn::Sub(hn::Mul(hn::PromoteTo(d64, sums), factor), hn::Set(d64, offset)));
 }
 
-// A column all of whose candidates have the same samples, or padding behind the last one.
+// A column whose candidates all have the same number of samples.
 HWY_INLINE void plain_column(const WinnerRow& row, const EnergyUnit& unit, int x,
                              const std::int32_t* cells, float* energies) {
   const Tag64 d64;
@@ -38,7 +38,7 @@ HWY_INLINE void plain_column(const WinnerRow& row, const EnergyUnit& unit, int x
   std::fill(energies + count, energies + lanes, 0.0F);
 }
 
-// Any column: from one candidate to the next the window may lose or gain a column.
+// Any column: between neighbouring candidates the window may lose or gain a column.
 HWY_INLINE void border_column(const WinnerRow& row, const EnergyUnit& unit, int x,
                               const std::int32_t* cells, float* energies) {
   const Tag64 d64;
@@ -60,7 +60,7 @@ HWY_INLINE void border_column(const WinnerRow& row, const EnergyUnit& unit, int 
                                hn::Mul(hn::Iota(d32, 0), shifts_per_lane));
     const auto columns =
         hn::Sub(hn::Min(last, hn::Add(hn::Set(d32, last_column), shift)), hn::Max(first, shift));
-    // Lanes that hold no candidate have no samples, perhaps, but their results are not kept.
+    // Lanes without a candidate may have no samples; their results are discarded.
     const auto samples =
         hn::Mul(window_rows, hn::PromoteTo(d64, hn::Add(columns, hn::Set(d32, 1))));
     const auto factor = hn::Div(hn::Set(d64, unit.scale), samples);

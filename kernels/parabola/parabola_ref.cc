@@ -9,7 +9,7 @@ namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-// The lowest point of the parabola through three energies, relative to the middle one.
+// Vertex of the parabola through three energies, relative to the middle one.
 double lowest_point(double below, double at, double above) {
   const double curvature = below - 2 * at + above;
   return curvature > 0 ? (below - above) / (2 * curvature) : 0;
@@ -19,8 +19,8 @@ double energy_of(const WinnerRow& row, int j, int candidate) {
   const std::ptrdiff_t lanes = row.geometry.lanes();
   const int x = row.first_column + j;
   const CandidateRange plain = row.plain_columns();
-  // Sample counts may differ: sums are not comparable, means are. Where all windows are whole, sums
-  // do as well, and do not round.
+  // Sample counts may differ, so means are compared, not sums. Where all windows are whole, sums
+  // are equivalent and exact.
   const int samples = x >= plain.begin && x < plain.end ? 1 : row.window_columns(x, candidate);
   return static_cast<double>(row.sum(row.cells[j * lanes + candidate])) / samples;
 }

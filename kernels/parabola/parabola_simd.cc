@@ -20,19 +20,19 @@ using Tag32 = hn::Rebind<std::int32_t, Tag64>;
 using TagF = hn::Rebind<float, Tag64>;
 using Vec64 = hn::VFromD<Tag64>;
 
-// Columns whose three cells are gathered at a time; a multiple of every vector's length. Enough for
-// the first ones to have reached the cache before they are loaded as vectors.
+// Columns whose three cells are gathered at a time; a multiple of every vector length. Large enough
+// that the first values have reached the cache before they are loaded as vectors.
 constexpr int kBlock = 32;
 
-// The cells of winners and of their neighbours, column by column. Where a winner lacks a neighbour
-// they are some cells.
+// Cells of winners and their neighbours, column by column. If a winner lacks a neighbour, the
+// values are arbitrary.
 template <typename Cell>
 struct Triples {
   HWY_ALIGN Cell below[kBlock];
   HWY_ALIGN Cell at[kBlock];
   HWY_ALIGN Cell above[kBlock];
 
-  // cells: of a column of at least three lanes, of which the winner is not the last.
+  // cells: a column of at least three lanes; the winner must not be the last lane.
   HWY_INLINE void gather(int j, const Cell* cells, std::int32_t winner) {
     const Cell* cell = cells + std::max(winner, 1);
     below[j] = cell[-1];
@@ -41,7 +41,7 @@ struct Triples {
   }
 };
 
-// Sums of windows. They compare as they are where all windows are whole.
+// Window sums, comparable directly where all windows are whole.
 struct SumEnergy {
   int index_bits;
   HWY_INLINE Vec64 operator()(const std::int32_t* cells) const {
@@ -64,13 +64,13 @@ struct ProbabilityEnergy {
   }
 };
 
-// Candidates of a stretch of columns in which they are the same.
+// Candidate range that is the same for all columns.
 struct SameCandidates {
   CandidateRange range;
   [[nodiscard]] HWY_INLINE Vec64 first(int /*j*/) const { return hn::Set(Tag64(), range.begin); }
   [[nodiscard]] HWY_INLINE Vec64 last(int /*j*/) const { return hn::Set(Tag64(), range.end - 1); }
 };
-// Candidates of each column of a block.
+// Candidate range of each column of a block.
 struct OwnCandidates {
   HWY_ALIGN double firsts[kBlock] = {};
   HWY_ALIGN double lasts[kBlock] = {};
@@ -87,8 +87,8 @@ HWY_INLINE Vec64 refined(const Triples<Cell>& triples, Energy energy, const Cand
   const Vec64 at = energy(triples.at + j);
   const Vec64 above = energy(triples.above + j);
   const Vec64 curvature = hn::Add(hn::Sub(below, hn::Add(at, at)), above);
-  // An infinite curvature is that of an infinite neighbour; that of an infinite middle is no number
-  // or below 0.
+  // Infinite curvature means an infinite neighbour; an infinite middle gives NaN or a negative
+  // curvature.
   const auto is_curved = hn::And(hn::Gt(curvature, hn::Zero(d64)), hn::Lt(curvature, infinity));
   const auto has_neighbours =
       hn::And(hn::Gt(winner, candidates.first(j)), hn::Lt(winner, candidates.last(j)));
@@ -123,7 +123,7 @@ HWY_INLINE void refine_block(const Triples<Cell>& triples, Energy energy,
   }
 }
 
-// Columns [begin, end) of a row, in all of which every candidate may win.
+// Columns [begin, end) of a row in which every candidate may win.
 template <class Row, typename Cell, class Energy>
 HWY_INLINE void refine_plain(const Row& row, const Cell* cells, const std::int32_t* winners,
                              Energy energy, int begin, int end, float* disparity_px) {
@@ -143,7 +143,7 @@ HWY_INLINE void refine_plain(const Row& row, const Cell* cells, const std::int32
   }
 }
 
-// The same of any columns.
+// Same for any columns.
 template <class Energy>
 HWY_INLINE void refine_border(const CellRow& row, const std::int32_t* winners, Energy energy,
                               int begin, int end, float* disparity_px) {
@@ -187,7 +187,7 @@ void parabola_cells_simd(const CellRow& row, const std::int32_t* winners, float*
   }
 }
 
-// Windows that are not whole have samples of their own: done plainly.
+// Windows that are not whole have their own sample counts: scalar code.
 void refine_border(const WinnerRow& row, const std::int32_t* winners, int begin, int end,
                    float* disparity_px) {
   WinnerRow part = row;

@@ -20,7 +20,7 @@ void photograph_positions_row_ref(const PhotographTable& table, const SourcePosi
     const std::ptrdiff_t at = line * table.stride + column;
     const std::ptrdiff_t right = table.width > 1 ? 1 : 0;
     const std::ptrdiff_t down = table.height > 1 ? table.stride : 0;
-    // Of differences, which are small: only the last addition rounds to the precision of positions.
+    // Interpolates small differences: only the last addition rounds to the precision of positions.
     const auto between = [&](const float* values) {
       const float along = values[at + right] - values[at];
       const float along_below = values[at + down + right] - values[at + down];

@@ -15,12 +15,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 void convert_positions(const PhotographTable& given_table, const SourcePositions& given_positions,
                        int count) {
-  // Copies that the stores cannot change.
+  // Local copies: stores cannot alias them.
   const PhotographTable table = given_table;
   const SourcePositions at = given_positions;
   const hn::ScalableTag<float> d;
   const hn::RebindToSigned<decltype(d)> di;
-  // A gather counts in 32 bits.
+  // Gathers use 32-bit indices.
   constexpr std::ptrdiff_t kMostValues = std::numeric_limits<std::int32_t>::max();
   if (table.stride * table.height > kMostValues) {
     photograph_positions_row_ref(table, at, count);

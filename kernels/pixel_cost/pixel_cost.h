@@ -8,29 +8,29 @@
 
 namespace vantage::kernels {
 
-// Costs of single cells from the grey levels of a pixel and its partner (6.1). Of three channels:
-// the mean of their costs. All identical on every instruction set; they write columns × lanes
-// floats.
+// Costs per cell from the grey levels of a pixel and its partner (6.1); with three channels the
+// mean of their costs. All functions write columns × lanes floats and are identical on every
+// instruction set.
 
 /// Planes: grey levels.
 using GreyPairs = FeaturePairs<float, 1>;
-/// Planes: grey levels, and their least and largest values within half a pixel (sampling_bounds).
+/// Planes: grey levels, their minimum and maximum within half a pixel (sampling_bounds_row()).
 using SampledPairs = FeaturePairs<float, 3>;
 
 /// The measurement model (6.26 ff.): (1−ε) exp(−r²/2σ²) + ε.
 struct ContaminatedGaussian {
-  float exponent_scale = 0;  ///< of r²: −log2(e) / 2σ²
+  float exponent_scale = 0;  ///< factor of r²: −log2(e) / 2σ²
   float epsilon = 0;
 
-  /// σ > 0 in grey levels, 0 < ε < 1; either may be so small that it counts as the least that
-  /// floats carry through (ε: 1e-30).
+  /// σ > 0 in grey levels, 0 < ε < 1. Both are clamped to the smallest value that floats can
+  /// represent here (ε: 1e-30).
   static ContaminatedGaussian of(double sigma, double epsilon) {
     constexpr double kMostScale = 1e30;
     constexpr double kLeastEpsilon = 1e-30;
     const double scale = std::min(kMostScale, 1 / (2 * sigma * sigma * std::log(2.0)));
     return {static_cast<float>(-scale), static_cast<float>(std::max(kLeastEpsilon, epsilon))};
   }
-  /// −log ε, ε: what a cell without partner has.
+  /// −log ε and ε: values of a cell without partner.
   [[nodiscard]] float energy_without_partner() const { return -log_of_normal(epsilon); }
   [[nodiscard]] float likelihood_without_partner() const { return epsilon; }
 };
@@ -43,34 +43,34 @@ void squared_row_ref(const GreyPairs& row, float* cells);
 void absolute_row(const GreyPairs& row, float truncation, float* cells);
 void absolute_row_ref(const GreyPairs& row, float truncation, float* cells);
 
-/// Birchfield and Tomasi's difference: the least |ΔI| over half a pixel either way, from the
-/// reference to the interpolated partner or the other way round, whichever is less.
+/// Birchfield–Tomasi difference: the minimum |ΔI| within half a pixel, between reference and
+/// interpolated partner or vice versa, whichever is smaller.
 void sampling_insensitive_row(const SampledPairs& row, float* cells);
 void sampling_insensitive_row_ref(const SampledPairs& row, float* cells);
 
-/// −log of the measurement model at r² = ΔI². Of three channels: the mean of their energies.
+/// −log of the measurement model at r² = ΔI². With three channels: the mean of their energies.
 void contaminated_energy_row(const GreyPairs& row, ContaminatedGaussian model, float* cells);
 void contaminated_energy_row_ref(const GreyPairs& row, ContaminatedGaussian model, float* cells);
 
-/// The measurement model at r² = ΔI². Of three channels: at the mean of their ΔI². Lanes from
-/// row.count on become 0.
+/// The measurement model at r² = ΔI². With three channels: at the mean of their ΔI². Lanes ≥
+/// row.count become 0.
 void contaminated_likelihood_row(const GreyPairs& row, ContaminatedGaussian model, float* cells);
 void contaminated_likelihood_row_ref(const GreyPairs& row, ContaminatedGaussian model,
                                      float* cells);
 
-/// Cells already made, geometry.lanes() a column.
+/// Existing cells, geometry.lanes() per column.
 struct CellExtent {
   int columns = 0;
   int lanes = 0;  ///< a multiple of kLaneMultiple
   int count = 0;  ///< candidates
 };
 
-/// The measurement model at r = the cost in each cell, in place. Lanes from row.count on become 0.
+/// The measurement model at r = the cost in each cell, in place. Lanes ≥ row.count become 0.
 void likelihood_of_costs(const CellExtent& row, ContaminatedGaussian model, float* cells);
 void likelihood_of_costs_ref(const CellExtent& row, ContaminatedGaussian model, float* cells);
 
-/// exp(−energy) of each cell, in place: likelihoods of means of contaminated energies, ≥ 0 but for
-/// rounding. Lanes from row.count on become 0.
+/// exp(−energy) of each cell, in place: likelihoods of mean contaminated energies, ≥ 0 up to
+/// rounding. Lanes ≥ row.count become 0.
 void likelihood_of_energies(const CellExtent& row, float* cells);
 void likelihood_of_energies_ref(const CellExtent& row, float* cells);
 
@@ -81,9 +81,9 @@ void add_cells_ref(const float* addend, int cells_count, float* cells);
 void multiply_cells(const float* factor, int cells_count, float* cells);
 void multiply_cells_ref(const float* factor, int cells_count, float* cells);
 
-/// Least and largest grey level within half a pixel of each, linearly interpolated. Columns −1 and
-/// width are read; the outputs may be written up to the next multiple of kLaneMultiple, and the
-/// input is read one column farther than that.
+/// Minimum and maximum grey level within half a pixel of each pixel, linearly interpolated. Columns
+/// −1 and width are read. The outputs may be written up to the next multiple of kLaneMultiple; the
+/// input is read one column farther.
 void sampling_bounds_row(const float* grey, int width, float* least, float* most);
 void sampling_bounds_row_ref(const float* grey, int width, float* least, float* most);
 

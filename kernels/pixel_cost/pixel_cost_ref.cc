@@ -7,7 +7,7 @@
 namespace vantage::kernels {
 namespace {
 
-/// The mean over channels of compare(reference, partner), which take the number of a plane.
+/// Mean over channels of compare(reference, partner); both map a plane number to a value.
 template <int kPlanes, typename Compare>
 float mean_cost(const FeaturePairs<float, kPlanes>& row, int j, int i, const Compare& compare) {
   float sum = 0;
@@ -40,7 +40,7 @@ constexpr auto kSquaredDifference = [](const auto& reference, const auto& partne
   return square(reference(0) - partner(0));
 };
 
-/// How far `value` lies outside [low, high].
+/// Distance of `value` from [low, high]; 0 inside.
 float distance(float value, float low, float high) {
   return std::max(std::max(value - high, low - value), 0.0F);
 }

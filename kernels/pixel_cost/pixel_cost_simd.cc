@@ -103,7 +103,7 @@ void contaminated_likelihood(const GreyPairs& row, ContaminatedGaussian model, f
   compare_row<true>(row, ContaminatedLikelihood{Measurement(model)}, cells);
 }
 
-// likelihood(value) of the candidates of each column, 0 in the other lanes.
+// likelihood(value) for the candidates of each column, 0 in the other lanes.
 template <class Likelihood>
 HWY_INLINE void each_candidate_cell(const CellExtent& row, Likelihood likelihood, float* cells) {
   const Tag d;

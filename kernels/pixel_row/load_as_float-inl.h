@@ -1,4 +1,5 @@
-// Values of any pixel type as a vector of floats; included by dispatched files, once per target.
+// Loads values of any pixel type as a vector of floats. Included once per target by dispatched
+// files.
 
 #if defined(VANTAGE_KERNELS_LOAD_AS_FLOAT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VANTAGE_KERNELS_LOAD_AS_FLOAT_INL_H_

@@ -26,13 +26,13 @@ HWY_INLINE void load_grey(const T* HWY_RESTRICT pixels, int width, float* HWY_RE
 }
 
 #if HWY_TARGET == HWY_SCALAR
-// Has no vector of four lanes to hold a pixel.
+// HWY_SCALAR has no four-lane vector to hold a pixel.
 template <int kChannels, typename T>
 HWY_INLINE void load_colour(const T* pixels, int width, float* row) {
   load_pixel_row_ref(pixels, width, kChannels, row);
 }
 #else
-// Four values are read where three are wanted, so the last pixel is read one by one.
+// Loads read four values where three are needed, so the last pixel is read value by value.
 template <int kChannels, typename T>
 HWY_INLINE void load_colour(const T* HWY_RESTRICT pixels, int width, float* HWY_RESTRICT row) {
   const hn::FixedTag<float, 4> d;

@@ -8,7 +8,7 @@
 namespace vantage::kernels {
 namespace {
 
-/// Of all channels together.
+/// Distance summed over all channels.
 int distance(const RayCensusPairs& row, int column, int lane) {
   int different = 0;
   for (int c = 0; c < row.channels; ++c) {
@@ -16,7 +16,7 @@ int distance(const RayCensusPairs& row, int column, int lane) {
     const int at = column * row.partner_step + lane;
     for (std::size_t p = 0; p < kRayCensusBytes; ++p) {
       for (unsigned bit = 0; bit < 8; ++bit) {
-        // The number that a code has for the neighbour.
+        // The neighbour's number in a code.
         const auto number = [&](const auto& planes, int k) {
           const int upper = (planes[p][k] >> bit) & 1;
           return row.thresholds == 1 ? upper
@@ -29,7 +29,7 @@ int distance(const RayCensusPairs& row, int column, int lane) {
   return different;
 }
 
-/// cell(column, lane) of all cells.
+/// Writes cell(column, lane) to all cells.
 template <typename Value, typename Cell>
 void each_cell(const RayCensusPairs& row, Value* cells, const Cell& cell) {
   for (int j = 0; j < row.columns; ++j) {

@@ -27,14 +27,14 @@ void energies(const RayCensusPairs& row, const EnergyByDistance& table, std::uin
 }
 #else
 
-// One column's codes, in every lane.
+// Codes of one column, in every lane.
 template <int kChannels, int kThresholds, class D8>
 struct ReferenceCodes {
   VecOf<D8> byte[kChannels][ray_census_bytes(kThresholds)];
 };
 
-// Distances to the codes whose bytes partner(channel, byte) loads, all channels together: at most
-// 216.
+// Distances to the codes whose bytes partner(channel, byte) loads, summed over all channels: at
+// most 216.
 template <int kChannels, int kThresholds, class D8, class Partner>
 HWY_INLINE VecOf<D8> distances(D8 d, const ReferenceCodes<kChannels, kThresholds, D8>& reference,
                                const Partner& partner) {
@@ -49,8 +49,9 @@ HWY_INLINE VecOf<D8> distances(D8 d, const ReferenceCodes<kChannels, kThresholds
       if constexpr (kThresholds == 1) {
         ones = hn::Add(ones, bits_of_bytes(d, upper));
       } else {
-        // |a − b| of numbers of two bits: 1 where the lower ones differ, and 2 where the upper ones
-        // do, unless a and b are 1 and 2. Those differ in both, and a's bits from each other.
+        // |a − b| of two-bit numbers: 1 if the lower bits differ, plus 2 if the upper bits differ;
+        // except for a, b = 1, 2: both bits differ, and a's bits differ from each other, so only 1
+        // counts.
         const std::size_t q = p + kRayCensusBytes;
         const auto lower = hn::Xor(own[q], partner(c, q));
         const auto is_1_or_2 = hn::Xor(own[p], own[q]);
@@ -62,8 +63,8 @@ HWY_INLINE VecOf<D8> distances(D8 d, const ReferenceCodes<kChannels, kThresholds
   return kThresholds == 1 ? ones : hn::Add(ones, hn::Add(twos, twos));
 }
 
-// Calls cell(d, distances, lane) for the vectors of D8's size of one column, as long as whole ones
-// fit; returns the first lane that is left.
+// Calls cell(d, distances, lane) for the vectors of D8's size of one column while whole vectors
+// fit. Returns the first remaining lane.
 template <int kChannels, int kThresholds, class D8, class Cell>
 HWY_INLINE int each_vector(D8 d, const RayCensusPairs& row, int column, int lane,
                            const Cell& cell) {
@@ -92,7 +93,7 @@ HWY_INLINE int each_vector(D8 d, const RayCensusPairs& row, int column, int lane
   return lane;
 }
 
-// The same with all lanes of a column, which are a multiple of 16.
+// Same for all lanes of a column, a multiple of 16.
 template <int kChannels, int kThresholds, class Cell>
 HWY_INLINE void each_lane(const RayCensusPairs& row, int column, const Cell& cell) {
   int lane = 0;
@@ -103,7 +104,8 @@ HWY_INLINE void each_lane(const RayCensusPairs& row, int column, const Cell& cel
   each_vector<kChannels, kThresholds>(hn::CappedTag<std::uint8_t, 16>(), row, column, lane, cell);
 }
 
-// The four bytes of each cell, least significant first and in grouped order, as floats in order.
+// Stores cells as floats in lane order; bytes[b] holds byte b of each cell (0 = least significant),
+// in grouped order.
 template <class D8>
 HWY_INLINE void store_floats(D8 d, const VecOf<D8> (&bytes)[4], float* cells) {
   const Tag16<D8> d16;
@@ -121,10 +123,10 @@ HWY_INLINE void store_floats(D8 d, const VecOf<D8> (&bytes)[4], float* cells) {
         cells + 2 * n);
 }
 
-// table[index] of a table with entries for all distances.
+// table[index], for tables with entries for all distances.
 template <int kThresholds, class D8>
 HWY_INLINE VecOf<D8> looked_up(D8 d, const std::uint8_t* table, VecOf<D8> index) {
-  // Distances are below 128, and comparing signed bytes costs less.
+  // Distances are below 128, and comparing signed bytes is cheaper.
   const hn::RebindToSigned<D8> d8s;
   const auto within = hn::And(index, hn::Set(d, 15));
   auto value = hn::TableLookupBytes(hn::LoadDup128(d, table), within);
@@ -147,7 +149,7 @@ HWY_INLINE void hamming_columns(const RayCensusPairs& row, float* cells) {
       const hn::RebindToSigned<Tag32<D8> > d32;
       const auto zero = hn::Zero(d);
       store_floats(d, {grouped(d, distance), zero, zero, zero}, cells + lane);
-      // What was stored are integers.
+      // The stored values are integers.
       const auto share = hn::Set(df, 1.0F / kCodes);
       for (std::size_t k = 0; k < hn::Lanes(d); k += hn::Lanes(df)) {
         float* const at = cells + lane + k;
@@ -200,8 +202,8 @@ void likelihoods(const RayCensusPairs& row, const LikelihoodByDistance& table, f
   }
 }
 
-// Energies of two columns of kLaneMultiple lanes, each in one half of a vector, which single ones
-// would leave empty. Returns the first column that is left.
+// Energies of two columns of kLaneMultiple lanes, one in each half of a vector, which a single
+// column would not fill. Returns the first remaining column.
 template <int kThresholds>
 HWY_INLINE int energies_of_pairs(const RayCensusPairs& row, const EnergyByDistance& table,
                                  std::uint8_t* cells) {

@@ -12,8 +12,8 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Pixels between computing, in floats, and interleaving, in full vectors of results: whole vectors
-// of both.
+// Pixels buffered between the float computation and the interleaving of full result vectors; whole
+// vectors of both.
 constexpr int kBlock = 64;
 
 template <typename T>

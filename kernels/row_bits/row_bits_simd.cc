@@ -22,7 +22,7 @@ HWY_INLINE std::uint64_t bits_of(D d, M mask) {
   return bits;
 }
 
-// answer(tag, x) is the mask of the columns from x on, a vector of `tag` wide.
+// answer(tag, x) returns the mask of one vector of columns starting at x.
 template <class D, class Answer>
 HWY_INLINE void answer_columns(D d, int width, std::uint64_t* HWY_RESTRICT bits,
                                const Answer& answer) {

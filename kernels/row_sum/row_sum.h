@@ -4,8 +4,8 @@
 
 namespace vantage::kernels {
 
-/// One row of sliding sums along x, over cells of `lanes` disparities. Columns are numbered as in
-/// the image; those outside [input_begin, input_end) count as absent.
+/// One row of sliding sums along x over cells of `lanes` disparities. Columns are numbered as in
+/// the image; columns outside [input_begin, input_end) are absent.
 struct RowSum {
   const std::int32_t* input = nullptr;  ///< first cell of input_begin
   int input_begin = 0;                  ///< ≤ max(0, output_begin − radius)
@@ -14,17 +14,18 @@ struct RowSum {
   int output_end = 0;
   int radius = 0;
   int lanes = 0;  ///< a multiple of kLaneMultiple
-  /// Adds its number to every lane of the output: the low bits of a cell then name its candidate
-  /// when the inputs are multiples of a power of two that leaves room for it.
+  /// Adds the lane number to every lane of the output. The low bits of a cell then identify its
+  /// candidate, if inputs are multiples of a power of two that leaves room for it.
   bool number_lanes = false;
 
-  /// When not null: the window's sums of the last output column, `lanes` values, for a call that
-  /// goes on at the next column. Read when `continues`, written in any case.
+  /// If not null: window sums of the last output column, `lanes` values, for a call that continues
+  /// at the next column. Read if `continues`; always written.
   std::int32_t* window_sums = nullptr;
-  bool continues = false;  ///< the call before ended at output_begin
+  bool continues = false;  ///< the previous call ended at output_begin
 
-  std::int32_t* output = nullptr;  ///< first cell of output_begin; null when only minima are wanted
-  /// When not null: one value per output column, the least of its cells [0, candidates).
+  std::int32_t* output =
+      nullptr;  ///< first cell of output_begin; null if only minima are requested
+  /// If not null: one value per output column, the minimum of its cells [0, candidates).
   std::int32_t* minima = nullptr;
   int candidates = 0;                   ///< 1..lanes; for minima only
   std::int32_t* minima_work = nullptr;  ///< kLaneMultiple values per output column, for minima only
@@ -34,7 +35,7 @@ struct RowSum {
 /// not depend on the radius. Exact modulo 2³². Identical on every instruction set.
 void row_sum(const RowSum& row);
 
-/// The same, plainly: each sum anew.
+/// Scalar reference: recomputes each sum.
 void row_sum_ref(const RowSum& row);
 
 }  // namespace vantage::kernels

@@ -20,7 +20,7 @@ void row_sum_ref(const RowSum& row) {
         row.output[j * row.lanes + i] = sum;
       }
       if (row.window_sums != nullptr) {
-        row.window_sums[i] = sum;  // the last column's stay
+        row.window_sums[i] = sum;  // the last column's value remains
       }
       if (row.minima != nullptr && i < row.candidates) {
         row.minima[j] = i == 0 ? sum : std::min(row.minima[j], sum);

@@ -19,11 +19,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag32 = hn::ScalableTag<std::int32_t>;
 using Vec32 = hn::VFromD<Tag32>;
 
-// What a block of lanes contributes to the minima: nothing, the first or a further part.
+// Contribution of a block of lanes to the minima: none, the first or a further part.
 enum class Minima { kNone, kBegin, kContinue };
 
-// kVectors vectors of neighbouring lanes over all columns: the running sums stay in registers from
-// column to column, and a column's lanes are touched in whole cache lines.
+// Processes kVectors neighbouring vectors of lanes over all columns. The running sums stay in
+// registers; a column's lanes are accessed in whole cache lines.
 template <int kVectors, bool kStore, Minima kMinima, bool kPadded>
 class LaneBlock {
  public:
@@ -39,7 +39,7 @@ class LaneBlock {
       sum_[v] = row.continues      ? hn::LoadU(d32, row.window_sums + lane)
                 : row.number_lanes ? lane_numbers(lane)
                                    : hn::Zero(d32);
-      // Lanes behind the last candidate are lifted above all others, the rest left as they are.
+      // Raises lanes ≥ candidates above all others; leaves the rest unchanged.
       const auto is_candidate = hn::Lt(lane_numbers(lane), hn::Set(d32, row.candidates));
       floor_[v] =
           hn::IfThenElse(is_candidate, hn::Set(d32, std::numeric_limits<std::int32_t>::min()),
@@ -51,10 +51,10 @@ class LaneBlock {
     const int radius = row_.radius;
     const int begin = row_.output_begin;
     const int end = row_.output_end;
-    // The columns of the first window, but for the last of them, are added before it is delivered.
+    // The columns of the first window, except the last one, are added before the first output.
     const int window_begin = std::max(begin - radius, row_.input_begin);
     const int window_end = std::min(begin + radius, row_.input_end);
-    // From here on a column leaves: the first one added for a new window, or the one before it.
+    // From here on a column leaves: the first one added to a new window, or the one before it.
     const int leave_from = row_.continues ? std::clamp(row_.input_begin + radius + 1, begin, end)
                                           : std::min(window_begin + radius + 1, end);
     const int enter_until = std::clamp(row_.input_end - radius, begin, end);
@@ -65,9 +65,9 @@ class LaneBlock {
       entering_ = cell(window_begin);
       stretch<true, false, false>(window_end - window_begin);
     }
-    // Four stretches without a branch in them: growing windows at the left border of the image (in
-    // a strip inside it: its first column), windows wider than the image, full windows, and
-    // shrinking ones at the right border.
+    // Four branch-free stretches: growing windows at the left image border (in a strip inside the
+    // image: its first column), windows wider than the image, full windows, and shrinking windows
+    // at the right border.
     stretch<true, false, true>(std::min(leave_from, enter_until) - begin);
     stretch<false, false, true>(leave_from - std::min(leave_from, enter_until));
     stretch<true, true, true>(enter_until - std::min(leave_from, enter_until));

@@ -15,7 +15,7 @@ constexpr double kUsualShare = 0.2;
 constexpr double kMostShare = 0.5;
 constexpr double kSyntheticShiftPx = 2;
 
-/// How much each image counts for what the view shows at a position.
+/// Weight of each image in what the view shows at a position.
 struct ImageShares {
   double left;
   double right;
@@ -28,17 +28,17 @@ ImageShares image_shares(const OutlineRow& row, int x) {
   if (in_left != in_right) {
     return {in_left ? 1.0 : 0.0, in_left ? 0.0 : 1.0};
   }
-  return {row.alpha, 1.0 - row.alpha};  // also of what has been filled
+  return {row.alpha, 1.0 - row.alpha};  // also for filled holes
 }
 
-// How far right of its position the pixel that the view shows at x was mapped to.
+// Distance to the right of its position to which the pixel shown at x was mapped.
 double mapped_beside(const OutlineRow& row, int x) {
   const auto beside = [x](double offset, float disparity_px) {
     const double column = x + offset * disparity_px;
     return std::isnan(column) ? 0.0 : std::floor(column + 0.5) - column;
   };
   const ImageShares shares = image_shares(row, x);
-  // Not one sum of products: the image that counts nothing may be undefined here.
+  // Not a single sum of products: the image with weight 0 may be undefined (NaN) here.
   const double left =
       shares.left > 0 ? shares.left * beside(row.left_offset, row.left_disparity_px[x]) : 0.0;
   const double right =
@@ -46,14 +46,15 @@ double mapped_beside(const OutlineRow& row, int x) {
   return left + right;
 }
 
-// Of the outline between x and x + 1.
+// Shares at the outline between x and x + 1.
 void share_pixels(const OutlineRow& row, int x, std::uint8_t* shares) {
   const float left_d = row.disparity_px[x];
   const float right_d = row.disparity_px[x + 1];
   const bool left_is_nearer = left_d > right_d;
   const int nearer = left_is_nearer ? x : x + 1;
   const int farther = left_is_nearer ? x + 1 : x;
-  // Of the farther position; negative: free of the nearer one.
+  // Coverage of the farther position by the nearer surface; negative: the nearer position is partly
+  // uncovered.
   const double covered = mapped_beside(row, nearer) * (left_is_nearer ? 1 : -1);
   const ImageShares from = image_shares(row, farther);
   const double shift_px =
@@ -61,7 +62,7 @@ void share_pixels(const OutlineRow& row, int x, std::uint8_t* shares) {
       std::abs(double{left_d} - right_d);
   const double strength = std::min(1.0, shift_px / kSyntheticShiftPx);
   const auto share = [strength](double part) {
-    const double slope = part > 0 ? kMostShare - kUsualShare : kUsualShare;  // per half a pixel
+    const double slope = part > 0 ? kMostShare - kUsualShare : kUsualShare;  // per half pixel
     return static_cast<std::uint8_t>(strength * (kUsualShare + 2 * slope * part) * kWholeShare +
                                      0.5);
   };
@@ -86,7 +87,7 @@ T mixed(T own, T left, T right, int of_left, int of_right) {
 template <typename T>
 void mix(const std::uint8_t* shares, int width, int channels, T* pixels) {
   constexpr int kPixelsAtOnce = 4;
-  T original[4] = {};  // of `original_x`, which has been changed since
+  T original[4] = {};  // value of `original_x` before it was changed
   int original_x = -1;
   for (int begin = 0; begin < width; begin += kPixelsAtOnce) {
     const int end = std::min(begin + kPixelsAtOnce, width);
@@ -128,7 +129,7 @@ int outline_shares_row(const OutlineRow& row, std::uint8_t* shares) {
       const std::uint64_t wanted = bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
       for (std::uint64_t unlike = ~alike[word] & wanted; unlike != 0; unlike &= unlike - 1) {
         const int x = begin + 64 * word + std::countr_zero(unlike);
-        // A hole that stays open has no colour to mix.
+        // An unfilled hole has no colour to mix.
         if (!std::isnan(row.disparity_px[x]) && !std::isnan(row.disparity_px[x + 1])) {
           share_pixels(row, x, shares);
           ++outlines;

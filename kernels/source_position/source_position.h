@@ -6,23 +6,25 @@
 
 namespace vantage::kernels {
 
-/// The way back of a ViewProjection: (x, y, 1) = λ · (homography · (u, v, 1) − q · parallax).
+/// Inverse of a ViewProjection: (x, y, 1) = λ · (homography · (u, v, 1) − q · parallax).
 struct SourceProjection {
-  double homography[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< inverse of that of points at infinity
-  double parallax[3] = {};                             ///< homography · ViewProjection::parallax
+  double homography[9] = {1, 0, 0, 0, 1,
+                          0, 0, 0, 1};  ///< inverse of the homography of points at infinity
+  double parallax[3] = {};              ///< homography · ViewProjection::parallax
   double infinity_disparity_px = 0;
   /// The view is a translation: x = u − parallax_x · d, y = v − parallax_y · d, with the parallax
   /// and the disparity at infinity of the ViewProjection.
   bool is_translation = true;
 };
 
-/// Where a point of nearness q at the position (u, v) of the new view lies in the image. The vector
-/// form takes the same steps.
+/// Position in the image of a point of nearness q at (u, v) in the new view. The vector form
+/// performs the same steps.
 struct ExactSource {
   double x = 0;
   double y = 0;
   double disparity_px = 0;
-  bool is_visible = false;  ///< false: in front of the image's plane; nothing else means anything
+  bool is_visible =
+      false;  ///< false: in front of the image's plane; other fields are then meaningless
 };
 
 inline ExactSource exact_source(const SourceProjection& source, double u, double v, double q) {
@@ -41,24 +43,24 @@ inline ExactSource exact_source(const SourceProjection& source, double u, double
           q * depth_ratio + source.infinity_disparity_px, true};
 }
 
-/// One line of a new view and the image it is made from.
+/// One line of a new view and its source image.
 struct SourcePositionRow {
-  const float* nearness = nullptr;  ///< q from column 0; −inf or NaN = hole
+  const float* nearness = nullptr;  ///< q, starting at column 0; −inf or NaN = hole
   int count = 0;                    ///< ≥ 0
   int line = 0;
   int source_width = 0;
   int source_height = 0;
 };
 
-/// Where a row of the new view finds its pixels, `count` values each. The position is limited to
-/// [−1, size − ½] in x and y. Holes, and places in front of the source camera's plane, where it
-/// cannot see, have NaN in both `nearness` and `disparity_px`, and the position (0, 0).
+/// Source positions of a row of the new view, `count` values each, clamped to [−1, size − ½] in x
+/// and y. Holes, and points in front of the source camera's plane, which it cannot see, have NaN in
+/// both `nearness` and `disparity_px` and position (0, 0).
 struct SourcePositions {
-  std::int32_t* column = nullptr;  ///< whole part (floor) of x
-  std::int32_t* line = nullptr;    ///< of y
-  float* fraction_x = nullptr;     ///< what is left of x
+  std::int32_t* column = nullptr;  ///< integer part (floor) of x
+  std::int32_t* line = nullptr;    ///< integer part of y
+  float* fraction_x = nullptr;     ///< remainder of x
   float* fraction_y = nullptr;
-  float* disparity_px = nullptr;  ///< the surface's there
+  float* disparity_px = nullptr;  ///< disparity of the surface there
   float* nearness = nullptr;      ///< q
 };
 

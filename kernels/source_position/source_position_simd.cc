@@ -57,7 +57,7 @@ HWY_INLINE void find_positions(D64 d64, const SourceProjection& source,
       x = hn::Mul(hn::Sub(hn::Add(hn::Mul(step0, u), start0), hn::Mul(parallax0, q)), depth_ratio);
       y = hn::Mul(hn::Sub(hn::Add(hn::Mul(step1, u), start1), hn::Mul(parallax1, q)), depth_ratio);
       d = hn::Add(hn::Mul(q, depth_ratio), infinity_disparity);
-      // Ones where it is seen, as floats: masks of other lanes do not convert.
+      // 1 where visible, as floats: masks of other lane sizes do not convert.
       known = hn::And(known,
                       hn::Gt(hn::DemoteTo(d32, hn::IfThenElseZero(is_seen, one)), hn::Zero(d32)));
     }
@@ -85,7 +85,7 @@ HWY_INLINE void find_all(const SourceProjection& given_source, const SourcePosit
                          const SourcePositions& given_positions) {
   const hn::ScalableTag<double> d64;
   const hn::CappedTag<double, 1> d64_one;
-  // Copies that the stores cannot change.
+  // Local copies: stores cannot alias them.
   const SourceProjection source = given_source;
   const SourcePositionRow row = given_row;
   const SourcePositions positions = given_positions;

@@ -4,15 +4,15 @@
 
 namespace vantage::kernels {
 
-/// Rows of int16 that the functions below write and read back: values [−1, width] count, x = 0 is
-/// kStillMargin values into the memory, which holds still_row_values(width) of them.
+/// int16 rows that the functions below write and read back. Values [−1, width] are used; x = 0 is
+/// kStillMargin values after the start of the memory, which holds still_row_values(width) values.
 inline constexpr int kStillMargin = 64;
 inline int still_row_values(int width) {
   return (width + kStillMargin - 1) / kStillMargin * kStillMargin + 2 * kStillMargin;
 }
 
-/// One row of two frames, with the rows above and below it (the row itself where there is none).
-/// Each can be read up to the next multiple of kStillMargin behind the width.
+/// One row of two frames, with the rows above and below (the row itself where there is none). Each
+/// must be readable up to the first multiple of kStillMargin ≥ width.
 struct FrameRows {
   const std::uint8_t* now[3] = {};
   const std::uint8_t* before[3] = {};
@@ -20,21 +20,21 @@ struct FrameRows {
 };
 
 /// change[x] = |Σ (now − before)| over 3×3 pixels, columns clamped at the border. `work` and
-/// `change`: as above. Equal to the reference on every instruction set.
+/// `change`: rows as described above. Equal to the reference on every instruction set.
 void box_change_row(const FrameRows& rows, std::int16_t* work, std::int16_t* change);
 void box_change_row_ref(const FrameRows& rows, std::int16_t* work, std::int16_t* change);
 
-/// still[x] = 255 where no change in 3×3 pixels exceeds `limit`, else 0; up to the next multiple of
-/// kStillMargin behind the width may be written. limit < 32767. `changes`: the rows above, of and
-/// below, the row itself where there is none. Equal to the reference on every instruction set.
+/// still[x] = 255 if no change in 3×3 pixels exceeds `limit`, else 0. May write up to the first
+/// multiple of kStillMargin ≥ width. limit < 32767. `changes`: the row above, the row and the row
+/// below (the row itself where there is none). Equal to the reference on every instruction set.
 void still_row(const std::int16_t* const changes[3], int width, std::int16_t limit,
                std::uint8_t* still);
 void still_row_ref(const std::int16_t* const changes[3], int width, std::int16_t limit,
                    std::uint8_t* still);
 
-/// still_view[x] = 255 where still[x + s] is for all shifts s in [least_shift, most_shift] that
-/// lead into the image, and there is one; else 0: pixels of a view that a pixel of the image can
-/// have got to only from a still one. least_shift ≤ most_shift.
+/// still_view[x] = 255 if at least one shift s in [least_shift, most_shift] leads into the image
+/// and still[x + s] is 255 for all of them; else 0. These are the view's pixels that can only come
+/// from still pixels of the image. least_shift ≤ most_shift.
 void still_view_row(const std::uint8_t* still, int width, int least_shift, int most_shift,
                     std::uint8_t* still_view);
 

@@ -14,7 +14,7 @@ using Tag16 = hn::ScalableTag<std::int16_t>;
 using Vec16 = hn::VFromD<Tag16>;
 constexpr int kStep = static_cast<int>(hn::MaxLanes(Tag16()));
 
-// The columns beside the image are as those at its border.
+// Copies the border columns to the columns outside the image.
 HWY_INLINE void replicate_border(std::int16_t* row, int width) {
   row[-1] = row[0];
   row[width] = row[width - 1];

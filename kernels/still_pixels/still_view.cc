@@ -12,7 +12,7 @@ void still_view_row(const std::uint8_t* still, int width, int least_shift, int m
     std::fill(still_view + begin, still_view + std::clamp(end, begin, width), std::uint8_t{0});
   };
   std::fill_n(still_view, width, std::uint8_t{255});
-  // Positions all of whose shifts lead out of the image.
+  // Positions whose shifts all lead out of the image.
   clear(0, -most_shift);
   clear(width - least_shift, width);
   const std::uint8_t* const end = still + width;

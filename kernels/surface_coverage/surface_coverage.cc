@@ -9,11 +9,11 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// How far a surface and what lies behind it come from different places when nothing of the image's
-// own transition between them is left.
+// Shift between a surface and its background, in pixels, from which nothing of the image's own
+// transition between them remains.
 constexpr double kSyntheticShiftPx = 2;
 
-// Neither of two images is believed to be more certain: outlines of round objects differ.
+// Upper limit of each image's certainty: outlines of round objects differ between images.
 constexpr double kMostCertain = 0.98;
 
 // Weights of the pixels at −1, 0 and 1 for a position at `offset` = −½..½.
@@ -46,7 +46,7 @@ double surface_coverage(const CoverageSource& source, double u, double v, double
       background.is_visible
           ? std::min(1.0, std::sqrt(shift_x * shift_x + shift_y * shift_y) / kSyntheticShiftPx)
           : 1.0;
-  // Farther outside, all pixels are those at the border.
+  // Farther outside, all pixels equal those at the border.
   const double x = std::clamp(surface.x, -2.0, source.width + 1.0);
   const double y = std::clamp(surface.y, -2.0, source.height + 1.0);
   const double column = std::floor(x + 0.5);

@@ -6,36 +6,38 @@
 
 namespace vantage::kernels {
 
-/// An image as far as the extents of its surfaces are concerned.
+/// An image and its disparities, for the extents of its surfaces.
 struct CoverageSource {
   SourceProjection way_back;
-  const float* disparity_px = nullptr;  ///< of pixel (0, 0)
-  std::ptrdiff_t stride = 0;            ///< values from one row to the next
+  const float* disparity_px = nullptr;  ///< at pixel (0, 0)
+  std::ptrdiff_t stride = 0;            ///< values between rows
   int width = 0;                        ///< ≥ 1
   int height = 0;                       ///< ≥ 1
-  float gradient_limit_px = 1;          ///< disparities that differ by more are other surfaces
+  float gradient_limit_px = 1;          ///< disparities that differ by more are on other surfaces
 };
 
-/// How much of the new view's pixel (u, v) a surface of nearness q covers, 0..1, as one image knows
-/// it: where this pixel comes from if it shows the surface, the share of the image's pixels around
-/// that do. Half a pixel beyond the last pixel it is ½, and straight outlines are straight.
+/// Fraction of the new view's pixel (u, v) that a surface of nearness q covers, 0..1, according to
+/// one image: the fraction of image pixels that show the surface, around the position that this
+/// pixel comes from if it does. It is ½ half a pixel beyond the last pixel, and straight outlines
+/// stay straight.
 ///
-/// An image tells its outlines to half a pixel. Pixels around are therefore weighted by the
-/// quadratic B-spline, which is the mean over what is possible. What the image itself shows at its
-/// outlines is right as long as the surface and what lies behind it, of nearness
-/// `background_nearness`, come from the same place. Weights are then bilinear, so that they are 0
-/// and 1 at whole pixels, and change to the spline as the two come to lie two pixels apart. Pixels
-/// outside the image are as those at its border.
+/// An image locates its outlines to half a pixel. Surrounding pixels are therefore weighted by the
+/// quadratic B-spline, the mean over all possible outlines. What the image itself shows at its
+/// outlines is correct as long as the surface and its background, of nearness
+/// `background_nearness`, come from the same place. Weights are then bilinear, so that coverage is
+/// 0 or 1 at whole pixels; they change to the spline as the two move two pixels apart. Pixels
+/// outside the image equal those at its border.
 ///
-/// NaN where the place is behind the image's camera. Plain code: outlines are few. Thread rule:
-/// pure. Identical on every instruction set.
+/// NaN if the position is behind the image's camera. Scalar code only: outlines are few. Thread
+/// rule: pure. Identical on every instruction set.
 double surface_coverage(const CoverageSource& source, double u, double v, double nearness,
                         double background_nearness);
 
-/// What two images together know: `first` and `second` are what each says, NaN = does not show the
-/// surface. One alone is right; NaN if there is none. `alpha`, 0..1, is the weight of the first.
-/// Where both count alike they are two independent observations, of which odds are multiplied (so
-/// one that is certain prevails); the more one prevails by weight, the more it is their mean.
+/// Combined coverage of two images: `first` and `second` are their values, NaN = does not show the
+/// surface. A single value is returned as it is; NaN if there is none. `alpha`, 0..1, is the weight
+/// of the first. With equal weights the two are independent observations whose odds are multiplied,
+/// so a certain one prevails; the more the weights differ, the closer the result is to the weighted
+/// mean.
 double joint_coverage(double alpha, double first, double second);
 
 }  // namespace vantage::kernels

@@ -9,13 +9,14 @@
 namespace vantage::kernels {
 namespace {
 
-/// Which of the taps at −1, 0, 1, 2 each of them takes its value from.
+/// Source tap of each of the taps at −1, 0, 1, 2.
 struct Choice {
   int from[4];
-  bool is_on_surface;  // one of the inner two is; else the choice is theirs that is nearest
+  bool is_on_surface;  // one of the inner two is; otherwise the nearest of them was chosen
 };
 
-// `size`: taps there are, from `first` on; `fraction`: of the position between the inner two.
+// `size`: image size; `first`: position of tap 0; `fraction`: of the position between the inner two
+// taps.
 Choice choose(const bool (&on_surface)[4], int first, int size, float fraction) {
   if (!on_surface[1] && !on_surface[2]) {
     const int nearest = std::clamp(fraction < 0.5F ? 1 : 2, -first, size - 1 - first);
@@ -39,7 +40,7 @@ void fetch(const SurfaceFetchRow<T>& row, float* colours) {
     }
     const int first_column = row.column[n] - 1;
     const int first_line = row.line[n] - 1;
-    Choice columns[4];  // of the taps in each row
+    Choice columns[4];  // for the taps in each row
     bool row_on_surface[4];
     for (int j = 0; j < 4; ++j) {
       const int line = first_line + j;

@@ -14,7 +14,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 #if HWY_TARGET == HWY_SCALAR
-// Has no vector of four lanes to hold the taps.
+// HWY_SCALAR has no four-lane vector to hold the taps.
 template <typename T>
 void fetch_any(const SurfaceFetchRow<T>& row, float* colours) {
   fetch_surface_row_ref(row, colours);
@@ -24,8 +24,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Quad = hn::FixedTag<float, 4>;
 
-// For the taps on the surface, one bit each: which tap each of the four takes its value from. Taps
-// 1 and 2 are the inner ones; where neither is on it, the choice is another (choose_nearest()).
+// Source tap of each of the four taps, indexed by a bit mask of the taps on the surface. Taps 1 and
+// 2 are the inner ones; if neither is on it, choose_nearest() applies instead.
 using Choice = std::array<std::uint8_t, 4>;
 
 constexpr std::array<Choice, 16> make_choices() {
@@ -42,7 +42,8 @@ constexpr std::array<Choice, 16> make_choices() {
 constexpr std::array<Choice, 16> kChoices = make_choices();
 constexpr unsigned kInnerTaps = 0b0110;
 
-// The tap nearest to the position of those inside: there are `size`, and tap 0 would be `first`.
+// Tap inside the image that is nearest to the position. The image has `size` pixels; tap 0 is at
+// `first`.
 HWY_INLINE int nearest_tap(int first, int size, float fraction) {
   return std::clamp(fraction < 0.5F ? 1 : 2, -first, size - 1 - first);
 }
@@ -54,8 +55,8 @@ HWY_INLINE void copy_pixel(const T* from, T* to) {
   }
 }
 
-// Sums down the taps of pixel i of a block, new pixel n, not all of which are on its surface or in
-// the image; on_surface: bits of those in each row that are.
+// Sums over the lines for pixel i of a block (new pixel n), some of whose taps are on another
+// surface or outside the image. on_surface: a bit mask of the taps on the surface per row.
 template <int kChannels, typename T>
 HWY_NOINLINE void sum_down_chosen(const SurfaceFetchRow<T>& row, int n,
                                   const std::uint8_t (&on_surface)[4], int i, TapSums& sums) {
@@ -90,7 +91,7 @@ HWY_NOINLINE void sum_down_chosen(const SurfaceFetchRow<T>& row, int n,
   sum_down<kChannels>(taps, kTapLanes, i, sums);
 }
 
-// The same where taps may lie outside the image.
+// Same where taps may lie outside the image.
 template <int kChannels, typename T>
 HWY_NOINLINE void sum_down_at_border(const SurfaceFetchRow<T>& row, int n, int i, TapSums& sums) {
   std::uint8_t on_surface[4] = {};
@@ -158,7 +159,7 @@ HWY_INLINE void find_weights(D d, const SurfaceFetchRow<T>& row, int begin, int 
 
 template <int kChannels, typename T>
 HWY_INLINE void fetch_channels(const SurfaceFetchRow<T>& given, float* HWY_RESTRICT colours) {
-  const SurfaceFetchRow<T> row = given;  // which stores to colours cannot change
+  const SurfaceFetchRow<T> row = given;  // a copy: stores to colours cannot alias it
   const hn::ScalableTag<float> d;
   const hn::CappedTag<float, 1> d_one;
   const Quad d_pixel;

@@ -6,7 +6,7 @@
 namespace vantage::kernels {
 namespace {
 
-/// Disparity at the place (u, v) of the lattice, in lengths of its arms: the pixel's own + height +
+/// Disparity at lattice position (u, v), in units of the arm length: the pixel's own + height +
 /// slope_u · u + slope_v · v.
 struct Plane {
   float height = 0;
@@ -14,7 +14,7 @@ struct Plane {
   float slope_v = 0;
 };
 
-/// How much a sample counts, and that times its distance from the plane.
+/// Weight of a sample, and weight times its distance from the plane.
 struct FitSample {
   float w = 0;
   float we = 0;
@@ -46,7 +46,7 @@ Sums sum_samples(const SurfaceRow& row, int x, const SurfaceLattice& lattice, co
     Sums line;
     line.w = middle.w;
     line.we = middle.we;
-    // Samples on either side together: of their sums and differences there are half as many.
+    // Processes samples on both sides together, which halves the number of products.
     for (int i = 1; i <= steps; ++i) {
       const float u = static_cast<float>(i) / static_cast<float>(steps);
       const float rise_px = plane.slope_u * u;
@@ -73,7 +73,7 @@ Sums sum_samples(const SurfaceRow& row, int x, const SurfaceLattice& lattice, co
   return sums;
 }
 
-/// What `plane` lacks of the best one, by the distances from it.
+/// Moves `plane` to the best fit, given the sums of distances from it.
 void improve(const Sums& sums, Plane& plane) {
   const float w = sums.w + kLeastSurfaceWeight;
   const float n = 1 / w;
@@ -99,8 +99,8 @@ SurfaceLattice surface_lattice(int radius_px) {
   if (radius_px < kMostSurfaceSteps) {
     return {};
   }
-  // Arms of two steps reach 2 · (step_x + step_y) columns and rows; near 3 : 2 they are about as
-  // far from the rows as from the diagonals.
+  // Arms of two steps reach 2 · (step_x + step_y) columns and rows. At a ratio near 3 : 2 they are
+  // about equally far from the rows and from the diagonals.
   const int both = radius_px / kMostSurfaceSteps;
   const int step_y = radius_px / 5;
   return {.steps = kMostSurfaceSteps, .step_x = both - step_y, .step_y = step_y};

@@ -18,7 +18,7 @@ using Vec = hn::VFromD<TagF>;
 constexpr int kStep = static_cast<int>(hn::MaxLanes(TagF()));
 static_assert(kStep - 1 <= kSurfaceRowSlack);
 
-// Planes of as many pixels as a vector has lanes; the steps are those of surface_fit_ref.cc.
+// Planes of one vector of pixels; same steps as surface_fit_ref.cc.
 struct Planes {
   Vec height, slope_u, slope_v;
 };
@@ -27,7 +27,7 @@ struct Sums {
   Vec w, wu, wv, wuu, wuv, wvv, we, weu, wev;
 };
 
-// How much samples count, and that times their distance from the planes.
+// Weights of samples, and weights times their distances from the planes.
 struct WeighedSamples {
   Vec w, we;
 };
@@ -41,7 +41,7 @@ HWY_INLINE WeighedSamples weigh(const float* disparity_px, Vec plane_px) {
   return {w, hn::Mul(w, e)};
 }
 
-// The samples of a pixel of any row, as distances in memory.
+// Offsets in memory of the samples of any pixel.
 template <int kSteps>
 struct Places {
   std::ptrdiff_t of[2 * kSteps + 1][2 * kSteps + 1];
@@ -124,7 +124,7 @@ HWY_INLINE void improve(const Sums& sums, Planes& planes) {
   planes.slope_v = hn::Add(planes.slope_v, slope_v);
 }
 
-// What fitted values are kept within.
+// Range that fitted values are clamped to.
 struct Limits {
   explicit Limits(const SurfaceRow& row)
       : least(hn::Set(TagF(), row.least_px)), most(hn::Set(TagF(), row.most_px)) {}
@@ -132,7 +132,7 @@ struct Limits {
   Vec most;
 };
 
-// `before`: what pixels are that keep their values.
+// `before`: values of pixels that are not changed.
 template <int kSteps>
 HWY_INLINE Vec fitted(const float* disparity_px, const Places<kSteps>& places, const Limits& limits,
                       Vec before) {

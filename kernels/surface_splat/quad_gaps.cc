@@ -6,7 +6,7 @@
 namespace vantage::kernels {
 namespace {
 
-// Positions so little outside a triangle, by share of its area, are on its border.
+// Positions outside a triangle by at most this fraction of its area count as on its border.
 constexpr double kOnBorder = 1e-9;
 
 using Corner = QuadCorner;
@@ -27,7 +27,7 @@ void add_sample(const SplatBand& band, int column, int line, double nearness) {
   nearest = std::max(nearest, static_cast<float>(nearness));
 }
 
-// Positions between the targets of two neighbours along the axis of their edge.
+// Fills the positions between the targets of two neighbours along the axis of their edge.
 void fill_edge(const Corner& from, const Corner& to, EdgeDirection direction,
                const SplatBand& band) {
   const bool along_lines = direction.along_lines;
@@ -61,7 +61,8 @@ bool is_gap(const Corner& first, const Corner& second, EdgeDirection direction) 
 }
 
 /// Twice the area of the triangle of two corners and a position, as a linear function of the
-/// position: positive on the side where a third corner lies that turns as (right, down) does.
+/// position. Positive on the side of a third corner that makes the triangle turn like (right,
+/// down).
 struct Border {
   double u;
   double v;
@@ -75,10 +76,10 @@ struct Border {
   }
 };
 
-// Adds what the triangle is at (u, v), if that is inside.
+// Adds the triangle's sample at (u, v) if that is inside.
 void add_inside(const Corner& a, const Corner& b, const Corner& c, int u, int v,
                 const SplatBand& band) {
-  // Opposite to each corner.
+  // The border opposite to each corner.
   const Border of_a(b, c);
   const Border of_b(c, a);
   const Border of_c(a, b);
@@ -97,7 +98,7 @@ void add_inside(const Corner& a, const Corner& b, const Corner& c, int u, int v,
   }
 }
 
-// fourth: null, or one more corner whose target is left out.
+// fourth: one more corner whose target is left out, or null.
 void fill_triangle(const Corner& a, const Corner& b, const Corner& c, const Corner* fourth,
                    const SplatBand& band) {
   const int least_column = std::min({a.column, b.column, c.column});
@@ -133,8 +134,8 @@ void fill_triangle(const Corner& a, const Corner& b, const Corner& c, const Corn
   }
 }
 
-// Whole numbers from `least` on and up to `most`, within the limits; not by the library's
-// functions, which are calls on the processors that this is compiled for.
+// Integers in [least, most] within the limits. Does not use the library's rounding functions, which
+// are calls on the processors that this is compiled for.
 struct WholeRange {
   int first;
   int last;
@@ -149,7 +150,7 @@ struct WholeRange {
   }
 };
 
-// Adds what a part of a quad is at every position inside its two triangles.
+// Adds the samples of a part of a quad at every position inside its two triangles.
 void fill_part(const Corner (&part)[4], const SplatBand& band) {
   const auto& [a, b, c, d] = part;
   const WholeRange columns(std::min({a.u, b.u, c.u, d.u}), std::max({a.u, b.u, c.u, d.u}), 0,
@@ -164,8 +165,8 @@ void fill_part(const Corner (&part)[4], const SplatBand& band) {
   }
 }
 
-// The disparity of a surface in the middle of a quad: its mean over the corners of the quad that
-// are on it; of three, over the two that are not beside each other. `is_on`: by corner.
+// Disparity of a surface in the middle of a quad: the mean over the quad's corners on the surface;
+// with three, over the two that are not adjacent. `is_on`: by corner.
 double middle_disparity(const bool (&is_on)[4], const float (&disparity_px)[4]) {
   const auto count = std::count(is_on, is_on + 4, true);
   if (count == 3) {
@@ -218,13 +219,13 @@ Quad quad_at(const SplatRows& rows, int i) {
 
 void fill_quad_gaps(const SplatRows& rows, const Quad& quad, const SplatBand& band) {
   const auto& [a, b, c, d] = quad;
-  // False for points that were dropped: their disparity is NaN.
+  // False for dropped points: their disparity is NaN.
   const auto joined = [&](const Corner& p, const Corner& q) {
     return std::abs(p.disparity_px - q.disparity_px) <= rows.gradient_limit_px;
   };
   const bool ab = joined(a, b);
   const bool ac = joined(a, c);
-  // Edges are walked as rows are in ordered forward mapping: from the side that is walked first.
+  // Edges are traversed from the side that ordered forward mapping processes first.
   if (ab && is_gap(a, b, rows.right_edge)) {
     const bool forward = rows.view.parallax[0] <= 0;
     fill_edge(forward ? a : b, forward ? b : a, rows.right_edge, band);
@@ -298,7 +299,7 @@ void fill_torn_quad(const SplatRows& rows, int i, const SplatBand& band) {
                                              is_joined[opposite][across]);
     is_on[opposite] = (is_on[beside] && is_joined[beside][opposite]) ||
                       (is_on[across] && is_joined[across][opposite]);
-    // The quarter of the quad beside the corner.
+    // The quarter of the quad at the corner.
     Corner quarter[4];
     bool is_before = true;
     const auto set = [&](unsigned place, double x, double y, double d) {

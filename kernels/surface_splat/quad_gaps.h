@@ -4,7 +4,7 @@
 
 namespace vantage::kernels {
 
-/// Where a pixel lands.
+/// Target of a pixel.
 struct QuadCorner {
   double u = 0;
   double v = 0;
@@ -14,11 +14,11 @@ struct QuadCorner {
   int line = 0;
 };
 
-/// Positions so little outside the range of a triangle's targets are still looked at: more than
-/// rounding can move one.
+/// Positions outside the range of a triangle's targets by at most this are still tested: more than
+/// rounding can move a target.
 inline constexpr double kOutsidePx = 1e-3;
 
-/// The least whole number from a target on, and the largest up to it, given what it is rounded to.
+/// Smallest integer ≥ a target and largest integer ≤ it, given the rounded target.
 inline int first_whole(double target, int rounded) {
   return rounded + (target - kOutsidePx > rounded ? 1 : 0);
 }
@@ -37,14 +37,14 @@ struct Quad {
 /// The quad of upper columns i and i + 1.
 Quad quad_at(const SplatRows& rows, int i);
 
-/// Whether the quad of upper columns i and i + 1 is not one surface.
+/// Whether the quad of upper columns i and i + 1 is not a single surface.
 bool is_torn(const SplatRows& rows, int i);
 
-/// What splat_rows() adds to such a quad in views that are no translations.
+/// Adds the samples of splat_rows() for such a quad, in views that are not translations.
 void fill_torn_quad(const SplatRows& rows, int i, const SplatBand& band);
 
-/// What it adds between the pixels of all others. Few quads lack something, so this and the former
-/// are plain code for all instruction sets.
+/// Adds the samples between the pixels of all other quads. Few quads have gaps, so this and
+/// fill_torn_quad() are scalar code.
 void fill_quad_gaps(const SplatRows& rows, const Quad& quad, const SplatBand& band);
 
 }  // namespace vantage::kernels

@@ -6,21 +6,21 @@
 
 namespace vantage::kernels {
 
-/// Along which axis of the new view the gap between two neighbours is walked: the one in which
+/// Axis of the new view along which the gap between two neighbours is filled: the one along which
 /// their targets would be farther apart without parallax.
 struct EdgeDirection {
-  bool along_lines = false;  ///< v, else u
-  int sign = 1;              ///< targets of neighbours of one surface rise (1) or fall (−1)
+  bool along_lines = false;  ///< true: v; false: u
+  int sign = 1;  ///< targets of neighbours on one surface increase (1) or decrease (−1)
 };
 
-/// For pixels and their right and lower neighbours, as the points at infinity are seen around the
+/// Directions for pixels and their right and lower neighbours, from the points at infinity around
 /// pixel (x, y), the centre of the image. Thread rule: pure.
 EdgeDirection right_edge_direction(const ViewProjection& view, double x, double y);
 EdgeDirection lower_edge_direction(const ViewProjection& view, double x, double y);
 
-/// Two neighbouring rows of an image on their way into a new view. Rows have `count` + 1 values, as
-/// project_row() makes them; those that do not exist are points that it drops. Beyond these,
-/// kSplatPadding more values must be readable, whatever they hold.
+/// Two neighbouring rows of an image to be mapped to a new view. Rows have `count` + 1 values, as
+/// written by project_row(); values outside the image are dropped points. kSplatPadding more values
+/// must be readable; they may hold anything.
 struct SplatRows {
   ViewProjection view;
   ProjectedRow upper;
@@ -30,46 +30,45 @@ struct SplatRows {
   int line = 0;  ///< of the upper row
   EdgeDirection right_edge;
   EdgeDirection lower_edge{.along_lines = true};
-  float gradient_limit_px = 1;  ///< neighbours that differ by at most this are one surface
+  float gradient_limit_px = 1;  ///< neighbours that differ by at most this are on one surface
 };
 inline constexpr int kSplatPadding = 64;
 
-/// Some lines of a new view.
+/// A band of lines of a new view.
 struct SplatBand {
-  float* nearness = nullptr;  ///< of its first line; −inf where nothing has landed
-  std::ptrdiff_t stride = 0;  ///< values from one line to the next; lines · stride < 2³¹
+  float* nearness = nullptr;  ///< first line of the band; −inf where nothing has landed
+  std::ptrdiff_t stride = 0;  ///< values between lines; lines · stride < 2³¹
   int width = 0;
   int first_line = 0;
   int lines = 0;
 };
 
-/// Forward mapping of disparity into a z-buffer on nearness, which keeps the largest of all
-/// samples:
-/// - every pixel, where it lands;
-/// - between a pixel and its right or lower neighbour on one surface, every position that lies
-///   between their (rounded) targets along the edge's axis; its other coordinate is rounded;
-/// - in a quad of four pixels, every position inside the triangles of (exact) targets that are one
-///   surface, borders included: a corner and the two beside it, if both belong to it. Where all
-///   four belong together, the triangles of the first and last corner. The targets of the corners
-///   that belong together are left out, and so are triangles whose targets are no more than one
+/// Forward mapping of disparity into a z-buffer on nearness, which keeps the maximum of all samples:
+/// - every pixel, at its target;
+/// - between a pixel and its right or lower neighbour on one surface: every position between their
+///   (rounded) targets along the edge's axis; the other coordinate is rounded;
+/// - in a quad of four pixels: every position inside the triangles of (exact) targets on one surface,
+///   borders included. A triangle is a corner and the two adjacent ones, if both belong to it. If all
+///   four belong together, the triangles are those of the first and last corner. The targets of the
+///   corners that belong together are left out, and so are triangles whose targets are at most one
 ///   column and line apart: nothing lies in them.
-/// Between samples q is interpolated linearly over the new view, which is exact for planes.
-/// Surfaces seen from behind (targets in the opposite order, triangles that turn the other way)
-/// have no gaps to fill. In translations along rows a line is made from the row alone, and equals
-/// what forward_warp_row() makes of it.
+/// Between samples q is interpolated linearly over the new view, which is exact for planes. Surfaces
+/// seen from behind (targets in reverse order, triangles of the opposite orientation) have no gaps to
+/// fill. In translations along rows a line depends on its row alone and equals the result of
+/// forward_warp_row().
 ///
-/// A translation leaves pixels as large as they are, so that holes are what parallax opens. Any
-/// other view also spreads them. There a quad that is torn (not one surface; unknown pixels belong
-/// to none) is divided among its corners instead: each known one has the quarter of the quad beside
-/// it, and every position inside the quarter's two triangles is a sample. At the corners of the
-/// quarter the surface has the pixel's disparity, beside it the mean of two joined pixels or else
-/// the pixel's own, and in the middle of the quad the mean of all of its pixels that neighbours
-/// join to this one; of three, of the two that are not beside each other. So each surface reaches
-/// half a pixel of the image beyond its last pixels, at any magnification.
+/// A translation does not change the size of pixels, so holes are disocclusions. Any other view also
+/// spreads pixels. There a torn quad (not one surface; unknown pixels belong to none) is divided among
+/// its corners: each known one gets the quarter of the quad next to it, and every position inside the
+/// quarter's two triangles is a sample. At the quarter's corners the surface has: at the pixel, the
+/// pixel's disparity; on an edge of the quad, the mean of the two pixels if joined, else the pixel's
+/// own; in the middle of the quad, the mean of all its pixels that neighbours join to this one (with
+/// three, of the two that are not adjacent). So each surface extends half an image pixel beyond its
+/// last pixels, at any magnification.
 ///
-/// The upper row's pixels, their edges and the quads between the rows are added. As the largest
-/// value stays, neither the order of calls nor how a view is cut into bands makes a difference.
-/// Identical on every instruction set and to the reference.
+/// Adds the upper row's pixels, their edges and the quads between the rows. Since the maximum is kept,
+/// neither the order of calls nor the division of a view into bands matters. Identical on every
+/// instruction set and to the reference.
 void splat_rows(const SplatRows& rows, const SplatBand& band);
 void splat_rows_ref(const SplatRows& rows, const SplatBand& band);
 

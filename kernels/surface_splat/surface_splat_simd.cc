@@ -14,18 +14,18 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Columns that are looked at together; a multiple of every vector's length.
+// Columns that are processed together; a multiple of every vector length.
 constexpr int kBlock = 64;
 static_assert(kBlock <= kSplatPadding);
 
-// Bits as many as vectors have lanes here at most.
+// At most 16 lanes, the number of mask bits stored here.
 using Tag = hn::CappedTag<float, 16>;
 using TagInt = hn::RebindToSigned<Tag>;
 using Vec = hn::VFromD<Tag>;
 using VecInt = hn::VFromD<TagInt>;
 
-// The upper row's pixels from column `begin`: where each lies in the band. Those outside, and those
-// behind the end, become −inf at the first place, which changes nothing there.
+// Writes the upper row's pixels from column `begin` into the band. Pixels outside the band or after
+// the row's end write −inf to the first position, which has no effect.
 HWY_INLINE void splat_pixels(const SplatRows& rows, const SplatBand& band, int begin) {
   const Tag d;
   const TagInt di;
@@ -56,7 +56,7 @@ HWY_INLINE void splat_pixels(const SplatRows& rows, const SplatBand& band, int b
   }
 }
 
-// What is looked at of the four corners of a quad per lane.
+// One value of the four corners of a quad, per lane.
 struct Corners {
   VecInt a, b, c, d;
 };
@@ -77,15 +77,15 @@ HWY_INLINE VecInt most(const Corners& at) {
 
 HWY_INLINE VecInt extent(const Corners& at) { return hn::Sub(most(at), least(at)); }
 
-// True where a part of what the corners span lies in [first, end).
+// True where the span of the corners overlaps [first, end).
 HWY_INLINE auto reaches(const Corners& at, int first, int end) {
   const TagInt di;
   return hn::And(hn::Gt(most(at), hn::Set(di, first - 1)), hn::Lt(least(at), hn::Set(di, end)));
 }
 
-// Bit i: something may lie between the pixels of the quad of upper columns begin + i and
-// begin + i + 1 and inside the band, because two corners of an edge or triangle on one surface land
-// more than one column or line apart.
+// Bit i: there may be gaps inside the band between the pixels of the quad of upper columns begin +
+// i and begin + i + 1, because two corners of an edge or triangle on one surface land more than one
+// column or line apart.
 HWY_INLINE std::uint64_t find_gaps(const SplatRows& rows, const SplatBand& band, int begin) {
   const Tag d;
   const TagInt di;
@@ -131,8 +131,8 @@ HWY_INLINE std::uint64_t find_gaps(const SplatRows& rows, const SplatBand& band,
   return count < kBlock ? gaps & ((std::uint64_t{1} << count) - 1) : gaps;
 }
 
-// Bit i: the quad of upper columns begin + i and begin + i + 1 has known corners, but is not one
-// surface.
+// Bit i: the quad of upper columns begin + i and begin + i + 1 has known corners, but is not a
+// single surface.
 HWY_INLINE std::uint64_t find_torn(const SplatRows& rows, int begin) {
   const Tag d;
   const auto limit = hn::Set(d, rows.gradient_limit_px);
@@ -158,7 +158,7 @@ HWY_INLINE std::uint64_t find_torn(const SplatRows& rows, int begin) {
   return count < kBlock ? torn & ((std::uint64_t{1} << count) - 1) : torn;
 }
 
-// Exact targets of a row's pixels from one column on, and the whole numbers next to them.
+// Exact targets of a row's pixels starting at one column, and the adjacent integers.
 struct BlockTargets {
   double u[kBlock + 1];
   double v[kBlock + 1];
@@ -182,7 +182,8 @@ HWY_INLINE void store_whole(D64 d, V target, const std::int32_t* rounded, std::i
   hn::StoreU(hn::DemoteTo(di32, hn::Sub(whole, hn::IfThenElseZero(is_below, one))), di32, last);
 }
 
-// Pixels [first, end) of the row from column `begin` on; exact_target() in the same steps.
+// Targets of pixels [first, end) of the row, relative to column `begin`; same steps as
+// exact_target().
 template <bool kTranslation, class D64>
 HWY_INLINE void find_targets(D64 d, const SplatRows& rows, const ProjectedRow& row, int line,
                              int begin, int first, int end, BlockTargets& targets) {
@@ -234,8 +235,8 @@ HWY_INLINE void find_targets(const SplatRows& rows, int begin, BlockTargets& upp
                              lower);
 }
 
-// Bit i: nothing is missing in the quad of columns begin + i and begin + i + 1: it is one surface,
-// its edges have no gaps, and pixels have landed on the at most four places inside.
+// Bit i: the quad of columns begin + i and begin + i + 1 has no gaps: it is one surface, its edges
+// have no gaps, and pixels have landed on the (at most four) positions inside.
 HWY_INLINE std::uint64_t find_complete(const SplatRows& rows, const BlockTargets& upper,
                                        const BlockTargets& lower, int begin) {
   const Tag d;
@@ -260,8 +261,8 @@ HWY_INLINE std::uint64_t find_complete(const SplatRows& rows, const BlockTargets
     const auto landed_on =
         hn::And(hn::And(is_landed_on(first_u, first_v), is_landed_on(last_u, first_v)),
                 hn::And(is_landed_on(first_u, last_v), is_landed_on(last_u, last_v)));
-    // How far apart the ends of an edge are along its axis, in the direction of surfaces seen from
-    // the front; beyond 1 there is a gap.
+    // Distance between the ends of an edge along its axis, in the direction of surfaces seen from
+    // the front. Above 1 there is a gap.
     const auto distance = [&](EdgeDirection edge, VecInt column_to, VecInt line_to) HWY_ATTR {
       const auto along = edge.along_lines ? hn::Sub(line_to, line.a) : hn::Sub(column_to, column.a);
       return edge.sign > 0 ? along : hn::Neg(along);
@@ -296,7 +297,7 @@ HWY_INLINE QuadCorner corner_at(const BlockTargets& targets, const ProjectedRow&
           .line = row.line[begin + i]};
 }
 
-// So many quads that may have gaps in a block that looking at all of them together is faster.
+// Number of quads with possible gaps in a block from which testing all of them together is faster.
 constexpr std::size_t kManyGaps = 12;
 
 HWY_NOINLINE void fill_gaps(const SplatRows& rows, const SplatBand& band, int begin,
@@ -327,7 +328,7 @@ HWY_NOINLINE void fill_gaps(const SplatRows& rows, const SplatBand& band, int be
 }
 
 void splat_any(const SplatRows& given, const SplatBand& band) {
-  const SplatRows rows = given;  // which stores to the band cannot change
+  const SplatRows rows = given;  // a copy: stores to the band cannot alias it
   for (int begin = 0; begin < rows.count; begin += kBlock) {
     splat_pixels(rows, band, begin);
     std::uint64_t gaps = find_gaps(rows, band, begin);

@@ -10,8 +10,8 @@
 namespace vantage::kernels {
 namespace {
 
-// Whether the surface that a warped image has at x goes on to both sides; the row's ends count as
-// going on.
+// Whether the surface of a warped image at x continues on both sides; it counts as continuing at
+// the row's ends.
 bool goes_on(const float* disparity_px, int width, int x, float limit) {
   const float before = disparity_px[std::max(x - 1, 0)];
   const float behind = disparity_px[std::min(x + 1, width - 1)];

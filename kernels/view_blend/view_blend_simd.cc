@@ -14,7 +14,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 #if HWY_TARGET == HWY_SCALAR
-// Has no vector of four lanes to hold a pixel.
+// HWY_SCALAR has no four-lane vector to hold a pixel.
 template <typename T>
 int blend_channels(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
                    const BlendedRow<T>& view) {
@@ -23,8 +23,8 @@ int blend_channels(const WarpedPairRow& pair, const BlendWeights& weights, int c
 #else
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Whether the surface at the positions [x, x + lanes) goes on to both sides, row ends counting as
-// going on. Several lanes are only asked about where both sides exist.
+// Whether the surface at positions [x, x + lanes) continues on both sides; it counts as continuing
+// at the row's ends. With several lanes, call only where both sides exist.
 template <class D>
 HWY_INLINE hn::Mask<D> goes_on(D d, const float* disparity_px, int width, int x, hn::VFromD<D> own,
                                hn::VFromD<D> limit) {
@@ -34,7 +34,7 @@ HWY_INLINE hn::Mask<D> goes_on(D d, const float* disparity_px, int width, int x,
                  hn::Le(hn::Abs(hn::Sub(behind, own)), limit));
 }
 
-// Weights of the left image, 0 at holes, and the outputs that do not depend on colour, for the
+// Computes weights of the left image (0 at holes) and the outputs that do not depend on colour for
 // positions [x, x + lanes). Returns the number of holes.
 template <class D, typename T>
 HWY_INLINE int weigh(D d, const WarpedPairRow& pair, const BlendWeights& weights, int x,
@@ -88,7 +88,7 @@ HWY_INLINE int weigh(D d, const WarpedPairRow& pair, const BlendWeights& weights
   return static_cast<int>(hn::CountTrue(d, hole));
 }
 
-// `room`: whether four values may be written where three are wanted, because later pixels follow.
+// `room`: whether four values may be written where three are needed, because later pixels follow.
 template <int kChannels, typename T, class D>
 HWY_INLINE void store_pixel(D d, bool room, hn::VFromD<D> value, hn::VFromD<D> left,
                             hn::VFromD<D> right, T* pixel) {
@@ -121,7 +121,7 @@ HWY_INLINE void store_pixel(D d, bool room, hn::VFromD<D> value, hn::VFromD<D> l
   }
 }
 
-// Grey of the positions [x, x + lanes).
+// Grey values of positions [x, x + lanes).
 template <typename T, class D>
 HWY_INLINE void blend_grey(D d, const WarpedPairRow& pair, const BlendWeights& weights, int x,
                            const float* HWY_RESTRICT left_weights, T* pixels) {
@@ -140,7 +140,7 @@ HWY_INLINE void blend_grey(D d, const WarpedPairRow& pair, const BlendWeights& w
   store_pixel<1>(d, true, hn::Add(left_part, right_part), left, right, pixels + x);
 }
 
-// Colours of the positions [x, x + count): one vector is one pixel.
+// Colours of positions [x, x + count); one vector is one pixel.
 template <int kChannels, typename T>
 HWY_INLINE void blend_pixels(const WarpedPairRow& pair, const BlendWeights& weights, int x,
                              int count, const float* HWY_RESTRICT left_weights, T* pixels) {
@@ -190,7 +190,7 @@ HWY_INLINE int blend_any(const WarpedPairRow& pair, const BlendWeights& weights,
     }
     holes += block_holes;
   };
-  // The positions at the row's ends have a neighbour on one side only.
+  // Positions at the row's ends have only one neighbour.
   const int margin = weights.trust_at_ends != 1.0F ? 1 : 0;
   int x = 0;
   for (; x < margin && x < pair.width; ++x) {

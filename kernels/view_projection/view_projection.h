@@ -4,30 +4,29 @@
 
 namespace vantage::kernels {
 
-/// Where a new view sees what an image shows: a pixel (x, y) of disparity d lies at
-/// λ (u, v, 1) = homography · (x, y, 1) + d · parallax, (3.8) with the warp (3.5) multiplied in.
-/// Along one ray of the new view, points are ordered by nearness q = (d − infinity_disparity_px) /
-/// λ.
+/// Mapping from an image to a new view: a pixel (x, y) of disparity d lies at λ (u, v, 1) =
+/// homography · (x, y, 1) + d · parallax, (3.8) multiplied by the warp (3.5). Along one ray of the
+/// new view, points are ordered by nearness q = (d − infinity_disparity_px) / λ.
 struct ViewProjection {
-  double homography[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row by row
+  double homography[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row-major
   double parallax[3] = {};
   double infinity_disparity_px = 0;  ///< disparity of points at infinity
   /// The homography is the identity and parallax[2] is 0; hence λ = 1.
   bool is_translation = true;
 };
 
-/// Depth ratios λ up to this are behind the camera or as good as in its plane.
+/// Points with depth ratio λ up to this are behind the camera or practically in its plane.
 inline constexpr double kLeastDepthRatio = 1e-9;
 
-/// Targets outside ±this count as being there; far outside any view, safe to subtract.
+/// Targets are clamped to ± this: far outside any view, safe to subtract.
 inline constexpr int kFarTargetPx = 1 << 29;
 
-/// Exact position and nearness of one pixel of a known disparity. The vector form takes the same
+/// Exact position and nearness of one pixel of known disparity. The vector form performs the same
 /// steps.
 struct ExactTarget {
   double u;
   double v;
-  double depth_ratio;  ///< λ; nothing else means anything unless it exceeds kLeastDepthRatio
+  double depth_ratio;  ///< λ; other fields are meaningful only if it exceeds kLeastDepthRatio
 };
 
 inline ExactTarget exact_target(const ViewProjection& view, double x, double y, double d) {
@@ -43,15 +42,15 @@ inline ExactTarget exact_target(const ViewProjection& view, double x, double y, 
 
 /// Part of a row of a disparity map.
 struct ProjectionSource {
-  const float* disparity_px = nullptr;  ///< of column `first_column`; NaN or ±inf = unknown
+  const float* disparity_px = nullptr;  ///< at column `first_column`; NaN or ±inf = unknown
   int count = 0;                        ///< ≥ 0
   int first_column = 0;
   int line = 0;
 };
 
-/// Where its pixels land, `count` values each. Points that are unknown, whose λ is no more than
-/// kLeastDepthRatio or whose nearness leaves the range of float have disparity NaN, nearness −inf
-/// and the target (0, 0).
+/// Targets of the source's pixels, `count` values each. Dropped points have disparity NaN, nearness
+/// −inf and target (0, 0): unknown disparity, λ ≤ kLeastDepthRatio, or nearness outside the range
+/// of float.
 struct ProjectedRow {
   float* disparity_px = nullptr;   ///< of the source
   float* nearness = nullptr;       ///< q

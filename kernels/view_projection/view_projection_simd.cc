@@ -12,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// floor(target + ½) is done by the caller; here it becomes an integer within reach.
+// Converts floor(target + ½), computed by the caller, to a clamped integer.
 template <class D64, class V = hn::VFromD<D64>>
 HWY_INLINE hn::VFromD<hn::Rebind<std::int32_t, D64>> whole(D64 d64, V target) {
   const hn::Rebind<std::int32_t, D64> di32;
@@ -66,7 +66,8 @@ HWY_INLINE void project(D64 d64, const ViewProjection& view, const ProjectionSou
       nearness = hn::Mul(nearness, scale);
       column = hn::Floor(hn::Add(u, half));
       row_line = hn::Floor(hn::Add(v, half));
-      // Ones where the point is before the camera, as floats: masks of other lanes do not convert.
+      // 1 where the point is in front of the camera, as floats: masks of other lane sizes do not
+      // convert.
       const auto before = hn::DemoteTo(d32, hn::IfThenElseZero(is_before, hn::Set(d64, 1.0)));
       known = hn::And(known, hn::Gt(before, hn::Zero(d32)));
     }
@@ -88,7 +89,7 @@ HWY_INLINE void project_all(const ViewProjection& given_view, const ProjectionSo
                             const ProjectedRow& given_row) {
   const hn::ScalableTag<double> d64;
   const hn::CappedTag<double, 1> d64_one;
-  // Copies that the stores cannot change.
+  // Local copies: stores cannot alias them.
   const ViewProjection view = given_view;
   const ProjectionSource source = given_source;
   const ProjectedRow row = given_row;

@@ -1,4 +1,4 @@
-// Reduces lane-by-lane minima of cell columns; included by dispatched files, once per target.
+// Reduces per-lane minima of cell columns. Included once per target by dispatched files.
 
 #if defined(VANTAGE_KERNELS_LANE_MINIMA_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VANTAGE_KERNELS_LANE_MINIMA_INL_H_
@@ -16,8 +16,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-// first, first + 1, … per lane. Highway's Iota is a constant only for a constant start; else it
-// goes through memory, value by value.
+// first, first + 1, … per lane. Highway's Iota is a constant only for a constant start; otherwise
+// it goes through memory, value by value.
 HWY_INLINE auto lane_numbers(int first) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<std::int32_t> d32;
@@ -25,8 +25,8 @@ HWY_INLINE auto lane_numbers(int first) {
 }
 
 #if HWY_TARGET != HWY_SCALAR
-// Minima of kColumns work columns, as in a transposition: neighbouring lanes of two vectors are
-// merged into one, until lane k of the last vector belongs to column k.
+// Minima of kColumns work columns, by transposition: neighbouring lanes of two vectors are merged
+// into one until lane k of the last vector belongs to column k.
 template <int kColumns>
 HWY_INLINE auto minima_of(const std::int32_t* work) {
   namespace hn = hwy::HWY_NAMESPACE;
@@ -41,8 +41,8 @@ HWY_INLINE auto minima_of(const std::int32_t* work) {
 }
 #endif
 
-// minima[j] = the least of the first Lanes(int32) values of work column j; columns are
-// kLaneMultiple values apart.
+// minima[j] = minimum of the first Lanes(int32) values of work column j; columns are kLaneMultiple
+// values apart.
 HWY_INLINE void reduce_minima(const std::int32_t* work, int columns, std::int32_t* minima) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<std::int32_t> d32;

@@ -7,25 +7,24 @@
 
 namespace vantage::kernels {
 
-/// One row of summed costs and what its cells mean.
+/// One row of summed costs and the meaning of its cells.
 ///
-/// A cell holds the sum of a cost over the samples of a square window that lie inside both images;
-/// the energy of a candidate is the *mean* over those samples (§1, border `clip`). How many there
-/// are follows from the geometry; the number of rows is the same for all cells of a row and
-/// cancels.
+/// A cell holds the sum of a cost over the samples of a square window that lie inside both images.
+/// The energy of a candidate is the *mean* over those samples (§1, border `clip`). Their number
+/// follows from the geometry; the number of rows is the same for all cells of a row and cancels.
 struct WinnerRow {
-  const std::int32_t* cells = nullptr;  ///< first cell of first_column; geometry.lanes() a column
+  const std::int32_t* cells = nullptr;  ///< first cell of first_column; geometry.lanes() per column
   CandidateGeometry geometry;
   int first_column = 0;
   int columns = 0;
   int window_radius = 0;
-  /// Cells are sum · 2^index_bits + candidate index when not 0, plain sums when 0.
+  /// Non-zero: cells are sum · 2^index_bits + candidate index. 0: plain sums.
   int index_bits = 0;
   /// Border `valid`: only candidates whose whole window lies in both images count. (The caller
-  /// leaves out rows whose windows stick out at the top or bottom.)
+  /// omits rows whose windows exceed the top or bottom.)
   bool whole_windows_only = false;
 
-  /// Candidates that may win at column x.
+  /// Candidates of column x that may win.
   [[nodiscard]] CandidateRange candidates(int x) const {
     if (!whole_windows_only) {
       return geometry.with_partner(x);
@@ -35,25 +34,25 @@ struct WinnerRow {
     }
     return geometry.with_partner(x, window_radius);
   }
-  /// Those candidates of column x of which no window column lacks a partner.
+  /// Candidates of column x for which every window column has a partner.
   [[nodiscard]] CandidateRange full_window_candidates(int x) const {
     if (whole_windows_only) {
       return candidates(x);
     }
     return geometry.with_partners(window_begin(x), window_last(x));
   }
-  /// Window columns inside the reference image: those of full_window_candidates().
+  /// Window columns inside the reference image: the count for full_window_candidates().
   [[nodiscard]] int full_window_columns(int x) const {
     return window_last(x) - window_begin(x) + 1;
   }
-  /// Window columns of a candidate at column x that lie inside both images, ≥ 1 for candidates().
+  /// Window columns that lie inside both images, for a candidate of column x; ≥ 1 for candidates().
   [[nodiscard]] int window_columns(int x, int candidate) const {
     const int shift = x - geometry.partner(x, candidate);
     return std::min(window_last(x), geometry.width - 1 + shift) - std::max(window_begin(x), shift) +
            1;
   }
-  /// The columns [begin, end) of this row at which every candidate has a whole window of partners:
-  /// there cells compare as they are.
+  /// Columns [begin, end) of this row where every candidate has a whole window of partners, so that
+  /// cells compare directly.
   [[nodiscard]] CandidateRange plain_columns() const {
     CandidateRange plain = geometry.columns_with_all_partners(window_radius);
     if (whole_windows_only) {
@@ -74,18 +73,17 @@ struct WinnerRow {
 
 inline constexpr std::int32_t kNoWinner = -1;
 
-/// winners[j] = index of the candidate with the least energy at column first_column + j, the
-/// smallest of equals, or kNoWinner where no candidate counts. Exact: energies are compared as
-/// fractions. Cells of candidates must be in
-/// [0, 2³¹ − 2]. Identical on every instruction set.
+/// winners[j] = candidate with the minimum energy at column first_column + j, the smallest on ties,
+/// or kNoWinner where no candidate counts. Exact: energies are compared as fractions. Cells of
+/// candidates must be in [0, 2³¹ − 2]. Identical on every instruction set.
 void select_winners_row(const WinnerRow& row, std::int32_t* winners);
 
-/// winners[j] = the first candidate of column j whose cell equals minima[j], the least of the
-/// column's candidates: for cells that compare as they are and do not carry their index.
+/// winners[j] = first candidate of column j whose cell equals minima[j], the minimum over the
+/// column's candidates. For cells that compare directly and do not contain their index.
 void locate_minima_row(const std::int32_t* cells, const std::int32_t* minima, int lanes,
                        int columns, std::int32_t* winners);
 
-/// The same, plainly.
+/// Scalar reference.
 void select_winners_row_ref(const WinnerRow& row, std::int32_t* winners);
 
 }  // namespace vantage::kernels

@@ -23,15 +23,15 @@ struct Least {
   std::int32_t index = kNoWinner;
 };
 
-// The smallest of cells[begin, end) and the first place it stands at; begin < end.
+// Minimum of cells[begin, end) and its first position; begin < end.
 HWY_INLINE Least least_of(const std::int32_t* cells, CandidateRange range) {
   const Tag32 d32;
   const int step = static_cast<int>(hn::Lanes(d32));
   const Vec32 worst = hn::Set(d32, std::numeric_limits<std::int32_t>::max());
   const Vec32 steps = hn::Set(d32, step);
 
-  // The vector in which the range begins has lanes before it, the one in which it ends lanes
-  // behind it: both are masked. Vectors in between are not.
+  // The first vector may have lanes before the range, the last one lanes after it; both are masked.
+  // Vectors in between are not.
   int i = range.begin / step * step;
   Vec32 number = hn::Add(hn::Set(d32, i), hn::Iota(d32, 0));
   const auto before = hn::Lt(number, hn::Set(d32, range.begin));
@@ -57,8 +57,8 @@ HWY_INLINE Least least_of(const std::int32_t* cells, CandidateRange range) {
   return {hn::GetLane(least), hn::GetLane(hn::MinOfLanes(d32, places))};
 }
 
-// Compares fractions sum/count in order of increasing candidates. Without branches: near a border
-// which candidate wins is as good as random.
+// Compares fractions sum/count in order of increasing candidates. Branch-free: near a border the
+// winning candidate is as good as random.
 class BestFraction {
  public:
   HWY_INLINE BestFraction(std::int32_t index, std::int64_t sum, std::int64_t count)
@@ -77,8 +77,8 @@ class BestFraction {
   std::int64_t count_;
 };
 
-// Any column, also near a border of the image, where candidates lack partners or part of their
-// windows.
+// Any column, including columns near an image border, where candidates lack partners or parts of
+// their windows.
 std::int32_t winner_of(const WinnerRow& row, const std::int32_t* cells, int x) {
   const CandidateRange candidates = row.candidates(x);
   if (candidates.empty()) {
@@ -108,9 +108,9 @@ std::int32_t winner_of(const WinnerRow& row, const std::int32_t* cells, int x) {
   return best.index();
 }
 
-// Offers the candidates of `range`, whose windows lose one more column from one to the next, the
-// first having `columns` − 1. As quotients in double: sums below 2³¹ over fewer than 2⁹ columns are
-// equal as doubles only if they are equal, so the order of fractions is kept.
+// Offers the candidates of `range`. Each window has one column fewer than the previous one; the
+// first has `columns` − 1. Compares quotients in double: sums below 2³¹ over fewer than 2⁹ columns
+// are equal as doubles only if they are equal, so the order of the fractions is preserved.
 HWY_INLINE void offer_shortened(const WinnerRow& row, const std::int32_t* cells,
                                 CandidateRange range, int columns, BestFraction& best) {
   const hn::ScalableTag<double> d64;
@@ -141,15 +141,15 @@ HWY_INLINE void offer_shortened(const WinnerRow& row, const std::int32_t* cells,
   }
 }
 
-// Lane by lane, the first of `lanes` cells that equals `value`, as a candidate number; lanes
-// without any hold a large number. Without leaving early: where the winner is, is as good as
-// random, and a wrongly predicted branch costs more than all vectors.
+// Per lane, the candidate number of the first of `lanes` cells that equals `value`; a large number
+// in lanes without a match. Does not stop early: the winner's position is as good as random, and a
+// mispredicted branch costs more than all vectors.
 HWY_INLINE Vec32 lane_places(const std::int32_t* cells, int lanes, std::int32_t value) {
   const Tag32 d32;
   const int step = static_cast<int>(hn::Lanes(d32));
   const Vec32 wanted = hn::Set(d32, value);
   Vec32 place = hn::Set(d32, 1 << 30);
-  // From the last vector to the first, so that the first place stays.
+  // From the last vector to the first, so that the first position remains.
   for (int i = lanes - step; i >= 0; i -= step) {
     const auto is_wanted = hn::Eq(hn::LoadU(d32, cells + i), wanted);
     place = hn::IfThenElse(is_wanted, hn::Set(d32, i), place);
@@ -157,8 +157,8 @@ HWY_INLINE Vec32 lane_places(const std::int32_t* cells, int lanes, std::int32_t 
   return hn::Add(place, hn::Iota(d32, 0));
 }
 
-// Columns near a border of the image, one vector of columns at a time: their lane-by-lane minima
-// are reduced together.
+// Columns near an image border, one vector of columns at a time, so that their per-lane minima are
+// reduced together.
 class BorderWinners {
  public:
   HWY_INLINE explicit BorderWinners(const WinnerRow& row)
@@ -199,9 +199,9 @@ class BorderWinners {
  private:
   static constexpr std::size_t kMost = hn::MaxLanes(Tag32());
 
-  /// Of a vector of columns: how many candidates, from the first, have a whole window of partners
-  /// (0 where those do not begin at the first candidate), how many have a partner, and how many
-  /// columns a whole window has.
+  /// For a vector of columns: the number of leading candidates with a whole window of partners (0
+  /// if those do not start at the first candidate), the number of candidates with a partner, and
+  /// the number of columns of a whole window.
   struct Columns {
     int full_end[kMost];
     int candidates_end[kMost];
@@ -212,7 +212,7 @@ class BorderWinners {
     return row_.cells + static_cast<std::ptrdiff_t>(j) * lanes_;
   }
 
-  // CandidateGeometry::with_partners() for neighbouring columns, in a form that vectorises.
+  // CandidateGeometry::with_partners() for neighbouring columns, in a vectorisable form.
   [[nodiscard]] HWY_INLINE Columns shape_of(int first_x) const {
     const CandidateGeometry& geometry = row_.geometry;
     const int radius = row_.window_radius;
@@ -226,7 +226,7 @@ class BorderWinners {
       const int x = std::min(first_x + static_cast<int>(k), last_column);
       const int begin = std::max(x - radius, 0);
       const int last = std::min(x + radius, last_column);
-      // Columns of the other image in the direction of growing and of falling disparities.
+      // Columns of the other image in the direction of increasing and of decreasing disparities.
       const int room = left ? begin : last_column - last;
       const int room_behind = left ? last_column - last : begin;
       const int full_end = std::clamp(room - least + 1, 0, count);
@@ -237,8 +237,8 @@ class BorderWinners {
     return shape;
   }
 
-  // Lane by lane minimum of the first `count` cells. All lanes are looked at: a loop whose length
-  // changes from column to column costs more in wrongly predicted branches.
+  // Per-lane minimum of the first `count` cells. All lanes are read: a loop whose length varies
+  // between columns costs more in mispredicted branches.
   [[nodiscard]] HWY_INLINE Vec32 lane_minima(const std::int32_t* cells, int count) const {
     const Tag32 d32;
     const int step = static_cast<int>(hn::Lanes(d32));
@@ -252,8 +252,8 @@ class BorderWinners {
     return least;
   }
 
-  // The least cell of the full windows against the candidates whose windows are shortened: each
-  // loses one more column than the one before.
+  // Best of the minimum over full windows and the candidates with shortened windows, each of which
+  // loses one more column than the previous one.
   [[nodiscard]] HWY_INLINE std::int32_t winner(const std::int32_t* column, std::int32_t least,
                                                std::int32_t place, int full_end, int end,
                                                int full_columns) const {
@@ -269,7 +269,7 @@ class BorderWinners {
     return best.index();
   }
 
-  // From so many candidates on vectors of quotients are faster.
+  // From this many candidates, vectors of quotients are faster.
   static constexpr int kManyCandidates = 12;
 
   const WinnerRow& row_;
