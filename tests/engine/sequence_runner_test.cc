@@ -18,6 +18,7 @@
 #include "engine/sequence/busy_clock.h"
 #include "engine/sequence/delivered_frames.h"
 #include "engine/sequence/sequence_join.h"
+#include "engine/synthesis/three_step_synthesizer.h"
 #include "tests/engine/made_up_pairs.h"
 #include "tests/temporary_folder.h"
 
