@@ -43,32 +43,33 @@ struct SplatBand {
   int lines = 0;
 };
 
-/// Forward mapping of disparity into a z-buffer on nearness, which keeps the maximum of all samples:
+/// Forward mapping of disparity into a z-buffer on nearness, which keeps the maximum of all
+/// samples:
 /// - every pixel, at its target;
 /// - between a pixel and its right or lower neighbour on one surface: every position between their
 ///   (rounded) targets along the edge's axis; the other coordinate is rounded;
-/// - in a quad of four pixels: every position inside the triangles of (exact) targets on one surface,
-///   borders included. A triangle is a corner and the two adjacent ones, if both belong to it. If all
-///   four belong together, the triangles are those of the first and last corner. The targets of the
-///   corners that belong together are left out, and so are triangles whose targets are at most one
-///   column and line apart: nothing lies in them.
-/// Between samples q is interpolated linearly over the new view, which is exact for planes. Surfaces
-/// seen from behind (targets in reverse order, triangles of the opposite orientation) have no gaps to
-/// fill. In translations along rows a line depends on its row alone and equals the result of
-/// forward_warp_row().
+/// - in a quad of four pixels: every position inside the triangles of (exact) targets on one
+///   surface, borders included. A triangle is a corner and the two adjacent ones, if both belong to
+///   it. If all four belong together, the triangles are those of the first and last corner. The
+///   targets of the corners that belong together are left out, and so are triangles whose targets
+///   are at most one column and line apart: nothing lies in them.
+/// Between samples q is interpolated linearly over the new view, which is exact for planes.
+/// Surfaces seen from behind (targets in reverse order, triangles of the opposite orientation) have
+/// no gaps to fill. In translations along rows a line depends on its row alone and equals the
+/// result of forward_warp_row().
 ///
-/// A translation does not change the size of pixels, so holes are disocclusions. Any other view also
-/// spreads pixels. There a torn quad (not one surface; unknown pixels belong to none) is divided among
-/// its corners: each known one gets the quarter of the quad next to it, and every position inside the
-/// quarter's two triangles is a sample. At the quarter's corners the surface has: at the pixel, the
-/// pixel's disparity; on an edge of the quad, the mean of the two pixels if joined, else the pixel's
-/// own; in the middle of the quad, the mean of all its pixels that neighbours join to this one (with
-/// three, of the two that are not adjacent). So each surface extends half an image pixel beyond its
-/// last pixels, at any magnification.
+/// A translation does not change the size of pixels, so holes are disocclusions. Any other view
+/// also spreads pixels. There a torn quad (not one surface; unknown pixels belong to none) is
+/// divided among its corners: each known one gets the quarter of the quad next to it, and every
+/// position inside the quarter's two triangles is a sample. At the quarter's corners the surface
+/// has: at the pixel, the pixel's disparity; on an edge of the quad, the mean of the two pixels if
+/// joined, else the pixel's own; in the middle of the quad, the mean of all its pixels that
+/// neighbours join to this one (with three, of the two that are not adjacent). So each surface
+/// extends half an image pixel beyond its last pixels, at any magnification.
 ///
-/// Adds the upper row's pixels, their edges and the quads between the rows. Since the maximum is kept,
-/// neither the order of calls nor the division of a view into bands matters. Identical on every
-/// instruction set and to the reference.
+/// Adds the upper row's pixels, their edges and the quads between the rows. Since the maximum is
+/// kept, neither the order of calls nor the division of a view into bands matters. Identical on
+/// every instruction set and to the reference.
 void splat_rows(const SplatRows& rows, const SplatBand& band);
 void splat_rows_ref(const SplatRows& rows, const SplatBand& band);
 
