@@ -10,8 +10,8 @@
 
 namespace vantage::perf {
 
-/// The options `--name VALUE` and flags `--name` of a program. Anything else ends it with `usage`
-/// and exit code 2. Values do not begin with two dashes.
+/// Parses a program's options `--name VALUE` and flags `--name`. Anything else ends the program
+/// with `usage` and exit code 2. Values must not start with two dashes.
 class CommandLine {
  public:
   CommandLine(int argc, char** argv, std::string usage) : usage_(std::move(usage)) {
@@ -38,7 +38,7 @@ class CommandLine {
     values_.erase(place);
     return value;
   }
-  /// Whether `--name` was given, which takes no value.
+  /// Whether the flag `--name` was given; flags take no value.
   [[nodiscard]] bool flag(const std::string& name) {
     const auto place = values_.find(name);
     if (place == values_.end()) {
@@ -50,7 +50,7 @@ class CommandLine {
     values_.erase(place);
     return true;
   }
-  /// A whole number ≥ 1.
+  /// An integer ≥ 1.
   [[nodiscard]] int number(const std::string& name, int otherwise) {
     const std::optional<std::string> value = text(name);
     if (!value) {
@@ -63,20 +63,20 @@ class CommandLine {
     }
     return static_cast<int>(number);
   }
-  /// WIDTHxHEIGHT; without the option both stay as they are.
+  /// WIDTHxHEIGHT; without the option both are unchanged.
   void size(const std::string& name, int& width, int& height) {
     const std::optional<std::string> value = text(name);
     if (value && std::sscanf(value->c_str(), "%dx%d", &width, &height) != 2) {
       refuse();
     }
   }
-  /// After all options were asked for: refuses those that are left.
+  /// Call after all options were read: refuses the remaining ones.
   void finish() const {
     if (!values_.empty()) {
       refuse();
     }
   }
-  /// For values that only the program can judge.
+  /// For values that only the program can check.
   [[noreturn]] void refuse() const {
     fmt::print(stderr, "{}\n", usage_);
     std::exit(2);
@@ -84,7 +84,7 @@ class CommandLine {
 
  private:
   std::string usage_;
-  std::map<std::string, std::optional<std::string>> values_;  ///< empty of flags
+  std::map<std::string, std::optional<std::string>> values_;  ///< empty for flags
 };
 
 }  // namespace vantage::perf

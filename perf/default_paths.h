@@ -2,8 +2,8 @@
 
 namespace vantage::perf {
 
-/// What programs read unless they are told otherwise, for whoever starts them in the folder of the
-/// checkout. Relative, so that objects are the same in every folder.
+/// Default inputs of the programs, for calls from the root folder of the checkout. Relative, so
+/// that objects are the same in every folder.
 inline constexpr const char* kDefaultData = "../shared/data";
 inline constexpr const char* kDefaultExperiments = "perf/experiments.toml";
 

@@ -12,13 +12,13 @@
 
 namespace vantage::perf {
 
-/// "1.97 (1.80-2.10)": median and range; `digits` of the median.
+/// "1.97 (1.80-2.10)": median and range; `digits` applies to the median.
 inline std::string with_range(const std::vector<double>& values, int digits = 2) {
   return fmt::format("{:.{}f} ({:.2f}-{:.2f})", median(values), digits, least(values),
                      most(values));
 }
 
-/// The same for --json.
+/// Same for --json.
 inline nlohmann::json figures(const std::vector<double>& values) {
   return {{"median", median(values)}, {"least", least(values)}, {"most", most(values)}};
 }

@@ -8,25 +8,25 @@
 
 namespace vantage::perf {
 
-/// One side of a comparison.
+/// One candidate of a comparison.
 struct Contender {
   std::string name;
   std::function<void()> run;
 };
 
-/// Seconds of all rounds of one contender.
+/// Seconds per round of one contender.
 struct Timing {
   std::string name;
   std::vector<double> seconds;   ///< sorted
-  std::vector<double> by_round;  ///< as they came
+  std::vector<double> by_round;  ///< in order of measurement
 
   [[nodiscard]] double least() const { return seconds.front(); }
   [[nodiscard]] double median() const { return seconds[seconds.size() / 2]; }
   [[nodiscard]] double most() const { return seconds.back(); }
 };
 
-/// Runs all contenders in turn, `rounds` times after one warm-up round, so that a machine that
-/// slows down or speeds up meanwhile does so for all of them.
+/// Runs all contenders in turn, `rounds` times after one warm-up round, so that changes of the
+/// machine's speed affect all of them.
 inline std::vector<Timing> time_interleaved(const std::vector<Contender>& contenders, int rounds) {
   std::vector<Timing> timings;
   for (const Contender& contender : contenders) {

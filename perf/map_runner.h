@@ -5,7 +5,7 @@
 
 namespace vantage::perf {
 
-/// A method's left map, on its own threads.
+/// Computes a method's left map on its own threads.
 class MapRunner {
  public:
   MapRunner(const MatchOptions& options, const ExecutionOptions& execution)

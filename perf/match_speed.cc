@@ -1,5 +1,6 @@
-// Speed of SSD matching against OpenCV's matchers, against itself on two threads, and over windows:
-// all contenders of a table interleaved in one run. Prints tables; --json FILE writes the figures.
+// Speed of SSD matching against OpenCV's matchers, against itself on two threads, and as a function
+// of the window. All contenders of a table are interleaved in one run. Prints tables; --json FILE
+// writes the numbers.
 
 #include <fmt/format.h>
 
@@ -32,7 +33,8 @@ MatchOptions ssd_options(int disparities, int window, Subpixel subpixel) {
   return result;
 }
 
-/// A matcher's chain by the whole-image executor: pass by pass, every row of every stage stored.
+/// Runs a matcher's chain with the whole-image executor: pass by pass, storing every row of every
+/// stage.
 void run_whole_image_chain(const Photograph& left, const Photograph& right,
                            const MatchOptions& options, Execution& execution) {
   const auto geometry =

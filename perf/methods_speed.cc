@@ -1,6 +1,6 @@
 // Speed of the iterative and evidence methods: against OpenCV's StereoSGBM on the same pair and
-// threads, against themselves pass by pass, and over numbers of iterations; all contenders of a
-// table interleaved in one run. Prints tables; --json FILE writes the figures.
+// threads, against themselves pass by pass, and as a function of the number of iterations. All
+// contenders of a table are interleaved in one run. Prints tables; --json FILE writes the numbers.
 
 #include <fmt/format.h>
 
@@ -31,7 +31,7 @@ constexpr double kCells = static_cast<double>(kWidth) * kHeight * kDisparities;
 struct Method {
   std::string name;
   MatchOptions options;
-  double work = 1;  ///< what the target counts: cells, or cells and iterations
+  double work = 1;  ///< unit of the speed target: cells, or cells × iterations
 };
 
 Method make_method(std::string name, MatchMethod method, int iterations) {
@@ -68,7 +68,7 @@ std::vector<Method> all_methods() {
   return methods;
 }
 
-/// The chain by the whole-image executor: every row of every stage stored, one thread.
+/// Runs the chain with the whole-image executor: stores every row of every stage, one thread.
 void run_whole_image_chain(const Method& method, const Pair& pair, Execution& execution) {
   const MethodParameters parameters = method.options.resolved();
   const auto geometry = candidate_geometry(method.options.in_force(), Side::kLeft, kWidth, kHeight);
@@ -82,7 +82,7 @@ void run_whole_image_chain(const Method& method, const Pair& pair, Execution& ex
   scheduler::run_whole_image(chain.stages());
 }
 
-/// Times every method on one thread, on all, and pass by pass on all.
+/// Times every method on one thread, on all threads, and pass by pass on all threads.
 nlohmann::json against_peers(const Pair& pair, int rounds) {
   const int threads = scheduler::detect_machine().hardware_threads;
   const cv::Mat left = to_opencv(pair.left_grey);

@@ -13,15 +13,15 @@
 
 namespace vantage::perf {
 
-/// What a user of OpenCV writes in a loop over pairs: StereoSGBM three-way for both images, a
-/// cross-check, and a new view halfway between the cameras by one remap of the left image along
-/// half its disparities. Maps go to PFM files, which cost the least there, the view to PNG.
+/// A typical OpenCV user's loop over pairs: StereoSGBM three-way for both images, a cross-check,
+/// and a new view halfway between the cameras by one remap of the left image along half its
+/// disparities. Maps are written as PFM, the cheapest format there; the view as PNG.
 class OpenCvLoop {
  public:
   explicit OpenCvLoop(DisparityRange range)
       : range_(range), matcher_(make_sgbm(range, 5, 1, cv::StereoSGBM::MODE_SGBM_3WAY)) {}
 
-  /// `stem` without extension; its folder must be there.
+  /// `stem` has no extension; its folder must exist.
   void work(const cv::Mat& left, const cv::Mat& right, const std::filesystem::path& folder,
             const std::string& stem) {
     matcher_->compute(left, right, left_sixteenths_);
@@ -37,8 +37,8 @@ class OpenCvLoop {
   }
 
  private:
-  /// Both maps in pixels, infinite where they do not agree within a pixel, and where each pixel of
-  /// the view is looked up.
+  /// Computes both maps in pixels, infinite where they differ by more than a pixel, and the lookup
+  /// position of each pixel of the view.
   void cross_check() {
     constexpr float kUnknown = std::numeric_limits<float>::infinity();
     const cv::Size size = left_sixteenths_.size();

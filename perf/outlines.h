@@ -8,15 +8,16 @@
 
 namespace vantage::perf {
 
-/// Disparities as a view sees them: those of both maps, the nearer ones in front, and what neither
-/// has as far away as the farther end of its run.
+/// Disparities seen from a view: both maps, the nearer one in front; pixels that neither map has
+/// get the farther end of their run.
 inline DisparityMap seen_from(const DisparityMaps& maps, double view_x) {
   DisparityMap seen = moved(maps.left.disparity_px, view_x);
   const DisparityMap right = moved(maps.right.disparity_px, view_x - 1);
   const int width = seen.width();
   for (int y = 0; y < seen.height(); ++y) {
     for (int x = 0; x < width; ++x) {
-      seen.at(x, y) = std::fmax(seen.at(x, y), right.at(x, y));  // of a number and NaN: the number
+      seen.at(x, y) =
+          std::fmax(seen.at(x, y), right.at(x, y));  // fmax() of a number and NaN is the number
     }
     for (int begin = 0; begin < width; ++begin) {
       int end = begin;
@@ -32,7 +33,7 @@ inline DisparityMap seen_from(const DisparityMaps& maps, double view_x) {
   return seen;
 }
 
-/// 255 within 3 pixels of a step of more than one disparity between neighbours, else 0.
+/// 255 within 3 pixels of a disparity step above 1 between neighbours, else 0.
 inline Mask near_outlines(const DisparityMap& seen) {
   constexpr int kBandPx = 3;
   const int width = seen.width();

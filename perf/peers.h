@@ -14,7 +14,8 @@
 
 namespace vantage::perf {
 
-/// The photograph as OpenCV wants it: BGR or grey, 8 bits. Throws std::bad_variant_access else.
+/// The photograph in OpenCV's format: BGR or grey, 8 bits. Throws std::bad_variant_access if it
+/// does not have 8 bits.
 inline cv::Mat to_opencv(const Photograph& photograph) {
   const auto& image = std::get<Image<std::uint8_t>>(photograph.pixels);
   cv::Mat mat(image.height(), image.width(), CV_8UC(image.channels()));
@@ -27,7 +28,7 @@ inline cv::Mat to_opencv(const Photograph& photograph) {
   return mat;
 }
 
-/// 8-bit grey, by OpenCV's conversion.
+/// 8-bit grey, converted by OpenCV.
 inline Photograph to_grey(const Photograph& photograph) {
   cv::Mat mat = to_opencv(photograph);
   if (mat.channels() == 3) {
@@ -40,7 +41,7 @@ inline Photograph to_grey(const Photograph& photograph) {
   return {std::move(image)};
 }
 
-/// OpenCV's matchers want a multiple of 16 candidates.
+/// OpenCV's matchers require a multiple of 16 candidates.
 inline int opencv_candidates(DisparityRange range) { return (range.count() + 15) / 16 * 16; }
 
 inline cv::Ptr<cv::StereoBM> make_bm(DisparityRange range, int window_px) {
@@ -49,14 +50,14 @@ inline cv::Ptr<cv::StereoBM> make_bm(DisparityRange range, int window_px) {
   return bm;
 }
 
-/// The parameters OpenCV's documentation and samples recommend.
+/// Parameters recommended by OpenCV's documentation and samples.
 inline cv::Ptr<cv::StereoSGBM> make_sgbm(DisparityRange range, int block, int channels, int mode) {
   return cv::StereoSGBM::create(range.min, opencv_candidates(range), block,
                                 8 * channels * block * block, 32 * channels * block * block, 1, 63,
                                 10, 100, 32, mode);
 }
 
-/// OpenCV's 16ths of pixels as a disparity map; what it calls invalid becomes NaN.
+/// Converts OpenCV's 16ths of pixels to a disparity map; values it marks as invalid become NaN.
 inline DisparityMap to_map(const cv::Mat& sixteenths, int min_disparity) {
   DisparityMap map(sixteenths.cols, sixteenths.rows);
   for (int y = 0; y < sixteenths.rows; ++y) {
@@ -70,8 +71,8 @@ inline DisparityMap to_map(const cv::Mat& sixteenths, int min_disparity) {
   return map;
 }
 
-/// A matcher's left map in 16ths of pixels. The images are padded as far as the range reaches,
-/// because it leaves the columns out that lack a candidate.
+/// A matcher's left map in 16ths of pixels. The images are padded by the search range, because the
+/// matcher omits columns that lack a candidate.
 inline cv::Mat left_disparities(cv::StereoMatcher& matcher, const cv::Mat& left,
                                 const cv::Mat& right, DisparityRange range) {
   const int pad_left = std::max(0, range.min + opencv_candidates(range));
@@ -85,7 +86,7 @@ inline cv::Mat left_disparities(cv::StereoMatcher& matcher, const cv::Mat& left,
   return {disparity.colRange(pad_left, pad_left + left.cols)};
 }
 
-/// The same of both, the right one from the mirrored, exchanged images.
+/// Same for both images; the right map is computed from the mirrored, exchanged images.
 struct PeerDisparities {
   cv::Mat left;
   cv::Mat right;
@@ -103,7 +104,7 @@ inline PeerDisparities both_disparities(cv::StereoMatcher& matcher, const cv::Ma
   return disparities;
 }
 
-/// See PeerDisparities; what the matcher calls invalid is NaN.
+/// See PeerDisparities; invalid values are NaN.
 struct PeerMaps {
   DisparityMap left;
   DisparityMap right;

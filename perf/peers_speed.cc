@@ -1,7 +1,7 @@
-// Kernels against what OpenCV has for the same step, on equal data and one thread: box sums and
-// Gaussians of cells, gradients, bicubic interpolation. Both sides of a table interleaved in one
-// run; where both should give the same numbers, the program checks that they do. Prints tables;
-// --json FILE writes the figures.
+// Kernels against OpenCV's functions for the same step, on equal data and one thread: box sums and
+// Gaussians of cells, gradients, bicubic interpolation. Both sides of a table are interleaved in
+// one run. Where both must give the same numbers, the program checks that they do. Prints tables;
+// --json FILE writes the numbers.
 
 #include <fmt/format.h>
 
@@ -31,19 +31,20 @@
 namespace vantage::perf {
 namespace {
 
-/// A disparity space, [x][d]: OpenCV takes it for an image of 64 channels. It fits level 2 and 3.
+/// A disparity space [x][d], which OpenCV treats as an image of 64 channels. Fits the level 2 and 3
+/// caches.
 constexpr int kCellColumns = 160;
 constexpr int kCellRows = 96;
 constexpr int kLanes = 64;
 constexpr int kRowCells = kCellColumns * kLanes;
 constexpr double kCells = static_cast<double>(kRowCells) * kCellRows;
 
-/// An image.
+/// Image size.
 constexpr int kWidth = 1282;
 constexpr int kHeight = 1110;
 constexpr double kPixels = static_cast<double>(kWidth) * kHeight;
 
-/// Whole numbers, so that sums of floats are exact.
+/// Integers, so that float sums are exact.
 cv::Mat random_values(int rows, int columns, int type) {
   cv::Mat values(rows, columns, type);
   cv::RNG random(1);
@@ -56,7 +57,7 @@ cv::Mat random_values(int rows, int columns, int type) {
   return values;
 }
 
-/// Ends the program where two results that should be the same differ by more than `most`.
+/// Ends the program if two results that must be equal differ by more than `most`.
 void expect_equal(const std::string& what, const cv::Mat& a, const cv::Mat& b, double most) {
   cv::Mat b_converted;
   b.convertTo(b_converted, a.type());
@@ -68,7 +69,7 @@ void expect_equal(const std::string& what, const cv::Mat& a, const cv::Mat& b, d
   }
 }
 
-/// Sums over windows of 9x9, in integers, of costs in float.
+/// Sums over 9×9 windows of float costs, as integers.
 class BoxSums {
  public:
   explicit BoxSums(const cv::Mat& costs) : costs_(costs) {}
@@ -102,7 +103,7 @@ class BoxSums {
   Image<std::int32_t> column_sums_{kRowCells, 1};
 };
 
-/// A Gaussian down the rows, then along them.
+/// A Gaussian over the rows, then along them.
 class Gaussian {
  public:
   static constexpr int kRadius = 6;
@@ -138,7 +139,7 @@ class Gaussian {
   Image<float> smoothed_{kRowCells + 2 * kRadius * kLanes, 1};  // zeros on both sides
 };
 
-/// Sobel's derivative along x. The image has margins that may be read.
+/// Sobel derivative along x. The image has readable margins.
 class Gradient {
  public:
   static constexpr int kMargin = 32;
@@ -205,7 +206,7 @@ nlohmann::json gaussians(int rounds) {
 
 nlohmann::json gradients(int rounds) {
   const cv::Mat image = random_values(kHeight, kWidth, CV_32FC1);
-  // The kernel may write up to a vector behind the row.
+  // The kernel may write up to one vector after the row.
   cv::Mat padded(kHeight, kWidth + Gradient::kMargin, CV_32FC1);
   cv::Mat result = padded.colRange(0, kWidth);
   cv::Mat peer_result;
@@ -224,7 +225,7 @@ nlohmann::json remaps(int rounds, int channels) {
   cv::Mat x(kHeight, kWidth, CV_32FC1);
   cv::Mat y(kHeight, kWidth, CV_32FC1);
   for (int row = 0; row < kHeight; ++row) {
-    for (int column = 0; column < kWidth; ++column) {  // turned by about a degree
+    for (int column = 0; column < kWidth; ++column) {  // rotated by about a degree
       x.at<float>(row, column) = static_cast<float>(0.98 * column + 0.02 * row + 3.3);
       y.at<float>(row, column) = static_cast<float>(0.98 * row - 0.02 * column + 25.7);
     }

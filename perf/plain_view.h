@@ -12,10 +12,10 @@
 
 namespace vantage::perf {
 
-/// What people write when they need a new view quickly: both images are forward-mapped to the
-/// nearest pixel with a z-buffer, averaged by distance where they agree within a pixel of
-/// disparity, else the nearer one is taken; holes are filled with the pixel at that end of their
-/// run which lies further away. 8-bit images.
+/// A simple hand-written view synthesis: forward-maps both images to the nearest pixel with a
+/// z-buffer. Where they agree within one pixel of disparity, averages by distance; otherwise takes
+/// the nearer one. Fills holes with the farther of the two pixels at the ends of their run. 8-bit
+/// images.
 inline Photograph plain_view(const Photograph& left, const Photograph& right,
                              const DisparityMaps& maps, double view_x) {
   struct Warped {

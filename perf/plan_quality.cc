@@ -1,8 +1,7 @@
-// How good the cost model's plans are: for several sizes and methods, the default plan against the
-// best of a sweep over strips, bands and iterations per pass that does not ask the cost model which
-// are worth a try; what was best is timed once more in turn with the default. --bad-starts also
-// lets the tuner begin at bad plans and says how much of the best it recovers. --json FILE writes
-// the figures.
+// Quality of the cost model's plans. For several sizes and methods, compares the default plan with
+// the best of a sweep over strips, bands and iterations per pass that does not use the cost model;
+// the best plan is timed once more, in turn with the default. --bad-starts also starts the tuner
+// from bad plans and reports how much of the best it recovers. --json FILE writes the numbers.
 
 #include <fmt/format.h>
 
@@ -41,24 +40,27 @@ constexpr std::array<Size, 5> kSizes = {
 
 struct Settings {
   std::vector<Size> sizes{kSizes.begin(), kSizes.end()};
-  std::string only;    ///< part of the names of the methods wanted; empty: all
-  int rounds = 7;      ///< of the comparison at the end
-  double seconds = 8;  ///< about, of one sweep: longer frames are measured on lower images
+  std::string only;    ///< substring of the names of the methods to run; empty: all
+  int rounds = 7;      ///< of the final comparison
+  double seconds = 8;  ///< approximate duration of one sweep; longer frames are measured on images
+                       ///< of reduced height
   bool bad_starts = false;
   double tune_seconds = 10;  ///< budget of one search from a bad start
   std::optional<int> threads;
   std::optional<std::string> json;
 };
 
-// Widths and heights of equal parts: numbers of parts, each about so many times the last.
+// Widths and heights that divide the image equally; each number of parts is about this factor times
+// the previous one.
 constexpr double kPartsStep = 1.4;
 constexpr int kLeastStripColumns = 16;
 constexpr std::array kBands = {1, 2, 3, 4, 6, 8, 12, 16};
 constexpr std::array kIterationsPerPass = {1, 2, 3, 5, 10};
-// So many of the sweep's best, at full height, meet all heights of bands and then the default.
+// This many of the sweep's best strips are combined, at full height, with all band heights; then
+// this many of the results are compared with the default.
 constexpr std::size_t kBestStrips = 2;
 constexpr std::size_t kFinalists = 3;
-// Lower images in the sweep are at least so high.
+// Minimum height of the images of reduced height in the sweep.
 constexpr int kLeastRows = 128;
 
 int divide_up(int total, int part) { return (total + part - 1) / part; }
@@ -67,7 +69,7 @@ double now_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Settings and how long a frame took with them.
+/// Settings and the frame time with them.
 struct Measured {
   TunedSettings settings;
   double seconds = 0;
@@ -75,10 +77,10 @@ struct Measured {
 
 void sort_by_time(std::vector<Measured>& all) { std::ranges::sort(all, {}, &Measured::seconds); }
 
-/// Frame times of several settings, timed in turn.
+/// Frame times per settings, measured in turn.
 using Rounds = std::map<std::string, std::vector<double>>;
 
-/// A size and a method, at full height and lower.
+/// A size and a method, at full and at reduced height.
 class Case {
  public:
   Case(const SpeedMethod& method, const Size& size, const Settings& settings)
@@ -117,7 +119,7 @@ class Case {
   }
 
  private:
-  // A sweep measures about so many plans, and each twice.
+  // Approximate number of plans per sweep, times two measurements each.
   static constexpr double kSweepFrames = 160;
 
   static double measure(MatchSubject& subject, const TunedSettings& settings) {
@@ -128,7 +130,7 @@ class Case {
     return method_.options.resolved().aggregation >= Aggregation::kDiffusion;
   }
 
-  /// The fastest at full height of all strips × iterations per pass × bands, best first.
+  /// All strips × iterations per pass × bands, measured at full height, fastest first.
   std::vector<Measured> sweep() {
     std::vector<std::optional<int>> iterations = {std::nullopt};
     if (is_iterative()) {
@@ -172,8 +174,8 @@ class Case {
     return starts;
   }
 
-  /// Where the search ends. The tuner then compares that with the default plan and keeps the faster
-  /// one, which would hide how good the search is.
+  /// Result of the search from `start`. Called without the tuner's final comparison with the
+  /// default plan, which would hide the quality of the search.
   TunedSettings tune_from(const TunedSettings& start) {
     const TuningClock clock = now_seconds;
     Tuner tuner(*subject_, *subject_, clock,
@@ -195,7 +197,7 @@ class Case {
         }
       }
       for (const auto& [name, time] : seconds) {
-        if (round > 0) {  // the first one warms up
+        if (round > 0) {  // the first round warms up
           rounds[name].push_back(time);
         }
       }
@@ -253,7 +255,7 @@ class Case {
     return result;
   }
 
-  /// The default plan in words.
+  /// Describes the default plan.
   [[nodiscard]] std::string plan_text() const {
     Execution execution({.threads = settings_.threads});
     const StereoMatcher matcher(method_.options, execution);

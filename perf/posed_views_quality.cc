@@ -1,6 +1,6 @@
-// Quality of views of a generated scene from exact maps, by cameras that are turned, rolled,
-// zoomed, ahead and behind: in one pass and in the book's three steps, PSNR in dB. The tables are
-// those of docs/VIEWS.md.
+// Quality of views of a generated scene from exact maps, for cameras that are rotated, rolled,
+// zoomed, in front of and behind the baseline: in one pass and in the book's three steps, PSNR in
+// dB. The tables are in docs/VIEWS.md.
 
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@ namespace {
 constexpr int kWidth = 640;
 constexpr int kHeight = 480;
 
-/// Degrees, and baselines from the left camera.
+/// Angles in degrees; position in baselines from the left camera.
 struct Place {
   Eigen::Vector3d centre{0, 0, 0};
   double roll = 0;
@@ -147,7 +147,7 @@ class PosedViews {
     return camera;
   }
 
-  /// In one pass, and in three steps; the latter without picture where their plane cuts the scene.
+  /// Views in one pass and in three steps; the latter has no image if its plane cuts the scene.
   [[nodiscard]] std::pair<SynthesizedView, SynthesizedView> views_of(const PosedCamera& camera) {
     std::pair<SynthesizedView, SynthesizedView> views;
     ViewSynthesizer({}, execution_)
@@ -171,7 +171,7 @@ class PosedViews {
                                          .psnr_db;
   }
 
-  /// The left photograph moved by OpenCV; means over areas where it is reduced.
+  /// The left photograph resampled by OpenCV; area means where it is reduced.
   [[nodiscard]] Photograph resampled(const Eigen::Matrix3d& homography, bool reduces) const {
     const auto& from = std::get<Image<std::uint8_t>>(left_.image.pixels);
     const cv::Mat source(kHeight, kWidth, CV_8UC3, const_cast<std::uint8_t*>(from.row(0)),
@@ -194,7 +194,7 @@ class PosedViews {
     return {std::move(result)};
   }
 
-  /// Where a view shows what lies inside the photograph.
+  /// Mask of the view's pixels that lie inside the photograph.
   static Mask inside(const Eigen::Matrix3d& homography, double zoom) {
     const Eigen::Matrix3d back = homography.inverse();
     const double border = zoom < 1 ? 1 / zoom : 0;

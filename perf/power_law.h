@@ -6,13 +6,13 @@
 
 namespace vantage::perf {
 
-/// y = factor · x^exponent, fitted by least squares of logarithms.
+/// y = factor · x^exponent, least-squares fit of the logarithms.
 struct PowerLaw {
   double exponent = 0;
   double standard_error = 0;  ///< of the exponent
 };
 
-/// At least three points, not all of one x; x and y > 0.
+/// Requires at least three points with differing x; x and y > 0.
 inline PowerLaw fit_power_law(const std::vector<double>& x, const std::vector<double>& y) {
   const auto count = static_cast<double>(x.size());
   double mean_x = 0;

@@ -1,7 +1,7 @@
-// How the time of a map grows: with width, height, disparities, iterations and window on one thread
-// (exponents fitted), and over threads with the work fixed (strong) and with as much work for every
-// thread (weak). All contenders of a table interleaved in one run. Prints tables; --json FILE
-// writes the figures.
+// Growth of the time per map with width, height, disparities, iterations and window on one thread
+// (fitted exponents), and over threads with fixed work (strong scaling) and with equal work per
+// thread (weak scaling). All contenders of a table are interleaved in one run. Prints tables;
+// --json FILE writes the numbers.
 
 #include <fmt/format.h>
 
@@ -29,7 +29,7 @@ struct GreyPair {
   Photograph right;
 };
 
-/// The upper left corner.
+/// Crops to the upper left corner.
 Photograph corner(const Photograph& photograph, int width, int height) {
   const auto& from = std::get<Image<std::uint8_t>>(photograph.pixels);
   Image<std::uint8_t> result(width, height);
@@ -58,7 +58,7 @@ MatchOptions method_options(MatchMethod method, int disparities) {
   return options;
 }
 
-/// One point of a curve: a size and what is matched at it.
+/// One point of a curve: a size and the input matched at it.
 struct Point {
   double value = 0;
   int width = 960;
@@ -141,7 +141,7 @@ nlohmann::json fit_curves(const Pair& pair, int rounds) {
   return tables;
 }
 
-/// Threads 1, 2, 4, … and all of them.
+/// 1, 2, 4, … threads, and `most`.
 std::vector<int> thread_counts(int most) {
   std::vector<int> counts;
   for (int threads = 1; threads < most; threads *= 2) {
@@ -151,7 +151,7 @@ std::vector<int> thread_counts(int most) {
   return counts;
 }
 
-/// What one method does over numbers of threads.
+/// Times of one method for several numbers of threads.
 class ThreadScaling {
  public:
   ThreadScaling(std::string name, const MatchOptions& options, const GreyPair& pair,
@@ -159,7 +159,7 @@ class ThreadScaling {
       : name_(std::move(name)), counts_(counts) {
     const int height = pair.left.height();
     for (const int threads : counts) {
-      // As much work per thread as all threads have of the whole image.
+      // Work per thread equals that of all threads on the whole image.
       const int rows = height * threads / counts.back();
       parts_.push_back({corner(pair.left, pair.left.width(), rows),
                         corner(pair.right, pair.left.width(), rows)});
@@ -185,7 +185,7 @@ class ThreadScaling {
       const Timing& strong = timings[2 * i];
       const Timing& weak = i + 1 < counts_.size() ? timings[2 * i + 1] : strong;
       const auto speed_up = ratios(timings.front().by_round, strong.by_round);
-      // Of one thread with its share of the rows.
+      // One thread with its share of the rows.
       const Timing& share_of_one = counts_.size() > 1 ? timings[1] : timings[0];
       const auto efficiency = ratios(share_of_one.by_round, weak.by_round);
       const double threads = counts_[i];
@@ -225,7 +225,8 @@ class ThreadScaling {
   std::vector<int> counts_;
   std::vector<GreyPair> parts_;
   std::vector<std::unique_ptr<MapRunner>> runners_;
-  std::vector<Contender> contenders_;  // per number of threads: all rows, its share (not the last)
+  std::vector<Contender>
+      contenders_;  // per number of threads: all rows, then its share (except the last)
 };
 
 nlohmann::json over_threads(int width, int height, int disparities, const std::vector<int>& counts,

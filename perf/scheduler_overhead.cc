@@ -1,7 +1,7 @@
-// What scheduling costs where there is nothing to schedule: empty tasks, empty stages of a chain,
-// empty steps of frames, plans; and what spans cost with and without a trace. All contenders of a
-// table interleaved in one run; executors have tables of their own, because the waiting threads of
-// one would keep processors from the next. Prints tables; --json FILE writes the figures.
+// Scheduling overhead without work: empty tasks, empty stages of a chain, empty steps of frames,
+// plans; and the cost of spans with and without a trace. All contenders of a table are interleaved
+// in one run. Each executor has its own table, because waiting threads of one would occupy
+// processors of the next. Prints tables; --json FILE writes the numbers.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -40,7 +40,7 @@ std::string on_threads(const Executor& executor) {
 }
 
 nlohmann::json empty_tasks(Executor& executor, int rounds) {
-  constexpr int kTasks = 4096;  // of all loops of a round, about
+  constexpr int kTasks = 4096;  // approximate number over all loops of a round
   std::vector<Contender> contenders;
   std::vector<double> work;
   for (const int per_thread : {1, 4, 16, 64}) {
@@ -58,7 +58,7 @@ nlohmann::json empty_tasks(Executor& executor, int rounds) {
                      time_interleaved(contenders, rounds), work, "task");
 }
 
-/// Makes nothing of nothing.
+/// A stage that computes nothing.
 class EmptyStage final : public scheduler::RowStage {
  public:
   EmptyStage(scheduler::Extent extent, bool is_last) : RowStage(extent), is_last_(is_last) {}
@@ -155,7 +155,8 @@ nlohmann::json plans(const Settings& settings) {
                      kPlans, "plan");
 }
 
-/// Spans with and without a trace; returns the table. `idle_span_ns`: what one costs without.
+/// Times spans with and without a trace; returns the table. `idle_span_ns`: cost of a span without
+/// a trace.
 nlohmann::json spans(const Settings& settings, double& idle_span_ns) {
   constexpr int kSpans = 200'000;
   const auto make_spans = [] {
@@ -182,7 +183,7 @@ nlohmann::json spans(const Settings& settings, double& idle_span_ns) {
   return print_table("spans", timings, kSpans, "span");
 }
 
-/// A map without and with a recorded trace, and how many spans that has.
+/// Times a map without and with a recorded trace, and counts its spans.
 nlohmann::json traced_maps(const Settings& settings, double idle_span_ns) {
   constexpr int kWidth = 450;
   constexpr int kHeight = 375;

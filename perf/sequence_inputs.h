@@ -21,7 +21,7 @@
 
 namespace vantage::perf {
 
-/// One sequence in two forms, and as files for those who read it with other means.
+/// One sequence in two forms, and as files for other readers.
 struct SequenceInputs {
   std::string name;
   PairSourceOptions images;  ///< a folder of PNG files per camera
@@ -47,7 +47,8 @@ inline SequenceInputs sequence_inputs(std::string name, const std::filesystem::p
   return inputs;
 }
 
-/// A made-up sequence of the same size where the real one is not at hand; files go to `folder`.
+/// A synthetic sequence of the same size, for when the real one is not available; files go to
+/// `folder`.
 inline SequenceInputs generate_sequence(const std::filesystem::path& folder) {
   constexpr int kFrames = 24;
   LayeredSceneOptions options;
@@ -77,8 +78,8 @@ inline SequenceInputs generate_sequence(const std::filesystem::path& folder) {
   return sequence_inputs("generated, 1226x370", folders[0], folders[1], video);
 }
 
-/// A sequence several times over, so that a short one shows what a long one would do. `on_fetch` is
-/// told each pair that is asked for.
+/// Repeats a sequence, so that a short one behaves like a long one. Calls `on_fetch` with each
+/// requested pair.
 class RepeatedPairs final : public PairSource {
  public:
   RepeatedPairs(const PairSourceOptions& options, int pair_count,

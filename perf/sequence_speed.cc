@@ -1,6 +1,6 @@
-// Speed of sequences: what a frame costs without reading and writing, the sustained rate of a run
-// from files to files, and the loop a user of OpenCV writes, all interleaved in one run.
-// Prints tables; --json FILE writes the figures.
+// Speed of sequences: time per frame without reading and writing, sustained rate of a run from
+// files to files, and a typical OpenCV user's loop, all interleaved in one run. Prints tables;
+// --json FILE writes the numbers.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -30,14 +30,14 @@ namespace fs = std::filesystem;
 
 constexpr DisparityRange kRange = {0, 79};
 constexpr double kViewX = 0.5;
-/// Frames fetched before the clock of a run starts: by then memory has been allocated, and as many
-/// frames wait for the disk as ever do.
+/// Frames fetched before a run's clock starts: by then memory is allocated, and the queue of frames
+/// waiting for the disk has its final length.
 constexpr int kWarmUpFrames = 24;
-/// Videos are delivered by chunks.
+/// Videos are delivered in chunks.
 constexpr int kChunkFrames = 50;
 constexpr int kVideoFrames = 2 * kChunkFrames + kWarmUpFrames;
 
-/// One way to work on a sequence; returns the time of a frame.
+/// One way to process a sequence; returns the time per frame.
 struct Contender {
   std::string name;
   std::function<FrameTime()> run;
@@ -47,8 +47,8 @@ struct Contender {
 struct Method {
   std::string name;
   MatchOptions match;
-  int frames;  ///< of a run, warm-up included
-  /// Also time views as video: where frames take long, encoding them does not matter.
+  int frames;  ///< per run, warm-up included
+  /// Also time views as video; omitted where frames take so long that encoding does not matter.
   bool with_video = false;
 };
 
@@ -80,7 +80,7 @@ SequenceOptions run_options(const Method& method, bool views_as_video) {
   return options;
 }
 
-/// What a run computes between reading and writing, on pairs in memory.
+/// The computation of a run between reading and writing, on pairs in memory.
 class Computation {
  public:
   Computation(const Method& method, int threads)
@@ -95,7 +95,7 @@ class Computation {
                             results->maps.right.disparity_px.view(), kViewX, results->view);
   }
 
-  /// Each frame after the other, or as many at a time as there are threads.
+  /// Processes frames one after another, or as many at a time as there are threads.
   FrameTime work(const std::vector<FramePair>& pairs) {
     const Stopwatch watch;
     const int count = static_cast<int>(pairs.size());
@@ -116,8 +116,8 @@ class Computation {
   ObjectPool<Results> results_;
 };
 
-/// From files to files: between fetching the first frame behind the warm-up and the last one, that
-/// is, the rate at which frames go in and so come out.
+/// From files to files, between fetching the first frame after the warm-up and the last one: the
+/// rate at which frames enter, and therefore leave.
 FrameTime time_run(const PairSourceOptions& input, const SequenceOptions& options, int frames,
                    int threads, int in_flight, const fs::path& folder) {
   fs::remove_all(folder);
@@ -202,7 +202,7 @@ std::vector<FramePair> decode_pairs(const PairSourceOptions& input, int count) {
   return pairs;
 }
 
-/// Runs all in turn, so that a machine that slows down meanwhile does so for all of them.
+/// Runs all in turn, so that changes of the machine's speed affect all of them.
 void run_interleaved(std::vector<Contender>& contenders, int rounds) {
   for (Contender& contender : contenders) {
     contender.run();
@@ -214,13 +214,13 @@ void run_interleaved(std::vector<Contender>& contenders, int rounds) {
   }
 }
 
-/// The rate of `contender` over what all cores together would reach if each took the time of
-/// `reference` per frame; round by round.
+/// Rate of `contender` relative to all cores together, if each took `reference`'s time per frame;
+/// median over rounds.
 double median_efficiency(const Contender& reference, const Contender& contender, int cores) {
   return median(ratios(reference.rounds, contender.rounds)) / cores;
 }
 
-/// The first contender is what a frame costs one thread without reading and writing.
+/// The first contender is the time per frame of one thread without reading and writing.
 nlohmann::json print_table(const std::string& title, const std::vector<Contender>& contenders,
                            const Contender& peer, int cores) {
   fmt::print("\n{}\n{:<38} {:>9} {:>9} {:>9} {:>9} {:>10} {:>10}\n", title, "", "least ms",

@@ -8,14 +8,14 @@
 
 namespace vantage::perf {
 
-/// A way to match whose speed is looked at.
+/// A matching method whose speed is measured.
 struct SpeedMethod {
   std::string name;
   MatchOptions options;  ///< one map, winner only, disparities from 0
 };
 
-/// All methods with their usual parameters, ten iterations where there are any; those whose name
-/// contains `only`.
+/// All methods with their usual parameters and ten iterations (if iterative), filtered by names
+/// that contain `only`.
 inline std::vector<SpeedMethod> speed_methods(int disparities, const std::string& only = {}) {
   constexpr int kIterations = 10;
   std::vector<SpeedMethod> methods;

@@ -8,8 +8,8 @@
 
 namespace vantage::perf {
 
-/// Of one frame, in seconds: by the wall clock, and of all the process's threads together. The
-/// second hardly depends on what else the machine does.
+/// Time of one frame, in seconds: wall clock, and processor time over all the process's threads.
+/// The second hardly depends on other load of the machine.
 struct FrameTime {
   double wall = 0;
   double processor = 0;
@@ -60,7 +60,7 @@ inline std::vector<double> of(const std::vector<FrameTime>& rounds, double Frame
   return values;
 }
 
-/// Wall times of one contender over those of another, round by round.
+/// Ratios of wall times of one contender to another, round by round.
 inline std::vector<double> ratios(const std::vector<FrameTime>& rounds,
                                   const std::vector<FrameTime>& to) {
   std::vector<double> values;

@@ -1,6 +1,6 @@
-// Speed of a movie: a sweep from the left camera to the right one, rendered and encoded as `synth`
-// does it, against rendering alone and encoding alone of the same frames. Prints a table; --json
-// FILE writes the figures.
+// Speed of a movie: a sweep from the left camera to the right one, rendered and encoded as in
+// `synth`, against rendering alone and encoding alone of the same frames. Prints a table; --json
+// FILE writes the numbers.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -33,7 +33,7 @@ struct Settings {
   int frames = 300;
   int rounds = 3;
   int threads = scheduler::detect_machine().hardware_threads;
-  std::string only;  ///< part of the name of the place wanted; empty: all
+  std::string only;  ///< substring of the names of the positions to run; empty: all
   std::optional<std::string> json;
   fs::path output = fs::temp_directory_path();
 };
@@ -54,7 +54,7 @@ class Sweep {
         pair.left.channels(), 1);
   }
 
-  /// Several views at a time, to nothing or to a video.
+  /// Renders several views at a time, without output or to a video.
   FrameTime run(VideoWriter* video) {
     int next = 0;
     std::vector<int> index(views_.size());
@@ -81,7 +81,7 @@ class Sweep {
     return watch.per_frame(frames_);
   }
 
-  /// The encoder's share: only what it does is timed.
+  /// Encoding only: times nothing but the encoder.
   FrameTime encode_only(VideoWriter& video) {
     FrameTime total;
     const auto timed = [&](const std::function<void()>& work) {

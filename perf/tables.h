@@ -10,8 +10,8 @@
 
 namespace vantage::perf {
 
-/// Prints a table of timings, each also divided by its work (cells, cells and iterations, or what
-/// `unit` says) and by the first one, and returns it.
+/// Prints and returns a table of timings, each also divided by its work (cells, cells × iterations,
+/// or `unit`) and by the first one.
 inline nlohmann::json print_table(const std::string& title, const std::vector<Timing>& timings,
                                   const std::vector<double>& work,
                                   const std::string& unit = "cell") {
@@ -34,7 +34,7 @@ inline nlohmann::json print_table(const std::string& title, const std::vector<Ti
   return {{"title", title}, {"rows", rows}};
 }
 
-/// The same where all do the same work.
+/// Same with equal work for all.
 inline nlohmann::json print_table(const std::string& title, const std::vector<Timing>& timings,
                                   double work, const std::string& unit = "cell") {
   return print_table(title, timings, std::vector<double>(timings.size(), work), unit);

@@ -1,6 +1,6 @@
-// What threads gain on one pair: every method on one thread and on all, beside as many one-thread
-// matchers that know nothing of each other and have a pair each: more than those gain the machine
-// does not give. Then both maps with refinement. All interleaved; --json FILE writes the figures.
+// Speed-up by threads on one pair: every method on one thread and on all, beside as many
+// independent one-thread matchers with a pair each, whose gain is the maximum that the machine
+// allows. Then both maps with refinement. All interleaved; --json FILE writes the numbers.
 
 #include <fmt/format.h>
 
@@ -30,11 +30,11 @@ struct Settings {
   int disparities = 256;
   int rounds = 7;
   int threads = scheduler::detect_machine().hardware_threads;
-  std::string only;  ///< part of the names of the rows wanted; empty: all
+  std::string only;  ///< substring of the names of the rows to run; empty: all
   std::optional<std::string> json;
 };
 
-/// A matcher on threads of its own.
+/// A matcher on its own threads.
 class Worker {
  public:
   Worker(const MatchOptions& options, const ExecutionOptions& execution)
@@ -64,7 +64,7 @@ void add_parts(const MatchReport& report, PartSeconds& parts) {
   }
 }
 
-/// One method: alone on one thread, on all, and once per thread side by side.
+/// One method: alone on one thread, on all threads, and once per thread side by side.
 class Row {
  public:
   Row(const SpeedMethod& method, const Settings& settings)

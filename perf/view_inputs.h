@@ -17,8 +17,8 @@
 
 namespace vantage::perf {
 
-/// A made-up scene with a pair of photographs of it, and maps as matching them gives: with the
-/// outlines, errors and filled pixels that maps of photographs have.
+/// A synthetic scene with a pair of photographs of it, and maps as matching them gives: with the
+/// outlines, errors and filled pixels of maps of photographs.
 struct SyntheticPair {
   LayeredScene geometry;  ///< unit of length: the baseline
   RectifiedPair cameras;
@@ -56,7 +56,7 @@ inline SyntheticPair make_synthetic_pair(int width, int height, bool is_grey,
   return scene;
 }
 
-/// A place for a new view.
+/// Camera position and orientation of a new view.
 struct ViewPlace {
   std::string name;
   BaselinePosition position;
@@ -93,7 +93,7 @@ inline std::vector<ViewPlace> view_places() {
           {.name = "rolled by half a radian", .position = {0.5, -0.2}, .roll = 0.5}};
 }
 
-/// What a user of OpenCV has to call when everything else is known: one bicubic cv::remap of each
+/// The calls an OpenCV user needs when everything else is known: one bicubic cv::remap of each
 /// photograph to the new view, with the exact positions of the view's pixels in the photographs.
 class TwoRemaps {
  public:
@@ -110,14 +110,14 @@ class TwoRemaps {
     }
   }
 
-  /// With positions in floats.
+  /// Positions as floats.
   void run_float() {
     for (std::size_t side = 0; side < 2; ++side) {
       cv::remap(sources_[side], views_[side], positions_[side], cv::noArray(), cv::INTER_CUBIC,
                 cv::BORDER_REPLICATE);
     }
   }
-  /// With positions in 32nds of a pixel, rounded beforehand: faster.
+  /// Positions as 32nds of a pixel, rounded beforehand: faster.
   void run_fixed() {
     for (std::size_t side = 0; side < 2; ++side) {
       cv::remap(sources_[side], views_[side], fixed_[side], fractions_[side], cv::INTER_CUBIC,

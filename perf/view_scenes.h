@@ -21,13 +21,13 @@ struct RealView {
   double x;  ///< in baselines
 };
 
-/// A pair with truth and photographs between and beside its cameras; files below the folder of the
-/// scenes.
+/// A pair with truth, and photographs between and beside its cameras; file names are relative to
+/// the folder of the scenes.
 struct ViewScene {
   std::string name, left, right;
   std::string left_truth, right_truth;  ///< the right one may be empty, see true_maps()
-  double scale;                         ///< of the truth's files, per baseline of the pair
-  /// Where the truth of `left_truth` was taken, in baselines; 0 unless it is a third photograph's.
+  double scale;                         ///< factor of the truth's files, per baseline of the pair
+  /// Camera position of `left_truth`, in baselines; 0 unless it belongs to a third photograph.
   double truth_x;
   DisparityRange range;
   std::vector<RealView> views;
@@ -40,7 +40,7 @@ inline const std::vector<ViewScene>& view_scenes() {
                                        {"view0.png", -0.25},
                                        {"view6.png", 1.25}};
   static const std::vector<ViewScene> scenes = {
-      // The truth is of the middle photograph and for a quarter of the baseline.
+      // The truth belongs to the middle photograph and is for a quarter of the baseline.
       {"tsukuba",
        "im1.ppm",
        "im5.ppm",
@@ -83,7 +83,7 @@ inline const std::vector<ViewScene>& view_scenes() {
   return scenes;
 }
 
-/// A map seen from `baselines` further right: every pixel where it falls, the nearest one winning.
+/// A map seen from `baselines` further right: each pixel at its target, the nearest one winning.
 inline DisparityMap moved(const DisparityMap& map, double baselines) {
   DisparityMap result(map.width(), map.height());
   result.fill(std::numeric_limits<float>::quiet_NaN());
@@ -102,7 +102,7 @@ inline DisparityMap moved(const DisparityMap& map, double baselines) {
   return result;
 }
 
-/// The true maps of both images, with their unknown pixels filled at constant depth.
+/// The true maps of both images, with unknown pixels filled at constant depth.
 inline DisparityMaps true_maps(const ViewScene& scene, const std::filesystem::path& folder,
                                Execution& execution) {
   DisparityMaps maps;

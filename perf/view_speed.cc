@@ -1,8 +1,7 @@
-// Speed of new views against two bicubic cv::remap calls of the same pixels in the same run, on one
-// thread and on all: views between and beside the cameras, off the baseline, turned and rolled;
-// each with a fit of intensities of its own and with one that is given, as in movies. Prints a
-// table;
-// --json FILE writes the figures.
+// Speed of new views against two bicubic cv::remap calls for the same pixels in the same run, on
+// one thread and on all: views between and beside the cameras, off the baseline, rotated and
+// rolled; each with its own intensity fit and with a given one, as in movies. Prints a table;
+// --json FILE writes the numbers.
 
 #include <fmt/format.h>
 
@@ -30,12 +29,12 @@ struct Settings {
   bool is_grey = false;
   int rounds = 9;
   int threads = scheduler::detect_machine().hardware_threads;
-  std::string only;  ///< part of the names of the rows wanted; empty: all
+  std::string only;  ///< substring of the names of the rows to run; empty: all
   std::optional<std::string> json;
-  std::optional<std::string> pictures;  ///< folder for all views
+  std::optional<std::string> pictures;  ///< output folder for all views
 };
 
-/// Views of one kind, and the calls of cv::remap that they are held against.
+/// Views of one kind, and the cv::remap calls they are compared with.
 class Row {
  public:
   Row(std::string name, const SyntheticPair& scene, const ViewPlace& place, TwoRemaps& remaps,
@@ -59,7 +58,7 @@ class Row {
         scene_.maps.right.disparity_px.view(), geometry_, view_, fit_ ? &*fit_ : nullptr);
   }
 
-  // Ours and theirs close together, so that a machine that slows down does so for both.
+  // Times both close together, so that changes of the machine's speed affect both.
   void time_round(const std::array<int, 2>& threads) {
     for (std::size_t i = 0; i < threads.size(); ++i) {
       const Stopwatch ours;
@@ -120,7 +119,7 @@ class Row {
   std::array<ViewSynthesizer, 2> synthesizers_;
   std::optional<std::array<IntensityFit, 4>> fit_;
   SynthesizedView view_;
-  // On one thread, on all.
+  // On one thread and on all.
   std::array<std::vector<FrameTime>, 2> ours_, fixed_, float_;
 };
 

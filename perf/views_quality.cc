@@ -1,10 +1,10 @@
-// How like real photographs synthesised views are: for every scene with photographs between and
-// beside the cameras of its pair, from the true maps (one-pass and forward warp, and the plain warp
-// that people write by hand; without soft edges and with other ways to fill holes), from the maps
-// of the presets (of `balanced` also moved forward and filled otherwise) and of OpenCV's
-// StereoSGBM. Over the whole picture, and near the outlines that the true maps have in the view.
-// Prints Markdown tables. The folder of the scenes is the only argument (default: beside the
-// repository); scenes that are not there are named.
+// Similarity of synthesised views to real photographs. For every scene with photographs between and
+// beside the cameras of its pair: views from the true maps (one-pass and forward warp, and a simple
+// hand-written warp; without soft edges and with other hole filling), from the maps of the presets
+// (for `balanced` also moved forward and with other filling) and of OpenCV's StereoSGBM. Measured
+// over the whole image, and near the outlines that the true maps have in the view. Prints Markdown
+// tables. The only argument is the folder of the scenes (default: beside the repository); missing
+// scenes are named.
 
 #include <fmt/format.h>
 
@@ -67,7 +67,7 @@ MakeMaps preset(MatchPreset kind, std::optional<Fill> fill = {}) {
   };
 }
 
-/// Cross-check within a pixel and fill, like our own maps.
+/// Cross-checks within a pixel and fills, like our own maps.
 DisparityMaps opencv_maps(const LoadedPair& pair, Execution& execution) {
   PeerMaps sgbm = sgbm_maps(to_opencv(pair.left), to_opencv(pair.right), pair.scene->range, 5,
                             cv::StereoSGBM::MODE_SGBM);
@@ -114,10 +114,10 @@ struct Score {
   double psnr_near_outlines_db = 0;
 };
 
-/// The scores of all contenders for one view, or their means over several.
+/// Scores of all contenders for one view, or their means over several.
 struct Line {
   std::string name;
-  bool is_between = false;  ///< the cameras
+  bool is_between = false;  ///< between the cameras
   std::vector<Score> scores;
 };
 

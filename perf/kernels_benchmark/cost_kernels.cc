@@ -1,4 +1,4 @@
-// Matching costs of single cells, and the planes they look up.
+// Matching costs per cell, and the planes they read.
 
 #include <algorithm>
 #include <utility>
@@ -20,7 +20,7 @@ constexpr double kCells = kColumns * kLanes;
 constexpr std::size_t kCellCount = kColumns * kLanes;
 constexpr int kPixels = 512;
 
-/// Rows of feature planes and the cells they are compared into.
+/// Rows of feature planes and the cells computed from them.
 template <typename T, int kPlanes>
 struct Pairs {
   AlignedValues<T> reference{kPlanes * kPixels, 256, T{1}, 1};
@@ -43,7 +43,7 @@ using Sampled = Pairs<float, 3>;
 using Gradients = Pairs<float, 3>;
 using Codes = Pairs<std::uint32_t, 2>;
 
-/// Distances, and what tables make of them.
+/// Distances, and table lookups by distance.
 template <int kThresholds>
 struct RayCodes : Pairs<std::uint8_t, kernels::kMostRayCensusBytes> {
   kernels::RayCensusPairs pairs{row, kThresholds};
@@ -62,13 +62,13 @@ struct Combined {
 
 struct Cells {
   AlignedValues<float> cells{kCellCount, 1000, 1e-3F, 1};
-  AlignedValues<float> ones{kCellCount};  // so that products stay what they are, call after call
+  AlignedValues<float> ones{kCellCount};  // keeps products constant from call to call
   kernels::CellExtent row{kColumns, kLanes, kLanes};
 
   Cells() { std::fill_n(ones.data(), kCellCount, 1.0F); }
 };
 
-/// Rows of an image with margins, and what is made of them.
+/// Rows of an image with margins, and the outputs computed from them.
 struct ImageRows {
   static constexpr int kWidth = 256;
   static constexpr std::size_t kStride = 512;
@@ -95,7 +95,7 @@ struct ImageRows {
     kernels::separable_filter_row(filter, work.data(), third.data());
   }
   void evidence_planes() {
-    // α = 1 leaves the gradients as they are, call after call.
+    // α = 1 keeps the gradients constant from call to call.
     kernels::evidence_planes_row({first.data(), second.data(), third.data(), kWidth}, 1.0F, false);
   }
   void census() {

@@ -1,4 +1,4 @@
-// One row of each iteration on a disparity space, again and again.
+// Repeats one row of each iteration on a disparity space.
 
 #include <string>
 #include <utility>
@@ -21,13 +21,13 @@ using kernels::FixedEnergy;
 using kernels::MaxProductRow;
 using kernels::StarRows;
 
-// Three rows with a column beyond either end, the source and the output: 22 KiB.
+// Three rows with one column beyond each end, the source and the output: 22 KiB.
 constexpr int kColumns = 16;
 constexpr int kLanes = 64;
 constexpr double kCells = kColumns * kLanes;
 constexpr int kCarryingPitch = kLanes + kernels::kCertaintyFloats;
 constexpr float kMu = 0.4F;
-constexpr float kFloor = 0.01F;  // of the prior
+constexpr float kFloor = 0.01F;  // floor of the prior
 
 class Rows {
  public:
@@ -88,7 +88,7 @@ class Rows {
   Image<float> work_{kernels::bayes_work_floats(kLanes, 1), 1};
 };
 
-// The same in energies in fixed point.
+// Same for fixed-point energies.
 template <int kEnergyLanes>
 class EnergyRows {
  public:

@@ -13,22 +13,22 @@
 
 namespace vantage::perf {
 
-/// What a kernel does for one cell (candidate disparity of a pixel) or pixel: operations as
-/// kernels/kernel_work.h counts them, bytes loaded from and stored to rows. 0: not counted.
+/// Work of a kernel per cell (candidate disparity of a pixel) or pixel: operations as in
+/// kernels/kernel_work.h, bytes loaded from and stored to rows. 0: not counted.
 struct UnitWork {
   double operations = 0;
   double bytes = 0;
 };
 
-/// One kernel on data of its own, small enough for the level-1 cache.
+/// One kernel with its own data, small enough for the level 1 cache.
 struct KernelBenchmark {
   std::string name;
   std::string_view unit;      ///< "cell" or "pixel"
-  double units_per_call = 1;  ///< how many of them a call makes
-  UnitWork work;              ///< of each
-  /// Makes the data, on the instruction set in use, and returns the call.
+  double units_per_call = 1;  ///< units processed per call
+  UnitWork work;              ///< per unit
+  /// Creates the data, for the instruction set in use, and returns the call.
   std::function<std::function<void()>()> prepare;
-  bool has_vectors = true;  ///< false: plain code, the same on all instruction sets
+  bool has_vectors = true;  ///< false: scalar code, the same on all instruction sets
 };
 using KernelBenchmarks = std::vector<KernelBenchmark>;
 
@@ -40,23 +40,23 @@ KernelBenchmarks level_kernels();
 KernelBenchmarks view_kernels();
 KernelBenchmarks refinement_kernels();
 
-/// Of a cell, by the table of kernels/kernel_work.h.
+/// Work per cell, from the table in kernels/kernel_work.h.
 inline UnitWork per_cell(const kernels::KernelWork& work, int candidates) {
   const scheduler::ColumnWork column = column_work(work, candidates);
   return {column.operations / column.cells, column.bytes / column.cells};
 }
-/// Of a pixel, where the kernel has no work but on whole columns.
+/// Work per pixel, for kernels whose work is all per column.
 inline UnitWork per_column(const kernels::KernelWork& work) {
   constexpr double kValueBytes = 4;
   return {work.operations_per_column, kValueBytes * work.values_per_column};
 }
 
-/// `size` values that begin at a cache line, and a few more that may be read behind them.
+/// `size` values aligned to a cache line, followed by a few more readable values.
 template <typename T>
 class AlignedValues {
  public:
   explicit AlignedValues(std::size_t size) : memory_(size + kSpare) {}
-  /// Whole numbers in [0, limit) times `unit`, the same in every run.
+  /// Integers in [0, limit) times `unit`, the same in every run.
   AlignedValues(std::size_t size, unsigned limit, T unit, unsigned seed = 1) : AlignedValues(size) {
     std::mt19937 random(seed);
     for (T& value : memory_) {
@@ -74,7 +74,7 @@ class AlignedValues {
   std::vector<T> memory_;
 };
 
-/// A benchmark of `call` on one `Data`, made anew for each instruction set.
+/// A benchmark of `call` on its own `Data`, created again for each instruction set.
 template <class Data, class Call>
 KernelBenchmark on_own_data(std::string name, std::string_view unit, double units_per_call,
                             UnitWork work, Call call) {

@@ -1,4 +1,4 @@
-// One row of what lies between two levels, again and again.
+// Repeats one row of each operation between two pyramid levels.
 
 #include <algorithm>
 #include <cstdint>

@@ -1,7 +1,7 @@
-// Google Benchmark of kernels, once per instruction set this machine has, with the data in the
-// level-1 cache: ns per cell or pixel, operations and bytes per second, and the share of what the
-// instruction set could do at best (`of_roof`: its roofline, measured before). The label says which
-// part of the roof is above the kernel.
+// Google Benchmark of kernels, once per instruction set of this machine, with the data in the level
+// 1 cache: ns per cell or pixel, operations and bytes per second, and the fraction of the
+// instruction set's peak (`of_roof`: its roofline, measured beforehand). The label names the part
+// of the roof that limits the kernel.
 
 #include <benchmark/benchmark.h>
 #include <time.h>
@@ -16,7 +16,7 @@
 namespace vantage::perf {
 namespace {
 
-/// Of this process: what else the machine does shows less than by the wall clock.
+/// Processor time of this process: other load affects it less than the wall clock.
 double processor_seconds() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
@@ -47,7 +47,7 @@ void run(benchmark::State& state, long long target, const KernelBenchmark& kerne
   kernels::force_target(0);
 }
 
-/// The roof itself, as figures beside the others.
+/// Reports the roof itself beside the other results.
 void show_ceilings(benchmark::State& state, long long target) {
   kernels::force_target(target);
   const CoreCeilings& ceilings = ceilings_of(target);

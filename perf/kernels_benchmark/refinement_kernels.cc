@@ -1,4 +1,4 @@
-// What makes maps better once they are there.
+// Kernels that refine finished maps.
 
 #include <algorithm>
 #include <limits>
@@ -38,15 +38,15 @@ struct Rows {
   }
 };
 
-/// A background and a surface before it, of other colours, whose outline is in the middle; runs of
-/// pixels of both were filled.
+/// A background and a foreground of different colours with an outline in the middle; runs of pixels
+/// of both are filled.
 struct FilledRows {
   static constexpr int kReach = kernels::kFilledMedianReachPx;
   static constexpr int kRows = 2 * kReach + 1;
   static constexpr int kPitch = kReach + kWidth + kReach + kernels::kFilledRowSlack;
   static constexpr int kFirstRun = 5;
-  static constexpr int kEveryRun = 40;  // columns from one to the next
-  /// One that fills vectors partly and one of a few vectors, alternately.
+  static constexpr int kEveryRun = 40;  // columns between the starts of runs
+  /// Alternately a run that fills a vector partly and one of a few vectors.
   static constexpr int kRuns[] = {3, 19};
 
   std::vector<float> map_px =

@@ -10,8 +10,7 @@
 namespace vantage::perf {
 namespace {
 
-/// The most that work() says it did per second, over 60 ms: whatever else the machine does only
-/// takes away.
+/// Maximum rate that work() reports, over 60 ms: other load can only reduce it.
 template <class Work>
 double best_rate(const Work& work) {
   using Clock = std::chrono::steady_clock;

@@ -4,20 +4,20 @@
 
 namespace vantage::perf {
 
-/// What one thread can do at best on one instruction set, data in the level-1 cache.
+/// Peak rates of one thread on one instruction set, with data in the level 1 cache.
 struct CoreCeilings {
-  double operations_per_s = 0;  ///< multiplying and adding floats, two each
-  double bytes_per_s = 0;       ///< loading, or loading and storing as the triad, whichever is more
+  double operations_per_s = 0;  ///< float multiply-adds, two operations each
+  double bytes_per_s = 0;       ///< the faster of loads alone and the triad
 };
 
-/// Measured when an instruction set is asked for the first time; it must be the one in use.
+/// Measured on the first call for an instruction set, which must be the one in use.
 const CoreCeilings& ceilings_of(long long target);
 
-/// Least time in which a unit of `work` can be done: that of its operations or of its bytes,
-/// whichever is more. 0 where nothing is counted.
+/// Minimum time for one unit of `work`: the larger of the times for its operations and its bytes. 0
+/// if nothing is counted.
 double least_seconds(const UnitWork& work, const CoreCeilings& ceilings);
 
-/// Whether arithmetic and not loads and stores make that time.
+/// Whether arithmetic, not loads and stores, determines that time.
 bool is_bound_by_arithmetic(const UnitWork& work, const CoreCeilings& ceilings);
 
 }  // namespace vantage::perf

@@ -19,7 +19,7 @@ constexpr int kLanes = 64;
 constexpr double kCells = kColumns * kLanes;
 constexpr std::size_t kCellCount = kColumns * kLanes;
 constexpr int kIndexBits = 6;
-// A column at which every candidate has a partner, and one near the border.
+// A column where every candidate has a partner, and one near the border.
 constexpr int kInside = 500;
 constexpr int kAtBorder = 0;
 
@@ -103,7 +103,7 @@ KernelBenchmark of_cells(std::string name, const kernels::KernelWork& work, void
   return on_own_data<Rows>(std::move(name), "cell", kCells, per_cell(work, kLanes), call);
 }
 
-// Fractions are compared, which the table does not count; cells are looked at once or twice.
+// Fractions are compared, which the table does not count; cells are read once or twice.
 constexpr kernels::KernelWork kIndexedAtBorderWork = {0, 0, 1, 0};
 constexpr kernels::KernelWork kPlainAtBorderWork = {0, 0, 2, 0};
 

@@ -1,4 +1,4 @@
-// Sums over windows: running sums of integers down columns and along rows, weighted sums of floats.
+// Sums over windows: integer running sums down columns and along rows, weighted float sums.
 
 #include <array>
 #include <utility>
@@ -72,7 +72,7 @@ struct AlongRows {
   AlignedValues<std::int32_t> least{kColumns};
   AlignedValues<std::int32_t> work{kColumns * kernels::kLaneMultiple};
 
-  /// Sums, and the least of each column, with or without storing the sums.
+  /// Sums and the minimum of each column, with or without storing the sums.
   void add(bool minima, bool store) {
     kernels::RowSum row;
     row.input = input.data();
@@ -92,7 +92,7 @@ struct AlongRows {
   }
 };
 
-/// A Gaussian of σ = 2 down 13 rows.
+/// A Gaussian of σ = 2 over 13 rows.
 struct Gaussian {
   static constexpr int kRadius = 6;
   static constexpr int kCount = 8 * kLanes;

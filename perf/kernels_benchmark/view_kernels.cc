@@ -1,5 +1,5 @@
-// New views: forward mapping, positions, colours, blending. What branches or gathers has no counted
-// operations; its bytes are those of its rows and taps.
+// New views: forward mapping, positions, colours, blending. Kernels that branch or gather have no
+// counted operations; their bytes are those of their rows and taps.
 
 #include <cmath>
 #include <random>
@@ -33,7 +33,7 @@ std::vector<float> disparities(unsigned seed) {
   return kernels::random_disparities(random, kWidth, 0, 40);
 }
 
-/// Warping along a row and back.
+/// Forward warp along a row, and fetching back.
 template <int kChannels>
 struct AlongRow {
   static constexpr int kPixelLanes = kernels::pixel_lanes(kChannels);
@@ -61,7 +61,7 @@ struct AlongRow {
   }
 };
 
-/// An image and places in it, on one surface.
+/// An image and positions in it, all on one surface.
 template <int kChannels>
 struct Places {
   static constexpr int kImageWidth = 300;
@@ -116,7 +116,7 @@ struct Places {
   }
 };
 
-/// Forward mapping into a slightly rolled view, and the way back.
+/// Forward mapping into a slightly rolled view, and the inverse mapping.
 struct Rolled {
   static constexpr int kLine = 100;
   static constexpr int kLines = 64;
@@ -166,7 +166,7 @@ struct Rolled {
   }
 };
 
-/// Two warped rows of colours become one.
+/// Blends two warped rows of colours.
 struct Blend {
   std::mt19937 random{1};
   kernels::RandomPair pair{random, kWidth, 3, 255};
@@ -201,12 +201,12 @@ KernelBenchmarks view_kernels() {
       of_pixels<Grey>("load_pixel_row/grey", {0, 5}, [](Grey& d) { d.load(); }),
       of_pixels<Colour>("load_pixel_row/RGB", {0, 19}, [](Colour& d) { d.load(); }),
       of_pixels<Grey>("forward_warp_row", {0, 12}, [](Grey& d) { d.warp(); }),
-      // Position 5, weights, surfaces of the taps 8; 7 and two limits a channel.
+      // Position 5, weights, surfaces of the taps 8; then 7 and two limits per channel.
       of_pixels<Grey>("fetch_bicubic_row/grey", {5 + kKeysWeights + 8 + 9, 40},
                       [](Grey& d) { d.fetch(); }),
       of_pixels<Colour>("fetch_bicubic_row/RGB", {5 + kKeysWeights + 8 + 27, 100},
                         [](Colour& d) { d.fetch(); }),
-      // Weights in both directions; down four taps 7 each, along them 7, rounding, two limits.
+      // Weights in both directions; 7 per tap over the rows, 7 along the row, rounding, two limits.
       of_pixels<Places<1>>("remap_bicubic_row/grey", {2 + 2 * kKeysWeights + 38, 8 + 16 + 1},
                            [](Places<1>& d) { d.remap(); }),
       of_pixels<Places<3>>("remap_bicubic_row/RGB", {2 + 2 * kKeysWeights + 3 * 38, 8 + 48 + 3},

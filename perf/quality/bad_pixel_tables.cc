@@ -12,7 +12,7 @@
 namespace vantage::perf {
 namespace {
 
-// Places in kBadAbovePx.
+// Indices into kBadAbovePx.
 constexpr std::size_t kHalf = 0;
 constexpr std::size_t kOne = 1;
 constexpr std::size_t kTwo = 2;
@@ -36,7 +36,7 @@ const std::vector<Column>& bad_columns() {
   return columns;
 }
 
-/// What must be below all settings of StereoSGBM.
+/// Columns that must be below all settings of StereoSGBM.
 const std::vector<Column>& contested_columns() {
   static const std::vector<Column> columns = {
       {"visible: bad 1", [](const Outcome& o) { return o.bad.visible[kOne]; }},
@@ -54,7 +54,7 @@ double milliseconds(const Outcome& outcome, double FrameTime::*time) {
 double wall_ms(const Outcome& outcome) { return milliseconds(outcome, &FrameTime::wall); }
 double processor_ms(const Outcome& outcome) { return milliseconds(outcome, &FrameTime::processor); }
 
-/// Over the scenes that have the figure; NaN without any.
+/// Mean over the scenes that have the value; NaN if none has.
 double mean(const std::vector<Outcome>& outcomes, const std::vector<std::size_t>& scenes,
             const Figure& figure) {
   double sum = 0;
@@ -69,7 +69,7 @@ double mean(const std::vector<Outcome>& outcomes, const std::vector<std::size_t>
   return sum / count;
 }
 
-/// The least figure of StereoSGBM's settings; infinite without any.
+/// Minimum over StereoSGBM's settings; infinite if there are none.
 double least_of_sgbm(const Results& results, const std::function<double(std::size_t)>& figure) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < results.contenders.size(); ++i) {

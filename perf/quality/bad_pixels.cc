@@ -10,7 +10,7 @@ struct Counts {
   std::array<std::int64_t, kBadAbovePx.size()> bad{};
   std::int64_t pixels = 0;
 
-  /// An error that is not a number is bad.
+  /// A NaN error counts as bad.
   void add(double error_px) {
     ++pixels;
     for (std::size_t i = 0; i < kBadAbovePx.size(); ++i) {

@@ -1,6 +1,6 @@
-// Judges methods, presets and experiments (perf/experiments.toml) on scenes with truth, beside
-// every setting of OpenCV's StereoSGBM, each with the post-processing that is best for it. Both
-// maps are made; the left one is judged, or with --views the views made of both. Prints Markdown
+// Evaluates methods, presets and experiments (perf/experiments.toml) on scenes with truth, beside
+// every setting of OpenCV's StereoSGBM, each with its best post-processing. Both maps are computed;
+// the left one is evaluated, or with --views the views synthesised from both. Prints Markdown
 // tables; see perf/README.md for options.
 
 #include <fmt/format.h>
@@ -34,8 +34,8 @@ constexpr const char* kUsage =
     "[--scenes NAME|GROUP,…] [--tuning] [--held-out] [--no-time] [--left-only] [--rounds N] "
     "[--threads N] [--csv FILE] [--sub-pixel] [--views] [--search-peers]";
 
-/// Those of `all` that a list names, in the order of `all`; all without a list. `names_of` gives
-/// the names that one goes by.
+/// Elements of `all` that a list names, in the order of `all`; all without a list. `names_of`
+/// returns the names of an element.
 template <typename T, typename NamesOf>
 std::vector<T> chosen(const std::vector<T>& all, const std::optional<std::string>& list,
                       const char* option, const NamesOf& names_of) {
@@ -107,8 +107,8 @@ std::vector<MapContender> chosen_contenders(CommandLine& line,
   return contenders;
 }
 
-/// Medians of `rounds` rounds, everybody in turn, after one that warms up and makes both maps; none
-/// without rounds.
+/// Medians of `rounds` rounds with all contenders in turn, after one round that warms up and
+/// computes both maps; empty without rounds.
 std::vector<std::optional<FrameTime>> time_in_turn(
     const std::vector<std::unique_ptr<MapMaker>>& makers, int rounds, TimedMaps timed) {
   std::vector<std::vector<FrameTime>> times(makers.size());

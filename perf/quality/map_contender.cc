@@ -70,7 +70,7 @@ class SgbmMaps : public MapMaker {
   DisparityMaps maps_;
 };
 
-/// Takes `note` out of the entry.
+/// Removes `note` from the entry and returns it.
 std::string take_note(apps::SettingValue& entry) {
   const auto note = entry.find("note");
   if (note == entry.end()) {

@@ -13,21 +13,21 @@
 
 namespace vantage::perf {
 
-/// What is timed.
+/// Maps to time.
 enum class TimedMaps { kBoth, kLeft };
 
-/// A contender at one pair, which outlives it.
+/// A contender on one pair; the pair must outlive it.
 class MapMaker {
  public:
   virtual ~MapMaker() = default;
-  /// What is timed. Ours: refined maps. OpenCV's: maps as its matcher leaves them, so that nothing
-  /// of ours counts against it.
+  /// The timed work. Vantage: refined maps. OpenCV: maps as its matcher returns them, so that none
+  /// of our steps counts against it.
   virtual void match(TimedMaps which) = 0;
-  /// Both dense maps of the last match() of both.
+  /// Both dense maps of the last match(TimedMaps::kBoth).
   virtual const DisparityMaps& maps() = 0;
 };
 
-/// A way to make maps that is judged.
+/// A method to be evaluated.
 struct MapContender {
   std::string name;
   std::string note;
@@ -39,7 +39,7 @@ struct MapContender {
 MapContender sgbm_contender(const SgbmSetting& setting);
 
 /// The entries of a TOML file, by name: tables with the keys of `vantage match` and a `note`.
-/// Throws Error where the file cannot be read, UsageError naming file, entry and key for what is
+/// Throws Error if the file cannot be read, UsageError naming file, entry and key if an entry is
 /// not accepted.
 std::vector<MapContender> experiments(const std::filesystem::path& file);
 

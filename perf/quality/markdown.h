@@ -8,7 +8,7 @@
 
 namespace vantage::perf {
 
-/// The first two lines of a table whose first column has no title.
+/// Prints the first two lines of a table whose first column has no title.
 inline void print_header(const std::vector<std::string>& titles) {
   fmt::print("| |");
   for (const std::string& title : titles) {
@@ -21,7 +21,7 @@ inline void print_header(const std::vector<std::string>& titles) {
   fmt::print("\n");
 }
 
-/// A cell; a dash where there is no number.
+/// Formats a cell; a dash if the value is not finite.
 inline std::string cell(double value, int decimals) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "–";
 }

@@ -12,29 +12,29 @@
 
 namespace vantage::perf {
 
-/// One contender on one scene.
+/// Results of one contender on one scene.
 struct Outcome {
   BadPixels bad;
-  std::optional<FrameTime> time;  ///< of both maps; empty: not timed
-  SubPixelFigures sub_pixel;      ///< of scenes with fractional truth
+  std::optional<FrameTime> time;  ///< for both maps; empty: not timed
+  SubPixelFigures sub_pixel;      ///< for scenes with fractional truth
 };
 
 struct Results {
   std::vector<MapContender> contenders;
   std::vector<const TrueScene*> scenes;
   std::vector<std::vector<Outcome>> outcomes;    ///< [contender][scene]
-  std::vector<SubPixelFigures> truth_sub_pixel;  ///< [scene], of fractional truth
+  std::vector<SubPixelFigures> truth_sub_pixel;  ///< [scene], for scenes with fractional truth
 };
 
-/// Markdown: means of each group and of all scenes, on how many scenes our contenders beat all of
-/// StereoSGBM's settings, and bad pixels by scene.
+/// Prints Markdown: means per group and over all scenes, the number of scenes on which our
+/// contenders beat all of StereoSGBM's settings, and bad pixels per scene.
 void print_tables(const Results& results);
 
-/// Markdown: how the fractions of disparities are distributed, and how exact they are, in the mean
-/// over the scenes with fractional truth of each group.
+/// Prints Markdown: distribution and accuracy of the fractions of disparities, averaged over each
+/// group's scenes with fractional truth.
 void print_sub_pixel_tables(const Results& results);
 
-/// One line for each contender and scene. Throws Error when the file cannot be written.
+/// One line per contender and scene. Throws Error if the file cannot be written.
 void write_csv(const Results& results, const std::string& file);
 
 }  // namespace vantage::perf

@@ -8,13 +8,13 @@
 
 namespace vantage::perf {
 
-/// Scenes that figures are averaged over.
+/// Scenes over which results are averaged.
 struct SceneGroup {
   std::string name;
-  std::vector<std::size_t> scenes;  ///< places in the list of scenes
+  std::vector<std::size_t> scenes;  ///< indices into the list of scenes
 };
 
-/// The groups that the scenes belong to, in their order, and one of them all.
+/// The groups of the scenes, in their order, followed by a group of all scenes.
 inline std::vector<SceneGroup> scene_groups(const std::vector<const TrueScene*>& scenes) {
   std::vector<SceneGroup> groups;
   SceneGroup all{"all scenes", {}};

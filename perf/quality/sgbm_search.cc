@@ -14,9 +14,9 @@
 namespace vantage::perf {
 namespace {
 
-// Not tried on all scenes, because they hardly mattered or lost for all settings on six of them:
-// no disp12MaxDiff (our cross-check refuses the same pixels; OpenCV 4.6 takes 0 and less for 1
-// anyway), a cross-check at 1.5 px, filling at constant depth, uniqueness 5 and 15.
+// Not tried on all scenes, because they made little difference or lost for all settings on six of
+// them: no disp12MaxDiff (our cross-check refuses the same pixels; OpenCV 4.6 treats values ≤ 0 as
+// 1 anyway), a cross-check at 1.5 px, filling at constant depth, uniqueness 5 and 15.
 constexpr std::array kUniquenessPercent = {0, 10, 20};
 
 struct Speckles {
@@ -27,7 +27,7 @@ struct Speckles {
 constexpr std::array<Speckles, 6> kSpeckles = {
     {{0, 0, 0}, {0, 0, 100}, {100, 1, 0}, {100, 2, 0}, {100, 32, 0}, {200, 2, 0}}};
 
-/// One set of post-processing and what it gave.
+/// One set of post-processing parameters and its results.
 struct Tried {
   SgbmPostProcessing post_processing;
   std::vector<BadPixels> of_scenes;
@@ -48,7 +48,7 @@ PeerDisparities copy(const PeerDisparities& disparities) {
   return {disparities.left.clone(), disparities.right.clone()};
 }
 
-/// Adds the scene to all sets with one uniqueness.
+/// Evaluates all sets with one uniqueness on the scene.
 void try_uniqueness(SgbmSetting setting, const LoadedScene& scene, Execution& execution,
                     std::vector<Tried>& tried) {
   setting.post_processing = tried.front().post_processing;
@@ -65,7 +65,7 @@ void try_uniqueness(SgbmSetting setting, const LoadedScene& scene, Execution& ex
   }
 }
 
-/// Best first.
+/// Prints the best sets first.
 void print_best(const SgbmSetting& setting, const std::vector<Tried>& tried) {
   constexpr std::size_t kShown = 5;
   fmt::print("\n{}: means of bad 1 over {} scenes, visible and all\n", setting.name,

@@ -14,7 +14,7 @@ std::string to_text(const SgbmPostProcessing& post) {
 }
 
 const std::vector<SgbmSetting>& sgbm_settings() {
-  // What search_sgbm_post_processing() found on all scenes of true_scenes() but aloe_full.
+  // Found by search_sgbm_post_processing() on all scenes of true_scenes() except aloe_full.
   static const std::vector<SgbmSetting> settings = {
       {"sgbm-3", cv::StereoSGBM::MODE_SGBM, 3, {0, 100, 1, 0}},
       {"sgbm-5", cv::StereoSGBM::MODE_SGBM, 5, {0, 0, 0, 100}},

@@ -11,12 +11,11 @@
 
 namespace vantage::perf {
 
-/// What differs between settings in what is done to the winners of OpenCV's StereoSGBM, in this
-/// order; our cross-check at 1 px goes before our speckle removal, our fill with medians is the
-/// last step.
+/// Post-processing of StereoSGBM's winners that differs between settings, in this order. Our
+/// cross-check at 1 px comes before our speckle removal; filling with medians is the last step.
 struct SgbmPostProcessing {
-  int uniqueness_percent;  ///< by which the winner must beat the others
-  int opencv_speckle_px;   ///< OpenCV's filter takes regions of at most so many pixels; 0: none
+  int uniqueness_percent;  ///< margin by which the winner must beat the others
+  int opencv_speckle_px;   ///< maximum region size for OpenCV's speckle filter, in pixels; 0: none
   int opencv_speckle_range_px;
   int speckle_size_px;  ///< ours
 };
@@ -34,12 +33,12 @@ struct SgbmSetting {
 /// Three modes × two blocks, each with the post-processing that --search-peers found best for it.
 const std::vector<SgbmSetting>& sgbm_settings();
 
-/// A matcher that leaves everything after uniqueness to the functions below.
+/// A matcher that leaves everything after the uniqueness test to the functions below.
 cv::Ptr<cv::StereoSGBM> make_sgbm_matcher(const SgbmSetting& setting, const ScenePair& pair);
 
 void filter_opencv_speckles(const SgbmPostProcessing& post_processing, DisparityRange range,
                             cv::Mat& disparities);
-/// Makes dense maps of what OpenCV's filter has left.
+/// Computes dense maps from the pixels that OpenCV's filter keeps.
 void refine_peer_maps(const SgbmPostProcessing& post_processing, const ScenePair& pair,
                       const PeerDisparities& disparities, Execution& execution,
                       DisparityMaps& refined);

@@ -7,19 +7,19 @@
 
 namespace vantage::perf {
 
-/// Eight, so that the 16ths of pixels that StereoSGBM knows fall evenly on them.
+/// Eight, so that StereoSGBM's 16ths of pixels are spread evenly over the bins.
 inline constexpr int kFractionBins = 8;
 
-/// Of the visible pixels within 1 px of the truth.
+/// Statistics over the visible pixels within 1 px of the truth.
 struct SubPixelFigures {
-  /// Percentages of pixels by the fraction of their disparity; the first bin's middle is 0.
+  /// Percentages of pixels per fraction of their disparity; the first bin is centred on 0.
   std::array<double, kFractionBins> fraction_percent{};
   double mean_absolute_error_px = 0;
   double rms_error_px = 0;
 };
 
-/// The left map of a scene against its truth. `map` may be the truth itself: how its own fractions
-/// are distributed. NaN without any such pixel.
+/// Compares the left map of a scene with its truth. `map` may be the truth itself, for the
+/// distribution of its own fractions. NaN if there is no such pixel.
 SubPixelFigures sub_pixel_figures(const DisparityMap& map, const LoadedScene& scene);
 
 /// How many times as many pixels the fullest bin has as the emptiest; 1 where fractions are not

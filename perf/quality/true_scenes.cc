@@ -13,9 +13,9 @@
 namespace vantage::perf {
 namespace {
 
-/// A pixel is hidden where another one, nearer by more than a pixel, falls on its place in the
-/// right image, and where that place is outside. Only pixels of known disparity can hide others: of
-/// sparse truth some hidden pixels count as visible.
+/// A pixel is hidden if another one, nearer by more than a pixel, falls on its position in the
+/// right image, or if that position is outside. Only pixels of known disparity can hide others:
+/// with sparse truth some hidden pixels count as visible.
 Mask visible_in_both(const DisparityMap& truth) {
   Mask visible(truth.width(), truth.height());
   std::vector<float> nearest(static_cast<std::size_t>(truth.width()));
@@ -142,7 +142,7 @@ const std::vector<TrueScene>& true_scenes() {
        1,
        {0, 79},
        true},
-      // The right image of another exposure.
+      // The right image has a different exposure.
       {"motorcycle_exposure",
        "exposure",
        true,
@@ -153,7 +153,7 @@ const std::vector<TrueScene>& true_scenes() {
        1,
        {0, 79},
        true},
-      // The truth of the first one is of visible pixels alone.
+      // The first one's truth covers visible pixels only.
       {"kitti2015_000045",
        "KITTI",
        true,

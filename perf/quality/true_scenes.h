@@ -12,23 +12,23 @@
 
 namespace vantage::perf {
 
-/// A pair with truth of the left map.
+/// A pair with truth for the left map.
 struct TrueScene {
   std::string name;
   std::string group;
-  /// Parameters are chosen on the scenes of this kind; the others judge them.
+  /// true: parameters are chosen on scenes of this kind; false: for evaluation only.
   bool is_tuning;
-  std::string folder;  ///< below the folder of the scenes
+  std::string folder;  ///< relative to the folder of the scenes
   std::string left, right, truth;
-  double scale;            ///< of integers in the truth's file
-  DisparityRange range;    ///< a round one that covers the truth
-  bool is_fractional;      ///< the truth resolves far less than a tenth of a pixel
+  double scale;            ///< factor of integers in the truth's file
+  DisparityRange range;    ///< rounded, covers the truth
+  bool is_fractional;      ///< the truth resolves much less than a tenth of a pixel
   float truth_factor = 1;  ///< baselines of the pair per baseline of the truth
 };
 
 const std::vector<TrueScene>& true_scenes();
 
-/// What matchers are given.
+/// Input of the matchers.
 struct ScenePair {
   Photograph left;  ///< grey or RGB, 8 bits
   Photograph right;
@@ -37,18 +37,19 @@ struct ScenePair {
   DisparityRange range;
 };
 
-/// A scene in memory, and which of its pixels are judged apart.
+/// A scene in memory, with masks of the pixels that are evaluated separately.
 struct LoadedScene {
   ScenePair pair;
   DisparityMap truth;       ///< NaN where unknown
   Mask visible;             ///< 255: seen in both images
-  Mask near_discontinuity;  ///< of those, within 4 px of a jump of the true disparity by over 2 px
+  Mask near_discontinuity;  ///< subset of visible: within 4 px of a jump of the true disparity by
+                            ///< over 2 px
 };
 
-/// Without an alpha channel. Throws std::bad_variant_access unless they have 8 bits.
+/// Removes the alpha channel. Throws std::bad_variant_access unless the images have 8 bits.
 ScenePair make_scene_pair(Photograph left, Photograph right, DisparityRange range);
 
-/// Throws Error where a file is missing or not what it should be.
+/// Throws Error if a file is missing or invalid.
 LoadedScene load_scene(const TrueScene& scene, const std::filesystem::path& data);
 
 }  // namespace vantage::perf

@@ -16,7 +16,7 @@
 namespace vantage::perf {
 namespace {
 
-/// Of one view, or means over several.
+/// Results of one view, or means over several.
 struct ViewFigures {
   double psnr_db = 0;
   double ssim = 0;
@@ -44,7 +44,7 @@ ViewFigures view_figures(const ViewScene& scene, const std::filesystem::path& fo
   return {sum.psnr_db / views, sum.ssim / views};
 }
 
-/// Whose maps the views are made of, and what became of each scene.
+/// The source of the maps, and the results per scene.
 struct Line {
   std::string name;
   std::vector<ViewFigures> of_scenes;

@@ -9,9 +9,9 @@
 
 namespace vantage::perf {
 
-/// Markdown: PSNR and SSIM of views between the cameras against the photographs taken there, from
-/// true maps and from those of each contender, in the mean over the scenes of each group and by
-/// scene. Of `scenes`, those that view_scenes() has.
+/// Prints Markdown: PSNR and SSIM of views between the cameras against photographs taken there,
+/// from true maps and from each contender's maps, averaged over the scenes of each group and per
+/// scene. Uses those of `scenes` that view_scenes() has.
 void print_view_tables(const std::vector<MapContender>& contenders,
                        const std::vector<const TrueScene*>& scenes,
                        const std::filesystem::path& data, Execution& execution);
