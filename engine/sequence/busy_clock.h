@@ -5,8 +5,8 @@
 
 namespace vantage {
 
-/// Measures the time during which at least one of several overlapping activities is under way.
-/// Thread rule: all members may be called concurrently.
+/// Measures the time during which at least one of several overlapping activities is running. Thread
+/// rule: all members may be called concurrently.
 class BusyClock {
  public:
   /// An activity: from construction to destruction.
@@ -21,7 +21,7 @@ class BusyClock {
     BusyClock& clock_;
   };
 
-  /// Of all activities that have ended; call it when none is under way.
+  /// Total of all ended activities; call it when none is running.
   [[nodiscard]] double seconds() const {
     const std::lock_guard lock(mutex_);
     return std::chrono::duration<double>(busy_).count();

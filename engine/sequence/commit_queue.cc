@@ -15,11 +15,11 @@
 namespace vantage {
 namespace {
 
-/// Few, so that little is lost by a crash; their files hold no memory.
+/// Few, so that a crash loses little; their files hold no memory.
 constexpr std::size_t kMaxWaiting = 16;
 
-/// Threads that wait for the disk together: a disk flushes several files in little more than the
-/// time of one, and four are most of what there is to gain.
+/// Threads that flush concurrently: a disk flushes several files in little more than the time of
+/// one, and four achieve most of the gain.
 constexpr std::size_t kFlushThreads = 4;
 
 /// Calls flush(i) for i in [0, count), several at a time; it must not throw.
@@ -38,7 +38,7 @@ void flush_together(std::size_t count, const Flush& flush) {
   take_turns();
 }
 
-/// Gives the videos their names, safely: what journal records tell of next is there.
+/// Names the videos durably, because the next journal records refer to them.
 void finish_videos(const std::vector<std::unique_ptr<VideoWriter>>& videos) {
   std::vector<std::exception_ptr> errors(videos.size());
   flush_together(videos.size(), [&](std::size_t i) {
@@ -160,7 +160,7 @@ void CommitQueue::deliver(std::vector<Delivery>& batch) {
         delivery.records.emplace_back(*std::move(delivery.segment));
       }
     } catch (const Error& error) {
-      record_delivered();  // what came before the failure counts
+      record_delivered();  // deliveries before the failure count
       throw DeliveryError(fmt::format("frame {}: {}", delivery.frame, error.what()));
     }
     std::ranges::move(delivery.records, std::back_inserter(records));

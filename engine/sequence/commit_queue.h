@@ -17,29 +17,29 @@
 
 namespace vantage {
 
-/// A delivery failed; says which frame it was of.
+/// A delivery failed; names its frame.
 class DeliveryError : public OutputError {
  public:
   using OutputError::OutputError;
 };
 
-/// Results that are to become visible together, and what the journal is to say then.
+/// Results that become visible together, and their journal records.
 struct Delivery {
   PendingFiles files;
-  std::vector<std::unique_ptr<VideoWriter>> videos;  ///< that have all their frames
+  std::vector<std::unique_ptr<VideoWriter>> videos;  ///< with all their frames written
   std::vector<JournalRecord> records;
-  /// Of `videos`, which lie below `folder`; what is in them is known once they are finished.
+  /// Record of `videos`, which lie below `folder`; their content is known once they are finished.
   std::optional<SegmentRecord> segment = {};
   std::filesystem::path folder = {};
-  int frame = 0;     ///< the newest one it is about, for messages
-  int frames = 0;    ///< so many frames are finished by it, and
-  double cells = 0;  ///< so many cells were computed for them: for progress
+  int frame = 0;     ///< newest frame of the delivery, for messages
+  int frames = 0;    ///< progress: number of frames that it finishes
+  double cells = 0;  ///< progress: number of cells computed for them
 };
 
-/// Makes deliveries safe, one after the other, on a thread of its own, so that no thread of the
-/// pool waits for the disk unless that is slower for long: files are flushed, several at a time,
-/// and named, videos finished, folders flushed, then the journal written and flushed. Deliveries
-/// that have piled up meanwhile are worked off together.
+/// Makes deliveries durable, one after the other, on its own thread, so that no pool thread waits
+/// for the disk unless the disk stays slower for long: flushes the files, several at a time, and
+/// names them, finishes videos, flushes the folders, then writes and flushes the journal.
+/// Deliveries that have accumulated meanwhile are processed together.
 ///
 /// Thread rule: push() from one thread at a time; `on_delivered` is called on the queue's thread.
 class CommitQueue {
@@ -48,11 +48,11 @@ class CommitQueue {
   CommitQueue(RunJournal& journal, std::function<void(int frames, double cells)> on_delivered);
   CommitQueue(const CommitQueue&) = delete;
   CommitQueue& operator=(const CommitQueue&) = delete;
-  /// Finishes what has been pushed.
+  /// Finishes the pushed deliveries.
   ~CommitQueue();
 
-  /// Waits while many deliveries are ahead. Throws the DeliveryError of an earlier one;
-  /// nothing behind a failed one is delivered.
+  /// Blocks while many deliveries are queued. Throws the DeliveryError of an earlier one; nothing
+  /// after a failed one is delivered.
   void push(Delivery delivery);
   /// Waits for all. Throws the DeliveryError of one of them.
   void finish();
@@ -69,7 +69,7 @@ class CommitQueue {
   bool busy_ = false;
   bool closed_ = false;
   std::exception_ptr error_;
-  std::thread thread_;  // last: runs while all others are there
+  std::thread thread_;  // last: uses all other members
 };
 
 }  // namespace vantage

@@ -19,7 +19,7 @@ bool is_whole(const fs::path& path, std::uintmax_t bytes) {
   return bytes > 0 && fs::file_size(path, error) == bytes && !error;
 }
 
-/// In order; those within another are left out.
+/// In order, without segments inside another.
 std::vector<FrameRange> outermost(const std::vector<SegmentRecord>& segments) {
   std::vector<FrameRange> ranges;
   for (const SegmentRecord& segment : segments) {
@@ -46,8 +46,8 @@ DeliveredFrames::DeliveredFrames(const SequenceLayout& layout) {
       return is_whole(layout.folder() / file.name, file.content.bytes);
     });
   };
-  // Parts are read in no particular order; what was joined last is what was joined most of. Of the
-  // same frames the one with fewer skipped ones.
+  // Parts are read in no particular order, so the join with the most frames counts as the last one;
+  // for the same frames, the one with fewer skipped frames.
   const auto rank = [](const JoinRecord& joined) {
     return std::pair(joined.frames.count(), -static_cast<int>(joined.skipped.size()));
   };
@@ -97,7 +97,7 @@ std::vector<int> DeliveredFrames::skipped(FrameRange frames) const {
 }
 
 FrameRange DeliveredFrames::segment_with(int frame) const {
-  // None is within another: the last one that begins early enough ends last.
+  // None is within another: of those that start early enough, the last one ends last.
   const auto next = std::ranges::upper_bound(segments_, frame, {}, &FrameRange::first);
   const bool is_found = next != segments_.begin() && std::prev(next)->contains(frame);
   return is_found ? *std::prev(next) : FrameRange{};

@@ -43,7 +43,7 @@ struct Levels {
   }
 };
 
-/// Everything that is looked at of one frame.
+/// All data compared of one frame.
 struct Frame {
   Levels left;
   DisparityMap map;  ///< empty: none
@@ -148,7 +148,7 @@ struct FlickerMeter::State {
         now.left.levels.row(y), before.left.levels.row(y), is_still, width);
     sums.still += left.compared;
     sums.grey_change += left.change;
-    // Without maps a view's pixels cannot be told from what moves.
+    // Without maps it is unknown which of a view's pixels show moving surfaces.
     if (now.map.empty()) {
       return;
     }
@@ -166,7 +166,7 @@ struct FlickerMeter::State {
       if (!has_same_camera(v) || position == nullptr || position->y != 0) {
         continue;
       }
-      // (3.5): what a view shows at x was at x + XS · d in the left image.
+      // (3.5): a view's pixel at x was at x + XS · d in the left image.
       const double first = position->x * map.least_px;
       const double second = position->x * map.most_px;
       kernels::still_view_row(is_still, width,
@@ -182,14 +182,14 @@ struct FlickerMeter::State {
   [[nodiscard]] bool has_same_camera(std::size_t view) const {
     return now.poses[view] == before.poses[view];
   }
-  /// Of the means over all pixels, in units.
+  /// Difference of the means over all pixels, in units.
   [[nodiscard]] std::int64_t brightness_jump(std::size_t view) const {
     if (!has_same_camera(view)) {
       return 0;
     }
     const std::int64_t pixels = static_cast<std::int64_t>(now.width()) * now.height();
     const Image<std::uint8_t>& levels = now.views[view].levels;
-    // As if the view had the size of the left image.
+    // Scaled as if the view had the size of the left image.
     const double scale = static_cast<double>(pixels) /
                          static_cast<double>(std::int64_t{levels.width()} * levels.height());
     const std::int64_t of_view =

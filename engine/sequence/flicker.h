@@ -13,8 +13,8 @@
 
 namespace vantage {
 
-/// How much one new view flickers, as sums; see FlickerSums. Nothing is compared between frames
-/// whose view is from different places.
+/// Flicker of one new view, as sums; see FlickerSums. Frames whose views have different poses are
+/// not compared.
 struct ViewFlickerSums {
   /// Pixels of the view that can only show surfaces whose left image did not change.
   std::int64_t compared = 0;
@@ -24,17 +24,17 @@ struct ViewFlickerSums {
   std::int64_t brightness_jump = 0;
 
   void add(const ViewFlickerSums& other);
-  /// Means; 0 where nothing was compared. `frames`: FlickerSums::frames.
+  /// Means; 0 if nothing was compared. `frames`: FlickerSums::frames.
   [[nodiscard]] double mean_grey_change() const;
   [[nodiscard]] double mean_brightness_jump(std::int64_t frames) const;
   friend bool operator==(const ViewFlickerSums&, const ViewFlickerSums&) = default;
 };
 
-/// How much results change from frame to frame where the left image did not (StillPixels): what
-/// changes there is flicker, or noise of the images, of which nothing is deducted. Sums over
-/// frames; all integers, so that they may be added in any order.
+/// Change of the results from frame to frame where the left image did not change (StillPixels):
+/// flicker plus image noise, which is not subtracted. Sums over frames; all integers, so that the
+/// order of summation does not matter.
 struct FlickerSums {
-  std::int64_t frames = 0;            ///< that had a frame before them in their chunk
+  std::int64_t frames = 0;            ///< frames with a predecessor in their chunk
   std::int64_t pixels = 0;            ///< of those frames
   std::int64_t still = 0;             ///< of them: the left image did not change
   std::int64_t grey_change = 0;       ///< Σ |L_t − L_{t−1}| over these, in grey levels
@@ -43,11 +43,11 @@ struct FlickerSums {
   std::int64_t disparity_change = 0;  ///< Σ |d_t − d_{t−1}| over the compared ones, in 1/1024 px
   std::vector<ViewFlickerSums> views;
 
-  /// Throws Error when both have views and not the same number of them.
+  /// Throws Error when both have views but in different numbers.
   void add(const FlickerSums& other);
-  /// All 0, with so many views; memory is kept.
+  /// Sets all to 0, with `view_count` views; keeps the memory.
   void clear(std::size_t view_count);
-  /// Means and shares; 0 where nothing was compared.
+  /// Means and shares; 0 if nothing was compared.
   [[nodiscard]] double mean_disparity_change_px() const;
   [[nodiscard]] double share_jumped() const;
   [[nodiscard]] double share_compared() const;
@@ -61,24 +61,24 @@ struct ViewOfFrame {
   const Photograph* image = nullptr;
 };
 
-/// Compares the frames of a chunk with one another. Thread rule: one call at a time. Memory is
-/// reused from frame to frame.
+/// Compares consecutive frames of a chunk. Memory is reused from frame to frame. Thread rule: one
+/// call at a time.
 class FlickerMeter {
  public:
-  /// `threshold`: that of StillPixels. Throws UsageError.
+  /// `threshold`: of StillPixels. Throws UsageError.
   explicit FlickerMeter(double threshold);
   ~FlickerMeter();
   FlickerMeter(FlickerMeter&&) noexcept;
   FlickerMeter& operator=(FlickerMeter&&) noexcept;
 
-  /// The next frame has nothing before it.
+  /// The next frame has no predecessor.
   void restart();
 
-  /// What this frame adds: nothing (but as many views) for the first one, and where the size of the
-  /// images or the number of views changes. left_map: on the left grid, NaN = unknown; empty: there
-  /// is none, and no pixel of a view is compared either, since what it shows cannot be told; nor
-  /// is one of a view off the baseline. Throws Error unless maps and views at positions have the
-  /// size of the image. Grey levels are luma, rounded. Identical for any `execution`.
+  /// Contribution of this frame: 0 (with the same number of views) for the first one, and if the
+  /// size of the images or the number of views changes. left_map: on the left grid, NaN = unknown;
+  /// empty: there is none, and no pixel of a view is compared, because its source is unknown;
+  /// neither are pixels of views off the baseline. Throws Error unless maps and views at positions
+  /// have the size of the image. Grey levels are luma, rounded. Identical for any `execution`.
   FlickerSums add(const Photograph& left, ImageView<const float> left_map,
                   std::span<const ViewOfFrame> views, Execution& execution);
 

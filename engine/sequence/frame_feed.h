@@ -8,7 +8,7 @@
 
 namespace vantage {
 
-/// Hands out the frames to work on, one after the other. Thread rule: one thread at a time.
+/// Yields the frames to process, in order. Thread rule: one thread at a time.
 class FrameFeed {
  public:
   explicit FrameFeed(std::vector<FrameRun> runs) : runs_(std::move(runs)) {
@@ -18,10 +18,10 @@ class FrameFeed {
     begin_run();
   }
 
-  /// Of the frames to deliver.
+  /// Number of frames to deliver.
   [[nodiscard]] int frames_total() const { return frames_total_; }
 
-  /// Names the next frame; false at the end.
+  /// Returns the next frame; false at the end.
   bool next(int& frame, bool& is_lead_in) {
     if (run_ == runs_.size()) {
       return false;

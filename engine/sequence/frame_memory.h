@@ -6,8 +6,8 @@
 
 namespace vantage {
 
-/// What the images of a frame under way take: photographs, maps, views, pictures and the file being
-/// written. Not what its source has fetched and not yet decoded.
+/// Bytes of a frame in flight: photographs, maps, views, pictures and the file being written.
+/// Excludes data that its source has fetched but not yet decoded.
 std::size_t held_bytes(const FrameSlot& slot);
 
 }  // namespace vantage

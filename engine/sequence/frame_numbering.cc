@@ -12,7 +12,7 @@
 namespace vantage {
 namespace {
 
-/// Numbers that are missing between two frames.
+/// Missing numbers between two frames.
 struct Gap {
   long long first = 0;
   long long last = 0;
@@ -22,11 +22,11 @@ struct Gap {
 };
 
 struct Numbering {
-  std::vector<long long> numbers;  ///< of each frame; empty where one has none
-  long long increment = 0;         ///< from frame to frame; 0: they do not count up evenly
+  std::vector<long long> numbers;  ///< of each frame; empty if one has none
+  long long increment = 0;         ///< from frame to frame; 0: they do not increase evenly
 };
 
-/// The difference of successive numbers if at least half of them have the same and all others
+/// The difference of successive numbers if at least half of them have it and all others are
 /// multiples of it (none negative), else 0.
 long long usual_increment(const std::vector<long long>& numbers) {
   std::map<long long, int> occurrences;
@@ -128,7 +128,7 @@ void add_duplicates(const FrameSpan& frames, const Numbering& numbering,
   }
 }
 
-/// Where numbers that agreed (or differed by a constant) no longer do.
+/// First frame from which numbers that agreed (or differed by a constant) no longer do.
 void add_shift(const FrameSpan& left, const Numbering& left_numbers, const FrameSpan& right,
                const Numbering& right_numbers, std::vector<std::string>& remarks) {
   const auto difference = [&](std::size_t pair) {

@@ -16,33 +16,33 @@
 
 namespace vantage {
 
-/// What one frame under way needs; reused by a later frame.
+/// Buffers of one frame in flight; reused for later frames.
 struct FrameSlot {
   int frame = 0;
-  bool is_lead_in = false;  ///< computed for the frames behind it only
-  bool is_absent = false;   ///< the input ends before it: nothing is made of it
-  /// The files that are there of the frame, where only its pictures for the videos are wanted; null
-  /// where they are to be written.
+  bool is_lead_in = false;  ///< computed only for the frames after it
+  bool is_absent = false;   ///< the input ends before it: no results
+  /// Existing files of the frame, if only its pictures for the videos are needed; null if they are
+  /// to be written.
   const FrameRecord* stored = nullptr;
   FramePair pair;
-  std::array<Photograph, 2> rectified;  ///< where a calibration is applied
-  const Photograph* left = nullptr;     ///< what is matched: of `pair` or `rectified`
+  std::array<Photograph, 2> rectified;  ///< if a calibration is applied
+  const Photograph* left = nullptr;     ///< input of matching: of `pair` or `rectified`
   const Photograph* right = nullptr;
   std::array<std::uint64_t, 2> content = {};  ///< content_hash() of the pair
   DisparityMaps maps;
-  /// The maps as `pair` sees them, where its colours go into the views (PhotographGrid).
+  /// The maps on the grids of `pair`, if views use its colours (PhotographGrid).
   std::array<Image<float>, 2> photograph_maps;
   MatchReport match;
-  /// The new views of SequenceOptions::views, then those of the stereo picture that are no
+  /// The new views of SequenceOptions::views, then those of the stereo picture that are not
   /// photographs.
   std::vector<SynthesizedView> views;
-  std::vector<ViewPose> view_poses;  ///< of `views`, as new_view() takes them
+  std::vector<ViewPose> view_poses;  ///< of `views`, as for new_view()
   Photograph preview;
   Photograph stereo;
   std::vector<std::uint8_t> encoded;  ///< the file being written
   PendingFiles files;
   std::vector<FileRecord> file_records;  ///< of `files`
-  std::vector<StageTime> times;          ///< of everything but matching
+  std::vector<StageTime> times;          ///< of all steps except matching
 };
 
 }  // namespace vantage

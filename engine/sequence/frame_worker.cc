@@ -26,7 +26,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Appends the time until its end to the times of a slot, and shows it in traces.
+/// Adds the time until its destruction to the times of a slot, and to traces.
 class TimedStep {
  public:
   TimedStep(FrameSlot& slot, std::string_view name) : slot_(slot), name_(name), span_(name) {}
@@ -172,19 +172,19 @@ void FrameWorker::match(FrameSlot& slot) {
     matcher_.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
     return;
   }
-  // A chunk knows nothing of what was before it, whichever of its frames is the first good one.
+  // A chunk has no state from before it, whichever of its frames is the first good one.
   const int chunk = slot.frame / options_.chunk_frames;
   if (chunk != temporal_chunk_) {
     temporal_.restart();
     temporal_chunk_ = chunk;
   }
-  request.left = request.right = true;  // both are remembered
+  request.left = request.right = true;  // both are stored for the next frame
   request.prior = temporal_.priors_for(*slot.left, *slot.right, execution_);
   matcher_.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
   temporal_.remember(*slot.left, *slot.right, slot.maps, execution_);
 }
 
-/// Null unless the view is where a camera stood.
+/// Null unless the view is at a camera's position.
 const Photograph* FrameWorker::photograph_at(const FrameSlot& slot, double view_x) const {
   return view_x == 0 ? slot.left : view_x == 1 ? slot.right : nullptr;
 }
@@ -308,7 +308,7 @@ std::string FrameWorker::extension_of(const FrameSlot& slot, const OutputStream&
                                                                                      : "png";
 }
 
-/// Into the slot's `encoded`.
+/// Writes to the slot's `encoded`.
 void FrameWorker::encode_stream(FrameSlot& slot, const OutputStream& stream,
                                 const std::filesystem::path& path) const {
   switch (stream.output) {
@@ -333,7 +333,7 @@ void FrameWorker::encode_stream(FrameSlot& slot, const OutputStream& stream,
 }
 
 void FrameWorker::encode(FrameSlot& slot) const {
-  slot.files.discard();  // left by a frame that was given up
+  slot.files.discard();  // left by an abandoned frame
   slot.file_records.clear();
   if (slot.is_lead_in || slot.is_absent || slot.stored != nullptr) {
     return;

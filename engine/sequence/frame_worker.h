@@ -24,58 +24,59 @@ namespace vantage {
 /// Size of a new view of images of size `images`: that of its cameras if they have one.
 ImageExtent extent_of(const ViewPath& view, ImageExtent images);
 
-/// Whether the views of frames that are rectified take their colours from the photographs as they
-/// were read. The book's warp moves pixels of rectified images.
+/// Whether views of rectified frames use the colours of the original photographs. False for the
+/// book's warp, which moves pixels of rectified images.
 bool views_show_photographs(const SequenceOptions& options);
 
-/// What frames are worked on with. All must outlive the worker.
+/// Tools for processing frames. All must outlive the worker.
 struct FrameTools {
   const SequenceOptions& options;
   const SequenceLayout& layout;
   const PairSource& pairs;                ///< for decoding
-  std::optional<ImageExtent> frame_size;  ///< that all frames must have; empty: any
+  std::optional<ImageExtent> frame_size;  ///< required for all frames; empty: any
   const Rectifier* rectifier;             ///< null: the pairs are rectified
-  const RectifiedPair* cameras;           ///< of the pairs; null unless a view needs them
-  const ShotTable* shots;                 ///< null unless the options need shots
+  const RectifiedPair* cameras;           ///< of the pairs; null if no view needs them
+  const ShotTable* shots;                 ///< null if the options need no shots
   Execution& execution;
 };
 
-/// The steps of a frame between reading and writing. What they do depends on the frame and, with a
-/// temporal prior, on the frames before it in its chunk.
+/// The steps of a frame between reading and writing. They depend on the frame and, with a temporal
+/// prior, on the frames before it in its chunk.
 class FrameWorker {
  public:
   explicit FrameWorker(const FrameTools& tools);
 
-  /// Whether compute() must be called in the order of the frames, one after the other.
+  /// Whether compute() must be called in the order of the frames, one at a time.
   [[nodiscard]] bool computes_in_order() const { return options_.temporal.weight > 0; }
 
-  /// Decodes and rectifies. Thread rule: concurrently for different slots; so encode(), and
-  /// compute() unless computes_in_order().
+  /// Decodes and rectifies. Thread rule: concurrently for different slots; the same holds for
+  /// encode(), and for compute() unless computes_in_order().
   void prepare(FrameSlot& slot) const;
-  /// Maps, new views, pictures; of a frame that is stored, what videos show. Its maps are read
-  /// where all that is needed is in files that are as they were written; a file that is not makes
-  /// it a frame that is not stored. Throws Error where the images do not fit.
+  /// Maps, new views, pictures; for a stored frame, only the pictures of videos. Its maps are read
+  /// if all that is needed is in files with their original content; otherwise it is no longer a
+  /// stored frame. Throws Error if the images do not match.
   void compute(FrameSlot& slot);
-  /// Writes the files of a frame that is neither a lead-in nor stored, without their names. Throws
-  /// OutputError.
+  /// Writes the files of a frame that is neither a lead-in nor stored, without their final names.
+  /// Throws OutputError.
   void encode(FrameSlot& slot) const;
 
   /// Time during which at least one frame was in compute(), or rectified.
   [[nodiscard]] double compute_seconds() const { return compute_clock_.seconds(); }
 
-  /// Of matching; see StereoMatcher.
+  /// Memory of matching; see StereoMatcher.
   void add_memory_use(MemoryUse& use) const { matcher_.add_memory_use(use); }
 
-  /// Of the reference's map.
+  /// The reference's map.
   [[nodiscard]] const DisparityMap& primary_map(const FrameSlot& slot) const;
-  /// Copies what `stream`, none of floats, shows of the frame to `picture`, whose memory is reused.
+  /// Copies the picture of the frame in `stream` (not of floats) to `picture`, whose memory is
+  /// reused.
   void copy_picture(const FrameSlot& slot, const OutputStream& stream, Photograph& picture) const;
 
  private:
   void match(FrameSlot& slot);
-  /// The frame is no longer stored when a file is not as it was written.
+  /// The frame is no longer stored when a file has changed.
   void read_maps(FrameSlot& slot) const;
-  /// Whether something that is made of the frame needs new views.
+  /// Whether any result of the frame needs new views.
   [[nodiscard]] bool needs_views(const FrameSlot& slot) const;
   [[nodiscard]] bool wants(const FrameSlot& slot, SequenceOutput output) const;
   void synthesize(FrameSlot& slot) const;
@@ -99,12 +100,12 @@ class FrameWorker {
   Execution& execution_;
   StereoMatcher matcher_;
   PoseRenderer renderer_;
-  std::optional<PhotographGrid> photograph_grid_;  ///< where views_show_photographs()
+  std::optional<PhotographGrid> photograph_grid_;  ///< if views_show_photographs()
   bool videos_show_views_;
-  /// Whether the files of a frame hold the maps that its pictures in videos are made of.
+  /// Whether the files of a frame hold the maps that its pictures in videos are made from.
   bool maps_are_stored_;
   TemporalState temporal_;
-  int temporal_chunk_ = -1;  ///< that temporal_ is of
+  int temporal_chunk_ = -1;  ///< chunk of temporal_
   mutable BusyClock compute_clock_;
 };
 

@@ -24,7 +24,7 @@ bool has_names(const std::vector<FileRecord>& files, std::vector<std::string> na
 }
 
 bool is_likely(const FrameRecord& record, const SequenceLayout& layout) {
-  std::vector<std::string> begins;  // which format a file has depends on the frame
+  std::vector<std::string> begins;  // the format of a file depends on the frame
   if (!record.skipped && !record.absent) {
     for (const OutputStream& stream : layout.streams()) {
       if (!stream.as_video) {
@@ -49,7 +49,7 @@ bool is_likely(const JoinRecord& record, const SequenceLayout& layout) {
 }
 
 void add(JournalContent& content, FrameRecord record) {
-  // A skipped frame that has been repaired since is done, whichever part says so later.
+  // A skipped frame that has been repaired is done, whichever part says so later.
   const auto known = content.frames.find(record.frame);
   if (known == content.frames.end() || known->second.skipped || !record.skipped) {
     content.frames[record.frame] = std::move(record);

@@ -9,16 +9,17 @@
 
 namespace vantage {
 
-/// What the journal of a run says, whether or not the files are there. A record that does not name
-/// the files which the layout has for its frames is not among it.
+/// Content of a run's journal, whether or not the files exist. Excludes records that do not name
+/// the layout's files of their frames.
 struct JournalContent {
-  std::map<int, FrameRecord> frames;  ///< the newest record of each; done goes before skipped
+  std::map<int, FrameRecord> frames;  ///< the newest record of each; done takes precedence over
+                                      ///< skipped
   std::vector<SegmentRecord> segments;
   std::vector<JoinRecord> joins;
-  /// What each file has been, by its name: a frame that is made anew is recorded again.
+  /// All recorded contents of each file, by name: a repeated frame is recorded again.
   std::map<std::string, std::vector<FileContent>> contents;
-  int damaged_lines = 0;     ///< whose checksum is wrong
-  int unlikely_records = 0;  ///< that name other files than their frames have
+  int damaged_lines = 0;     ///< with a wrong checksum
+  int unlikely_records = 0;  ///< naming files other than those of their frames
 };
 
 /// Reads all parts. Throws Error when a file cannot be read.

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kJournalFormat = 2;
 
-/// Throws what nlohmann throws unless it is a whole number from 0 on.
+/// Throws nlohmann's exceptions unless it is an integer ≥ 0.
 int count_of(const Json& json) {
   constexpr Json::number_unsigned_t kMost = std::numeric_limits<int>::max() - 1;
   return static_cast<int>(std::min(json.get_ref<const Json::number_unsigned_t&>(), kMost));
@@ -121,7 +121,7 @@ struct ToJson {
   }
 };
 
-/// Throws what nlohmann throws when it is none of ours.
+/// Throws nlohmann's exceptions for other JSON.
 JournalRecord record_in(const Json& json) {
   if (json.contains("segment")) {
     return SegmentRecord{range_of(json.at("segment")), files_in(json)};
@@ -143,7 +143,7 @@ JournalRecord record_in(const Json& json) {
   return record;
 }
 
-/// The part of an input's line that tells what is in its files: machines may see them at different
+/// The part of an input's line that identifies its content: machines may see the files at different
 /// paths.
 std::string_view content_of(std::string_view input) {
   const std::size_t name_end = input.rfind(": ");
@@ -158,8 +158,8 @@ std::string change_of(const std::string& key, const std::string& before, const s
              : fmt::format("{} was {}, now {}", key, before, now);
 }
 
-/// Whether a run may go on with this setting: sound that makes trouble may be left out of videos
-/// that are yet to be joined.
+/// Whether a run may continue with this setting: sound that causes trouble may be left out of
+/// videos that are not joined yet.
 bool may_become(const std::string& key, const Json& now) {
   return key == "no-sound" && now == true;
 }
@@ -231,7 +231,7 @@ RunIdentity identity_of(const std::string& text, const std::filesystem::path& fi
 
 std::string difference(const RunIdentity& then, const RunIdentity& now) {
   const Json old_settings = parse_json(then.settings, "settings");
-  // Through text and back, so that numbers compare as they are stored.
+  // Round trip through text, so that numbers compare as stored.
   const Json new_settings = parse_json(now.settings, "settings");
   std::vector<std::string> found;
   for (const auto& [key, value] : new_settings.items()) {

@@ -10,7 +10,7 @@
 namespace vantage {
 namespace {
 
-/// Files of frames are called "000012.pfm", segments "000000-000049.mp4".
+/// Files of frames are named "000012.pfm", segments "000000-000049.mp4".
 bool is_of_frames(const std::string& name, FrameRange frames) {
   int frame = -1;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), frame);

@@ -5,8 +5,8 @@
 
 namespace vantage {
 
-/// Removes what a process that was killed left behind without a name while it worked on `frames`:
-/// hidden files of those frames in the folders of the layout. Files that cannot be removed stay.
+/// Removes hidden files of `frames` that a killed process left in the folders of the layout. Files
+/// that cannot be removed stay.
 void remove_leftovers(const SequenceLayout& layout, FrameRange frames);
 
 }  // namespace vantage

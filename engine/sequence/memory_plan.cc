@@ -17,10 +17,10 @@ namespace vantage {
 namespace {
 
 constexpr int kMostInFlight = 64;
-constexpr int kDefaultMostInFlight = 34;  // more only help to even out unequal frames
-/// The program, its libraries and what they set up at first use.
+constexpr int kDefaultMostInFlight = 34;  // more only even out unequal frames
+/// The program, its libraries and their one-time initialisation.
 constexpr std::size_t kProcessBytes = std::size_t{84} << 20;
-/// Of a thread: stack, arena of the allocator.
+/// Per thread: stack, allocator arena.
 constexpr std::size_t kThreadBytes = std::size_t{3} << 20;
 
 std::size_t pixels_of(ImageExtent extent) {
@@ -32,15 +32,15 @@ std::size_t photograph_bytes(ImageExtent extent, const PairShape& shape) {
          static_cast<std::size_t>(shape.bytes_per_value);
 }
 
-/// What one frame holds from reading to the last of its files. Sums what FrameSlot has, and what
-/// encoding adds while it runs.
+/// Memory of one frame from reading to the last of its files: the members of FrameSlot, plus the
+/// temporary memory of encoding.
 std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) {
   const std::size_t pixels = pixels_of(shape.source);
   const std::size_t photograph = photograph_bytes(shape.source, shape);
   // Fetched and decoded; a packed frame holds both images once more.
   std::size_t bytes = 4 * photograph;
   if (shape.is_video) {
-    bytes += 2 * photograph;  // as the decoder has left them, at most
+    bytes += 2 * photograph;  // decoder output, upper bound
   }
   if (shape.is_rectified_here) {
     bytes += 2 * photograph;
@@ -48,7 +48,7 @@ std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) 
       bytes += 2 * pixels * sizeof(float);
     }
   }
-  // Two maps, their confidence, two masks; for refining two maps more and an image of four bytes.
+  // Two maps, their confidence, two masks; for refinement two more maps and an image of four bytes.
   bytes += pixels * (2 * sizeof(float) + 2 * sizeof(float) + 2 + 2 * sizeof(float) + 4);
   const auto add_view = [&](ImageExtent extent) {  // with masks of holes and sources
     bytes += photograph_bytes(extent, shape) + 2 * pixels_of(extent);
@@ -64,17 +64,17 @@ std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) 
   if (options.saves(SequenceOutput::kPreview)) {
     bytes += 3 * pixels;
   }
-  // A map on its way into a file: with unknown pixels replaced, and encoded.
+  // A map being written: with unknown pixels replaced, and encoded.
   bytes += 2 * pixels * sizeof(float) + photograph;
   return bytes;
 }
 
-/// What converting the pictures of one frame takes: luma and chroma of every pixel in 16 bits.
+/// Converting the pictures of one frame: luma and chroma of every pixel in 16 bits.
 std::size_t conversion_bytes(const PairShape& shape) {
   return shape.is_video ? 2 * 3 * sizeof(std::uint16_t) * pixels_of(shape.source) : 0;
 }
 
-/// Where rectified pixels lie in the photographs, and back.
+/// Position maps between rectified pixels and photographs.
 std::size_t rectification_bytes(const SequenceOptions& options, const PairShape& shape) {
   if (!shape.is_rectified_here) {
     return 0;
@@ -85,7 +85,7 @@ std::size_t rectification_bytes(const SequenceOptions& options, const PairShape&
               : 0);
 }
 
-/// What matching one frame takes beside its strips: images of what costs compare, coarse levels.
+/// Matching one frame, except its strips: images for the costs, coarse levels.
 std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) {
   const std::size_t pixels = pixels_of(shape.source);
   const std::size_t channels = options.match.resolved().colour == ColourUse::kChannels
@@ -110,7 +110,7 @@ bool is_on_baseline(const SequenceOptions& options, const ViewPath& view) {
   });
 }
 
-/// What rendering a view on the baseline takes.
+/// Rendering a view on the baseline.
 std::size_t baseline_view_bytes(const SequenceOptions& options, const PairShape& shape) {
   const int width = shape.source.width_px;
   const int height = shape.source.height_px;
@@ -120,7 +120,7 @@ std::size_t baseline_view_bytes(const SequenceOptions& options, const PairShape&
               : 0);
 }
 
-/// The same of a view at `pose`, anywhere.
+/// Rendering a view at any `pose`.
 std::size_t surface_view_bytes(const SequenceOptions& options, const PairShape& shape,
                                const ViewPose& pose) {
   const RectifiedPair* cameras = shape.cameras ? &*shape.cameras : nullptr;
@@ -141,7 +141,7 @@ int frames_that_differ(const ViewPath& view, const PairShape& shape) {
   return view.moves() ? std::min(view.frames(), shape.pair_count) : 1;
 }
 
-/// What rendering the views of one frame, one after the other, takes.
+/// Rendering the views of one frame, one after the other.
 std::size_t view_bytes(const SequenceOptions& options, const PairShape& shape) {
   const auto bytes_at = [&](int frame, const ViewPath& view) {
     try {
@@ -166,7 +166,7 @@ std::size_t view_bytes(const SequenceOptions& options, const PairShape& shape) {
   return most;
 }
 
-/// What is kept of the frame before, and to compare with it.
+/// State of the previous frame, and the comparison with it.
 std::size_t past_bytes(const SequenceOptions& options, const PairShape& shape) {
   const std::size_t pixels = pixels_of(shape.source);
   // Per image: its levels before and now, differences and mask; two maps.
@@ -181,7 +181,7 @@ std::size_t past_bytes(const SequenceOptions& options, const PairShape& shape) {
   return bytes;
 }
 
-/// What the encoders of the videos hold back and reconstruct.
+/// Delayed and reference frames of the video encoders.
 std::size_t video_bytes(const SequenceOptions& options, const PairShape& shape) {
   std::size_t bytes = 0;
   const auto add_video = [&](ImageExtent extent) {

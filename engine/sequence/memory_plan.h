@@ -10,18 +10,18 @@
 
 namespace vantage {
 
-/// What a run takes of memory, as planned.
+/// Planned memory of a run.
 struct MemoryPlan {
   int in_flight = 1;
-  /// For what the iterations of one map store between passes and the scratch of all threads;
-  /// ExecutionOptions::chain_memory_bytes of the run.
+  /// Memory budget for what the iterations of one map store between passes plus the scratch of all
+  /// threads; ExecutionOptions::chain_memory_bytes of the run.
   std::size_t chain_bytes = 0;
-  std::size_t frame_bytes = 0;  ///< images, maps, views and files of a frame under way
-  std::size_t total_bytes = 0;  ///< of the whole process, most at any one time
+  std::size_t frame_bytes = 0;  ///< images, maps, views and files of a frame in flight
+  std::size_t total_bytes = 0;  ///< peak of the whole process
   scheduler::ChainPlan chain;   ///< of one map
 };
 
-/// What the pairs of a run are like, as the first one tells.
+/// Properties of a run's pairs, from the first one.
 struct PairShape {
   ImageExtent source;  ///< before rectification, which keeps the size
   int channels = 1;
@@ -30,21 +30,21 @@ struct PairShape {
   bool is_rectified_here = false;             ///< a calibration is applied
   int frames_kept = 0;                        ///< PairSource::frames_kept()
   int pair_count = 1;                         ///< of the input
-  std::optional<RectifiedPair> cameras = {};  ///< where the pairs are calibrated
+  std::optional<RectifiedPair> cameras = {};  ///< if the pairs are calibrated
 };
 
 struct MemoryRequest {
-  std::optional<int> in_flight;             ///< as the user wants it; default: threads + 2
-  std::optional<std::size_t> memory_bytes;  ///< not to be exceeded; default: no limit
+  std::optional<int> in_flight;             ///< as requested by the user; default: threads + 2
+  std::optional<std::size_t> memory_bytes;  ///< upper limit; default: none
 };
 
-/// Frames in flight where neither the user nor memory says anything.
+/// Frames in flight if neither the user nor memory limits them.
 int default_frames_in_flight(int threads);
 
-/// Chooses how many frames are under way and what each may take, within the request: fewer frames
-/// first, then less for the iterations. `left` and `right` are the first pair, ready to be matched.
-/// Throws Error when one frame does not fit, naming what it takes; naming the frame, for views that
-/// cannot be rendered.
+/// Chooses the number of frames in flight and the memory of each, within the request: reduces the
+/// frames first, then the memory for iterations. `left` and `right` are the first pair, ready for
+/// matching. Throws Error when one frame does not fit, naming its size; for views that cannot be
+/// rendered, naming the frame.
 MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& request,
                        const PairShape& shape, const Photograph& left, const Photograph& right,
                        const ExecutionOptions& execution);

@@ -8,7 +8,7 @@
 
 namespace vantage {
 
-/// Pairs of frames of one camera on its way. The earlier frame of pair i is frame i, the later one
+/// Pairs of frames of one moving camera. The earlier frame of pair i is frame i, the later one
 /// frame i + |step|.
 class MovingCameraPairs : public PairSource {
  public:
@@ -43,7 +43,7 @@ class MovingCameraPairs : public PairSource {
   bool later_is_left_;
 };
 
-/// Image files: each is read twice, for it costs no more time than keeping frames in order would.
+/// Image files: each is read twice, which takes no longer than keeping frames in order.
 class MovingCameraImages : public MovingCameraPairs {
  public:
   using MovingCameraPairs::MovingCameraPairs;
@@ -56,7 +56,7 @@ class MovingCameraImages : public MovingCameraPairs {
 };
 
 /// A video: every frame is decoded once and its picture kept until it has been the earlier one of a
-/// pair. Each of the two pairs makes a photograph of its own of it.
+/// pair. Each of its two pairs makes its own photograph of it.
 class MovingCameraVideo : public MovingCameraPairs {
  public:
   MovingCameraVideo(std::unique_ptr<FrameSource> source, int step);
@@ -74,12 +74,12 @@ class MovingCameraVideo : public MovingCameraPairs {
   [[nodiscard]] KeptFrame& kept(int frame) {
     return kept_[static_cast<std::size_t>(frame) % kept_.size()];
   }
-  /// Fetches the next frame into its place; false after the last one.
+  /// Fetches the next frame into kept_; false after the last one.
   bool keep_next();
 
   std::vector<KeptFrame> kept_;  // |step| + 1 of them
-  int next_index_ = 0;           // of pairs, and the first frame that is kept
-  int kept_end_ = 0;             // frame behind the last one that is kept
+  int next_index_ = 0;           // of pairs, and the first kept frame
+  int kept_end_ = 0;             // frame after the last kept one
 };
 
 /// Throws Error when there are no more than |step| frames.

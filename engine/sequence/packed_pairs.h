@@ -8,7 +8,7 @@
 
 namespace vantage {
 
-/// Pairs that are one picture each.
+/// Pairs stored as one picture each.
 class PackedPairs : public PairSource {
  public:
   PackedPairs(std::unique_ptr<FrameSource> source, StereoPacking packing);

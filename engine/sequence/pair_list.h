@@ -6,7 +6,7 @@
 
 namespace vantage {
 
-/// A line of a list of pairs: what the names are relative to is up to the reader.
+/// A line of a list of pairs; the reader resolves relative names.
 struct ListedPair {
   std::filesystem::path left;
   std::filesystem::path right;

@@ -18,20 +18,20 @@ struct ImageExtent {
   int height_px = 0;
 };
 
-/// A pair of frames on its way from a source: fetched in order by one thread, decoded by any.
-/// Memory is reused from pair to pair.
+/// A pair of frames from a source: fetched in order by one thread, decoded by any. Memory is reused
+/// from pair to pair.
 struct FramePair {
-  /// Whether whoever fetches it wants the right image too. Without it fetch() and decode() save the
-  /// work where they can: `right` is then anything, and that it is bad may go unnoticed.
+  /// Whether the right image is needed. If not, fetch() and decode() save work where they can:
+  /// `right` is then undefined, and its errors may go unnoticed.
   bool wants_right = true;
   int index = 0;                        ///< of the pair, counted from 0
-  std::array<FetchedFrame, 2> fetched;  ///< what decode() makes the pair of
+  std::array<FetchedFrame, 2> fetched;  ///< decode() makes the pair from it
   Photograph left;
   Photograph right;
-  std::vector<std::string> remarks;  ///< of both frames, and of what they are as a pair
+  std::vector<std::string> remarks;  ///< about both frames, and about the pair
 };
 
-/// Where the pairs of a run come from: exactly one of the four.
+/// Source of the pairs of a run: exactly one of the four.
 struct PairSourceOptions {
   /// Two sources of open_frame_source(), paired by index: frame i + offset_frames of the right one
   /// belongs to frame i of the left one. With a negative offset the first −offset_frames of the
@@ -42,9 +42,9 @@ struct PairSourceOptions {
   /// One source whose frames hold both images.
   std::string stereo;
   std::optional<StereoPacking> packing;
-  /// A CSV file with the columns left,right: a pair of image files a line. Names are relative to
-  /// the file's folder; an optional heading "left,right", empty lines and lines that begin with #
-  /// are skipped; quotes as in RFC 4180, blanks around what is not quoted are dropped.
+  /// A CSV file with the columns left,right: one pair of image files per line. Names are relative
+  /// to the file's folder; an optional heading "left,right", empty lines and lines that start with
+  /// # are skipped; quotes as in RFC 4180, blanks around unquoted fields are dropped.
   std::string pairs;
   /// One moving camera: frame t is the left image and frame t + step the right one (step < 0: the
   /// camera moved to the left). |step| in 1..1000.
@@ -55,7 +55,7 @@ struct PairSourceOptions {
   void validate() const;
 };
 
-/// The pairs of a run, one after the other. Thread rule: one thread at a time but for decode().
+/// The pairs of a run, in order. Thread rule: one thread at a time, except for decode().
 class PairSource {
  public:
   PairSource() = default;
@@ -65,33 +65,31 @@ class PairSource {
 
   /// Fetches the next pair; false after the last one, which may come a few pairs before
   /// pair_count(), see FrameSource::fetch(). Throws Error naming the file or frame when one of its
-  /// frames is bad; the call after that goes on with the next pair. Image files are found to be bad
+  /// frames is bad; the next call continues with the next pair. Bad image files are only detected
   /// by decode().
   virtual bool fetch(FramePair& pair) = 0;
-  /// Makes `left` and `right` of what was fetched: reads image files, converts the pictures of
-  /// videos, takes packed frames apart. Thread rule: concurrently for different pairs. Throws
-  /// Error.
+  /// Makes `left` and `right` from the fetched data: reads image files, converts the pictures of
+  /// videos, splits packed frames. Thread rule: concurrently for different pairs. Throws Error.
   virtual void decode(FramePair& pair) const;
 
-  /// Has the next fetch() give pair `index` (0 ≤ index ≤ pair_count()).
+  /// Makes pair `index` (0 ≤ index ≤ pair_count()) the result of the next fetch().
   virtual void skip_to(int index) = 0;
-  /// Pairs there are in all: frames that have a partner.
+  /// Total number of pairs: frames that have a partner.
   [[nodiscard]] virtual int pair_count() const = 0;
-  /// Decoded frames, no larger than photographs, that the source itself keeps in memory.
+  /// Number of decoded frames, no larger than photographs, that the source itself keeps in memory.
   [[nodiscard]] virtual int frames_kept() const { return 0; }
   /// "left/000012.png, right/000012.png" or "film.mp4 frame 12".
   [[nodiscard]] virtual std::string describe(int index) const = 0;
-  /// What is odd about the pairing as a whole, a line each: frames left over on one side ("the left
+  /// Remarks on the pairing as a whole, one line each: frames left over on one side ("the left
   /// sequence has 2 frames more than the right one: …"), file numbers that are missing or differ
   /// between the sides ("left/000018.png is paired with right/000017.png from pair 17 on").
   [[nodiscard]] virtual std::vector<std::string> remarks() const = 0;
   /// Frames without a partner at the end of the longer side; 0 when the lengths agree or follow
   /// from offset_frames or step.
   [[nodiscard]] virtual int unpaired_frames() const = 0;
-  /// Of the left video or the packed one; empty for image files.
+  /// Frame rate of the left or packed video; empty for image files.
   [[nodiscard]] virtual std::optional<FrameRate> frame_rate() const = 0;
-  /// Video file that sound can be taken from, and the frame of it that pair 0 is; the file is empty
-  /// where there is none.
+  /// Video file with the sound, and its frame that is pair 0; the file is empty if there is none.
   struct Sound {
     std::filesystem::path file;
     int first_frame = 0;

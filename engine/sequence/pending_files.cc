@@ -30,14 +30,14 @@ PendingFiles& PendingFiles::operator=(PendingFiles&& other) noexcept {
 }
 
 void PendingFiles::add(const fs::path& path, std::span<const std::uint8_t> bytes) {
-  // A name of this process: a requeued job may begin while the one before it still ends.
+  // A name unique to this process: a requeued job may start while the previous one is still ending.
   const fs::path hidden = path.parent_path() / temporary_name(path, 0);
   files_.push_back({.hidden = hidden, .path = path});
   const FileDescriptor file(::open(hidden.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
   if (!file.valid() || !write_all(file.get(), bytes)) {
     fail(path, errno);
   }
-  // On its way to the disk by the time it is flushed. Where that cannot be, flushing does it all.
+  // Starts writing early, so that flushing takes less time. If this fails, flushing does it all.
   (void)::sync_file_range(file.get(), 0, 0, SYNC_FILE_RANGE_WRITE);
 }
 
@@ -47,8 +47,8 @@ void PendingFiles::flush(std::size_t index) noexcept {
   const bool is_safe = written.valid() && ::fsync(written.get()) == 0;
   file.flush_error = is_safe ? 0 : errno;
   if (is_safe) {
-    // The next files then take the same pages, which are at hand: a long run would otherwise fill
-    // the memory with results and have the system look for pages to take back.
+    // Frees the pages for the next files: otherwise a long run fills the memory with results, and
+    // the system must search for pages to reclaim.
     (void)::posix_fadvise(written.get(), 0, 0, POSIX_FADV_DONTNEED);
   }
   file.is_flushed = true;

@@ -11,15 +11,15 @@
 
 namespace vantage {
 
-/// A result cannot be written: no fault of its frame, so no frame is skipped for it.
+/// A result cannot be written. It is not the fault of its frame, so no frame is skipped for it.
 class OutputError : public Error {
  public:
   using Error::Error;
 };
 
-/// Files whose bytes are handed to the system but that do not have their names yet: encoding runs
-/// for several frames at once, while names appear in order and only for what is safely on disk.
-/// Files that never get their names are removed. Thread rule: one thread at a time.
+/// Files that are written but do not have their final names yet: several frames are encoded at
+/// once, while names appear in order and only for files that are safely on disk. Files that never
+/// get their names are removed. Thread rule: one thread at a time.
 class PendingFiles {
  public:
   PendingFiles() = default;
@@ -27,20 +27,20 @@ class PendingFiles {
   PendingFiles& operator=(PendingFiles&& other) noexcept;
   ~PendingFiles() { discard(); }
 
-  /// Writes `bytes` under a hidden name beside `path`. Throws OutputError naming `path`.
+  /// Writes `bytes` under a hidden name next to `path`. Throws OutputError naming `path`.
   void add(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
   [[nodiscard]] std::size_t count() const { return files_.size(); }
-  /// Flushes file number `index` to disk; commit() tells if that fails. Flushing several at a time
-  /// takes little longer than one. Thread rule: concurrently for different files.
+  /// Flushes file `index` to disk; commit() reports a failure. Flushing several at a time takes
+  /// little longer than one. Thread rule: concurrently for different files.
   void flush(std::size_t index) noexcept;
 
-  /// Flushes what has not been flushed and gives all files their names, in the order of add(). The
-  /// names themselves are safe once the folders, which are added to `folders`, are flushed. Throws
+  /// Flushes the files not flushed yet and gives all files their names, in the order of add(). The
+  /// names are durable once the folders, which are added to `folders`, are flushed. Throws
   /// OutputError naming the file that failed.
   void commit(std::set<std::filesystem::path>& folders);
 
-  /// Removes what has no name yet.
+  /// Removes the files without a final name.
   void discard() noexcept;
 
  private:

@@ -48,11 +48,11 @@ bool is_journal_of_part(const fs::path& path) {
 }
 
 bool lock(int descriptor) {
-  // File systems that know no locks do without.
+  // File systems without locks are accepted.
   return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 
-/// All that is in `folder` but the run's description, in order.
+/// All entries of `folder` except the run's description, in order.
 std::vector<fs::path> entries_of(const fs::path& folder) {
   std::vector<fs::path> entries;
   std::error_code error;
@@ -69,7 +69,7 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
   return entries;
 }
 
-/// A file or a folder with all that is in it, if it is there.
+/// Removes a file or a folder with its content, if it exists.
 void remove_whole(const fs::path& path) {
   std::error_code error;
   fs::remove_all(path, error);
@@ -78,11 +78,11 @@ void remove_whole(const fs::path& path) {
   }
 }
 
-/// Throws when a process works on a part of the run. The description goes last: what is left by a
-/// removal that is cut off must not count for a run that is described anew.
+/// Throws when a process works on a part of the run. The description is removed last: remains of an
+/// interrupted removal must not count for a newly described run.
 void remove_journal(const fs::path& folder) {
   const std::vector<fs::path> entries = entries_of(folder);
-  std::deque<FileDescriptor> locks;  // until all is removed
+  std::deque<FileDescriptor> locks;  // held until all is removed
   for (const fs::path& path : entries) {
     if (!is_journal_of_part(path)) {
       continue;
@@ -102,9 +102,10 @@ bool has_records(const fs::path& folder) {
   return std::ranges::any_of(entries_of(folder), is_journal_of_part);
 }
 
-/// Throws when there are records of a run that nothing describes: they may be of other settings.
+/// Throws when there are records without a description of the run: they may come from other
+/// settings.
 void require_description(const fs::path& folder) {
-  // In this order: who begins a run describes it first.
+  // In this order, because a new run is described first.
   if (has_records(folder) && !RunJournal::is_present(folder)) {
     throw Error(
         fmt::format("{} has records of a run but no {}, expected both; --overwrite begins anew",
@@ -112,8 +113,8 @@ void require_description(const fs::path& folder) {
   }
 }
 
-/// The lines of a file that end in a line end, and the bytes they take. Throws Error: lines that
-/// cannot be read are not to be taken for lines that are not there.
+/// The complete lines of a file, and their size in bytes. Throws Error: unreadable lines must not
+/// be taken for missing ones.
 std::pair<std::vector<std::string>, std::uintmax_t> whole_lines(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::string text;
@@ -136,7 +137,7 @@ std::pair<std::vector<std::string>, std::uintmax_t> whole_lines(const fs::path& 
 }  // namespace
 
 struct RunJournal::State {
-  /// So much space is set aside ahead: what is finished can then be told although the disk is full.
+  /// Space reserved ahead, so that finished frames can be recorded although the disk is full.
   static constexpr off_t kReservedBytes = off_t{64} << 10;
 
   fs::path path;
@@ -149,13 +150,13 @@ struct RunJournal::State {
   State& operator=(const State&) = delete;
   ~State() {
     if (reserved_end > 0) {
-      (void)!::ftruncate(descriptor, bytes);  // gives back what was set aside
+      (void)!::ftruncate(descriptor, bytes);  // releases the reserved space
     }
     if (descriptor >= 0) {
       ::close(descriptor);
     }
   }
-  /// False when the disk is full. File systems that cannot set space aside do without.
+  /// False when the disk is full. File systems that cannot reserve space are accepted.
   bool reserve() {
     if (reserved_end - bytes > kReservedBytes / 2) {
       return true;
@@ -205,14 +206,14 @@ RunJournal::RunJournal(const fs::path& journal_folder, const RunIdentity& identi
     fail_to_write(state_->path, errno);
   }
   struct stat status {};
-  // A file without a name was removed by who begins the run anew.
+  // A file without a name was removed by a process that starts the run again.
   if (!lock(state_->descriptor) || ::fstat(state_->descriptor, &status) != 0 ||
       status.st_nlink == 0) {
     throw Error(fmt::format("{}: another process works on this part of the run ({})",
                             folder.string(), part));
   }
   flush_folder(journal_folder);  // the names of the two files
-  // A line that a crash cut off must not run into the next one.
+  // A line truncated by a crash must not run into the next one.
   state_->bytes = static_cast<off_t>(whole_lines(state_->path).second);
   if (::ftruncate(state_->descriptor, state_->bytes) != 0 || !state_->reserve()) {
     fail_to_write(state_->path, errno);
@@ -275,7 +276,7 @@ JournalRecords RunJournal::read_records(const fs::path& journal_folder) {
       if (std::optional<JournalRecord> record = record_of(line)) {
         all.records.push_back(std::move(*record));
       } else {
-        ++all.damaged_lines;  // the frame counts as not done and is made again
+        ++all.damaged_lines;  // the frame counts as not done and is computed again
       }
     }
   }

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What should be there: files of frames, joined videos, and of segments what is.
+/// Files that should exist: files of frames, joined videos, and existing segments.
 std::set<std::string> expected_files(const JournalContent& journal, const fs::path& folder) {
   std::set<std::string> names;
   const auto add = [&](const std::vector<FileRecord>& files) {

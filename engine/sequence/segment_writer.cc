@@ -15,7 +15,7 @@
 
 namespace vantage {
 
-/// One video. `last` is kept to show it again where frames are skipped.
+/// One video. `last` is shown again for skipped frames.
 struct SegmentWriter::Stream {
   const OutputStream* output = nullptr;
   std::unique_ptr<VideoWriter> writer;
@@ -25,15 +25,15 @@ struct SegmentWriter::Stream {
 
 namespace {
 
-/// Encoders take much memory on whichever thread they work, and the allocator keeps what they free
-/// per thread: without this a run grows from segment to segment for a while.
+/// Encoders use much memory on whichever thread they run, and the allocator keeps freed memory per
+/// thread: without this a run grows from segment to segment for a while.
 void return_free_memory() {
 #ifdef __GLIBC__
   (void)::malloc_trim(0);
 #endif
 }
 
-/// Videos have two pixels a side at least: smaller pictures are repeated.
+/// Videos need at least two pixels a side: smaller pictures are repeated.
 Photograph at_least_two_a_side(Photograph picture) {
   if (picture.width() > 1 && picture.height() > 1) {
     return picture;
@@ -97,7 +97,7 @@ void SegmentWriter::write(Stream& stream, const Photograph& picture, int times) 
 }
 
 void SegmentWriter::add(const FrameSlot& slot) {
-  // One task per video: an encoder uses one thread, so that its bytes depend on nothing else.
+  // One task per video: an encoder uses one thread, so that its bytes are deterministic.
   execution_.executor().parallel_for(static_cast<int>(streams_.size()), [&](int index) {
     Stream& stream = streams_[static_cast<std::size_t>(index)];
     worker_.copy_picture(slot, *stream.output, stream.last);
@@ -116,7 +116,7 @@ void SegmentWriter::add_skipped() {
   }
 }
 
-/// Of the size that good frames have: segments are joined.
+/// Has the size of good frames, because segments are joined.
 Photograph SegmentWriter::black_picture(const OutputStream& output) const {
   const ImageExtent size =
       is_per_view(output.output)

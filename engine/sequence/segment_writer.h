@@ -10,10 +10,9 @@
 
 namespace vantage {
 
-/// Writes the videos of a run, segment by segment. A segment has one picture for each of its frames
-/// that the input has, so that frames of the video are those of the input: a frame that is skipped
-/// shows the one before it, at the beginning of a segment the next good one, and in a segment
-/// without any good one black.
+/// Writes the videos of a run, segment by segment. A segment has one picture for each input frame,
+/// so that video frames correspond to input frames: a skipped frame shows the one before it, at the
+/// start of a segment the next good one, and in a segment without good frames black.
 ///
 /// Thread rule: one thread at a time.
 class SegmentWriter {
@@ -23,14 +22,13 @@ class SegmentWriter {
                 const FrameWorker& worker, ImageExtent frame_size, Execution& execution);
   ~SegmentWriter();
 
-  /// Begins the segment of `frames`; what was begun before and not finished is dropped.
+  /// Starts the segment of `frames`; an unfinished segment is dropped.
   void begin(FrameRange frames);
   /// The next frame of the segment. Throws OutputError.
   void add(const FrameSlot& slot);
   void add_skipped();
-  /// The videos of the segment when all its frames have been added, everything encoded: what is
-  /// left is to finish() them, which waits for the disk. None if the input has none of its frames.
-  /// Throws OutputError.
+  /// The videos of the segment after all its frames have been added, completely encoded: finish()
+  /// then only waits for the disk. Empty if the input has none of its frames. Throws OutputError.
   [[nodiscard]] std::vector<std::unique_ptr<VideoWriter>> end();
 
  private:

@@ -16,7 +16,7 @@
 namespace vantage {
 namespace {
 
-/// Segments that follow each other from the first of `frames` on.
+/// Consecutive segments from the first of `frames` on.
 std::vector<FrameRange> segments_of(const DeliveredFrames& delivered, FrameRange frames) {
   std::vector<FrameRange> chosen;
   int next = frames.first;
@@ -76,7 +76,7 @@ std::string join_segments(const SequenceOptions& options, const SequenceLayout& 
   if (!layout.has_videos() || frames.empty()) {
     return "";
   }
-  // Several processes may find at one time that all frames are there.
+  // Several processes may find at the same time that all frames exist.
   const FileLock lock(layout.journal_folder() / "run.json", FileLock::Wait::kYes);
   const DeliveredFrames delivered(layout);
   const std::vector<FrameRange> segments = segments_of(delivered, frames);
@@ -108,7 +108,7 @@ std::string join_segments(const SequenceOptions& options, const SequenceLayout& 
     journal.append({&record, 1});
   }
   if (is_complete) {
-    std::error_code ignored;  // they do no harm
+    std::error_code ignored;  // remaining files do no harm
     std::filesystem::remove_all(layout.journal_folder() / "segments", ignored);
   }
   return sound_problem;

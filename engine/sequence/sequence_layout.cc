@@ -20,7 +20,8 @@ bool is_fixed_camera(const ViewPath& view) {
   return !view.moves() && std::holds_alternative<PosedCamera>(view.keys.front().pose);
 }
 
-/// Of a fixed view its position or its number among cameras, of a moving one that among those.
+/// For a fixed view its position, or its number among cameras; for a moving one its number among
+/// those.
 std::string view_name(const std::vector<ViewPath>& views, int view) {
   const auto path = views.begin() + view;
   if (path->moves()) {
@@ -105,7 +106,7 @@ void SequenceLayout::make_folders() const {
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
-  std::vector<fs::path> changed;  // in which a new folder gets its name
+  std::vector<fs::path> changed;  // folders that get a new entry
   for (fs::path made = fs::absolute(folder, error); !error && !fs::exists(made, error);
        made = made.parent_path()) {
     changed.push_back(made.parent_path());

@@ -12,14 +12,13 @@ namespace vantage {
 /// The table of shots, in the folder of the journal.
 inline constexpr const char* kShotsFile = "shots.json";
 
-/// One picture per frame that a run writes: as files of their own, or as a video.
+/// One picture per frame that a run writes: as separate files, or as a video.
 struct OutputStream {
   SequenceOutput output = SequenceOutput::kDisparity;
-  int view = 0;  ///< number of the new view, where is_per_view()
+  int view = 0;  ///< number of the new view, if is_per_view()
   bool as_video = false;
-  /// "disparity", or "views/0.25", "views/camera-1" and "views/path-1" where there are several
-  /// views. The folder of its files, and without .mp4 the file of its video, below the run's
-  /// folder.
+  /// "disparity", or "views/0.25", "views/camera-1" and "views/path-1" if there are several views.
+  /// The folder of its files, and without .mp4 the file of its video, below the run's folder.
   std::string name;
 };
 
@@ -38,7 +37,7 @@ class SequenceLayout {
   [[nodiscard]] const std::vector<OutputStream>& streams() const { return streams_; }
   [[nodiscard]] bool has_videos() const;
 
-  /// `extension` comes without the dot. Relative to the folder.
+  /// `extension` is without the dot. Relative to the folder.
   [[nodiscard]] static std::filesystem::path file(const OutputStream& stream, int frame,
                                                   const std::string& extension);
   [[nodiscard]] std::filesystem::path video(const OutputStream& stream) const;
@@ -47,7 +46,7 @@ class SequenceLayout {
   [[nodiscard]] std::vector<std::string> video_names() const;
   [[nodiscard]] std::vector<std::string> segment_names(FrameRange frames) const;
 
-  /// Makes all folders that a run of these options needs. Throws Error.
+  /// Creates all folders that a run of these options needs. Throws Error.
   void make_folders() const;
 
  private:
@@ -57,7 +56,7 @@ class SequenceLayout {
   std::vector<OutputStream> streams_;
 };
 
-/// Makes `folder` and its parents, so that they survive a power cut. Throws Error.
+/// Creates `folder` and its parents durably. Throws Error.
 void make_folder(const std::filesystem::path& folder);
 
 }  // namespace vantage

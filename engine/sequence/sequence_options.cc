@@ -33,7 +33,7 @@ std::string_view name_of(SequenceOutput output) {
       ->first;
 }
 
-/// When the one key of a view that stands still is reached makes no difference.
+/// For a fixed view, the frame of its only key does not matter.
 bool is_same(const ViewPath& view, const ViewPath& other) {
   return view == other || (!view.moves() && !other.moves() && view.at(0) == other.at(0));
 }
@@ -49,7 +49,7 @@ std::string text_of(const ViewPath& view) {
 void require_near(const ViewPose& pose) {
   const auto* position = std::get_if<BaselinePosition>(&pose);
   if (position == nullptr) {
-    return;  // how near a camera is, only the pair's baseline tells
+    return;  // the distance of a camera in baselines is not known here
   }
   for (const double coordinate : {position->x, position->y}) {
     if (!(std::abs(coordinate) <= kFarthestView)) {

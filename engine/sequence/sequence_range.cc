@@ -8,8 +8,8 @@
 namespace vantage {
 namespace {
 
-/// A look at a pair takes an eighth of the time of matching it: little beside a long sequence, and
-/// no more than that of a single pair beside a short one.
+/// Estimating the range of a pair takes an eighth of its matching time: little compared with a long
+/// sequence, and at most that of a single pair for a short one.
 constexpr int kMostPairs = 16;
 
 std::optional<DisparityRange> range_of_pair(PairSource& pairs, int index,
@@ -26,7 +26,7 @@ std::optional<DisparityRange> range_of_pair(PairSource& pairs, int index,
     }
     return find_disparity_range(pair.left, pair.right, execution);
   } catch (const Error&) {
-    return std::nullopt;  // the run itself tells of bad frames
+    return std::nullopt;  // the run itself reports bad frames
   }
 }
 

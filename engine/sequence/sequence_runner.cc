@@ -49,7 +49,7 @@ bool lacks_past(const std::vector<int>& skipped, int frame, int chunk_begin,
   return next != skipped.end() && *next < frame;
 }
 
-/// One run: the steps of a frame that are taken in order, and what all add up to.
+/// One run: the ordered steps of a frame, and the totals.
 class Run {
  public:
   Run(const SequenceOptions& options, const SequenceRun& run, const SequenceLayout& layout,
@@ -88,7 +88,7 @@ class Run {
         scheduler::run_frames(execution_.executor(), run_.in_flight, steps, skip, run_.stop);
     queue_.finish();
     report_.interrupted = outcome.interrupted;
-    // The videos of an unfinished chunk are given up, and frames that are nowhere else.
+    // Not counted: frames that exist only in the abandoned videos of an unfinished chunk.
     report_.frames -= frames_of_segment_;
     report_.videos_from = segment_begin_;
     report_.compute_seconds = worker_.compute_seconds();
@@ -112,7 +112,7 @@ class Run {
     next_pair_ = slot.frame + 1;
     const auto known = stored_.find(slot.frame);
     slot.stored = known == stored_.end() ? nullptr : known->second;
-    // Some containers promise a few frames more than there are; a file that is cut off throws.
+    // Some containers promise a few frames more than they have; a truncated file throws.
     slot.is_absent = !run_.pairs.fetch(slot.pair);
     slot.times.push_back({"read", seconds_since(start)});
     return true;
@@ -143,7 +143,7 @@ class Run {
     }
   }
 
-  /// Frames that never were are done with: nobody is to wait for them.
+  /// Frames beyond the end of the input are complete, so that nothing waits for them.
   void note_absence(const FrameSlot& slot) {
     if (slot.is_lead_in) {
       return;
@@ -190,7 +190,7 @@ class Run {
     last_frame_ = slot.frame;
     last_content_ = slot.content;
     if (slot.stored != nullptr) {
-      return;  // said when it was made
+      return;  // reported when it was made
     }
     for (const std::string& remark : record.remarks) {
       report_.remarks.push_back({slot.frame, remark});
@@ -216,7 +216,7 @@ class Run {
           fmt::format("frame {} ({}): {}", slot.frame, run_.pairs.describe(slot.frame), problem));
     }
     if (slot.is_lead_in) {
-      return true;  // whoever delivers it records it
+      return true;  // recorded by the chunk that delivers it
     }
     report_.skipped.push_back(
         {slot.frame, fmt::format("{}: {}", run_.pairs.describe(slot.frame), problem)});
@@ -229,7 +229,7 @@ class Run {
     return true;
   }
 
-  /// Begins the segment of the frame if it is the first one there.
+  /// Starts the segment of the frame if it is the first one there.
   void segment_of(int frame) {
     const FrameRange chunk = run_.selection.chunk_of(frame);
     if (frame == chunk.first) {
@@ -239,8 +239,8 @@ class Run {
     }
   }
 
-  /// Of frames that are nowhere but in videos the journal tells when their segment is whole.
-  /// `record`: none of a frame that was delivered before.
+  /// Frames that exist only in videos are recorded when their segment is complete. `record`: empty
+  /// for a frame that was delivered before.
   void deliver(int frame, PendingFiles files, std::optional<FrameRecord> record, double cells) {
     Delivery delivery;
     delivery.files = std::move(files);
@@ -309,22 +309,22 @@ class Run {
   const SequenceLayout& layout_;
   Execution& execution_;
   FrameWorker worker_;
-  FrameFeed feed_;  // only the reading step touches it while frames are under way
+  FrameFeed feed_;  // used only by the reading step while frames are in flight
   std::map<int, const FrameRecord*> stored_;
-  int next_pair_ = -1;  // likewise; the source may be anywhere at first
-  // What follows, up to the slots, only the writing step touches.
+  int next_pair_ = -1;  // as feed_; the source may be anywhere at first
+  // The following members, up to the slots, are used only by the writing step.
   SegmentWriter segments_;
   std::vector<JournalRecord> segment_records_;
-  int frames_of_segment_ = 0;         // counted in the report though the segment is unfinished
-  std::optional<int> segment_begin_;  // of the unfinished one
+  int frames_of_segment_ = 0;         // counted in the report although the segment is unfinished
+  std::optional<int> segment_begin_;  // start of the unfinished segment
   FlickerMeter flicker_;
   int next_flicker_frame_ = -1;
   int last_frame_ = -2;
   std::array<std::uint64_t, 2> last_content_ = {};
   SequenceReport report_;
   std::vector<FrameSlot> slots_;
-  SequenceProgress progress_;  // only the queue's thread touches it
-  CommitQueue queue_;          // last: works while all others are there
+  SequenceProgress progress_;  // used only by the queue's thread
+  CommitQueue queue_;          // last: its thread uses all other members
 };
 
 }  // namespace

@@ -19,10 +19,10 @@
 
 namespace vantage {
 
-/// Where a run stands.
+/// Progress of a run.
 struct SequenceProgress {
   int frames_done = 0;   ///< delivered by this process
-  int frames_total = 0;  ///< that this process has to work on
+  int frames_total = 0;  ///< to be processed by this process
   double cells = 0;      ///< matching cells computed for the frames done
 };
 
@@ -32,7 +32,7 @@ struct SequenceStage {
   double seconds = 0;
 };
 
-/// What is to be said about one frame.
+/// A remark on one frame.
 struct FrameRemark {
   int frame = 0;
   std::string text;
@@ -40,13 +40,13 @@ struct FrameRemark {
 
 struct SequenceReport {
   int frames = 0;          ///< delivered by this run
-  int frames_before = 0;   ///< of its share that had been delivered before
+  int frames_before = 0;   ///< of its share, delivered by earlier runs
   int pictures_again = 0;  ///< of these, those whose pictures were made again for the videos
-  /// Where the videos go on when the run does, if that is before the frames that are delivered.
+  /// Where a continued run resumes the videos, if that is before the delivered frames.
   std::optional<int> videos_from;
   std::vector<FrameRemark> skipped;
-  std::vector<FrameRemark> remarks;  ///< frames that repeat the one before, gaps in time, …
-  bool interrupted = false;          ///< `stop` was raised before all was done
+  std::vector<FrameRemark> remarks;  ///< frames that repeat the previous one, gaps in time, …
+  bool interrupted = false;          ///< `stop` was set before all was done
   int in_flight = 0;
   int width_px = 0;  ///< of the last frame
   int height_px = 0;
@@ -58,34 +58,34 @@ struct SequenceReport {
   MemoryUse memory;                   ///< "frames in flight" and that of matching them
 };
 
-/// What a run works on and how.
+/// Input and settings of a run.
 struct SequenceRun {
   PairSource& pairs;
   FrameSelection selection;
-  std::optional<ImageExtent> frame_size;   ///< that all frames must have; must be set for videos
+  std::optional<ImageExtent> frame_size;   ///< required for all frames; must be set for videos
   const Rectifier* rectifier = nullptr;    ///< null: the pairs are rectified
-  const RectifiedPair* cameras = nullptr;  ///< of the pairs; must be set for views by cameras
-  const ShotTable* shots = nullptr;        ///< must be set where the options need shots
-  int in_flight = 1;                       ///< frames under way at the same time, 1..64
+  const RectifiedPair* cameras = nullptr;  ///< of the pairs; must be set for camera views
+  const ShotTable* shots = nullptr;        ///< must be set if the options need shots
+  int in_flight = 1;                       ///< frames processed at the same time, 1..64
   bool keep_going = false;                 ///< frames that fail are skipped and recorded
   std::function<void(const SequenceProgress&)> on_progress;  ///< never concurrently
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// Turns a sequence of pairs into disparity maps and new views on disk, in order. The strips of
+/// Converts a sequence of pairs to disparity maps and new views on disk, in order. The strips of
 /// several frames share the executor's threads; memory is bounded by the frames in flight, whose
-/// buffers are reused. Frames that the journal and the files say are done are left alone.
+/// buffers are reused. Frames that are done according to journal and files are kept.
 ///
 /// Thread rule: one run() at a time. Files are identical for any ExecutionOptions, in-flight count
-/// and division into parts, and after any interruption. Each file appears whole or not at all, and
-/// the journal tells of it when it is safe.
+/// and division into parts, and after any interruption. Files are written atomically, and recorded
+/// in the journal when they are safe.
 class SequenceRunner {
  public:
   /// Throws UsageError for invalid options. `execution` must outlive the runner.
   SequenceRunner(const SequenceOptions& options, Execution& execution);
 
-  /// Makes the folders of `layout`, then works on what is missing. Raising `stop` reads no further
-  /// frame and finishes those under way.
+  /// Creates the folders of `layout`, then processes the missing frames. Setting `stop` reads no
+  /// further frame and finishes those in flight.
   ///
   /// Throws Error at the first bad frame, naming its number and files, after all earlier frames are
   /// delivered and with none after it, unless `keep_going`; OutputError, naming the file, when

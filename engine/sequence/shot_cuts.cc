@@ -11,7 +11,7 @@ namespace {
 constexpr double kUnrelated = 0.3;
 constexpr double kStandsOut = 2;
 constexpr int kStepsAround = 3;
-/// Variance in grey levels² that counts as no content.
+/// Variance in grey levels² below which there is no content.
 constexpr double kNoContent = 25;
 
 /// First pixel of part k of `parts` equal ones, which may be less than a pixel wide.

@@ -19,7 +19,7 @@ Json json_of(const Shot& shot) {
   for (const IntensityFit& fit : shot.intensity) {
     intensity.push_back({{"offset", fit.offset}, {"gain", fit.gain}});
   }
-  // Floats as doubles, which are written so that they come back the same.
+  // Floats as doubles, which are written without loss.
   return {
       {"first_frame", shot.first_frame},
       {"end_frame", shot.end_frame},

@@ -21,11 +21,11 @@ constexpr float kWidening = 0.05F;
 constexpr float kLeastWideningPx = 0.5F;
 constexpr std::size_t kMostSamples = 3;  // of a shot
 
-/// The disparities of some maps, and the range that shows them.
+/// The disparities of some maps, and their preview range.
 class DisparitySamples {
  public:
   void add(ImageView<const float> map_px) {
-    // At once: growing would take twice as much.
+    // At once: growing would take twice the memory.
     values_.reserve(kMostSamples * static_cast<std::size_t>(map_px.width()) *
                     static_cast<std::size_t>(map_px.height()));
     for (int y = 0; y < map_px.height(); ++y) {
@@ -116,7 +116,7 @@ class Survey {
     }
   }
 
-  /// Frames are fetched one after the other, and a batch of them looked at in parallel.
+  /// Frames are fetched one after the other, and processed in parallel in batches.
   [[nodiscard]] std::optional<ShotCuts> find_cuts(int first_frame, int end_frame) {
     struct Slot {
       FramePair pair;
@@ -165,7 +165,7 @@ class Survey {
     }
   }
 
-  /// First, middle and last frame, each once.
+  /// First, middle and last frame, without duplicates.
   [[nodiscard]] static std::vector<int> samples_of(const Shot& shot) {
     const std::set<int> frames = {shot.first_frame,
                                   shot.first_frame + (shot.end_frame - 1 - shot.first_frame) / 2,
@@ -188,7 +188,7 @@ class Survey {
       } catch (const UsageError&) {
         throw;
       } catch (const Error&) {
-        // The run will say what is wrong with it.
+        // The run will report the problem.
       }
       report(1);
     }

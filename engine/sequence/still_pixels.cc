@@ -31,7 +31,7 @@ void luma_rows(const Photograph& photograph, int first_row, int end_row, float* 
   }
 }
 
-/// The changes of three rows around one that moves down.
+/// The changes of three rows around a row that advances downwards.
 class ChangeRows {
  public:
   static std::size_t values(int width) {

@@ -8,21 +8,21 @@
 
 namespace vantage {
 
-/// The luma (Rec. 601) of a photograph as whole grey levels 0..255, for comparing frames with each
-/// other. Memory of `levels` is reused. Identical for any `execution`.
+/// The luma (Rec. 601) of a photograph in integer grey levels 0..255, for comparing frames. Memory
+/// of `levels` is reused. Identical for any `execution`.
 void luma_levels(const Photograph& photograph, Execution& execution, Image<std::uint8_t>& levels);
 
-/// Finds the pixels whose image did not change from one frame to the next: where the mean
-/// difference over 3×3 pixels is at most `threshold` grey levels, there and at the eight pixels
-/// beside it. (Means keep noise down, which single differences are full of; a surface that moves
-/// changes them at its texture and at its outline.)
+/// Finds the pixels whose image did not change from one frame to the next: the mean difference over
+/// 3×3 pixels is at most `threshold` grey levels, at the pixel and its eight neighbours. (Means
+/// suppress the noise of single differences; a moving surface changes them at its texture and its
+/// outline.)
 class StillPixels {
  public:
   /// Throws UsageError unless the threshold is a number of grey levels, 0..255.
   explicit StillPixels(double threshold);
 
   /// still: 255 where nothing changed, else 0. Both images of equal size; memory of `still` is
-  /// reused. Returns how many pixels are still. Identical for any `execution`. Thread rule: may be
+  /// reused. Returns the number of still pixels. Identical for any `execution`. Thread rule: may be
   /// called concurrently for different results.
   std::int64_t find(const Image<std::uint8_t>& before, const Image<std::uint8_t>& now,
                     Execution& execution, Mask& still) const;

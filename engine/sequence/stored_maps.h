@@ -11,12 +11,13 @@ namespace vantage {
 /// Whether videos show new views, alone or in stereo pictures.
 bool videos_show_views(const SequenceOptions& options);
 
-/// Whether the files of a frame hold the maps that its pictures in videos, and what is measured of
-/// it, are made of. Masks of what was filled are in no map, and a temporal prior is made of them.
+/// Whether the files of a frame hold the maps that its pictures in videos, and its flicker
+/// measurement, are made from. False if masks of filled pixels are needed, which no map contains
+/// and a temporal prior uses.
 bool maps_are_stored(const SequenceOptions& options);
 
-/// Reads the reference's map, and with `needs_both` the right one beside it, from the files of
-/// `record`. False when one is not as it was written.
+/// Reads the reference's map, and with `needs_both` also the right one, from the files of `record`.
+/// False if one has changed since it was written.
 bool read_stored_maps(const SequenceLayout& layout, const FrameRecord& record, Side reference,
                       bool needs_both, DisparityMaps& maps);
 

@@ -2,15 +2,14 @@
 
 namespace vantage {
 
-/// How a frame of a sequence builds on the one before it.
+/// How a frame of a sequence uses the previous one.
 struct TemporalOptions {
-  /// How strongly pixels whose image did not change are drawn towards the disparity they had, see
-  /// DisparityPrior::weight; 0..100, 0: frames are matched on their own. 1 is a good value.
+  /// How strongly unchanged pixels are attracted to their previous disparity, see
+  /// DisparityPrior::weight; 0..100, 0: frames are matched independently. 1 is a good value.
   double weight = 0;
-  /// An image did not change at a pixel where the mean over 3×3 pixels of its difference to the
-  /// frame before is at most this, there and at the pixels beside it; grey levels, 0..255. Noise of
-  /// σ shows as σ · √2/3 in such means, of which nine are looked at: 3 lets noise of σ = 2 pass at
-  /// nearly all pixels.
+  /// A pixel is unchanged if the mean over 3×3 pixels of its difference to the previous frame is at
+  /// most this, at the pixel and its neighbours; grey levels, 0..255. Noise of σ gives σ · √2/3 in
+  /// such means, nine of which are checked: 3 accepts nearly all pixels with noise of σ = 2.
   double threshold = 3;
 
   /// Throws UsageError naming the field, its value and its limit.

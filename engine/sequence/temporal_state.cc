@@ -8,8 +8,8 @@
 namespace vantage {
 namespace {
 
-/// With fewer still pixels there has been a cut: those that are alike are so by chance.
-constexpr std::int64_t kLeastStillShare = 50;  // one in so many
+/// With a smaller share of still pixels there was a cut, and they are alike by chance.
+constexpr std::int64_t kLeastStillShare = 50;  // one in this many
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 

@@ -10,8 +10,8 @@
 
 namespace vantage {
 
-/// What matching a frame takes over from the frame before it in its chunk: for each map the
-/// disparities of the pixels whose own image did not change and that were matched, not filled.
+/// State that matching a frame takes from the previous frame in its chunk: for each map the
+/// disparities of pixels whose own image did not change and that were matched, not filled.
 ///
 /// Use: restart() at the first frame of a chunk; for each frame priors_for(), match, remember().
 /// Thread rule: one call at a time; results are identical for any Execution. Memory is reused:
@@ -21,26 +21,26 @@ class TemporalState {
   /// Throws UsageError for invalid options.
   explicit TemporalState(const TemporalOptions& options);
 
-  /// The next frame has nothing before it.
+  /// The next frame has no predecessor.
   void restart();
 
-  /// What StereoMatcher::match() of this pair is given as MatchRequest::prior; valid until the next
-  /// call of this or remember(). Empty with weight 0, for the first frame, where the size of the
-  /// images changes, and after a cut, that is, for a map of whose image less than 1/50 is still.
+  /// MatchRequest::prior for StereoMatcher::match() of this pair; valid until the next call of this
+  /// or remember(). Empty with weight 0, for the first frame, if the size of the images changes,
+  /// and after a cut, i.e. for a map of whose image less than 1/50 is still.
   DisparityPrior priors_for(const Photograph& left, const Photograph& right, Execution& execution);
 
-  /// The maps of this pair, with their masks of unmatched pixels; a map that is empty is remembered
-  /// as none. Call it once per frame, after priors_for().
+  /// Stores the maps of this pair, with their masks of unmatched pixels; an empty map is stored as
+  /// none. Call it once per frame, after priors_for().
   void remember(const Photograph& left, const Photograph& right, const DisparityMaps& maps,
                 Execution& execution);
 
  private:
   struct Side {
-    Image<std::uint8_t> levels;  ///< of the frame before
-    DisparityMap matched_px;     ///< of the frame before, NaN where filled; empty: none
+    Image<std::uint8_t> levels;  ///< of the previous frame
+    DisparityMap matched_px;     ///< of the previous frame, NaN where filled; empty: none
     DisparityMap prior_px;
     Image<std::uint8_t> next_levels;
-    bool levels_are_next = false;  ///< next_levels are those of the frame under way
+    bool levels_are_next = false;  ///< next_levels are those of the current frame
     Mask still;
   };
   ImageView<const float> prior_for(const Photograph& image, Side& side, Execution& execution);

@@ -141,8 +141,7 @@ std::vector<std::string> TwoCameraPairs::remarks() const {
 }
 
 int TwoCameraPairs::unpaired_frames() const {
-  // The offset alone leaves as many frames over at the end of one side as at the start of the
-  // other.
+  // The offset alone leaves as many frames at the end of one side as at the start of the other.
   return std::max({0, left_over() - first_right_, right_over() - first_left_});
 }
 

@@ -13,7 +13,7 @@ namespace vantage {
 class TwoCameraPairs final : public PairSource {
  public:
   /// Frame i + offset_frames of `right` belongs to frame i of `left`. `numbers_matter`: remarks()
-  /// looks at the numbers in the file names. Throws Error when no frame has a partner.
+  /// checks the numbers in the file names. Throws Error when no frame has a partner.
   TwoCameraPairs(std::unique_ptr<FrameSource> left, std::unique_ptr<FrameSource> right,
                  int offset_frames, bool numbers_matter);
 
@@ -29,7 +29,7 @@ class TwoCameraPairs final : public PairSource {
   [[nodiscard]] std::vector<std::string> identities() const override;
 
  private:
-  /// Fetches the right frame of the next pair, from where the left source is.
+  /// Fetches the right frame of the next pair, at the position of the left source.
   bool fetch_right(FetchedFrame& frame, std::exception_ptr& problem);
   /// Frames at the end of the left (right) source that have no partner.
   [[nodiscard]] int left_over() const { return left_->frame_count() - first_left_ - pair_count_; }
@@ -44,7 +44,7 @@ class TwoCameraPairs final : public PairSource {
   int first_right_;
   int pair_count_;
   int next_index_ = 0;
-  bool right_lags_ = false;  // it is still where the last fetch() that wanted it left it
+  bool right_lags_ = false;  // it is still at the position after the last fetch() that wanted it
 };
 
 }  // namespace vantage

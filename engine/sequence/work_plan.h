@@ -15,32 +15,33 @@ struct Shard {
   friend bool operator==(const Shard&, const Shard&) = default;
 };
 
-/// Which frames a run is to make.
+/// Frames that a run processes.
 struct FrameSelection {
   int frame_count = 0;               ///< of the whole input
-  int chunk_frames = 50;             ///< chunks begin at multiples of this, whatever is selected
-  std::optional<FrameRange> frames;  ///< default: all; a range that reaches past the end is cut
+  int chunk_frames = 50;             ///< chunks start at multiples of this, whatever is selected
+  std::optional<FrameRange> frames;  ///< default: all; a range beyond the end is cut
   std::optional<Shard> shard;        ///< of the selected frames' chunks; default: all
 
   /// The selected frames of all shards together.
   [[nodiscard]] FrameRange all() const;
-  /// The frames of this shard: whole chunks (but for the ends of `frames`), in one piece. Shards
-  /// differ by at most one chunk; with more shards than chunks some have none.
+  /// The frames of this shard: contiguous whole chunks (except at the ends of `frames`). Shards
+  /// differ by at most one chunk; with more shards than chunks some are empty.
   [[nodiscard]] FrameRange own() const;
   /// The selected part of the chunk that holds `frame`.
   [[nodiscard]] FrameRange chunk_of(int frame) const;
-  /// Where that chunk begins, selected or not.
+  /// Start of that chunk, selected or not.
   [[nodiscard]] int chunk_begin(int frame) const { return frame / chunk_frames * chunk_frames; }
 };
 
-/// Consecutive frames to work on in one go.
+/// Consecutive frames to process together.
 struct FrameRun {
   FrameRange frames;  ///< to be delivered
-  int lead_in = 0;    ///< so many frames before them are computed only for what they hand on
+  int lead_in = 0;    ///< number of frames before them, computed only for the state that they pass
+                      ///< on
   friend bool operator==(const FrameRun&, const FrameRun&) = default;
 };
 
-/// How frames depend on each other, which decides what must be done again.
+/// Dependence between frames, which determines what must be done again.
 struct FrameDependence {
   /// Frames before it, within its chunk, that a frame's results depend on: none, one, or all.
   enum class Past { kNone, kOne, kChunk };
@@ -49,7 +50,7 @@ struct FrameDependence {
   bool whole_chunks = false;
 };
 
-/// What is left to do of a shard's frames, in order. Each run lies within one chunk.
+/// Remaining work on a shard's frames, in order. Each run lies within one chunk.
 std::vector<FrameRun> plan_work(const FrameSelection& selection, FrameDependence dependence,
                                 const std::function<bool(int frame)>& is_done);
 
