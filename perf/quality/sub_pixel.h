@@ -22,8 +22,8 @@ struct SubPixelFigures {
 /// distribution of its own fractions. NaN if there is no such pixel.
 SubPixelFigures sub_pixel_figures(const DisparityMap& map, const LoadedScene& scene);
 
-/// How many times as many pixels the fullest bin has as the emptiest; 1 where fractions are not
-/// biased and the truth's are distributed evenly.
+/// Ratio of pixel counts in the fullest and the emptiest bin; 1 if fractions are unbiased and the
+/// truth's are uniformly distributed.
 double fullest_over_emptiest(const SubPixelFigures& figures);
 
 }  // namespace vantage::perf
