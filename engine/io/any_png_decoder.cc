@@ -15,7 +15,7 @@
 namespace vantage {
 namespace {
 
-/// Where libpng reads from, and what it says.
+/// Input and error message of libpng.
 struct Source {
   std::span<const std::uint8_t> rest;
   std::array<char, 128> problem{};
@@ -37,8 +37,8 @@ void jump_back(png_structp png, png_const_charp problem) {
   png_longjmp(png, 1);
 }
 
-/// What libpng allocates for a file. Each call returns false where libpng reports an error; it then
-/// jumps over all that is below: no object on the way may have a destructor.
+/// Objects that libpng allocates for a file. Each call returns false when libpng reports an error,
+/// which it does by longjmp: no object in between may have a destructor.
 class PngReader {
  public:
   explicit PngReader(Source& source)

@@ -29,9 +29,9 @@ std::span<const std::uint8_t> bytes_of(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-/// Fills the file `target`, which is there; messages name `path`.
+/// Writes the existing file `target`; messages name `path`.
 void fill(const fs::path& target, std::span<const std::uint8_t> bytes, const fs::path& path) {
-  // Created anew where somebody has cleared it away.
+  // Created again if another process has removed it.
   const FileDescriptor file(::open(target.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
   if (!file.valid() || !write_all(file.get(), bytes)) {
     fail(path, errno);
@@ -82,8 +82,8 @@ int AtomicFile::flush() const {
 }
 
 void AtomicFile::flush_name() const {
-  // Makes the new name itself survive a power cut. Some file systems cannot do this for folders;
-  // the file is complete either way.
+  // Makes the new name itself durable. Some file systems cannot do this for folders; the file is
+  // complete either way.
   flush_folder(folder_of(final_path_));
 }
 
@@ -102,7 +102,7 @@ bool AtomicFile::commit_if_absent() {
   const int flush_error = flush();
   if (flush_error == 0 && ::link(temporary_path_.c_str(), final_path_.c_str()) == 0) {
     flush_name();
-    return true;  // the temporary name goes with this object
+    return true;  // the destructor removes the temporary name
   }
   std::error_code ignored;
   if (fs::exists(final_path_, ignored)) {
@@ -116,7 +116,7 @@ bool AtomicFile::commit_if_absent() {
 }
 
 fs::path behind_links(const fs::path& path) {
-  constexpr int kMostLinks = 40;  // as Linux follows
+  constexpr int kMostLinks = 40;  // the limit of Linux
   std::error_code error;
   fs::path place = path;
   for (int links = 0; fs::is_symlink(place, error); ++links) {
@@ -124,7 +124,7 @@ fs::path behind_links(const fs::path& path) {
     if (error || links == kMostLinks) {
       return path;
     }
-    place = place.parent_path() / target;  // an absolute target stays itself
+    place = place.parent_path() / target;  // an absolute target is unchanged
   }
   return place;
 }

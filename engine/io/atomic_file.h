@@ -7,16 +7,15 @@
 
 namespace vantage {
 
-/// A file that appears under its final name whole or not at all. Whatever writes it writes to
-/// temporary_path(), which is in the same folder, hidden and ends in the same extension; commit()
-/// flushes and renames. Without commit() nothing is left. An existing file is replaced only by
-/// commit(). Thread rule: one thread at a time; different objects may have the same final name
-/// (the last commit wins).
+/// A file that appears under its final name complete or not at all. The caller writes to
+/// temporary_path(), a hidden file in the same folder with the same extension; commit() flushes and
+/// renames. Without commit() nothing is left. An existing file is replaced only by commit(). Thread
+/// rule: one thread at a time; different objects may have the same final name (the last commit
+/// wins).
 class AtomicFile {
  public:
   /// Creates the empty temporary file. Throws Error when the folder is missing or not writable, or
-  /// when `path` is there and is not a regular file. A link is followed, also one to a file that is
-  /// not there yet.
+  /// when `path` exists and is not a regular file. Links are followed, also to a missing file.
   explicit AtomicFile(const std::filesystem::path& path);
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -24,36 +23,36 @@ class AtomicFile {
 
   [[nodiscard]] const std::filesystem::path& temporary_path() const { return temporary_path_; }
 
-  /// Flushes the temporary file to disk and gives it its final name. Call it once, after whatever
-  /// wrote the file has closed it. Throws Error (a full disk, say).
+  /// Flushes the temporary file to disk and gives it its final name. Call it once, after the file
+  /// has been closed. Throws Error (a full disk, say).
   void commit();
 
-  /// commit() unless something has the final name already, which then stays; false in that case,
-  /// also when the temporary file has been cleared away since. Of several processes one succeeds;
-  /// where the file system has no links, two at the very same moment may both do.
+  /// commit() unless a file of the final name exists, which is then kept; false in that case, also
+  /// when the temporary file has been removed since. Of several processes one succeeds; on a file
+  /// system without links, two at the same moment may both succeed.
   bool commit_if_absent();
 
  private:
-  /// 0 or what went wrong.
+  /// 0 or errno.
   [[nodiscard]] int flush() const;
   void flush_name() const;
 
-  std::filesystem::path given_path_;  ///< as the caller wrote it, for messages
+  std::filesystem::path given_path_;  ///< as given by the caller, for messages
   std::filesystem::path final_path_;
   std::filesystem::path temporary_path_;
   bool committed_ = false;
 };
 
-/// What `path` leads to where it is a link, else itself. Links in circles stay as they are.
+/// Target of `path` if it is a link, else itself. Circular links are returned unchanged.
 std::filesystem::path behind_links(const std::filesystem::path& path);
 
-/// Writes `bytes` as the file `path`; whole or not at all. Throws Error.
+/// Writes `bytes` to the file `path` atomically. Throws Error.
 void write_binary_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
-/// Writes `text` as the file `path`; whole or not at all. Throws Error.
+/// Writes `text` to the file `path` atomically. Throws Error.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
-/// write_text_file() unless there is such a file, which then stays as it is; false in that case.
+/// write_text_file() unless the file exists, which is then kept; false in that case.
 bool create_text_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace vantage

@@ -11,7 +11,7 @@ extern "C" {
 namespace vantage {
 namespace {
 
-// The library counts in int. Blocks of whole groups can be joined.
+// The library counts in int. Blocks of complete groups can be joined.
 constexpr std::size_t kBlockGroups = std::size_t{1} << 20;
 constexpr std::size_t kGroupBytes = 3;
 constexpr std::size_t kGroupLetters = 4;
@@ -20,7 +20,8 @@ constexpr std::size_t kGroupLetters = 4;
 
 std::string encode_base64(std::span<const std::uint8_t> bytes) {
   const std::size_t groups = (bytes.size() + kGroupBytes - 1) / kGroupBytes;
-  std::string text(groups * kGroupLetters + 1, '\0');  // the library ends each block with a zero
+  std::string text(groups * kGroupLetters + 1, '\0');  // the library terminates each block with a
+                                                       // zero
   std::size_t letters = 0;
   while (!bytes.empty()) {
     const auto block = bytes.first(std::min(bytes.size(), kBlockGroups * kGroupBytes));
@@ -49,7 +50,7 @@ std::vector<std::uint8_t> decode_base64(std::string_view text) {
         av_base64_decode(bytes.data() + count, block.c_str(), static_cast<int>(room));
     const std::size_t padding = block.ends_with("==") ? 2 : block.ends_with('=') ? 1 : 0;
     const std::size_t expected = room - padding;
-    // Padding before the end is caught as well: what follows it is not decoded.
+    // Also detects padding before the end, because nothing after it is decoded.
     if (decoded < 0 || static_cast<std::size_t>(decoded) != expected) {
       throw Error("text is not base64 with padding");
     }

@@ -20,7 +20,7 @@ std::uint32_t crc32_of(std::string_view text) {
   return libdeflate_crc32(0, text.data(), text.size());
 }
 
-/// `before`, which is what an object holds, and its last entry behind `gap`.
+/// `before`, the content of an object, and its last entry after `gap`.
 std::string with_entry(std::string_view before, std::string_view gap) {
   const std::string text = fmt::format("{},{}{}", before, gap, kKey);
   return fmt::format("{}\"{:08x}\"", text, crc32_of(text));
@@ -59,7 +59,7 @@ std::optional<FileContent> file_content(const std::filesystem::path& file) {
 std::string with_checksum(std::string_view object) {
   const std::string_view members = object.substr(0, object.rfind('}'));
   const std::size_t end = members.find_last_not_of(kBlanks) + 1;
-  // The entry stands where the last one before it ended, as pretty-printed text has it.
+  // The entry follows directly after the one before it, as in pretty-printed text.
   const std::string_view before = members.substr(0, end);
   const std::size_t line = before.rfind('\n');
   const std::string_view last_line = line == std::string_view::npos ? "" : before.substr(line);

@@ -7,20 +7,20 @@
 
 namespace vantage {
 
-/// Reads comma separated values record by record. Fields may be quoted ("" is a quote in one);
-/// blanks around them, empty lines and lines that begin with # are skipped, and so is a byte order
-/// mark. Lines end with LF, CRLF or CR. Thread rule: one thread at a time.
+/// Reads comma-separated values record by record. Fields may be quoted ("" is a quote in one);
+/// skips blanks around them, empty lines, lines that start with # and a byte order mark. Lines end
+/// with LF, CRLF or CR. Thread rule: one thread at a time.
 class CsvRecords {
  public:
-  /// `text` must outlive this object. `file` is what messages call it. Throws Error for text with a
+  /// `text` must outlive this object. `file`: its name in messages. Throws Error for text with a
   /// zero byte.
   CsvRecords(std::string_view text, std::string file);
 
-  /// The fields of the next record; false at the end. Throws Error naming file and line for a quote
-  /// out of place.
+  /// The fields of the next record; false at the end. Throws Error naming file and line for a
+  /// misplaced quote.
   bool next(std::vector<std::string>& fields);
 
-  /// The line that the record of the last next() begins on, from 1.
+  /// First line of the record of the last next(), counted from 1.
   [[nodiscard]] int record_line() const { return record_line_; }
 
   /// Throws Error "<file> line <line>: <problem>".
@@ -42,7 +42,7 @@ class CsvRecords {
   int record_line_ = 1;
 };
 
-/// Whether `text` is `lower_case` but for the case of ASCII letters.
+/// Whether `text` equals `lower_case`, ignoring the case of ASCII letters.
 bool equals_ignoring_case(std::string_view text, std::string_view lower_case);
 
 }  // namespace vantage

@@ -12,16 +12,16 @@ extern "C" {
 namespace vantage {
 namespace {
 
-/// Frames that H.264 lets be decoded before one that is shown earlier.
+/// Maximum number of frames that H.264 may decode before one that is shown earlier.
 constexpr int kMaxReordered = 16;
 
 bool is_fresh_start(std::uint8_t unit_header) {
   constexpr int kInstantaneousRefresh =
-      5;  // the unit type of slices after which nothing older counts
+      5;  // unit type of IDR slices: nothing older is referenced after them
   return (unit_header & 0x1F) == kInstantaneousRefresh;
 }
 
-/// Units that begin with their length, as in MP4 and Matroska.
+/// Units preceded by their length, as in MP4 and Matroska.
 bool has_fresh_start(std::span<const std::uint8_t> bytes, std::size_t length_bytes) {
   while (bytes.size() > length_bytes) {
     std::size_t length = 0;

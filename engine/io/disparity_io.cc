@@ -21,7 +21,7 @@ namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-/// Makes what is not finite unknown.
+/// Replaces non-finite values by NaN.
 DisparityMap finite_of(const Image<float>& image) {
   DisparityMap map(image.width(), image.height());
   for (int y = 0; y < image.height(); ++y) {

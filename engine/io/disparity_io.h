@@ -8,29 +8,29 @@
 
 namespace vantage {
 
-/// Reads a disparity map, of the format its content says: .pfm (±inf = unknown), 16-bit .png (÷256,
-/// 0 = unknown), .tiff/.exr (float, NaN = unknown), .npy (float32/float64, 2-D), and 8-bit
+/// Reads a disparity map; its content determines the format: .pfm (±inf = unknown), 16-bit .png
+/// (÷256, 0 = unknown), .tiff/.exr (float, NaN = unknown), .npy (float32/float64, 2-D), and 8-bit
 /// .png/.pgm (÷scale, 0 = unknown). `scale` (> 0) divides integer values and replaces the 256 of
-/// 16-bit PNG when given; 0 means the format's default (an 8-bit file then needs one: Error).
-/// Unknown becomes NaN. Throws Error naming the file and what is wrong with it, UsageError for a
-/// negative scale. Thread rule: may be called concurrently.
+/// 16-bit PNG when given; 0 means the format's default (8-bit files have none: Error). Unknown
+/// becomes NaN. Throws Error naming the file and the problem, UsageError for a negative scale.
+/// Thread rule: may be called concurrently.
 DisparityMap read_disparity(const std::filesystem::path& path, double scale = 0);
 
 /// Writes by extension (map_formats.h): .pfm (little-endian, bottom-up, unknown = +inf), .png
-/// (16-bit, ×256, 0 = unknown; values that do not fit are an Error; what would round to 0 is known
-/// and becomes 1/256, as in KITTI's own files), .tiff/.exr (float, NaN), .npy (float32). NaN and
-/// ±inf in memory are unknown. Whole or not at all. Throws UsageError for another extension, Error
-/// when the file cannot be written.
+/// (16-bit, ×256, 0 = unknown; values out of range are an Error; known values that round to 0
+/// become 1/256, as in KITTI's own files), .tiff/.exr (float, NaN), .npy (float32). NaN and ±inf in
+/// memory are unknown. Writes atomically. Throws UsageError for another extension, Error when the
+/// file cannot be written.
 void write_disparity(const std::filesystem::path& path, ImageView<const float> disparity);
 
-/// Makes `bytes`, whose memory is reused, those of a file named `path` that holds the map: what
-/// write_disparity() writes, and it throws alike.
+/// Encodes the map to `bytes`, whose memory is reused: the content that write_disparity() writes to
+/// `path`. Errors as write_disparity().
 void encode_disparity(const std::filesystem::path& path, ImageView<const float> disparity,
                       std::vector<std::uint8_t>& bytes);
 
 /// Throws UsageError unless a file named `path` can hold every disparity of a search from least_px
-/// to most_px: a 16-bit PNG holds 0 to 255.99. To be asked before the search, whose result would be
-/// lost otherwise.
+/// to most_px: a 16-bit PNG holds 0 to 255.99. Call it before the search, whose result would
+/// otherwise be lost.
 void require_holds_search(const std::filesystem::path& path, int least_px, int most_px);
 
 }  // namespace vantage

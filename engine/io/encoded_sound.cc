@@ -41,7 +41,7 @@ bool encodes_sample_rate(const AVCodec& encoder, int rate) {
   return false;
 }
 
-/// What the samples of a frame are.
+/// Format of a frame's samples.
 struct SoundFormat {
   AVChannelLayout layout{};
   int sample_format = AV_SAMPLE_FMT_NONE;
@@ -88,28 +88,28 @@ class EncodedSound : public SoundPackets {
  private:
   void open_decoder();
   void open_encoder();
-  /// Makes the resampler fit `frame`: recordings of television change between stereo, mono and 5.1.
+  /// Adapts the resampler to `frame`: television recordings switch between stereo, mono and 5.1.
   void follow_format(const AVFrame& frame);
-  /// Gives the encoder its next frame, decoding what that takes, or tells it that there is none.
+  /// Sends the encoder its next frame, decoding as needed, or the end of the stream.
   void feed_encoder();
   /// Decodes the next samples into the queue; false after the last ones.
   bool decode_more();
-  /// Converts `frame`, or what the resampler holds back when it is null, and queues what of it
-  /// lies inside the part. The frame has the format that the resampler was made for.
+  /// Converts `frame`, or the resampler's delayed samples if it is null, and queues the samples
+  /// inside the part. The frame has the resampler's input format.
   void queue_samples(const AVFrame* frame);
 
   SoundInput input_;
   LibavCodec decoder_;
   LibavCodec encoder_;
   LibavResampler resampler_;  ///< null before the first frame
-  SoundFormat resampled_;     ///< what it takes
+  SoundFormat resampled_;     ///< its input format
   LibavSamples queue_;
   LibavPacket source_packet_ = make_libav_packet();
   LibavFrame decoded_ = make_libav_frame();
   AVCodecParameters* parameters_ = nullptr;
   std::int64_t samples_of_part_ = 0;
-  std::int64_t next_sample_ = AV_NOPTS_VALUE;     ///< number, in the part, of the next one decoded
-  std::int64_t next_to_encode_ = AV_NOPTS_VALUE;  ///< number of the first one in the queue
+  std::int64_t next_sample_ = AV_NOPTS_VALUE;     ///< index, in the part, of the next one decoded
+  std::int64_t next_to_encode_ = AV_NOPTS_VALUE;  ///< index of the first one in the queue
   bool decoded_all_ = false;
 };
 
@@ -177,7 +177,7 @@ void EncodedSound::follow_format(const AVFrame& frame) {
       static_cast<AVSampleFormat>(format.sample_format), format.rate, 0, nullptr);
   resampler_.reset(resampler);
   if (result >= 0 && encoder_->ch_layout.nb_channels == 1) {
-    // Two channels become one that is no louder.
+    // Mixing two channels to one must not raise the level.
     result = av_opt_set_double(resampler, "rematrix_maxval", 1, 0);
   }
   if (result >= 0) {

@@ -7,9 +7,9 @@
 
 namespace vantage {
 
-/// Decodes the sound of `input`, which has some, cuts it to the part's samples and encodes it as
-/// AAC: mono stays mono, all else becomes stereo. Throws Error naming the file when it cannot be
-/// decoded.
+/// Decodes the sound of `input`, which must have some, cuts it to the part's samples and encodes it
+/// as AAC: mono stays mono, everything else becomes stereo. Throws Error naming the file when it
+/// cannot be decoded.
 std::unique_ptr<SoundPackets> make_encoded_sound(SoundInput input);
 
 }  // namespace vantage

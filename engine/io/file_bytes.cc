@@ -41,7 +41,7 @@ std::vector<std::uint8_t> read_file_bytes(const fs::path& path) {
   if (size == 0) {
     fail_to_read(path, "the file is empty");
   }
-  // The largest image of all: float RGBA. What is larger is something else.
+  // Size of the largest image: float RGBA. Larger files are not images.
   if (size > static_cast<std::uintmax_t>(kMaxImagePixels) * 16 + (1U << 20)) {
     fail_to_read(path, fmt::format("{} bytes are too many for an image", size));
   }

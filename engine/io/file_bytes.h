@@ -13,7 +13,7 @@
 
 namespace vantage {
 
-/// The whole of a regular file. Throws Error when it is missing, unreadable, empty or not a file.
+/// Content of a regular file. Throws Error when it is missing, unreadable, empty or not a file.
 std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& path);
 
 /// The bytes of a file with bounds-checked access and errors that name the file. Does not own them.
@@ -29,7 +29,7 @@ class FileBytes {
   /// Throws Error "<name>: <problem>".
   [[noreturn]] void fail(const std::string& problem) const { throw Error(name_ + ": " + problem); }
 
-  /// `count` bytes from `offset`; Error "is truncated" when the file has not as many.
+  /// `count` bytes from `offset`; Error "is truncated" when the file is too short.
   [[nodiscard]] std::span<const std::uint8_t> part(std::size_t offset, std::size_t count) const {
     if (offset > bytes_.size() || count > bytes_.size() - offset) {
       fail("is truncated, the file ends after " + std::to_string(bytes_.size()) + " bytes");

@@ -9,7 +9,7 @@
 
 namespace vantage {
 
-/// Closes a file of the operating system when it goes. Owns it.
+/// Owns a file descriptor and closes it on destruction.
 class FileDescriptor {
  public:
   explicit FileDescriptor(int descriptor) : descriptor_(descriptor) {}
@@ -29,10 +29,10 @@ class FileDescriptor {
   int descriptor_;
 };
 
-/// False when that fails; errno then tells why.
+/// False on failure, with errno set.
 bool write_all(int descriptor, std::span<const std::uint8_t> bytes);
 
-/// Makes names in `folder` survive a power cut, where the file system can do that.
+/// Makes names in `folder` durable across a power cut, if the file system supports it.
 void flush_folder(const std::filesystem::path& folder);
 
 }  // namespace vantage

@@ -22,7 +22,7 @@ void Fnv1aHash::add(std::uint64_t value) {
 }
 
 void FileIdentity::add(std::string_view name, const std::filesystem::path& file) {
-  // The length keeps names apart from what follows them.
+  // The length separates names from the data after them.
   hash_.add(static_cast<std::uint64_t>(name.size()));
   hash_.add(name);
   struct stat status {};

@@ -7,11 +7,11 @@
 
 namespace vantage {
 
-/// 64-bit FNV-1a hash of bytes in the order in which they are added. The same on every machine.
+/// 64-bit FNV-1a hash of bytes in the order in which they are added. Equal on every machine.
 class Fnv1aHash {
  public:
   void add(std::string_view bytes);
-  /// As eight bytes, the lowest first.
+  /// As eight bytes, least significant first.
   void add(std::uint64_t value);
   [[nodiscard]] std::uint64_t value() const { return value_; }
 
@@ -19,15 +19,15 @@ class Fnv1aHash {
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
 
-/// Tells whether files are still the ones they were, without reading them: their number, their
-/// bytes, and a hash over name, size and time of the last change of each, in order.
+/// Detects changed files without reading them: by their number, their bytes, and a hash over name,
+/// size and modification time of each, in order.
 class FileIdentity {
  public:
-  /// Adds a file under the name that counts for it (two machines may see it at different paths). A
-  /// file that is not there counts as such.
+  /// Adds a file under `name` (machines may see it at different paths). A missing file is hashed as
+  /// missing.
   void add(std::string_view name, const std::filesystem::path& file);
 
-  /// "2 files, 1234 bytes, hash 00112233445566ff"; files that are not there are not counted.
+  /// "2 files, 1234 bytes, hash 00112233445566ff"; missing files are not counted.
   [[nodiscard]] std::string to_string() const;
 
  private:

@@ -6,16 +6,16 @@
 
 namespace vantage {
 
-/// Has the file `path`, which must be there, for this process alone as long as the object lives.
-/// File systems that know no locks do without.
+/// Holds an exclusive lock on the existing file `path` for the lifetime of the object. Has no
+/// effect on file systems without locks.
 class FileLock {
  public:
-  /// Whether one waits for other processes or looks at is_held().
+  /// Whether to wait for other processes; otherwise see is_held().
   enum class Wait { kNo, kYes };
 
   FileLock(const std::filesystem::path& path, Wait wait);
 
-  /// False when another process has it.
+  /// False when another process holds it.
   [[nodiscard]] bool is_held() const { return is_held_; }
 
  private:

@@ -6,25 +6,25 @@
 
 namespace vantage {
 
-/// The last number in the name of a file, without its extension ("left_0012.png": 12); empty when
-/// there is none or it has more than 18 digits.
+/// The last number in a file name without its extension ("left_0012.png": 12); empty when there is
+/// none or it has more than 18 digits.
 std::optional<long long> frame_number(const std::filesystem::path& file);
 
 /// A file name with one number in it.
 struct NumberPattern {
   std::string prefix;
-  int digits = 1;  ///< at least, filled with zeros
+  int digits = 1;  ///< minimum number of digits, padded with zeros
   std::string suffix;
 
   [[nodiscard]] std::string name(int number) const;
-  /// The shell pattern that matches all names of this pattern.
+  /// A shell pattern that matches all names of this pattern.
   [[nodiscard]] std::string wildcard() const { return prefix + "*" + suffix; }
-  /// The number in `name`, if this pattern makes that name.
+  /// The number in `name`, if it has this pattern.
   [[nodiscard]] std::optional<int> number_in(const std::string& name) const;
 };
 
-/// Takes "left_%06d.png" apart; "%%" is a percent sign. Throws UsageError beginning with `spec`
-/// when there is not exactly one %d or %0Nd (N in 1..9).
+/// Parses "left_%06d.png"; "%%" is a percent sign. Throws UsageError starting with `spec` when
+/// there is not exactly one %d or %0Nd (N in 1..9).
 NumberPattern parse_number_pattern(const std::string& name, const std::string& spec);
 
 }  // namespace vantage

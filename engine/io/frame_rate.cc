@@ -11,10 +11,10 @@ namespace {
 
 constexpr std::int64_t kLargestTerm = 1'000'000;
 constexpr std::int64_t kLargestRate = 1000;
-/// Of the rate: 29.97 and 23.976 are a millionth off 30000/1001 and 24000/1001.
+/// Relative: 29.97 and 23.976 are a millionth off 30000/1001 and 24000/1001.
 constexpr double kDecimalTolerance = 5e-6;
 
-/// A whole number of 1 to 15 digits, without sign.
+/// An integer of 1 to 15 digits, without sign.
 std::optional<std::int64_t> parse_digits(std::string_view text) {
   if (text.empty() || text.size() > 15 ||
       text.find_first_not_of("0123456789") != std::string_view::npos) {

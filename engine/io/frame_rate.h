@@ -18,8 +18,8 @@ struct FrameRate {
   friend bool operator==(const FrameRate&, const FrameRate&) = default;
 };
 
-/// "25", "29.97" or "30000/1001"; empty when it is none of these or out of range. Broken
-/// decimals within 5 millionths of N·1000/1001 (N whole) are read as that: 29.97 is 30000/1001.
+/// Parses "25", "29.97" or "30000/1001"; empty for any other form or out of range. Decimals within
+/// 5 millionths of N·1000/1001 (integer N) are read as that: 29.97 is 30000/1001.
 std::optional<FrameRate> parse_frame_rate(std::string_view text);
 /// "25" or "30000/1001".
 std::string to_string(FrameRate rate);

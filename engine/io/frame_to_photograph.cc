@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kFirstRowsOf709 = 720;
 
-/// Grey levels in whole numbers, of the byte order of this machine.
+/// Integer grey levels in the byte order of this machine.
 bool has_plain_grey_levels(const AVPixFmtDescriptor& format) {
   constexpr auto kNotPlain = AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_BITSTREAM |
                              AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_FLOAT |
@@ -75,7 +75,7 @@ bool is_luma_and_chroma(const AVPixFmtDescriptor& format) {
          !std::string_view(format.name).starts_with("xyz");
 }
 
-/// The format without the promise of full range that some old names make.
+/// The format without the full range implied by some old names.
 int without_range(int format) {
   switch (format) {
     case AV_PIX_FMT_YUVJ420P:
@@ -133,7 +133,7 @@ kernels::ColourFactors make_colour_factors(const std::array<double, 2>& weights,
           .blue_of_blue = static_cast<float>(chroma * 2 * (1 - blue))};
 }
 
-/// Row y of three planes of 16 bits.
+/// Row y of three 16-bit planes.
 kernels::LumaChromaRow row_of(const AVFrame& yuv, int y) {
   const auto row = [&](int plane) {
     return reinterpret_cast<const std::uint16_t*>(yuv.data[plane] +
@@ -169,8 +169,8 @@ void FrameToPhotograph::prepare(const AVFrame& frame) {
     throw Error(fmt::format("its pixel format {} cannot be converted", format.name));
   }
   if (is_luma_and_chroma(format)) {
-    // libswscale only interpolates chroma: its RGB wraps around far outside the range, and its RGB
-    // of more than 8 bits is up to one 8-bit level too dark.
+    // libswscale only interpolates chroma, because its RGB wraps around far outside the range, and
+    // its RGB of more than 8 bits is up to one 8-bit level too dark.
     factors_ = make_colour_factors(luma_weights(frame.colorspace, frame.height), full_range, bits,
                                    wide_ ? 65535 : 255);
     yuv_ = make_picture(frame.width, frame.height, AV_PIX_FMT_YUV444P16);

@@ -9,10 +9,10 @@
 
 namespace vantage {
 
-/// Makes photographs of decoded frames: RGB of colours, one channel of grey; 8-bit, or 16-bit where
-/// the frame has more bits. Chroma is interpolated bicubically from where it was sampled. Matrix
-/// and range are those the frame is flagged with; unspecified, colours are BT.601 below 720 rows,
-/// BT.709 from there, with limited range, and grey levels have full range, as players take them.
+/// Converts decoded frames to photographs: RGB for colours, one channel for grey; 8-bit, or 16-bit
+/// if the frame has more bits. Chroma is interpolated bicubically from its sample positions. Matrix
+/// and range are those flagged in the frame; if unspecified, colours are BT.601 below 720 rows,
+/// else BT.709, with limited range, and grey levels have full range, as in players.
 class FrameToPhotograph {
  public:
   /// Reuses the memory of `photograph`. Throws Error, without a name, for a format that cannot be
@@ -20,12 +20,12 @@ class FrameToPhotograph {
   void convert(const AVFrame& frame, Photograph& photograph);
 
  private:
-  /// What convert() needs for frames such as this one.
+  /// Prepares convert() for frames like this one.
   void prepare(const AVFrame& frame);
   template <typename T>
   void fill(const AVFrame& frame, Image<T>& image);
 
-  /// What all below was made for.
+  /// Frame properties that the following members were made for.
   struct Source {
     int width = 0;
     int height = 0;
@@ -38,7 +38,7 @@ class FrameToPhotograph {
   Source source_;
   bool grey_ = false;
   bool wide_ = false;                  ///< more than 8 bits
-  std::vector<std::uint16_t> levels_;  ///< what each grey sample becomes; empty: not grey
+  std::vector<std::uint16_t> levels_;  ///< value of each grey sample; empty: not grey
   LibavScaler scaler_;
   LibavFrame yuv_;  ///< 16-bit luma and chroma of every pixel; empty: the scaler makes the result
   kernels::ColourFactors factors_;

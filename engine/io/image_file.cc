@@ -61,8 +61,8 @@ Photograph decode_with_opencv(const FileBytes& file, std::span<const std::uint8_
     const QuietOpenCv quiet;
     const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1,
                           const_cast<std::uint8_t*>(bytes.data()));
-    // "Unchanged" keeps depth and channels and ignores the EXIF orientation: calibrations are of
-    // the image as it was stored.
+    // "Unchanged" keeps depth and channels and ignores the EXIF orientation: calibrations refer to
+    // the stored image.
     decode_by_opencv(encoded, decoded);
   } catch (const cv::Exception&) {
     decoded.release();
@@ -104,7 +104,7 @@ void encode_with_opencv(const std::string& extension, const Photograph& photogra
           cv::cvtColor(pixels, reordered, cv::COLOR_RGBA2BGRA);
           pixels = reordered;
         }
-        // Without this OpenCV packs float colours into LogLuv, which is lossy.
+        // Otherwise OpenCV packs float colours as LogLuv, which is lossy.
         std::vector<int> parameters;
         if (extension == ".tif" || extension == ".tiff") {
           constexpr int kLzw = 5;
@@ -117,7 +117,7 @@ void encode_with_opencv(const std::string& extension, const Photograph& photogra
       photograph.pixels);
 }
 
-/// Leaves `bytes` empty when the image does not fit the format, as floats never do.
+/// Leaves `bytes` empty when the image does not fit the format; floats never do.
 void encode_with_libpng(const Photograph& photograph, std::vector<std::uint8_t>& bytes) {
   bytes.clear();
   std::visit(
@@ -129,7 +129,7 @@ void encode_with_libpng(const Photograph& photograph, std::vector<std::uint8_t>&
       photograph.pixels);
 }
 
-/// What a format can hold, by extension.
+/// Depths and channels that a format supports, by extension.
 struct Capability {
   std::string_view extension;
   std::string_view depths;    ///< 'b' 8-bit, 'w' 16-bit, 'f' float

@@ -16,10 +16,11 @@ constexpr std::endian kBig = std::endian::big;
 
 /// Two bytes of a run are at most 255 pixels.
 constexpr long long kMostRunPixelsPerByte = 128;
-/// Each 8×8 block takes a bit of Huffman code. Twice that, as components may be subsampled.
+/// Each 8×8 block takes at least one bit of Huffman code. Doubled, because components may be
+/// subsampled.
 constexpr long long kMostJpegPixelsPerByte = 1024;
 
-/// Asked before memory is: a few bytes must not take gigabytes.
+/// Checked before allocation: a few bytes must not allocate gigabytes.
 void check_pixels_per_byte(const FileBytes& file, long long width, long long height,
                            long long most) {
   if (width * height / most > static_cast<long long>(file.size())) {
@@ -60,8 +61,8 @@ bool is_start_of_frame(int marker) {
 
 bool is_huffman_frame(int marker) { return marker <= 0xC7; }
 
-/// Looks for the end marker first: "is truncated" tells more than what a decoder finds missing.
-/// Segments are stepped over: a thumbnail in one of them has markers of its own.
+/// Looks for the end marker first, because "is truncated" is clearer than a decoder's message.
+/// Segments are skipped: a thumbnail in one has its own markers.
 void check_jpeg(const FileBytes& file) {
   const auto bytes = file.all();
   bool has_frame = false;
@@ -72,7 +73,7 @@ void check_jpeg(const FileBytes& file) {
                                 std::uint8_t{0xFF});
     offset = static_cast<std::size_t>(next - bytes.begin()) + 1;
     const int marker = file.byte(offset);
-    // 00: a data byte FF; FF: filling; D0..D7 and 01: markers without a segment.
+    // 00: a data byte FF; FF: padding; D0..D7 and 01: markers without a segment.
     if (marker == 0x00 || marker == 0x01 || marker == 0xFF || (marker >= 0xD0 && marker <= 0xD8)) {
       offset += marker == 0xFF ? 0 : 1;
       continue;
@@ -99,7 +100,7 @@ void check_jpeg(const FileBytes& file) {
   }
 }
 
-/// The first directory of a classic TIFF file. What libtiff reads it checks itself.
+/// The first directory of a classic TIFF file. libtiff checks what it reads itself.
 void check_tiff(const FileBytes& file) {
   const std::endian order = file.has_at(0, "II") ? kLittle : kBig;
   if (file.integer<std::uint16_t>(2, order) != 42) {
@@ -151,10 +152,10 @@ std::string zero_ended_text(const FileBytes& file, std::size_t offset) {
   return text;
 }
 
-/// Rows per block of an EXR file, by the number of its compression.
+/// Rows per block of an EXR file, by compression number.
 constexpr std::array<int, 10> kExrBlockRows = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
 
-/// The blocks of a plain EXR file, of which a table at `offset` says where they begin.
+/// The blocks of a plain EXR file, whose positions are in a table at `offset`.
 void check_exr_blocks(const FileBytes& file, std::size_t offset, long long height,
                       int compression) {
   if (compression >= static_cast<int>(kExrBlockRows.size())) {

@@ -108,8 +108,7 @@ std::unique_ptr<FrameSource> open_image_pattern(const std::string& spec) {
   if (largest == std::numeric_limits<int>::max()) {
     throw Error(fmt::format("{}: number {} is too large", spec, largest));
   }
-  // Each missing number is a frame that is missing; names that are times have millions between
-  // them.
+  // Each missing number is a missing frame, but time stamps have millions between them.
   if (std::int64_t{largest} - *smallest + 1 - present > kMostMissingPerFile * present) {
     throw Error(fmt::format(
         "{}: {} files have numbers from {} to {}, expected at most {} missing for each that is "
@@ -124,7 +123,7 @@ std::unique_ptr<FrameSource> open_image_pattern(const std::string& spec) {
 std::unique_ptr<FrameSource> open_image_glob(const std::string& spec) {
   const fs::path path = spec;
   const std::string pattern = path.filename().string();
-  // No escapes: a backslash is a character of a name.
+  // No escapes: a backslash is an ordinary character.
   std::vector<fs::path> names = list_names(path.parent_path(), [&](const std::string& name) {
     return ::fnmatch(pattern.c_str(), name.c_str(), FNM_PERIOD | FNM_NOESCAPE) == 0;
   });

@@ -10,8 +10,8 @@
 
 namespace vantage {
 
-/// Image files as frames. Nothing is opened before FetchedFrame::decode(), so going anywhere costs
-/// nothing and a file that is missing or bad is one bad frame.
+/// Image files as frames. Nothing is opened before FetchedFrame::decode(), so seeking is free and a
+/// missing or bad file is one bad frame.
 class ImageSequence : public FrameSource {
  public:
   bool fetch(FetchedFrame& frame) final;
@@ -25,12 +25,12 @@ class ImageSequence : public FrameSource {
   [[nodiscard]] std::string identity() const final;
 
  protected:
-  /// `name` is what identity() calls the sequence.
+  /// `name`: the name of the sequence in identity().
   ImageSequence(std::string name, int count) : name_(std::move(name)), count_(count) {}
 
  private:
   [[nodiscard]] virtual std::filesystem::path path(int index) const = 0;
-  /// What identity() takes for the name of a frame's file.
+  /// Name of a frame's file in identity().
   [[nodiscard]] virtual std::string identity_name(int index) const {
     return path(index).filename().string();
   }
@@ -62,7 +62,7 @@ class ListedImages : public ImageSequence {
   std::vector<std::filesystem::path> paths_;
 };
 
-/// Files whose names count up without a gap.
+/// Files with consecutive numbers in their names.
 class NumberedImages : public ImageSequence {
  public:
   NumberedImages(std::string name, std::filesystem::path folder, NumberPattern pattern,
@@ -87,7 +87,7 @@ std::unique_ptr<FrameSource> open_image_folder(const std::string& folder);
 std::unique_ptr<FrameSource> open_image_pattern(const std::string& spec);
 std::unique_ptr<FrameSource> open_image_glob(const std::string& spec);
 
-/// Whether the extension is one of an image format that read_photograph() knows.
+/// Whether the extension is that of an image format that read_photograph() supports.
 bool has_image_extension(const std::filesystem::path& path);
 
 }  // namespace vantage

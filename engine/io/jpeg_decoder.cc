@@ -16,9 +16,9 @@
 namespace vantage {
 namespace {
 
-/// libjpeg's place for errors, and where they jump to.
+/// libjpeg's error manager, and the target of its longjmp.
 struct Problem {
-  jpeg_error_mgr manager{};  // first: libjpeg hands out a pointer to it
+  jpeg_error_mgr manager{};  // first: libjpeg passes a pointer to it
   std::jmp_buf jump{};
   std::array<char, JMSG_LENGTH_MAX> text{};
   int code = 0;
@@ -31,7 +31,7 @@ struct Problem {
   std::longjmp(problem.jump, 1);
 }
 
-/// Level −1 is a warning: data that is damaged and made up for. Others are remarks.
+/// Level −1 is a warning: damaged data was replaced. Others are remarks.
 void take_message(j_common_ptr common, int level) {
   if (level < 0) {
     jump_back(common);
@@ -49,8 +49,8 @@ void invert_cmyk(const std::uint8_t* cmyk, int width, std::uint8_t* rgb) {
   }
 }
 
-/// What libjpeg allocates for a file. Each call returns false where libjpeg reports an error; it
-/// then jumps over all that is below: no object on the way may have a destructor.
+/// Objects that libjpeg allocates for a file. Each call returns false when libjpeg reports an
+/// error, which it does by longjmp: no object in between may have a destructor.
 class JpegReader {
  public:
   explicit JpegReader(const FileBytes& file) {
@@ -80,7 +80,7 @@ class JpegReader {
     return true;
   }
 
-  /// `cmyk_row`: a row of such pixels where they are.
+  /// `cmyk_row`: buffer for a row of CMYK pixels, if they are.
   bool read(Image<std::uint8_t>& image, std::uint8_t* cmyk_row) {
     if (setjmp(problem_.jump) != 0) {
       return false;
@@ -105,7 +105,7 @@ class JpegReader {
   [[nodiscard]] int rows_read() const { return static_cast<int>(decoder_.output_scanline); }
 
   [[nodiscard]] bool is_out_of_memory() const { return problem_.code == JERR_OUT_OF_MEMORY; }
-  /// libjpeg's words in lower case, without those that all of its warnings begin with.
+  /// libjpeg's message in lower case, without the common prefix of its warnings.
   [[nodiscard]] std::string problem() const {
     std::string text = problem_.text.data();
     const std::string common = "Corrupt JPEG data: ";

@@ -24,7 +24,7 @@ constexpr int kMostLevels = 64;
   throw Error(fmt::format("{}:{}:{}: {}", name, line, before.size() - line_begin + 1, problem));
 }
 
-/// Where the first bracket is that lies deeper than allowed.
+/// Position of the first bracket nested deeper than allowed.
 std::optional<std::size_t> find_too_deep(std::string_view text) {
   int level = 0;
   bool in_string = false;
@@ -46,7 +46,7 @@ std::optional<std::size_t> find_too_deep(std::string_view text) {
   return std::nullopt;
 }
 
-/// The library's message without its own error numbers and places.
+/// The library's message without its error numbers and positions.
 std::string reason_of(std::string_view message) {
   for (const std::string_view mark : {" - ", "] "}) {
     if (const std::size_t at = message.find(mark); at != std::string_view::npos) {

@@ -7,15 +7,15 @@
 
 namespace vantage {
 
-/// The one way from JSON text to values. Brackets may be 64 deep: the library's functions call
-/// themselves for each level, and no file of ours is a tenth as deep. Throws Error
-/// "NAME:LINE:COLUMN: ..." for anything else than one JSON value.
+/// The only JSON parser of the engine. Brackets may be nested 64 deep: the library recurses for
+/// each level, and our files need less than a tenth of that. Throws Error "NAME:LINE:COLUMN: ..."
+/// for anything other than one JSON value.
 nlohmann::ordered_json parse_json(std::string_view text, const std::string& name);
 
-/// The same of a whole file. Throws Error when it cannot be read, too.
+/// parse_json() of a whole file. Throws Error also when it cannot be read.
 nlohmann::ordered_json read_json_file(const std::filesystem::path& file);
 
-/// quotable() of a value: texts in '', all else as JSON.
+/// quotable() of a value: strings in '', everything else as JSON.
 std::string quoted_json(const nlohmann::ordered_json& value);
 
 }  // namespace vantage

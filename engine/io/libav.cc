@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Demultiplexers of containers and of bare streams that hold frames of one video.
+/// Demultiplexers of containers and of raw streams with frames of one video.
 constexpr const char* kContainers =
     "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,mpegts,mpeg,mpegvideo,m4v,h264,hevc,av1,obu,ivf,"
     "vc1,mjpeg,yuv4mpegpipe,nut,flv,live_flv,asf,ogg,mxf,dv,gif,apng,wtv,rm,gxf,dirac";
@@ -46,8 +46,8 @@ void check_is_video_file(const fs::path& path) {
   }
 }
 
-/// Options for the decoders that find_streams() may start: none may take the size of a damaged
-/// header for real.
+/// Options for the decoders that find_streams() may start: none may allocate the size in a damaged
+/// header.
 class ProbeOptions {
  public:
   explicit ProbeOptions(unsigned streams) : options_(streams, nullptr) {
@@ -141,7 +141,7 @@ LibavInput open_media_file(const fs::path& path) {
   }
   opened->format_whitelist = av_strdup(kContainers);
   opened->protocol_whitelist = av_strdup("file");
-  // "file:" keeps names with a colon from being taken for addresses. On failure `opened` is freed.
+  // "file:" keeps names with a colon from being parsed as URLs. On failure `opened` is freed.
   const std::string address = "file:" + path.string();
   int result = libav().avformat_open_input(&opened, address.c_str(), nullptr, nullptr);
   LibavInput input(result < 0 ? nullptr : opened);

@@ -11,7 +11,7 @@ constexpr const char* kWithoutThem = "cannot read or write videos";
 
 }  // namespace
 
-// The major versions of the headers compiled against: FFmpeg changes types only between those.
+// The major versions of the headers: FFmpeg changes types only between major versions.
 LibavFunctions::LibavFunctions()
     : format_("libavformat.so." AV_STRINGIFY(LIBAVFORMAT_VERSION_MAJOR), kWithoutThem),
       codec_("libavcodec.so." AV_STRINGIFY(LIBAVCODEC_VERSION_MAJOR), kWithoutThem) {}

@@ -9,10 +9,10 @@ extern "C" {
 
 namespace vantage {
 
-/// The functions of libavformat and libavcodec that the engine calls. Both libraries bring a
-/// hundred others along, so they are opened with the first video and not with the program. The
-/// types are those of FFmpeg's headers; another function is one more line. Functions of libavutil,
-/// libswscale and libswresample are linked and called as always.
+/// The functions of libavformat and libavcodec that the engine calls. Both libraries load a hundred
+/// others, so they are opened with the first video and not at program start. The types are those of
+/// FFmpeg's headers; another function takes one more line. Functions of libavutil, libswscale and
+/// libswresample are linked as usual.
 class LibavFunctions {
  public:
   /// Opens both. Throws Error when that fails.
@@ -70,7 +70,7 @@ class LibavFunctions {
 #undef VANTAGE_LATE_FUNCTION
 };
 
-/// These functions; the first call opens the libraries. Throws Error when it cannot. Thread rule:
+/// The functions; the first call opens the libraries. Throws Error when that fails. Thread rule:
 /// may be called concurrently.
 const LibavFunctions& libav();
 

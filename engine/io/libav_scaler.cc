@@ -72,7 +72,7 @@ LibavScaler make_scaler(const ScalerOptions& options) {
   if (sws_init_context(scaler.get(), nullptr, nullptr) < 0) {
     throw Error("its pixel format cannot be converted");
   }
-  // Fails where there is nothing to set: between two kinds of RGB.
+  // Fails if there is nothing to set: between two kinds of RGB.
   sws_setColorspaceDetails(scaler.get(), coefficients, options.source_full_range ? 1 : 0,
                            coefficients, options.target_full_range ? 1 : 0, 0, kOne, kOne);
   return scaler;

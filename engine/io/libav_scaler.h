@@ -6,19 +6,19 @@ struct AVPixFmtDescriptor;
 
 namespace vantage {
 
-/// Where chroma lies, in 1/256 luma pixel from the first one it belongs to.
+/// Position of chroma samples relative to their first luma pixel, in 1/256 luma pixel.
 struct ChromaPosition {
   int x = 0;
   int y = 0;
 };
 
-/// For one of FFmpeg's names of a location, in frames of that format.
+/// Position for one of FFmpeg's location constants, in frames of that format.
 ChromaPosition chroma_position(int location, const AVPixFmtDescriptor& format);
 
 /// Throws Error for a number that is no pixel format.
 const AVPixFmtDescriptor& describe_pixel_format(int format);
 
-/// From one pixel format to another. Formats and matrix are FFmpeg's numbers (AV_PIX_FMT_…,
+/// Converts between pixel formats. Formats and matrix are FFmpeg's numbers (AV_PIX_FMT_…,
 /// SWS_CS_…).
 struct ScalerOptions {
   int width = 0;
@@ -32,11 +32,11 @@ struct ScalerOptions {
   ChromaPosition target_chroma = {};
 };
 
-/// Interpolates chroma bicubically, for every pixel; rounds; gives the same on every machine.
+/// Interpolates chroma bicubically, for every pixel, with rounding; bit-identical on every machine.
 /// Throws Error, without a name, for a format that cannot be converted.
 LibavScaler make_scaler(const ScalerOptions& options);
 
-/// A frame with memory for its pixels. Throws std::bad_alloc.
+/// A frame with allocated pixels. Throws std::bad_alloc.
 LibavFrame make_picture(int width, int height, int format);
 
 }  // namespace vantage

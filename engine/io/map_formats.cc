@@ -66,7 +66,7 @@ void disparity_as_png(const fs::path& path, Disparity disparity, Bytes& bytes) {
             "0..255.99, or a file in {}, which hold any",
             path.string(), d, x, y, listed_map_formats(MapContent::kConfidence)));
       }
-      // 0 means unknown, so what is known is stored as the nearest there is.
+      // 0 means unknown, so a known 0 is stored as the nearest value.
       image.at(x, y) = static_cast<std::uint16_t>(std::max(stored, 1.0));
     }
   }
@@ -113,7 +113,7 @@ void displacements_as_npy(const fs::path& /*path*/, const DisplacementView& disp
   bytes = encode_npy(interleaved(displacements, side, kNan).view());
 }
 
-/// Three channels, as the picture formats have no two.
+/// Three channels, because image formats do not have two.
 void displacements_as_floats(const fs::path& path, const DisplacementView& displacements, Side side,
                              Bytes& bytes) {
   const Image<float> values = interleaved(displacements, side, kNan);

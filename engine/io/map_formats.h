@@ -13,25 +13,27 @@
 
 namespace vantage {
 
-/// What is written into a file of a map.
+/// Content of a map file.
 enum class MapContent {
   kDisparity,      ///< one component
   kDisplacements,  ///< both components
   kConfidence,     ///< floats of any range
 };
 
-/// A file format of maps. To add one: a line in the table of map_formats.cc. Encoders make `bytes`,
-/// whose memory is reused, those of a file named `path`; sizes are checked before. They throw Error
-/// naming `path` when the format cannot hold a value. Thread rule: may be called concurrently.
+/// A file format of maps. To add one: a line in the table of map_formats.cc. Encoders write the
+/// content of a file named `path` to `bytes`, whose memory is reused; sizes are checked before.
+/// They throw Error naming `path` when the format cannot hold a value. Thread rule: may be called
+/// concurrently.
 struct MapFormat {
   std::string_view extension;  ///< lower case, with the dot
-  bool is_listed = true;       ///< false: another spelling of a format that is
-  /// Any float and unknown pixels; false: 0 to kLargestIntegerDisparity, and unknown pixels.
+  bool is_listed = true;       ///< false: another spelling of a listed format
+  /// Holds any float and unknown pixels; false: only 0 to kLargestIntegerDisparity, and unknown
+  /// pixels.
   bool holds_any_value = true;
-  /// Null: it holds no map of one component.
+  /// Null: does not support maps of one component.
   void (*encode_disparity)(const std::filesystem::path& path, ImageView<const float> disparity,
                            std::vector<std::uint8_t>& bytes) = nullptr;
-  /// Null: it holds no map of two components.
+  /// Null: does not support maps of two components.
   void (*encode_displacements)(const std::filesystem::path& path,
                                const DisplacementView& displacements, Side side,
                                std::vector<std::uint8_t>& bytes) = nullptr;
@@ -39,14 +41,14 @@ struct MapFormat {
   [[nodiscard]] bool can_hold(MapContent content) const;
 };
 
-/// Steps per pixel of a 16-bit PNG, and its largest value in steps.
+/// Steps per pixel of a 16-bit PNG, and its maximum value in steps.
 constexpr double kIntegerDisparityScale = 256;
 constexpr double kLargestIntegerDisparity = 65535;
 
 /// All formats, in the order of messages.
 std::span<const MapFormat> map_formats();
 
-/// The format that the extension of `path` says, in any letter case, if it can hold `content`; else
+/// The format given by the extension of `path`, in any letter case, if it can hold `content`; else
 /// null.
 const MapFormat* find_map_format(const std::filesystem::path& path, MapContent content);
 

@@ -5,7 +5,7 @@
 
 namespace vantage {
 
-/// `text` as the content or a quoted attribute value of an XML or HTML element.
+/// `text` escaped for the content or a quoted attribute value of an XML or HTML element.
 std::string escaped_markup(std::string_view text);
 
 }  // namespace vantage

@@ -46,7 +46,7 @@ int Mp4Muxer::add_stream(const AVCodecParameters& parameters, AVRational time_un
   if (stream == nullptr || libav().avcodec_parameters_copy(stream->codecpar, &parameters) < 0) {
     throw std::bad_alloc();
   }
-  stream->codecpar->codec_tag = 0;  // the one of another container may mean nothing here
+  stream->codecpar->codec_tag = 0;  // another container's tag may be meaningless here
   stream->time_base = time_unit;
   return stream->index;
 }

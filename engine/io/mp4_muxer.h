@@ -13,10 +13,9 @@ struct AVRational;
 
 namespace vantage {
 
-/// Writes an MP4 whose index comes first, so that browsers can begin before they have all of it.
-/// Holds nothing but what it is given: no dates, no versions. The file appears under its name at
-/// finish(); without it nothing is left.
-/// Thread rule: one thread at a time.
+/// Writes an MP4 with its index first, so that browsers can start before they have all of it.
+/// Contains no dates or versions, so the bytes depend on the input only. The file appears under its
+/// name at finish(); without it nothing is left. Thread rule: one thread at a time.
 class Mp4Muxer {
  public:
   /// Throws Error when the file cannot be written.
@@ -25,14 +24,15 @@ class Mp4Muxer {
   Mp4Muxer& operator=(const Mp4Muxer&) = delete;
   ~Mp4Muxer();
 
-  /// Adds a stream before begin(), the video first. Returns its number.
+  /// Adds a stream before begin(), the video first. Returns its index.
   int add_stream(const AVCodecParameters& parameters, AVRational time_unit);
   void begin();
-  /// `packet`, whose times count in `time_unit`, belongs to stream `stream`; it is empty
+  /// Writes `packet`, whose times are in `time_unit`, to stream `stream`; the packet is empty
   /// afterwards. Packets of a stream come in decoding order, those of several streams roughly by
   /// their times. Throws Error when the disk is full.
   void write(AVPacket& packet, int stream, AVRational time_unit);
-  /// Ends the file, checks that it reads back as a video of `frames` frames, and gives it its name.
+  /// Ends the file, checks that it can be read as a video of `frames` frames, and gives it its
+  /// name.
   void finish(int frames);
 
   [[noreturn]] void fail(const std::string& problem) const;
@@ -44,7 +44,7 @@ class Mp4Muxer {
 
   std::filesystem::path path_;
   AtomicFile file_;
-  // Declared after the file: closes it before it is removed.
+  // Declared after the file, so that it closes it before the file is removed.
   std::unique_ptr<AVFormatContext, Free> output_;
 };
 

@@ -18,10 +18,10 @@ static_assert(std::endian::native == std::endian::little);
 
 constexpr std::string_view kMagic = "\x93NUMPY";
 
-/// A header is a Python dictionary of three entries; more text than this is not one.
+/// A header is a Python dictionary of three entries; longer text is not one.
 constexpr std::size_t kMaxHeaderBytes = 4096;
 
-/// The text behind `'key':` in a Python dictionary of plain values, blanks skipped.
+/// The text after `'key':` in a Python dictionary of plain values, blanks skipped.
 std::string_view find_value(const FileBytes& file, std::string_view dictionary,
                             std::string_view key) {
   for (const char quote : {'\'', '"'}) {
@@ -42,7 +42,7 @@ std::string_view find_value(const FileBytes& file, std::string_view dictionary,
   file.fail(fmt::format("its NPY header has no usable '{}' entry", key));
 }
 
-/// What stands between the first character of `value` and the next `end`.
+/// The text between the first character of `value` and the next `end`.
 std::string_view enclosed(const FileBytes& file, std::string_view value, char end) {
   const std::size_t length = value.find(end, 1);
   if (length == std::string_view::npos) {
@@ -154,11 +154,11 @@ Image<float> decode_npy(const FileBytes& file) {
 
 namespace {
 
-/// Everything before the values; `shape` as Python writes tuples, without the parentheses.
+/// Everything before the values; `shape` is a Python tuple without the parentheses.
 std::vector<std::uint8_t> npy_header(std::string_view type, std::string_view shape) {
   std::string header =
       fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
-  // The data begins at a multiple of 64 bytes: magic, version and length are ten bytes.
+  // The data starts at a multiple of 64 bytes: magic, version and length are ten bytes.
   header.append(63 - (10 + header.size()) % 64, ' ');
   header.push_back('\n');
   std::vector<std::uint8_t> bytes(kMagic.begin(), kMagic.end());

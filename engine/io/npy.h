@@ -9,18 +9,18 @@
 
 namespace vantage {
 
-/// True when `file` begins like a NumPy array file.
+/// True when `file` starts like a NumPy array file.
 bool is_npy(const FileBytes& file);
 
 /// Decodes a NumPy array file, format versions 1 to 3, of shape (height, width), type <f4 or <f8
-/// (rounded to float) in C order. Throws Error that names the type, order or shape of any other.
+/// (rounded to float) in C order. Throws Error that names any other type, order or shape.
 Image<float> decode_npy(const FileBytes& file);
 
 /// Encodes as <f4 in C order, format version 1.0; of shape (height, width), or (height, width,
-/// channels) where there are several.
+/// channels) for several channels.
 std::vector<std::uint8_t> encode_npy(ImageView<const float> image);
 
-/// Encodes numbers as <f8 in C order, of any shape whose sides multiply to their count.
+/// Encodes numbers as <f8 in C order; the product of `shape` is their count.
 std::vector<std::uint8_t> encode_npy(std::span<const double> values, std::span<const int> shape);
 
 }  // namespace vantage

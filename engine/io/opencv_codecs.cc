@@ -8,8 +8,8 @@
 namespace vantage {
 namespace {
 
-// The names are those that the Itanium C++ ABI makes of these declarations; the types fail to
-// compile when OpenCV no longer declares functions like these.
+// The names are the Itanium C++ ABI names of these declarations; the types fail to compile when
+// OpenCV no longer declares such functions.
 using Imdecode = decltype(static_cast<cv::Mat (*)(cv::InputArray, int, cv::Mat*)>(&cv::imdecode));
 constexpr const char* kImdecode = "_ZN2cv8imdecodeERKNS_11_InputArrayEiPNS_3MatE";
 using Imencode =

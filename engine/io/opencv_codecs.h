@@ -10,11 +10,11 @@ class Mat;
 
 namespace vantage {
 
-// OpenCV's image codecs. Their library brings 120 others along, so it is opened by the first call
-// of these functions and not with the program. Thread rule: both may be called concurrently.
+// OpenCV's image codecs. Their library loads 120 others, so it is opened by the first call of these
+// functions and not at program start. Thread rule: both may be called concurrently.
 
 /// cv::imdecode() with IMREAD_UNCHANGED; `decoded` is empty when it cannot be decoded. Throws
-/// cv::Exception as that does, and Error when the library cannot be opened.
+/// cv::Exception as cv::imdecode() does, and Error when the library cannot be opened.
 void decode_by_opencv(const cv::Mat& encoded, cv::Mat& decoded);
 
 /// cv::imencode(): the same extensions, order of channels, parameters and result. Throws likewise.

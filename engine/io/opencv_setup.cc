@@ -11,7 +11,7 @@ namespace {
 
 thread_local int quiet_depth = 0;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
-/// Passes on to another buffer what threads write that are not quiet.
+/// Forwards the output of threads that are not quiet to another buffer.
 class ThreadFilter : public std::streambuf {
  public:
   explicit ThreadFilter(std::streambuf* target) : target_(target) {}
@@ -36,14 +36,14 @@ class ThreadFilter : public std::streambuf {
 
 void prepare_opencv() {
   static const bool prepared = [] {
-    // OpenCV reads this when it first opens such a file. A value that the user set stays.
+    // OpenCV reads this when it first opens such a file. A value set by the user is kept.
     ::setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 0);
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     // cv::error() would print every exception before throwing it.
     cv::redirectError([](int, const char*, const char*, const char*, int, void*) { return 0; });
     cv::setNumThreads(1);
     if (std::cerr.rdbuf() != nullptr) {
-      // Never freed: std::cerr is used until the very end of the process.
+      // Never freed: std::cerr is used until the process ends.
       std::cerr.rdbuf(new ThreadFilter(std::cerr.rdbuf()));
     }
     return true;

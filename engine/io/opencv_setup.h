@@ -2,13 +2,13 @@
 
 namespace vantage {
 
-/// Prepares OpenCV for use by an engine with threads and error messages of its own: no threads
-/// underneath, no text on stderr (its errors reach the user as ours), EXR switched on. The first
-/// call does it, for the whole process. Thread rule: may be called concurrently.
+/// Prepares OpenCV for use by an engine with its own threads and error messages: no threads
+/// underneath, no text on stderr (its errors reach the user as ours), EXR enabled. The first call
+/// applies to the whole process. Thread rule: may be called concurrently.
 void prepare_opencv();
 
-/// While one lives, what its thread writes to std::cerr is dropped: OpenCV's decoders print the
-/// exceptions that they turn into an empty image. prepare_opencv() comes first. May be nested.
+/// During its lifetime, output of its thread to std::cerr is dropped: OpenCV's decoders print the
+/// exceptions that they turn into an empty image. Call prepare_opencv() first. May be nested.
 class QuietOpenCv {
  public:
   QuietOpenCv();

@@ -33,8 +33,8 @@ Image<float> decode_pfm(const FileBytes& file) {
   const std::size_t row_values = static_cast<std::size_t>(width) * channels;
   const std::size_t row_bytes = row_values * sizeof(float);
   const std::size_t payload = row_bytes * static_cast<std::size_t>(height);
-  // Some writers put blanks or a carriage return behind the scale: the data begins behind the line
-  // end. It begins behind the first blank where there is no line end among the blanks.
+  // Some writers add blanks or a carriage return after the scale: the data starts after the line
+  // end, or after the first blank if there is no line end among the blanks.
   std::size_t begin = header.offset();
   if (!is_blank(file.byte(begin))) {
     file.fail("its header does not end in a line end");

@@ -29,7 +29,7 @@ void check_finite(const FileBytes& file, const Image<float>& image) {
   }
 }
 
-/// PNM files may say that white is, say, 1023: photographs span their whole type.
+/// PNM files may define white as 1023, for example: photographs use the full range of their type.
 template <typename T>
 void stretch(Image<T>& image, unsigned max_value) {
   constexpr unsigned kFull = sizeof(T) == 1 ? 255U : 65535U;

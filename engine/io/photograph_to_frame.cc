@@ -17,7 +17,7 @@ extern "C" {
 namespace vantage {
 namespace {
 
-/// 8-bit value of any depth's, rounded.
+/// 8-bit value from any depth, rounded.
 template <typename T>
 std::uint8_t to_byte(T value) {
   if constexpr (std::is_same_v<T, std::uint8_t>) {

@@ -5,14 +5,14 @@
 
 namespace vantage {
 
-/// Makes frames for encoders of photographs: yuv420p of BT.709 with limited range, chroma sampled
-/// at the left, as H.264 has it.
+/// Converts photographs to frames for encoders: BT.709 yuv420p with limited range, chroma sampled
+/// at the left, as in H.264.
 class PhotographToFrame {
  public:
   /// Size of the photographs. Frames have even sizes: an odd last column or row is repeated.
   PhotographToFrame(int width, int height);
 
-  /// The frame, until convert() is called again. 4-channel photographs lose their alpha.
+  /// The frame, valid until the next convert(). 4-channel photographs lose their alpha.
   AVFrame& convert(const Photograph& photograph);
 
  private:

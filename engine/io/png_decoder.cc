@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-/// The bytes of all rows, each behind the number of its filter.
+/// The bytes of all rows, each preceded by its filter number.
 struct FilteredRows {
   std::unique_ptr<std::uint8_t[]> bytes;
   std::size_t row_bytes = 0;  ///< without the filter
@@ -42,7 +42,7 @@ bool decompress(std::span<const std::span<const std::uint8_t>> parts, std::span<
     }
     compressed = joined;
   }
-  // Without a place for the actual size, success means that it is exactly the expected one.
+  // Without an output for the actual size, success means exactly the expected size.
   return decompressor &&
          libdeflate_zlib_decompress(decompressor.get(), compressed.data(), compressed.size(),
                                     to.data(), to.size(), nullptr) == LIBDEFLATE_SUCCESS;
@@ -56,8 +56,8 @@ std::uint8_t nearest_to_gradient(int left, int up, int up_left) {
   return static_cast<std::uint8_t>(to_left <= to_up && to_left <= to_up_left ? left : vertical);
 }
 
-/// Undoes a filter of PNG in place. `up`: the row above, made already; a row of zeros for the first
-/// one. kPixelBytes: of a whole pixel. False for a filter that does not exist.
+/// Undoes a PNG filter in place. `up`: the decoded row above; zeros for the first row. kPixelBytes:
+/// bytes per pixel. False for an unknown filter.
 template <int kPixelBytes>
 bool undo_filter(int filter, const std::uint8_t* up, std::size_t count, std::uint8_t* row) {
   const auto add = [row](std::size_t i, int prediction) {

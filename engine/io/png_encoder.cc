@@ -9,7 +9,7 @@
 namespace vantage {
 namespace {
 
-/// Where libpng writes to.
+/// Output of libpng.
 struct Sink {
   std::vector<std::uint8_t>& bytes;
   bool out_of_memory = false;
@@ -31,7 +31,7 @@ void keep_in_memory(png_structp) {}
 void keep_quiet(png_structp, png_const_charp) {}
 void jump_back(png_structp png, png_const_charp) { png_longjmp(png, 1); }
 
-/// What libpng allocates for a file.
+/// Objects that libpng allocates for a file.
 class PngWriter {
  public:
   PngWriter()
@@ -46,15 +46,15 @@ class PngWriter {
   PngWriter& operator=(const PngWriter&) = delete;
   ~PngWriter() { png_destroy_write_struct(&png_, &info_); }
 
-  /// False where libpng reports an error. It then jumps over all that is below here: no object on
-  /// the way may have a destructor.
+  /// False when libpng reports an error, which it does by longjmp: no object in between may have a
+  /// destructor.
   template <typename T>
   bool write(const Image<T>& image, Sink& sink) {
     if (setjmp(png_jmpbuf(png_)) != 0) {
       return false;
     }
     png_set_write_fn(png_, &sink, append, keep_in_memory);
-    // The fastest way to compress photographs, and not much behind the best.
+    // The fastest filter for photographs, with nearly the best compression.
     png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     png_set_compression_level(png_, 1);
     constexpr int kRunLengths = 3;  // zlib's Z_RLE

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
 
-/// Deflate cannot compress by more than this factor.
+/// Maximum compression factor of Deflate.
 constexpr std::size_t kMaxDeflateRatio = 1032;
 
-/// Reads the IHDR at `offset`; returns the least number of bytes before compression.
+/// Reads the IHDR at `offset`; returns the minimum number of bytes before compression.
 std::size_t read_header(const FileBytes& file, std::size_t offset, PngStructure& structure) {
   const auto width = file.integer<std::uint32_t>(offset, std::endian::big);
   const auto height = file.integer<std::uint32_t>(offset + 4, std::endian::big);

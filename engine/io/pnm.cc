@@ -11,7 +11,7 @@ namespace vantage {
 namespace {
 
 struct PnmHeader {
-  int kind = 0;  ///< 1..6, the digit behind the P
+  int kind = 0;  ///< 1..6, the digit after the P
   int width = 0;
   int height = 0;
   int channels = 1;
@@ -120,7 +120,7 @@ PnmImage decode_pnm(const FileBytes& file) {
   }
   const std::size_t begin = words.offset() + 1;
   if (header.is_text()) {
-    // At least one digit each, so that a short file is refused before memory is asked for.
+    // At least one digit each, so that a short file is refused before allocation.
     (void)file.part(begin, header.values_per_row() * static_cast<std::size_t>(header.height));
   }
 

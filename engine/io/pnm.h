@@ -8,8 +8,8 @@
 
 namespace vantage {
 
-/// A PNM file's values as stored, 0..max_value, 8-bit up to 255 and 16-bit above. Bitmaps come out
-/// as 0 (black) and 255.
+/// A PNM file's values as stored, 0..max_value, 8-bit up to 255 and 16-bit above. Bitmaps become 0
+/// (black) and 255.
 struct PnmImage {
   Photograph photograph;
   int max_value = 255;

@@ -14,7 +14,7 @@ extern "C" {
 namespace vantage {
 namespace {
 
-/// Decoders need some packets before the first one heard, and seeking is not exact.
+/// Decoders need some packets before the first audible one, and seeking is not exact.
 constexpr double kRunUpSeconds = 1;
 
 double start_seconds(const AVStream* stream) {
@@ -37,7 +37,7 @@ SoundInput::SoundInput(const SoundTrack& track)
   read_only(*input_, *stream_);
   const double run_up = begin_seconds_ - kRunUpSeconds;
   if (run_up > start_seconds(stream_)) {
-    // Where seeking fails the file is read from its beginning.
+    // If seeking fails the file is read from its start.
     libav().av_seek_frame(input_.get(), stream_->index,
                           std::llround(run_up / av_q2d(stream_->time_base)), AVSEEK_FLAG_BACKWARD);
   }

@@ -25,7 +25,7 @@ class CopiedSound : public SoundPackets {
   bool next() override {
     AVPacket& packet = this->packet();
     while (input_.read(packet)) {
-      // One packet more than is heard: what it leaves in the decoder belongs to the first one.
+      // One packet more than is audible: the decoder needs its state for the first one.
       if (input_.seconds(packet.pts + 2 * packet.duration) > 0) {
         packet.pts -= input_.begin_time();
         packet.dts = packet.pts;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kEscapeLength = 4;  // \xHH
 
-/// Bytes of the UTF-8 character at the begin of `text`; 0: it is none.
+/// Bytes of the UTF-8 character at the start of `text`; 0: invalid.
 std::size_t character_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = byte(0);
@@ -39,7 +39,7 @@ int digit_value(char letter) {
                                           : -1;
 }
 
-/// The byte that an escape at the begin of `text` stands for; -1: there is none.
+/// The byte encoded by an escape at the start of `text`; -1: none.
 int escaped_byte(std::string_view text) {
   if (text.size() < kEscapeLength || !text.starts_with("\\x")) {
     return -1;

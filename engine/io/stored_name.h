@@ -5,12 +5,12 @@
 
 namespace vantage {
 
-/// The name of a file or folder as text files hold it that must be UTF-8 (JSON, TOML): bytes that
-/// are none become "\xHH". So does a backslash that would otherwise be read as the begin of that.
-/// All other names stay as they are.
+/// Encodes a file or folder name for text files that must be UTF-8 (JSON, TOML): invalid bytes
+/// become "\xHH". So does a backslash that would otherwise look like the start of one. All other
+/// names are unchanged.
 std::string stored_name(std::string_view name);
 
-/// The bytes that stored_name() was given.
+/// Inverse of stored_name().
 std::string name_of_stored(std::string_view text);
 
 }  // namespace vantage

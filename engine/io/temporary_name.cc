@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kMark = ".tmp-";
 constexpr std::size_t kHostDigits = 8;
-/// Of the mark, the host and two numbers with their dashes.
+/// Length of the mark, the host and two numbers with their dashes.
 constexpr std::size_t kMostAdded = 1 + kMark.size() + kHostDigits + 2 * 11;
-/// What is longer is no extension that anything looks at.
+/// Longer suffixes are not extensions of any format.
 constexpr std::size_t kLongestExtension = 16;
 
 std::uint32_t hash_of_host() {
@@ -29,13 +29,13 @@ std::uint32_t hash_of_host() {
   std::array<char, 256> host{};
   (void)::gethostname(host.data(), host.size() - 1);
   hash.add(std::string_view(host.data()));
-  // Two containers may have the host's name and numbers of their own.
+  // Two containers may have the same host name and separate PID namespaces.
   std::error_code ignored;
   hash.add(fs::read_symlink("/proc/self/ns/pid", ignored).string());
   return static_cast<std::uint32_t>(hash.value() ^ (hash.value() >> 32U));
 }
 
-/// Stem and extension as they stand in a temporary name.
+/// Stem and extension as used in a temporary name.
 std::pair<std::string, std::string> shortened(const fs::path& file) {
   std::string stem = file.stem().string();
   std::string extension = file.extension().string();
@@ -54,7 +54,7 @@ std::pair<std::string, std::string> shortened(const fs::path& file) {
   return {stem, extension};
 }
 
-/// Takes characters that `accepts` off the front; how many.
+/// Removes leading characters that `accepts` returns true for; returns their number.
 template <typename Accepts>
 std::size_t skip(std::string_view& text, const Accepts& accepts) {
   const auto end = std::ranges::find_if_not(text, accepts);

@@ -17,11 +17,12 @@ class TextHeader {
 
   /// The next word, at most 64 characters. Throws Error at the end of the file.
   std::string word();
-  /// The next word as a decimal number without sign, at most 999 999 999. `what` names it.
+  /// The next word as a decimal number without sign, at most 999 999 999. `what`: its name in
+  /// messages.
   int number(const char* what);
-  /// Position right behind the last word.
+  /// Position directly after the last word.
   [[nodiscard]] std::size_t offset() const { return offset_; }
-  /// Skips the blanks (and comments) before the next word; false when the file ends there.
+  /// Skips the blanks (and comments) before the next word; false at the end of the file.
   bool skip_blanks();
 
  private:

@@ -19,8 +19,8 @@ extern "C" {
 namespace vantage {
 namespace {
 
-/// Decoders that were tried on damaged videos with several frames under way at once. Not all bear
-/// it: that of MPEG-4 part 2 in FFmpeg 5.1 aborts the process.
+/// Decoders tested on damaged videos with frame threading. Not all are robust: FFmpeg 5.1's MPEG-4
+/// part 2 decoder aborts the process.
 bool can_decode_frames_at_once(AVCodecID codec) {
   switch (codec) {
     case AV_CODEC_ID_H264:
@@ -82,7 +82,7 @@ VideoDecoder::VideoDecoder(const std::filesystem::path& path, int threads)
   cut_.emplace(parameters);
   read_packet();
   if (cut_->misses_frames()) {
-    threads_ = 1;  // only then damage that is not to be excused is marked in the frames
+    threads_ = 1;  // only then are frames with inexcusable damage marked
   }
   codec_ = open_decoder(*stream_, threads_, path.string());
 }
@@ -99,7 +99,8 @@ bool VideoDecoder::begin_at(const PossibleStart& start) {
   if (cut_->misses_frames()) {
     return false;
   }
-  // Some containers look for when packets are shown, which is later by what packets before say.
+  // Some containers seek by presentation time, which is later by the reordering delay of the
+  // packets.
   std::int64_t lag = 0;
   for (int tries = 0; tries < 3; ++tries) {
     if (libav().av_seek_frame(input_.get(), stream_->index, start.time + tries * lag,
@@ -120,7 +121,7 @@ bool VideoDecoder::begin_at(const PossibleStart& start) {
 }
 
 VideoDecoder::Step VideoDecoder::next() {
-  // With several frames under way at once this thread hands out packets and waits for frames.
+  // With frame threading this thread sends packets and waits for frames.
   const scheduler::Span span("decode video", codec_->active_thread_type == FF_THREAD_FRAME
                                                  ? scheduler::SpanKind::kWait
                                                  : scheduler::SpanKind::kWork);
@@ -178,7 +179,7 @@ void VideoDecoder::feed() {
 
 bool VideoDecoder::stop_feeding(const std::string& problem, std::int64_t damaged_time,
                                 FoundBy found_by) {
-  // What the decoder finds with several threads may be in any of the packets under way.
+  // With several threads, damage found by the decoder may be in any of the packets in flight.
   const bool is_exact =
       threads_ == 1 || (found_by == FoundBy::kFile && damaged_time != AV_NOPTS_VALUE);
   gave_all_before_damage_ = gave_all_before_damage_ && is_exact;

@@ -46,7 +46,7 @@ bool VideoFrames::fetch(FetchedFrame& frame) {
 
 void VideoFrames::skip_to(int index) {
   assert(index >= 0 && index <= frame_count_);
-  // One frame before it is read: only then a gap between the two shows.
+  // One frame before `index`, so that a gap between the two is noticed.
   const int last_start = std::max(0, index - 1);
   const std::optional<int> start = index < next_index_
                                        ? reader_->go_to_start(0, last_start)
@@ -69,7 +69,7 @@ void VideoFrames::skip_to(int index) {
     }
     ++next_index_;
   }
-  // Where the video has ended on the way, fetch() finds that out again.
+  // If the video ended on the way, fetch() detects that again.
   next_index_ = index;
 }
 

@@ -9,16 +9,16 @@
 
 namespace vantage {
 
-/// The frames of a video file. They are decoded by fetch(), each from those before it, and become
-/// photographs in FetchedFrame::decode(). Damage loses the frames up to the next one that decoding
-/// is known to be able to begin with.
+/// The frames of a video file. fetch() decodes them, each from those before it, and
+/// FetchedFrame::decode() converts them to photographs. Damage loses the frames up to the next
+/// known random access point.
 class VideoFrames : public FrameSource {
  public:
   /// Throws Error as VideoReader does.
   explicit VideoFrames(std::string name);
 
   bool fetch(FetchedFrame& frame) override;
-  /// Where no frame on the way is known that decoding can begin with, all of them are decoded.
+  /// Decodes all frames on the way if there is no known random access point.
   void skip_to(int index) override;
   [[nodiscard]] int frame_count() const override { return frame_count_; }
   [[nodiscard]] std::string describe(int index) const override;
@@ -34,11 +34,11 @@ class VideoFrames : public FrameSource {
   std::unique_ptr<VideoReader> reader_;
   int frame_count_;
   int next_index_ = 0;
-  /// Notes what is wrong with the next frame.
+  /// Records the problem of the next frame.
   void note_damage(const std::string& problem);
 
-  int next_good_ = 0;   ///< frames before it lie behind damage; the reader is there
-  std::string damage_;  ///< what was wrong with the last bad frame that lay behind none
+  int next_good_ = 0;   ///< frames before it are lost to damage; the reader is there
+  std::string damage_;  ///< problem of the last bad frame that was not itself after damage
 };
 
 }  // namespace vantage

@@ -41,7 +41,7 @@ class Segment {
 
   [[nodiscard]] const AVCodecParameters& parameters() const { return *stream_->codecpar; }
 
-  /// Reads the next packet; its pts becomes the number of its frame. False after the last one.
+  /// Reads the next packet; its pts becomes the index of its frame. False after the last one.
   bool read(AVPacket& packet) {
     int result = libav().av_read_frame(input_.get(), &packet);
     while (result >= 0 && packet.stream_index != stream_->index) {
@@ -88,11 +88,11 @@ void check_same_coding(const Segment& segment, const Segment& first, const fs::p
   }
 }
 
-/// What the segments hold together.
+/// Combined properties of the segments.
 struct JoinPlan {
   std::vector<int> segment_frames;
   int frames = 0;
-  /// Frames by which decoding has to be ahead of showing.
+  /// Frames by which decoding must precede presentation.
   int decoding_lead = 0;
 };
 
@@ -126,7 +126,7 @@ JoinPlan plan_join(std::span<const fs::path> paths, AVRational frame_unit) {
   return plan;
 }
 
-/// Writes what the segments hold together, with `sound`.
+/// Writes all segments, with `sound`.
 void write_joined(std::span<const fs::path> segments, const JoinPlan& plan, AVRational frame_unit,
                   const SoundTrack& sound, const fs::path& output) {
   const std::unique_ptr<SoundPackets> sound_packets = open_sound_packets(sound);
@@ -190,7 +190,7 @@ std::string join_videos(std::span<const fs::path> segments, FrameRate rate, cons
       write_joined(segments, plan, frame_unit, sound, output);
       return "";
     } catch (const Error& error) {
-      // The pictures alone tell whether it was the sound that failed.
+      // Joining without sound shows whether the sound caused the failure.
       problem = error.what();
     }
   }

@@ -10,11 +10,11 @@
 
 namespace vantage {
 
-/// Converters for pictures of one video: as many as are converted at a time.
+/// Converters for pictures of one video: one per concurrent conversion.
 using PictureConverters = ObjectPool<FrameToPhotograph>;
 
-/// A frame of a video as its decoder has left it: luma and chroma, mostly. It shares the decoder's
-/// memory and may outlive the reader that it came from.
+/// A decoded frame of a video, usually luma and chroma. It shares the decoder's memory and may
+/// outlive its reader.
 class VideoPicture {
  public:
   /// Holds nothing.
@@ -27,9 +27,9 @@ class VideoPicture {
   /// Another reference to the same pixels.
   [[nodiscard]] VideoPicture share() const;
 
-  /// Makes a photograph of it, whose memory is reused, and lets go of the decoder's. Thread rule:
-  /// concurrently for different pictures. Throws Error, with the name, when its pixel format cannot
-  /// be converted.
+  /// Converts it to a photograph, whose memory is reused, and releases the decoder's memory. Thread
+  /// rule: concurrently for different pictures. Throws Error, with the name, when its pixel format
+  /// cannot be converted.
   void convert(Photograph& photograph);
 
  private:

@@ -21,10 +21,10 @@ extern "C" {
 namespace vantage {
 namespace {
 
-/// More make a small picture no faster, and every one keeps a picture.
+/// More do not speed up small pictures, and each one holds a picture.
 constexpr unsigned kMaxDecoderThreads = 4;
 
-/// Half of the processors: a run keeps all of them busy with other frames meanwhile.
+/// Half of the processors: a run uses all of them for other frames at the same time.
 int decoder_threads() {
   return static_cast<int>(
       std::clamp(std::thread::hardware_concurrency() / 2, 1U, kMaxDecoderThreads));
@@ -44,7 +44,7 @@ struct VideoReader::State {
   std::shared_ptr<PictureConverters> converters = std::make_shared<PictureConverters>();
   int frames_read = 0;
   bool ended = false;
-  std::optional<double> frame_seconds;  ///< when the last frame is shown
+  std::optional<double> frame_seconds;  ///< presentation time of the last frame
   int frames_missing = 0;
 
   [[noreturn]] void fail(const std::string& problem) {
@@ -62,17 +62,17 @@ struct VideoReader::State {
   /// Decodes the next frame; false after the last one.
   bool advance();
   VideoDecoder::Step decode_exactly();
-  /// Has decoding begin anew with one of the starts in first..last, the `which` one of those it can
-  /// begin with. Empty, and nothing happens, when there is none.
+  /// Restarts decoding at one of the starts in first..last, the `which` one of those where it is
+  /// possible. Returns empty and does nothing when there is none.
   enum class Which { kFirst, kLast };
   std::optional<int> begin_within(int first, int last, Which which, int threads);
-  /// Likewise with the last start up to `last`; frame 0 always is one.
+  /// As above at the last start up to `last`; frame 0 always is one.
   void begin_up_to(int last, int threads);
   void forget_last_frame();
   void note_time();
 };
 
-/// Decodes anew with one thread up to the frame due, which is then the damaged one or still good.
+/// Decodes again with one thread up to the next frame, which is then the damaged one or still good.
 VideoDecoder::Step VideoReader::State::decode_exactly() {
   const int frame_due = frames_read;
   begin_up_to(frame_due, 1);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint64_t kTransportPacketBytes = 188;
 
-/// Reads a few bytes here and there of a file too large to load, and their neighbours with them.
+/// Reads a few scattered bytes of a file too large to load, with caching.
 class SparseFile {
  public:
   explicit SparseFile(const std::filesystem::path& path)
@@ -33,7 +33,7 @@ class SparseFile {
     return offset <= size_ && bytes <= size_ - offset;
   }
 
-  /// `bytes` ≤ 8 that the file holds.
+  /// `bytes` ≤ 8; they must be in the file.
   std::uint64_t big_endian(std::uint64_t offset, int bytes) {
     std::uint64_t value = 0;
     for (const char c : text(offset, bytes)) {
@@ -42,7 +42,7 @@ class SparseFile {
     return value;
   }
 
-  /// `count` ≤ 8 bytes that the file holds.
+  /// `count` ≤ 8 bytes; they must be in the file.
   std::string_view text(std::uint64_t offset, int count) {
     const auto bytes = static_cast<std::size_t>(count);
     if (offset < begin_ || offset + bytes > begin_ + buffer_.size()) {
@@ -69,14 +69,14 @@ class SparseFile {
   std::uint64_t begin_ = 0;
 };
 
-/// A box of an MP4, from its head on.
+/// A box of an MP4, including its header.
 struct Box {
   std::string type;
-  std::uint64_t begin = 0;  ///< of its contents
+  std::uint64_t begin = 0;  ///< start of its contents
   std::uint64_t end = 0;
 };
 
-/// The box at `offset`; empty when it is not there to its end.
+/// The box at `offset`; empty when it is incomplete.
 std::optional<Box> whole_box(SparseFile& file, std::uint64_t offset) {
   if (!file.holds(offset, 8)) {
     return std::nullopt;
@@ -84,7 +84,7 @@ std::optional<Box> whole_box(SparseFile& file, std::uint64_t offset) {
   std::uint64_t header = 8;
   std::uint64_t length = file.big_endian(offset, 4);
   if (length == 0) {
-    length = file.size() - offset;  // a last box that reaches to the end, however long that is
+    length = file.size() - offset;  // a last box that extends to the end of the file
   } else if (length == 1) {
     header = 16;
     if (!file.holds(offset, header)) {
@@ -107,7 +107,7 @@ bool holds_boxes(const std::string& type) {
   return false;
 }
 
-/// Samples that a table promises without an entry for each; 0 in other boxes.
+/// Number of samples that a table promises without an entry for each; 0 in other boxes.
 std::uint64_t samples_without_entries(SparseFile& file, const Box& box) {
   if (box.type == "stsz" && box.end - box.begin >= 12) {
     return file.big_endian(box.begin + 4, 4) != 0 ? file.big_endian(box.begin + 8, 4) : 0;
@@ -121,8 +121,8 @@ std::uint64_t samples_without_entries(SparseFile& file, const Box& box) {
   return 0;
 }
 
-/// Readers make an entry in memory for each sample that a table promises. One takes a byte of the
-/// file at least; those of compressed sound may be counted as what they become.
+/// Readers allocate an entry for each sample that a table promises. Each takes at least one byte of
+/// the file; samples of compressed sound may be counted as decoded ones.
 void check_sample_tables(SparseFile& file, std::uint64_t begin, std::uint64_t end, int level = 0) {
   constexpr int kMostLevels = 6;  // moov, trak, mdia, minf, stbl, stsz
   constexpr std::uint64_t kMostSamplesPerByte = 16;
@@ -156,16 +156,15 @@ VideoExtent extent_of_boxes(SparseFile& file) {
   return has_index ? VideoExtent::kWhole : VideoExtent::kWithoutIndex;
 }
 
-/// An element of Matroska: where its contents begin and how long they are.
+/// An element of Matroska: position and length of its contents.
 struct Element {
-  std::string id;  ///< empty: its head is not there
+  std::string id;  ///< empty: its header is missing
   std::uint64_t begin = 0;
   std::uint64_t length = 0;
-  bool has_length = false;  ///< else it reaches to the end of what it lies in
+  bool has_length = false;  ///< else it extends to the end of its parent
 };
 
-/// Bytes of a number at `offset` that says in its first bits how long it is; 0 when it is not
-/// there.
+/// Length in bytes of the variable-length number at `offset`; 0 when it is missing.
 int number_bytes(SparseFile& file, std::uint64_t offset) {
   if (!file.holds(offset, 1)) {
     return 0;
@@ -190,7 +189,7 @@ Element read_element(SparseFile& file, std::uint64_t offset) {
   return element;
 }
 
-/// Where only what follows the frames is cut off (the index for seeking, tags) nothing is missing.
+/// If only the data after the frames is missing (the seek index, tags), the video is complete.
 bool has_whole_clusters(SparseFile& file) {
   const Element header = read_element(file, 0);
   const Element segment = read_element(file, header.begin + header.length);
@@ -212,7 +211,7 @@ bool has_whole_clusters(SparseFile& file) {
   }
 }
 
-/// Likewise: behind the chunk of the frames comes the index.
+/// As above: the index follows the chunk of the frames.
 bool has_whole_movie(SparseFile& file) {
   const auto length_at = [&](std::uint64_t offset) {
     return std::uint64_t{__builtin_bswap32(static_cast<std::uint32_t>(file.big_endian(offset, 4)))};
@@ -230,12 +229,13 @@ bool has_whole_movie(SparseFile& file) {
   return false;
 }
 
-/// Of MPEG-TS, which is packets of one length. A recording may begin in the middle of one.
+/// For MPEG-TS, which consists of packets of equal length. A recording may start in the middle of
+/// one.
 bool has_whole_packets(SparseFile& file, std::uint64_t first) {
   return (file.size() - first) % kTransportPacketBytes == 0;
 }
 
-/// Where the first packet of an MPEG-TS begins; empty when the file is none.
+/// Position of the first packet of an MPEG-TS; empty for other files.
 std::optional<std::uint64_t> find_transport_packet(SparseFile& file) {
   constexpr std::uint64_t kPacketsLookedAt = 5;
   for (std::uint64_t first = 0; first < kTransportPacketBytes; ++first) {

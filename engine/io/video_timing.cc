@@ -24,10 +24,10 @@ namespace {
 
 struct PacketTimes {
   std::vector<std::int64_t> times;  ///< in the stream's unit, of the packets that have one
-  std::size_t packets = 0;          ///< that show a frame
-  /// When the first packet that is cut off is decoded, at the earliest; it is shown later.
+  std::size_t packets = 0;          ///< number of packets that show a frame
+  /// Earliest decoding time of the first missing packet; its presentation is later.
   std::optional<std::int64_t> cut_time;
-  /// When the last packet of a stream that does not say where it ends is decoded.
+  /// Decoding time of the last packet of a stream without a defined end.
   std::optional<std::int64_t> last_decoded;
 
   void add(std::int64_t time) {
@@ -47,7 +47,7 @@ PacketTimes read_index(AVStream& stream, std::uint64_t file_bytes) {
   PacketTimes result;
   for (int i = 0; i < libav().avformat_index_get_entries_count(&stream); ++i) {
     const AVIndexEntry* entry = libav().avformat_index_get_entry(&stream, i);
-    // An edit list leaves out frames that others need: they are decoded and not shown.
+    // An edit list hides frames that others need: they are decoded and not shown.
     if ((entry->flags & AVINDEX_DISCARD_FRAME) == 0 && entry->size > 0) {
       result.add(entry->timestamp);
     }
@@ -63,7 +63,8 @@ bool is_interlaced(const AVStream& stream) {
   return order != AV_FIELD_UNKNOWN && order != AV_FIELD_PROGRESSIVE;
 }
 
-/// Of an index. Packets before a start are shown before it, so its number is theirs.
+/// Starts in an index. Packets before a start are presented before it, so their count is its frame
+/// index.
 std::vector<PossibleStart> find_starts(AVStream& stream) {
   std::vector<PossibleStart> starts;
   int frame = 0;
@@ -84,11 +85,12 @@ bool shows_a_frame(const AVPacket& packet, AVCodecID codec) {
   if (packet.size == 0 || (packet.flags & AV_PKT_FLAG_DISCARD) != 0) {
     return false;
   }
-  // VP8 marks, in its first byte, frames that are only there for others to refer to.
+  // VP8 flags, in its first byte, frames that are only references for others.
   return codec != AV_CODEC_ID_VP8 || (packet.data[0] & 0x10) != 0;
 }
 
-/// Whether something follows the last whole frame of raw video, `frames_end` bytes into the file.
+/// Whether there is data after the last complete frame of raw video, `frames_end` bytes into the
+/// file.
 bool is_cut_raw_video(const AVFormatContext& input, std::int64_t frames_end,
                       std::uint64_t file_bytes) {
   return std::string_view(input.iformat->name) == "yuv4mpegpipe" &&
@@ -119,7 +121,7 @@ PacketTimes read_packets(const std::filesystem::path& path, int stream_index, bo
     if (packet->stream_index == stream_index && !is_torn && !cut.is_cut_off(*packet) &&
         shows_a_frame(*packet, codec)) {
       if (!key_seen && (packet->flags & AV_PKT_FLAG_KEY) != 0) {
-        result = {};  // what a recording in mid-programme begins with cannot be decoded
+        result = {};  // the first frames of a mid-programme recording cannot be decoded
         key_seen = true;
       }
       result.add(packet->pts != AV_NOPTS_VALUE ? packet->pts : packet->dts);
@@ -138,7 +140,7 @@ PacketTimes read_packets(const std::filesystem::path& path, int stream_index, bo
   return result;
 }
 
-/// The middle one of the steps between times; 0 when there is none.
+/// Median of the steps between times; 0 when there is none.
 double usual_step(std::vector<std::int64_t> times) {
   std::sort(times.begin(), times.end());
   std::vector<std::int64_t> steps;
@@ -169,8 +171,8 @@ std::optional<FrameRate> to_frame_rate(AVRational rate) {
   return FrameRate{numerator, denominator};
 }
 
-/// Frames divided by length is too low where frames are missing, and a guess from the first frames
-/// is wrong where their times are rounded: that one is taken which is nearer to the usual step.
+/// Frames divided by length is too low if frames are missing, and a guess from the first frames is
+/// wrong if their times are rounded: uses the one closer to the median step.
 std::optional<FrameRate> choose_rate(const AVStream& stream, double step_seconds) {
   const std::optional<FrameRate> average = to_frame_rate(stream.avg_frame_rate);
   const std::optional<FrameRate> guess = to_frame_rate(stream.r_frame_rate);
@@ -183,8 +185,8 @@ std::optional<FrameRate> choose_rate(const AVStream& stream, double step_seconds
   return error(*guess) < error(*average) ? guess : average;
 }
 
-/// Packets of interlaced video may hold half a frame. Elsewhere than in an index, some of the
-/// packets may be no frames.
+/// Packets of interlaced video may hold half a frame. Without an index, some packets may not be
+/// frames.
 int uncertain_frames(int frames, bool from_index, bool interlaced) {
   if (interlaced) {
     return (frames + 1) / 2;

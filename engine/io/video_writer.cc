@@ -41,16 +41,16 @@ void check_video_settings(const std::filesystem::path& path, int width, int heig
   }
 }
 
-/// Options of x264. The preset: photographs of 1226×370 pixels at factor 18 take 23 ms a frame
-/// (Zen 4, one thread) with "veryfast". "superfast" takes 14 ms and a tenth more bytes, "faster",
-/// "fast" and "medium" take 35, 48 and 63 ms and no fewer. No tuning: views are of any kind.
+/// Options of x264. The preset: photographs of 1226×370 pixels at factor 18 take 23 ms a frame (Zen
+/// 4, one thread) with "veryfast". "superfast" takes 14 ms and a tenth more bytes, "faster", "fast"
+/// and "medium" take 35, 48 and 63 ms with no fewer bytes. No tuning: views are of any kind.
 class EncoderOptions {
  public:
   explicit EncoderOptions(int crf) {
     av_dict_set(&options_, "preset", "veryfast", 0);
     av_dict_set_int(&options_, "crf", crf, 0);
     // One algorithm on every processor; headers that do not depend on the pictures, so that videos
-    // can be put one behind the other.
+    // can be concatenated.
     av_dict_set(&options_, "x264-params", "cpu-independent=1:stitchable=1", 0);
   }
   EncoderOptions(const EncoderOptions&) = delete;
@@ -98,7 +98,7 @@ struct VideoWriter::State {
   }
 
   void open_encoder(const VideoEncoding& encoding);
-  /// Encodes a frame, or what is left when it is null, and stores the packets that are ready.
+  /// Encodes a frame, or the delayed ones when it is null, and stores the packets that are ready.
   void encode(const AVFrame* frame);
 };
 

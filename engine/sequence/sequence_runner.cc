@@ -216,7 +216,7 @@ class Run {
           fmt::format("frame {} ({}): {}", slot.frame, run_.pairs.describe(slot.frame), problem));
     }
     if (slot.is_lead_in) {
-      return true;  // recorded by the chunk that delivers it
+      return true;  // recorded when it is delivered
     }
     report_.skipped.push_back(
         {slot.frame, fmt::format("{}: {}", run_.pairs.describe(slot.frame), problem)});
