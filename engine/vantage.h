@@ -3,7 +3,7 @@
 // The library for its users. These headers and those that they include are installed; nothing else
 // is (cmake/install_headers.cmake). Include this one, or those that are needed.
 
-// Images, what they are read from and written to, and threads.
+// Images, their input and output, and threads.
 #include "engine/build_info.h"
 #include "engine/error.h"
 #include "engine/execution.h"
@@ -24,7 +24,7 @@
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/stereo_matcher.h"
 
-// Cameras, and pairs that are not rectified.
+// Cameras, and unrectified pairs.
 #include "engine/rectification/feature_matches.h"
 #include "engine/rectification/rectification_file.h"
 #include "engine/rectification/rectified_pair.h"
@@ -50,6 +50,6 @@
 #include "engine/sequence/sequence_options.h"
 #include "engine/sequence/sequence_runner.h"
 
-// How good maps and views are.
+// Accuracy of maps and views.
 #include "engine/evaluation/disparity_evaluation.h"
 #include "engine/evaluation/view_evaluation.h"

@@ -95,9 +95,9 @@ struct ThreadCountProfile {
   ProfileSample peak_memory_bytes;
   /// Maximum ÷ mean work of a thread of the pool, ≥ 1.
   ProfileSample imbalance;
-  std::vector<StageProfile> stages;    ///< most time first
-  std::vector<PartProfile> parts;      ///< most time first
-  std::vector<PartProfile> waits;      ///< most time first
+  std::vector<StageProfile> stages;    ///< longest first
+  std::vector<PartProfile> parts;      ///< longest first
+  std::vector<PartProfile> waits;      ///< longest first
   WaitingProfile waiting_for;          ///< the same time as in waits, by cause
   std::vector<ThreadProfile> workers;  ///< of the run with the median wall time
 
@@ -139,7 +139,7 @@ struct Profile {
   std::string processor;
   std::string isa;
   int hardware_threads = 1;
-  std::uint64_t peak_memory_bytes = 0;  ///< maximum over the runs on the most threads
+  std::uint64_t peak_memory_bytes = 0;  ///< maximum over the runs on the largest thread count
   /// For each measured number of threads, in that order.
   std::vector<MachineCeilings> ceilings;
   std::vector<ThreadCountProfile> thread_counts;  ///< fewest first
@@ -149,10 +149,10 @@ struct Profile {
   std::vector<SpeedUp> speed_ups;
   /// Least-squares fit of Amdahl's law to speed_ups; empty with a single number of threads.
   std::optional<double> serial_fraction;
-  std::vector<TimelineRow> timeline;  ///< of the most threads, run with the median wall time
+  std::vector<TimelineRow> timeline;  ///< largest thread count, run with the median wall time
   double timeline_s = 0;              ///< its wall time
   std::vector<MemoryOwner> memory;    ///< largest first
-  HardwareCounts hardware;            ///< of the most threads
+  HardwareCounts hardware;            ///< at the largest thread count
 
   bool operator==(const Profile&) const = default;
 };

@@ -23,8 +23,9 @@ struct ProfiledChoices {
 
 /// Advice to the user of a command about its time, one sentence with an option each, largest saving
 /// first: another preset, a known range, no row check, one map, the number of threads. Computed
-/// from the figures of the most threads of `profile`; omits savings below a twentieth of the time.
-/// `step_s`: seconds of the command's steps there, by the names of its report. Thread rule: pure.
+/// from the figures of the largest thread count of `profile`; omits savings below a twentieth of
+/// the time. `step_s`: seconds of the command's steps there, by the names of its report. Thread
+/// rule: pure.
 std::vector<std::string> profile_advice(const Profile& profile,
                                         const std::map<std::string, double>& step_s,
                                         const ProfiledChoices& choices);

@@ -7,7 +7,7 @@
 
 namespace vantage {
 
-/// A sentence about where the most threads of a profile spend their time.
+/// A sentence about where the threads of a profile, at their largest count, spend their time.
 struct ProfileFinding {
   enum class Kind {
     kStage,      ///< the stage with most of the work, and its bound
