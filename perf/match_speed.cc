@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "engine/matching/costs/candidate_geometry.h"
+#include "engine/matching/candidate_geometry.h"
 #include "engine/matching/match_chain.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/simd.h"

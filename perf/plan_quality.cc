@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/simd.h"
 #include "engine/tuning/match_subject.h"
 #include "engine/tuning/tuner.h"
@@ -127,7 +128,7 @@ class Case {
   }
 
   [[nodiscard]] bool is_iterative() const {
-    return method_.options.resolved().aggregation >= Aggregation::kDiffusion;
+    return aggregation_of(method_.options.resolved()).is_iterative;
   }
 
   /// All strips × iterations per pass × bands, measured at full height, fastest first.

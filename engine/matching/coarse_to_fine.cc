@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/levels/level_stages.h"
 #include "engine/matching/levels/stage_level_energies.h"
 #include "engine/matching/levels/stage_level_likelihoods.h"
@@ -26,15 +27,13 @@ int pruned_level_count(const MethodParameters& parameters, std::size_t levels) {
              : std::min(parameters.pruned_levels, static_cast<int>(levels) - 1);
 }
 
-int cell_bytes(const MethodParameters& parameters) {
-  return parameters.aggregation == Aggregation::kBayes ? 1 : 2;
-}
+int cell_bytes(const MethodParameters& parameters) { return has_likelihoods(parameters) ? 1 : 2; }
 
 /// Reduces the costs of a coarse level to the next coarser one. Rows need no strips, because a cell
 /// reads one block only.
 void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
                   LevelVolume& coarser, Execution& execution) {
-  const bool is_bayes = parameters.aggregation == Aggregation::kBayes;
+  const bool is_bayes = has_likelihoods(parameters);
   const auto weight = static_cast<float>(parameters.level_weight);
   execution.for_each_band(coarser.extent().rows, [&](int first_row, int end_row) {
     std::vector<std::uint16_t> work(is_bayes ? static_cast<std::size_t>(finer.lanes()) : 0);

@@ -11,18 +11,12 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/matching/aggregation/stage_bayes.h"
-#include "engine/matching/aggregation/stage_box_mean.h"
+#include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/aggregation/stage_column_ssd.h"
 #include "engine/matching/aggregation/stage_column_sum.h"
-#include "engine/matching/aggregation/stage_diffusion.h"
-#include "engine/matching/aggregation/stage_max_product.h"
-#include "engine/matching/aggregation/stage_smoothing.h"
-#include "engine/matching/costs/cost_bounds.h"
-#include "engine/matching/costs/ray_census_tables.h"
+#include "engine/matching/costs/cost_table.h"
 #include "engine/matching/costs/stage_disparity_prior.h"
 #include "engine/matching/costs/stage_displacement_cost.h"
-#include "engine/matching/costs/stage_ray_census_energy.h"
 #include "engine/matching/levels/energy_format.h"
 #include "engine/matching/levels/stage_block_source.h"
 #include "engine/matching/levels/stage_fixed_energies.h"
@@ -36,7 +30,7 @@
 namespace vantage {
 
 bool uses_column_ssd(const MethodParameters& parameters) {
-  return parameters.cost == MatchCost::kSquared && parameters.aggregation == Aggregation::kBox &&
+  return cost_of(parameters).has_column_sums && aggregation_of(parameters).has_windows &&
          parameters.colour == ColourUse::kLuma && parameters.levels == 1 &&
          !parameters.match_exposure;
 }
@@ -60,23 +54,10 @@ double entropy_scale(const MethodParameters& parameters) {
 }
 
 ConfidenceMeasure confidence_measure(const MethodParameters& parameters) {
-  switch (parameters.aggregation) {
-    case Aggregation::kBayes:
-      return ConfidenceMeasure::kProbability;
-    case Aggregation::kLocalStopping:
-      return parameters.certainty == Certainty::kMargin ? ConfidenceMeasure::kMargin
-                                                        : ConfidenceMeasure::kEntropy;
-    default:
-      return is_evidence(parameters) ? ConfidenceMeasure::kEvidence : ConfidenceMeasure::kMargin;
+  if (const auto confidence = aggregation_of(parameters).confidence) {
+    return confidence(parameters);
   }
-}
-
-/// Maximum contrast of a column that the prior uses: squares of large differences would let single
-/// pixels decide for all around them.
-float most_contrast(const MethodParameters& parameters) {
-  constexpr float kGreyLevels = 20;
-  return parameters.cost == MatchCost::kSquared ? kGreyLevels * kGreyLevels
-                                                : std::numeric_limits<float>::infinity();
+  return is_evidence(parameters) ? ConfidenceMeasure::kEvidence : ConfidenceMeasure::kMargin;
 }
 
 /// Bounds of the costs of `input`, including the prior's term.
@@ -88,12 +69,11 @@ CostBounds bounds_of(const MethodParameters& parameters, const ChainInput& input
   return bounds;
 }
 
-/// Whether the energies that coarse levels are made of fit bytes before they are summed: true for
-/// costs with few integer values.
+/// Whether energies that coarse levels are made of fit bytes before they are summed up.
 bool has_byte_energies(const MethodParameters& parameters, const ChainInput& input) {
-  return parameters.aggregation == Aggregation::kBayes &&
-         parameters.cost == MatchCost::kRayCensus && parameters.colour == ColourUse::kLuma &&
-         input.partners.size() == 1 && input.prior_px.empty();
+  return has_likelihoods(parameters) && cost_of(parameters).byte_energies &&
+         parameters.colour == ColourUse::kLuma && input.partners.size() == 1 &&
+         input.prior_px.empty();
 }
 
 /// Cells of all displacements; of_partner makes the stage of one vertical disparity.
@@ -137,14 +117,11 @@ MatchChain::MatchChain(const MethodParameters& parameters,
     return;
   }
   add_costs(parameters, input, level);
-  if (level.coarser != nullptr && parameters.aggregation != Aggregation::kBayes) {
-    add(make_coarser_energy_stage(geometry_, height_,
-                                  parameters.aggregation == Aggregation::kMembrane
-                                      ? CoarserUse::kStart
-                                      : CoarserUse::kSupport,
+  if (level.coarser != nullptr && !has_likelihoods(parameters)) {
+    add(make_coarser_energy_stage(geometry_, height_, aggregation_of(parameters).coarser_use,
                                   half_scale_, *level.coarser));
   }
-  if (parameters.aggregation == Aggregation::kBox && level.result == nullptr) {
+  if (aggregation_of(parameters).has_windows && level.result == nullptr) {
     add_box(parameters, input);
     return;
   }
@@ -181,12 +158,13 @@ void MatchChain::add_reduction(const MethodParameters& parameters, const ChainIn
   const auto weight = static_cast<float>(parameters.level_weight);
   if (has_byte_energies(parameters, input)) {
     add(byte_energies(parameters, input, 0, geometry_.count));
-    add(make_byte_energy_reduction_stage(geometry_, ray_census_energies(parameters).step, weight,
-                                         *level.reduced));
+    add(make_byte_energy_reduction_stage(
+        geometry_, cost_of(parameters).byte_energies->nats_per_step(parameters), weight,
+        *level.reduced));
     return;
   }
   add(plain_costs(parameters, input, 0, geometry_.count));
-  add(parameters.aggregation == Aggregation::kBayes
+  add(has_likelihoods(parameters)
           ? make_likelihood_reduction_stage(geometry_, weight, *level.reduced)
           : make_energy_reduction_stage(geometry_, half_scale_, *level.reduced));
 }
@@ -212,7 +190,7 @@ void MatchChain::add_costs(const MethodParameters& parameters, const ChainInput&
 
 std::unique_ptr<scheduler::RowStage> MatchChain::level_costs(const MethodParameters& parameters,
                                                              const ChainLevel& level) const {
-  if (parameters.aggregation != Aggregation::kBayes) {
+  if (!has_likelihoods(parameters)) {
     return make_level_energy_stage(geometry_, half_scale_, *level.costs);
   }
   if (uses_fixed_energies(parameters)) {
@@ -226,9 +204,8 @@ std::unique_ptr<scheduler::RowStage> MatchChain::level_costs(const MethodParamet
 std::unique_ptr<scheduler::RowStage> MatchChain::plain_costs(const MethodParameters& parameters,
                                                              const ChainInput& input,
                                                              int first_candidate, int count) const {
-  const CellMeaning meaning = parameters.aggregation == Aggregation::kBayes
-                                  ? CellMeaning::kLikelihood
-                                  : CellMeaning::kEnergy;
+  const CellMeaning meaning =
+      has_likelihoods(parameters) ? CellMeaning::kLikelihood : CellMeaning::kEnergy;
   if (input.grid != nullptr) {
     // Evidence is relative to that of all candidates.
     const bool is_relative = is_evidence(parameters) && meaning == CellMeaning::kLikelihood;
@@ -244,7 +221,7 @@ std::unique_ptr<scheduler::RowStage> MatchChain::plain_costs(const MethodParamet
   if (!input.prior_px.empty()) {
     costs = make_disparity_prior_stage(std::move(costs), geometry_, meaning, input.prior_px,
                                        static_cast<float>(input.prior_weight),
-                                       most_contrast(parameters), first_candidate);
+                                       cost_of(parameters).max_contrast, first_candidate);
   }
   return costs;
 }
@@ -259,7 +236,7 @@ std::unique_ptr<scheduler::RowStage> MatchChain::costs_of(const MethodParameters
   if (has_byte_energies(parameters, input)) {
     return make_fixed_energy_stage(byte_energies(parameters, input, first_candidate, count),
                                    EnergySource::kBytes, count, EnergyFormat(parameters),
-                                   ray_census_energies(parameters).step);
+                                   cost_of(parameters).byte_energies->nats_per_step(parameters));
   }
   return make_fixed_energy_stage(plain_costs(parameters, input, first_candidate, count),
                                  EnergySource::kLikelihoods, count, EnergyFormat(parameters));
@@ -270,15 +247,15 @@ std::unique_ptr<scheduler::RowStage> MatchChain::byte_energies(const MethodParam
                                                                const ChainInput& input,
                                                                int first_candidate,
                                                                int count) const {
+  const auto make_stage = cost_of(parameters).byte_energies->make_stage;
   if (input.grid == nullptr) {
-    return make_ray_census_energy_stage(parameters, of_candidates(first_candidate, count),
-                                        *input.reference, input.partners.front(), height_);
+    return make_stage(parameters, of_candidates(first_candidate, count), *input.reference,
+                      input.partners.front(), height_);
   }
-  return of_all_rows(input, std::numeric_limits<unsigned char>::max(),
-                     [&](const CostPartner& partner) {
-                       return make_ray_census_energy_stage(parameters, input.grid->along_rows,
-                                                           *input.reference, partner, height_);
-                     });
+  return of_all_rows(
+      input, std::numeric_limits<unsigned char>::max(), [&](const CostPartner& partner) {
+        return make_stage(parameters, input.grid->along_rows, *input.reference, partner, height_);
+      });
 }
 
 kernels::CandidateGeometry MatchChain::of_candidates(int first_candidate, int count) const {
@@ -328,54 +305,31 @@ void MatchChain::add_box(const MethodParameters& parameters, const ChainInput& i
 /// `parameters`: of the level.
 void MatchChain::add_aggregation(const MethodParameters& parameters, const ChainInput& input,
                                  const ChainLevel& level) {
-  const EdgeWeights* const edges =
-      input.edges.empty() ? nullptr : &input.edges[static_cast<std::size_t>(level.number)];
-  first_iteration_ = static_cast<int>(stages_.size());
-  switch (parameters.aggregation) {
-    case Aggregation::kNone:
-      break;
-    case Aggregation::kBox:
-      add_all(make_box_mean_stages(geometry_, height_, parameters.window_px / 2));
-      break;
-    case Aggregation::kGaussian:
-      add_all(make_gaussian_stages(geometry_, height_, parameters.aggregation_sigma_px));
-      break;
-    case Aggregation::kBoxCascade:
-      add_all(make_box_cascade_stages(geometry_, height_, parameters.aggregation_sigma_px));
-      break;
-    case Aggregation::kDiffusion:
-    case Aggregation::kMembrane:
-      iterations_ = parameters.iterations;
-      for (int i = 0; i < iterations_; ++i) {
-        add(make_diffusion_stage(parameters, geometry_, height_));
-      }
-      break;
-    case Aggregation::kLocalStopping:
-      iterations_ = parameters.iterations;
-      for (int i = 0; i < iterations_; ++i) {
-        add(make_local_stopping_stage(parameters, geometry_, height_,
-                                      {.is_first = i == 0, .is_last = i + 1 == iterations_}));
-      }
-      break;
-    case Aggregation::kBayes: {
-      iterations_ = parameters.iterations;
-      const kernels::CandidatePlane plane =
-          input.grid != nullptr ? input.grid->plane() : kernels::CandidatePlane{};
-      add_all(
-          uses_fixed_energies(parameters)
-              ? make_max_product_stages(parameters, geometry_, height_,
-                                        {.volume = level.coarser, .blocks = level.coarser_blocks},
-                                        edges, level.blocks, plane)
-              : make_bayes_stages(parameters, geometry_, height_, level.coarser, edges, plane));
-      ++first_iteration_;  // after the start
-      break;
-    }
+  const CellAggregation& aggregation = aggregation_of(parameters);
+  if (aggregation.make_stages == nullptr) {
+    return;
+  }
+  AggregationPlace place{.geometry = geometry_,
+                         .height = height_,
+                         .coarser = level.coarser,
+                         .coarser_blocks = level.coarser_blocks,
+                         .blocks = level.blocks};
+  if (input.grid != nullptr) {
+    place.plane = input.grid->plane();
+  }
+  if (!input.edges.empty()) {
+    place.edges = &input.edges[static_cast<std::size_t>(level.number)];
+  }
+  add_all(aggregation.make_stages(parameters, place));
+  if (aggregation.is_iterative) {
+    iterations_ = parameters.iterations;
+    first_iteration_ = static_cast<int>(stages_.size()) - iterations_;
   }
 }
 
 void MatchChain::add_result(const MethodParameters& parameters, const ChainLevel& level) {
   const LevelResult result{.cells = level.result, .winners = level.winners};
-  if (parameters.aggregation != Aggregation::kBayes) {
+  if (!has_likelihoods(parameters)) {
     add(make_energy_store_stage(geometry_, half_scale_, *level.result));
   } else if (uses_fixed_energies(parameters)) {
     add(make_level_energy_result_stage(geometry_, result, EnergyFormat(parameters), level.blocks));
@@ -398,7 +352,7 @@ void MatchChain::add_selection(const MethodParameters& parameters, const ChainIn
     return;
   }
   CellSelectionSettings settings;
-  settings.cells_are_probabilities = parameters.aggregation == Aggregation::kBayes;
+  settings.cells_are_probabilities = has_likelihoods(parameters);
   settings.subpixel = parameters.subpixel;
   settings.confidence = confidence_measure(parameters);
   settings.entropy_scale = static_cast<float>(entropy_scale(parameters));

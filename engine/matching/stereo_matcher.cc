@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/matching/costs/candidate_geometry.h"
+#include "engine/matching/candidate_geometry.h"
 #include "engine/matching/levels/level_extents.h"
 #include "engine/matching/stage_clock.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/parameters/method_parameters.h"
 #include "engine/profiling/profile.h"
 
 namespace vantage {

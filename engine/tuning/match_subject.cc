@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/tuning/candidate_ladder.h"
 
 namespace vantage {
@@ -43,15 +44,7 @@ std::vector<int> part_sizes(int total, int size, int most_parts, bool finely) {
 }
 
 bool is_iterative(const MethodParameters& parameters) {
-  switch (parameters.aggregation) {
-    case Aggregation::kDiffusion:
-    case Aggregation::kMembrane:
-    case Aggregation::kLocalStopping:
-    case Aggregation::kBayes:
-      return parameters.iterations > 1;
-    default:
-      return false;
-  }
+  return aggregation_of(parameters).is_iterative && parameters.iterations > 1;
 }
 
 bool is_same_plan(const scheduler::ChainPlan& a, const scheduler::ChainPlan& b) {

@@ -6,6 +6,8 @@
 #include <string_view>
 
 #include "engine/build_info.h"
+#include "engine/matching/aggregation/aggregation_table.h"
+#include "engine/matching/costs/cost_table.h"
 #include "engine/matching/levels/energy_format.h"
 #include "engine/matching/match_chain.h"
 #include "engine/matching/options/method_names.h"
@@ -34,29 +36,20 @@ long class_of(double value, int steps) {
 
 /// Reach of the aggregation, in its own unit.
 std::string reach_of(const MethodParameters& parameters) {
-  switch (parameters.aggregation) {
-    case Aggregation::kNone:
-      return "";
-    case Aggregation::kBox:
-      return fmt::format(" about {} px", class_of(parameters.window_px, 1));
-    case Aggregation::kGaussian:
-    case Aggregation::kBoxCascade:
-      return fmt::format(" about {} px", class_of(4 * parameters.aggregation_sigma_px, 1));
-    case Aggregation::kDiffusion:
-    case Aggregation::kMembrane:
-    case Aggregation::kLocalStopping:
-    case Aggregation::kBayes:
-      return fmt::format(" about {} iterations", class_of(at_level(parameters, 0).iterations, 1));
+  const auto reach_in = aggregation_of(parameters).reach;
+  if (reach_in == nullptr) {
+    return "";
   }
-  return "";
+  const AggregationReach reach = reach_in(parameters);
+  return fmt::format(" about {} {}", class_of(reach.amount, 1), reach.unit);
 }
 
 std::string method_text(const MatchOptions& match, const TunedImages& images) {
   const MethodParameters parameters = match.resolved();
   std::string text = fmt::format("{} {}{}", name_of(parameters.cost),
                                  name_of(parameters.aggregation), reach_of(parameters));
-  if (parameters.cost == MatchCost::kRayCensus && parameters.census_thresholds > 1) {
-    text += fmt::format(", {} thresholds", parameters.census_thresholds);
+  if (const auto work_class = cost_of(parameters).work_class) {
+    text += work_class(parameters);
   }
   if (uses_fixed_energies(parameters)) {
     text += ", largest term";  // cells are half as large and faster

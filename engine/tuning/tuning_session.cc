@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/tuning/match_subject.h"
 #include "engine/tuning/sequence_subject.h"
 
@@ -83,7 +84,7 @@ class Session {
   /// Complete windows need this many rows.
   static int windows_height(const MatchOptions& match) {
     const MethodParameters parameters = match.resolved();
-    return parameters.aggregation == Aggregation::kBox ? parameters.window_px : 0;
+    return aggregation_of(parameters).has_windows ? parameters.window_px : 0;
   }
 
   Bench make_bench(TunedUse use, int rows, bool searches_bands) const {

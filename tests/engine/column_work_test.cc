@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/matching/costs/candidate_geometry.h"
+#include "engine/matching/candidate_geometry.h"
 #include "engine/matching/levels/level_stages.h"
 #include "engine/matching/match_chain.h"
 #include "tests/engine/method_cases.h"

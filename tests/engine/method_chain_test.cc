@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/matching/costs/candidate_geometry.h"
+#include "engine/matching/candidate_geometry.h"
 #include "engine/matching/match_chain.h"
 #include "scheduler/strip_pipeline.h"
 #include "scheduler/whole_image_pipeline.h"

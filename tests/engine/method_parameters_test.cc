@@ -1,4 +1,4 @@
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/options/method_rules.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

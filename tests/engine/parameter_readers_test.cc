@@ -19,7 +19,7 @@
 
 #include "engine/error.h"
 #include "engine/matching/aggregation/edge_weights.h"
-#include "engine/matching/costs/candidate_geometry.h"
+#include "engine/matching/candidate_geometry.h"
 #include "engine/matching/costs/cost_planes.h"
 #include "engine/matching/map_search.h"
 #include "engine/matching/options/match_options.h"

@@ -1,5 +1,5 @@
 #include "engine/matching/stereo_matcher.h"
-#include "engine/matching/costs/candidate_geometry.h"
+#include "engine/matching/candidate_geometry.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/parameters/method_parameters.h"
 #include "kernels/cells/fixed_energy.h"
 
 namespace vantage {

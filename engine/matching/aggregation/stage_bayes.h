@@ -5,7 +5,7 @@
 
 #include "engine/matching/aggregation/edge_weights.h"
 #include "engine/matching/levels/level_volume.h"
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/parameters/method_parameters.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
 

@@ -6,7 +6,7 @@
 #include "engine/matching/aggregation/edge_weights.h"
 #include "engine/matching/levels/candidate_blocks.h"
 #include "engine/matching/levels/stage_from_coarser.h"
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/parameters/method_parameters.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
 

@@ -2,13 +2,71 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
+#include <cstddef>
 
+#include "engine/execution.h"
+#include "engine/image/photograph.h"
+#include "engine/matching/costs/image_gradient.h"
 #include "engine/matching/costs/intensity_planes.h"
-#include "engine/matching/costs/stage_cost.h"
-#include "kernels/census/census.h"
+#include "engine/matching/costs/level_change.h"
+#include "engine/matching/parameters/method_parameters.h"
+#include "kernels/candidates.h"
 
 namespace vantage {
+
+/// Columns before and after the image.
+struct PlaneMargins {
+  int before = 0;
+  int after = 0;
+};
+
+/// Room for every lane of every candidate of `geometry`, which is a left-reference map's.
+PlaneMargins margins_of(const kernels::CandidateGeometry& geometry);
+
+/// A photograph as costs read it, and the shape of the planes that are made of it.
+struct PlaneSource {
+  const Photograph& photograph;
+  const LevelChanges& level_changes;
+  int channels;  ///< 1 (luma) or 3
+  PlaneMargins margins;
+  bool has_mirrored;
+  Execution& execution;
+
+  [[nodiscard]] int width() const { return photograph.width(); }
+  [[nodiscard]] int height() const { return photograph.height(); }
+  /// Writes the grey levels of luma.
+  void luma_row(int y, float* levels) const;
+  /// Writes those of one channel, or of luma if that is all.
+  void level_row(std::size_t channel, int y, float* levels) const;
+
+  /// Calls body(channel).
+  template <typename Body>
+  void for_each_channel(const Body& body) const {
+    for (int c = 0; c < channels; ++c) {
+      body(static_cast<std::size_t>(c));
+    }
+  }
+  /// Calls body(y), in parallel.
+  template <typename Body>
+  void for_each_row(const Body& body) const {
+    execution.for_each_band(height(), [&](int first_row, int end_row) {
+      for (int y = first_row; y < end_row; ++y) {
+        body(y);
+      }
+    });
+  }
+  /// Calls body(channel, y), in parallel.
+  template <typename Body>
+  void for_each_channel_row(const Body& body) const {
+    execution.for_each_band(height(), [&](int first_row, int end_row) {
+      for_each_channel([&](std::size_t c) {
+        for (int y = first_row; y < end_row; ++y) {
+          body(c, y);
+        }
+      });
+    });
+  }
+};
 
 /// One quantity of every pixel, and the same with mirrored rows where the image is the partner of a
 /// left reference.
@@ -17,40 +75,62 @@ struct FeaturePlane {
   IntensityPlane<T> plain;
   IntensityPlane<T> mirrored;
 
+  void resize(const PlaneSource& source) {
+    const auto [before, after] = source.margins;
+    plain.resize(source.width(), source.height(), before, after);
+    if (source.has_mirrored) {
+      mirrored.resize(source.width(), source.height(), before, after);
+    }
+  }
   /// Writes the margins of plain row y, whose pixels are in place, and, if wanted, the mirrored
   /// row.
-  void finish_row(int width, int y, bool mirror) {
+  void finish_row(const PlaneSource& source, int y) {
     plain.fill_margins(y);
-    if (mirror) {
-      std::reverse_copy(plain.row(y), plain.row(y) + width, mirrored.row(y));
+    if (source.has_mirrored) {
+      std::reverse_copy(plain.row(y), plain.row(y) + source.width(), mirrored.row(y));
       mirrored.fill_margins(y);
     }
   }
+  [[nodiscard]] std::size_t held_bytes() const {
+    return plain.held_bytes() + mirrored.held_bytes();
+  }
 };
 
-/// What the costs of one image's channels look up. `features[channel]` holds
-///   squared, absolute, truncated, contaminated:  grey levels
-///   Birchfield–Tomasi:  grey levels, their least and largest values within half a pixel
-///   gradient:           α·gx, α·gy, |g|/2
-/// `codes[channel]` the two halves of census codes, `ray_codes` the bytes of ray census
-/// codes.
-/// Combined: `fixed_levels[channel]` holds 16-bit grey levels and their bounds, `codes[0]` the
-/// luma's codes, `fixed_gradients` its gradient.
-struct CostImage::Planes {
-  int width = 0;
-  int height = 0;
-  int channels = 1;  ///< 1 or 3
-  bool has_mirrored = false;
-  LevelChanges level_changes;
-  std::array<std::array<FeaturePlane<float>, 3>, 3> features;
-  std::array<std::array<FeaturePlane<std::uint32_t>, 2>, 3> codes;
-  std::array<std::array<FeaturePlane<std::uint8_t>, kernels::kMostRayCensusBytes>, 3> ray_codes;
-  std::array<std::array<FeaturePlane<std::uint16_t>, 3>, 3> fixed_levels;
-  std::array<FeaturePlane<std::uint16_t>, 2> fixed_gradients;
-  /// What features are made of where they are not the grey levels themselves.
-  std::array<IntensityPlane<float>, 3> levels;
-  std::array<IntensityPlane<float>, 3> smooth_levels;
-  IntensityPlane<float> luma;  ///< combined cost of colour channels: what codes are made of
+/// `kPlanes` quantities of one channel, and of each channel.
+template <typename T, std::size_t kPlanes>
+using PlaneSet = std::array<FeaturePlane<T>, kPlanes>;
+template <typename T, std::size_t kPlanes>
+using ChannelPlanes = std::array<PlaneSet<T, kPlanes>, 3>;
+
+/// Of images, or of arrays of them.
+template <typename Images>
+[[nodiscard]] std::size_t held_bytes_of(const Images& images) {
+  if constexpr (requires { images.held_bytes(); }) {
+    return images.held_bytes();
+  } else {
+    std::size_t bytes = 0;
+    for (const auto& image : images) {
+      bytes += held_bytes_of(image);
+    }
+    return bytes;
+  }
+}
+
+/// Grey levels that features are made of, with margins for filters; they are not compared.
+using FilterLevels = std::array<IntensityPlane<float>, 3>;
+void prepare_filter_levels(const PlaneSource& source, FilterLevels& levels);
+
+/// What a cost looks up in one image: planes of its own. Working memory.
+class CostPlanes {
+ public:
+  CostPlanes() = default;
+  CostPlanes(const CostPlanes&) = delete;
+  CostPlanes& operator=(const CostPlanes&) = delete;
+  virtual ~CostPlanes() = default;
+
+  /// Fills them. Identical for any source.execution.
+  virtual void prepare(const PlaneSource& source, const MethodParameters& parameters) = 0;
+  [[nodiscard]] virtual std::size_t held_bytes() const = 0;
 };
 
 }  // namespace vantage

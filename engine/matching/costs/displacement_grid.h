@@ -1,9 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <optional>
-
-#include "engine/matching/options/match_options.h"
 #include "kernels/candidates.h"
 
 namespace vantage {
@@ -41,10 +37,5 @@ struct DisplacementGrid {
         .with_partner(y, margin);
   }
 };
-
-/// The grid that `options` ask for on images of this size; empty: a search along rows only. Leaves
-/// out what no pixel can have. Throws Error when no pixel has a candidate.
-std::optional<DisplacementGrid> displacement_grid(const ResolvedMatchOptions& options,
-                                                  Side reference, int width, int height);
 
 }  // namespace vantage

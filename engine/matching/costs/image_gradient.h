@@ -4,7 +4,7 @@
 
 #include "engine/execution.h"
 #include "engine/matching/costs/intensity_planes.h"
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/parameters/method_parameters.h"
 
 namespace vantage {
 

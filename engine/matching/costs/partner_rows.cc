@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/matching/costs/grey_planes.h"
 
 namespace vantage {
 namespace {
@@ -34,8 +35,8 @@ std::vector<CandidateShift> shifts_of(const kernels::CandidateGeometry& geometry
 
 PartnerRows::PartnerRows(const CostImage& reference, const CostPartner& partner,
                          const kernels::CandidateGeometry& geometry)
-    : reference_(reference.planes()),
-      partner_(partner.image->planes()),
+    : reference_(reference),
+      partner_(*partner.image),
       geometry_(geometry),
       rows_down_(geometry.direction * partner.disparity_y_px) {
   const double ratio = partner.baseline_ratio;
@@ -60,12 +61,12 @@ std::size_t PartnerRows::work_floats(int columns) const {
                            : 0;
 }
 
-int PartnerRows::channels() const { return std::max(reference_.channels, partner_.channels); }
+int PartnerRows::channels() const { return std::max(reference_.channels(), partner_.channels()); }
 
 bool PartnerRows::has_row(int y) const { return partner_row(y) == y + rows_down_; }
 
 int PartnerRows::partner_row(int y) const {
-  return std::clamp(y + rows_down_, 0, partner_.height - 1);
+  return std::clamp(y + rows_down_, 0, partner_.height() - 1);
 }
 
 int PartnerRows::position(int x) const { return mirrored() ? geometry_.width - 1 - x : x; }
@@ -81,90 +82,17 @@ CandidateRange PartnerRows::columns_with_all_partners() const {
   return is_interpolated() ? CandidateRange{} : geometry_.columns_with_all_partners();
 }
 
-template <typename T, int kPlanes, typename PlanesOfChannel>
-FeaturePairs<T, kPlanes> PartnerRows::pairs(int y, Range columns, int channels,
-                                            const PlanesOfChannel& planes_of_channel,
-                                            std::size_t planes) const {
-  FeaturePairs<T, kPlanes> row;
-  row.channels = channels;
-  row.partner_step = step();
-  row.columns = columns.size();
-  row.lanes = geometry_.lanes();
-  row.count = geometry_.count;
-  const int offset = position(columns.begin) + geometry_.disparity_min;
-  for (int c = 0; c < row.channels; ++c) {
-    // A grey image beside a colour image has the same level in all channels.
-    const auto& of_reference = planes_of_channel(reference_, std::min(c, reference_.channels - 1));
-    const auto& of_partner = planes_of_channel(partner_, std::min(c, partner_.channels - 1));
-    auto& channel = row.channel[static_cast<std::size_t>(c)];
-    for (std::size_t p = 0; p < planes; ++p) {
-      channel.reference[p] = of_reference[p].plain.row(y) + columns.begin;
-      channel.partner[p] = partner_pixels(of_partner[p], y) + offset;
-    }
-  }
-  return row;
-}
-
-template <int kPlanes>
-FeaturePairs<float, kPlanes> PartnerRows::features(int y, Range columns) const {
-  return pairs<float, kPlanes>(
-      y, columns, channels(), [](const CostImage::Planes& planes, int channel) -> const auto& {
-        return planes.features[static_cast<std::size_t>(channel)];
-      });
-}
-template FeaturePairs<float, 1> PartnerRows::features(int y, Range columns) const;
-template FeaturePairs<float, 3> PartnerRows::features(int y, Range columns) const;
-
-kernels::CensusPairs PartnerRows::codes(int y, Range columns) const {
-  return pairs<std::uint32_t, 2>(
-      y, columns, channels(), [](const CostImage::Planes& planes, int channel) -> const auto& {
-        return planes.codes[static_cast<std::size_t>(channel)];
-      });
-}
-
-kernels::RayCensusPairs PartnerRows::ray_codes(int y, Range columns, int thresholds) const {
-  return {
-      pairs<std::uint8_t, kernels::kMostRayCensusBytes>(
-          y, columns, channels(), [](const CostImage::Planes& planes, int channel) -> const auto& {
-            return planes.ray_codes[static_cast<std::size_t>(channel)];
-          },
-          static_cast<std::size_t>(kernels::ray_census_bytes(thresholds))),
-      thresholds};
-}
-
-kernels::CensusPairs PartnerRows::luma_codes(int y, Range columns) const {
-  return pairs<std::uint32_t, 2>(
-      y, columns, 1, [](const CostImage::Planes& planes, int /*channel*/) -> const auto& {
-        return planes.codes[0];
-      });
-}
-
-FeaturePairs<std::uint16_t, 3> PartnerRows::fixed_levels(int y, Range columns) const {
-  return pairs<std::uint16_t, 3>(
-      y, columns, channels(), [](const CostImage::Planes& planes, int channel) -> const auto& {
-        return planes.fixed_levels[static_cast<std::size_t>(channel)];
-      });
-}
-
-FeaturePairs<std::uint16_t, 2> PartnerRows::fixed_gradients(int y, Range columns) const {
-  return pairs<std::uint16_t, 2>(
-      y, columns, 1, [](const CostImage::Planes& planes, int /*channel*/) -> const auto& {
-        return planes.fixed_gradients;
-      });
-}
-
 FeaturePairs<float, 1> PartnerRows::grey_levels(int y, Range columns, float* work) const {
-  FeaturePairs<float, 1> row = features<1>(y, columns);
+  FeaturePairs<float, 1> row = pairs(y, columns, &GreyPlanes::grey);
   if (!is_interpolated()) {
     return row;
   }
   row.partner_step = row.lanes;
+  const auto& planes = static_cast<const GreyPlanes&>(partner_.planes());
   for (int c = 0; c < row.channels; ++c) {
-    const auto& of_partner =
-        partner_.features[static_cast<std::size_t>(std::min(c, partner_.channels - 1))];
     kernels::interpolate_candidates(
         {geometry_.width, position(columns.begin), step(), columns.size(), row.lanes},
-        shifts_.data(), partner_pixels(of_partner[0], y), work);
+        shifts_.data(), partner_pixels(planes.grey[channel_of(partner_, c)][0], y), work);
     row.channel[static_cast<std::size_t>(c)].partner[0] = work;
     work += static_cast<std::ptrdiff_t>(columns.size()) * row.lanes;
   }

@@ -1,14 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
+#include "engine/matching/costs/cost_image.h"
 #include "engine/matching/costs/cost_planes.h"
-#include "engine/matching/costs/stage_cost.h"
 #include "kernels/candidate_interpolation/candidate_interpolation.h"
 #include "kernels/candidates.h"
-#include "kernels/census/census.h"
 #include "kernels/feature_pairs.h"
 #include "scheduler/range.h"
 
@@ -40,31 +39,61 @@ class PartnerRows {
   /// for interpolated partners.
   [[nodiscard]] const kernels::CandidateGeometry& geometry() const { return geometry_; }
 
-  /// The first `kPlanes` feature planes, or census codes, of the columns of row y and of their
+  /// The first `used` of the cost's `planes` of every channel, of the columns of row y and of their
   /// partners; of rows outside, the nearest one's. Not for interpolated partners.
-  template <int kPlanes>
-  [[nodiscard]] kernels::FeaturePairs<float, kPlanes> features(int y,
-                                                               scheduler::Range columns) const;
-  [[nodiscard]] kernels::CensusPairs codes(int y, scheduler::Range columns) const;
-  /// thresholds: those the images were prepared with.
-  [[nodiscard]] kernels::RayCensusPairs ray_codes(int y, scheduler::Range columns,
-                                                  int thresholds) const;
-  /// The planes of the combined cost; gradients and the codes there are of one channel.
-  [[nodiscard]] kernels::FeaturePairs<std::uint16_t, 3> fixed_levels(
-      int y, scheduler::Range columns) const;
-  [[nodiscard]] kernels::FeaturePairs<std::uint16_t, 2> fixed_gradients(
-      int y, scheduler::Range columns) const;
-  [[nodiscard]] kernels::CensusPairs luma_codes(int y, scheduler::Range columns) const;
-  /// The first feature plane; interpolated in `work` where necessary.
+  template <typename Planes, typename T, std::size_t kPlanes>
+  [[nodiscard]] kernels::FeaturePairs<T, static_cast<int>(kPlanes)> pairs(
+      int y, scheduler::Range columns,
+      std::array<std::array<FeaturePlane<T>, kPlanes>, 3> Planes::*planes,
+      std::size_t used = kPlanes) const {
+    const auto& of_reference = static_cast<const Planes&>(reference_.planes()).*planes;
+    const auto& of_partner = static_cast<const Planes&>(partner_.planes()).*planes;
+    auto row = empty_pairs<T, kPlanes>(columns, channels());
+    for (int c = 0; c < row.channels; ++c) {
+      // A grey image beside a colour image has the same level in all channels.
+      set_channel(of_reference[channel_of(reference_, c)], of_partner[channel_of(partner_, c)], y,
+                  columns, used, row.channel[static_cast<std::size_t>(c)]);
+    }
+    return row;
+  }
+  /// The same of planes of luma.
+  template <typename Planes, typename T, std::size_t kPlanes>
+  [[nodiscard]] kernels::FeaturePairs<T, static_cast<int>(kPlanes)> pairs(
+      int y, scheduler::Range columns, std::array<FeaturePlane<T>, kPlanes> Planes::*planes) const {
+    auto row = empty_pairs<T, kPlanes>(columns, 1);
+    set_channel(static_cast<const Planes&>(reference_.planes()).*planes,
+                static_cast<const Planes&>(partner_.planes()).*planes, y, columns, kPlanes,
+                row.channel[0]);
+    return row;
+  }
+  /// Of costs that look up GreyPlanes; interpolated in `work` where necessary.
   [[nodiscard]] kernels::FeaturePairs<float, 1> grey_levels(int y, scheduler::Range columns,
                                                             float* work) const;
 
  private:
-  /// `planes`: how many there are, the first ones of kPlanes.
-  template <typename T, int kPlanes, typename PlanesOfChannel>
-  kernels::FeaturePairs<T, kPlanes> pairs(int y, scheduler::Range columns, int channels,
-                                          const PlanesOfChannel& planes_of_channel,
-                                          std::size_t planes = kPlanes) const;
+  template <typename T, std::size_t kPlanes>
+  [[nodiscard]] kernels::FeaturePairs<T, static_cast<int>(kPlanes)> empty_pairs(
+      scheduler::Range columns, int channels) const {
+    kernels::FeaturePairs<T, static_cast<int>(kPlanes)> row;
+    row.channels = channels;
+    row.partner_step = step();
+    row.columns = columns.size();
+    row.lanes = geometry_.lanes();
+    row.count = geometry_.count;
+    return row;
+  }
+  template <typename T, std::size_t kPlanes, typename Channel>
+  void set_channel(const PlaneSet<T, kPlanes>& of_reference, const PlaneSet<T, kPlanes>& of_partner,
+                   int y, scheduler::Range columns, std::size_t used, Channel& channel) const {
+    const int offset = position(columns.begin) + geometry_.disparity_min;
+    for (std::size_t p = 0; p < used; ++p) {
+      channel.reference[p] = of_reference[p].plain.row(y) + columns.begin;
+      channel.partner[p] = partner_pixels(of_partner[p], y) + offset;
+    }
+  }
+  static std::size_t channel_of(const CostImage& image, int channel) {
+    return static_cast<std::size_t>(std::min(channel, image.channels() - 1));
+  }
   [[nodiscard]] int partner_row(int y) const;
   /// Where a shift of 0 leads from column x in a row of the partner, mirrored or not.
   [[nodiscard]] int position(int x) const;
@@ -75,8 +104,8 @@ class PartnerRows {
     return (mirrored() ? plane.mirrored : plane.plain).row(partner_row(y));
   }
 
-  const CostImage::Planes& reference_;
-  const CostImage::Planes& partner_;
+  const CostImage& reference_;
+  const CostImage& partner_;
   kernels::CandidateGeometry geometry_;
   int rows_down_;
   /// Of every lane; empty where disparity_min + lane is the shift.

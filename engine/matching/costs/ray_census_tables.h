@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/parameters/method_parameters.h"
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
 #include "kernels/pixel_cost/pixel_cost.h"
 #include "kernels/ray_census/ray_census.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/matching/costs/displacement_grid.h"
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/parameters/method_parameters.h"
 #include "scheduler/row_stage.h"
 
 namespace vantage {

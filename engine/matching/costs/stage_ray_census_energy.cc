@@ -8,6 +8,7 @@
 
 #include "engine/column_work.h"
 #include "engine/matching/costs/partner_rows.h"
+#include "engine/matching/costs/ray_census_planes.h"
 #include "engine/matching/costs/ray_census_tables.h"
 #include "kernels/ray_census/ray_census.h"
 
@@ -44,7 +45,7 @@ class RayCensusEnergyStage final : public scheduler::RowStage {
       }
       return;
     }
-    kernels::ray_census_energy_row(partner_.ray_codes(task.y, task.columns, thresholds_),
+    kernels::ray_census_energy_row(ray_codes(partner_, task.y, task.columns, thresholds_),
                                    energies_.by_distance, cells);
     const kernels::CandidateRange inner = partner_.columns_with_all_partners();
     for (int x = task.columns.begin; x < task.columns.end; ++x) {

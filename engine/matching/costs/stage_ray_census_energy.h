@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "engine/matching/costs/stage_cost.h"
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/costs/cost_image.h"
+#include "engine/matching/parameters/method_parameters.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "engine/error.h"
-#include "engine/matching/costs/cost_planes.h"
+#include "engine/matching/costs/gradient_planes.h"
 
 namespace vantage {
 namespace {
@@ -14,9 +14,9 @@ namespace {
 constexpr int kBlockColumns = 256;
 constexpr int kBlockRows = 16;
 
-kernels::GradientBlock gradients_at(const CostImage::Planes& planes, int x, int y) {
-  const auto& [gx, gy, half_norm] = planes.features[0];
-  const auto row_stride = planes.height > 1 ? gx.plain.row(1) - gx.plain.row(0) : 0;
+kernels::GradientBlock gradients_at(const CostImage& image, int x, int y) {
+  const auto& [gx, gy, half_norm] = static_cast<const GradientPlanes&>(image.planes()).gradients[0];
+  const auto row_stride = image.height() > 1 ? gx.plain.row(1) - gx.plain.row(0) : 0;
   return {gx.plain.row(y) + x, gy.plain.row(y) + x, half_norm.plain.row(y) + x, row_stride};
 }
 
@@ -62,12 +62,12 @@ double EvidencePair::sum(const CostImage& reference, const CostImage& partner,
   double total = 0;
   for (int y = y_begin; y < y_end; y += kBlockRows) {
     for (int x = x_begin; x < x_end; x += kBlockColumns) {
-      total += kernels::evidence_sum(
-          {.reference = gradients_at(reference.planes(), x, y),
-           .partner = gradients_at(partner.planes(), x + partner_dx, y + partner_dy),
-           .columns = std::min(kBlockColumns, x_end - x),
-           .rows = std::min(kBlockRows, y_end - y),
-           .octagon = octagon_});
+      total +=
+          kernels::evidence_sum({.reference = gradients_at(reference, x, y),
+                                 .partner = gradients_at(partner, x + partner_dx, y + partner_dy),
+                                 .columns = std::min(kBlockColumns, x_end - x),
+                                 .rows = std::min(kBlockRows, y_end - y),
+                                 .octagon = octagon_});
     }
   }
   return total;

@@ -10,7 +10,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/parameters/method_parameters.h"
 #include "kernels/candidates.h"
 #include "scheduler/range.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/parameters/method_parameters.h"
 #include "kernels/cells/fixed_energy.h"
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
 #include "kernels/fixed_energies/fixed_energies.h"

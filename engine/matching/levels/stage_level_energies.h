@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "engine/matching/costs/cost_bounds.h"
+#include "engine/matching/costs/matching_cost.h"
 #include "engine/matching/levels/level_volume.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "engine/error.h"
+#include "engine/matching/costs/cost_table.h"
 #include "engine/matching/options/match_presets.h"
 #include "engine/matching/options/method_fields.h"
 #include "engine/matching/options/method_names.h"

@@ -5,7 +5,7 @@
 
 #include "engine/image/disparity_range.h"
 #include "engine/image/side.h"
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/options/method_rules.h"
 #include "engine/refinement/refinement_options.h"
 
 namespace vantage {

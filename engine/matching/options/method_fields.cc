@@ -15,10 +15,10 @@ void require_read(const MethodOverrides& overrides, const MethodParameters& in_f
                   std::string_view chosen) {
   visit_fields(
       [&](const MethodField& field, const auto& value) {
-        if (value && !field.readers.are_in_force(in_force)) {
+        if (value && !field.is_read(in_force)) {
           throw UsageError(fmt::format("{} is set but has no effect with {} ({}); it is read by {}",
                                        field.option, chosen, summary_of(in_force),
-                                       field.readers.names));
+                                       names_of(field.readers, field.option)));
         }
       },
       overrides);

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/options/method_rules.h"
 #include "engine/matching/options/parameter_readers.h"
 #include "engine/option_field.h"
 
@@ -16,6 +16,11 @@ struct MethodField {
   std::string_view option;  ///< its name on the command line, in files and in messages
   ParameterReaders readers;
   Limits limits = {};  ///< those that do not depend on other fields
+
+  /// Whether results of these parameters can depend on it.
+  [[nodiscard]] bool is_read(const MethodParameters& in_force) const {
+    return readers.are_in_force(in_force, option);
+  }
 };
 
 template <typename T>
@@ -38,7 +43,7 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
 
   visit(Field{"cost", readers::kAll}, options.cost...);
   visit(Field{"colour", readers::kAll}, options.colour...);
-  visit(Field{"truncation", readers::kTruncated, kGreyLevels}, options.truncation...);
+  visit(Field{"truncation", readers::kCosts, kGreyLevels}, options.truncation...);
   visit(Field{"match-exposure", readers::kExposure}, options.match_exposure...);
   // Two fields of one option: a number, or that it is estimated.
   visit(Field{"sigma-measurement", readers::kSigmaMeasurement, kGreyLevels},
@@ -48,15 +53,15 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
   visit(Field{"epsilon-measurement", readers::kEpsilonMeasurement, kProbability},
         options.epsilon_measurement...);
   visit(Field{"census-thresholds",
-              readers::kRayCensus,
+              readers::kCosts,
               {[](double v) { return v == 1 || v == 3; }, "1 or 3"}},
         options.census_thresholds...);
   visit(Field{"sigma-census",
-              readers::kCombined,
+              readers::kCosts,
               {is_within<0, 1>, "a share of bits from 0, which leaves the term out, to 1"}},
         options.sigma_census...);
   visit(Field{"sigma-gradient",
-              readers::kCombined,
+              readers::kCosts,
               {is_not_negative,
                "a number of grey levels per pixel, at least 0, which leaves the term out"}},
         options.sigma_gradient...);
@@ -77,18 +82,18 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
               readers::kGaussians,
               {[](double v) { return v >= 0.5 && v <= 16; }, "a number of pixels from 0.5 to 16"}},
         options.aggregation_sigma_px...);
-  visit(Field{"iterations", readers::kIterative, kIterations}, options.iterations...);
+  visit(Field{"iterations", readers::kNamed, kIterations}, options.iterations...);
   visit(Field{"levels", readers::kAll, kLevels}, options.levels...);
   visit(Field{"candidate-blocks",
               readers::kCandidateBlocks,
               {is_within<0, kMaxCandidateBlocks>, "a number from 0 (all candidates) to 8"}},
         options.candidate_blocks...);
   visit(Field{"pruned-levels", readers::kPrunedLevels, kLevels}, options.pruned_levels...);
-  visit(Field{"final-iterations", readers::kIterativeWithLevels, kIterations},
+  visit(Field{"final-iterations", readers::kNamedWithLevels, kIterations},
         options.final_iterations...);
-  visit(Field{"lambda", readers::kSteps}, options.lambda...);
-  visit(Field{"beta", readers::kMembrane, kNotNegative}, options.beta...);
-  visit(Field{"certainty", readers::kLocalStopping}, options.certainty...);
+  visit(Field{"lambda", readers::kNamed}, options.lambda...);
+  visit(Field{"beta", readers::kNamed, kNotNegative}, options.beta...);
+  visit(Field{"certainty", readers::kNamed}, options.certainty...);
   visit(Field{"mu",
               readers::kBayes,
               {is_weight,

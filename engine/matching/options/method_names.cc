@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
+
+#include "engine/matching/aggregation/aggregation_table.h"
+#include "engine/matching/costs/cost_table.h"
 
 namespace vantage {
 namespace {
@@ -10,6 +14,15 @@ namespace {
 template <typename Enum>
 std::string_view name_among(const EnumNames<Enum>& names, Enum value) {
   return std::ranges::find(names, value, &std::pair<std::string_view, Enum>::second)->first;
+}
+
+template <typename Enum, typename Entry>
+EnumNames<Enum> names_in_table(std::span<const Entry> table) {
+  EnumNames<Enum> names;
+  for (const Entry& entry : table) {
+    names.emplace_back(entry.name, entry.key);
+  }
+  return names;
 }
 
 }  // namespace
@@ -32,33 +45,19 @@ const EnumNames<MatchPreset>& preset_names() {
 }
 
 const EnumNames<MatchCost>& cost_names() {
-  static const EnumNames<MatchCost> names = {
-      {"squared", MatchCost::kSquared},     {"absolute", MatchCost::kAbsolute},
-      {"truncated", MatchCost::kTruncated}, {"birchfield-tomasi", MatchCost::kBirchfieldTomasi},
-      {"gradient", MatchCost::kGradient},   {"contaminated", MatchCost::kContaminated},
-      {"census", MatchCost::kCensus},       {"census-rays", MatchCost::kRayCensus},
-      {"combined", MatchCost::kCombined}};
+  static const auto names = names_in_table<MatchCost>(cost_table());
   return names;
 }
 
 const EnumNames<Aggregation>& aggregation_names() {
-  static const EnumNames<Aggregation> names = {{"none", Aggregation::kNone},
-                                               {"box", Aggregation::kBox},
-                                               {"gaussian", Aggregation::kGaussian},
-                                               {"box-cascade", Aggregation::kBoxCascade},
-                                               {"diffusion", Aggregation::kDiffusion},
-                                               {"membrane", Aggregation::kMembrane},
-                                               {"local-stopping", Aggregation::kLocalStopping},
-                                               {"bayes", Aggregation::kBayes}};
+  static const auto names = names_in_table<Aggregation>(aggregation_table());
   return names;
 }
 
 std::string_view name_of(MatchMethod method) { return name_among(method_names(), method); }
 std::string_view name_of(MatchPreset preset) { return name_among(preset_names(), preset); }
-std::string_view name_of(MatchCost cost) { return name_among(cost_names(), cost); }
-std::string_view name_of(Aggregation aggregation) {
-  return name_among(aggregation_names(), aggregation);
-}
+std::string_view name_of(MatchCost cost) { return cost_of(cost).name; }
+std::string_view name_of(Aggregation aggregation) { return aggregation_of(aggregation).name; }
 
 std::string summary_of(const MethodParameters& parameters) {
   return fmt::format("cost {}, aggregation {}, {} level{}", name_of(parameters.cost),

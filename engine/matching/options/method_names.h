@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/options/method_rules.h"
 
 namespace vantage {
 

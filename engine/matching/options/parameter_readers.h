@@ -1,91 +1,72 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/options/method_rules.h"
 
 namespace vantage {
 
-/// What reads a parameter of a method. What costs, aggregations and levels read is said nowhere
-/// else.
+/// What reads a parameter of a method. Which costs and aggregations do is said in their tables
+/// (cost_table, aggregation_table); what else it takes is said here and nowhere else.
 struct ParameterReaders {
-  std::string_view names;  ///< for messages: "the aggregation box"
-  /// Whether results of these parameters can depend on it.
-  bool (*are_in_force)(const MethodParameters& in_force);
+  /// For messages. {costs}, {other_costs}: those that read the option, those that do not; {names}:
+  /// of the aggregations that do; {aggregations}: the same after "aggregation" or "aggregations".
+  std::string_view text;
+  /// Whether results of these parameters can depend on the option.
+  bool (*are_in_force)(const MethodParameters& in_force, std::string_view option);
 };
+
+/// `readers.text` of an option with the names in place.
+std::string names_of(const ParameterReaders& readers, std::string_view option);
+
+/// Whether the cost or the aggregation reads an option.
+bool reads(const MethodParameters& parameters, std::string_view option);
 
 namespace readers {
 
-inline bool is_bayes(const MethodParameters& p) { return p.aggregation == Aggregation::kBayes; }
-inline bool is_iterative(const MethodParameters& p) {
-  return p.aggregation == Aggregation::kDiffusion || p.aggregation == Aggregation::kMembrane ||
-         p.aggregation == Aggregation::kLocalStopping || is_bayes(p);
-}
-template <Aggregation aggregation>
-bool aggregates_by(const MethodParameters& p) {
-  return p.aggregation == aggregation;
-}
-template <MatchCost cost>
-bool costs_by(const MethodParameters& p) {
-  return p.cost == cost;
+inline bool reads_with_levels(const MethodParameters& p, std::string_view option) {
+  return reads(p, option) && p.levels > 1;
 }
 
-inline constexpr ParameterReaders kAll = {"every method",
-                                          [](const MethodParameters&) { return true; }};
+inline constexpr ParameterReaders kAll = {
+    "every method", [](const MethodParameters&, std::string_view) { return true; }};
 
 // Costs.
-inline constexpr ParameterReaders kTruncated = {"the cost truncated",
-                                                costs_by<MatchCost::kTruncated>};
-inline constexpr ParameterReaders kRayCensus = {"the cost census-rays",
-                                                costs_by<MatchCost::kRayCensus>};
-inline constexpr ParameterReaders kCombined = {"the cost combined", costs_by<MatchCost::kCombined>};
-inline constexpr ParameterReaders kGradient = {"the cost gradient (method gradient)",
-                                               costs_by<MatchCost::kGradient>};
+inline constexpr ParameterReaders kCosts = {"the {costs}", reads};
+inline constexpr ParameterReaders kGradient = {"the {costs} (method gradient)", reads};
 inline constexpr ParameterReaders kExposure = {
-    "every cost but census and census-rays, whose codes no exposure changes",
-    [](const MethodParameters& p) { return !is_census(p.cost); }};
+    "every cost but {other_costs}, whose codes no exposure changes", reads};
 inline constexpr ParameterReaders kSigmaMeasurement = {
-    "the costs contaminated and combined, the aggregation bayes, and local-stopping with certainty "
-    "entropy",
-    uses_sigma_measurement};
-inline constexpr ParameterReaders kEpsilonMeasurement = {
-    "the costs contaminated and combined, and the aggregation bayes",
-    [](const MethodParameters& p) {
-      return p.cost == MatchCost::kContaminated || p.cost == MatchCost::kCombined || is_bayes(p);
-    }};
+    "the {costs}, the aggregation bayes, and local-stopping with certainty entropy",
+    [](const MethodParameters& p, std::string_view) { return uses_sigma_measurement(p); }};
+inline constexpr ParameterReaders kEpsilonMeasurement = {"the {costs}, and the {aggregations}",
+                                                         reads};
 
 // Aggregations.
 inline constexpr ParameterReaders kBox = {
-    "the aggregation box (method ssd), which alone has windows", aggregates_by<Aggregation::kBox>};
-inline constexpr ParameterReaders kGaussians = {
-    "the aggregations gaussian and box-cascade (method gradient)", [](const MethodParameters& p) {
-      return p.aggregation == Aggregation::kGaussian || p.aggregation == Aggregation::kBoxCascade;
-    }};
-inline constexpr ParameterReaders kIterative = {"diffusion, membrane, local-stopping and bayes",
-                                                is_iterative};
-inline constexpr ParameterReaders kIterativeWithLevels = {
-    "diffusion, membrane, local-stopping and bayes with levels above 1",
-    [](const MethodParameters& p) { return is_iterative(p) && p.levels > 1; }};
-inline constexpr ParameterReaders kSteps = {
-    "diffusion, membrane and local-stopping",
-    [](const MethodParameters& p) { return is_iterative(p) && !is_bayes(p); }};
-inline constexpr ParameterReaders kMembrane = {"membrane", aggregates_by<Aggregation::kMembrane>};
-inline constexpr ParameterReaders kLocalStopping = {"local-stopping",
-                                                    aggregates_by<Aggregation::kLocalStopping>};
-inline constexpr ParameterReaders kBayes = {"the aggregation bayes (method bayes, the presets)",
-                                            is_bayes};
+    "the {aggregations} (method ssd), which alone has windows", reads};
+inline constexpr ParameterReaders kGaussians = {"the {aggregations} (method gradient)", reads};
+inline constexpr ParameterReaders kNamed = {"{names}", reads};
+inline constexpr ParameterReaders kNamedWithLevels = {"{names} with levels above 1",
+                                                      reads_with_levels};
+inline constexpr ParameterReaders kBayes = {"the {aggregations} (method bayes, the presets)",
+                                            reads};
 inline constexpr ParameterReaders kBayesWithLevels = {
-    "the aggregation bayes (method bayes, the presets) with levels above 1",
-    [](const MethodParameters& p) { return is_bayes(p) && p.levels > 1; }};
+    "the {aggregations} (method bayes, the presets) with levels above 1", reads_with_levels};
 /// That candidate_blocks is 0 where it can only be 0 counts as read.
 inline constexpr ParameterReaders kCandidateBlocks = {
-    kBayesWithLevels.names,
-    [](const MethodParameters& p) { return p.candidate_blocks == 0 || can_prune(p); }};
+    kBayesWithLevels.text, [](const MethodParameters& p, std::string_view) {
+      return p.candidate_blocks == 0 || can_prune(p);
+    }};
 inline constexpr ParameterReaders kPrunedLevels = {
-    "the aggregation bayes with levels above 1 and candidate-blocks above 0 (the presets)",
-    [](const MethodParameters& p) { return p.candidate_blocks > 0 && can_prune(p); }};
+    "the {aggregations} with levels above 1 and candidate-blocks above 0 (the presets)",
+    [](const MethodParameters& p, std::string_view) {
+      return p.candidate_blocks > 0 && can_prune(p);
+    }};
 inline constexpr ParameterReaders kEdges = {
-    "the aggregation bayes with edge-weight below 1 (the presets)", uses_edge_weights};
+    "the {aggregations} with edge-weight below 1 (the presets)",
+    [](const MethodParameters& p, std::string_view) { return uses_edge_weights(p); }};
 
 }  // namespace readers
 }  // namespace vantage

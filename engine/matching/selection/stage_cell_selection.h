@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "engine/image/image.h"
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/parameters/method_parameters.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
 

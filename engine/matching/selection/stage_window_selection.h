@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/parameters/method_parameters.h"
 #include "engine/matching/selection/stage_cell_selection.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"

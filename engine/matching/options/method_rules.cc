@@ -1,19 +1,20 @@
-#include "engine/matching/options/method_parameters.h"
+#include "engine/matching/options/method_rules.h"
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <string_view>
+#include <vector>
 
 #include "engine/error.h"
+#include "engine/matching/aggregation/aggregation_table.h"
+#include "engine/matching/costs/cost_table.h"
 #include "engine/matching/options/method_fields.h"
+#include "engine/word_list.h"
 
 namespace vantage {
 namespace {
 
-MatchCost natural_cost(Aggregation aggregation) {
-  return aggregation == Aggregation::kBayes ? MatchCost::kContaminated : MatchCost::kSquared;
-}
+MatchCost natural_cost(Aggregation aggregation) { return aggregation_of(aggregation).natural_cost; }
 
 void require(bool holds, std::string_view field, double value, std::string_view expected) {
   if (!holds) {
@@ -28,11 +29,13 @@ void validate_pruning(const MethodParameters& parameters) {
   }
   require(parameters.levels > 1, "candidate-blocks", blocks,
           "0 with a single level: candidates are chosen by the winners of a coarser level");
-  require(parameters.aggregation == Aggregation::kBayes, "candidate-blocks", blocks,
+  require(has_likelihoods(parameters), "candidate-blocks", blocks,
           "0 but with the aggregation bayes: for energies, candidates that were not looked at have "
           "no value that is neutral to their neighbours");
-  require(!is_evidence(parameters), "candidate-blocks", blocks,
-          "0 with the cost gradient: its likelihoods compare a candidate with the best of all");
+  require(
+      !is_evidence(parameters), "candidate-blocks", blocks,
+      fmt::format("0 with the cost {}: its likelihoods compare a candidate with the best of all",
+                  cost_of(parameters).name));
   require(parameters.prior_smoothing == PriorSmoothing::kMaximum, "candidate-blocks", blocks,
           "0 with prior-smoothing sum: pruning needs prior-smoothing maximum");
 }
@@ -54,16 +57,22 @@ void validate_combination(const MethodParameters& parameters) {
   if (parameters.aggregation == Aggregation::kLocalStopping &&
       parameters.certainty == Certainty::kMargin && is_evidence(parameters)) {
     throw UsageError(
-        "certainty margin divides by the sum of a pixel's costs, which for the cost gradient have "
-        "both signs; expected certainty entropy");
+        fmt::format("certainty margin divides by the sum of a pixel's costs, which for the cost {} "
+                    "have both signs; expected certainty entropy",
+                    cost_of(parameters).name));
   }
-  const bool is_in_grey_levels =
-      parameters.cost != MatchCost::kGradient && !is_census(parameters.cost);
   if (parameters.estimate_sigma_measurement && uses_sigma_measurement(parameters) &&
-      !is_in_grey_levels) {
+      cost_of(parameters).unit != ResidualUnit::kGreyLevels) {
+    std::vector<std::string_view> others;
+    for (const MatchingCost& cost : cost_table()) {
+      if (cost.unit != ResidualUnit::kGreyLevels) {
+        others.push_back(cost.name);
+      }
+    }
     throw UsageError(
-        "sigma-measurement is estimated, which gives grey levels, but the costs gradient, census "
-        "and census-rays are none; expected a number");
+        fmt::format("sigma-measurement is estimated, which gives grey levels, but the costs {} are "
+                    "none; expected a number",
+                    word_list(others, "and")));
   }
 }
 
@@ -115,36 +124,27 @@ MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides) {
   if (!overrides.final_iterations) {
     result.final_iterations = result.iterations;
   }
-  // Combined costs are made for photographs, whose noise differs from pair to pair.
   if (!overrides.sigma_measurement && !overrides.estimate_sigma_measurement) {
-    result.estimate_sigma_measurement = result.cost == MatchCost::kCombined;
+    result.estimate_sigma_measurement = cost_of(result).estimates_sigma;
   }
   return result;
 }
 
 bool can_prune(const MethodParameters& parameters) {
-  return parameters.levels > 1 && parameters.aggregation == Aggregation::kBayes &&
-         !is_evidence(parameters) && parameters.prior_smoothing == PriorSmoothing::kMaximum;
-}
-
-MethodParameters at_level(const MethodParameters& parameters, int level) {
-  MethodParameters result = parameters;
-  if (level == 0 && parameters.levels > 1) {
-    result.iterations = parameters.final_iterations;
-  }
-  result.sigma_prior *= std::pow(parameters.prior_growth, level);
-  return result;
+  return parameters.levels > 1 && has_likelihoods(parameters) && !is_evidence(parameters) &&
+         parameters.prior_smoothing == PriorSmoothing::kMaximum;
 }
 
 bool uses_sigma_measurement(const MethodParameters& parameters) {
-  return parameters.cost == MatchCost::kContaminated || parameters.cost == MatchCost::kCombined ||
-         parameters.aggregation == Aggregation::kBayes ||
-         (parameters.aggregation == Aggregation::kLocalStopping &&
-          parameters.certainty == Certainty::kEntropy);
+  constexpr std::string_view kOption = "sigma-measurement";
+  const bool is_idle = parameters.aggregation == Aggregation::kLocalStopping &&
+                       parameters.certainty == Certainty::kMargin;
+  return cost_of(parameters).reads(kOption) ||
+         (aggregation_of(parameters).reads(kOption) && !is_idle);
 }
 
 bool uses_pair_levels(const MethodParameters& parameters) {
-  return (parameters.match_exposure && !is_census(parameters.cost)) ||
+  return (parameters.match_exposure && cost_of(parameters).reads("match-exposure")) ||
          (parameters.estimate_sigma_measurement && uses_sigma_measurement(parameters));
 }
 
@@ -153,10 +153,6 @@ void validate(const MethodParameters& parameters) {
   validate_pruning(parameters);
   validate_step(parameters);
   validate_combination(parameters);
-}
-
-bool uses_edge_weights(const MethodParameters& parameters) {
-  return parameters.aggregation == Aggregation::kBayes && parameters.edge_weight < 1;
 }
 
 }  // namespace vantage

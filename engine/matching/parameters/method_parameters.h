@@ -58,8 +58,8 @@ inline constexpr int kMaxCandidateBlocks = 8;
 
 /// Everything that decides how costs are made, aggregated and selected, with the book's defaults of
 /// the method ssd. With Field = std::optional: what a user sets; with Field = std::type_identity_t:
-/// what is in force. A field stands here and in visit_fields() (method_fields.h); what is forgotten
-/// there does not compile.
+/// what is in force. A field stands here and in visit_fields() (options/method_fields.h); what is
+/// forgotten there does not compile.
 template <template <typename> class Field>
 struct MethodParametersOf {
   Field<MatchCost> cost = by_default<Field>(MatchCost::kSquared);
@@ -138,45 +138,10 @@ struct MethodParametersOf {
 using MethodOverrides = MethodParametersOf<OptionalField>;
 using MethodParameters = MethodParametersOf<std::type_identity_t>;
 
-/// `overrides`, and where they are empty `defaults`.
-MethodOverrides merge(const MethodOverrides& defaults, const MethodOverrides& overrides);
-
-/// Overrides that leave nothing to preset or method.
-MethodOverrides as_overrides(const MethodParameters& parameters);
-
-/// The book's parameters of a method.
-MethodParameters book_parameters(MatchMethod method);
-
-/// `overrides`, then the book's parameters of `method`, whose cost is adapted to the aggregation
-/// where only the aggregation was overridden.
-MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides);
-
-/// Throws UsageError naming field, value and limit, or why a combination makes no sense.
-void validate(const MethodParameters& parameters);
-
-/// Whether candidates of fine levels can be left out (candidate_blocks): Bayes with several levels,
-/// the prior's maximum and any cost but the gradient.
-bool can_prune(const MethodParameters& parameters);
-
 /// What is in force on one level, the image's own being 0: iterations and σP.
 MethodParameters at_level(const MethodParameters& parameters, int level);
-/// Whether the cost compares census codes, which no change of exposure changes.
-inline bool is_census(MatchCost cost) {
-  return cost == MatchCost::kCensus || cost == MatchCost::kRayCensus;
-}
 
 /// Whether the neighbours of a pixel count by the intensity edges between them.
 bool uses_edge_weights(const MethodParameters& parameters);
-
-/// Whether σM takes part.
-bool uses_sigma_measurement(const MethodParameters& parameters);
-
-/// Whether something is to be estimated from each pair's grey levels.
-bool uses_pair_levels(const MethodParameters& parameters);
-
-/// Whether cells hold −evidence, which is compared with 0 and has no scale of its own.
-inline bool is_evidence(const MethodParameters& parameters) {
-  return parameters.cost == MatchCost::kGradient;
-}
 
 }  // namespace vantage

@@ -1,0 +1,165 @@
+#include "engine/matching/aggregation/aggregation_table.h"
+
+#include <array>
+
+#include "engine/matching/aggregation/stage_bayes.h"
+#include "engine/matching/aggregation/stage_box_mean.h"
+#include "engine/matching/aggregation/stage_diffusion.h"
+#include "engine/matching/aggregation/stage_max_product.h"
+#include "engine/matching/aggregation/stage_smoothing.h"
+#include "engine/matching/levels/energy_format.h"
+
+namespace vantage {
+namespace {
+
+using Stages = std::vector<std::unique_ptr<scheduler::RowStage>>;
+
+AggregationReach gaussian_reach(const MethodParameters& parameters) {
+  return {4 * parameters.aggregation_sigma_px, "px"};
+}
+
+/// As far as iterations go on the image's own level.
+AggregationReach iterations_reach(const MethodParameters& parameters) {
+  return {static_cast<double>(at_level(parameters, 0).iterations), "iterations"};
+}
+
+Stages diffusion_stages(const MethodParameters& parameters, const AggregationPlace& place) {
+  Stages stages;
+  for (int i = 0; i < parameters.iterations; ++i) {
+    stages.push_back(make_diffusion_stage(parameters, place.geometry, place.height));
+  }
+  return stages;
+}
+
+Stages local_stopping_stages(const MethodParameters& parameters, const AggregationPlace& place) {
+  Stages stages;
+  for (int i = 0; i < parameters.iterations; ++i) {
+    stages.push_back(
+        make_local_stopping_stage(parameters, place.geometry, place.height,
+                                  {.is_first = i == 0, .is_last = i + 1 == parameters.iterations}));
+  }
+  return stages;
+}
+
+Stages bayes_stages(const MethodParameters& parameters, const AggregationPlace& place) {
+  return uses_fixed_energies(parameters)
+             ? make_max_product_stages(parameters, place.geometry, place.height,
+                                       {.volume = place.coarser, .blocks = place.coarser_blocks},
+                                       place.edges, place.blocks, place.plane)
+             : make_bayes_stages(parameters, place.geometry, place.height, place.coarser,
+                                 place.edges, place.plane);
+}
+
+CellAggregation none_aggregation() {
+  return {
+      .key = Aggregation::kNone, .name = "none", .description = "each pixel alone", .options = {}};
+}
+
+CellAggregation box_aggregation() {
+  return {.key = Aggregation::kBox,
+          .name = "box",
+          .description = "square window",
+          .options = {"window", "border"},
+          .has_windows = true,
+          .reach =
+              [](const MethodParameters& parameters) {
+                return AggregationReach{static_cast<double>(parameters.window_px), "px"};
+              },
+          .make_stages =
+              [](const MethodParameters& parameters, const AggregationPlace& place) {
+                return make_box_mean_stages(place.geometry, place.height, parameters.window_px / 2);
+              }};
+}
+
+CellAggregation gaussian_aggregation() {
+  return {.key = Aggregation::kGaussian,
+          .name = "gaussian",
+          .description = "Gaussian window",
+          .options = {"aggregation-sigma"},
+          .reach = gaussian_reach,
+          .make_stages = [](const MethodParameters& parameters, const AggregationPlace& place) {
+            return make_gaussian_stages(place.geometry, place.height,
+                                        parameters.aggregation_sigma_px);
+          }};
+}
+
+CellAggregation box_cascade_aggregation() {
+  return {.key = Aggregation::kBoxCascade,
+          .name = "box-cascade",
+          .description = "four square windows one after another, nearly a Gaussian",
+          .options = {"aggregation-sigma"},
+          .reach = gaussian_reach,
+          .make_stages = [](const MethodParameters& parameters, const AggregationPlace& place) {
+            return make_box_cascade_stages(place.geometry, place.height,
+                                           parameters.aggregation_sigma_px);
+          }};
+}
+
+CellAggregation diffusion_aggregation() {
+  return {.key = Aggregation::kDiffusion,
+          .name = "diffusion",
+          .description = "iterated means of the four neighbours",
+          .options = {"iterations", "final-iterations", "lambda"},
+          .is_iterative = true,
+          .reach = iterations_reach,
+          .make_stages = diffusion_stages};
+}
+
+CellAggregation membrane_aggregation() {
+  return {.key = Aggregation::kMembrane,
+          .name = "membrane",
+          .description = "diffusion that is pulled back to the first costs",
+          .options = {"iterations", "final-iterations", "lambda", "beta"},
+          .is_iterative = true,
+          .coarser_use = CoarserUse::kStart,
+          .reach = iterations_reach,
+          .make_stages = diffusion_stages};
+}
+
+CellAggregation local_stopping_aggregation() {
+  return {.key = Aggregation::kLocalStopping,
+          .name = "local-stopping",
+          .description = "diffusion that stops where the winner would become less certain",
+          .options = {"iterations", "final-iterations", "lambda", "certainty", "sigma-measurement"},
+          .is_iterative = true,
+          .reach = iterations_reach,
+          .confidence =
+              [](const MethodParameters& parameters) {
+                return parameters.certainty == Certainty::kMargin ? ConfidenceMeasure::kMargin
+                                                                  : ConfidenceMeasure::kEntropy;
+              },
+          .make_stages = local_stopping_stages};
+}
+
+CellAggregation bayes_aggregation() {
+  return {
+      .key = Aggregation::kBayes,
+      .name = "bayes",
+      .description = "probabilities that neighbours change by a prior of surfaces",
+      .options = {"iterations", "final-iterations", "mu", "sigma-prior", "epsilon-prior",
+                  "prior-growth", "prior-smoothing", "level-weight", "edge-weight", "edge-contrast",
+                  "sigma-measurement", "epsilon-measurement", "candidate-blocks", "pruned-levels"},
+      .natural_cost = MatchCost::kContaminated,
+      .cells = CellMeaning::kLikelihood,
+      .is_iterative = true,
+      .reach = iterations_reach,
+      .confidence = [](const MethodParameters&) { return ConfidenceMeasure::kProbability; },
+      .make_stages = bayes_stages};
+}
+
+}  // namespace
+
+std::span<const CellAggregation> aggregation_table() {
+  static const std::array table = {
+      none_aggregation(),           box_aggregation(),       gaussian_aggregation(),
+      box_cascade_aggregation(),    diffusion_aggregation(), membrane_aggregation(),
+      local_stopping_aggregation(), bayes_aggregation(),
+  };
+  return table;
+}
+
+const CellAggregation& aggregation_of(Aggregation aggregation) {
+  return *std::ranges::find(aggregation_table(), aggregation, &CellAggregation::key);
+}
+
+}  // namespace vantage

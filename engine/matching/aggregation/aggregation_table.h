@@ -1,0 +1,82 @@
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "engine/matching/aggregation/edge_weights.h"
+#include "engine/matching/costs/stage_cost.h"
+#include "engine/matching/levels/candidate_blocks.h"
+#include "engine/matching/levels/level_volume.h"
+#include "engine/matching/levels/stage_level_energies.h"
+#include "engine/matching/parameters/method_parameters.h"
+#include "engine/matching/selection/stage_cell_selection.h"
+#include "kernels/candidates.h"
+#include "scheduler/row_stage.h"
+
+namespace vantage {
+
+/// Where cells are aggregated: a level of one map.
+struct AggregationPlace {
+  const kernels::CandidateGeometry& geometry;
+  int height = 0;
+  kernels::CandidatePlane plane = {};    ///< of a search in two dimensions
+  const EdgeWeights* edges = nullptr;    ///< null: neighbours count alike
+  const LevelVolume* coarser = nullptr;  ///< result of the next coarser level; null: there is none
+  const CandidateBlocks* coarser_blocks = nullptr;
+  const CandidateBlocks* blocks = nullptr;  ///< null: all candidates are looked at
+};
+
+/// How far an aggregation reaches, in its own unit.
+struct AggregationReach {
+  double amount = 0;
+  std::string_view unit;
+};
+
+/// An aggregation: all that is known of it outside of its stages.
+struct CellAggregation {
+  Aggregation key = Aggregation::kNone;
+  std::string_view name;         ///< of options, messages and tuning keys
+  std::string_view description;  ///< one line of help
+  /// Options that it reads, with levels or other options in some cases (parameter_readers.h).
+  std::vector<std::string_view> options;
+
+  /// What it starts from unless a cost is chosen, and what the cells of that cost mean.
+  MatchCost natural_cost = MatchCost::kSquared;
+  CellMeaning cells = CellMeaning::kEnergy;
+  bool is_iterative = false;  ///< `iterations` stages, and what comes before them
+  /// Windows: on the image's own level, selection sums them up in integers.
+  bool has_windows = false;
+  CoarserUse coarser_use = CoarserUse::kSupport;  ///< of energies of a coarser level
+
+  /// Null: it does not reach beyond the pixel.
+  AggregationReach (*reach)(const MethodParameters& parameters) = nullptr;
+  /// Null: the margin of energies, the evidence of a cost that is evidence.
+  ConfidenceMeasure (*confidence)(const MethodParameters& parameters) = nullptr;
+  /// `parameters`: of the level. Null: no stages.
+  std::vector<std::unique_ptr<scheduler::RowStage>> (*make_stages)(
+      const MethodParameters& parameters, const AggregationPlace& place) = nullptr;
+
+  [[nodiscard]] bool reads(std::string_view option) const {
+    return std::find(options.begin(), options.end(), option) != options.end();
+  }
+};
+
+/// All aggregations, in the order of help texts. Command line, validation, messages, tuning keys
+/// and tests read this table.
+std::span<const CellAggregation> aggregation_table();
+
+/// The entry of one aggregation.
+const CellAggregation& aggregation_of(Aggregation aggregation);
+inline const CellAggregation& aggregation_of(const MethodParameters& parameters) {
+  return aggregation_of(parameters.aggregation);
+}
+
+/// Whether cells are likelihoods and probabilities, else energies.
+inline bool has_likelihoods(const MethodParameters& parameters) {
+  return aggregation_of(parameters).cells == CellMeaning::kLikelihood;
+}
+
+}  // namespace vantage

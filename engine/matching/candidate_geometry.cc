@@ -1,0 +1,56 @@
+#include "engine/matching/candidate_geometry.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/error.h"
+#include "engine/matching/aggregation/aggregation_table.h"
+
+namespace vantage {
+
+kernels::CandidateGeometry candidate_geometry(const ResolvedMatchOptions& options, Side reference,
+                                              int width, int height) {
+  // Whole windows need room: with border `valid` they shorten the largest shift that can match.
+  const MethodParameters& parameters = options.parameters;
+  const bool has_whole_windows =
+      aggregation_of(parameters).has_windows && parameters.border == Border::kValid;
+  const int margin = has_whole_windows ? parameters.window_px - 1 : 0;
+  const int most_shift = width - 1 - margin;
+  const int least = std::max(options.disparities.min, -most_shift);
+  const int most = std::min(options.disparities.max, most_shift);
+  if (most < least || height <= margin) {
+    throw Error(fmt::format(
+        "no pixel has a candidate: disparities {}:{}{} on images of {}x{}, expected a range that "
+        "reaches into {}:{}",
+        options.disparities.min, options.disparities.max,
+        margin > 0 ? fmt::format(" with whole {0}x{0} windows (border valid)", parameters.window_px)
+                   : "",
+        width, height, -std::max(0, most_shift), std::max(0, most_shift)));
+  }
+  return {width, least, most - least + 1, direction_of(reference)};
+}
+
+std::optional<DisplacementGrid> displacement_grid(const ResolvedMatchOptions& options,
+                                                  Side reference, int width, int height) {
+  if (!options.disparities_y) {
+    return std::nullopt;
+  }
+  const MethodParameters& parameters = options.parameters;
+  const int margin = parameters.border == Border::kValid ? parameters.window_px - 1 : 0;
+  const int most_shift = height - 1 - margin;
+  const int least = std::max(options.disparities_y->min, -most_shift);
+  const int most = std::min(options.disparities_y->max, most_shift);
+  const kernels::CandidateGeometry along_rows =
+      candidate_geometry(options, reference, width, height);
+  if (most < least) {
+    throw Error(fmt::format(
+        "no pixel has a candidate: disparities-y {}:{} on images of {}x{}, expected a range that "
+        "reaches into {}:{}",
+        options.disparities_y->min, options.disparities_y->max, width, height,
+        -std::max(0, most_shift), std::max(0, most_shift)));
+  }
+  return DisplacementGrid{along_rows, least, most - least + 1, height};
+}
+
+}  // namespace vantage

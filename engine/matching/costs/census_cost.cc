@@ -1,0 +1,54 @@
+#include <array>
+
+#include "engine/matching/costs/census_codes.h"
+#include "engine/matching/costs/cost_table.h"
+
+namespace vantage {
+namespace {
+
+class CensusPlanes final : public CostPlanes {
+ public:
+  ChannelPlanes<std::uint32_t, 2> codes;
+
+  void prepare(const PlaneSource& source, const MethodParameters& /*parameters*/) override {
+    prepare_filter_levels(source, levels_);
+    source.for_each_channel([&](std::size_t c) { resize_codes(source, codes[c]); });
+    source.for_each_channel_row(
+        [&](std::size_t c, int y) { census_code_row(source, levels_[c], y, codes[c]); });
+  }
+  [[nodiscard]] std::size_t held_bytes() const override {
+    return held_bytes_of(codes) + held_bytes_of(levels_);
+  }
+
+ private:
+  FilterLevels levels_;
+};
+
+class CensusModel final : public CostModel {
+ public:
+  using CostModel::CostModel;
+
+  void energies(const CostRow& row, float* cells) const override {
+    kernels::hamming_row(row.pairs(&CensusPlanes::codes), cells);
+  }
+  [[nodiscard]] CostBounds energy_bounds() const override {
+    return {0, static_cast<float>(kernels::kCensusBits)};
+  }
+  [[nodiscard]] kernels::KernelWork energy_work(int channels) const override {
+    return kernels::hamming_work(channels);
+  }
+};
+
+}  // namespace
+
+MatchingCost census_cost() {
+  return {.key = MatchCost::kCensus,
+          .name = "census",
+          .description = "census codes of 9x7 pixels: bits that differ",
+          .options = {},
+          .unit = ResidualUnit::kCensusBits,
+          .make_planes = make_planes_as<CensusPlanes>,
+          .make_model = make_model_as<CensusModel>};
+}
+
+}  // namespace vantage

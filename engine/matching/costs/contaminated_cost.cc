@@ -1,0 +1,54 @@
+#include <cmath>
+#include <optional>
+
+#include "engine/matching/costs/cost_table.h"
+#include "engine/matching/costs/grey_planes.h"
+
+namespace vantage {
+namespace {
+
+class ContaminatedModel final : public CostModel {
+ public:
+  using CostModel::CostModel;
+
+  void energies(const CostRow& row, float* cells) const override {
+    kernels::contaminated_energy_row(row.grey_levels(), measurement(), cells);
+  }
+  /// Of channels: the exponential of the mean energy.
+  void likelihoods(const CostRow& row, float* cells) const override {
+    const kernels::GreyPairs levels = row.grey_levels();
+    if (levels.channels == 1) {
+      kernels::contaminated_likelihood_row(levels, measurement(), cells);
+    } else {
+      kernels::contaminated_energy_row(levels, measurement(), cells);
+      kernels::likelihood_of_energies({levels.columns, levels.lanes, levels.count}, cells);
+    }
+  }
+  [[nodiscard]] std::optional<float> energy_without_partner() const override {
+    return measurement().energy_without_partner();
+  }
+  [[nodiscard]] CostBounds energy_bounds() const override {
+    return {0, static_cast<float>(-std::log(parameters().epsilon_measurement))};
+  }
+  [[nodiscard]] kernels::KernelWork energy_work(int channels) const override {
+    return kernels::contaminated_energy_work(channels);
+  }
+  [[nodiscard]] kernels::KernelWork likelihood_work(int channels) const override {
+    return channels == 1 ? kernels::contaminated_likelihood_work(channels)
+                         : energy_work(channels) + kernels::kLikelihoodOfEnergiesWork;
+  }
+};
+
+}  // namespace
+
+MatchingCost contaminated_cost() {
+  return {.key = MatchCost::kContaminated,
+          .name = "contaminated",
+          .description = "-log of a Gaussian of the difference of grey levels, with outliers",
+          .options = {"match-exposure", "sigma-measurement", "epsilon-measurement"},
+          .can_be_interpolated = true,
+          .make_planes = make_planes_as<GreyPlanes>,
+          .make_model = make_model_as<ContaminatedModel>};
+}
+
+}  // namespace vantage

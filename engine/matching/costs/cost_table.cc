@@ -1,0 +1,29 @@
+#include "engine/matching/costs/cost_table.h"
+
+#include <algorithm>
+#include <array>
+
+namespace vantage {
+
+std::span<const MatchingCost> cost_table() {
+  static const std::array table = {
+      squared_cost(),  absolute_cost(),     truncated_cost(), birchfield_tomasi_cost(),
+      gradient_cost(), contaminated_cost(), census_cost(),    ray_census_cost(),
+      combined_cost(),
+  };
+  return table;
+}
+
+const MatchingCost& cost_of(MatchCost cost) {
+  return *std::ranges::find(cost_table(), cost, &MatchingCost::key);
+}
+
+CostBounds cost_bounds(const MethodParameters& parameters, int partners) {
+  // Costs are floats: a little more than the exact bounds is possible.
+  constexpr float room = 1.0001F;
+  const CostBounds one = cost_of(parameters).make_model(parameters)->energy_bounds();
+  const float count = room * static_cast<float>(partners);
+  return {one.least * count, one.largest * count};
+}
+
+}  // namespace vantage

@@ -1,0 +1,103 @@
+#include <algorithm>
+#include <numbers>
+#include <optional>
+
+#include "engine/matching/costs/cost_table.h"
+#include "engine/matching/costs/gradient_planes.h"
+#include "kernels/evidence/evidence.h"
+
+namespace vantage {
+namespace {
+
+bool is_octagon(const MethodParameters& parameters) {
+  return parameters.norm == GradientNorm::kOctagon;
+}
+
+class GradientModel final : public CostModel {
+ public:
+  using CostModel::CostModel;
+
+  void energies(const CostRow& row, float* cells) const override {
+    kernels::negated_evidence_row(row.pairs(&GradientPlanes::gradients), is_octagon(parameters()),
+                                  cells);
+  }
+  /// (1−ε) exp((E − max over the column)/σ) + ε, E of the cells with a partner.
+  void likelihoods(const CostRow& row, float* cells) const override {
+    energies(row, cells);
+    kernels::likelihood_of_evidence(
+        {row.partner.geometry(), row.columns.begin, row.columns.size()},
+        static_cast<float>(std::max(kernels::kLeastEvidenceSigma, parameters().sigma_measurement)),
+        measurement().epsilon, cells);
+  }
+  [[nodiscard]] std::optional<float> energy_without_partner() const override { return 0.0F; }
+  [[nodiscard]] CostBounds energy_bounds() const override {
+    // The octagon norm is at most (1.4142 + 0.0396 · 1.4142) times the larger component.
+    const double longest = 1.04 * std::numbers::sqrt2 * largest_gradient();
+    return {static_cast<float>(-longest), static_cast<float>(2 * parameters().alpha * longest)};
+  }
+  [[nodiscard]] kernels::KernelWork energy_work(int channels) const override {
+    return kernels::negated_evidence_work(is_octagon(parameters()), channels);
+  }
+  [[nodiscard]] kernels::KernelWork likelihood_work(int channels) const override {
+    return energy_work(channels) + kernels::kLikelihoodOfEvidenceWork;
+  }
+
+ private:
+  /// Largest response of the filter along one axis (EQUATIONS §2), with room for rounding.
+  [[nodiscard]] double largest_gradient() const {
+    switch (parameters().gradient) {
+      case GradientFilter::kCentral:
+        return kWhite;
+      case GradientFilter::kSobel:
+        return 4 * kWhite;
+      case GradientFilter::kSimoncelli3:
+        return 0.4554 * kWhite;
+      case GradientFilter::kSimoncelli5:
+        return (0.1077 + 0.2828) * kWhite;
+    }
+    return 0;
+  }
+};
+
+}  // namespace
+
+void GradientPlanes::prepare(const PlaneSource& source, const MethodParameters& parameters) {
+  const int width = source.width();
+  const int height = source.height();
+  prepare_filter_levels(source, levels_);
+  source.for_each_channel([&](std::size_t c) {
+    for (FeaturePlane<float>& plane : gradients[c]) {
+      plane.resize(source);
+    }
+    if (parameters.prefilter) {
+      smooth_levels_[c].resize(width, height, kFilterMarginBefore, kFilterMarginBehind);
+      smooth_levels(levels_[c], width, height, source.execution, smooth_levels_[c]);
+    }
+  });
+  const auto alpha = static_cast<float>(parameters.alpha);
+  const FilterLevels& levels = parameters.prefilter ? smooth_levels_ : levels_;
+  source.for_each_channel_row([&](std::size_t c, int y) {
+    const auto work = source.execution.scratch().lease(sizeof(float) * filter_work_floats(width));
+    auto& [gx, gy, half_norm] = gradients[c];
+    gradient_row(levels[c], width, height, y, parameters.gradient,
+                 reinterpret_cast<float*>(work.data()), gx.plain.row(y), gy.plain.row(y));
+    kernels::evidence_planes_row({gx.plain.row(y), gy.plain.row(y), half_norm.plain.row(y), width},
+                                 alpha, is_octagon(parameters));
+    for (FeaturePlane<float>& plane : gradients[c]) {
+      plane.finish_row(source, y);
+    }
+  });
+}
+
+MatchingCost gradient_cost() {
+  return {.key = MatchCost::kGradient,
+          .name = "gradient",
+          .description = "gradients: how long they are and how much they differ",
+          .options = {"match-exposure", "alpha", "norm", "gradient", "prefilter"},
+          .unit = ResidualUnit::kGradient,
+          .is_evidence = true,
+          .make_planes = make_planes_as<GradientPlanes>,
+          .make_model = make_model_as<GradientModel>};
+}
+
+}  // namespace vantage

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "engine/matching/costs/cost_planes.h"
+
+namespace vantage {
+
+/// Gradients as evidence (5.5) is made of them.
+class GradientPlanes final : public CostPlanes {
+ public:
+  ChannelPlanes<float, 3> gradients;  ///< α·gx, α·gy, |g|/2
+
+  void prepare(const PlaneSource& source, const MethodParameters& parameters) override;
+  [[nodiscard]] std::size_t held_bytes() const override {
+    return held_bytes_of(gradients) + held_bytes_of(levels_) + held_bytes_of(smooth_levels_);
+  }
+
+ private:
+  FilterLevels levels_;
+  FilterLevels smooth_levels_;
+};
+
+}  // namespace vantage

@@ -1,0 +1,138 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/matching/costs/cost_image.h"
+#include "engine/matching/costs/partner_rows.h"
+#include "engine/matching/parameters/method_parameters.h"
+#include "kernels/kernel_work.h"
+#include "kernels/pixel_cost/pixel_cost.h"
+#include "scheduler/range.h"
+#include "scheduler/row_stage.h"
+
+namespace vantage {
+
+/// Between which values energies lie.
+struct CostBounds {
+  float least = 0;
+  float largest = 0;
+};
+
+/// Columns of one row, whose pixels are compared with those of a partner.
+struct CostRow {
+  const PartnerRows& partner;
+  int y = 0;
+  scheduler::Range columns;
+  float* work = nullptr;  ///< partner.work_floats(columns) floats
+
+  [[nodiscard]] kernels::GreyPairs grey_levels() const {
+    return partner.grey_levels(y, columns, work);
+  }
+  /// The planes of the cost's own type that `planes` is a member of.
+  template <typename Planes>
+  [[nodiscard]] auto pairs(Planes planes) const {
+    return partner.pairs(y, columns, planes);
+  }
+};
+
+/// A cost with its parameters: what the cost stage asks, once for each row or block of columns.
+/// Energies are small where pixels are alike, in the cost's own unit; of colour channels the mean.
+/// Likelihoods are p0 up to a factor per column, in (0, 1] (6.25). Thread rule: immutable.
+class CostModel {
+ public:
+  explicit CostModel(const MethodParameters& parameters);
+  CostModel(const CostModel&) = delete;
+  CostModel& operator=(const CostModel&) = delete;
+  virtual ~CostModel() = default;
+
+  /// Writes lanes of floats for each column. Lanes that are no candidates: finite.
+  virtual void energies(const CostRow& row, float* cells) const = 0;
+  /// Lanes that are no candidates: 0. Unless overridden, the measurement model (6.26 ff.) with the
+  /// energy as residual.
+  virtual void likelihoods(const CostRow& row, float* cells) const;
+
+  /// Of cells whose partner is outside; empty: they keep the cost of the border.
+  [[nodiscard]] virtual std::optional<float> energy_without_partner() const { return {}; }
+  [[nodiscard]] virtual float likelihood_without_partner() const;
+
+  /// For grey levels of 0..255 and one partner.
+  [[nodiscard]] virtual CostBounds energy_bounds() const = 0;
+
+  /// Work of energies() and likelihoods() on a column.
+  [[nodiscard]] virtual kernels::KernelWork energy_work(int channels) const = 0;
+  [[nodiscard]] virtual kernels::KernelWork likelihood_work(int channels) const;
+
+ protected:
+  static constexpr double kWhite = 255;  ///< largest grey level
+
+  [[nodiscard]] const MethodParameters& parameters() const { return parameters_; }
+  [[nodiscard]] const kernels::ContaminatedGaussian& measurement() const { return measurement_; }
+
+ private:
+  MethodParameters parameters_;
+  kernels::ContaminatedGaussian measurement_;
+};
+
+/// What residuals, and therefore σM, are measured in.
+enum class ResidualUnit { kGreyLevels, kGradient, kCensusBits };
+
+/// Energies −ln p0 in bytes, for costs of few values: of luma, one partner, the map's own baseline.
+struct ByteEnergies {
+  float (*nats_per_step)(const MethodParameters& parameters) = nullptr;
+  std::unique_ptr<scheduler::RowStage> (*make_stage)(const MethodParameters& parameters,
+                                                     const kernels::CandidateGeometry& geometry,
+                                                     const CostImage& reference,
+                                                     const CostPartner& partner,
+                                                     int height) = nullptr;
+};
+
+/// A matching cost: all that is known of it outside of its own file.
+struct MatchingCost {
+  MatchCost key = MatchCost::kSquared;
+  std::string_view name;         ///< of options, messages and tuning keys
+  std::string_view description;  ///< one line of help
+  /// Options that make a difference to its energies, match-exposure among them.
+  std::vector<std::string_view> options;
+
+  ResidualUnit unit = ResidualUnit::kGreyLevels;
+  /// Whether features of partners between pixels can be interpolated (PartnerRows::grey_levels).
+  bool can_be_interpolated = false;
+  /// Energies are −evidence: of both signs, compared with 0, without a scale of their own;
+  /// likelihoods compare a candidate with the best of all.
+  bool is_evidence = false;
+  /// σM is estimated from each pair unless it is set.
+  bool estimates_sigma = false;
+  /// Box sums of luma have a stage of their own (stage_column_ssd).
+  bool has_column_sums = false;
+  /// Largest contrast of a column of energies that a disparity prior takes for its scale.
+  float max_contrast = std::numeric_limits<float>::infinity();
+
+  std::unique_ptr<CostPlanes> (*make_planes)() = nullptr;
+  std::unique_ptr<CostModel> (*make_model)(const MethodParameters& parameters) = nullptr;
+  std::optional<ByteEnergies> byte_energies = {};
+  /// For tuning keys: what makes it another amount of work, ", 3 thresholds"; null: nothing.
+  std::string (*work_class)(const MethodParameters& parameters) = nullptr;
+
+  [[nodiscard]] bool reads(std::string_view option) const {
+    return std::find(options.begin(), options.end(), option) != options.end();
+  }
+};
+
+/// For MatchingCost::make_planes.
+template <typename Planes>
+std::unique_ptr<CostPlanes> make_planes_as() {
+  return std::make_unique<Planes>();
+}
+/// For MatchingCost::make_model.
+template <typename Model>
+std::unique_ptr<CostModel> make_model_as(const MethodParameters& parameters) {
+  return std::make_unique<Model>(parameters);
+}
+
+}  // namespace vantage

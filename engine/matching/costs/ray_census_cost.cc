@@ -1,0 +1,98 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "engine/matching/costs/cost_table.h"
+#include "engine/matching/costs/ray_census_planes.h"
+#include "engine/matching/costs/ray_census_tables.h"
+#include "engine/matching/costs/stage_ray_census_energy.h"
+
+namespace vantage {
+namespace {
+
+class RayCensusModel final : public CostModel {
+ public:
+  explicit RayCensusModel(const MethodParameters& parameters)
+      : CostModel(parameters),
+        thresholds_(parameters.census_thresholds),
+        likelihoods_(ray_census_likelihoods(measurement(), thresholds_)) {}
+
+  void energies(const CostRow& row, float* cells) const override {
+    kernels::ray_hamming_row(codes(row), cells);
+  }
+  void likelihoods(const CostRow& row, float* cells) const override {
+    if (row.partner.channels() == 1) {
+      kernels::ray_census_likelihood_row(codes(row), likelihoods_, cells);
+    } else {
+      CostModel::likelihoods(row, cells);
+    }
+  }
+  [[nodiscard]] CostBounds energy_bounds() const override {
+    return {0, static_cast<float>(kernels::kRayCensusNeighbours)};
+  }
+  [[nodiscard]] kernels::KernelWork energy_work(int channels) const override {
+    return kernels::ray_hamming_work(channels, thresholds_);
+  }
+  [[nodiscard]] kernels::KernelWork likelihood_work(int channels) const override {
+    return channels == 1 ? kernels::ray_census_likelihood_work(thresholds_)
+                         : CostModel::likelihood_work(channels);
+  }
+
+ private:
+  [[nodiscard]] kernels::RayCensusPairs codes(const CostRow& row) const {
+    return ray_codes(row.partner, row.y, row.columns, thresholds_);
+  }
+
+  int thresholds_;
+  kernels::LikelihoodByDistance likelihoods_;
+};
+
+}  // namespace
+
+void RayCensusPlanes::prepare(const PlaneSource& source, const MethodParameters& parameters) {
+  const int thresholds = parameters.census_thresholds;
+  const auto bytes = static_cast<std::size_t>(kernels::ray_census_bytes(thresholds));
+  prepare_filter_levels(source, levels_);
+  source.for_each_channel([&](std::size_t c) {
+    for (std::size_t k = 0; k < bytes; ++k) {
+      codes[c][k].resize(source);
+    }
+  });
+  source.for_each_channel_row([&](std::size_t c, int y) {
+    kernels::RayCensusRows rows{};
+    for (int v = -kernels::kRayCensusRadius; v <= kernels::kRayCensusRadius; ++v) {
+      rows[static_cast<std::size_t>(v + kernels::kRayCensusRadius)] =
+          levels_[c].row(std::clamp(y + v, 0, source.height() - 1));
+    }
+    kernels::RayCensusCodes code_rows{};
+    for (std::size_t k = 0; k < bytes; ++k) {
+      code_rows[k] = codes[c][k].plain.row(y);
+    }
+    kernels::ray_census_code_row(rows, source.width(), thresholds, code_rows);
+    for (std::size_t k = 0; k < bytes; ++k) {
+      codes[c][k].finish_row(source, y);
+    }
+  });
+}
+
+MatchingCost ray_census_cost() {
+  return {.key = MatchCost::kRayCensus,
+          .name = "census-rays",
+          .description = "census codes of 24 pixels in eight directions: bits that differ",
+          .options = {"census-thresholds"},
+          .unit = ResidualUnit::kCensusBits,
+          .make_planes = make_planes_as<RayCensusPlanes>,
+          .make_model = make_model_as<RayCensusModel>,
+          .byte_energies = ByteEnergies{.nats_per_step =
+                                            [](const MethodParameters& parameters) {
+                                              return ray_census_energies(parameters).step;
+                                            },
+                                        .make_stage = make_ray_census_energy_stage},
+          .work_class = [](const MethodParameters& parameters) {
+            return parameters.census_thresholds > 1
+                       ? fmt::format(", {} thresholds", parameters.census_thresholds)
+                       : std::string();
+          }};
+}
+
+}  // namespace vantage

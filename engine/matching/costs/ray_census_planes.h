@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/matching/costs/cost_planes.h"
+#include "engine/matching/costs/partner_rows.h"
+#include "kernels/ray_census/ray_census.h"
+
+namespace vantage {
+
+/// Bytes of ray census codes: ray_census_bytes(thresholds) of the planes are in use.
+class RayCensusPlanes final : public CostPlanes {
+ public:
+  ChannelPlanes<std::uint8_t, kernels::kMostRayCensusBytes> codes;
+
+  void prepare(const PlaneSource& source, const MethodParameters& parameters) override;
+  [[nodiscard]] std::size_t held_bytes() const override {
+    return held_bytes_of(codes) + held_bytes_of(levels_);
+  }
+
+ private:
+  FilterLevels levels_;
+};
+
+/// thresholds: those the images were prepared with.
+inline kernels::RayCensusPairs ray_codes(const PartnerRows& partner, int y,
+                                         scheduler::Range columns, int thresholds) {
+  return {partner.pairs(y, columns, &RayCensusPlanes::codes,
+                        static_cast<std::size_t>(kernels::ray_census_bytes(thresholds))),
+          thresholds};
+}
+
+}  // namespace vantage

@@ -1,0 +1,45 @@
+#include "engine/matching/costs/cost_table.h"
+#include "engine/matching/costs/grey_planes.h"
+
+namespace vantage {
+namespace {
+
+class SquaredModel final : public CostModel {
+ public:
+  using CostModel::CostModel;
+
+  void energies(const CostRow& row, float* cells) const override {
+    kernels::squared_row(row.grey_levels(), cells);
+  }
+  /// The mean of the channels' squares is the squared residual.
+  void likelihoods(const CostRow& row, float* cells) const override {
+    kernels::contaminated_likelihood_row(row.grey_levels(), measurement(), cells);
+  }
+  [[nodiscard]] CostBounds energy_bounds() const override {
+    return {0, static_cast<float>(kWhite * kWhite)};
+  }
+  [[nodiscard]] kernels::KernelWork energy_work(int channels) const override {
+    return kernels::squared_work(channels);
+  }
+  [[nodiscard]] kernels::KernelWork likelihood_work(int channels) const override {
+    return kernels::contaminated_likelihood_work(channels);
+  }
+};
+
+}  // namespace
+
+MatchingCost squared_cost() {
+  // Squares of large differences would make single pixels decide for all around them.
+  constexpr float kContrastLevels = 20;
+  return {.key = MatchCost::kSquared,
+          .name = "squared",
+          .description = "squared difference of grey levels",
+          .options = {"match-exposure"},
+          .can_be_interpolated = true,
+          .has_column_sums = true,
+          .max_contrast = kContrastLevels * kContrastLevels,
+          .make_planes = make_planes_as<GreyPlanes>,
+          .make_model = make_model_as<SquaredModel>};
+}
+
+}  // namespace vantage

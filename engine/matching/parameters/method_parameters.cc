@@ -1,0 +1,20 @@
+#include "engine/matching/parameters/method_parameters.h"
+
+#include <cmath>
+
+namespace vantage {
+
+MethodParameters at_level(const MethodParameters& parameters, int level) {
+  MethodParameters result = parameters;
+  if (level == 0 && parameters.levels > 1) {
+    result.iterations = parameters.final_iterations;
+  }
+  result.sigma_prior *= std::pow(parameters.prior_growth, level);
+  return result;
+}
+
+bool uses_edge_weights(const MethodParameters& parameters) {
+  return parameters.aggregation == Aggregation::kBayes && parameters.edge_weight < 1;
+}
+
+}  // namespace vantage
