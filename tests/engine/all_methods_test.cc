@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/engine/oracle_comparison.h"
+#include "tests/engine/table_keys.h"
 #include "tests/test_sample.h"
 
 namespace vantage {
@@ -18,14 +19,9 @@ using test::PixelKind;
 using test::textured_pair;
 using test::tolerance_of;
 
-constexpr MatchCost kCosts[] = {MatchCost::kSquared,   MatchCost::kAbsolute,
-                                MatchCost::kTruncated, MatchCost::kBirchfieldTomasi,
-                                MatchCost::kGradient,  MatchCost::kContaminated,
-                                MatchCost::kCensus,    MatchCost::kRayCensus};
-constexpr Aggregation kAggregations[] = {Aggregation::kNone,          Aggregation::kBox,
-                                         Aggregation::kGaussian,      Aggregation::kBoxCascade,
-                                         Aggregation::kDiffusion,     Aggregation::kMembrane,
-                                         Aggregation::kLocalStopping, Aggregation::kBayes};
+/// Costs that differ from the oracle's by rounding only.
+const std::vector<MatchCost> kCosts = test::all_costs_but(MatchCost::kCombined);
+const std::vector<Aggregation> kAggregations = test::all_aggregations();
 
 /// Images that a method is looked at with.
 struct ImageCase {
@@ -55,7 +51,7 @@ MatchOptions options_of(MatchCost cost, Aggregation aggregation, const ImageCase
   if (aggregation == Aggregation::kBox) {
     options.parameters.window_px = 5;
   }
-  if (cost == MatchCost::kGradient && aggregation == Aggregation::kLocalStopping) {
+  if (cost_of(cost).is_evidence && aggregation == Aggregation::kLocalStopping) {
     options.parameters.certainty = Certainty::kEntropy;  // there is no margin of evidence
   }
   return options;
@@ -74,12 +70,13 @@ class AllMethods : public ::testing::TestWithParam<int> {};
 TEST_P(AllMethods, EqualTheOracle) {
   Execution execution({.threads = 2});
   for (const test::SampleRow& row : test::rows_of(method_rows(), GetParam())) {
-    const Aggregation aggregation = kAggregations[row[1]];
+    const Aggregation aggregation = kAggregations[static_cast<std::size_t>(row[1])];
     const ImageCase& images = kImages[row[2]];
     SCOPED_TRACE("images " + std::to_string(row[2]) + ", " + test::sample_name());
     const auto pair =
         textured_pair(images.width, images.height, images.range, images.kind, images.seed);
-    const MatchOptions options = options_of(kCosts[row[0]], aggregation, images);
+    const MatchOptions options =
+        options_of(kCosts[static_cast<std::size_t>(row[0])], aggregation, images);
     expect_equals_oracle(pair, options, execution, tolerance_of(options.resolved()),
                          name_of(aggregation));
   }
@@ -87,7 +84,9 @@ TEST_P(AllMethods, EqualTheOracle) {
 
 INSTANTIATE_TEST_SUITE_P(Costs, AllMethods,
                          ::testing::Range(0, static_cast<int>(std::size(kCosts))),
-                         [](const auto& instance) { return name_of(kCosts[instance.param]); });
+                         [](const auto& instance) {
+                           return name_of(kCosts[static_cast<std::size_t>(instance.param)]);
+                         });
 
 }  // namespace all_methods_test
 }  // namespace vantage

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "engine/io/photograph_io.h"
+#include "engine/matching/costs/cost_table.h"
 #include "engine/matching/stereo_matcher.h"
 #include "tests/engine/identical_maps.h"
 #include "tests/engine/oracle_comparison.h"

@@ -8,11 +8,14 @@
 #include <iostream>
 #include <random>
 #include <sstream>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "engine/matching/aggregation/aggregation_table.h"
+#include "engine/matching/costs/cost_table.h"
 #include "engine/matching/stereo_matcher.h"
 
 namespace vantage::test {
@@ -152,6 +155,13 @@ Agreement compare(const DisparityMap& map, const Image<float>& confidence, const
   return result;
 }
 
+/// Names of tests have no hyphens.
+std::string test_name(std::string_view name) {
+  std::string text(name);
+  std::ranges::replace(text, '-', '_');
+  return text;
+}
+
 }  // namespace
 
 PhotographPair textured_pair(int width, int height, DisparityRange range, PixelKind kind,
@@ -289,50 +299,7 @@ Tolerance tolerance_of(const MethodParameters& parameters) {
   return tolerance;
 }
 
-std::string name_of(MatchCost cost) {
-  switch (cost) {
-    case MatchCost::kSquared:
-      return "squared";
-    case MatchCost::kAbsolute:
-      return "absolute";
-    case MatchCost::kTruncated:
-      return "truncated";
-    case MatchCost::kBirchfieldTomasi:
-      return "birchfield_tomasi";
-    case MatchCost::kGradient:
-      return "gradient";
-    case MatchCost::kContaminated:
-      return "contaminated";
-    case MatchCost::kCensus:
-      return "census";
-    case MatchCost::kRayCensus:
-      return "ray_census";
-    case MatchCost::kCombined:
-      return "combined";
-  }
-  return "?";
-}
-
-std::string name_of(Aggregation aggregation) {
-  switch (aggregation) {
-    case Aggregation::kNone:
-      return "none";
-    case Aggregation::kBox:
-      return "box";
-    case Aggregation::kGaussian:
-      return "gaussian";
-    case Aggregation::kBoxCascade:
-      return "box_cascade";
-    case Aggregation::kDiffusion:
-      return "diffusion";
-    case Aggregation::kMembrane:
-      return "membrane";
-    case Aggregation::kLocalStopping:
-      return "local_stopping";
-    case Aggregation::kBayes:
-      return "bayes";
-  }
-  return "?";
-}
+std::string name_of(MatchCost cost) { return test_name(cost_of(cost).name); }
+std::string name_of(Aggregation aggregation) { return test_name(aggregation_of(aggregation).name); }
 
 }  // namespace vantage::test

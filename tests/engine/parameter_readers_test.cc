@@ -20,7 +20,7 @@
 #include "engine/error.h"
 #include "engine/matching/aggregation/edge_weights.h"
 #include "engine/matching/candidate_geometry.h"
-#include "engine/matching/costs/cost_planes.h"
+#include "engine/matching/costs/cost_image.h"
 #include "engine/matching/map_search.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/options/method_fields.h"
@@ -28,6 +28,7 @@
 #include "engine/matching/pair_levels.h"
 #include "engine/refinement/refinement_fields.h"
 #include "tests/engine/oracle_comparison.h"
+#include "tests/engine/table_keys.h"
 #include "tests/test_sample.h"
 
 namespace vantage {
@@ -181,14 +182,8 @@ const std::map<std::string_view, Changes>& changes() {
   return all;
 }
 
-constexpr std::array kCosts = {
-    MatchCost::kSquared,          MatchCost::kAbsolute,  MatchCost::kTruncated,
-    MatchCost::kBirchfieldTomasi, MatchCost::kGradient,  MatchCost::kContaminated,
-    MatchCost::kCensus,           MatchCost::kRayCensus, MatchCost::kCombined};
-constexpr std::array kAggregations = {Aggregation::kNone,          Aggregation::kBox,
-                                      Aggregation::kGaussian,      Aggregation::kBoxCascade,
-                                      Aggregation::kDiffusion,     Aggregation::kMembrane,
-                                      Aggregation::kLocalStopping, Aggregation::kBayes};
+const std::vector<MatchCost> kCosts = test::all_costs();
+const std::vector<Aggregation> kAggregations = test::all_aggregations();
 
 /// Levels, and what Bayesian diffusion is asked for besides.
 struct Situation {
@@ -285,6 +280,44 @@ TEST(MethodFields, HaveTheNamesOfTheirOptions) {
   }
 }
 
+TEST(ParameterReaders, TablesNameOptionsThatExist) {
+  std::set<std::string_view> options;
+  for (const MethodField& field : fields_of_method()) {
+    options.insert(field.option);
+  }
+  const auto expect_known = [&](const auto& table) {
+    for (const auto& entry : table) {
+      for (const std::string_view option : entry.options) {
+        EXPECT_TRUE(options.contains(option)) << entry.name << " reads " << option;
+      }
+      EXPECT_FALSE(entry.description.empty()) << entry.name;
+    }
+  };
+  expect_known(cost_table());
+  expect_known(aggregation_table());
+}
+
+TEST(ParameterReaders, AreNamedFromTheTables) {
+  std::map<std::string_view, std::string> names;
+  for (const MethodField& field : fields_of_method()) {
+    names[field.option] = names_of(field.readers, field.option);
+  }
+  EXPECT_EQ(names["truncation"], "the cost truncated");
+  EXPECT_EQ(names["alpha"], "the cost gradient (method gradient)");
+  EXPECT_EQ(names["match-exposure"],
+            "every cost but census and census-rays, whose codes no exposure changes");
+  EXPECT_EQ(names["sigma-measurement"],
+            "the costs contaminated and combined, the aggregation bayes, and local-stopping with "
+            "certainty entropy");
+  EXPECT_EQ(names["epsilon-measurement"],
+            "the costs contaminated and combined, and the aggregation bayes");
+  EXPECT_EQ(names["aggregation-sigma"],
+            "the aggregations gaussian and box-cascade (method gradient)");
+  EXPECT_EQ(names["final-iterations"],
+            "diffusion, membrane, local-stopping and bayes with levels above 1");
+  EXPECT_EQ(names["mu"], "the aggregation bayes (method bayes, the presets)");
+}
+
 TEST(ParameterReaders, AreThoseWhoseMapsChange) {
   SCOPED_TRACE(test::sample_name());
   Maps maps;
@@ -312,7 +345,7 @@ TEST(ParameterReaders, AreThoseWhoseMapsChange) {
         is_changed = is_changed || !are_equal(maps.of(before), maps.of(after));
       }
       const bool is_expected =
-          field.readers.are_in_force(before) && !is_without_difference(field.option, before);
+          field.is_read(before) && !is_without_difference(field.option, before);
       EXPECT_EQ(is_changed, is_expected) << field.option << " with " << summary_of(before);
     }
   }

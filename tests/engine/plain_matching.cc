@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/matching/costs/cost_table.h"
+
 namespace vantage::test {
 namespace {
 

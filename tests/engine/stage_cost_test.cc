@@ -10,7 +10,6 @@
 #include <memory>
 #include <optional>
 #include <random>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +17,7 @@
 #include "scheduler/strip_pipeline.h"
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/plain_cost_cells.h"
+#include "tests/engine/table_keys.h"
 
 namespace vantage {
 namespace stage_cost_test {
@@ -26,12 +26,9 @@ using kernels::CandidateGeometry;
 using test::PlainCostCells;
 using test::PlainPartner;
 
-constexpr MatchCost kCosts[] = {MatchCost::kSquared,   MatchCost::kAbsolute,
-                                MatchCost::kTruncated, MatchCost::kBirchfieldTomasi,
-                                MatchCost::kGradient,  MatchCost::kContaminated,
-                                MatchCost::kCensus,    MatchCost::kRayCensus};
-constexpr MatchCost kCostsOfGreyLevels[] = {MatchCost::kSquared, MatchCost::kAbsolute,
-                                            MatchCost::kTruncated, MatchCost::kContaminated};
+/// Cells of the combined cost have a test of their own.
+const std::vector<MatchCost> kCosts = test::all_costs_but(MatchCost::kCombined);
+const std::vector<MatchCost> kInterpolatedCosts = test::interpolated_costs();
 constexpr CellMeaning kMeanings[] = {CellMeaning::kEnergy, CellMeaning::kLikelihood};
 
 enum class Kind { kGrey8, kGrey16, kGreyFloat, kColour8, kAlphaFloat };
@@ -323,7 +320,7 @@ TEST_F(StageCost, EqualsPlainCellsForOtherBaselines) {
       for (const Shape& shape : kShapes) {
         CostCase test = pair_case(Kind::kColour8, shape, direction);
         test.partners[0].ratio = ratio;
-        for (const MatchCost cost : kCostsOfGreyLevels) {
+        for (const MatchCost cost : kInterpolatedCosts) {
           test.parameters.cost = cost;
           test.parameters.colour =
               cost == MatchCost::kAbsolute ? ColourUse::kChannels : ColourUse::kLuma;
@@ -374,9 +371,7 @@ TEST_F(StageCost, EqualsPlainCellsForSeveralPartners) {
     for (const int direction : {-1, 1}) {
       for (const Shape& shape : kShapes) {
         CostCase test = several_partners(shape, direction, interpolated);
-        const std::span<const MatchCost> costs =
-            interpolated ? std::span<const MatchCost>(kCostsOfGreyLevels) : kCosts;
-        for (const MatchCost cost : costs) {
+        for (const MatchCost cost : interpolated ? kInterpolatedCosts : kCosts) {
           test.parameters.cost = cost;
           for (const CellMeaning meaning : kMeanings) {
             test.meaning = meaning;
@@ -397,12 +392,9 @@ TEST_F(StageCost, StripsEqualTheWholeImage) {
       for (const std::size_t partners : {std::size_t{1}, std::size_t{3}}) {
         test.others.resize(partners);
         test.partners.resize(partners);
-        for (const MatchCost cost : kCosts) {
+        const bool is_interpolated = interpolated && partners > 1;
+        for (const MatchCost cost : is_interpolated ? kInterpolatedCosts : test::all_costs()) {
           test.parameters.cost = cost;
-          if (interpolated && partners > 1 &&
-              !std::count(std::begin(kCostsOfGreyLevels), std::end(kCostsOfGreyLevels), cost)) {
-            continue;
-          }
           for (const CellMeaning meaning : kMeanings) {
             test.meaning = meaning;
             SCOPED_TRACE(describe(test));
@@ -420,7 +412,7 @@ TEST_F(StageCost, StripsEqualTheWholeImage) {
 }
 
 TEST_F(StageCost, ReusedImagesAndOtherThreadsChangeNothing) {
-  for (const MatchCost cost : kCosts) {
+  for (const MatchCost cost : test::all_costs()) {
     CostCase large = pair_case(Kind::kColour8, {61, 40, -9, 33}, -1);
     large.parameters.cost = cost;
     large.parameters.colour = ColourUse::kChannels;
@@ -446,17 +438,19 @@ TEST_F(StageCost, RefusesBaselinesItCannotServe) {
     EXPECT_THROW(make_stage(test), UsageError) << ratio;
   }
   test.partners[0].ratio = .5;
-  for (const auto& [cost, name] :
-       {std::pair{MatchCost::kBirchfieldTomasi, "birchfield-tomasi"},
-        std::pair{MatchCost::kGradient, "gradient"}, std::pair{MatchCost::kCensus, "census"},
-        std::pair{MatchCost::kRayCensus, "census-rays"},
-        std::pair{MatchCost::kCombined, "combined"}}) {
-    test.parameters.cost = cost;
+  for (const MatchingCost& cost : cost_table()) {
+    test.parameters.cost = cost.key;
+    if (cost.can_be_interpolated) {
+      EXPECT_NO_THROW(make_stage(test)) << cost.name;
+      continue;
+    }
     try {
       make_stage(test);
-      ADD_FAILURE() << name << " was accepted";
+      ADD_FAILURE() << cost.name << " was accepted";
     } catch (const UsageError& error) {
-      EXPECT_THAT(error.what(), ::testing::HasSubstr(name));
+      EXPECT_EQ(error.what(), "cost " + std::string(cost.name) +
+                                  " cannot be interpolated between pixels, as several baselines "
+                                  "need, expected squared, absolute, truncated or contaminated");
     }
   }
 }
