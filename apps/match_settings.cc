@@ -42,7 +42,7 @@ SettingValue resolved_parameters(const MatchOptions& options) {
   const MethodParameters parameters = options.resolved();
   visit_fields(
       [&](const MethodField& field, const auto& /*value*/) {
-        if (!field.readers.are_in_force(parameters)) {
+        if (!field.is_read(parameters)) {
           values.erase(std::string(field.option));
         }
       },

@@ -58,7 +58,7 @@ CellAggregation none_aggregation() {
 CellAggregation box_aggregation() {
   return {.key = Aggregation::kBox,
           .name = "box",
-          .description = "square window",
+          .description = "mean over a square window",
           .options = {"window", "border"},
           .has_windows = true,
           .reach =
@@ -74,7 +74,7 @@ CellAggregation box_aggregation() {
 CellAggregation gaussian_aggregation() {
   return {.key = Aggregation::kGaussian,
           .name = "gaussian",
-          .description = "Gaussian window",
+          .description = "mean weighted by a Gaussian",
           .options = {"aggregation-sigma"},
           .reach = gaussian_reach,
           .make_stages = [](const MethodParameters& parameters, const AggregationPlace& place) {
@@ -86,7 +86,7 @@ CellAggregation gaussian_aggregation() {
 CellAggregation box_cascade_aggregation() {
   return {.key = Aggregation::kBoxCascade,
           .name = "box-cascade",
-          .description = "four square windows one after another, nearly a Gaussian",
+          .description = "four square windows in turn, close to a Gaussian",
           .options = {"aggregation-sigma"},
           .reach = gaussian_reach,
           .make_stages = [](const MethodParameters& parameters, const AggregationPlace& place) {
@@ -98,7 +98,7 @@ CellAggregation box_cascade_aggregation() {
 CellAggregation diffusion_aggregation() {
   return {.key = Aggregation::kDiffusion,
           .name = "diffusion",
-          .description = "iterated means of the four neighbours",
+          .description = "repeated mean with the four neighbours",
           .options = {"iterations", "final-iterations", "lambda"},
           .is_iterative = true,
           .reach = iterations_reach,
@@ -108,7 +108,7 @@ CellAggregation diffusion_aggregation() {
 CellAggregation membrane_aggregation() {
   return {.key = Aggregation::kMembrane,
           .name = "membrane",
-          .description = "diffusion that is pulled back to the first costs",
+          .description = "diffusion with a pull towards the first costs",
           .options = {"iterations", "final-iterations", "lambda", "beta"},
           .is_iterative = true,
           .coarser_use = CoarserUse::kStart,
@@ -135,7 +135,7 @@ CellAggregation bayes_aggregation() {
   return {
       .key = Aggregation::kBayes,
       .name = "bayes",
-      .description = "probabilities that neighbours change by a prior of surfaces",
+      .description = "Bayesian diffusion: neighbours support similar disparities",
       .options = {"iterations", "final-iterations", "mu", "sigma-prior", "epsilon-prior",
                   "prior-growth", "prior-smoothing", "level-weight", "edge-weight", "edge-contrast",
                   "sigma-measurement", "epsilon-measurement", "candidate-blocks", "pruned-levels"},

@@ -44,7 +44,7 @@ class CensusModel final : public CostModel {
 MatchingCost census_cost() {
   return {.key = MatchCost::kCensus,
           .name = "census",
-          .description = "census codes of 9x7 pixels: bits that differ",
+          .description = "differing bits of census codes of 9x7 pixels",
           .options = {},
           .unit = ResidualUnit::kCensusBits,
           .make_planes = make_planes_as<CensusPlanes>,
