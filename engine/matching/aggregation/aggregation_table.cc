@@ -119,7 +119,7 @@ CellAggregation membrane_aggregation() {
 CellAggregation local_stopping_aggregation() {
   return {.key = Aggregation::kLocalStopping,
           .name = "local-stopping",
-          .description = "diffusion that stops where the winner would become less certain",
+          .description = "diffusion that stops where certainty would fall",
           .options = {"iterations", "final-iterations", "lambda", "certainty", "sigma-measurement"},
           .is_iterative = true,
           .reach = iterations_reach,
@@ -135,7 +135,7 @@ CellAggregation bayes_aggregation() {
   return {
       .key = Aggregation::kBayes,
       .name = "bayes",
-      .description = "Bayesian diffusion: neighbours support similar disparities",
+      .description = "neighbours support similar disparities",
       .options = {"iterations", "final-iterations", "mu", "sigma-prior", "epsilon-prior",
                   "prior-growth", "prior-smoothing", "level-weight", "edge-weight", "edge-contrast",
                   "sigma-measurement", "epsilon-measurement", "candidate-blocks", "pruned-levels"},

@@ -47,7 +47,7 @@ MatchingCost absolute_cost() {
 MatchingCost truncated_cost() {
   return {.key = MatchCost::kTruncated,
           .name = "truncated",
-          .description = "absolute difference of grey levels, at most --truncation",
+          .description = "absolute difference, at most --truncation",
           .options = {"match-exposure", "truncation"},
           .can_be_interpolated = true,
           .make_planes = make_planes_as<GreyPlanes>,

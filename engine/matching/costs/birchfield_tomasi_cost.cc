@@ -45,7 +45,7 @@ class BirchfieldTomasiModel final : public CostModel {
 MatchingCost birchfield_tomasi_cost() {
   return {.key = MatchCost::kBirchfieldTomasi,
           .name = "birchfield-tomasi",
-          .description = "absolute difference of grey levels, least within half a pixel",
+          .description = "smallest absolute difference within half a pixel",
           .options = {"match-exposure"},
           .make_planes = make_planes_as<SamplingPlanes>,
           .make_model = make_model_as<BirchfieldTomasiModel>};

@@ -157,7 +157,7 @@ class CombinedModel final : public CostModel {
 MatchingCost combined_cost() {
   return {.key = MatchCost::kCombined,
           .name = "combined",
-          .description = "contaminated costs of grey levels, census codes and gradients, summed",
+          .description = "sum for grey levels, census codes and gradients",
           .options = {"match-exposure", "sigma-measurement", "epsilon-measurement", "sigma-census",
                       "sigma-gradient"},
           // It is made for photographs, whose noise differs from pair to pair.

@@ -42,14 +42,13 @@ class ContaminatedModel final : public CostModel {
 }  // namespace
 
 MatchingCost contaminated_cost() {
-  return {
-      .key = MatchCost::kContaminated,
-      .name = "contaminated",
-      .description = "difference of grey levels as negative log-likelihood, Gaussian with outliers",
-      .options = {"match-exposure", "sigma-measurement", "epsilon-measurement"},
-      .can_be_interpolated = true,
-      .make_planes = make_planes_as<GreyPlanes>,
-      .make_model = make_model_as<ContaminatedModel>};
+  return {.key = MatchCost::kContaminated,
+          .name = "contaminated",
+          .description = "log-likelihood, Gaussian noise with outliers",
+          .options = {"match-exposure", "sigma-measurement", "epsilon-measurement"},
+          .can_be_interpolated = true,
+          .make_planes = make_planes_as<GreyPlanes>,
+          .make_model = make_model_as<ContaminatedModel>};
 }
 
 }  // namespace vantage

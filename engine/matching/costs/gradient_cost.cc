@@ -92,7 +92,7 @@ void GradientPlanes::prepare(const PlaneSource& source, const MethodParameters& 
 MatchingCost gradient_cost() {
   return {.key = MatchCost::kGradient,
           .name = "gradient",
-          .description = "difference of gradients, less their mean length",
+          .description = "difference of gradients less their mean length",
           .options = {"match-exposure", "alpha", "norm", "gradient", "prefilter"},
           .unit = ResidualUnit::kGradient,
           .is_evidence = true,

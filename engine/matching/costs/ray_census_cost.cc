@@ -78,7 +78,7 @@ void RayCensusPlanes::prepare(const PlaneSource& source, const MethodParameters&
 MatchingCost ray_census_cost() {
   return {.key = MatchCost::kRayCensus,
           .name = "census-rays",
-          .description = "differing bits of census codes of 24 pixels in eight directions",
+          .description = "census codes of 24 pixels in eight directions",
           .options = {"census-thresholds"},
           .unit = ResidualUnit::kCensusBits,
           .make_planes = make_planes_as<RayCensusPlanes>,
