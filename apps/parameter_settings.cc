@@ -9,6 +9,8 @@
 #include <type_traits>
 
 #include "apps/option_texts.h"
+#include "engine/matching/aggregation/aggregation_table.h"
+#include "engine/matching/costs/cost_table.h"
 #include "engine/matching/options/method_fields.h"
 #include "engine/matching/options/method_names.h"
 #include "engine/refinement/refinement_fields.h"
@@ -67,6 +69,29 @@ EnumNames<Fill> names_of(Fill /*type*/) {
           {"none", Fill::kNone}};
 }
 
+/// A line for each value of an enumeration that has a table, with its name and what it is.
+template <typename Table>
+std::string lines_of(const Table& table) {
+  constexpr int kNameColumns = 18;
+  std::string text;
+  for (const auto& entry : table) {
+    text += fmt::format("{:<{}} {}\n", entry.name, kNameColumns, entry.description);
+  }
+  return text;
+}
+
+/// The help text of a field of type T.
+template <typename T>
+std::string help_of(const OptionText& text, const std::string& automatic) {
+  if constexpr (std::is_same_v<T, MatchCost>) {
+    return fmt::format("{}:\n{}auto: {}", text.help, lines_of(cost_table()), automatic);
+  } else if constexpr (std::is_same_v<T, Aggregation>) {
+    return fmt::format("{}:\n{}auto: {}", text.help, lines_of(aggregation_table()), automatic);
+  } else {
+    return fmt::format("{}; auto: {}", text.help, automatic);
+  }
+}
+
 /// "estimated" of "S|estimated"; empty if there is none.
 std::string_view word_of(const OptionText& text) {
   const std::size_t bar = text.value_name.find('|');
@@ -95,9 +120,10 @@ std::string default_text(const OptionText& text, T value) {
 }
 
 template <typename T>
-Setting& add_setting(Settings& settings, const OptionText& text, const std::string& help,
+Setting& add_setting(Settings& settings, const OptionText& text, const std::string& automatic,
                      std::optional<T>& field) {
   const std::string name(text.option);
+  const std::string help = help_of<T>(text, automatic);
   if constexpr (std::is_same_v<T, bool>) {
     return settings.choice(name, field, names_of_bool(text), help);
   } else if constexpr (std::is_enum_v<T>) {
@@ -205,9 +231,7 @@ void add_settings(Settings& settings, Overrides& overrides, const Defaults& defa
             settings.begin_group(group);
           }
         }
-        setting =
-            &add_setting(settings, text,
-                         fmt::format("{}; auto: {}", text.help, defaults.at(field.option)), value);
+        setting = &add_setting(settings, text, defaults.at(field.option), value);
       },
       overrides);
 }
@@ -220,7 +244,7 @@ void add_method_parameters(Settings& settings, MethodOverrides& parameters) {
 
 void add_gradient_settings(Settings& settings, MethodOverrides& parameters) {
   add_settings(settings, parameters, method_defaults(), [](const MethodField& field) {
-    return field.readers.names == readers::kGradient.names;
+    return field.readers.text == readers::kGradient.text;
   });
 }
 
