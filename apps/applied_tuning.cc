@@ -23,7 +23,7 @@ bool is_8_bit_grey(const Photograph& photograph) {
          photograph.channels() == 1;
 }
 
-/// Leaves what the user has not given.
+/// The tuned settings that the user has not given.
 TunedSettings left_open(TunedSettings settings, const TuningSituation& situation) {
   const ExecutionOptions& given = situation.execution;
   const auto drop_if = [](bool is_given, std::optional<int>& field) {

@@ -10,7 +10,7 @@
 
 namespace vantage::apps {
 
-/// Whether and where a command looks for what `tune` has found.
+/// The tuning file that a command reads, if any.
 struct TuningSource {
   bool ignored = false;
   std::string file;  ///< empty: default_tuning_path()
@@ -19,10 +19,10 @@ struct TuningSource {
 /// --tuning and --no-tuning, in the group of the execution settings.
 void add_tuning_settings(Settings& settings, TuningSource& source);
 
-/// The file that `source` names, or the one to look for without a name; empty: none.
+/// The path of `source`, else the default path; empty: none.
 std::filesystem::path file_of(const TuningSource& source);
 
-/// What a command uses of a tuning file, and what it says about that.
+/// The tuned settings that a command uses, and how it reports them.
 struct AppliedTuning {
   TunedSettings settings;  ///< without those that the user gave
   /// For the report: key, file and settings of the entry, or why there is none.
@@ -31,22 +31,22 @@ struct AppliedTuning {
   std::string summary;
 };
 
-/// What a command is going to do.
+/// The work that a command will do.
 struct TuningSituation {
   TunedUse use = TunedUse::kMatch;
   const MatchOptions& match;          ///< disparities known
-  const ExecutionOptions& execution;  ///< as the user gave it: goes first
+  const ExecutionOptions& execution;  ///< as the user gave it; takes precedence
   bool in_flight_given = false;       ///< the same of the frames in flight
   const Photograph& left;             ///< the (first) pair
   const Photograph& right;
 };
 
-/// Looks for the entry that fits. Never fails: what is wrong with a file is told as a warning of
-/// `command` on stderr, unless `quiet`.
+/// Finds the matching entry. Never fails: problems of the file are printed as warnings of
+/// `command`, unless `quiet`.
 AppliedTuning apply_tuning(const TuningSource& source, const TuningSituation& situation,
                            const std::string& command, bool quiet);
 
-/// For situations that no tuning is made for.
+/// The result if tuning does not apply.
 AppliedTuning no_tuning(const std::string& reason);
 
 }  // namespace vantage::apps

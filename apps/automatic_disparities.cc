@@ -23,8 +23,8 @@ void choose_vertical_disparities(const Settings& settings, const CommonOptions& 
       "range of rows", [&] { return find_vertical_range(left, right, execution); });
   if (!range) {
     throw Error(
-        "the images have too few points in common to tell how far their rows are apart, expected "
-        "texture that both of them show; give --disparities-y MIN:MAX");
+        "the images have too few points in common to estimate the vertical range, expected texture "
+        "that both show; give --disparities-y MIN:MAX");
   }
   options.disparities_y = *range;
   options.disparities_y_auto = false;
@@ -46,8 +46,8 @@ void choose_disparities(const Settings& settings, const CommonOptions& common,
   const std::optional<DisparityRange> range = report.timed_compute("range", find);
   if (!range) {
     throw Error(
-        "the images give no evidence for any range of disparities, expected texture that both of "
-        "them show; give --disparities MIN:MAX");
+        "no disparity range can be estimated from the images, expected texture that both show; "
+        "give --disparities MIN:MAX");
   }
   options.disparities = *range;
   options.disparities_auto = false;

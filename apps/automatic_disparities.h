@@ -18,7 +18,7 @@ namespace vantage::apps {
 void choose_disparities(const Settings& settings, const CommonOptions& common,
                         const std::function<std::optional<DisparityRange>()>& find,
                         MatchOptions& options, RunReport& report);
-/// Finds the range from the pair, and that of --disparities-y where it is auto.
+/// Estimates the range from the pair, and the range of --disparities-y if it is auto.
 void choose_disparities(const Settings& settings, const CommonOptions& common,
                         const Photograph& left, const Photograph& right, MatchOptions& options,
                         Execution& execution, RunReport& report);

@@ -22,12 +22,12 @@
 namespace vantage::apps {
 namespace {
 
-/// Both ends of a pipe that programs started meanwhile do not inherit.
+/// Both ends of a pipe; programs started meanwhile do not inherit them.
 class Pipe {
  public:
   Pipe() {
     if (::pipe2(ends_.data(), O_CLOEXEC) != 0) {
-      throw Error(fmt::format("no pipe for another program: {}", std::strerror(errno)));
+      throw Error(fmt::format("cannot create a pipe: {}", std::strerror(errno)));
     }
   }
   Pipe(const Pipe&) = delete;
@@ -58,7 +58,7 @@ pid_t spawn(const std::vector<std::string>& command, const Pipe& out, const Pipe
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, out.write_end(), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, err.write_end(), STDERR_FILENO);
-  // What this process ignores (set_up_process()) is nothing to hand on.
+  // Signals that this process ignores (set_up_process()) are not inherited.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t usual;
@@ -85,7 +85,7 @@ pid_t spawn(const std::vector<std::string>& command, const Pipe& out, const Pipe
   return process;
 }
 
-/// Appends what there is to `text`; false at the end.
+/// Appends the available bytes to `text`; false at the end.
 bool read_some(int descriptor, std::string& text) {
   std::array<char, 4096> buffer;
   const ssize_t count = ::read(descriptor, buffer.data(), buffer.size());
@@ -95,8 +95,8 @@ bool read_some(int descriptor, std::string& text) {
   return count > 0 || (count < 0 && errno == EINTR);
 }
 
-/// Reads both to their ends, whichever has something: a program that fills one waits for its
-/// reader. Once `stop` is raised, `process` is told to end.
+/// Reads both pipes to their ends, as data arrives: a program that fills one waits for its reader.
+/// Once `stop` is set, `process` is asked to end.
 void read_all(const Pipe& out, const Pipe& err, pid_t process, const std::atomic<bool>* stop,
               ProgramResult& result) {
   constexpr int kStopInterval_ms = 100;

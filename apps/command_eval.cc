@@ -73,7 +73,7 @@ void check(const EvalJob& job, const Settings& settings) {
         fmt::format("--ignore-border is {}, expected at least 0", job.ignore_border_px));
   }
   if (job.views && (job.truth_scale || job.disparity_scale || job.ignore_border_px != 0)) {
-    throw UsageError("--scale, --disparity-scale and --ignore-border do not go with --views");
+    throw UsageError("--scale, --disparity-scale and --ignore-border cannot be used with --views");
   }
   FileChecks files(settings);
   check_common_files(job.common, files);

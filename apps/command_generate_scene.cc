@@ -70,7 +70,7 @@ void add_scene_settings(Settings& settings, SceneJob& job) {
   add_seed_setting(settings, scene.seed);
 }
 
-/// Views are named as those of 'vantage run' are, so that they can be compared file by file.
+/// Views have the names that 'vantage run' uses, so that they can be compared file by file.
 std::string view_name(const SceneJob& job, BaselinePosition view) {
   if (!job.frames) {
     return "view-" + to_string(view);
@@ -167,7 +167,7 @@ void make_frame(const SceneJob& job, const LayeredScene& scene, int frame,
   }
 }
 
-/// As Middlebury writes it, lengths in baselines.
+/// In Middlebury's format, lengths in baselines.
 std::string calibration_text(const LayeredScene& scene) {
   const PosedCamera camera = scene.camera(kLeftCamera);
   const std::string matrix =
@@ -219,14 +219,15 @@ int command_generate_scene(const Arguments& arguments) {
       progress.update(++frames_done, frames, 0);
     }
   }
-  const int least = static_cast<int>(std::floor(job.scene.far_disparity_or_default()));
-  const int most = static_cast<int>(std::ceil(job.scene.near_disparity_or_default()));
-  report.set_results({{"frames", frames_done}, {"disparities", fmt::format("{}:{}", least, most)}});
+  const int min_disparity = static_cast<int>(std::floor(job.scene.far_disparity_or_default()));
+  const int max_disparity = static_cast<int>(std::ceil(job.scene.near_disparity_or_default()));
+  report.set_results({{"frames", frames_done},
+                      {"disparities", fmt::format("{}:{}", min_disparity, max_disparity)}});
   report.write(job.common.report);
   if (!job.common.quiet) {
     tell("generate scene: {} frame{} of {}x{} pixels, search with --disparities={}:{} -> {}\n",
-         frames_done, frames_done == 1 ? "" : "s", job.scene.width_px, job.scene.height_px, least,
-         most, job.output);
+         frames_done, frames_done == 1 ? "" : "s", job.scene.width_px, job.scene.height_px,
+         min_disparity, max_disparity, job.output);
     report.print_summary();
   }
   return frames_done < frames ? kExitInterrupted : kExitDone;

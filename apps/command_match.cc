@@ -59,7 +59,7 @@ void write_results(const MatchJob& job, const DisparityMaps& maps) {
   }
 }
 
-/// Turns columns into rows, for cameras that stand one above the other.
+/// Turns columns into rows, for cameras one above the other.
 void transpose(std::vector<Photograph>& images) {
   for (Photograph& image : images) {
     image = transposed(image);
@@ -126,7 +126,7 @@ MemoryUse memory_use(const std::vector<Photograph>& images, const DisparityMaps&
   return use;
 }
 
-/// What was estimated, for those who asked for it.
+/// Prints what was estimated.
 void print_levels(const MatchReport& match) {
   if (!match.levels) {
     return;

@@ -88,12 +88,12 @@ int command_merge(const Arguments& arguments) {
     }
     throw Error(
         fmt::format("{}: {} of {} frames are missing ({}), expected all; 'vantage run -o {} "
-                    "--resume' makes them",
+                    "--resume' computes them",
                     job.folder, count, identity.frame_count, to_string(missing), job.folder));
   }
   std::string sound_problem;
   {
-    // The part name keeps two merges, not merge and run, from working at once.
+    // The part name excludes a second merge at the same time, but not a run.
     RunJournal journal(layout.journal_folder(), identity, JournalOpening::kResume, "merge");
     report.timed_file_access("join", [&] {
       sound_problem = join_segments(run.sequence, layout, identity, frames, true, journal);
@@ -114,7 +114,7 @@ int command_merge(const Arguments& arguments) {
     tell("merge: {} holds {}{}\n", job.folder,
          frames == all ? fmt::format("all {} frames", all.count())
                        : fmt::format("frames {} of {}", to_string({frames}), all.count()),
-         skipped.empty() ? "" : fmt::format(", but {} of them could not be made", skipped.size()));
+         skipped.empty() ? "" : fmt::format(", but {} of them failed", skipped.size()));
   }
   return skipped.empty() ? kExitDone : kExitSkipped;
 }

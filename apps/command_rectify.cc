@@ -42,9 +42,9 @@ struct RectifyJob {
   CommonOptions common;
 };
 
-constexpr int kMostSamplePairs = 1000;
-/// Rows of an estimate that are off by more show that it is none.
-constexpr double kMostRemaining_px = 2;
+constexpr int kMaxSamplePairs = 1000;
+/// With a larger row error an estimate is rejected.
+constexpr double kMaxRemaining_px = 2;
 
 void add_rectify_settings(Settings& settings, RectifyJob& job) {
   settings.begin_group("Input");
@@ -82,9 +82,9 @@ void check(const RectifyJob& job) {
   job.rectification.validate();
   job.common.execution.validate();
   job.input.validate();
-  if (job.sample_pairs < 1 || job.sample_pairs > kMostSamplePairs) {
+  if (job.sample_pairs < 1 || job.sample_pairs > kMaxSamplePairs) {
     throw UsageError(fmt::format("--sample-pairs is {}, expected a number from 1 to {}",
-                                 job.sample_pairs, kMostSamplePairs));
+                                 job.sample_pairs, kMaxSamplePairs));
   }
   if (job.output.empty() && job.matrices.empty() && job.valid_mask.empty()) {
     throw UsageError(
@@ -98,7 +98,7 @@ void check(const RectifyJob& job) {
   }
 }
 
-/// Before the pairs are opened: that may take time.
+/// Checked before the pairs are opened, which may take time.
 FileChecks check_files(const RectifyJob& job, const Settings& settings) {
   FileChecks files(settings);
   files.add_output(job.matrices, "--matrices", OutputKind::kText);
@@ -116,7 +116,7 @@ void check_pairs(const RectifyJob& job, const PairSource& pairs, FileChecks& fil
   }
 }
 
-/// Runs `work`; its errors say which input they are about.
+/// Runs `work` and names the input in its errors.
 template <typename Work>
 auto about(const std::string& what, const Work& work) {
   try {
@@ -137,7 +137,7 @@ void rectify_pair(const Rectifier& rectifier, FramePair& pair, Execution& execut
   }
 }
 
-/// Pixels whose positions lie in both photographs.
+/// The pixels whose positions are inside both photographs.
 Mask valid_mask(const Rectifier& rectifier) {
   const int width = rectifier.pair().width_px;
   const int height = rectifier.pair().height_px;
@@ -154,9 +154,9 @@ Mask valid_mask(const Rectifier& rectifier) {
   return mask;
 }
 
-/// Estimates anew from points that were found in the images as `rectifier` makes them: there they
-/// are in nearly the same rows, so wrong ones are easily told, and exactly placed. Kept if rows
-/// then correspond better.
+/// Estimates again from points found in the images rectified by `rectifier`: there they are in
+/// nearly the same rows, so that wrong matches are easy to detect and positions are exact. Kept if
+/// rows correspond better.
 void improve(Rectification& rectification, Rectifier& rectifier,
              const std::vector<PointMatch>& found, const RectificationOptions& options) {
   constexpr double kNearRowsPerSide = 10.0 / 640;
@@ -195,11 +195,11 @@ void improve(Rectification& rectification, Rectifier& rectifier,
       rectifier = std::move(better);
     }
   } catch (const Error&) {
-    // The first estimate stays; whether it is good enough is looked at next.
+    // The first estimate stays; the caller checks whether it is good enough.
   }
 }
 
-/// Throws Error when what has been estimated does not rectify.
+/// Throws Error if the estimate does not rectify the images.
 void require_success(const Rectification& rectification, std::size_t matches,
                      const std::string& inputs) {
   if (!rectification.remaining) {
@@ -207,11 +207,11 @@ void require_success(const Rectification& rectification, std::size_t matches,
         fmt::format("{}: the rectified images have {} points in common, expected at least {}",
                     inputs, matches, kLeastMatches));
   }
-  if (rectification.remaining->rms_px > kMostRemaining_px) {
+  if (rectification.remaining->rms_px > kMaxRemaining_px) {
     throw Error(
         fmt::format("{}: the remaining row error is {:.1f} px RMS, expected at most {}: the images "
                     "show too little to estimate the cameras, use --calibration",
-                    inputs, rectification.remaining->rms_px, kMostRemaining_px));
+                    inputs, rectification.remaining->rms_px, kMaxRemaining_px));
   }
 }
 
@@ -270,7 +270,7 @@ int command_rectify(const Arguments& arguments) {
       return Rectifier(rectification.calibration, size.width_px, size.height_px, job.rectification);
     });
   };
-  // Calibrations that were read name their file themselves.
+  // Errors of a calibration that was read already name its file.
   Rectifier rectifier =
       job.calibration.empty() ? about(inputs, rectifier_of_all) : rectifier_of_all();
   const std::vector<PointMatch> found =

@@ -78,9 +78,9 @@ void add_response_settings(Settings& settings, ResponseJob& job) {
 }
 
 CumulativeResponseOptions options_of(const ResponseJob& job, int width) {
-  constexpr int kLeast = -16;
+  constexpr int kMin_px = -16;
   return {.displacements_x =
-              job.displacements_x.value_or(DisparityRange{kLeast, std::max(0, width / 4)}),
+              job.displacements_x.value_or(DisparityRange{kMin_px, std::max(0, width / 4)}),
           .displacements_y = job.displacements_y,
           .parameters = resolve(MatchMethod::kGradient, job.parameters)};
 }
@@ -184,7 +184,7 @@ void write_plot(const std::string& path, const CumulativeResponse& response) {
   write_drawing(path, one_range ? draw_curves(response) : draw_surfaces(response));
 }
 
-/// The table on stdout; returns the same for the report.
+/// Prints the table to stdout and returns it for the report.
 SettingValue print_dominant(const CumulativeResponse& response) {
   SettingValue results = SettingValue::object();
   fmt::print("{:<14}{:>6}{:>6}{:>16}{:>12}\n", "part", "dx", "dy", "response", "per pixel");

@@ -27,7 +27,7 @@ JournalOpening opening_of(const RunJob& job) {
                        : JournalOpening::kNew;
 }
 
-/// Made once for all parts of the run and all times it is resumed. Empty when interrupted.
+/// Computed once for all parts of the run and every resumption. Empty when interrupted.
 std::optional<ShotTable> find_shots(const RunJob& job, RunSession& session,
                                     const SequenceLayout& layout, Execution& execution,
                                     RunReport& report) {
@@ -55,8 +55,8 @@ std::optional<ShotTable> find_shots(const RunJob& job, RunSession& session,
   return keep_shot_table(path, *shots);
 }
 
-/// Joins videos once all frames are there that the folder is to have. Returns why they are without
-/// sound, as join_segments() does.
+/// Joins the videos once all frames of the folder are done. Returns why they have no sound, as
+/// join_segments() does.
 std::string join_if_whole(const RunJob& job, const RunSession& session,
                           const SequenceLayout& layout, const SequenceReport& sequence,
                           RunJournal& journal, RunReport& report) {
@@ -138,7 +138,7 @@ int command_run(const Arguments& arguments) {
     return kExitInterrupted;
   }
   if (session.pairs->unpaired_frames() > 0 && RunSession::part_name(job) == "all") {
-    // What has a partner is finished; whoever counts on all of it must know.
+    // All frames with a partner are done, but the user must know that others are missing.
     if (!job.keep_going) {
       throw Error(fmt::format("all {} pairs are done, but {}", session.selection.frame_count,
                               fmt::join(session.pairs->remarks(), "; ")));

@@ -46,7 +46,7 @@ void add_file_settings(Settings& settings, SceneBuildJob& job) {
   copy.get = [&job] { return job.copy_images; };
 }
 
-/// What decides an edge's maps, as JSON.
+/// The settings that an edge's maps depend on, as JSON.
 std::string match_settings_of(MatchOptions match) {
   Settings settings("match", "");
   add_match_settings(settings, match);

@@ -70,7 +70,7 @@ SettingValue describe_view(const PreparedSceneView& prepared, const SynthesizedV
           {"hole_fraction", view.hole_fraction}};
 }
 
-/// Where the eyes of a view stand: one, or two with the view in their middle.
+/// Positions of the eyes of a view: one, or two with the view at their midpoint.
 std::vector<ScenePosition> eyes_of(const SceneViewJob& job, ScenePosition view,
                                    double unit_length) {
   if (!job.output.stereo_packing) {

@@ -57,23 +57,24 @@ void add_submit_settings(Settings& settings, SubmitJob& job) {
        "vantage submit --shards 4 --no-submit --pairs pairs.csv -o results"});
 }
 
-/// What would do something else in every task is refused, naming what to do instead.
+/// Refuses options that would mean something else in every task, and says what to use.
 void check(const SubmitJob& job) {
   const auto refuse_if = [](bool given, const char* option, const char* instead) {
     if (given) {
       throw UsageError(fmt::format("--{} cannot be submitted: {}", option, instead));
     }
   };
-  refuse_if(job.run.shard.has_value(), "shard", "each task has its own, --shards is their number");
+  refuse_if(job.run.shard.has_value(), "shard",
+            "each task has its own; --shards is the number of tasks");
   refuse_if(job.run.dry_run, "dry-run", "'vantage run' prints the plan, --no-submit the scripts");
   refuse_if(!job.run.common.report.empty(), "report",
-            "each task writes its own, DIR/.vantage/slurm/report-1.json and so on");
+            "each task writes its own: DIR/.vantage/slurm/report-1.json and so on");
   refuse_if(job.no_submit && (job.run.overwrite || job.run.force),
-            job.run.force ? "force" : "overwrite", "--no-submit leaves the folder as it is");
+            job.run.force ? "force" : "overwrite", "--no-submit does not change the folder");
   job.slurm.validate();
 }
 
-/// Tasks start in another folder.
+/// Paths become absolute because tasks start in another folder.
 void make_paths_absolute(SubmitJob& job) {
   PairSourceOptions& input = job.run.input;
   for (std::string* path : {&input.left, &input.right, &input.stereo, &input.pairs, &input.sequence,
@@ -85,7 +86,7 @@ void make_paths_absolute(SubmitJob& job) {
   }
 }
 
-/// Tasks continue, whatever the submission begins with.
+/// Tasks always continue the run, whatever the submission starts with.
 JournalOpening take_opening(RunJob& job) {
   const bool overwrite = std::exchange(job.overwrite, false);
   const bool force = std::exchange(job.force, false);
@@ -95,7 +96,7 @@ JournalOpening take_opening(RunJob& job) {
                    : JournalOpening::kResume;
 }
 
-/// How many pieces there are that are never divided.
+/// Number of chunks that the run consists of.
 int chunk_count(const FrameSelection& selection) {
   const FrameRange frames = selection.all();
   return frames.empty() ? 0
@@ -113,7 +114,7 @@ void require_work_for_all(const SlurmOptions& slurm, const FrameSelection& selec
   }
 }
 
-/// Unless --chunk-frames is given: chunks small enough that every task has one.
+/// Unless --chunk-frames is given, makes chunks small enough for every task to have one.
 void divide_for_all(const Settings& settings, SubmitJob& job) {
   FrameSelection selection;
   selection.frame_count = open_pair_source(job.run.input)->pair_count();
@@ -125,12 +126,12 @@ void divide_for_all(const Settings& settings, SubmitJob& job) {
   }
   job.run.sequence.chunk_frames = share;
   if (!job.run.common.quiet) {
-    tell("submit: --chunk-frames is {}, so that each of {} tasks has frames\n", share,
+    tell("submit: --chunk-frames is {}, so that all {} tasks have frames\n", share,
          job.slurm.shards);
   }
 }
 
-/// The one line that Slurm's programs say when they refuse something.
+/// The one-line message of a Slurm program that failed.
 std::string message_of(const ProgramResult& result) {
   std::string text = result.err.empty() ? result.out : result.err;
   std::ranges::replace(text, '\n', ' ');
@@ -146,7 +147,7 @@ void require_slurm() {
   }
 }
 
-/// Two arrays on one folder would make everything twice.
+/// Two job arrays on one folder would do all work twice.
 void require_none_in_queue(const fs::path& folder) {
   const fs::path record = folder / "submitted.json";
   std::error_code ignored;
@@ -186,7 +187,7 @@ std::string submit(const std::vector<std::string>& options, const fs::path& scri
   return job;
 }
 
-/// Refuses the folder of another run now instead of in every task.
+/// Refuses the folder of another run here, instead of in every task.
 void prepare_journal(const RunJob& run, const RunSession& session, JournalOpening opening) {
   const SequenceLayout layout(run.output, run.sequence);
   if (opening != JournalOpening::kResume || RunJournal::is_present(layout.journal_folder())) {
@@ -235,12 +236,9 @@ void print_how_to_follow(const fs::path& folder, const SubmittedJobs& jobs, cons
 }
 
 void print_how_to_submit(const fs::path& folder) {
-  fmt::print(
-      "not submitted; these commands do it:\n"
-      "  job=$(sbatch --parsable {})\n"
-      "  sbatch {} {}\n",
-      shell_word((folder / "array.sh").string()), fmt::join(dependency_on("$job"), " "),
-      shell_word((folder / "merge.sh").string()));
+  fmt::print("not submitted; submit with:\n  job=$(sbatch --parsable {})\n  sbatch {} {}\n",
+             shell_word((folder / "array.sh").string()), fmt::join(dependency_on("$job"), " "),
+             shell_word((folder / "merge.sh").string()));
 }
 
 }  // namespace

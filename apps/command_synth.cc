@@ -78,7 +78,7 @@ SettingValue describe_posed_view(const ViewPose& pose, const SynthesizedView& vi
   return entry;
 }
 
-/// Of the pair; what renders views is not told apart.
+/// Memory of the pair; memory of rendering is not listed.
 MemoryUse memory_use(const PairWithMaps& input, Execution& execution) {
   MemoryUse use;
   use.add("photographs", held_bytes(input.left) + held_bytes(input.right));

@@ -97,7 +97,7 @@ fs::path tuning_path(const TuneJob& job) {
 
 void check(const TuneJob& job, const Settings& settings) {
   if (job.list && job.forget) {
-    throw UsageError("--list and --forget cannot go together");
+    throw UsageError("--list and --forget are both given, expected one of them");
   }
   if (job.list || job.forget) {
     settings.refuse_idle({"size", "images", "for", "budget", "dry-run"},
@@ -136,8 +136,8 @@ int forget_entries(const TuneJob& job, const fs::path& path) {
   return kExitDone;
 }
 
-/// What is found while other programs take processors away may not hold without them. `when` such
-/// as "were at work while plans were measured".
+/// Warns that results may be wrong because other programs used the processors. `when`: such as "ran
+/// while plans were measured".
 void warn_of_other_programs(std::optional<double> of_others, const scheduler::Machine& machine,
                             std::string_view when) {
   constexpr double kBusyShare = 0.05;
@@ -149,7 +149,7 @@ void warn_of_other_programs(std::optional<double> of_others, const scheduler::Ma
   }
 }
 
-/// A look before the work begins.
+/// Checks for other programs before the search starts.
 std::optional<double> others_at_present() {
   constexpr std::chrono::milliseconds kLook(200);
   const scheduler::ProcessorUse use;

@@ -70,7 +70,7 @@ int command_verify(const Arguments& arguments) {
   }
   report.set_results(to_value(verification));
   report.write(job.report);
-  // All of them: what follows on stderr names the first.
+  // Prints all damaged files; the error on stderr names the first.
   for (const DamagedFile& file : verification.damaged) {
     fmt::print("{} {}\n", file.name, file.problem);
   }
@@ -81,16 +81,16 @@ int command_verify(const Arguments& arguments) {
       DeliveredFrames(layout).missing({0, identity.frame_count});
   if (!verification.damaged.empty() || (verification.damaged_lines > 0 && !missing.empty())) {
     throw Error(fmt::format(
-        "{}; 'vantage {}run -o {} --resume' makes it again",
+        "{}; 'vantage {}run -o {} --resume' writes it again",
         describe_damage(verification, job.folder),
         job.remove || verification.damaged.empty() ? "" : "verify --remove' and 'vantage ",
         job.folder));
   }
   if (!job.quiet) {
-    tell("verify: {} files with {:.1f} MB are as they were written{}\n", verification.files,
+    tell("verify: {} files with {:.1f} MB are unchanged{}\n", verification.files,
          static_cast<double>(verification.bytes) * 1e-6,
          missing.empty() ? std::string()
-                         : fmt::format("; frames {} are still to be made", to_string(missing)));
+                         : fmt::format("; frames {} are not done yet", to_string(missing)));
   }
   return kExitDone;
 }

@@ -28,14 +28,14 @@ std::string why_empty(const PairWithMaps& pair, const ViewPose& pose) {
     }
   }
   if (all == 0) {
-    return "the left map holds no disparity";
+    return "the left map has no disparities";
   }
   const std::string frame = fmt::format("the frame of {}x{} pixels", view.width_px, view.height_px);
   if (behind == 0) {
-    return "all of it lies beside " + frame;
+    return "all of it is outside " + frame;
   }
-  return behind == all ? "all of it lies behind the camera"
-                       : fmt::format("{:.0f} % of it lies behind the camera, the rest beside {}",
+  return behind == all ? "all of it is behind the camera"
+                       : fmt::format("{:.0f} % of it is behind the camera, the rest outside {}",
                                      100.0 * behind / all, frame);
 }
 
@@ -45,7 +45,7 @@ void warn_of_empty_views(const std::string& command, const PairWithMaps& pair,
     return;
   }
   const int first = empty_views.front();
-  tell("{}: warning: {} of {} views see none of the scene, the first is view {}: {}\n", command,
+  tell("{}: warning: {} of {} views show nothing of the scene, the first is view {}: {}\n", command,
        empty_views.size(), poses.size(), first + 1,
        why_empty(pair, poses[static_cast<std::size_t>(first)]));
 }

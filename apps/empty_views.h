@@ -8,8 +8,8 @@
 
 namespace vantage::apps {
 
-/// Why a view of the pair is empty, from where the pixels of the left map would be seen: "82 % of
-/// it lies behind the camera, the rest beside the frame of 640x480 pixels".
+/// Why a view of the pair is empty, from the positions of the left map's pixels: "82 % of it is
+/// behind the camera, the rest outside the frame of 640x480 pixels".
 std::string why_empty(const PairWithMaps& pair, const ViewPose& pose);
 
 /// Warns on stderr when there are `empty_views`: how many of `poses`, which is the first, and why.

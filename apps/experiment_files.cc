@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kPanelColumns = 3;
 
-/// A figure that runs are judged by.
+/// A measure of error.
 struct Statistic {
   std::string name;   ///< in file names
   std::string title;  ///< on axes
@@ -57,7 +57,7 @@ std::vector<std::string> pairs_of(const std::vector<ExperimentRun>& runs) {
   return pairs;
 }
 
-/// As people write them.
+/// Names for readers.
 std::string noise_label(double sigma) {
   return sigma == 0.25 ? "1/4" : sigma == 0.5 ? "1/2" : fmt::format("{}", sigma);
 }
@@ -105,7 +105,7 @@ LinePlot iteration_plot(const Statistic& statistic, const std::vector<Experiment
   return plot;
 }
 
-/// All maps in the colours of one range, a row per algorithm, a column per number of iterations.
+/// All maps with one colour scale: a row per algorithm, a column per number of iterations.
 Drawing contact_sheet(const std::vector<ExperimentRun>& runs) {
   constexpr double kMapSide = 150;
   constexpr double kGap = 8;
@@ -113,12 +113,12 @@ Drawing contact_sheet(const std::vector<ExperimentRun>& runs) {
   constexpr double kTop = 60;
   constexpr auto kColumns = kExperimentIterations.size();
   constexpr auto kRows = kIterationMethods.size();
-  float least = runs.front().map.at(0, 0);
-  float most = least;
+  float min_px = runs.front().map.at(0, 0);
+  float max_px = min_px;
   for (const ExperimentRun& run : runs) {
     const PreviewRange range = choose_preview_range(run.map.view());
-    least = std::min(least, range.min_px);
-    most = std::max(most, range.max_px);
+    min_px = std::min(min_px, range.min_px);
+    max_px = std::max(max_px, range.max_px);
   }
   Drawing drawing;
   drawing.width = static_cast<int>(kLabelWidth + kColumns * (kMapSide + kGap));
@@ -143,7 +143,7 @@ Drawing contact_sheet(const std::vector<ExperimentRun>& runs) {
                                             kInk});
     }
     drawing.shapes.emplace_back(
-        PictureShape{{x, y}, kMapSide, kMapSide, colour_preview(run.map.view(), least, most)});
+        PictureShape{{x, y}, kMapSide, kMapSide, colour_preview(run.map.view(), min_px, max_px)});
   }
   return drawing;
 }

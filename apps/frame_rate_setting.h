@@ -11,7 +11,7 @@ namespace vantage::apps {
 /// A rate such as 25, 29.97 or 30000/1001.
 Setting& add_frame_rate_setting(Settings& settings, std::string name, FrameRate& field,
                                 std::string help);
-/// The same; the field is empty for "auto".
+/// As above; the field is empty for "auto".
 Setting& add_frame_rate_setting(Settings& settings, std::string name,
                                 std::optional<FrameRate>& field, std::string help);
 

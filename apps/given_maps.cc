@@ -9,7 +9,7 @@
 namespace vantage::apps {
 namespace {
 
-constexpr double kLeastShare = 0.6;
+constexpr double kMinShare = 0.6;
 constexpr double kClearlyLess = 0.75;
 constexpr float kTolerance_px = 1;
 
@@ -18,7 +18,7 @@ struct Agreement {
   double negative_share = 0;  ///< of them all, those with negative disparities
 };
 
-/// Left pixels against their partners at x − sign · d.
+/// Compares left pixels with their partners at x − sign · d.
 Agreement agreement_of(const DisparityMaps& maps, float sign) {
   long long partners = 0;
   long long agreeing = 0;
@@ -54,7 +54,7 @@ void require_agreeing_maps(const DisparityMaps& maps) {
   }
   const Agreement as_declared = agreement_of(maps, 1);
   const Agreement turned_round = agreement_of(maps, -1);
-  if (turned_round.share >= kLeastShare && as_declared.share < kClearlyLess * turned_round.share) {
+  if (turned_round.share >= kMinShare && as_declared.share < kClearlyLess * turned_round.share) {
     throw Error(fmt::format(
         "left and right disparity maps agree at {:.0f} % of the pixels, but at {:.0f} % with {}: "
         "expected x_left - x_right in both",

@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kNoLimit = "auto";
 
-// What --memory has set, for messages.
+// The limit set by --memory, for messages.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
 std::optional<std::size_t> memory_limit;
 
@@ -55,7 +55,7 @@ std::string bytes_text(std::size_t bytes) {
   return power == 0 ? fmt::format("{}", bytes) : fmt::format("{}{}", bytes, kUnits[power - 1]);
 }
 
-/// Private memory that can be written, as the limit counts it.
+/// Private writable memory, which is what the limit counts.
 std::size_t data_bytes() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -67,7 +67,7 @@ std::size_t data_bytes() {
 }
 
 void limit_memory(std::size_t bytes) {
-  // Stacks count with their whole size although little of them is used.
+  // Stacks count with their full size, although little of it is used.
   constexpr std::size_t kStackBytes = std::size_t{8} << 20;
   const std::size_t stacks = kStackBytes * std::max(1U, std::thread::hardware_concurrency());
   rlimit limit{};

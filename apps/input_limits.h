@@ -14,14 +14,14 @@ namespace vantage::apps {
 Setting& add_size_setting(Settings& settings, std::string name, std::optional<std::size_t>& field,
                           std::string help);
 
-/// --max-pixels: what this process accepts as an image.
+/// --max-pixels: the largest image that this process accepts.
 void add_pixel_limit_setting(Settings& settings);
 
-/// --max-pixels and --memory. The latter holds for the whole process from the moment it is read:
-/// what it asks for beyond fails. Work that can do with less is planned for half of it.
+/// --max-pixels and --memory. The memory limit applies to the whole process once it is read:
+/// allocations beyond it fail. Work with a flexible need is planned for half of it.
 void add_input_limit_settings(Settings& settings, ExecutionOptions& execution);
 
-/// What to say when memory did not suffice.
+/// The message for a failed allocation.
 std::string memory_problem(const std::bad_alloc& error);
 
 }  // namespace vantage::apps

@@ -4,9 +4,9 @@
 
 namespace vantage::apps {
 
-/// From the first call on, the first SIGINT, SIGTERM or SIGHUP raises the returned flag instead of
-/// ending the process; the second one ends it as usual. For commands that then finish what is under
-/// way. SIGHUP stays ignored where it is (nohup).
+/// After the first call, the first SIGINT, SIGTERM or SIGHUP sets the returned flag instead of
+/// ending the process; the second one ends it as usual. For commands that finish the work in flight
+/// first. SIGHUP stays ignored if it was (nohup).
 const std::atomic<bool>& interrupt_flag();
 
 }  // namespace vantage::apps

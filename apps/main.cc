@@ -38,7 +38,8 @@ std::string help() {
          "2 wrong usage, 3 frames skipped, 130 interrupted.\n";
 }
 
-/// The command that the arguments begin with; its words are taken off. Null if there is none.
+/// The command at the start of the arguments, which are shortened by its words. Null if there is
+/// none.
 const Command* take_command(Arguments& arguments) {
   for (const Command& command : commands()) {
     const Arguments words = vantage::apps::split(command.name, ' ');
@@ -69,7 +70,7 @@ std::string unknown_command(const Arguments& arguments) {
                      vantage::apps::hint_for_command(arguments.front(), names));
 }
 
-/// One line on stderr, whatever the message holds.
+/// Prints the message as one line on stderr, whatever characters it has.
 int fail(const std::string& command, const std::string& message, int exit_code) {
   const std::string line = fmt::format("vantage{}{}: {}\n", command.empty() ? "" : " ", command,
                                        vantage::printable(message));
@@ -77,7 +78,7 @@ int fail(const std::string& command, const std::string& message, int exit_code) 
   return exit_code;
 }
 
-/// Whoever reads stdout has seen enough, as `head` does: no error to talk about.
+/// The reader of stdout has closed it, as `head` does: not an error to report.
 constexpr int kExitUnread = 128 + SIGPIPE;
 
 int run(Arguments arguments, std::string& name) {

@@ -83,7 +83,7 @@ void add_file_settings(Settings& settings, MatchJob& job) {
 
 void check_several(const MatchJob& job, const Settings& settings) {
   settings.refuse_idle({"cross-check", "cross-check-level"},
-                       "with several images, which have one map: there is none to compare it with");
+                       "with several images: there is no second map to compare with");
   settings.refuse_idle({"tuning"}, "with several images: tuning is for pairs");
   const std::size_t others = 1 + job.more.size();
   if (job.baselines.size() != others) {
@@ -93,17 +93,17 @@ void check_several(const MatchJob& job, const Settings& settings) {
   }
   if (job.match.reference == Side::kRight) {
     throw UsageError(
-        "--reference right cannot go with --baselines: the first image is the reference");
+        "--reference right cannot be used with --baselines: the first image is the reference");
   }
   if (!job.output_right.empty() || !job.unmatched_right.empty()) {
     throw UsageError(
-        fmt::format("--{} cannot go with --baselines: there is a map of the first image only",
+        fmt::format("--{} cannot be used with --baselines: only the first image has a map",
                     job.output_right.empty() ? "unmatched-right" : "output-right"));
   }
   if (job.match.disparities_y) {
     throw UsageError(
-        "--disparities-y cannot go with --baselines: cameras on one line see no "
-        "vertical disparities");
+        "--disparities-y cannot be used with --baselines: cameras on one line have no vertical "
+        "disparities");
   }
 }
 
@@ -140,9 +140,10 @@ void check(const MatchJob& job, const Settings& settings) {
     check_several(job, settings);
   } else if (job.match.reference == Side::kRight &&
              !(job.output_right.empty() && job.unmatched_right.empty())) {
-    throw UsageError(fmt::format("--{} cannot go with --reference right: {} is of the right map",
-                                 job.output_right.empty() ? "unmatched-right" : "output-right",
-                                 job.output_right.empty() ? "--unmatched" : "--output"));
+    throw UsageError(
+        fmt::format("--{} cannot be used with --reference right: {} belongs to the right map",
+                    job.output_right.empty() ? "unmatched-right" : "output-right",
+                    job.output_right.empty() ? "--unmatched" : "--output"));
   }
   if (job.tuning.ignored) {
     settings.refuse_idle({"tuning"}, "with --no-tuning");

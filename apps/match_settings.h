@@ -12,17 +12,16 @@ namespace vantage::apps {
 DisparityRange to_disparity_range(const SettingValue& value, std::string_view expected);
 std::string to_text(DisparityRange range);
 
-/// What commands that match images start from: the range of disparities is found unless it is
-/// given.
+/// Defaults of commands that match images: the disparity range is estimated unless it is given.
 MatchOptions options_with_found_range();
 
-/// All of MatchOptions but `reference`.
+/// All fields of MatchOptions except `reference`.
 void add_match_settings(Settings& settings, MatchOptions& options);
 void add_reference_setting(Settings& settings, MatchOptions& options);
 
-/// What a report shows: the values of `settings` and, under `resolved`, those of
-/// add_match_settings() that are in force after preset and method have filled in what is not set;
-/// there `preset` is the one that did, or "none".
+/// Settings for the report: the values of `settings` and, under `resolved`, those of
+/// add_match_settings() after preset and method have filled in what is not set. `resolved.preset`
+/// is the preset used, or "none".
 SettingValue reported_settings(const Settings& settings, const MatchOptions& options);
 
 }  // namespace vantage::apps

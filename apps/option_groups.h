@@ -12,7 +12,7 @@
 
 namespace vantage::apps {
 
-/// What every working command has besides its own options.
+/// The options that all commands share.
 struct CommonOptions {
   ExecutionOptions execution;
   std::string isa = "best";
@@ -22,21 +22,21 @@ struct CommonOptions {
 };
 
 // Each binds the fields of one option struct to its settings: the only list of them.
-/// Whether a command has pairs matched: strips, bands and passes are of that work only.
+/// Whether a command matches pairs: only then there are strips, bands and passes.
 enum class Work { kWithMatching, kWithoutMatching };
 void add_common_settings(Settings& settings, CommonOptions& options,
                          Work work = Work::kWithMatching);
 /// The files of --report and --trace.
 void check_common_files(const CommonOptions& options, FileChecks& files);
 void add_synthesis_settings(Settings& settings, SynthesisOptions& options);
-// Parts of the latter, in the group that has begun.
+// Parts of add_synthesis_settings(), in the current group.
 void add_holes_setting(Settings& settings, HoleFilling& holes);
 void add_soft_edges_setting(Settings& settings, bool& soft_edges);
-/// How two warped images become one.
+/// Settings for combining two warped images.
 void add_combining_settings(Settings& settings, SynthesisOptions& options);
-/// Refuses a gamma that nothing reads.
+/// Refuses --gamma if it has no effect.
 void check_combining(const Settings& settings, const SynthesisOptions& options);
-/// What add_combining_settings() adds, without --gamma.
+/// The settings of add_combining_settings() without --gamma.
 void add_surface_settings(Settings& settings, SynthesisOptions& options);
 
 /// --seed, a whole number of at least 0.

@@ -93,7 +93,7 @@ bool FileChecks::find_id(const fs::path& path, FileId& id) {
 }
 
 void FileChecks::refuse_in_folder(const Output& output, const Output& folder) {
-  throw UsageError(fmt::format("{} is '{}', in a folder that {} writes to", output.option,
+  throw UsageError(fmt::format("{} is '{}', inside the output folder of {}", output.option,
                                output.path.string(), folder.option));
 }
 
@@ -115,11 +115,11 @@ void FileChecks::add_input(const fs::path& path) {
   }
   const auto refuse = [&](const Output& output) {
     throw UsageError(
-        fmt::format("{} is '{}', which is an input as well", output.option, output.path.string()));
+        fmt::format("{} is '{}', which is also an input", output.option, output.path.string()));
   };
   const auto refuse_folder = [&](const Output& output) {
-    throw UsageError(fmt::format("{} would write into '{}', where the input '{}' is", output.option,
-                                 output.path.string(), path.string()));
+    throw UsageError(fmt::format("{} would write into '{}', which contains the input '{}'",
+                                 output.option, output.path.string(), path.string()));
   };
   FileId id;
   if (find_id(path, id)) {
@@ -137,7 +137,7 @@ void FileChecks::add_input(const fs::path& path) {
       refuse(output->second);
     }
   }
-  // Sequences have many files and few folders.
+  // Each folder is checked once: sequences have many files and few folders.
   for (const fs::path& folder : folders_of(path)) {
     if (!input_folders_.try_emplace(folder, path).second || !find_id(folder, id)) {
       continue;
@@ -166,7 +166,7 @@ void FileChecks::add_made_file(const fs::path& path, const std::string& option) 
   FileId id;
   const bool is_there = find_id(path, id);
   if (is_there ? input_ids_.contains(id) : absent_inputs_.contains(place)) {
-    throw UsageError(fmt::format("{} is '{}', which is an input as well", option, path.string()));
+    throw UsageError(fmt::format("{} is '{}', which is also an input", option, path.string()));
   }
   const auto [other, is_new] = outputs_.try_emplace(place, Output{option, path});
   if (!is_new) {
@@ -195,7 +195,7 @@ void FileChecks::add_made_folder(const fs::path& path, const std::string& option
     }
   }
   const auto refuse = [&](const fs::path& input) {
-    throw UsageError(fmt::format("{} would write into '{}', where the input '{}' is", option,
+    throw UsageError(fmt::format("{} would write into '{}', which contains the input '{}'", option,
                                  path.string(), input.string()));
   };
   if (const auto input = input_ids_.find(id); input != input_ids_.end()) {

@@ -11,7 +11,7 @@ namespace vantage::apps {
 
 /// One entry of a file of poses.
 struct PoseEntry {
-  std::optional<int> frame;  ///< of a path: when the view is there
+  std::optional<int> frame;  ///< frame number; only in a path
   ViewPose pose;             ///< cameras without a size of their own have 0×0
 };
 
@@ -33,12 +33,12 @@ struct PoseList {
 /// Throws Error when the file cannot be read, UsageError naming file, entry and key otherwise.
 std::vector<PoseEntry> read_poses(const std::string& path);
 
-/// The same from a list of such entries, which messages call `name`.
+/// Reads a list of such entries; messages call it `name`.
 std::vector<PoseEntry> poses_in(const SettingValue& list, const std::string& name);
-/// Such a list; poses_in() brings back the same bits.
+/// Converts poses to such a list; poses_in() restores them bit for bit.
 SettingValue to_value(const std::vector<PoseEntry>& poses);
 
-/// Those in the file, where one is named.
+/// Reads the poses of the files that are named.
 std::vector<PoseEntry> entries_of(const PoseList& list);
 
 }  // namespace vantage::apps

@@ -11,7 +11,8 @@ namespace vantage::apps {
 void set_up_process() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(descriptor, F_GETFD) == -1) {
-      // The lowest free number, which is this one. Writing to what is open for reading fails.
+      // open() returns the lowest free number, which is this one. It is open for reading, so writes
+      // fail.
       (void)::open("/dev/null", O_RDONLY);
     }
   }

@@ -54,7 +54,7 @@ void Progress::update(int done, std::optional<int> total, double cells) {
   }
   const Sample now{Clock::now(), done, cells};
   const bool last = total && done == *total;
-  // Elsewhere than on a terminal the final summary of the command says the rest.
+  // Without a terminal, the final summary of the command is enough.
   if (now.time >= next_print_ || (last && style_ == ProgressStyle::kBar)) {
     const std::string text = describe(now, total);
     if (style_ == ProgressStyle::kBar) {
@@ -81,7 +81,7 @@ std::string Progress::describe(const Sample& now, std::optional<int> total) cons
   const double rate = (now.done - past.done) / seconds;
   std::string text = command_ + ": ";
   if (total && *total > 0) {
-    // The length of a video can be an estimate: never past the end.
+    // The length of a video can be an estimate, so limit the share to 100 %.
     const int end = std::max(*total, now.done);
     if (style_ == ProgressStyle::kBar) {
       text += bar(static_cast<double>(now.done) / end);

@@ -14,9 +14,9 @@ enum class ProgressStyle {
   kNone
 };
 
-/// Tells people on stderr how far a long job is, with rate and time left. Rate and time left are
-/// those of the last minute, so that neither the start nor what was quick long ago spoils them; no
-/// time is told before there is something to go by. Thread rule: one thread at a time.
+/// Progress of a long job on stderr, with rate and time left. Both are computed from the last
+/// minute, so that a slow start or an earlier fast part does not distort them; no time is shown
+/// until there are enough samples. Thread rule: one thread at a time.
 class Progress {
  public:
   /// `unit` is what is counted ("frames").

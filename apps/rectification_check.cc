@@ -72,7 +72,7 @@ void add_rectification_check_setting(Settings& settings, bool& wanted) {
 void warn_unless_rectified(const Settings& settings, const CommonOptions& common,
                            bool expects_negative, const Photograph& left, const Photograph& right,
                            RunReport& report) {
-  // Of images that differ in size whoever uses the pair will say so.
+  // The user of the pair reports images of different sizes.
   if (left.width() == right.width() && left.height() == right.height()) {
     tell_of(look_at_rows(left, right), settings, common, expects_negative, kRows, report);
   }

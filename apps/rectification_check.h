@@ -14,22 +14,21 @@ namespace vantage::apps {
 /// --no-rectification-check; `wanted` is true without it.
 void add_rectification_check_setting(Settings& settings, bool& wanted);
 
-/// Whether whoever chose the range of disparities knows that most are negative. To be asked before
-/// choose_disparities(): what is found is nobody's choice.
+/// Whether the user chose a range whose disparities are mostly negative. Call it before
+/// choose_disparities(), which replaces an automatic range.
 bool expects_negative_disparities(const MatchOptions& options);
 
-/// Looks whether the rows of a pair that ought to be rectified correspond. The report gets the
-/// numbers as `results.rectification`; where rows are off (the systematic part of the error, RMS)
-/// so far that it costs more than kMostMoreBad_percent of the pixels, a warning on stderr says by
-/// how much. Another one says when nearly all disparities are negative, unless `expects_negative`.
-/// Results and exit codes do not depend on it. Its time is a stage of its own ("check"), not
-/// compute time. Says nothing about pairs with too few points in common to tell.
+/// Checks whether the rows of a pair correspond, as those of a rectified pair do. Adds the numbers
+/// to the report as `results.rectification`. Warns on stderr if the systematic row error (RMS)
+/// makes more than kMaxMoreBad_percent of the pixels wrong, and, unless `expects_negative`, if
+/// nearly all disparities are negative. Results and exit codes do not depend on it. Its time is the
+/// stage "check", not compute time. No warning if the images have too few points in common.
 void warn_unless_rectified(const Settings& settings, const CommonOptions& common,
                            bool expects_negative, const Photograph& left, const Photograph& right,
                            RunReport& report);
-/// The same while `work` is done with the same pair, as looking keeps but one thread busy. What
-/// there is to say is said when both are done; `work` may throw. `lines`: "rows", or "columns" of a
-/// transposed pair.
+/// As warn_unless_rectified(), but runs concurrently with `work` on the same pair, because the
+/// check uses one thread only. Warns after both have ended; `work` may throw. `lines`: "rows", or
+/// "columns" for a transposed pair.
 void warn_unless_rectified_beside(const std::function<void()>& work, const Settings& settings,
                                   const CommonOptions& common, bool expects_negative,
                                   std::string_view lines, const Photograph& left,

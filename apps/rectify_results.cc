@@ -11,26 +11,25 @@
 namespace vantage::apps {
 namespace {
 
-/// Less than this of the photograph near points leaves much to guess.
-constexpr double kLeastCovered = 0.5;
+/// Below this share of the photograph near points, cameras are uncertain.
+constexpr double kMinCovered = 0.5;
 
 void print_validation(const RigValidation& validation) {
   if (validation.held_out) {
-    tell("rectify: at points left out of the estimate they are off by {}\n",
+    tell("rectify: row error at points that the estimate did not use: {}\n",
          vertical_error_text(*validation.held_out));
     if (!is_rectified(*validation.held_out)) {
       tell(
-          "rectify: warning: where no points are, {}; more pairs of the rig, or a calibration, "
+          "rectify: warning: away from the points, {}; more pairs of the rig, or a calibration, "
           "give better cameras\n",
           cost_text(*validation.held_out, "rows"));
     }
   }
-  if (validation.covered_share < kLeastCovered) {
+  if (validation.covered_share < kMinCovered) {
     tell(
-        "rectify: warning: points cover {:.0f} % of the image, expected at least {:.0f} %: "
-        "elsewhere "
-        "rows may be off by more\n",
-        100 * validation.covered_share, 100 * kLeastCovered);
+        "rectify: warning: points cover {:.0f} % of the image, expected at least {:.0f} %: row "
+        "errors may be larger elsewhere\n",
+        100 * validation.covered_share, 100 * kMinCovered);
   }
 }
 
@@ -99,9 +98,9 @@ void print_results(const Rectification& rectification, const RectifiedPair& pair
       tell("rectify: warning: {}\n", exchanged_text(*rectification.remaining));
     }
   } else {
-    tell("rectify: too few points in common to measure what rows are off by\n");
+    tell("rectify: too few points in common to measure row errors\n");
   }
-  tell("rectify: valid are {}x{} pixels from ({}, {})\n", pair.valid.width, pair.valid.height,
+  tell("rectify: valid region {}x{} pixels from ({}, {})\n", pair.valid.width, pair.valid.height,
        pair.valid.x, pair.valid.y);
 }
 

@@ -12,7 +12,7 @@
 
 namespace vantage::apps {
 
-/// What the rectification is made from, and what it gives.
+/// Inputs and results of a rectification.
 struct Rectification {
   StereoCalibration calibration;
   std::optional<UncalibratedRig> estimate;  ///< without a calibration file
@@ -21,11 +21,11 @@ struct Rectification {
   std::optional<RigValidation> validation;  ///< of the estimate
 };
 
-/// What the report of 'rectify' says under `results`.
+/// The entry `results` of the report of 'rectify'.
 SettingValue results_of(const Rectification& rectification, const RectifiedPair& pair,
                         int pair_count);
 
-/// The same for people, on stderr. `calibration` is the file's name, if there is one.
+/// Prints the results to stderr. `calibration` is the path to the file; empty: none.
 void print_results(const Rectification& rectification, const RectifiedPair& pair, int pair_count,
                    const std::string& calibration);
 

@@ -22,7 +22,7 @@ bool names_input(const PairSourceOptions& input) {
            input.pairs.empty() && input.sequence.empty());
 }
 
-/// The part that RunSession::part_name() called so, if it did.
+/// Sets the part of the run from a name of RunSession::part_name(); ignores other names.
 void take_part(const std::string& name, RunJob& job) {
   static const std::regex form("(?:frames-([0-9]+)-([0-9]+))?-?(?:([0-9]+)-of-([0-9]+))?");
   std::smatch numbers;

@@ -17,7 +17,7 @@
 namespace vantage::apps {
 namespace {
 
-/// A figure of this process; 0 where the system does not tell.
+/// A memory figure of this process; 0 if the system does not provide it.
 std::size_t process_bytes(std::string_view name) {
   std::ifstream status("/proc/self/status");
   for (std::string key; status >> key; std::getline(status, key)) {
@@ -29,11 +29,11 @@ std::size_t process_bytes(std::string_view name) {
   return 0;
 }
 
-/// Most memory this process has had resident. Not getrusage(): its figure starts with that of the
-/// process that started this one.
+/// Peak resident memory of this process. Not from getrusage(), whose figure starts with that of the
+/// parent process.
 std::size_t peak_memory_bytes() { return process_bytes("VmHWM:"); }
 
-/// Milliseconds of what is over soon, seconds of what takes long.
+/// Milliseconds for short times, seconds for long ones.
 std::string time_text(double seconds) {
   return seconds < 10 ? fmt::format("{:.1f} ms", seconds * 1e3) : fmt::format("{:.1f} s", seconds);
 }

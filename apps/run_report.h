@@ -19,18 +19,18 @@
 
 namespace vantage::apps {
 
-/// What a command did and how long it took: the JSON of --report and the summary on stderr.
-/// Created when the command starts: wall time counts from there.
+/// What a command did and how long it took: the JSON of --report and the summary on stderr. Wall
+/// time counts from its construction.
 class RunReport {
  public:
   RunReport(std::string command, SettingValue settings);
-  /// Replaces the settings, where some follow from what has been read since.
+  /// Replaces the settings, for example after an input has determined some.
   void set_settings(SettingValue settings) { settings_ = std::move(settings); }
 
   /// Records a trace from here to write(); an empty path: none.
   void start_trace(const std::string& path);
 
-  /// Runs `work` as a stage of compute time and returns what it returns. Names of stages are of
+  /// Runs `work` as a stage of compute time and returns its result. Names of stages must have
   /// static storage.
   template <typename Work>
   auto timed_compute(std::string_view name, const Work& work) {
@@ -52,7 +52,7 @@ class RunReport {
     return timed(work, [&](double seconds) { add_stage(name, seconds); });
   }
 
-  /// Adds up when the name has been there before.
+  /// Times of the same name are added.
   void add_stage(std::string_view name, double seconds);
   void add_compute_seconds(double seconds) { compute_seconds_ += seconds; }
   void add_cells(double cells) { cells_ += cells; }
@@ -61,18 +61,18 @@ class RunReport {
   void set_plan(const scheduler::ChainPlan& plan);
   /// Threads, where they run (key `binding`), and instruction set.
   void set_execution(Execution& execution);
-  /// What is used of a tuning file, or why nothing, under the key `tuning`; `summary` goes into the
-  /// line on stderr.
+  /// The tuned settings in use, or why there are none, under the key `tuning`; `summary` is printed
+  /// to stderr.
   void set_tuning(SettingValue tuning, std::string summary) {
     tuning_ = std::move(tuning);
     tuning_summary_ = std::move(summary);
   }
-  /// What the command held of memory, under the key `memory`: its owners, what the program had when
-  /// the command began, and what else there was at the peak.
+  /// Memory use under the key `memory`: by owner, at the start of the command, and other memory at
+  /// the peak.
   void set_memory(MemoryUse memory) { memory_ = std::move(memory); }
   /// Command-specific findings under the key `results`.
   void set_results(SettingValue results) { results_ = std::move(results); }
-  /// One more of them, which set_results() does not replace.
+  /// Another finding, which set_results() does not replace.
   void add_result(const std::string& name, SettingValue value) {
     more_results_[name] = std::move(value);
   }

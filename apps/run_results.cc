@@ -12,7 +12,7 @@
 namespace vantage::apps {
 namespace {
 
-/// More would hide what else there is to read; the report has them all.
+/// More lines would hide the other messages; the report has all.
 constexpr std::size_t kRemarksPrinted = 5;
 
 SettingValue remark_values(const std::vector<FrameRemark>& remarks) {
@@ -83,7 +83,7 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
 
 void print_sound_problem(const std::string& command, const std::string& problem) {
   if (!problem.empty()) {
-    tell("{}: note: the videos are without sound: {}\n", command, problem);
+    tell("{}: note: the videos have no sound: {}\n", command, problem);
   }
 }
 
@@ -98,10 +98,10 @@ void print_summary(const RunJob& job, const RunSession& session, const SequenceR
     line += fmt::format(", {:.2f} frames/s", sequence.frames / wall_seconds);
   }
   if (sequence.frames_before > 0) {
-    line += fmt::format(", {} had been done before", sequence.frames_before);
+    line += fmt::format(", {} were already done", sequence.frames_before);
   }
   if (sequence.pictures_again > 0) {
-    line += fmt::format(" ({} put into the videos now)", sequence.pictures_again);
+    line += fmt::format(" ({} of them added to the videos now)", sequence.pictures_again);
   }
   if (!sequence.skipped.empty()) {
     line += fmt::format(", {} skipped", sequence.skipped.size());
@@ -112,7 +112,7 @@ void print_summary(const RunJob& job, const RunSession& session, const SequenceR
   }
   tell("{}\n", line);
   if (sequence.interrupted && sequence.videos_from) {
-    tell("run: all files of frames are kept, the videos go on at frame {}\n",
+    tell("run: all files of frames are kept, the videos continue at frame {}\n",
          *sequence.videos_from);
   }
 }

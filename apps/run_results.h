@@ -10,20 +10,20 @@
 
 namespace vantage::apps {
 
-/// What a run has come to, for --report. `delivered`: all of the folder. `sound_problem`: what
+/// The results of a run, for --report. `delivered`: all frames in the folder. `sound_problem`: what
 /// join_segments() returned.
 void fill_report(const RunJob& job, const RunSession& session, const SequenceReport& sequence,
                  const DeliveredFrames& delivered, const std::string& sound_problem,
                  RunReport& report);
 
-/// A line on stderr where videos are without the sound they should have.
+/// Prints a line to stderr if videos lack the sound they should have.
 void print_sound_problem(const std::string& command, const std::string& problem);
 
-/// The same in a few lines on stderr. `wall_seconds`: from the start of the command on.
+/// Prints the results to stderr in a few lines. `wall_seconds`: since the start of the command.
 void print_summary(const RunJob& job, const RunSession& session, const SequenceReport& sequence,
                    double wall_seconds);
 
-/// How much results flicker, as a report shows it; null where it was not measured.
+/// The flicker of the results, for the report; null if it was not measured.
 SettingValue flicker_values(const FlickerSums& sums);
 
 }  // namespace vantage::apps

@@ -21,8 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A bad frame at the beginning is for the run to report; what the frames are like can be learnt
-/// from any.
+/// Any frame shows the shape of all frames; the run itself reports a bad one at the start.
 constexpr int kFramesTried = 100;
 
 void read_first_pair(PairSource& pairs, FramePair& pair) {
@@ -37,8 +36,8 @@ void read_first_pair(PairSource& pairs, FramePair& pair) {
       }
     } catch (const Error& error) {
       if (index + 1 == tries) {
-        throw Error(fmt::format("none of the first {} frames can be read; the last says: {}", tries,
-                                error.what()));
+        throw Error(fmt::format("none of the first {} frames can be read; the last error is: {}",
+                                tries, error.what()));
       }
     }
   }
@@ -111,7 +110,7 @@ std::string strips_text(const scheduler::ChainPlan& plan) {
 
 AppliedTuning find_tuning(const RunJob& job, const FramePair& first, const Settings& settings) {
   if (job.memory_bytes) {
-    return no_tuning("--memory is given: the cost model plans for it");
+    return no_tuning("--memory is given, so the cost model plans");
   }
   return apply_tuning(job.tuning,
                       {.use = TunedUse::kRun,
@@ -137,7 +136,7 @@ void RunSession::rectify(FramePair& pair, Execution& pool) const {
 }
 
 SequenceRun RunSession::run(const RunJob& job, const ShotTable* shots) const {
-  // Pairs of a list need not have to do with one another.
+  // Pairs of a list may be unrelated.
   const bool any_size = !job.input.pairs.empty() && job.sequence.video.empty() &&
                         job.sequence.temporal.weight == 0 && !shape.cameras;
   return {.pairs = *pairs,
@@ -181,7 +180,7 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
                        .frames = job.frames,
                        .shard = job.shard};
   if (job.frames && session.selection.all().empty()) {
-    throw Error(fmt::format("--frames begins at {} but the input has {} frames (0 to {})",
+    throw Error(fmt::format("--frames starts at {} but the input has {} frames (0 to {})",
                             job.frames->first, session.selection.frame_count,
                             session.selection.frame_count - 1));
   }

@@ -14,10 +14,10 @@
 
 namespace vantage::apps {
 
-/// A run whose input has been opened and looked at, before anything is written.
+/// A run whose input has been opened and examined; nothing is written yet.
 struct RunSession {
   std::unique_ptr<PairSource> pairs;
-  std::optional<Rectifier> rectifier;  ///< where a calibration has to be applied
+  std::optional<Rectifier> rectifier;  ///< if a calibration must be applied
   PairShape shape;                     ///< of the first pair that could be read
   FrameSelection selection;
   RunIdentity identity;
@@ -26,9 +26,9 @@ struct RunSession {
   MemoryPlan memory;
   std::string executor;  ///< "2 threads (tbb)"
 
-  /// Rectifies a pair in place where a calibration has to be applied.
+  /// Rectifies a pair in place if a calibration must be applied.
   void rectify(FramePair& pair, Execution& pool) const;
-  /// What the run gets to do; `shots` where the options need them.
+  /// The task of the run; `shots` if the options need them.
   [[nodiscard]] SequenceRun run(const RunJob& job, const ShotTable* shots) const;
   /// Names this process's part of the run, for the journal: "all", "2-of-7", "frames-100-199".
   [[nodiscard]] static std::string part_name(const RunJob& job);
@@ -39,7 +39,7 @@ struct RunSession {
 /// result would replace an input.
 RunSession open_run(RunJob& job, const Settings& settings, RunReport& report);
 
-/// What is going to be done, for people; several lines.
+/// The plan in several lines of text.
 std::string describe_plan(const RunJob& job, const RunSession& session);
 
 /// Reads the settings of the run in `folder` into `job` and tells `files` what the run writes

@@ -72,8 +72,8 @@ std::optional<std::pair<int, int>> two_numbers(const std::string& text, char sep
   }
   const auto first = whole_number(parts[0]);
   const auto second = whole_number(parts[1]);
-  constexpr int kMost = std::numeric_limits<int>::max() - 1;
-  if (!first || !second || *first < 0 || *second < 0 || *first > kMost || *second > kMost) {
+  constexpr int kMax = std::numeric_limits<int>::max() - 1;
+  if (!first || !second || *first < 0 || *second < 0 || *first > kMax || *second > kMax) {
     return std::nullopt;
   }
   return std::pair(static_cast<int>(*first), static_cast<int>(*second));
@@ -91,7 +91,7 @@ void add_input_settings(Settings& settings, RunJob& job) {
                         std::string help) -> Setting& {
     Setting& setting =
         settings.input_path(std::move(name), field, std::move(value_name), std::move(help));
-    // The journal knows inputs by what is in them.
+    // The journal identifies inputs by their content.
     setting.changes_results = false;
     return setting;
   };
@@ -128,7 +128,7 @@ void add_stereo_views_setting(Settings& settings, std::array<double, 2>& views_x
         return;
       }
     } catch (const UsageError&) {
-      // said below
+      // reported below
     }
     reject_value(value, "two positions on the baseline such as 0.25,0.75");
   };
@@ -259,7 +259,7 @@ void add_pipeline_settings(Settings& settings, RunJob& job) {
                                  "bar on a terminal, else lines");
 }
 
-/// What says how outputs are made that are not made.
+/// Refuses options of outputs that are not written.
 void refuse_idle_outputs(const Settings& settings, const SequenceOptions& sequence) {
   using Output = SequenceOutput;
   const auto saves_any = [&](std::initializer_list<Output> outputs) {

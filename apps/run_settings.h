@@ -29,7 +29,7 @@ struct RunJob {
   RectificationOptions rectification;
   std::string output;  ///< folder
   SequenceOptions sequence;
-  /// Empty: the disparity map, and the views when there are any.
+  /// Empty: the disparity map, and the views if there are any.
   std::optional<std::vector<SequenceOutput>> save;
   SequenceViews views;
   std::optional<FrameRate> frame_rate;  ///< empty: the input's, else 25
@@ -47,26 +47,27 @@ struct RunJob {
   CommonOptions common;
   TuningSource tuning;
 
-  /// `progress`, or none where only errors are wanted.
+  /// `progress`, or none with --quiet.
   [[nodiscard]] ProgressStyle shown_progress() const {
     return common.quiet ? ProgressStyle::kNone : progress;
   }
 };
 
-/// Binds all of it: the options of 'vantage run'.
+/// Binds all fields of `job`: the options of 'vantage run'.
 void add_run_settings(Settings& settings, RunJob& job);
 
-/// Fills in what of `job.sequence` follows from other fields, of which poses must be there. Throws
-/// UsageError where it is wrong.
+/// Fills in the fields of `job.sequence` that follow from other fields; poses must have been read.
+/// Throws UsageError for invalid fields.
 void complete_sequence(RunJob& job);
 
-/// The same of all fields, with the files of poses read. Throws UsageError where fields are wrong
-/// or do not go together; other files are not looked at.
+/// Reads the files of poses and completes all fields. Throws UsageError for invalid fields and
+/// combinations. Reads no other files.
 void complete(RunJob& job, const Settings& settings);
 
-/// Tells `files` what runs write to the folder of `layout`, which `option` names.
+/// Adds to `files` what runs write to the folder of `layout`, which `option` names.
 void add_run_outputs(const SequenceLayout& layout, const std::string& option, FileChecks& files);
-/// All that a run reads and writes but the frames, which are not known before its input is opened.
+/// All files that a run reads and writes, except the frames, which are unknown before the input is
+/// opened.
 FileChecks check_files(const RunJob& job, const Settings& settings);
 
 }  // namespace vantage::apps

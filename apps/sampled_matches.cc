@@ -9,8 +9,8 @@
 
 namespace vantage::apps {
 
-std::vector<int> sampled_pairs(int pairs, int most) {
-  const int count = std::min(pairs, most);
+std::vector<int> sampled_pairs(int pairs, int max_pairs) {
+  const int count = std::min(pairs, max_pairs);
   std::vector<int> indices;
   for (int i = 0; i < count; ++i) {
     indices.push_back(

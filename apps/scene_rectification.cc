@@ -13,7 +13,7 @@
 namespace vantage::apps {
 namespace {
 
-constexpr std::size_t kMostWarnings = 5;
+constexpr std::size_t kMaxWarnings = 5;
 
 const char* line_of(const SceneEdge& edge) {
   if (edge.slope != 0) {
@@ -46,7 +46,7 @@ SettingValue SceneRectification::add(const SceneBuilder::BuiltEdge& edge) {
     warnings_.push_back(
         {std::numeric_limits<double>::infinity(),
          fmt::format("{}: the images look exchanged: {:.0f} % of {} points have negative "
-                     "disparities; positions grow to the right and down",
+                     "disparities; x must increase to the right, y downwards",
                      name, 100 * error.negative_share, error.inliers)});
   }
   SettingValue values = vertical_error_values(error);
@@ -59,13 +59,12 @@ void SceneRectification::print_warnings() const {
   std::vector<Warning> worst = warnings_;
   std::stable_sort(worst.begin(), worst.end(),
                    [](const Warning& a, const Warning& b) { return a.severity > b.severity; });
-  const std::size_t printed = std::min(worst.size(), kMostWarnings);
+  const std::size_t printed = std::min(worst.size(), kMaxWarnings);
   for (std::size_t i = 0; i < printed; ++i) {
     tell("scene build: warning: {}\n", worst[i].text);
   }
   if (worst.size() > printed) {
-    tell("scene build: warning: and {} more like these; --report tells of all\n",
-         worst.size() - printed);
+    tell("scene build: warning: {} more of these; --report lists all\n", worst.size() - printed);
   }
 }
 

@@ -10,17 +10,17 @@
 
 namespace vantage::apps {
 
-/// Gathers what the edges of a scene say about where its images are said to stand.
+/// Collects what the edges of a scene show about the given image positions.
 class SceneRectification {
  public:
-  /// `builder` outlives it. Warns of negative disparities unless `options` expect them.
+  /// `builder` must outlive it. Warns of negative disparities unless `options` expect them.
   SceneRectification(const SceneBuilder& builder, const MatchOptions& options);
 
-  /// What the report says about an edge; null where nothing is known.
+  /// The report entry of an edge; null if nothing is known.
   SettingValue add(const SceneBuilder::BuiltEdge& edge);
 
-  /// One line on stderr for each of the worst few edges whose rows or columns are farther off than
-  /// those of pairs may be, or whose images look exchanged, and how many more there are.
+  /// Prints one warning for each of the worst few edges whose row or column error is too large or
+  /// whose images look exchanged, and the number of the others.
   void print_warnings() const;
 
  private:

@@ -77,7 +77,7 @@ CLI::Option* add_option(CLI::App& app, const Setting& setting) {
   if (setting.flag) {
     option = app.add_flag(option_names(setting), help);
   } else {
-    // Texts are only collected here: they are applied after the configuration file.
+    // CLI11 only collects the texts; they are applied after the configuration file.
     option = app.add_option(
         option_names(setting), [](const CLI::results_t&) { return true; }, help);
     option->type_name(setting.positional ? "" : is_long(setting) ? "NAME" : setting.value_name);
@@ -148,7 +148,8 @@ void set_value(const Setting& setting, const SettingValue& value, const std::str
   }
 }
 
-/// CLI11 takes "-7" for a number and so for a positional argument; here those are files.
+/// CLI11 accepts "-7" as a number, and so as a positional argument; here positional arguments are
+/// files.
 void require_files(const std::string& command, const std::vector<std::string>& texts,
                    const std::vector<std::string>& known) {
   for (const std::string& text : texts) {
@@ -159,7 +160,7 @@ void require_files(const std::string& command, const std::vector<std::string>& t
   }
 }
 
-/// What `convert` makes of all texts in `value`.
+/// `value` with `convert` applied to all texts.
 template <typename Convert>
 SettingValue with_texts(const SettingValue& value, const Convert& convert) {
   if (value.is_string()) {
@@ -383,7 +384,7 @@ bool Settings::read(const std::vector<std::string>& arguments) {
     print_help(app, options, settings_, {});
     return false;
   } catch (const CLI::ParseError& error) {
-    // An unknown option is the likelier cause of whatever CLI11 stumbled over.
+    // An unknown option is the likely cause of CLI11's error.
     require_known(command_, app.remaining(), known);
     throw UsageError(first_line(error.what()));
   }

@@ -14,15 +14,15 @@
 
 namespace vantage::apps {
 
-/// What a setting's text is to the command, where it is the name of a file or folder.
+/// How the command uses a setting that is a path.
 enum class PathRole {
-  kNone,   ///< no name
+  kNone,   ///< not a path
   kInput,  ///< the command reads it
-  kOther   ///< it is written, or handed on to another program
+  kOther   ///< the command writes it or passes it to another program
 };
 
-/// One thing a user can set: an option of the command line, a key of the TOML file and an entry of
-/// the report, bound to a field of an option struct.
+/// One setting: an option of the command line, a key of the TOML file and an entry of the report,
+/// bound to a field of an option struct.
 struct Setting {
   std::string name;        ///< long option and TOML key, without dashes
   std::string value_name;  ///< what --help calls the value; empty for a flag
@@ -33,29 +33,28 @@ struct Setting {
   bool required = false;
   bool flag = false;
   bool list = false;            ///< may be given several times; an array in TOML
-  bool changes_results = true;  ///< else it says how work is done, not what comes of it
+  bool changes_results = true;  ///< false: it affects how work is done, not the results
   PathRole path = PathRole::kNone;
-  /// Takes a value of the TOML file or a text (list: texts) of the command line. Throws UsageError
-  /// "is …, expected …" without the name.
+  /// Sets a value from the TOML file or a text (list: texts) from the command line. Throws
+  /// UsageError "is …, expected …" without the name.
   std::function<void(const SettingValue&)> set;
-  /// The present value; null when the setting has none.
+  /// The current value; null if there is none.
   std::function<SettingValue()> get;
 };
 
-/// All settings of a command, and the one way from argv and --config to option structs: struct
-/// defaults, then the file, then the command line. Fields are bound by reference and must outlive
-/// this object.
+/// All settings of a command. Option structs are filled from struct defaults, then the file of
+/// --config, then the command line. Fields are bound by reference and must outlive this object.
 class Settings {
  public:
   Settings(std::string command, std::string summary);
 
-  /// Settings added from now on appear under `title` in --help and --print-config.
-  /// `changes_results`: of all of them.
+  /// Settings added after this call appear under `title` in --help-all and --print-config.
+  /// `changes_results` applies to all of them.
   void begin_group(std::string title, bool changes_results = true) {
     group_ = std::move(title);
     group_changes_results_ = changes_results;
   }
-  /// A first argument that is no option is taken as --config.
+  /// Accept a first argument that is not an option as --config.
   void take_job_file() { takes_job_file_ = true; }
   /// What --help prints on one screen: these settings (all without names), then the examples.
   /// --help-all prints all settings. Call it after all settings are added; another call replaces
@@ -70,51 +69,51 @@ class Settings {
                    std::string help, const std::string& unset_name = "auto");
   Setting& number(std::string name, std::optional<double>& field, std::string value_name,
                   std::string help, const std::string& unset_name = "auto");
-  /// The name of a file or folder that the command reads; FileChecks learn of it. An empty name
-  /// counts as not set, here and below.
+  /// Path to a file or folder that the command reads; FileChecks includes it. An empty path counts
+  /// as not set, here and below.
   Setting& input_path(std::string name, std::string& field, std::string value_name,
                       std::string help);
-  /// The name of a file or folder that is not read.
+  /// Path to a file or folder that is not read.
   Setting& path(std::string name, std::string& field, std::string value_name, std::string help);
   /// Any other text.
   Setting& text(std::string name, std::string& field, std::string value_name, std::string help);
-  /// A name to read, without an option before it.
+  /// Path to read, without an option before it.
   Setting& positional(std::string name, std::string& field, std::string help);
   /// One of the names of an enumeration.
   template <typename Enum>
   Setting& choice(std::string name, Enum& field,
                   std::vector<std::pair<std::string_view, Enum>> names, std::string help);
-  /// The same; the field is empty for the text `unset_name`.
+  /// As above; the field is empty for the text `unset_name`.
   template <typename Enum>
   Setting& choice(std::string name, std::optional<Enum>& field,
                   std::vector<std::pair<std::string_view, Enum>> names, std::string help,
                   const std::string& unset_name = "auto");
-  /// Anything else: the caller fills in the rest.
+  /// Any other setting: the caller fills in the rest.
   Setting& add(std::string name, std::string value_name, std::string help);
 
   /// Tells --print-config what `auto` means at present: `values` returns an object of setting name
   /// → value, which need not hold all names.
   void show_resolved(std::function<SettingValue()> values) { resolved_ = std::move(values); }
 
-  /// Reads the command line and --config. Returns false when there is nothing left to do, because
-  /// --help, --help-all or --print-config has been answered on stdout. Throws UsageError, and Error
-  /// when the file of --config cannot be read.
+  /// Reads the command line and --config. Returns false if nothing is left to do, because --help,
+  /// --help-all or --print-config has been printed. Throws UsageError, and Error if the file of
+  /// --config cannot be read.
   [[nodiscard]] bool read(const std::vector<std::string>& arguments);
 
-  /// Whether the user set it: the command line names it, or the file gives it another value than
-  /// it has by default. A file that --print-config wrote names all.
+  /// Whether the user set it: on the command line, or in the file to another value than the default
+  /// (a file from --print-config holds all settings).
   [[nodiscard]] bool is_set(const std::string& name) const { return set_.contains(name); }
   /// Throws UsageError "--NAME has no effect …" for the first of `names` that is set; `why` such as
   /// "without --video".
   void refuse_idle(std::initializer_list<const char*> names, std::string_view why) const;
   /// Name → present value, in order of registration.
   [[nodiscard]] SettingValue values() const;
-  /// Those that change results, without those that are not set.
+  /// The settings that change results, except those that are not set.
   [[nodiscard]] SettingValue result_values() const;
-  /// Sets what result_values() gave, and paths as stored_name() makes them. Throws UsageError
-  /// naming a key that is not known or a value that is not accepted.
+  /// Restores the values of result_values(), with paths as written by stored_name(). Throws
+  /// UsageError naming an unknown key or an invalid value.
   void set_values(const SettingValue& values);
-  /// The names that the user gave of what is read, the file of --config among them.
+  /// The paths of all inputs as the user gave them, including the file of --config.
   [[nodiscard]] std::vector<std::string> input_paths() const;
   /// All settings as --print-config writes them; `auto` is followed by a comment that says what it
   /// means.

@@ -18,14 +18,14 @@ constexpr int kMaxRetries = 1000;
 constexpr int kMaxDrainSeconds = 86400;
 constexpr int kDefaultDrainSeconds = 120;
 
-void require_range(const std::string& option, int value, int least, int most) {
-  if (value < least || value > most) {
+void require_range(const std::string& option, int value, int min, int max) {
+  if (value < min || value > max) {
     throw UsageError(
-        fmt::format("{} is {}, expected a number from {} to {}", option, value, least, most));
+        fmt::format("{} is {}, expected a number from {} to {}", option, value, min, max));
   }
 }
 
-/// What a directive of a job script can hold without quotes.
+/// Accepts names that a directive of a job script can hold without quotes.
 void require_name(const std::string& option, const std::string& name) {
   const bool plain = std::ranges::all_of(name, [](unsigned char letter) {
     return std::isalnum(letter) != 0 ||
@@ -37,7 +37,7 @@ void require_name(const std::string& option, const std::string& name) {
   }
 }
 
-/// Seconds of a time limit as sbatch writes it; empty when the text is none.
+/// Seconds of a time limit in sbatch's format; empty for other texts.
 std::optional<long> to_seconds(const std::string& text) {
   static const std::regex with_days(
       "([0-9]{1,5})-([0-9]{1,9})(?::([0-9]{1,9}))?(?::([0-9]{1,9}))?");

@@ -8,7 +8,7 @@
 
 namespace vantage::apps {
 
-/// How a run is divided and what its tasks ask Slurm for.
+/// How a run is divided, and the resources its tasks request from Slurm.
 struct SlurmOptions {
   int shards = 0;  ///< tasks of the job array, 1..100000; 0: not set yet
   /// Empty texts leave the choice to the cluster.
@@ -25,8 +25,8 @@ struct SlurmOptions {
 
   /// Throws UsageError naming the option, its value and its limit.
   void validate() const;
-  /// How long before the time limit a task stops, finishes the frames under way and goes back into
-  /// the queue: default 2 minutes, at most a quarter of the time limit.
+  /// Time before the limit at which a task starts no more frames, finishes those in flight and is
+  /// queued again: default 2 minutes, at most a quarter of the time limit.
   [[nodiscard]] int drain_seconds_or_default() const;
 };
 

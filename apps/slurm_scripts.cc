@@ -13,7 +13,7 @@
 namespace vantage::apps {
 namespace {
 
-/// `path` in a directive that names a log: sbatch replaces what follows a '%'.
+/// `path` in a directive for a log, where sbatch replaces '%' patterns.
 std::string log_path(const std::filesystem::path& path) {
   std::string text;
   for (const char letter : path.string()) {
@@ -29,7 +29,7 @@ std::string job_name(const std::filesystem::path& run_folder) {
   return name;
 }
 
-/// The directives of both scripts, after those of one's own: sbatch takes the last of two.
+/// The directives of both scripts, after those of the user: sbatch uses the last of two.
 std::string common_directives(const SlurmOptions& options) {
   std::string text = "#SBATCH --open-mode=append\n#SBATCH --requeue\n#SBATCH --ntasks=1\n";
   for (const auto& [name, value] :
@@ -45,7 +45,7 @@ std::string common_directives(const SlurmOptions& options) {
   return text;
 }
 
-/// What takes longer is given up while there is time left to go back into the queue.
+/// Frames that take longer are given up while there is time left to be queued again.
 int seconds_to_drain(const SlurmOptions& options) {
   return std::max(1, options.drain_seconds_or_default() * 3 / 4);
 }
@@ -186,7 +186,7 @@ std::string merge_script(const SlurmOptions& options, const SlurmRun& run) {
   text += fmt::format("#SBATCH --job-name=vantage-merge-{}\n", job_name(run.folder));
   text += fmt::format("#SBATCH --output=\"{}/merge.log\"\n", log_path(slurm_folder(run.folder)));
   text += common_directives(options);
-  // Of a run of some frames, the others are nobody's business.
+  // For a partial run, merge must ignore frames outside the selection.
   return text + fmt::format("\nexec {} merge{} {}\n", shell_word(run.program),
                             run.part_prefix.empty() ? "" : " --partial",
                             shell_word(run.folder.string()));

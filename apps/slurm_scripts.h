@@ -7,7 +7,7 @@
 
 namespace vantage::apps {
 
-/// What the job scripts have to know of the run beside SlurmOptions.
+/// What job scripts need to know about the run, besides SlurmOptions.
 struct SlurmRun {
   std::filesystem::path folder;    ///< absolute
   std::string program;             ///< absolute path of vantage on the nodes
@@ -25,8 +25,8 @@ struct SlurmRun {
 ///   submitted.json         the ids of the jobs
 std::filesystem::path slurm_folder(const std::filesystem::path& run_folder);
 
-/// The job array: task i makes shard i. A task that nears its time limit finishes the frames under
-/// way and goes back into the queue; one that fails is tried again, `retries` times.
+/// The job array: task i processes shard i. A task near its time limit finishes the frames in
+/// flight and is queued again; a failed task is retried up to `retries` times.
 std::string array_script(const SlurmOptions& options, const SlurmRun& run);
 /// The job that checks the run and joins its videos.
 std::string merge_script(const SlurmOptions& options, const SlurmRun& run);

@@ -10,7 +10,8 @@
 namespace vantage::apps {
 namespace {
 
-/// Insertions, deletions, substitutions and exchanges of neighbours that make `b` of `a`.
+/// Number of insertions, deletions, substitutions and exchanges of neighbours that turn `a` into
+/// `b`.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> edits(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) {
@@ -34,7 +35,7 @@ std::string_view without_dashes(std::string_view name) {
   return name.substr(std::min(name.find_first_not_of('-'), name.size()));
 }
 
-/// Words for the same thing in other programs.
+/// Words of other programs for the same thing.
 struct Words {
   std::initializer_list<std::string_view> words;
   std::string_view needs;  ///< option that a command must have for the answer to be true of it
@@ -180,15 +181,15 @@ std::string hint(const std::string& name, const AllWords& words,
 
 std::string nearest_name(std::string_view text, const std::vector<std::string>& candidates) {
   constexpr std::size_t kLettersPerEdit = 4;
-  constexpr std::size_t kLeastBeginning = 3;
+  constexpr std::size_t kMinPrefix = 3;
   const std::string_view letters = without_dashes(text);
   std::string nearest;
-  std::size_t least = (letters.size() + 1) / kLettersPerEdit + 1;
+  std::size_t min_distance = (letters.size() + 1) / kLettersPerEdit + 1;
   for (const std::string& candidate : candidates) {
-    const bool is_beginning = letters.size() >= kLeastBeginning && candidate.starts_with(text);
+    const bool is_beginning = letters.size() >= kMinPrefix && candidate.starts_with(text);
     const std::size_t distance = is_beginning ? 1 : edit_distance(text, candidate);
-    if (distance < least) {
-      least = distance;
+    if (distance < min_distance) {
+      min_distance = distance;
       nearest = candidate;
     }
   }

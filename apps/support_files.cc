@@ -22,7 +22,7 @@ constexpr double kLambda = 0.15;
 constexpr int kRadius = 40;
 constexpr int kShownRadius = 10;
 
-/// The support for one β: what iterations come to, and what they converge to.
+/// The support for one β: after iterations, and in the limit.
 struct Support {
   explicit Support(double beta_in_force)
       : beta(beta_in_force), limit(membrane_support(beta, kRadius)) {
@@ -36,7 +36,7 @@ struct Support {
   std::vector<SupportFunction> responses;  ///< by kIterations
 };
 
-/// One quadrant: the others are equal.
+/// One quadrant; the others are equal.
 std::string csv(const std::vector<Support>& supports) {
   std::string table = "beta,dx,dy,inverse_fourier";
   for (const int iterations : kIterations) {

@@ -8,7 +8,7 @@
 namespace vantage::apps {
 namespace {
 
-/// Columns that a terminal takes: none for what continues a letter of UTF-8.
+/// Width in terminal columns: continuation bytes of UTF-8 have none.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count_if(
       text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }));

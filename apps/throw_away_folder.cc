@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of `path`, which need not be there itself.
+/// The nearest existing folder above `path`, which need not exist.
 fs::path nearest_folder_above(const fs::path& path) {
   std::error_code ignored;
   fs::path folder = fs::absolute(path).lexically_normal().parent_path();

@@ -16,7 +16,7 @@ RunVerification verify_with_progress(const SequenceLayout& layout, const std::st
 /// For reports.
 SettingValue to_value(const RunVerification& verification);
 
-/// What is wrong with the run in `folder`, in one line that names the first file.
+/// The first problem of the run in `folder`, in one line that names the file.
 std::string describe_damage(const RunVerification& verification, const std::string& folder);
 
 }  // namespace vantage::apps

@@ -10,8 +10,8 @@ namespace vantage::apps {
 
 namespace {
 
-/// Bad pixels (off by more than 1 px) of preset balanced where the right photograph is moved down
-/// by so much, less those without, in points; the mean over cones, motorcycle, art, aloe, venus,
+/// Additional bad pixels (wrong by more than 1 px) of preset balanced, in percentage points, if the
+/// right photograph is shifted down by this much; mean over cones, motorcycle, art, aloe, venus,
 /// baby1 and two of KITTI.
 constexpr std::array<std::pair<double, double>, 9> kMeasured = {{{0, 0},
                                                                  {0.125, 0.6},
@@ -27,17 +27,17 @@ constexpr std::array<std::pair<double, double>, 9> kMeasured = {{{0, 0},
 
 double more_bad_percent(double rows_off_px) {
   for (std::size_t i = 1; i < kMeasured.size(); ++i) {
-    const auto [least_px, least] = kMeasured[i - 1];
-    const auto [most_px, most] = kMeasured[i];
-    if (rows_off_px <= most_px) {
-      return least + (most - least) * (rows_off_px - least_px) / (most_px - least_px);
+    const auto [lower_px, lower] = kMeasured[i - 1];
+    const auto [upper_px, upper] = kMeasured[i];
+    if (rows_off_px <= upper_px) {
+      return lower + (upper - lower) * (rows_off_px - lower_px) / (upper_px - lower_px);
     }
   }
   return kMeasured.back().second;
 }
 
 bool is_rectified(const VerticalError& error) {
-  return more_bad_percent(error.systematic_px) <= kMostMoreBad_percent;
+  return more_bad_percent(error.systematic_px) <= kMaxMoreBad_percent;
 }
 
 std::string cost_text(const VerticalError& error, std::string_view lines) {

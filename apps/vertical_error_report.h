@@ -8,13 +8,13 @@
 
 namespace vantage::apps {
 
-/// How many more of 100 pixels are wrong by more than a pixel where rows are off by this much, by
-/// what was measured (see the .cc file).
+/// The additional percentage of pixels that are wrong by more than a pixel with this row error,
+/// interpolated from measurements (see the .cc file).
 double more_bad_percent(double rows_off_px);
-/// Of that, what is worth a warning.
-inline constexpr double kMostMoreBad_percent = 5;
+/// The percentage above which a warning is printed.
+inline constexpr double kMaxMoreBad_percent = 5;
 
-/// Whether rows correspond well enough that matching hardly suffers.
+/// Whether the row error is too small to matter for matching.
 bool is_rectified(const VerticalError& error);
 
 /// "rows are off by 0.52 px, which makes about 7 % more of the pixels wrong".

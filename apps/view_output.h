@@ -14,7 +14,7 @@
 
 namespace vantage::apps {
 
-/// What commands that render views write, and how.
+/// Output options of commands that render views.
 struct ViewOutputOptions {
   std::string output;
   std::string hole_mask;  ///< empty: none, as below
@@ -24,28 +24,28 @@ struct ViewOutputOptions {
   FrameRate frame_rate;
 };
 
-/// --output, --hole-mask and --source-mask, in the group that has begun.
+/// --output, --hole-mask and --source-mask, in the current group.
 void add_view_file_settings(Settings& settings, ViewOutputOptions& options);
-/// --stereo-packing, --eye-separation and --fps. `unit`: what separations are counted in, such as
+/// --stereo-packing, --eye-separation and --fps. `unit`: the unit of the separation, such as
 /// "baselines".
 void add_view_display_settings(Settings& settings, ViewOutputOptions& options,
                                const std::string& unit);
 
-/// Where rendered pictures go: one image file, numbered image files (a printf pattern) or a video.
+/// Destination of rendered images: one image file, numbered files (a printf pattern) or a video.
 class ViewOutput {
  public:
-  /// `views` is how many there will be. Throws UsageError when several should go to a plain name.
+  /// `views` is their number. Throws UsageError for several views and a single file.
   ViewOutput(const std::string& path, int views);
 
   /// Adds every file to be written to `checks`. `option` names the setting in messages.
   void check(FileChecks& checks, const std::string& option) const;
 
-  /// Whether views must be written one by one in their order, as into a video; else write() may be
+  /// Whether views must be written one at a time in order, as in a video; else write() may be
   /// called concurrently and in any order.
   [[nodiscard]] bool needs_order() const;
-  /// View `index`.
+  /// Writes view `index`.
   void write(int index, const Photograph& image, FrameRate rate);
-  /// Call it after the last view; without it no video is left.
+  /// Call it after the last view; otherwise no video is kept.
   void finish();
 
  private:
@@ -56,19 +56,20 @@ class ViewOutput {
   std::unique_ptr<VideoWriter> video_;
 };
 
-/// All outputs of a command that renders views: their pictures and the masks beside them.
+/// All outputs of a command that renders views: images and masks.
 class ViewOutputs {
  public:
-  /// Throws UsageError for invalid options, and for such as have no effect.
+  /// Throws UsageError for invalid options and for options without effect.
   ViewOutputs(const ViewOutputOptions& options, const Settings& settings, int views);
 
   /// Adds every file to be written to `checks`.
   void check(FileChecks& checks) const;
-  /// What of view `index` need not wait for its turn: concurrently for different views.
+  /// Writes the outputs of view `index` that need no order; may be called concurrently for
+  /// different views.
   void write_at_once(int index, const Photograph& picture, const SynthesizedView& view);
-  /// The rest, in the order of the views.
+  /// Writes the other outputs; call it in the order of the views.
   void write_in_order(int index, const Photograph& picture, const SynthesizedView& view);
-  /// Call it after the last view; without it no video is left.
+  /// Call it after the last view; otherwise no video is kept.
   void finish();
 
  private:

@@ -43,7 +43,7 @@ std::uint8_t to_8_bit(T value) {
   return static_cast<std::uint8_t>(std::clamp(levels, 0.0F, 255.0F) + 0.5F);
 }
 
-// Browsers show 8 bits, and would mix transparent pixels with the page.
+// Browsers show 8 bits, and would blend transparent pixels with the page.
 Image<std::uint8_t> for_browser(const Photograph& photograph) {
   return std::visit(
       []<typename T>(const Image<T>& image) {
@@ -100,7 +100,7 @@ SettingValue intensity_of(const PairWithMaps& pair, const SynthesisOptions& opti
   std::array<IntensityFit, 4> fits;
   const int channels = pair.left.channels();
   const ViewSynthesizer synthesizer(options, execution);
-  // Also where they are not wanted: this checks that the pair and its maps fit together.
+  // Called even if its result is not used: it checks that the pair and its maps fit together.
   const auto sums =
       synthesizer.intensity_sums(pair.left, pair.right, pair.maps.left.disparity_px.view(),
                                  pair.maps.right.disparity_px.view(), 0.5);

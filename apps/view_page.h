@@ -9,13 +9,13 @@
 
 namespace vantage::apps {
 
-/// How a page holds the photographs.
+/// Image format of the photographs in a page.
 enum class PageImages {
-  kPng,  ///< without loss, 8 bits per channel
+  kPng,  ///< lossless, 8 bits per channel
   kJpeg  ///< a fraction of the size
 };
 
-/// From where to where a coordinate of the view goes, in baselines.
+/// Range of a coordinate of the view, in baselines.
 struct ViewRange {
   double first = 0;
   double last = 0;
@@ -25,7 +25,7 @@ struct ViewPageOptions {
   ViewRange range_x{-0.5, 1.5};  ///< XS: 0 = left camera, 1 = right camera
   ViewRange range_y{-0.2, 0.2};  ///< YS: below the baseline where positive
   PageImages images = PageImages::kPng;
-  /// Of these: holes, gamma, disparity_gradient_limit_px and match_intensities.
+  /// Only holes, gamma, disparity_gradient_limit_px and match_intensities are used.
   SynthesisOptions synthesis;
 
   /// Throws UsageError naming the option, its value and its limit.

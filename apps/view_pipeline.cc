@@ -80,7 +80,7 @@ ViewPipelineResult render_views(const std::string& command, int views, const Vie
       steps.render(number, slot.view, slot.rendered);
       slot.render_seconds += seconds_since(start);
     };
-    // Images are files of their own, frames of a video follow each other.
+    // Images are separate files; frames of a video must be in order.
     frame_steps.encode = [&](int number) {
       Slot& slot = slot_of(number);
       const auto start = Clock::now();

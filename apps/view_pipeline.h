@@ -12,16 +12,16 @@
 
 namespace vantage::apps {
 
-/// How views come about, each in a slot of its own while it is under way.
+/// The steps that produce a view. Each view in flight has its own slot.
 struct ViewSteps {
-  /// Reads what a view needs. In the order of the views, never concurrently with itself or
-  /// `prepare`. May be empty.
+  /// Reads the inputs of a view. Called in the order of the views, never concurrently with itself
+  /// or `prepare`. May be empty.
   std::function<void(int slot, int view)> read;
-  /// What has to happen before rendering; called like `read`, behind it. May be empty.
+  /// Prepares rendering; called like `read`, after it. May be empty.
   std::function<void(int slot, int view)> prepare;
   /// Concurrently for different slots.
   std::function<void(int slot, int view, RenderedView& result)> render;
-  /// What the report says of a view; in their order.
+  /// Returns the report entry of a view; called in order.
   std::function<SettingValue(int slot, int view, const RenderedView& result)> describe;
 };
 
@@ -32,7 +32,7 @@ struct ViewPipelineResult {
   bool interrupted = false;
 };
 
-/// Views under way at once: two more than threads, one being encoded and one waiting for it.
+/// Number of views in flight: two more than threads, one being encoded and one waiting for it.
 int views_in_flight(Execution& execution, int views);
 
 /// Renders and writes views 0 .. views − 1, several at a time, so that reading, rendering and

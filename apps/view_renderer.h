@@ -13,13 +13,13 @@
 
 namespace vantage::apps {
 
-/// How both eyes' views of a pose become one picture.
+/// Settings for two eyes per pose, packed in one image.
 struct TwoEyes {
   StereoDisplay display;
   double separation_baselines = 1;  ///< the pose lies in their middle
 };
 
-/// A new view, or those of two eyes in one picture. Reused from call to call without allocating.
+/// A new view, or two eyes in one image. Reused between calls without allocation.
 struct RenderedView {
   std::array<SynthesizedView, 2> eyes;  ///< without TwoEyes the first one is the view
   Photograph both;

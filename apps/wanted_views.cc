@@ -12,7 +12,7 @@
 namespace vantage::apps {
 namespace {
 
-constexpr int kMostViews = 10000;
+constexpr int kMaxViews = 10000;
 constexpr double kFarthestView = 16;  // baselines
 
 // `text` as "A:B:N".
@@ -21,7 +21,7 @@ Sweep to_sweep(const SettingValue& value) {
   try {
     if (parts.size() == 3) {
       const Sweep sweep{to_position(parts[0]), to_position(parts[1]), to_integer(parts[2])};
-      if (sweep.views >= 2 && sweep.views <= kMostViews) {
+      if (sweep.views >= 2 && sweep.views <= kMaxViews) {
         return sweep;
       }
     }
@@ -29,7 +29,7 @@ Sweep to_sweep(const SettingValue& value) {
   }
   reject_value(value, fmt::format("FIRST:LAST:VIEWS with 2 to {} views, such as 0:1:25 or "
                                   "0,-0.5:0,0.5:25",
-                                  kMostViews));
+                                  kMaxViews));
 }
 
 Orbit to_orbit(const SettingValue& value) {
@@ -38,7 +38,7 @@ Orbit to_orbit(const SettingValue& value) {
     if (parts.size() == 2) {
       const Orbit orbit{to_number(parts[0]), to_integer(parts[1])};
       if (orbit.radius_baselines > 0 && orbit.radius_baselines <= kFarthestView &&
-          orbit.views >= 2 && orbit.views <= kMostViews) {
+          orbit.views >= 2 && orbit.views <= kMaxViews) {
         return orbit;
       }
     }
@@ -46,14 +46,14 @@ Orbit to_orbit(const SettingValue& value) {
   }
   reject_value(value, fmt::format("RADIUS:VIEWS with a radius of up to {} baselines and 2 to {} "
                                   "views, such as 0.3:60",
-                                  kFarthestView, kMostViews));
+                                  kFarthestView, kMaxViews));
 }
 
 std::vector<ViewPose> poses_of_path(const PoseList& list) {
   const ViewPath path = path_along({list.file, entries_of(list)});
-  if (path.frames() > kMostViews) {
+  if (path.frames() > kMaxViews) {
     throw UsageError(fmt::format("{}: path has {} frames, expected at most {}", list.name(),
-                                 path.frames(), kMostViews));
+                                 path.frames(), kMaxViews));
   }
   std::vector<ViewPose> poses;
   for (int frame = 0; frame < path.frames(); ++frame) {
@@ -74,7 +74,7 @@ std::vector<ViewPose> poses_of_sweep(const Sweep& sweep) {
 void add_pose_list(Settings& settings, std::string name, PoseList& list, std::string help) {
   Setting& setting = settings.add(std::move(name), "FILE", std::move(help));
   setting.path = PathRole::kInput;
-  // What is in the file does, not its name.
+  // Results depend on the content of the file, not on its name.
   setting.changes_results = false;
   setting.set = [&list](const SettingValue& value) {
     list = value.is_array() ? PoseList{"", poses_in(value, PoseList().name())}

@@ -32,7 +32,7 @@ void ExecutionOptions::validate() const {
   if (executor == scheduler::ExecutorKind::kSerial && binding &&
       *binding != scheduler::ThreadBinding::kNone) {
     throw UsageError(fmt::format(
-        "bind is {}, expected auto or none: a serial executor has no threads of its own",
+        "bind is {}, expected auto or none: the serial executor has no threads of its own",
         name_of(*binding)));
   }
 }

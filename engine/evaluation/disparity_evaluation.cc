@@ -65,7 +65,7 @@ DisparityScores evaluate_disparity(ImageView<const float> disparity, ImageView<c
   }
   Errors errors = collect_errors(disparity, truth, options);
   if (errors.evaluated == 0) {
-    throw Error("no pixel to evaluate: expected finite truth inside the mask and the border");
+    throw Error("no pixels to evaluate, expected finite truth inside the mask and the border");
   }
 
   DisparityScores scores;

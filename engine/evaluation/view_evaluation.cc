@@ -168,7 +168,7 @@ double mean_similarity(const Photograph& view, const Photograph& truth, Executio
 
 void require_equal_size(const char* what, int width, int height, const Photograph& truth) {
   if (width != truth.width() || height != truth.height()) {
-    throw Error(fmt::format("{} is {}x{}, expected the other picture's {}x{}", what, width, height,
+    throw Error(fmt::format("{} is {}x{}, expected {}x{} as the other image", what, width, height,
                             truth.width(), truth.height()));
   }
 }
@@ -199,7 +199,7 @@ ViewScores evaluate_view(const Photograph& view, const Photograph& truth, Execut
     total.squared += row.squared;
   }
   if (total.pixels == 0) {
-    throw Error("no pixel to compare: expected a picture with pixels and a mask with some set");
+    throw Error("no pixels to compare, expected an image with pixels and a mask that is not empty");
   }
 
   const double values = static_cast<double>(total.pixels) * channels;

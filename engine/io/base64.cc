@@ -38,7 +38,7 @@ std::string encode_base64(std::span<const std::uint8_t> bytes) {
 
 std::vector<std::uint8_t> decode_base64(std::string_view text) {
   if (text.size() % kGroupLetters != 0) {
-    throw Error("base64 text is not a multiple of 4 letters long");
+    throw Error("length of base64 text is not a multiple of 4");
   }
   std::vector<std::uint8_t> bytes(text.size() / kGroupLetters * kGroupBytes);
   std::size_t count = 0;

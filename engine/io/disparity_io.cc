@@ -67,7 +67,9 @@ DisparityMap read_disparity(const std::filesystem::path& path, double scale) {
         } else {
           const bool has_default = is_png && sizeof(T) == 2;
           if (scale == 0 && !has_default) {
-            file.fail("holds integers, expected a scale to divide them by (16-bit PNG has 256)");
+            file.fail(
+                "holds integers, expected a scale to divide them by (--scale, --disparity-scale; "
+                "256 for 16-bit PNG)");
           }
           return from_integers(image, scale > 0 ? scale : kIntegerDisparityScale);
         }
@@ -103,8 +105,9 @@ void require_holds_search(const std::filesystem::path& path, int least_px, int m
   if (format != nullptr && !format->holds_any_value &&
       (least_px < 0 || most_px * kIntegerDisparityScale > kLargestIntegerDisparity)) {
     throw UsageError(
-        fmt::format("{} is a 16-bit PNG, which holds disparities from 0 to 255.99, but {}:{} are "
-                    "searched; expected {}, which hold any, or --disparities MIN:MAX within 0:255",
+        fmt::format("{} is a 16-bit PNG, which holds disparities from 0 to 255.99, but the search "
+                    "range is {}:{}; expected {}, which have no limits, or --disparities MIN:MAX "
+                    "within 0:255",
                     path.string(), least_px, most_px, listed_map_formats(MapContent::kConfidence)));
   }
 }

@@ -43,7 +43,7 @@ std::vector<std::uint8_t> read_file_bytes(const fs::path& path) {
   }
   // Size of the largest image: float RGBA. Larger files are not images.
   if (size > static_cast<std::uintmax_t>(kMaxImagePixels) * 16 + (1U << 20)) {
-    fail_to_read(path, fmt::format("{} bytes are too many for an image", size));
+    fail_to_read(path, fmt::format("has {} bytes, too many for an image", size));
   }
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.valid()) {

@@ -113,8 +113,7 @@ std::array<double, 2> luma_weights(AVColorSpace matrix, int rows) {
     case AVCOL_SPC_BT2020_NCL:
       return {0.2627, 0.0593};
     default:
-      throw Error(
-          fmt::format("its colour matrix {} cannot be converted", static_cast<int>(matrix)));
+      throw Error(fmt::format("its colour matrix {} is not supported", static_cast<int>(matrix)));
   }
 }
 
@@ -166,7 +165,7 @@ void FrameToPhotograph::prepare(const AVFrame& frame) {
     return;
   }
   if (sws_isSupportedInput(static_cast<AVPixelFormat>(frame.format)) == 0) {
-    throw Error(fmt::format("its pixel format {} cannot be converted", format.name));
+    throw Error(fmt::format("its pixel format {} is not supported", format.name));
   }
   if (is_luma_and_chroma(format)) {
     // libswscale only interpolates chroma, because its RGB wraps around far outside the range, and
@@ -212,7 +211,7 @@ void FrameToPhotograph::fill(const AVFrame& frame, Image<T>& image) {
   if (sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height,
                 yuv_ != nullptr ? yuv_->data : rgb.data(),
                 yuv_ != nullptr ? yuv_->linesize : rgb_pitch.data()) != frame.height) {
-    throw Error("its pixel format cannot be converted");
+    throw Error("its pixel format is not supported");
   }
   for (int y = 0; yuv_ != nullptr && y < frame.height; ++y) {
     kernels::rgb_row(row_of(*yuv_, y), factors_, image.row(y));

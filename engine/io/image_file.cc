@@ -54,7 +54,7 @@ Photograph decode_with_opencv(const FileBytes& file, std::span<const std::uint8_
   prepare_opencv();
   if (bytes.size() > INT_MAX) {
     file.fail(
-        fmt::format("is of {} bytes, expected at most {} in this format", bytes.size(), INT_MAX));
+        fmt::format("has {} bytes, expected at most {} in this format", bytes.size(), INT_MAX));
   }
   cv::Mat decoded;
   try {
@@ -85,7 +85,8 @@ Photograph decode_with_opencv(const FileBytes& file, std::span<const std::uint8_
     case CV_32F:
       return {from_bgr<float>(decoded, memory)};
     default:
-      file.fail("holds values that are neither 8- or 16-bit without sign nor float");
+      file.fail(
+          "holds values of an unsupported type, expected unsigned 8-bit, unsigned 16-bit or float");
   }
 }
 

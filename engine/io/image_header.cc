@@ -24,7 +24,7 @@ constexpr long long kMostJpegPixelsPerByte = 1024;
 void check_pixels_per_byte(const FileBytes& file, long long width, long long height,
                            long long most) {
   if (width * height / most > static_cast<long long>(file.size())) {
-    file.fail(fmt::format("is damaged, {} bytes cannot hold the {}x{} pixels that its header says",
+    file.fail(fmt::format("is damaged, {} bytes cannot hold the {}x{} pixels of its header",
                           file.size(), width, height));
   }
 }
@@ -96,7 +96,7 @@ void check_jpeg(const FileBytes& file) {
     offset += 1 + length;
   }
   if (!has_frame || !has_scan) {
-    file.fail("is damaged, a JPEG file holds a frame header and a scan");
+    file.fail("is damaged, expected a JPEG frame header and a scan");
   }
 }
 
@@ -146,7 +146,7 @@ std::string zero_ended_text(const FileBytes& file, std::size_t offset) {
   for (std::uint8_t c = file.byte(offset); c != 0; c = file.byte(++offset)) {
     text.push_back(static_cast<char>(c));
     if (text.size() > 255) {
-      file.fail("is damaged, a name in its EXR header does not end");
+      file.fail("is damaged, a name in its EXR header is not terminated");
     }
   }
   return text;

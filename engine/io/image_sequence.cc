@@ -110,11 +110,11 @@ std::unique_ptr<FrameSource> open_image_pattern(const std::string& spec) {
   }
   // Each missing number is a missing frame, but time stamps have millions between them.
   if (std::int64_t{largest} - *smallest + 1 - present > kMostMissingPerFile * present) {
-    throw Error(fmt::format(
-        "{}: {} files have numbers from {} to {}, expected at most {} missing for each that is "
-        "there; '{}' takes the files in order without gaps",
-        spec, present, *smallest, largest, kMostMissingPerFile,
-        (path.parent_path() / pattern.wildcard()).string()));
+    throw Error(
+        fmt::format("{}: {} files have numbers from {} to {}, expected at most {} missing numbers "
+                    "per file; '{}' reads the files in order, ignoring gaps",
+                    spec, present, *smallest, largest, kMostMissingPerFile,
+                    (path.parent_path() / pattern.wildcard()).string()));
   }
   return std::make_unique<NumberedImages>(spec, path.parent_path(), std::move(pattern), *smallest,
                                           largest - *smallest + 1);

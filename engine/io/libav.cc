@@ -132,7 +132,7 @@ LibavInput open_media_file(const fs::path& path) {
   if (find_video_extent(path) == VideoExtent::kWithoutIndex) {
     throw Error(
         fmt::format("{}: is an MP4 without index (moov): truncated after {} bytes, or its "
-                    "recording was never finished",
+                    "recording was not finished",
                     path.string(), fs::file_size(path)));
   }
   AVFormatContext* opened = libav().avformat_alloc_context();

@@ -63,7 +63,7 @@ void disparity_as_png(const fs::path& path, Disparity disparity, Bytes& bytes) {
       if (stored < 0 || stored > kLargestIntegerDisparity) {
         throw Error(fmt::format(
             "cannot write {}: disparity {} at pixel ({}, {}) does not fit a 16-bit PNG, expected "
-            "0..255.99, or a file in {}, which hold any",
+            "0..255.99, or a file in {}, which have no limits",
             path.string(), d, x, y, listed_map_formats(MapContent::kConfidence)));
       }
       // 0 means unknown, so a known 0 is stored as the nearest value.

@@ -37,7 +37,7 @@ Image<float> decode_pfm(const FileBytes& file) {
   // end, or after the first blank if there is no line end among the blanks.
   std::size_t begin = header.offset();
   if (!is_blank(file.byte(begin))) {
-    file.fail("its header does not end in a line end");
+    file.fail("its header does not end with a line break");
   }
   while (file.byte(begin) != '\n' && begin + 1 < file.size() && is_blank(file.byte(begin + 1)) &&
          file.size() - (begin + 1) > payload) {

@@ -25,7 +25,7 @@ std::size_t read_header(const FileBytes& file, std::size_t offset, PngStructure&
   constexpr std::array<int, 7> kChannels = {1, 0, 3, 1, 2, 0, 4};
   if (colour_type > 6 || kChannels[colour_type] == 0 || bit_depth < 1 || bit_depth > 16 ||
       !std::has_single_bit(static_cast<unsigned>(bit_depth))) {
-    file.fail(fmt::format("its PNG header says colour type {} with {} bits, which does not exist",
+    file.fail(fmt::format("its PNG header has colour type {} with {} bits, which does not exist",
                           colour_type, bit_depth));
   }
   structure.width = static_cast<int>(width);
@@ -51,7 +51,7 @@ PngStructure check_png_structure(const FileBytes& file) {
     const auto chunk = file.part(offset, length + 12);
     type.assign(chunk.begin() + 4, chunk.begin() + 8);
     if ((offset == kSignature.size()) != (type == "IHDR") || (type == "IHDR" && length != 13)) {
-      file.fail("is damaged, a PNG file begins with one IHDR chunk of 13 bytes");
+      file.fail("is damaged, expected one IHDR chunk of 13 bytes at its start");
     }
     const bool matters =
         type == "IHDR" || type == "PLTE" || type == "tRNS" || type == "IDAT" || type == "IEND";
@@ -76,7 +76,7 @@ PngStructure check_png_structure(const FileBytes& file) {
     offset += chunk.size();
   }
   if (compressed_bytes == 0 || raw_bytes / kMaxDeflateRatio > compressed_bytes) {
-    file.fail(fmt::format("is damaged, {} compressed bytes cannot hold the pixels its header says",
+    file.fail(fmt::format("is damaged, {} compressed bytes cannot hold the pixels of its header",
                           compressed_bytes));
   }
   return structure;

@@ -116,7 +116,7 @@ PnmImage decode_pnm(const FileBytes& file) {
     }
   }
   if (!is_blank(file.byte(words.offset()))) {
-    file.fail("its header does not end in a blank");
+    file.fail("its header does not end with white space");
   }
   const std::size_t begin = words.offset() + 1;
   if (header.is_text()) {

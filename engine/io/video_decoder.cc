@@ -40,7 +40,7 @@ bool can_decode_frames_at_once(AVCodecID codec) {
 LibavCodec open_decoder(const AVStream& stream, int threads, const std::string& name) {
   const AVCodec* decoder = libav().avcodec_find_decoder(stream.codecpar->codec_id);
   if (decoder == nullptr) {
-    throw Error(fmt::format("{}: is coded as {}, which cannot be decoded here", name,
+    throw Error(fmt::format("{}: its codec {} is not supported", name,
                             libav().avcodec_get_name(stream.codecpar->codec_id)));
   }
   LibavCodec codec(libav().avcodec_alloc_context3(decoder));
@@ -167,8 +167,8 @@ void VideoDecoder::feed() {
     codec_->err_recognition = cut_->misses_frames() ? 0 : AV_EF_EXPLODE;
     if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) {
       const bool at_end = libav().avio_feof(input_->pb) != 0;
-      stop_feeding(at_end ? "the file ends in the middle of it" : "the file is damaged there",
-                   packet_time_, FoundBy::kFile);
+      stop_feeding(at_end ? "the file ends inside it" : "the file is damaged there", packet_time_,
+                   FoundBy::kFile);
     } else if (const int sent = libav().avcodec_send_packet(codec_.get(), packet_.get());
                sent < 0) {
       stop_feeding(libav_message(sent), packet_time_, FoundBy::kDecoder);

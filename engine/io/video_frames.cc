@@ -23,7 +23,7 @@ bool VideoFrames::fetch(FetchedFrame& frame) {
   frame.frames_missing = 0;
   frame.remarks.clear();
   if (next_index_ < next_good_) {
-    throw Error(fmt::format("{}: lies behind damage ({})", describe(next_index_++), damage_));
+    throw Error(fmt::format("{}: follows damage ({})", describe(next_index_++), damage_));
   }
   try {
     if (!reader_->read(frame.picture)) {

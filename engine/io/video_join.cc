@@ -167,8 +167,8 @@ void require_sound_file(const SoundTrack& sound) {
   std::error_code ignored;
   if (!sound.video.empty() && !fs::exists(sound.video, ignored)) {
     throw Error(
-        fmt::format("cannot read {}: no such file, expected the video whose sound is taken "
-                    "over; --no-sound does without",
+        fmt::format("cannot read {}: no such file, expected the video whose sound is copied; use "
+                    "--no-sound to write none",
                     sound.video.string()));
   }
 }

@@ -138,10 +138,9 @@ bool VideoReader::State::advance() {
     }
     const int uncertain = timing.frames_uncertain + decoder->frames_cut_off();
     if (frames_read == 0 || frames_read < timing.frames - uncertain) {
-      fail(
-          fmt::format("frame {} is not there, expected {} frames (damaged, or cut without "
-                      "re-encoding)",
-                      frames_read, timing.frames));
+      fail(fmt::format(
+          "frame {} is missing, expected {} frames (damaged, or cut without re-encoding)",
+          frames_read, timing.frames));
     }
     ended = true;
     return false;

@@ -133,7 +133,7 @@ void check_sample_tables(SparseFile& file, std::uint64_t begin, std::uint64_t en
     }
     if (const std::uint64_t samples = samples_without_entries(file, *box);
         samples / kMostSamplesPerByte > file.size()) {
-      file.fail(fmt::format("is damaged, {} bytes cannot hold the {} samples that its index says",
+      file.fail(fmt::format("is damaged, {} bytes cannot hold the {} samples of its index",
                             file.size(), samples));
     }
     if (level + 1 < kMostLevels && holds_boxes(box->type)) {

@@ -37,7 +37,7 @@ Eigen::Matrix3d rectifying_rotation(const StereoCalibration& calibration) {
   }
   const double angle = degrees_between(x_axis, mean_x);
   if (angle >= 180 - kMostBaselineAngleDegrees) {
-    throw Error("the right camera stands left of the left one, expected the cameras swapped");
+    throw Error("the right camera is to the left of the left one, expected the cameras swapped");
   }
   if (!(angle <= kMostBaselineAngleDegrees)) {
     throw Error(

@@ -64,7 +64,7 @@ void StereoCalibration::validate() const {
     require_equal_in_rectified("fy", left.matrix(1, 1), right.matrix(1, 1));
     require_equal_in_rectified("cy", left.matrix(1, 2), right.matrix(1, 2));
     if (translation.x() >= 0) {
-      throw Error("the right camera stands left of the left one, expected the cameras swapped");
+      throw Error("the right camera is to the left of the left one, expected the cameras swapped");
     }
     const double off_axis = std::hypot(translation.y(), translation.z()) / baseline();
     if (!(off_axis <= kMostOffAxis)) {
@@ -79,8 +79,8 @@ void StereoCalibration::validate() const {
 
 void StereoCalibration::check_image_size(int width_px, int height_px) const {
   if (image_size && (image_size->width_px != width_px || image_size->height_px != height_px)) {
-    throw Error(fmt::format("the images are {}x{}, but the calibration is of {}x{} images",
-                            width_px, height_px, image_size->width_px, image_size->height_px));
+    throw Error(fmt::format("the images are {}x{}, but the calibration is for {}x{}", width_px,
+                            height_px, image_size->width_px, image_size->height_px));
   }
   for (const auto& [name, camera] : {std::pair{"left", &left}, {"right", &right}}) {
     const double cx = camera->matrix(0, 2);

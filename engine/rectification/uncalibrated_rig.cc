@@ -187,8 +187,8 @@ void require_parallax(const RigModel& model, const std::vector<PointMatch>& matc
     const double parallax_px = distance_from_turning_px(model, inliers, start, tolerance_px);
     if (!(parallax_px >= least_px)) {
       throw Error(
-          fmt::format("nothing moves against anything else by more than {:.2f} pixels, as if the "
-                      "camera had only turned, expected at least {:.2f}",
+          fmt::format("the parallax is at most {:.2f} pixels, as if the camera had only turned, "
+                      "expected at least {:.2f}",
                       parallax_px, least_px));
     }
   }
@@ -211,10 +211,9 @@ void require_sideways_move(const StereoCalibration& calibration, int width_px, i
 
 void require_enough(int inliers, std::size_t matches) {
   if (inliers < kLeastMatches || inliers < kLeastShare * static_cast<double>(matches)) {
-    throw Error(fmt::format(
-        "{} of {} points that the images have in common agree with one rig, expected at least {} "
-        "and {} %",
-        inliers, matches, kLeastMatches, 100 * kLeastShare));
+    throw Error(
+        fmt::format("{} of {} common points agree with one rig, expected at least {} and {} %",
+                    inliers, matches, kLeastMatches, 100 * kLeastShare));
   }
 }
 

@@ -125,7 +125,7 @@ bool is_there(const fs::path& folder, const StoredFile& file) {
 void SceneBuildOptions::validate() const {
   match.validate();
   if (match.disparities_y) {
-    throw UsageError("--disparities-y has no use here: images of a scene are rectified");
+    throw UsageError("--disparities-y cannot be used here: images of a scene are rectified");
   }
 }
 

@@ -64,7 +64,7 @@ SceneLayout::SceneLayout(std::vector<ScenePosition> positions, std::span<const s
     }
     for (std::size_t j = 0; j < i; ++j) {
       if (positions_[i] == positions_[j]) {
-        throw Error(fmt::format("{} is where {} is, expected different positions",
+        throw Error(fmt::format("{} has the same position as {}, expected different positions",
                                 describe(names, positions_, i), names[j]));
       }
     }

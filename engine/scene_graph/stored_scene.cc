@@ -127,7 +127,7 @@ Mask read_mask(const fs::path& file, const Photograph& image) {
   require_size(file, picture, image);
   auto* mask = std::get_if<Mask>(&picture.pixels);
   if (mask == nullptr || mask->channels() != 1) {
-    throw Error(fmt::format("{} is no 8-bit grey image, expected a mask", file.string()));
+    throw Error(fmt::format("{} is not an 8-bit grey image, expected a mask", file.string()));
   }
   return std::move(*mask);
 }
@@ -196,8 +196,8 @@ std::optional<StoredScene> find_scene(const fs::path& folder) {
 StoredScene read_scene(const fs::path& folder) {
   std::optional<StoredScene> scene = find_scene(folder);
   if (!scene) {
-    throw Error(fmt::format(
-        "{}: there is no scene, expected a folder made by 'vantage scene build'", folder.string()));
+    throw Error(fmt::format("{}: no scene, expected a folder written by 'vantage scene build'",
+                            folder.string()));
   }
   return std::move(*scene);
 }
@@ -229,10 +229,10 @@ void require_complete(const StoredScene& scene, const SceneLayout& layout, const
       std::count_if(layout.edges().begin(), layout.edges().end(),
                     [&](const SceneEdge& edge) { return scene.find(edge) == nullptr; });
   if (missing > 0) {
-    throw Error(fmt::format(
-        "{}: {} of {} edges have not been matched yet, expected none; the same 'vantage "
-        "scene build' goes on where it stopped",
-        folder.string(), missing, layout.edges().size()));
+    throw Error(
+        fmt::format("{}: {} of {} edges are not matched yet, expected none; run the same 'vantage "
+                    "scene build' to continue",
+                    folder.string(), missing, layout.edges().size()));
   }
 }
 
@@ -241,16 +241,16 @@ SceneVertex load_vertex(const fs::path& folder, const StoredScene& scene, int ve
   const fs::path image_file = folder / stored.file;
   std::error_code ignored;
   if (!fs::exists(image_file, ignored)) {
-    throw Error(fmt::format(
-        "{} is not there, expected image {} of the scene; 'vantage scene build' finds images that "
-        "have been moved, with --copy-images they are kept in the scene's folder",
-        image_file.lexically_normal().string(), vertex));
+    throw Error(
+        fmt::format("{} is missing, expected image {} of the scene; run 'vantage scene build' "
+                    "after moving images, or with --copy-images to keep copies in the folder",
+                    image_file.lexically_normal().string(), vertex));
   }
   if (content_of_file(image_file) != stored.content) {
-    throw Error(fmt::format(
-        "{} has changed since its edges were matched, expected the image that was there; "
-        "'vantage scene build' matches them again",
-        image_file.string()));
+    throw Error(
+        fmt::format("{} has changed since its edges were matched, expected the same image; "
+                    "'vantage scene build' matches them again",
+                    image_file.string()));
   }
   SceneVertex result;
   result.image = read_photograph(image_file);

@@ -106,7 +106,7 @@ double ViewFlickerSums::mean_brightness_jump(std::int64_t frames) const {
 
 void FlickerSums::add(const FlickerSums& other) {
   if (!views.empty() && !other.views.empty() && views.size() != other.views.size()) {
-    throw Error(fmt::format("flicker sums are of {} views, expected {} as the ones before",
+    throw Error(fmt::format("flicker sums are of {} views, expected {} as before",
                             other.views.size(), views.size()));
   }
   frames += other.frames;

@@ -203,15 +203,14 @@ RunIdentity identity_of(const std::string& text, const std::filesystem::path& fi
   try {
     const Json json = parse_json(text, file.string());
     if (json.at("format").get<int>() != kJournalFormat) {
-      throw Error(fmt::format(
-          "{}: is of format {} (written by Vantage {}), expected {}: that version finishes the "
-          "run, or --overwrite begins it anew",
-          file.string(), quoted_json(json.at("format")), json.value("version", "?"),
-          kJournalFormat));
+      throw Error(
+          fmt::format("{}: has format {} (written by Vantage {}), expected {}; finish the run with "
+                      "that version, or start again with --overwrite",
+                      file.string(), quoted_json(json.at("format")), json.value("version", "?"),
+                      kJournalFormat));
     }
     if (!has_valid_checksum(text)) {
-      throw Error(
-          fmt::format("{}: is damaged, its checksum does not fit what it holds", file.string()));
+      throw Error(fmt::format("{}: is damaged, wrong checksum", file.string()));
     }
     RunIdentity identity;
     // Throws unless it is an object.

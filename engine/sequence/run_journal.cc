@@ -89,7 +89,7 @@ void remove_journal(const fs::path& folder) {
     }
     const FileDescriptor& part = locks.emplace_back(::open(path.c_str(), O_RDWR | O_CLOEXEC));
     if (part.valid() && !lock(part.get())) {
-      throw Error(fmt::format("{}: another process works on this run ({}), expected none",
+      throw Error(fmt::format("{}: another process is working on this run ({}), expected none",
                               folder.parent_path().string(), path.filename().string()));
     }
   }
@@ -108,7 +108,7 @@ void require_description(const fs::path& folder) {
   // In this order, because a new run is described first.
   if (has_records(folder) && !RunJournal::is_present(folder)) {
     throw Error(
-        fmt::format("{} has records of a run but no {}, expected both; --overwrite begins anew",
+        fmt::format("{} has records of a run but no {}, expected both; --overwrite starts again",
                     folder.string(), kIdentityFile));
   }
 }
@@ -186,16 +186,16 @@ RunJournal::RunJournal(const fs::path& journal_folder, const RunIdentity& identi
   if (!is_new) {
     if (opening == JournalOpening::kNew && (part == "all" || fs::exists(state_->path))) {
       throw Error(fmt::format(
-          "{} holds a run already, expected --resume to continue it or --overwrite to begin anew",
+          "{} already holds a run, expected --resume to continue it or --overwrite to start again",
           folder.string()));
     }
     const std::string differs = difference(read_identity(journal_folder), identity);
     if (!differs.empty()) {
       if (opening != JournalOpening::kForce) {
-        throw Error(fmt::format(
-            "{} holds a run that differs: {}; expected the same, --force to go on all the same or "
-            "--overwrite to begin anew",
-            folder.string(), differs));
+        throw Error(
+            fmt::format("{} holds a different run: {}; expected the same, --force to continue "
+                        "anyway or --overwrite to start again",
+                        folder.string(), differs));
       }
       remove_whole(journal_folder / kShotsFile);  // of the other inputs or settings
       write_text_file(journal_folder / kIdentityFile, text_of(identity));
@@ -209,7 +209,7 @@ RunJournal::RunJournal(const fs::path& journal_folder, const RunIdentity& identi
   // A file without a name was removed by a process that starts the run again.
   if (!lock(state_->descriptor) || ::fstat(state_->descriptor, &status) != 0 ||
       status.st_nlink == 0) {
-    throw Error(fmt::format("{}: another process works on this part of the run ({})",
+    throw Error(fmt::format("{}: another process is working on this part of the run ({})",
                             folder.string(), part));
   }
   flush_folder(journal_folder);  // the names of the two files
@@ -248,8 +248,8 @@ RunIdentity RunJournal::read_identity(const fs::path& journal_folder) {
   const fs::path path = journal_folder / kIdentityFile;
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {
-    throw Error(fmt::format("{} holds no run: there is no {}",
-                            journal_folder.parent_path().string(), path.string()));
+    throw Error(fmt::format("{} holds no run: {} is missing", journal_folder.parent_path().string(),
+                            path.string()));
   }
   return identity_of(std::string(std::istreambuf_iterator<char>(stream), {}), path);
 }

@@ -92,11 +92,10 @@ std::string join_segments(const SequenceOptions& options, const SequenceLayout& 
                      (!made_segments || (is_complete && segments_end < end));
   if (!stays) {
     if (segments_end < end) {
-      throw Error(
-          fmt::format("frame {} is of no video segment that begins where another ends, "
-                      "expected segments of frames {}-{}; 'vantage run --resume' without --frames "
-                      "makes them",
-                      segments_end, frames.first, end - 1));
+      throw Error(fmt::format(
+          "frame {} is in no video segment that continues the one before, expected segments of "
+          "frames {}-{}; 'vantage run --resume' without --frames writes them",
+          segments_end, frames.first, end - 1));
     }
     sound_problem =
         join_videos_of(options, layout, sound_of(options, identity, {frames.first, end}), segments);

@@ -113,7 +113,7 @@ void make_folder(const fs::path& folder) {
   }
   fs::create_directories(folder, error);
   if (error) {
-    throw Error(fmt::format("{}: cannot be made a folder: {}", folder.string(), error.message()));
+    throw Error(fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
   }
   std::ranges::for_each(changed, flush_folder);
 }

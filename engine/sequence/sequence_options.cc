@@ -113,7 +113,7 @@ void check_formats(const SequenceOptions& options) {
     }
     if (!options.saves(output)) {
       throw UsageError(
-          fmt::format("video has {0} but save has not, expected --save …,{0}", name_of(output)));
+          fmt::format("video has {0} but save does not, expected --save …,{0}", name_of(output)));
     }
   }
   if (options.crf < 0 || options.crf > kMaxCrf) {
@@ -153,7 +153,7 @@ void SequenceOptions::validate() const {
   synthesis.validate();
   temporal.validate();
   if (match.disparities_y) {
-    throw UsageError("disparities-y is set, expected none: sequences are of rectified pairs");
+    throw UsageError("disparities-y is set, expected none: sequences consist of rectified pairs");
   }
   if (save.empty()) {
     throw UsageError("save is empty, expected at least one output");
@@ -162,8 +162,9 @@ void SequenceOptions::validate() const {
     for (const SequenceOutput output :
          {SequenceOutput::kRightDisparity, SequenceOutput::kRightUnmatched}) {
       if (saves(output)) {
-        throw UsageError(fmt::format("save has {} with reference right, whose map is disparity",
-                                     name_of(output)));
+        throw UsageError(fmt::format(
+            "save has {} with reference right, expected disparity, which is the right map then",
+            name_of(output)));
       }
     }
   }

@@ -152,7 +152,7 @@ class Run {
       segment_of(slot.frame);
     }
     FrameRecord record{.frame = slot.frame, .absent = true};
-    record.remarks = {"the input ends before it, although its container promises it"};
+    record.remarks = {"the input ends before it, although its container lists it"};
     report_.remarks.push_back({slot.frame, record.remarks.front()});
     deliver(slot.frame, {}, std::move(record), 0);
   }

@@ -43,7 +43,7 @@ Shot shot_of_json(const Json& json) {
 
 void check(const ShotTable& table) {
   if (table.shots.empty()) {
-    throw Error("shots: there is none, expected at least one");
+    throw Error("shots: none, expected at least one");
   }
   for (std::size_t k = 0; k < table.shots.size(); ++k) {
     const Shot& shot = table.shots[k];
@@ -53,8 +53,7 @@ void check(const ShotTable& table) {
     }
     if (k > 0 && shot.first_frame != table.shots[k - 1].end_frame) {
       throw Error(
-          fmt::format("shots: shot {} begins at frame {}, expected {}, where the one before "
-                      "ends",
+          fmt::format("shots: shot {} starts at frame {}, expected {}, where the previous one ends",
                       k, shot.first_frame, table.shots[k - 1].end_frame));
     }
     if (!(shot.preview_range.min_px < shot.preview_range.max_px)) {
@@ -90,7 +89,8 @@ ShotTable shot_table_from_json(const std::string& text) {
       table.shots.push_back(shot_of_json(shot));
     }
   } catch (const nlohmann::json::exception&) {
-    throw Error("shots: an entry is missing or of a wrong kind, expected those that a run writes");
+    throw Error(
+        "shots: an entry is missing or has the wrong type, expected the entries that a run writes");
   }
   check(table);
   return table;
@@ -106,14 +106,13 @@ std::optional<ShotTable> read_shot_table(const std::filesystem::path& file) {
   try {
     ShotTable table = shot_table_from_json(text);
     if (!has_valid_checksum(text)) {
-      throw Error("its checksum does not fit what it holds");
+      throw Error("wrong checksum");
     }
     return table;
   } catch (const Error& error) {
-    throw Error(
-        fmt::format("{}: is damaged ({}), expected the shots of the run; without the file "
-                    "they are found anew",
-                    file.string(), error.what()));
+    throw Error(fmt::format(
+        "{}: is damaged ({}), expected the shots of the run; remove the file to detect them again",
+        file.string(), error.what()));
   }
 }
 
@@ -121,7 +120,7 @@ ShotTable keep_shot_table(const std::filesystem::path& file, const ShotTable& ta
   create_text_file(file, with_checksum(to_json(table)));
   const std::optional<ShotTable> kept = read_shot_table(file);
   if (!kept) {
-    throw Error(fmt::format("{}: has been removed while the run began", file.string()));
+    throw Error(fmt::format("{}: was removed while the run started", file.string()));
   }
   return *kept;
 }

@@ -188,7 +188,7 @@ void change_entries(const fs::path& path,
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
-    throw Error(fmt::format("{}: cannot be made a folder: {}", folder.string(), error.message()));
+    throw Error(fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
   }
   const FileLock lock(folder / fmt::format(".{}.lock", path.filename().string()));
   TuningFileContent content = read_tuning_file(path);

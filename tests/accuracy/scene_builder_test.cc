@@ -212,7 +212,7 @@ TEST_F(SceneBuilderTest, FinishedEdgesAreKept) {
                 const StoredScene stored = read_scene(place_);
                 require_complete(stored, SceneLayout(stored.positions(), stored.names()), place_);
               }),
-              HasSubstr("1 of 3 edges have not been matched yet"));
+              HasSubstr("1 of 3 edges are not matched yet"));
   EXPECT_THAT(builder(images).edges_to_match(), ElementsAre(1));
   build(images);
   EXPECT_EQ(contents(), complete);
@@ -294,7 +294,7 @@ TEST_F(SceneBuilderTest, CopiedImagesMakeTheFolderDependOnNothingElse) {
   EXPECT_THAT(builder(row({0, 0.5, 1}), "{}", true).edges_to_match(), IsEmpty());
   EXPECT_EQ(contents(), complete);
   fs::remove(place_ / stored.images[1].file);
-  EXPECT_THAT(error_of([&] { load_vertex(place_, stored, 1); }), HasSubstr("is not there"));
+  EXPECT_THAT(error_of([&] { load_vertex(place_, stored, 1); }), HasSubstr("is missing"));
 }
 
 // An oblique edge against the exact maps.
@@ -400,7 +400,7 @@ TEST_F(SceneBuilderTest, TellsWhetherRowsAndColumnsCorrespond) {
 
 TEST_F(SceneBuilderTest, SaysWhatIsWrong) {
   std::vector<SceneImage> images = row({0, 0.5});
-  EXPECT_THAT(error_of([&] { read_scene(place_); }), HasSubstr("there is no scene"));
+  EXPECT_THAT(error_of([&] { read_scene(place_); }), HasSubstr("no scene"));
   build(images);
   const StoredScene stored = read_scene(place_);
 

@@ -267,7 +267,7 @@ TEST(ShotTableFile, IsThatOfTheFirstWhoKeepsOne) {
   EXPECT_EQ(read_shot_table(file), first);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
   test::put_text(file, to_json(first));
-  EXPECT_THAT(test::error_of([&] { read_shot_table(file); }), HasSubstr("checksum does not fit"));
+  EXPECT_THAT(test::error_of([&] { read_shot_table(file); }), HasSubstr("wrong checksum"));
   test::put_text(file, to_json(first).substr(0, 40));
   EXPECT_THAT(test::error_of([&] { read_shot_table(file); }),
               HasSubstr(file.string() + ": is damaged (shots:"));
@@ -303,7 +303,7 @@ TEST(ShotTableJson, MalformedTextIsRefused) {
   };
   EXPECT_EQ(with([](ShotTable&) {}), "");
   EXPECT_THAT(with([](ShotTable& t) { t.shots[1].first_frame = 6; }),
-              HasSubstr("shot 1 begins at frame 6, expected 5"));
+              HasSubstr("shot 1 starts at frame 6, expected 5"));
   EXPECT_THAT(with([](ShotTable& t) { t.shots[0].end_frame = 0; }), HasSubstr("shot 0"));
   EXPECT_THAT(with([](ShotTable& t) { t.shots[0].preview_range = {4, 4}; }), HasSubstr("range"));
   EXPECT_THAT(with([](ShotTable& t) { t.shots[1].intensity[2].gain = 0; }), HasSubstr("gain"));

@@ -101,9 +101,9 @@ TEST_F(InputBadCalibration, CamerasThatCannotBe) {
   expect_refused(yaml_with("D1", "[0.1, 0, 0, 0, 0, 0]"),
                  "the left camera has 6 distortion coefficients, expected 0, 4, 5, 8, 12 or 14");
   expect_refused(yaml_with("fisheye_model", "1"),
-                 "fisheye_model says that the lenses are fisheyes");
+                 "fisheye_model is set: fisheye lenses are not supported");
   expect_refused(yaml_with("distortion_model", "equidistant"),
-                 "distortion_model says that the lenses are fisheyes");
+                 "distortion_model is set: fisheye lenses are not supported");
   expect_refused(yaml_without("M2"), "there is no M2 in it, expected a 3x3 matrix");
   expect_refused(yaml_without("T"), "it has no R and T");
 }
@@ -117,7 +117,7 @@ TEST_F(InputBadCalibration, CamerasThatCannotStandSo) {
                  "the baseline (length of T) is 0, expected 1e-9 to 1e9");
   expect_refused(yaml_with("T", "[0, 0, -1]"),
                  "the baseline is turned 90.0 degrees from the cameras' x axes, limit 45");
-  expect_refused(yaml_with("T", "[1, 0, 0]"), "the right camera stands left of the left one");
+  expect_refused(yaml_with("T", "[1, 0, 0]"), "the right camera is to the left of the left one");
   expect_refused(yaml_with("R", "[-1, 0, 0, 0, 1, 0, 0, 0, -1]"),
                  "the cameras' viewing directions are 180.0 degrees apart, limit 90");
   expect_refused(yaml_with("D1", "[-100, 0, 0, 0]"), "the cameras' common view is");
@@ -127,7 +127,7 @@ TEST_F(InputBadCalibration, ThoseOfOtherImages) {
   Entries entries = good_rig();
   entries["image_width"] = "142";
   entries["image_height"] = "106";
-  expect_refused(yaml_of(entries), "the images are 71x53, but the calibration is of 142x106 images",
+  expect_refused(yaml_of(entries), "the images are 71x53, but the calibration is for 142x106",
                  /*by_all_commands=*/true);
   expect_refused(yaml_with("M1", "[70, 0, 71, 0, 70, 26, 0, 0, 1]"),
                  "the left camera's principal point (71, 26) is outside of the 71x53 images");
@@ -135,7 +135,7 @@ TEST_F(InputBadCalibration, ThoseOfOtherImages) {
   expect_refused(yaml_with("M1", "[1, 0, 0.5, 0, 1, 0.5, 0, 0, 1]"),
                  "the left camera's fx is 1 pixels, expected at least 3.55 for 71x53 images");
   expect_refused(middlebury("doffs=3\nbaseline=100\nwidth=72\nheight=53\n"),
-                 "the images are 71x53, but the calibration is of 72x53 images");
+                 "the images are 71x53, but the calibration is for 72x53");
 }
 
 TEST_F(InputBadCalibration, RectifiedOnesThatAreNot) {
@@ -150,7 +150,7 @@ TEST_F(InputBadCalibration, RectifiedOnesThatAreNot) {
   expect_refused(first + "P1: 70 0 35 -70 0 70 26 14 0 0 1 0\n",
                  "the cameras are said to be rectified, but 19.6 % of the baseline");
   expect_refused(first + "P1: 70 0 35 70 0 70 26 0 0 0 1 0\n",
-                 "the right camera stands left of the left one");
+                 "the right camera is to the left of the left one");
 }
 
 TEST_F(InputBadCalibration, MapsOfAnotherSizeOrSign) {
@@ -221,9 +221,10 @@ TEST_F(InputBadCalibration, ViewsThatSeeNothingAreWarnedOf) {
 
   const ProcessResult beside = synth(camera + turned + "t = [0, 0, 0]\n");
   EXPECT_EQ(beside.exit_code, 0) << beside.err;
-  EXPECT_THAT(beside.err, HasSubstr("synth: warning: 1 of 1 views see none of the scene, the first "
-                                    "is view 1: "));
-  EXPECT_THAT(beside.err, HasSubstr("of it lies behind the camera"));
+  EXPECT_THAT(beside.err,
+              HasSubstr("synth: warning: 1 of 1 views show nothing of the scene, the first "
+                        "is view 1: "));
+  EXPECT_THAT(beside.err, HasSubstr("of it is behind the camera"));
 
   EXPECT_THAT(synth(camera + straight + "t = [0, 0, 0]\nsize = [0, 9]\n").err,
               HasSubstr("size is 0x9, expected at least 1 pixel each way"));

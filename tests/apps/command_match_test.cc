@@ -191,9 +191,9 @@ TEST_F(InputMatchCommand, WrongUsageIsOneLineAndExit2) {
       {{"-o", out, "-7"}, "unknown option '-7'"},
       {{"-o", out, "third.png"}, "--baselines has 0 numbers, expected 2"},
       {{"-o", folder_ / "out.xyz"}, "out.xyz"},
-      {{"-o", left_}, "which is an input as well"},
+      {{"-o", left_}, "which is also an input"},
       {{"-o", folder_ / "../" + folder_.path().filename().string() + "/left.png"},
-       "which is an input as well"},
+       "which is also an input"},
       {{"-o", out, "--output-right", out}, "the same file"},
       {{"-o", out, "--reference", "right", "--output-right", folder_ / "r.pfm"}, "--output-right"},
       {{"-o", out, "--window"}, "--window"}};

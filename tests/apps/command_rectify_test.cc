@@ -70,7 +70,7 @@ TEST_F(RectifyTest, FromTheImagesAlone) {
   EXPECT_GE(results["inliers"].get<int>(), 60);
   EXPECT_LT(results["vertical_error"]["rms_px"].get<double>(), 0.5);
   EXPECT_LT(results["vertical_error"]["systematic_px"].get<double>(), 0.2);
-  EXPECT_THAT(result.err, HasSubstr("at points left out of the estimate they are off by"));
+  EXPECT_THAT(result.err, HasSubstr("row error at points that the estimate did not use"));
   EXPECT_LT(results["held_out_vertical_error"]["systematic_px"].get<double>(), 0.5);
   EXPECT_GT(results["covered_share"].get<double>(), 0.5);
   EXPECT_LT(results["valid"]["width"].get<int>(), 320);
@@ -214,7 +214,7 @@ TEST_F(RectifyTest, ErrorsAreOneLine) {
 
   fs::copy_file(left_, folder_ / "left.png");
   expect_error({folder_ / "left.png", right_, "-o", fs::path(folder_ / "left.png").parent_path()},
-               2, "which is an input as well");
+               2, "which is also an input");
 }
 
 TEST_F(RectifyTest, OtherCommandsWarnOfPairsThatAreNotRectified) {

@@ -105,7 +105,7 @@ TEST_F(InputResponseCommand, BadInputIsOneLine) {
       {{"--alpha", "-1"}, "alpha is -1"},
       {{"--gradient", "prewitt"}, "--gradient is 'prewitt'"},
       {{"--plot", folder_ / "plot.txt"}, "--plot is"},
-      {{"--plot", left_}, "which is an input as well"}};
+      {{"--plot", left_}, "which is also an input"}};
   for (const auto& [arguments, says] : misuses) {
     const ProcessResult result = response(out, arguments);
     EXPECT_EQ(result.exit_code, 2) << says;

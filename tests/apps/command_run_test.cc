@@ -396,7 +396,7 @@ TEST_F(RunCommand, ADryRunTellsThePlanAndWritesNothing) {
   EXPECT_THAT(small.err, HasSubstr("memory is 1 MiB, expected at least"));
   const ProcessResult beyond = run(folder_ / "out", {"--frames", "6-9"});
   EXPECT_EQ(beyond.exit_code, 1);
-  EXPECT_THAT(beyond.err, HasSubstr("--frames begins at 6 but the input has 6 frames"));
+  EXPECT_THAT(beyond.err, HasSubstr("--frames starts at 6 but the input has 6 frames"));
 }
 
 TEST_F(InputRunCommand, JobFilesHoldEverything) {

@@ -246,7 +246,7 @@ TEST_F(SceneCommand, SaysWhichImagesHaveGone) {
   const ProcessResult lost = view({"--at", "0.3,0.2", "-o", folder_ / "v.png"});
   EXPECT_EQ(lost.exit_code, 1);
   EXPECT_TRUE(is_one_line(lost, "scene view"));
-  EXPECT_THAT(lost.err, AllOf(HasSubstr("images/0.png is not there"), HasSubstr("--copy-images")));
+  EXPECT_THAT(lost.err, AllOf(HasSubstr("images/0.png is missing"), HasSubstr("--copy-images")));
   EXPECT_FALSE(fs::exists(folder_ / "v.png"));
   images_ = folder_ / "elsewhere";
   EXPECT_THAT(build_grid().err, HasSubstr("0 of them matched now"));
@@ -330,9 +330,10 @@ TEST_F(InputSceneCommand, RefusesWrongUsage) {
   refused(build({"--positions", folder_ / "list.csv"}), 1, "scene build",
           "scene has 1 images, expected 2 to 4096");
   write_file(folder_ / "list.csv", "images/0.png,0,0\nimages/1.png,0,0\n");
-  refused(build({"--positions", folder_ / "list.csv"}), 1, "scene build", "1.png at 0,0 is where");
-  refused(view({"--at", "0,0", "-o", folder_ / "v.png"}), 1, "scene view", "there is no scene");
-  refused(run_vantage({"scene", "info", place_}), 1, "scene info", "there is no scene");
+  refused(build({"--positions", folder_ / "list.csv"}), 1, "scene build",
+          "1.png at 0,0 has the same position as");
+  refused(view({"--at", "0,0", "-o", folder_ / "v.png"}), 1, "scene view", "no scene");
+  refused(run_vantage({"scene", "info", place_}), 1, "scene info", "no scene");
   EXPECT_EQ(run_vantage({"scene"}).exit_code, 2);
 
   ASSERT_EQ(build({"--images", images_ + "/[01].png"}).exit_code, 0);
@@ -343,7 +344,7 @@ TEST_F(InputSceneCommand, RefusesWrongUsage) {
   refused(view({"--sweep", "0,0:1,0:1", "-o", folder_ / "v.mp4"}), 2, "scene view", "VIEWS with 2");
   refused(view({"--at", "0,0", "--at", "1,0", "-o", folder_ / "v.png"}), 2, "scene view",
           "expected a pattern");
-  refused(view({"--at", "0,0", "-o", images_ + "/0.png"}), 2, "scene view", "an input as well");
+  refused(view({"--at", "0,0", "-o", images_ + "/0.png"}), 2, "scene view", "also an input");
   refused(
       view({"--sweep", "0,0:90,0:4", "-o", folder_ / "v%d.png"}), 2, "scene view",
       "view at 30,0 is 29 lengths of the nearest edge away from its images, expected at most 16");

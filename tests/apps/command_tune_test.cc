@@ -131,7 +131,7 @@ TEST_F(SlowTuneTest, AnUnwritableFileFailsAfterTheResultsAreShown) {
   const ProcessResult result = tune();
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.out, HasSubstr("median ms"));
-  EXPECT_THAT(result.err, HasSubstr("cannot be made a folder"));
+  EXPECT_THAT(result.err, HasSubstr("cannot create the folder"));
 }
 
 using InputTuneCommand = TuneTest;
@@ -145,7 +145,7 @@ TEST_F(InputTuneCommand, RefusesWrongUsage) {
            {{"tune", "--size", "71x53", "--budget", "-1"}, "budget is -1"},
            {{"tune", "--size", "71x53", "--window", "4"}, "window is 4"},
            {{"tune", "--list", "--budget", "5"}, "--budget has no effect with --list"},
-           {{"tune", "--list", "--forget"}, "cannot go together"}}) {
+           {{"tune", "--list", "--forget"}, "are both given"}}) {
     const ProcessResult result = run(arguments);
     EXPECT_EQ(result.exit_code, 2) << message;
     EXPECT_TRUE(is_one_line(result, "tune"));

@@ -76,7 +76,8 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--disparities-y", "-300:300"}, "expected at most 4096"},
       {{"--disparities", "auto", "--disparities-y", "-3000:3000"}, "expected at most 4096"},
       {{"--disparities", "-3:60", "--output-right", folder_ / "r.png"},
-       "r.png is a 16-bit PNG, which holds disparities from 0 to 255.99, but -3:60 are searched"},
+       "r.png is a 16-bit PNG, which holds disparities from 0 to 255.99, but the search range is "
+       "-3:60"},
       {{"--disparities", "0:256", "--output-right", folder_ / "r.PNG"},
        "expected .pfm, .tiff, .exr or .npy"},
       {{"--disparities-y", "3"}, "--disparities-y is '3', expected MIN:MAX"},
@@ -107,9 +108,10 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--baselines", "1,2"}, "--baselines has 2 numbers, expected 1"},
       {{"--baselines", "1,"}, "--baselines is '', expected a number"},
       {{right_, "--baselines", "2,2"}, "are both 2, expected different ones"},
-      {{"--baselines", "1", "--output-right", folder_ / "r.pfm"}, "--output-right cannot go with"},
-      {{"--baselines", "1", "--reference", "right"}, "--reference right cannot go with"},
-      {{"--baselines", "1", "--disparities-y", "0:1"}, "--disparities-y cannot go with"},
+      {{"--baselines", "1", "--output-right", folder_ / "r.pfm"},
+       "--output-right cannot be used with"},
+      {{"--baselines", "1", "--reference", "right"}, "--reference right cannot be used with"},
+      {{"--baselines", "1", "--disparities-y", "0:1"}, "--disparities-y cannot be used with"},
       {{"--vertical", "--disparities-y", "1:0"}, "disparities-y is 1:0, expected MIN:MAX"}};
   const auto before = files_below(folder_.path());
   SCOPED_TRACE(test::sample_name());

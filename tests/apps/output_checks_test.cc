@@ -113,7 +113,7 @@ TEST_F(OutputChecks, NoReportReplacesAnInput) {
   for (const auto& [command, input] : sampled(lines, test_paths::is_sanitized() ? 5 : 20, 31)) {
     const bool is_tuning_output = command.front() == "tune" && input == at("tuning.json");
     expect_refused(command, is_tuning_output ? "--output and --report are the same file"
-                                             : "which is an input as well");
+                                             : "which is also an input");
   }
 }
 
@@ -125,13 +125,13 @@ TEST_F(OutputChecks, LinksAreSeenThrough) {
   fs::create_hard_link(at("right/000000.png"), at("hard"));
   fs::create_directory_symlink("left", at("other"));
   for (const std::string name : {"symbolic", "hard", "other/000000.png"}) {
-    expect_refused(joined(command, {at(name)}), "which is an input as well");
+    expect_refused(joined(command, {at(name)}), "which is also an input");
   }
   // Neither is an input that is not there.
   fs::create_symlink("none.png", at("dangling"));
   expect_refused({"match", at("none.png"), at("right/000000.png"), "-o", at("o.pfm"), "--report",
                   at("dangling")},
-                 "which is an input as well");
+                 "which is also an input");
 }
 
 TEST_F(OutputChecks, ResultsDoNotLandAmongTheFramesOfAList) {
@@ -139,7 +139,8 @@ TEST_F(OutputChecks, ResultsDoNotLandAmongTheFramesOfAList) {
   fs::create_directories(at("out/preview"));
   fs::copy_file(at("left/000000.png"), at("out/preview/000000.png"));
   put("list.csv", "out/preview/000000.png,right/000000.png\n");
-  const std::string says = "--output would write into '" + at("out/preview") + "', where the input";
+  const std::string says =
+      "--output would write into '" + at("out/preview") + "', which contains the input";
   expect_refused(joined({"run", "--pairs", at("list.csv"), "-o", at("out")}, quick), says);
   // By a link to the file, and by one to the folder.
   fs::create_symlink("../out/preview/000000.png", at("left/link.png"));
@@ -156,15 +157,15 @@ TEST_F(OutputChecks, ResultsDoNotLandAmongTheFramesOfAList) {
   expect_refused(arguments(at("begun"), {"--overwrite", "--pose", at("begun/.vantage/poses.toml")}),
                  "--output would write into");
   expect_refused(arguments(at("begun"), {"--resume", "--report", at("begun/.vantage/run.json")}),
-                 "in a folder that --output writes to");
+                 "inside the output folder of --output");
   expect_refused({"merge", at("begun"), "--report", at("begun/disparity/000000.pfm")},
-                 "in a folder that DIR writes to");
+                 "inside the output folder of DIR");
 }
 
 TEST_F(OutputChecks, RectifiedImagesDoNotReplacePhotographs) {
   fs::copy_file(at("left/000000.png"), at("left.png"));
   expect_refused({"rectify", at("left.png"), at("right/000000.png"), "-o", folder_.path().string()},
-                 "--output is '" + at("left.png") + "', which is an input as well");
+                 "--output is '" + at("left.png") + "', which is also an input");
   expect_refused({"rectify", at("left"), at("right"), "-o", folder_.path().string()},
                  "--output would write into");
 }
@@ -179,7 +180,7 @@ TEST_F(OutputChecks, NothingOfASceneIsReplaced) {
         "scene/maps/000-001-second-unmatched.png"}) {
     expect_refused(
         {"scene", "view", at("scene"), "--at", "0.5,0", "-o", at("v.png"), "--report", at(name)},
-        "which is an input as well");
+        "which is also an input");
   }
   put("scene/maps/list.csv", read_file(at("places.csv")));
   expect_refused({"scene", "build", "--positions", at("scene/maps/list.csv"), "-o", at("scene")},

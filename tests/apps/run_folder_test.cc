@@ -59,7 +59,7 @@ TEST_F(RunFolder, OneProcessPerPart) {
     const ProcessResult second = run(out_, joined(slow, {opening, "--quiet"}));
     EXPECT_EQ(second.exit_code, 1);
     EXPECT_TRUE(is_one_line(second, "run"));
-    EXPECT_THAT(second.err, HasSubstr(out_ + ": another process works on this"));
+    EXPECT_THAT(second.err, HasSubstr(out_ + ": another process is working on this"));
   }
   process->send(SIGCONT);
   EXPECT_EQ(process->wait().exit_code, 0);
@@ -263,7 +263,7 @@ TEST_F(InputRunFolder, ADescriptionThatIsDamagedIsAClearError) {
   for (const ProcessResult& result : {run(out_, {"--resume", "--quiet"}), merge()}) {
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_THAT(result.err,
-                ContainsRegex("is of format 7 .*, expected 2: that version finishes the run"));
+                ContainsRegex("has format 7 .*, expected 2; finish the run with that version"));
   }
   EXPECT_TRUE(same_files(results_in(out_), expected));
   EXPECT_EQ(run(out_, {"--overwrite"}).exit_code, 0);

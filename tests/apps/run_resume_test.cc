@@ -33,7 +33,7 @@ TEST_F(RunResumed, InputsThatChangedAreRefusedUnlessForced) {
   const ProcessResult refused = run(out_, {"--resume", "--quiet"});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_TRUE(is_one_line(refused, "run"));
-  EXPECT_THAT(refused.err, HasSubstr("holds a run that differs: the input was"));
+  EXPECT_THAT(refused.err, HasSubstr("holds a different run: the input was"));
   EXPECT_THAT(refused.err, HasSubstr("left"));
   EXPECT_TRUE(same_files(results_in(out_), before));
   const ProcessResult forced = run(out_, {"--resume", "--force", "--report", folder_ / "r.json"});
@@ -104,7 +104,7 @@ TEST_F(RunResumed, AFolderWithARunIsNotWrittenToByAccident) {
   const ProcessResult refused = run(folder_ / "whole", {"--quiet"});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_TRUE(is_one_line(refused, "run"));
-  EXPECT_THAT(refused.err, HasSubstr("--resume to continue it or --overwrite to begin anew"));
+  EXPECT_THAT(refused.err, HasSubstr("--resume to continue it or --overwrite to start again"));
   EXPECT_EQ(run(out_, {"--quiet", "--overwrite", "--resume"}).exit_code, 2);
   EXPECT_EQ(run(out_, {"--quiet", "--overwrite", "--shard", "1/2"}).exit_code, 2);
   EXPECT_TRUE(same_files(results_in(out_), before));

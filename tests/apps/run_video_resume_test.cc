@@ -85,7 +85,8 @@ TEST_F(VideosResumed, FilesAreKeptAndReadBackWhereTheyHoldWhatVideosShow) {
     stop_early();
     const ProcessResult resumed = resume({"--report", report_});
     EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
-    EXPECT_THAT(resumed.err, HasSubstr("12 had been done before (12 put into the videos now)"));
+    EXPECT_THAT(resumed.err,
+                HasSubstr("12 were already done (12 of them added to the videos now)"));
     EXPECT_TRUE(same_files(results_in(out_), expected));
     const nlohmann::json report = read_report(report_);
     EXPECT_EQ(report["results"]["frames"], kFrames - kKept);
@@ -134,7 +135,7 @@ TEST_F(ResumedByFolder, SettingsAndInputsAreThoseOfTheRun) {
   // Options go before what is stored; what changes results is refused as ever.
   const ProcessResult refused = resume({"--window", "9", "--quiet"});
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.err, HasSubstr("holds a run that differs: window was 7, now 9"));
+  EXPECT_THAT(refused.err, HasSubstr("holds a different run: window was 7, now 9"));
   EXPECT_EQ(resume({"--threads", "2", "--quiet"}).exit_code, 0);
   const ProcessResult none = run_vantage({"run", "-o", folder_ / "none", "--resume"});
   EXPECT_EQ(none.exit_code, 1);
@@ -165,7 +166,7 @@ TEST_F(ResumedByFolder, VerificationFindsDamageAndResumingRepairsIt) {
   ASSERT_EQ(run(out_, outputs).exit_code, 0);
   const ProcessResult whole = verify();
   EXPECT_EQ(whole.exit_code, 0);
-  EXPECT_THAT(whole.err, ContainsRegex("verify: 21 files with .* MB are as they were written\n$"));
+  EXPECT_THAT(whole.err, ContainsRegex("verify: 21 files with .* MB are unchanged\n$"));
   for (const std::string name : {"disparity/000002.pfm", "disparity/000017.pfm", "preview.mp4"}) {
     damage(name);
   }

@@ -222,7 +222,7 @@ TEST(FrameSource, BehindDamageAllFramesOfAVideoAreBad) {
   for (auto problem = first_bad + 1; problem != problems.end(); ++problem) {
     EXPECT_THAT(*problem,
                 testing::StartsWith(source->describe(static_cast<int>(problem - problems.begin())) +
-                                    ": lies behind damage (" + *first_bad));
+                                    ": follows damage (" + *first_bad));
   }
   expect_to_skip_everywhere(folder / "v.mp4");
 }

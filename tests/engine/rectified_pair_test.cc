@@ -184,7 +184,7 @@ TEST(RectifiedPair, RefusesCamerasThatCannotBeRectified) {
   };
   EXPECT_EQ(error_with({-1, 0, 0}, 0), "");
   EXPECT_EQ(error_with({1, 0, 0}, 0),
-            "the right camera stands left of the left one, expected the cameras swapped");
+            "the right camera is to the left of the left one, expected the cameras swapped");
   EXPECT_EQ(error_with({0, -1, 0}, 0),
             "the baseline is turned 90.0 degrees from the cameras' x axes, limit 45: expected "
             "cameras side by side");

@@ -157,7 +157,8 @@ TEST_F(RunJournalTest, RecordsThatNothingDescribesAreNotTakenOver) {
 TEST_F(RunJournalTest, ARunIsNotBegunAnewWhileAPartIsWorkedOn) {
   RunJournal journal = open(JournalOpening::kNew, "1-of-2");
   deliver(journal, 0);
-  EXPECT_THAT(refusal(JournalOpening::kOverwrite), HasSubstr("another process works on this run"));
+  EXPECT_THAT(refusal(JournalOpening::kOverwrite),
+              HasSubstr("another process is working on this run"));
   EXPECT_TRUE(delivered().is_done(0));
 }
 
@@ -199,7 +200,7 @@ TEST_F(RunJournalTest, DifferencesAreNamed) {
 
 TEST_F(RunJournalTest, OneProcessPerPart) {
   const RunJournal journal = open(JournalOpening::kNew);
-  EXPECT_THAT(refusal(JournalOpening::kResume), HasSubstr("another process works"));
+  EXPECT_THAT(refusal(JournalOpening::kResume), HasSubstr("another process is working"));
   EXPECT_EQ(refusal(JournalOpening::kResume, "1-of-2"), "");
 }
 
@@ -311,7 +312,7 @@ TEST_F(RunJournalTest, ADamagedDescriptionIsAnError) {
   }
   write(journal_ / "run.json", R"({"format":77,"version":"9.9"})");
   EXPECT_THAT(refusal(JournalOpening::kResume),
-              HasSubstr("is of format 77 (written by Vantage 9.9), expected 2"));
+              HasSubstr("has format 77 (written by Vantage 9.9), expected 2"));
 }
 
 TEST_F(RunJournalTest, DeliveredIsWhatIsThereAndRecorded) {

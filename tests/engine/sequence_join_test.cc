@@ -89,7 +89,7 @@ TEST_F(SequenceJoinTest, FramesThatTheInputDoesNotHaveNeedNoSegment) {
   append(FrameRecord{.frame = 1});
   append(FrameRecord{.frame = 2});
   append(FrameRecord{.frame = 3, .absent = true});
-  EXPECT_THAT(error_of([&] { join(true); }), HasSubstr("frame 2 is of no video segment"));
+  EXPECT_THAT(error_of([&] { join(true); }), HasSubstr("frame 2 is in no video segment"));
   append(FrameRecord{.frame = 2, .absent = true});
   join(true);
   EXPECT_EQ(VideoReader(video()).frame_count(), 2);

@@ -347,7 +347,7 @@ TEST_F(SequenceRunnerTest, VideosOfPiecesOfAChunkAreMadeAnew) {
   run(pairs, folder("whole"));
   run(pairs, folder("a"), {.frames = FrameRange{0, 3}});
   EXPECT_THAT(error_of(pairs, folder("a"), {.frames = FrameRange{1, 4}}),
-              HasSubstr("frame 3 is of no video segment that begins where another ends"));
+              HasSubstr("frame 3 is in no video segment that continues the one before"));
   const SequenceReport again = run(pairs, folder("a"));
   EXPECT_EQ(again.frames, 0);
   EXPECT_EQ(again.pictures_again, 4);

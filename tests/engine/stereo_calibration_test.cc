@@ -278,13 +278,14 @@ TEST_F(CalibrationFiles, ErrorsNameWhatIsWrong) {
             "the cameras are said to be rectified, but their fy is 999.421 and 998 pixels, "
             "expected the same to 0.01");
   EXPECT_EQ(error(replaced(kMiddlebury, "baseline=193.001", "baseline=-193.001")),
-            "the right camera stands left of the left one, expected the cameras swapped");
+            "the right camera is to the left of the left one, expected the cameras swapped");
   EXPECT_EQ(error(replaced(kYaml, "image_width:", "fisheye_model: 1\nimage_width:")),
-            "fisheye_model says that the lenses are fisheyes, expected OpenCV's standard model (k1 "
+            "fisheye_model is set: fisheye lenses are not supported, expected OpenCV's standard "
+            "model (k1 "
             "k2 p1 p2 ...)");
   EXPECT_EQ(error(replaced(kYaml, "image_width:", "camera_model: \"fisheye\"\nimage_width:"))
                 .substr(0, 47),
-            "camera_model says that the lenses are fisheyes,");
+            "camera_model is set: fisheye lenses are not supported,");
   EXPECT_EQ(read(replaced(kYaml, "image_width:", "fisheye_model: 0\nimage_width:")).format,
             "OpenCV");
   EXPECT_EQ(error(replaced(kKitti, "P1: 7.0e+02 0", "P1: 7.0e+02")),
@@ -301,7 +302,7 @@ TEST_F(CalibrationFiles, SizesOfImages) {
   const StereoCalibration calibration = read(kYaml);
   EXPECT_EQ(error_of([&] { calibration.check_image_size(640, 480); }), "");
   EXPECT_EQ(error_of([&] { calibration.check_image_size(1280, 960); }),
-            "the images are 1280x960, but the calibration is of 640x480 images");
+            "the images are 1280x960, but the calibration is for 640x480");
   const StereoCalibration kitti = read(kKitti);
   EXPECT_EQ(error_of([&] { kitti.check_image_size(1226, 370); }), "");
   EXPECT_EQ(error_of([&] { kitti.check_image_size(600, 370); }),

@@ -87,7 +87,7 @@ TEST(VideoPicture, WhatCannotBeConvertedIsOneBadFrame) {
   Photograph photograph;
   VideoPicture strange(*frame, converters, "film.mp4: frame 7");
   EXPECT_EQ(error_of([&] { strange.convert(photograph); }),
-            "film.mp4: frame 7: its colour matrix 8 cannot be converted");
+            "film.mp4: frame 7: its colour matrix 8 is not supported");
   frame->colorspace = AVCOL_SPC_BT709;
   VideoPicture(*frame, converters, "film.mp4: frame 8").convert(photograph);
   EXPECT_EQ(std::get<Image<std::uint8_t>>(photograph.pixels).at(3, 1, 2), 130);  // (128 − 16)/219
