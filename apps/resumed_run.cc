@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <regex>
 
+#include "apps/match_settings.h"
 #include "engine/error.h"
+#include "engine/io/json_text.h"
 #include "engine/io/stored_name.h"
 #include "engine/sequence/run_journal.h"
 #include "engine/sequence/sequence_layout.h"
@@ -69,6 +71,19 @@ void take_up_run(const Arguments& arguments, Settings& settings, RunJob& job) {
   if (parts.size() == 1 && !job.frames && !job.shard) {
     take_part(parts.front(), job);
   }
+}
+
+std::optional<DisparityRange> range_of_run_to_resume(const RunJob& job) {
+  const fs::path journal = SequenceLayout(job.output, job.sequence).journal_folder();
+  if (!job.resume || job.force || !RunJournal::is_present(journal)) {
+    return std::nullopt;
+  }
+  const SettingValue settings =
+      parse_json(RunJournal::read_identity(journal).settings, (journal / "run.json").string());
+  const auto range = settings.find("disparities");
+  return range == settings.end()
+             ? std::nullopt
+             : std::optional(to_disparity_range(*range, "MIN:MAX in " + journal.string()));
 }
 
 }  // namespace vantage::apps

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "apps/commands.h"
 #include "apps/run_settings.h"
 #include "apps/settings.h"
+#include "engine/image/disparity_range.h"
 
 namespace vantage::apps {
 
@@ -16,5 +18,9 @@ std::string sources_of(const RunJob& job, const Settings& settings);
 /// run in its folder; what `arguments` say goes before that. If one part alone (--frames, --shard)
 /// was begun, that is the part. Throws Error when there is no run.
 void take_up_run(const Arguments& arguments, Settings& settings, RunJob& job);
+
+/// The range of disparities of the run in the folder of `job`, which is to go on: what was found at
+/// its start, from the same input. None where it does not go on or there is no such run.
+std::optional<DisparityRange> range_of_run_to_resume(const RunJob& job);
 
 }  // namespace vantage::apps

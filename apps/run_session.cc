@@ -200,9 +200,12 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
                           first.left, first.right, report);
   }
   const auto rectify = [&](FramePair& pair) { session.rectify(pair, execution); };
-  choose_disparities(
-      settings, job.common, [&] { return find_sequence_range(*session.pairs, rectify, execution); },
-      job.sequence.match, report);
+  const auto find_range = [&] {
+    // Of a video without an index, finding it decodes all once more.
+    const std::optional<DisparityRange> known = range_of_run_to_resume(job);
+    return known ? known : find_sequence_range(*session.pairs, rectify, execution);
+  };
+  choose_disparities(settings, job.common, find_range, job.sequence.match, report);
   job.sequence.validate();
   job.sequence.frame_rate =
       job.frame_rate.value_or(session.pairs->frame_rate().value_or(FrameRate()));
