@@ -7,6 +7,7 @@
 #include "apps/match_settings.h"
 #include "apps/tell.h"
 #include "engine/error.h"
+#include "engine/matching/range_check.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/vertical_range.h"
 
@@ -70,6 +71,32 @@ void choose_disparities(const Settings& settings, const CommonOptions& common,
                                     options.disparities_y.value_or(DisparityRange{0, 0}));
       },
       options, report);
+}
+
+SettingValue cut_range_values(const CutRange& cut) {
+  return {{"below", cut.below},
+          {"above", cut.above},
+          {"matches_at_min", cut.at_ends.at_min},
+          {"matches_at_max", cut.at_ends.at_max},
+          {"share_below", cut.share_below},
+          {"share_above", cut.share_above}};
+}
+
+void warn_of_cut_range(const Settings& settings, const CommonOptions& common,
+                       const Photograph& left, const Photograph& right, const DisparityMaps& maps,
+                       const MatchOptions& options, bool is_found, Execution& execution,
+                       RunReport& report) {
+  const MatchesAtEnds matches = matches_at_ends(maps, options);
+  if (!may_be_cut(matches, options, is_found)) {
+    return;
+  }
+  const CutRange cut = report.timed_compute(
+      "range check", [&] { return look_beyond(matches, left, right, options, execution); });
+  report.add_result("cut_range", cut_range_values(cut));
+  if (cut.any() && !common.quiet) {
+    tell("{}: warning: {}; {}\n", settings.command(), to_text(cut, options.disparities),
+         is_found ? "give --disparities MIN:MAX" : kCutRangeAdvice);
+  }
 }
 
 }  // namespace vantage::apps

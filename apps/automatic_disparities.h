@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <string_view>
 
 #include "apps/option_groups.h"
 #include "apps/run_report.h"
@@ -9,6 +10,7 @@
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/matching/range_check.h"
 
 namespace vantage::apps {
 
@@ -22,5 +24,19 @@ void choose_disparities(const Settings& settings, const CommonOptions& common,
 void choose_disparities(const Settings& settings, const CommonOptions& common,
                         const Photograph& left, const Photograph& right, MatchOptions& options,
                         Execution& execution, RunReport& report);
+
+/// Looks whether matches pile up at the ends of the range, and warns on stderr of disparities that
+/// seem to be left out (look_beyond); the report gets `results.cut_range`. Results and exit codes
+/// do not depend on it. `is_found`: choose_disparities() chose the range;
+/// it may then end at 0, where infinity is.
+void warn_of_cut_range(const Settings& settings, const CommonOptions& common,
+                       const Photograph& left, const Photograph& right, const DisparityMaps& maps,
+                       const MatchOptions& options, bool is_found, Execution& execution,
+                       RunReport& report);
+/// What a report says of it.
+SettingValue cut_range_values(const CutRange& cut);
+/// The rest of such a warning: what to do.
+inline constexpr std::string_view kCutRangeAdvice =
+    "give a wider --disparities, or leave it out for auto";
 
 }  // namespace vantage::apps

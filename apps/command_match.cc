@@ -176,6 +176,7 @@ int command_match(const Arguments& arguments) {
   const Photograph& left = images[first_is_left ? 0 : 1];
   const Photograph& right = images[first_is_left ? 1 : 0];
   const bool expects_negative = expects_negative_disparities(job.match);
+  const bool is_range_found = job.match.disparities_auto;
   choose_disparities(settings, job.common, left, right, job.match, execution, report);
   require_files_hold_search(job);
   const AppliedTuning tuning = job.has_several()
@@ -204,6 +205,10 @@ int command_match(const Arguments& arguments) {
                                  job.vertical ? "columns" : "rows", left, right, chosen, report);
   } else {
     compute();
+  }
+  if (!job.has_several()) {
+    warn_of_cut_range(settings, job.common, left, right, maps, job.match, is_range_found, chosen,
+                      report);
   }
   if (job.vertical) {
     transpose(maps);

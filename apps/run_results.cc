@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 
+#include "apps/automatic_disparities.h"
 #include "apps/tell.h"
 #include "engine/sequence/sequence_join.h"
 
@@ -29,6 +30,14 @@ void print_remarks(const char* kind, const std::vector<FrameRemark>& remarks) {
   }
   if (remarks.size() > kRemarksPrinted) {
     tell("run: {}… and {} more, see --report\n", kind, remarks.size() - kRemarksPrinted);
+  }
+}
+
+void warn_of_cut_range(const RunJob& job, const SequenceReport& sequence) {
+  if (sequence.cut) {
+    tell("run: warning: frame {}: {}; the range looks as narrow for {} of {} frames; {}\n",
+         sequence.cut_frame, to_text(*sequence.cut, job.sequence.match.disparities),
+         sequence.frames_maybe_cut, sequence.frames, kCutRangeAdvice);
   }
 }
 
@@ -69,6 +78,7 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
                           {"skipped", remark_values(sequence.skipped)},
                           {"remarks", remark_values(sequence.remarks)},
                           {"pairing", session.pairs->remarks()},
+                          {"frames_maybe_cut", sequence.frames_maybe_cut},
                           {"sound_problem", sound_problem},
                           {"in_flight", sequence.in_flight},
                           {"planned_memory_bytes", session.memory.total_bytes},
@@ -77,6 +87,10 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
                           {"frames_per_second_of_video", to_string(job.sequence.frame_rate)}};
   if (job.sequence.measure_flicker) {
     results["flicker"] = flicker_values(total_flicker(delivered));
+  }
+  if (sequence.cut) {
+    results["cut_range"] = cut_range_values(*sequence.cut);
+    results["cut_range"]["frame"] = sequence.cut_frame;
   }
   report.set_results(std::move(results));
 }
@@ -91,6 +105,7 @@ void print_summary(const RunJob& job, const RunSession& session, const SequenceR
                    double wall_seconds) {
   print_remarks("", sequence.remarks);
   print_remarks("skipped ", sequence.skipped);
+  warn_of_cut_range(job, sequence);
   std::string line = fmt::format("run: {} frame{} of {}x{} pixels", sequence.frames,
                                  sequence.frames == 1 ? "" : "s", session.shape.source.width_px,
                                  session.shape.source.height_px);

@@ -154,30 +154,50 @@ Span span_of(const std::vector<float>& values) {
   return span.value_or(Span{values.front(), values.back()});
 }
 
-}  // namespace
+/// What a search of the reduced images sees.
+struct Agreement {
+  int factor = 1;
+  DisparityRange search;      ///< in reduced pixels
+  std::vector<float> values;  ///< disparities that both agree on, in reduced pixels, sorted
+  bool says_something = false;
+};
 
-std::optional<DisparityRange> find_disparity_range(const Photograph& left, const Photograph& right,
-                                                   Execution& execution, DisparityRange vertical) {
+Agreement agreement_of(const Photograph& left, const Photograph& right, DisparityRange vertical,
+                       Execution& execution) {
   if (left.width() != right.width() || left.height() != right.height()) {
     throw Error(fmt::format("left image is {}x{} but right image is {}x{}, expected equal sizes",
                             left.width(), left.height(), right.width(), right.height()));
   }
-  int factor = reduction_of(left.width());
+  Agreement agreement;
+  int& factor = agreement.factor;
+  factor = reduction_of(left.width());
   while (factor < left.width() &&
          search_in(left.width() / factor).count() * reduced(vertical, factor).count() >
              kMaxCandidates) {
     ++factor;
   }
-  const std::vector<float> values =
+  agreement.search = search_in(left.width() / factor);
+  agreement.values =
       agreed_disparities(reduced(left, factor, execution), reduced(right, factor, execution),
                          reduced(vertical, factor), execution);
   const double pixels = 2.0 * (left.width() / factor) * std::max(1, left.height() / factor);
-  if (static_cast<double>(values.size()) < std::max(1.0, kLeastMatchedShare * pixels)) {
+  agreement.says_something =
+      static_cast<double>(agreement.values.size()) >= std::max(1.0, kLeastMatchedShare * pixels);
+  return agreement;
+}
+
+}  // namespace
+
+std::optional<DisparityRange> find_disparity_range(const Photograph& left, const Photograph& right,
+                                                   Execution& execution, DisparityRange vertical) {
+  const Agreement agreement = agreement_of(left, right, vertical, execution);
+  const int factor = agreement.factor;
+  const std::vector<float>& values = agreement.values;
+  if (!agreement.says_something) {
     return std::nullopt;
   }
   const Span span = span_of(values);
-  const DisparityRange search = search_in(left.width() / factor);
-  if (span.most - span.least > kMostSpread * search.count()) {
+  if (span.most - span.least > kMostSpread * agreement.search.count()) {
     return std::nullopt;
   }
   const double least_px = factor * static_cast<double>(span.least);
@@ -206,6 +226,27 @@ DisparityRange estimate_disparity_range(const Photograph& left, const Photograph
         "them show; give --disparities MIN:MAX");
   }
   return *range;
+}
+
+DisparitiesBeyond disparities_beyond(const Photograph& left, const Photograph& right,
+                                     DisparityRange range, Execution& execution,
+                                     DisparityRange vertical) {
+  const Agreement agreement = agreement_of(left, right, vertical, execution);
+  if (!agreement.says_something) {
+    return {};
+  }
+  const auto factor = static_cast<float>(agreement.factor);
+  const auto tolerance = static_cast<float>(kMarginReducedPx) * factor;
+  const float low = (static_cast<float>(range.min) - tolerance) / factor;
+  const float high = (static_cast<float>(range.max) + tolerance) / factor;
+  const std::vector<float>& values = agreement.values;
+  const auto count = static_cast<double>(values.size());
+  const auto below = std::lower_bound(values.begin(), values.end(), low) - values.begin();
+  const auto above = values.end() - std::upper_bound(values.begin(), values.end(), high);
+  return {.below = static_cast<double>(below) / count,
+          .above = static_cast<double>(above) / count,
+          .reaches_below = static_cast<float>(agreement.search.min) < low,
+          .reaches_above = static_cast<float>(agreement.search.max) > high};
 }
 
 }  // namespace vantage

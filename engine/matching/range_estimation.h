@@ -29,4 +29,18 @@ std::optional<DisparityRange> find_disparity_range(const Photograph& left, const
 DisparityRange estimate_disparity_range(const Photograph& left, const Photograph& right,
                                         Execution& execution);
 
+/// Of what both images show, as find_disparity_range() sees it, the parts outside a range.
+struct DisparitiesBeyond {
+  double below = 0;  ///< share below the range by more than the search of reduced images is exact
+  double above = 0;
+  bool reaches_below = true;  ///< whether that search can see any
+  bool reaches_above = true;
+};
+
+/// Nothing beyond where the images agree on next to nothing. Errors, `vertical` and thread rule as
+/// find_disparity_range().
+DisparitiesBeyond disparities_beyond(const Photograph& left, const Photograph& right,
+                                     DisparityRange range, Execution& execution,
+                                     DisparityRange vertical = {0, 0});
+
 }  // namespace vantage

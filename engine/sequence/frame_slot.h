@@ -2,11 +2,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "engine/image/photograph.h"
+#include "engine/matching/range_check.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/sequence/pair_source.h"
 #include "engine/sequence/pending_files.h"
@@ -33,6 +35,8 @@ struct FrameSlot {
   /// The maps on the grids of `pair`, if views use its colours (PhotographGrid).
   std::array<Image<float>, 2> photograph_maps;
   MatchReport match;
+  bool may_be_cut = false;      ///< the range, by where matches lie
+  std::optional<CutRange> cut;  ///< what a look at such a frame found
   /// The new views of SequenceOptions::views, then those of the stereo picture that are not
   /// photographs.
   std::vector<SynthesizedView> views;

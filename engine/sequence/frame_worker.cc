@@ -24,6 +24,10 @@
 namespace vantage {
 namespace {
 
+/// A look takes up to a tenth of the time of a match; whether frames are cut off is known after a
+/// few.
+constexpr int kMostLooksBeyond = 4;
+
 using Clock = std::chrono::steady_clock;
 
 /// Adds the time until its destruction to the times of a slot, and to traces.
@@ -131,6 +135,7 @@ void FrameWorker::compute(FrameSlot& slot) {
   }
   if (slot.stored == nullptr || !maps_are_stored_) {
     match(slot);
+    check_range(slot);
   }
   if (slot.is_lead_in && !options_.measure_flicker) {
     return;
@@ -182,6 +187,16 @@ void FrameWorker::match(FrameSlot& slot) {
   request.prior = temporal_.priors_for(*slot.left, *slot.right, execution_);
   matcher_.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
   temporal_.remember(*slot.left, *slot.right, slot.maps, execution_);
+}
+
+void FrameWorker::check_range(FrameSlot& slot) {
+  const MatchesAtEnds matches = matches_at_ends(slot.maps, options_.match);
+  slot.may_be_cut = may_be_cut(matches, options_.match, false);
+  slot.cut.reset();
+  if (slot.may_be_cut && looks_beyond_++ < kMostLooksBeyond) {
+    const TimedStep step(slot, "range check");
+    slot.cut = look_beyond(matches, *slot.left, *slot.right, options_.match, execution_);
+  }
 }
 
 /// Null unless the view is at a camera's position.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -74,6 +75,8 @@ class FrameWorker {
 
  private:
   void match(FrameSlot& slot);
+  /// Looks at the first few frames for which the range may be too narrow.
+  void check_range(FrameSlot& slot);
   /// The frame is no longer stored when a file has changed.
   void read_maps(FrameSlot& slot) const;
   /// Whether any result of the frame needs new views.
@@ -107,6 +110,7 @@ class FrameWorker {
   TemporalState temporal_;
   int temporal_chunk_ = -1;  ///< chunk of temporal_
   mutable BusyClock compute_clock_;
+  std::atomic<int> looks_beyond_ = 0;
 };
 
 }  // namespace vantage

@@ -287,11 +287,23 @@ class Run {
     report_.cells += slot.match.cells;
     if (slot.match.cells > 0) {
       report_.plan = slot.match.plan;
+      add_range_check(slot);
     }
     for (const auto& times : {slot.match.stages, slot.times}) {
       for (const StageTime& stage : times) {
         add_stage(stage.name, stage.seconds);
       }
+    }
+  }
+
+  void add_range_check(const FrameSlot& slot) {
+    report_.frames_maybe_cut += slot.may_be_cut ? 1 : 0;
+    const auto share = [](const CutRange& cut) {
+      return std::max(cut.below ? cut.share_below : 0, cut.above ? cut.share_above : 0);
+    };
+    if (slot.cut && slot.cut->any() && (!report_.cut || share(*slot.cut) > share(*report_.cut))) {
+      report_.cut = slot.cut;
+      report_.cut_frame = slot.frame;
     }
   }
 

@@ -8,6 +8,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/memory_use.h"
+#include "engine/matching/range_check.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/sequence/pair_source.h"
@@ -46,7 +47,11 @@ struct SequenceReport {
   std::optional<int> videos_from;
   std::vector<FrameRemark> skipped;
   std::vector<FrameRemark> remarks;  ///< frames that repeat the previous one, gaps in time, …
-  bool interrupted = false;          ///< `stop` was set before all was done
+  int frames_maybe_cut = 0;          ///< for which the range may be too narrow
+  /// Of the first few of these, the one with the largest share beyond the range.
+  std::optional<CutRange> cut;
+  int cut_frame = 0;
+  bool interrupted = false;  ///< `stop` was set before all was done
   int in_flight = 0;
   int width_px = 0;  ///< of the last frame
   int height_px = 0;

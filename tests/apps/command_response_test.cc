@@ -6,8 +6,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
 #include <variant>
 
+#include "engine/generation/layered_scene.h"
 #include "engine/image/transposed.h"
 #include "tests/apps/pair_fixture.h"
 #include "tests/well_formed_xml.h"
@@ -268,6 +270,71 @@ TEST_F(AutomaticDisparities, ARunFindsItInAllOfTheInput) {
   ASSERT_EQ(std::sscanf(ranges[0].c_str(), "%d:%d", &least, &most), 2) << ranges[0];
   EXPECT_LE(least, 2);
   EXPECT_GE(most, 36);
+}
+
+TEST_F(AutomaticDisparities, AResumedRunTakesTheRangeThatItBeganWith) {
+  const std::string left = folder_ / "left.pgm";
+  const std::string right = folder_ / "right.pgm";
+  write_photograph(left, pair_.left);
+  write_photograph(right, pair_.right);
+  std::ofstream(folder_ / "pairs.csv") << left << ',' << right << '\n';
+  const std::vector<std::string> command = {"run", "--pairs", folder_ / "pairs.csv", "-o",
+                                            folder_ / "run"};
+  const ProcessResult first = run_vantage(command);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  // Nothing is read to find it: these images, which look unchanged, have none.
+  Image<std::uint8_t> grey(160, 120);
+  grey.fill(99);
+  const Photograph flat{std::move(grey)};
+  for (const std::string& file : {left, right}) {
+    const auto time = std::filesystem::last_write_time(file);
+    write_photograph(file, flat);
+    std::filesystem::last_write_time(file, time);
+  }
+  std::vector<std::string> again = command;
+  again.push_back("--resume");
+  const ProcessResult resumed = run_vantage(again);
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_THAT(resumed.err, HasSubstr("run: --disparities auto is 0:"));
+}
+
+TEST_F(AutomaticDisparities, ACutRangeIsToldOf) {
+  Execution execution({.threads = 2});
+  LayeredSceneOptions options;
+  options.width_px = 240;
+  options.height_px = 150;
+  options.far_disparity_px = 5;
+  options.near_disparity_px = 25;
+  options.samples_per_side = 1;
+  const LayeredScene scene(options, execution);
+  for (const char* folder : {"l", "r"}) {
+    std::filesystem::create_directory(folder_ / folder);
+  }
+  for (const char* name : {"0.png", "1.png"}) {
+    write_photograph(folder_ / ("l/" + std::string(name)), scene.render({0, 0}, 0).image);
+    write_photograph(folder_ / ("r/" + std::string(name)), scene.render({1, 0}, 0).image);
+  }
+  const std::vector<std::string> match = {
+      "match",           folder_ / "l/0.png", folder_ / "r/0.png", "-o",
+      folder_ / "m.pfm", "--report",          folder_ / "r.json"};
+  const std::vector<std::string> run = {
+      "run",      "--left",           folder_ / "l", "--right",       folder_ / "r",
+      "--report", folder_ / "r.json", "-o",          folder_ / "run", "--overwrite"};
+  for (std::vector<std::string> command : {match, run}) {
+    const ProcessResult whole = run_vantage(command);
+    EXPECT_EQ(whole.exit_code, 0) << whole.err;
+    EXPECT_THAT(whole.err, testing::Not(HasSubstr("left out")));
+    command.insert(command.end(), {"--disparities", "0:10"});
+    const ProcessResult cut = run_vantage(command);
+    EXPECT_EQ(cut.exit_code, 0) << cut.err;
+    EXPECT_THAT(cut.err, HasSubstr("disparities above 10 seem to be left out"));
+    EXPECT_EQ(cut.err.find("left out"), cut.err.rfind("left out")) << cut.err;
+    const auto results = nlohmann::json::parse(read_file(folder_ / "r.json"))["results"];
+    EXPECT_TRUE(results["cut_range"]["above"].get<bool>());
+    EXPECT_FALSE(results["cut_range"]["below"].get<bool>());
+    command.push_back("--quiet");
+    EXPECT_EQ(run_vantage(command).err, "");
+  }
 }
 
 /// Share of the pixels away from the borders whose displacement is within half a pixel of (x, y).
