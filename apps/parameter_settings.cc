@@ -145,12 +145,9 @@ Setting& add_setting(Settings& settings, const OptionText& text, const std::stri
       if (!field) {
         return "auto";
       }
-      if constexpr (std::is_same_v<T, double>) {
-        if (std::isinf(*field)) {
-          return word_of(text);  // files have no infinity
-        }
-      }
-      return *field;
+      // Files have no infinity.
+      return std::isinf(static_cast<double>(*field)) ? SettingValue(word_of(text))
+                                                     : SettingValue(*field);
     };
     return setting;
   }
@@ -193,14 +190,15 @@ Defaults method_defaults() {
   Defaults texts = struct_defaults<MethodParameters>();
   std::map<std::string_view, const char*> separators;
   const MethodParameters defaults;
-  for (const auto& [method_name, method] : method_names()) {
-    const MethodParameters book = book_parameters(method);
+  for (const auto& method : method_names()) {
+    const MethodParameters book = book_parameters(method.second);
     visit_fields(
         [&](const MethodField& field, const auto& value, const auto& default_value) {
           if (value != default_value) {
             const char* const separator = separators.try_emplace(field.option, "; ").first->second;
-            texts[field.option] += fmt::format(
-                "{}{} for {}", separator, default_text(*text_of(field.option), value), method_name);
+            texts[field.option] +=
+                fmt::format("{}{} for {}", separator, default_text(*text_of(field.option), value),
+                            method.first);
             separators[field.option] = ", ";
           }
         },
