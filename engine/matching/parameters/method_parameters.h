@@ -66,16 +66,16 @@ struct MethodParametersOf {
   Field<ColourUse> colour = by_default<Field>(ColourUse::kLuma);
   /// Truncated cost: grey levels, > 0.
   Field<double> truncation = by_default<Field>(20.0);
-  /// The right image's grey levels are changed to the left's before they are compared, gain and
-  /// offset estimated from each pair (pair_levels).
-  Field<bool> match_exposure = by_default<Field>(false);
   /// σM in grey levels, > 0: contaminated and combined cost, Bayes, entropy.
   Field<double> sigma_measurement = by_default<Field>(5.0);
+  /// εM, inside (0, 1): contaminated and combined cost, Bayes.
+  Field<double> epsilon_measurement = by_default<Field>(0.1);
   /// σM follows from each pair (pair_levels); where it does not, it is sigma_measurement. Of the
   /// combined cost unless either is set.
   Field<bool> estimate_sigma_measurement = by_default<Field>(false);
-  /// εM, inside (0, 1): contaminated and combined cost, Bayes.
-  Field<double> epsilon_measurement = by_default<Field>(0.1);
+  /// The right image's grey levels are changed to the left's before they are compared, gain and
+  /// offset estimated from each pair (pair_levels).
+  Field<bool> match_exposure = by_default<Field>(false);
   /// Ray census: grey levels a neighbour is compared with, 1 or 3.
   Field<int> census_thresholds = by_default<Field>(1);
   /// Combined cost: σ of the share of census bits, 0..1; 0: no term.
