@@ -101,7 +101,7 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--agregate", "box"}, "'--agregate', the nearest known one is '--aggregate'"},
       {{"--confidence", folder_ / "c.png"}, "PNG holds no floats"},
       {{"--confidence", folder_ / "c.flo"}, ".pfm .tiff .tif .exr .npy"},
-      {{"--disparities-y", "0:1"}, "out.pfm', expected a file name that ends in .flo .npy"},
+      {{"--disparities-y", "0:1"}, "out.pfm', expected a file name that ends in .flo .tiff"},
       {{"--reference", "right", "--unmatched-right", folder_ / "u.png"},
        "--unmatched-right cannot"},
       {{"--baselines", "0"}, "0, expected a finite number other than 0"},
