@@ -75,10 +75,10 @@ class CalibrationFile {
                             (entry.word == "fisheye" || entry.word == "equidistant" ||
                              entry.word == "kannala_brandt" || entry.word == "KANNALA_BRANDT");
       if (is_switch || is_model) {
-        throw Error(
-            fmt::format("{} is set: fisheye lenses are not supported, expected OpenCV's standard "
-                        "model (k1 k2 p1 p2 ...)",
-                        name));
+        throw Error(fmt::format(
+            "{} means fisheye lenses, which are not supported, expected OpenCV's standard "
+            "model (k1 k2 p1 p2 ...)",
+            name));
       }
     }
   }

@@ -101,9 +101,9 @@ TEST_F(InputBadCalibration, CamerasThatCannotBe) {
   expect_refused(yaml_with("D1", "[0.1, 0, 0, 0, 0, 0]"),
                  "the left camera has 6 distortion coefficients, expected 0, 4, 5, 8, 12 or 14");
   expect_refused(yaml_with("fisheye_model", "1"),
-                 "fisheye_model is set: fisheye lenses are not supported");
+                 "fisheye_model means fisheye lenses, which are not supported");
   expect_refused(yaml_with("distortion_model", "equidistant"),
-                 "distortion_model is set: fisheye lenses are not supported");
+                 "distortion_model means fisheye lenses, which are not supported");
   expect_refused(yaml_without("M2"), "there is no M2 in it, expected a 3x3 matrix");
   expect_refused(yaml_without("T"), "it has no R and T");
 }

@@ -205,7 +205,7 @@ TEST(SceneLayout, RefusesWhatItCannotJoin) {
   EXPECT_THAT(error_of([] {
                 layout_of({{0, 0}, {1, 0}, {0, 0}});
               }),
-              AllOf(HasSubstr("c.png at 0,0"), HasSubstr("where a.png is")));
+              AllOf(HasSubstr("c.png at 0,0"), HasSubstr("same position as a.png")));
   EXPECT_THAT(error_of([] {
                 layout_of({{0, 0}, {std::numeric_limits<double>::quiet_NaN(), 0}});
               }),

@@ -279,13 +279,13 @@ TEST_F(CalibrationFiles, ErrorsNameWhatIsWrong) {
             "expected the same to 0.01");
   EXPECT_EQ(error(replaced(kMiddlebury, "baseline=193.001", "baseline=-193.001")),
             "the right camera is to the left of the left one, expected the cameras swapped");
-  EXPECT_EQ(error(replaced(kYaml, "image_width:", "fisheye_model: 1\nimage_width:")),
-            "fisheye_model is set: fisheye lenses are not supported, expected OpenCV's standard "
-            "model (k1 "
-            "k2 p1 p2 ...)");
+  EXPECT_EQ(
+      error(replaced(kYaml, "image_width:", "fisheye_model: 1\nimage_width:")),
+      "fisheye_model means fisheye lenses, which are not supported, expected OpenCV's standard "
+      "model (k1 k2 p1 p2 ...)");
   EXPECT_EQ(error(replaced(kYaml, "image_width:", "camera_model: \"fisheye\"\nimage_width:"))
-                .substr(0, 47),
-            "camera_model is set: fisheye lenses are not supported,");
+                .substr(0, 59),
+            "camera_model means fisheye lenses, which are not supported,");
   EXPECT_EQ(read(replaced(kYaml, "image_width:", "fisheye_model: 0\nimage_width:")).format,
             "OpenCV");
   EXPECT_EQ(error(replaced(kKitti, "P1: 7.0e+02 0", "P1: 7.0e+02")),
