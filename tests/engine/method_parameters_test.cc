@@ -210,6 +210,7 @@ void several_levels(MethodOverrides& parameters) { parameters.levels = 2; }
 void pruned(MethodOverrides& parameters) {
   parameters.levels = 3;
   parameters.candidate_blocks = 2;
+  parameters.prior_smoothing = PriorSmoothing::kMaximum;
 }
 void edges(MethodOverrides& parameters) { parameters.edge_weight = 0.5; }
 template <MatchCost cost>

@@ -50,13 +50,16 @@ Stages bayes_stages(const MethodParameters& parameters, const AggregationPlace& 
                                  place.edges, place.plane);
 }
 
-CellAggregation none_aggregation() {
-  return {
-      .key = Aggregation::kNone, .name = "none", .description = "each pixel alone", .options = {}};
-}
+}  // namespace
 
-CellAggregation box_aggregation() {
-  return {.key = Aggregation::kBox,
+std::span<const CellAggregation> aggregation_table() {
+  static const std::array table = {
+      CellAggregation{.key = Aggregation::kNone,
+                      .name = "none",
+                      .description = "each pixel alone",
+                      .options = {}},
+      CellAggregation{
+          .key = Aggregation::kBox,
           .name = "box",
           .description = "mean over a square window",
           .options = {"window", "border"},
@@ -68,56 +71,44 @@ CellAggregation box_aggregation() {
           .make_stages =
               [](const MethodParameters& parameters, const AggregationPlace& place) {
                 return make_box_mean_stages(place.geometry, place.height, parameters.window_px / 2);
-              }};
-}
-
-CellAggregation gaussian_aggregation() {
-  return {.key = Aggregation::kGaussian,
-          .name = "gaussian",
-          .description = "mean weighted by a Gaussian",
-          .options = {"aggregation-sigma"},
-          .reach = gaussian_reach,
-          .make_stages = [](const MethodParameters& parameters, const AggregationPlace& place) {
-            return make_gaussian_stages(place.geometry, place.height,
-                                        parameters.aggregation_sigma_px);
-          }};
-}
-
-CellAggregation box_cascade_aggregation() {
-  return {.key = Aggregation::kBoxCascade,
-          .name = "box-cascade",
-          .description = "four square windows in turn, close to a Gaussian",
-          .options = {"aggregation-sigma"},
-          .reach = gaussian_reach,
-          .make_stages = [](const MethodParameters& parameters, const AggregationPlace& place) {
-            return make_box_cascade_stages(place.geometry, place.height,
-                                           parameters.aggregation_sigma_px);
-          }};
-}
-
-CellAggregation diffusion_aggregation() {
-  return {.key = Aggregation::kDiffusion,
-          .name = "diffusion",
-          .description = "repeated mean with the four neighbours",
-          .options = {"iterations", "final-iterations", "lambda"},
-          .is_iterative = true,
-          .reach = iterations_reach,
-          .make_stages = diffusion_stages};
-}
-
-CellAggregation membrane_aggregation() {
-  return {.key = Aggregation::kMembrane,
-          .name = "membrane",
-          .description = "diffusion with a pull towards the first costs",
-          .options = {"iterations", "final-iterations", "lambda", "beta"},
-          .is_iterative = true,
-          .coarser_use = CoarserUse::kStart,
-          .reach = iterations_reach,
-          .make_stages = diffusion_stages};
-}
-
-CellAggregation local_stopping_aggregation() {
-  return {.key = Aggregation::kLocalStopping,
+              }},
+      CellAggregation{.key = Aggregation::kGaussian,
+                      .name = "gaussian",
+                      .description = "mean weighted by a Gaussian",
+                      .options = {"aggregation-sigma"},
+                      .reach = gaussian_reach,
+                      .make_stages =
+                          [](const MethodParameters& parameters, const AggregationPlace& place) {
+                            return make_gaussian_stages(place.geometry, place.height,
+                                                        parameters.aggregation_sigma_px);
+                          }},
+      CellAggregation{.key = Aggregation::kBoxCascade,
+                      .name = "box-cascade",
+                      .description = "four square windows in turn, close to a Gaussian",
+                      .options = {"aggregation-sigma"},
+                      .reach = gaussian_reach,
+                      .make_stages =
+                          [](const MethodParameters& parameters, const AggregationPlace& place) {
+                            return make_box_cascade_stages(place.geometry, place.height,
+                                                           parameters.aggregation_sigma_px);
+                          }},
+      CellAggregation{.key = Aggregation::kDiffusion,
+                      .name = "diffusion",
+                      .description = "repeated mean with the four neighbours",
+                      .options = {"iterations", "final-iterations", "lambda"},
+                      .is_iterative = true,
+                      .reach = iterations_reach,
+                      .make_stages = diffusion_stages},
+      CellAggregation{.key = Aggregation::kMembrane,
+                      .name = "membrane",
+                      .description = "diffusion with a pull towards the first costs",
+                      .options = {"iterations", "final-iterations", "lambda", "beta"},
+                      .is_iterative = true,
+                      .coarser_use = CoarserUse::kStart,
+                      .reach = iterations_reach,
+                      .make_stages = diffusion_stages},
+      CellAggregation{
+          .key = Aggregation::kLocalStopping,
           .name = "local-stopping",
           .description = "diffusion that stops where certainty would fall",
           .options = {"iterations", "final-iterations", "lambda", "certainty", "sigma-measurement"},
@@ -128,32 +119,21 @@ CellAggregation local_stopping_aggregation() {
                 return parameters.certainty == Certainty::kMargin ? ConfidenceMeasure::kMargin
                                                                   : ConfidenceMeasure::kEntropy;
               },
-          .make_stages = local_stopping_stages};
-}
-
-CellAggregation bayes_aggregation() {
-  return {
-      .key = Aggregation::kBayes,
-      .name = "bayes",
-      .description = "neighbours support similar disparities",
-      .options = {"iterations", "final-iterations", "mu", "sigma-prior", "epsilon-prior",
-                  "prior-growth", "prior-smoothing", "level-weight", "edge-weight", "edge-contrast",
-                  "sigma-measurement", "epsilon-measurement", "candidate-blocks", "pruned-levels"},
-      .natural_cost = MatchCost::kContaminated,
-      .cells = CellMeaning::kLikelihood,
-      .is_iterative = true,
-      .reach = iterations_reach,
-      .confidence = [](const MethodParameters&) { return ConfidenceMeasure::kProbability; },
-      .make_stages = bayes_stages};
-}
-
-}  // namespace
-
-std::span<const CellAggregation> aggregation_table() {
-  static const std::array table = {
-      none_aggregation(),           box_aggregation(),       gaussian_aggregation(),
-      box_cascade_aggregation(),    diffusion_aggregation(), membrane_aggregation(),
-      local_stopping_aggregation(), bayes_aggregation(),
+          .make_stages = local_stopping_stages},
+      CellAggregation{
+          .key = Aggregation::kBayes,
+          .name = "bayes",
+          .description = "neighbours support similar disparities",
+          .options = {"iterations", "final-iterations", "mu", "sigma-prior", "epsilon-prior",
+                      "prior-growth", "prior-smoothing", "level-weight", "edge-weight",
+                      "edge-contrast", "sigma-measurement", "epsilon-measurement",
+                      "candidate-blocks", "pruned-levels"},
+          .natural_cost = MatchCost::kContaminated,
+          .cells = CellMeaning::kLikelihood,
+          .is_iterative = true,
+          .reach = iterations_reach,
+          .confidence = [](const MethodParameters&) { return ConfidenceMeasure::kProbability; },
+          .make_stages = bayes_stages},
   };
   return table;
 }
