@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cstdlib>
+#include <optional>
 #include <string>
 
 namespace vantage {
@@ -19,11 +20,14 @@ constexpr long long kMostRunPixelsPerByte = 128;
 /// Each 8×8 block takes at least one bit of Huffman code. Doubled, because components may be
 /// subsampled.
 constexpr long long kMostJpegPixelsPerByte = 1024;
+/// Arithmetic code has no such minimum; this is far beyond what photographs reach.
+constexpr long long kMostArithmeticPixelsPerByte = 65536;
 
-/// Checked before allocation: a few bytes must not allocate gigabytes.
-void check_pixels_per_byte(const FileBytes& file, long long width, long long height,
-                           long long most) {
-  if (width * height / most > static_cast<long long>(file.size())) {
+/// Checked before allocation: a few bytes must not allocate gigabytes. `min_bytes`: what an image
+/// takes at least.
+void check_holds_pixels(const FileBytes& file, long long width, long long height,
+                        long long min_bytes) {
+  if (min_bytes > static_cast<long long>(file.size())) {
     file.fail(fmt::format("is damaged, {} bytes cannot hold the {}x{} pixels of its header",
                           file.size(), width, height));
   }
@@ -51,7 +55,7 @@ void check_bmp(const FileBytes& file) {
     (void)file.part(file.integer<std::uint32_t>(10, kLittle),
                     static_cast<std::size_t>(row_bytes * height));
   } else {
-    check_pixels_per_byte(file, width, height, kMostRunPixelsPerByte);
+    check_holds_pixels(file, width, height, width * height / kMostRunPixelsPerByte);
   }
 }
 
@@ -87,9 +91,10 @@ void check_jpeg(const FileBytes& file) {
       const int width = file.integer<std::uint16_t>(offset + 6, kBig);
       const int height = file.integer<std::uint16_t>(offset + 4, kBig);
       file.check_dimensions(width, height);
-      if (is_huffman_frame(marker)) {
-        check_pixels_per_byte(file, width, height, kMostJpegPixelsPerByte);
-      }
+      check_holds_pixels(
+          file, width, height,
+          static_cast<long long>(width) * height /
+              (is_huffman_frame(marker) ? kMostJpegPixelsPerByte : kMostArithmeticPixelsPerByte));
       has_frame = true;
     }
     has_scan = has_scan || marker == 0xDA;
@@ -97,6 +102,25 @@ void check_jpeg(const FileBytes& file) {
   }
   if (!has_frame || !has_scan) {
     file.fail("is damaged, expected a JPEG frame header and a scan");
+  }
+}
+
+/// Bytes that a byte of TIFF data can stand for; empty: no limit is known.
+std::optional<long long> most_tiff_bytes_per_byte(int compression, long long pixel_bytes) {
+  switch (compression) {
+    case 1:  // none
+      return 1;
+    case 5:  // LZW: codes of 12 bits for strings of at most 3838 bytes
+      return 2559;
+    case 7:
+      return kMostJpegPixelsPerByte * pixel_bytes;
+    case 8:
+    case 32946:  // deflate
+      return 1032;
+    case 32773:  // PackBits: two bytes for a run of at most 128
+      return 64;
+    default:
+      return std::nullopt;
   }
 }
 
@@ -110,6 +134,10 @@ void check_tiff(const FileBytes& file) {
   const int entries = file.integer<std::uint16_t>(directory, order);
   long long width = 0;
   long long height = 0;
+  long long samples = 1;
+  long long bits = 1;
+  int compression = 1;
+  bool is_subsampled = false;
   for (int i = 0; i < entries; ++i) {
     const std::size_t entry = directory + 2 + 12 * static_cast<std::size_t>(i);
     const int tag = file.integer<std::uint16_t>(entry, order);
@@ -120,9 +148,31 @@ void check_tiff(const FileBytes& file) {
       width = value;
     } else if (tag == 257) {
       height = value;
+    } else if (tag == 258) {
+      // One number per sample; more than two do not fit into the entry.
+      const bool is_elsewhere = file.integer<std::uint32_t>(entry + 4, order) > 2;
+      bits =
+          is_elsewhere
+              ? file.integer<std::uint16_t>(
+                    static_cast<std::size_t>(file.integer<std::uint32_t>(entry + 8, order)), order)
+              : value;
+    } else if (tag == 259) {
+      compression = static_cast<int>(value);
+    } else if (tag == 262) {
+      is_subsampled = value == 6;
+    } else if (tag == 277) {
+      samples = value;
     }
   }
   file.check_dimensions(width, height);
+  if (bits > 64 || samples > 64) {
+    file.fail(fmt::format("has {} samples of {} bits per pixel, expected at most 64 of each",
+                          samples, bits));
+  }
+  const long long pixel_bits = is_subsampled ? bits : bits * samples;
+  if (const auto most = most_tiff_bytes_per_byte(compression, (pixel_bits + 7) / 8)) {
+    check_holds_pixels(file, width, height, width * height * pixel_bits / 8 / *most);
+  }
 }
 
 void check_webp(const FileBytes& file) {

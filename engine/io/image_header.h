@@ -11,7 +11,8 @@ enum class ImageFormat { kPng, kJpeg, kTiff, kPnm, kPfm, kBmp, kWebp, kExr };
 ImageFormat detect_image_format(const FileBytes& file);
 
 /// Checks before decoding: dimensions in bounds and, for BMP, JPEG, WebP and EXR, that the file is
-/// complete. For the formats that OpenCV decodes, except PNG (see png_structure.h). Throws Error.
+/// complete, for TIFF and JPEG that it can hold so many pixels. For the formats that OpenCV
+/// decodes, except PNG (see png_structure.h). Throws Error.
 void check_image_header(const FileBytes& file, ImageFormat format);
 
 }  // namespace vantage

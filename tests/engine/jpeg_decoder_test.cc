@@ -162,6 +162,10 @@ TEST(JpegDecoder, RefusesFewBytesThatWouldTakeMuchMemory) {
     put_bytes(folder / "a.jpg", bytes);
     EXPECT_THAT(error_of([&] { read_photograph(folder / "a.jpg"); }),
                 AllOf(HasSubstr("cannot hold"), HasSubstr("16384x16384")));
+    *(header + 1) = static_cast<std::uint8_t>(coding.progressive ? 0xCA : 0xC9);  // arithmetic
+    put_bytes(folder / "b.jpg", bytes);
+    EXPECT_THAT(error_of([&] { read_photograph(folder / "b.jpg"); }),
+                AllOf(HasSubstr("cannot hold"), HasSubstr("16384x16384")));
   }
 }
 

@@ -289,6 +289,35 @@ TEST(PhotographIo, RefusesRunLengthsTooFewForThePixels) {
   EXPECT_THAT(error_of([&] { read_photograph(folder / "a.bmp"); }), HasSubstr("cannot hold"));
 }
 
+TEST(PhotographIo, RefusesTiffDataTooFewForThePixels) {
+  const TemporaryFolder folder;
+  write_photograph(folder / "a.tiff", noise<std::uint16_t>(8, 8, 3));
+  auto bytes = bytes_of(folder / "a.tiff");
+  ASSERT_EQ(bytes[0], 'I');
+  const auto number = [&](std::size_t at) { return bytes[at] | bytes[at + 1] << 8; };
+  const auto directory = static_cast<std::size_t>(number(4) | number(6) << 16);
+  const auto set = [&](int tag, int value) {
+    for (int i = 0; i < number(directory); ++i) {
+      const std::size_t entry = directory + 2 + 12 * static_cast<std::size_t>(i);
+      if (number(entry) == tag) {
+        bytes[entry + 8] = static_cast<std::uint8_t>(value & 255);
+        bytes[entry + 9] = static_cast<std::uint8_t>(value >> 8);
+      }
+    }
+    put_bytes(folder / "a.tiff", bytes);
+  };
+  const auto complaint = [&] { return error_of([&] { read_photograph(folder / "a.tiff"); }); };
+  EXPECT_EQ(complaint(), "");
+  set(256, 16384);
+  set(257, 16384);
+  constexpr int kCompression = 259;
+  for (const int compression : {1, 5, 7, 8, 32773}) {
+    set(kCompression, compression);
+    EXPECT_THAT(complaint(), testing::AllOf(HasSubstr("cannot hold"), HasSubstr("16384x16384")))
+        << compression;
+  }
+}
+
 TEST(PhotographIo, RefusesMorePixelsThanTheProcessAccepts) {
   const TemporaryFolder folder;
   write_photograph(folder / "a.png", noise<std::uint8_t>(10, 10, 1));
