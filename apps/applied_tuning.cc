@@ -42,7 +42,7 @@ TunedSettings left_open(TunedSettings settings, const TuningSituation& situation
 }  // namespace
 
 void add_tuning_settings(Settings& settings, TuningSource& source) {
-  settings.begin_group("Execution (never changes a result)", false);
+  settings.start_group("Execution (never changes a result)", false);
   settings.input_path("tuning", source.file, "FILE",
                       "Results of 'vantage tune', which replace auto below; default: "
                       "vantage/tuning.json in $XDG_CONFIG_HOME or ~/.config");

@@ -40,7 +40,7 @@ struct Row {
 };
 
 void add_eval_settings(Settings& settings, EvalJob& job) {
-  settings.begin_group("Files");
+  settings.start_group("Files");
   settings
       .positional("disparity", job.first, "Disparity map to evaluate; with --views a photograph")
       .required = true;

@@ -30,7 +30,7 @@ struct ExperimentJob {
 };
 
 void add_experiment_settings(Settings& settings, ExperimentJob& job) {
-  settings.begin_group("Files");
+  settings.start_group("Files");
   Setting& name =
       settings.positional("name", job.name,
                           "noise: error of the methods by noise (Figs. 6.16, 6.17) and by "
@@ -47,7 +47,7 @@ void add_experiment_settings(Settings& settings, ExperimentJob& job) {
   output.short_name = 'o';
   output.required = true;
 
-  settings.begin_group("Experiment");
+  settings.start_group("Experiment");
   settings.integer("size", job.options.size_px, "PX", "Width and height of the synthetic images");
   settings.integer("iterations", job.options.iterations, "N",
                    "Number of iterations of the iterative methods in the comparison by noise");

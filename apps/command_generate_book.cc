@@ -20,12 +20,12 @@ struct BookJob {
 };
 
 void add_book_settings(Settings& settings, BookJob& job) {
-  settings.begin_group("Files");
+  settings.start_group("Files");
   Setting& output = settings.path("output", job.output, "DIR", "Output folder");
   output.short_name = 'o';
   output.required = true;
 
-  settings.begin_group("Pair");
+  settings.start_group("Pair");
   BookPairOptions& pair = job.pair;
   std::string names;
   for (const std::string_view name : kBookPairNames) {

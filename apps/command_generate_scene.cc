@@ -37,7 +37,7 @@ constexpr SceneView kLeftCamera{0, 0};
 constexpr SceneView kRightCamera{1, 0};
 
 void add_scene_settings(Settings& settings, SceneJob& job) {
-  settings.begin_group("Files");
+  settings.start_group("Files");
   Setting& output = settings.path("output", job.output, "DIR", "Output folder");
   output.short_name = 'o';
   output.required = true;
@@ -50,7 +50,7 @@ void add_scene_settings(Settings& settings, SceneJob& job) {
                       "Also render the cameras of this file of poses as camera-0, camera-1, ...; "
                       "the file is as for 'vantage synth', with t in baselines");
 
-  settings.begin_group("Scene");
+  settings.start_group("Scene");
   LayeredSceneOptions& scene = job.scene;
   settings.integer("width", scene.width_px, "PX", "Width of the images");
   settings.integer("height", scene.height_px, "PX", "Height of the images");

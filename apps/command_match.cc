@@ -127,19 +127,19 @@ MemoryUse memory_use(const std::vector<Photograph>& images, const DisparityMaps&
 }
 
 /// Prints what was estimated.
-void print_levels(const MatchReport& match) {
-  if (!match.levels) {
+void print_exposure(const MatchReport& match) {
+  if (!match.exposure) {
     return;
   }
-  const PairLevels& levels = *match.levels;
-  std::string text = levels.has_levels
+  const PairExposure& exposure = *match.exposure;
+  std::string text = exposure.has_intensity_change
                          ? fmt::format("right intensity x {:.4g} {:+.4g}",
-                                       levels.of_right.luma.gain, levels.of_right.luma.offset)
+                                       exposure.of_right.luma.gain, exposure.of_right.luma.offset)
                          : "intensities unchanged";
-  if (levels.sigma_measurement) {
-    text += fmt::format(", noise {:.3g}", *levels.sigma_measurement);
+  if (exposure.sigma_measurement) {
+    text += fmt::format(", noise {:.3g}", *exposure.sigma_measurement);
   }
-  tell("match: from {} matches: {}\n", levels.matches, text);
+  tell("match: from {} matches: {}\n", exposure.matches, text);
 }
 
 }  // namespace
@@ -222,7 +222,7 @@ int command_match(const Arguments& arguments) {
     tell("match: {} ({}), {}x{} pixels, disparities {}:{}, {} -> {}\n", job.match.chosen(),
          summary_of(job.match.resolved()), size.columns, size.rows, job.match.disparities.min,
          job.match.disparities.max, job.left, job.output);
-    print_levels(match);
+    print_exposure(match);
     report.print_summary();
   }
   return kExitDone;

@@ -44,7 +44,7 @@ struct ProfileJob {
 };
 
 void add_profile_settings(Settings& settings, ProfileJob& job) {
-  settings.begin_group("Profile");
+  settings.start_group("Profile");
   settings.integer("runs", job.rounds.rounds, "N",
                    "Runs that count, on each number of threads; another one goes before");
   Setting& threads = settings.add("threads", "N,N,...",
@@ -86,7 +86,7 @@ void add_profile_settings(Settings& settings, ProfileJob& job) {
 
 /// Where the profiled command begins among the arguments: the first that is neither an option nor
 /// its value. All of them with --compare.
-std::size_t command_begin(const Arguments& arguments) {
+std::size_t command_start(const Arguments& arguments) {
   const Arguments flags = {"--compare", "--quiet", "--help", "-h", "--help-all", "--print-config"};
   if (std::ranges::find(arguments, "--compare") != arguments.end()) {
     return arguments.size();
@@ -101,10 +101,10 @@ std::size_t command_begin(const Arguments& arguments) {
 }
 
 void check(const ProfileJob& job) {
-  constexpr int kMostRuns = 1000;
-  if (job.rounds.rounds < 1 || job.rounds.rounds > kMostRuns) {
+  constexpr int kMaxRuns = 1000;
+  if (job.rounds.rounds < 1 || job.rounds.rounds > kMaxRuns) {
     throw UsageError(
-        fmt::format("--runs is {}, expected a number from 1 to {}", job.rounds.rounds, kMostRuns));
+        fmt::format("--runs is {}, expected a number from 1 to {}", job.rounds.rounds, kMaxRuns));
   }
   if (job.rounds.budget_s && !(*job.rounds.budget_s > 0)) {
     throw UsageError(
@@ -152,14 +152,14 @@ int compare(const ProfileJob& job, const Settings& settings) {
 std::vector<int> thread_counts(const ProfileJob& job, const ProfiledCommand& command) {
   std::vector<int> counts = job.threads;
   const ExecutionOptions& execution = command.common().execution;
-  const int most = thread_count(execution, scheduler::detect_machine());
+  const int max = thread_count(execution, scheduler::detect_machine());
   if (execution.executor == scheduler::ExecutorKind::kSerial) {
     counts = {1};
   } else if (counts.empty()) {
-    for (int threads = 1; threads < most; threads *= 2) {
+    for (int threads = 1; threads < max; threads *= 2) {
       counts.push_back(threads);
     }
-    counts.push_back(most);
+    counts.push_back(max);
   }
   std::ranges::sort(counts);
   counts.erase(std::ranges::unique(counts).begin(), counts.end());
@@ -187,13 +187,13 @@ std::vector<MachineCeilings> measure_all_ceilings(const std::vector<int>& counts
 /// From the runs of one program.
 Profile make_profile(const ProfiledCommand& command, const std::vector<Contestant>& contestants) {
   const scheduler::Machine machine = scheduler::detect_machine();
-  const Contestant& most = contestants.back();
+  const Contestant& max = contestants.back();
   Profile profile;
-  profile.version = most.version;
+  profile.version = max.version;
   profile.command = command.text();
   profile.date = now_as_text();
   profile.processor = machine.processor;
-  profile.isa = most.isa;
+  profile.isa = max.isa;
   profile.hardware_threads = machine.hardware_threads;
   std::vector<WallTimes> walls;
   for (const Contestant& one : contestants) {
@@ -205,15 +205,15 @@ Profile make_profile(const ProfiledCommand& command, const std::vector<Contestan
   }
   profile.speed_ups = speed_ups(walls);
   profile.serial_fraction = amdahl_fit(profile.speed_ups);
-  profile.advice = profile_advice(profile, median_steps(most.runs), command.choices());
-  const RunMeasurement& median = most.runs[median_run(most.runs)];
+  profile.advice = profile_advice(profile, median_steps(max.runs), command.choices());
+  const RunMeasurement& median = max.runs[median_run(max.runs)];
   profile.peak_memory_bytes =
-      static_cast<std::uint64_t>(profile.thread_counts.back().peak_memory_bytes.most);
+      static_cast<std::uint64_t>(profile.thread_counts.back().peak_memory_bytes.max);
   profile.memory = median.memory;
   std::ranges::stable_sort(profile.memory, std::ranges::greater{}, &MemoryOwner::bytes);
-  profile.hardware = {summarise_counts(most.runs), most.counters_absence};
-  profile.timeline = most.timeline;
-  profile.timeline_s = most.timeline_s;
+  profile.hardware = {summarise_counts(max.runs), max.counters_absence};
+  profile.timeline = max.timeline;
+  profile.timeline_s = max.timeline_s;
   return profile;
 }
 
@@ -302,7 +302,7 @@ int command_profile(const Arguments& arguments) {
                     "the time goes: vantage profile [OPTIONS] match|run ...; its results are "
                     "thrown away.");
   add_profile_settings(settings, job);
-  const std::size_t begin = command_begin(arguments);
+  const std::size_t begin = command_start(arguments);
   const auto end_of_own = arguments.begin() + static_cast<long>(begin);
   if (!settings.read(Arguments(arguments.begin(), end_of_own))) {
     return kExitDone;

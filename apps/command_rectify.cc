@@ -47,7 +47,7 @@ constexpr int kMaxSamplePairs = 1000;
 constexpr double kMaxRemaining_px = 2;
 
 void add_rectify_settings(Settings& settings, RectifyJob& job) {
-  settings.begin_group("Input");
+  settings.start_group("Input");
   settings
       .positional("left", job.input.left,
                   "Left photograph, or several from a fixed rig: a folder, a pattern "
@@ -61,7 +61,7 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
   settings.integer(
       "sample-pairs", job.sample_pairs, "N",
       "Maximum number of pairs to estimate the cameras from and to measure row errors in");
-  settings.begin_group("Output: at least one of these");
+  settings.start_group("Output: at least one of these");
   settings
       .path("output", job.output, "DIR",
             "Folder for the rectified images: DIR/left.png and DIR/right.png; for several pairs "
@@ -205,7 +205,7 @@ void require_success(const Rectification& rectification, std::size_t matches,
   if (!rectification.remaining) {
     throw Error(
         fmt::format("{}: the rectified images have {} points in common, expected at least {}",
-                    inputs, matches, kLeastMatches));
+                    inputs, matches, kMinMatches));
   }
   if (rectification.remaining->rms_px > kMaxRemaining_px) {
     throw Error(

@@ -39,7 +39,7 @@ constexpr const char* kAutomatic = "auto";
 constexpr int kParts = static_cast<int>(kImagePartNames.size());
 
 void add_response_settings(Settings& settings, ResponseJob& job) {
-  settings.begin_group("Files");
+  settings.start_group("Files");
   settings.positional("left", job.left, "Left image").required = true;
   settings.positional("right", job.right, "Right image of the same size").required = true;
   Setting& output =
@@ -52,7 +52,7 @@ void add_response_settings(Settings& settings, ResponseJob& job) {
                 "Plot the sums per pixel, as curves over one range or heat maps over two: .svg "
                 ".png .jpg ...");
 
-  settings.begin_group("Displacements");
+  settings.start_group("Displacements");
   Setting& x = settings.add("displacements-x", "MIN:MAX",
                             "Range of x_left - x_right in pixels, both ends included; auto: -16 to "
                             "a quarter of the width");
@@ -73,7 +73,7 @@ void add_response_settings(Settings& settings, ResponseJob& job) {
   };
   y.get = [&job] { return to_text(job.displacements_y); };
 
-  settings.begin_group("Evidence");
+  settings.start_group("Evidence");
   add_gradient_settings(settings, job.parameters);
 }
 

@@ -33,7 +33,7 @@ struct SceneBuildJob {
 };
 
 void add_file_settings(Settings& settings, SceneBuildJob& job) {
-  settings.begin_group("Files");
+  settings.start_group("Files");
   add_scene_images_settings(settings, job.images);
   Setting& output = settings.path("output", job.output, "SCENE",
                                   "Folder of the scene; existing results are kept");
@@ -91,7 +91,7 @@ int command_scene_build(const Arguments& arguments) {
                     "the nearest neighbours.");
   add_file_settings(settings, job);
   add_match_settings(settings, job.match);
-  settings.begin_group("Check");
+  settings.start_group("Check");
   add_rectification_check_setting(settings, job.check_rectification);
   add_common_settings(settings, job.common);
   add_input_limit_settings(settings, job.common.execution);

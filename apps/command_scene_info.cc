@@ -27,7 +27,7 @@ std::string text_of(const StoredEdge& edge) {
 int command_scene_info(const Arguments& arguments) {
   std::string folder;
   Settings settings("scene info", "Prints the images and edges of a scene.");
-  settings.begin_group("Files");
+  settings.start_group("Files");
   settings.positional("scene", folder, "Folder made by 'vantage scene build'").required = true;
   if (!settings.read(arguments)) {
     return kExitDone;

@@ -32,15 +32,15 @@ struct SceneViewJob {
 };
 
 void add_settings(Settings& settings, SceneViewJob& job) {
-  settings.begin_group("Files");
+  settings.start_group("Files");
   settings.positional("scene", job.scene, "Folder made by 'vantage scene build'").required = true;
   add_view_file_settings(settings, job.output);
 
-  settings.begin_group("Views");
+  settings.start_group("Views");
   add_wanted_scene_views(settings, job.views);
   add_view_display_settings(settings, job.output, "lengths of the scene's shortest edge");
 
-  settings.begin_group("View synthesis");
+  settings.start_group("View synthesis");
   add_holes_setting(settings, job.synthesis.holes);
   add_soft_edges_setting(settings, job.synthesis.soft_edges);
   add_surface_settings(settings, job.synthesis);

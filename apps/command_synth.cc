@@ -35,13 +35,13 @@ struct SynthJob {
 };
 
 void add_view_settings(Settings& settings, SynthJob& job) {
-  settings.begin_group("Views");
+  settings.start_group("Views");
   add_wanted_views(settings, job.views);
   add_view_display_settings(settings, job.output, "baselines");
 }
 
 void add_file_settings(Settings& settings, SynthJob& job) {
-  settings.begin_group("Files");
+  settings.start_group("Files");
   add_pair_settings(settings, job.pair);
   add_view_file_settings(settings, job.output);
 }

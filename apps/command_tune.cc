@@ -49,7 +49,7 @@ struct TuneJob {
 };
 
 void add_tune_settings(Settings& settings, TuneJob& job) {
-  settings.begin_group("Tuning");
+  settings.start_group("Tuning");
   Setting& size = settings.add("size", "WxH", "Width and height of the images, such as 1280x720");
   size.set = [&job](const SettingValue& value) {
     const auto sides = split(to_text(value), 'x');

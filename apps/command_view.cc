@@ -46,7 +46,7 @@ void add_range_setting(Settings& settings, const std::string& name, ViewRange& r
 }
 
 void add_page_settings(Settings& settings, ViewPageOptions& page) {
-  settings.begin_group("Page");
+  settings.start_group("Page");
   add_range_setting(settings, "range", page.range_x,
                     "Range of positions along the baseline: 0 left camera, 1 right camera");
   add_range_setting(settings, "vertical-range", page.range_y,
@@ -54,7 +54,7 @@ void add_page_settings(Settings& settings, ViewPageOptions& page) {
   settings.choice<PageImages>("images", page.images,
                               {{"png", PageImages::kPng}, {"jpeg", PageImages::kJpeg}},
                               "Image format in the page: lossless, or smaller");
-  settings.begin_group("View synthesis");
+  settings.start_group("View synthesis");
   settings.choice<HoleFilling>(
       "holes", page.synthesis.holes,
       {{"mirror", HoleFilling::kMirror},
@@ -75,7 +75,7 @@ int command_view(const Arguments& arguments) {
   ViewJob job;
   Settings settings("view",
                     "Writes a self-contained web page that renders new views of a rectified pair.");
-  settings.begin_group("Files");
+  settings.start_group("Files");
   add_pair_settings(settings, job.pair);
   Setting& output = settings.path("output", job.output, "FILE.html", "Path to the page");
   output.short_name = 'o';

@@ -110,7 +110,7 @@ void add_pixel_limit_setting(Settings& settings) {
 }
 
 void add_input_limit_settings(Settings& settings, ExecutionOptions& execution) {
-  settings.begin_group("Limits", false);
+  settings.start_group("Limits", false);
   add_pixel_limit_setting(settings);
   Setting& memory = add_size_setting(settings, "memory", memory_limit,
                                      "Memory limit for images and results, such as 800M or 4G; the "

@@ -50,7 +50,7 @@ void add_several_settings(Settings& settings, MatchJob& job) {
 }
 
 void add_file_settings(Settings& settings, MatchJob& job) {
-  settings.begin_group("Files");
+  settings.start_group("Files");
   settings.positional("left", job.left, "Left image; with --baselines the reference image")
       .required = true;
   settings.positional("right", job.right, "Right image of the same size").required = true;

@@ -16,7 +16,7 @@ bool is_word(const SettingValue& value, std::string_view word) {
 
 void add_parameter_settings(Settings& settings, MatchOptions& options) {
   add_method_parameters(settings, options.parameters);
-  settings.begin_group("Refinement");
+  settings.start_group("Refinement");
   settings.flag("raw", options.raw, "Winner-take-all map without any step of this group");
   add_refinement_options(settings, options.refinement);
 }
@@ -75,7 +75,7 @@ MatchOptions options_with_found_range() {
 }
 
 void add_match_settings(Settings& settings, MatchOptions& options) {
-  settings.begin_group("Matching");
+  settings.start_group("Matching");
   Setting& disparities =
       settings.add("disparities", "MIN:MAX|auto",
                    "Search range x_left - x_right in whole pixels, ends included; auto: estimated "
@@ -116,7 +116,7 @@ void add_match_settings(Settings& settings, MatchOptions& options) {
 }
 
 void add_reference_setting(Settings& settings, MatchOptions& options) {
-  settings.begin_group("Matching");
+  settings.start_group("Matching");
   settings.choice<Side>("reference", options.reference,
                         {{"left", Side::kLeft}, {"right", Side::kRight}},
                         "Image that the disparity map belongs to");

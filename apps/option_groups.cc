@@ -8,7 +8,7 @@ namespace vantage::apps {
 void add_common_settings(Settings& settings, CommonOptions& options, Work work) {
   using scheduler::ExecutorKind;
   using scheduler::ThreadBinding;
-  settings.begin_group("Execution (never changes a result)", false);
+  settings.start_group("Execution (never changes a result)", false);
   settings.integer("threads", options.execution.threads, "N",
                    "Number of threads, 1 to 1024; auto: all that this process may use");
   settings.choice<ExecutorKind>("executor", options.execution.executor,
@@ -32,7 +32,7 @@ void add_common_settings(Settings& settings, CommonOptions& options, Work work) 
   }
   settings.text("isa", options.isa, "NAME",
                 "Instruction set of the kernels: best, or a name from 'vantage info'");
-  settings.begin_group("Messages", false);
+  settings.start_group("Messages", false);
   settings.path("report", options.report, "FILE", "Write a JSON report");
   settings.path("trace", options.trace, "FILE",
                 "Write a trace of all threads as Chrome trace events, for Perfetto");
@@ -45,7 +45,7 @@ void check_common_files(const CommonOptions& options, FileChecks& files) {
 }
 
 void add_synthesis_settings(Settings& settings, SynthesisOptions& options) {
-  settings.begin_group("View synthesis");
+  settings.start_group("View synthesis");
   settings.choice<WarpColour>(
       "warp", options.warp, {{"one-pass", WarpColour::kOnePass}, {"forward", WarpColour::kForward}},
       "Colours of views. one-pass: one bicubic interpolation of the photograph; forward: whole "

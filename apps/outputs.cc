@@ -211,7 +211,7 @@ void FileChecks::add_made_folder(const fs::path& path, const std::string& option
 
 fs::path resolved(const fs::path& path) {
   std::error_code ignored;
-  const fs::path absolute = fs::absolute(behind_links(path), ignored);
+  const fs::path absolute = fs::absolute(through_links(path), ignored);
   const fs::path canonical = fs::weakly_canonical(absolute, ignored);
   return canonical.empty() ? absolute.lexically_normal() : canonical;
 }

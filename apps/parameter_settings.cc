@@ -226,7 +226,7 @@ void add_settings(Settings& settings, Overrides& overrides, const Defaults& defa
         }
         for (const auto& [first_option, group] : kOptionGroups) {
           if (first_option == field.option) {
-            settings.begin_group(group);
+            settings.start_group(group);
           }
         }
         setting = &add_setting(settings, text, defaults.at(field.option), value);

@@ -105,11 +105,11 @@ std::string stages(const Profile& profile, const ThreadCountProfile& count) {
 /// Those that can be seen, and the others in one row.
 void add_parts(const std::vector<PartProfile>& parts, const char* kind,
                const ThreadCountProfile& count, TextTable& table) {
-  constexpr double kLeastShare = 1e-3;
+  constexpr double kMinShare = 1e-3;
   PartProfile others;
   int hidden = 0;
   for (const PartProfile& part : parts) {
-    if (part.seconds.median < kLeastShare * pool_time_s(count)) {
+    if (part.seconds.median < kMinShare * pool_time_s(count)) {
       ++hidden;
       others.seconds.median += part.seconds.median;
       others.count += part.count;
@@ -199,13 +199,13 @@ std::string ceilings(const Profile& profile) {
 }  // namespace
 
 std::string describe(const Profile& profile) {
-  const ThreadCountProfile& most = profile.thread_counts.back();
+  const ThreadCountProfile& max = profile.thread_counts.back();
   return fmt::format("{}\n{}, {}, vantage {}; {} run{} each\n\n", profile.command,
-                     profile.processor, profile.isa, profile.version, most.runs,
-                     most.runs == 1 ? "" : "s") +
-         advice(profile) + findings(profile) + scaling(profile) + stages(profile, most) +
-         parts(most) + workers(most) + ceilings(profile) + memory(profile) +
-         counters(profile.hardware, most.threads);
+                     profile.processor, profile.isa, profile.version, max.runs,
+                     max.runs == 1 ? "" : "s") +
+         advice(profile) + findings(profile) + scaling(profile) + stages(profile, max) +
+         parts(max) + workers(max) + ceilings(profile) + memory(profile) +
+         counters(profile.hardware, max.threads);
 }
 
 std::string describe(const ProfileComparison& comparison, const std::string& first_name,

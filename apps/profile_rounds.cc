@@ -158,7 +158,7 @@ bool run_rounds(ProfiledCommand& command, const RoundOptions& options,
   const auto unwanted_trace = static_cast<std::size_t>(options.rounds);
   int done = 0;
   for (int round = -1; round < options.rounds; ++round) {
-    const Clock::time_point round_begin = Clock::now();
+    const Clock::time_point round_start = Clock::now();
     for (Contestant& contestant : contestants) {
       const bool keeps_trace = round >= 0 && contestant.keeps_timeline;
       const std::string trace =
@@ -172,7 +172,7 @@ bool run_rounds(ProfiledCommand& command, const RoundOptions& options,
       progress.update(++done, total, 0);
     }
     const double left_s = options.budget_s.value_or(1e300) - seconds_since(begin);
-    if (round >= 0 && left_s < seconds_since(round_begin)) {
+    if (round >= 0 && left_s < seconds_since(round_start)) {
       break;
     }
   }

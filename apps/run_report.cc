@@ -38,19 +38,19 @@ std::string time_text(double seconds) {
   return seconds < 10 ? fmt::format("{:.1f} ms", seconds * 1e3) : fmt::format("{:.1f} s", seconds);
 }
 
-SettingValue describe(const LevelChange& change) {
+SettingValue describe(const IntensityChange& change) {
   return {{"gain", change.gain}, {"offset", change.offset}};
 }
 
 /// What a pair told about its grey levels; null: nothing, what the settings say is in force.
-SettingValue describe(const PairLevels& levels) {
+SettingValue describe(const PairExposure& levels) {
   SettingValue result = {{"matches", levels.matches},
                          {"luma", nullptr},
                          {"channels", nullptr},
                          {"sigma_measurement", nullptr}};
-  if (levels.has_levels) {
+  if (levels.has_intensity_change) {
     result["luma"] = describe(levels.of_right.luma);
-    for (const LevelChange& channel : levels.of_right.channels) {
+    for (const IntensityChange& channel : levels.of_right.channels) {
       result["channels"].push_back(describe(channel));
     }
   }
@@ -99,8 +99,8 @@ void RunReport::add_match(const MatchReport& match) {
   finest_cells_ += match.finest_cells;
   finest_pixels_ += match.finest_pixels;
   set_plan(match.plan);
-  if (match.levels) {
-    add_result("grey_levels", describe(*match.levels));
+  if (match.exposure) {
+    add_result("grey_levels", describe(*match.exposure));
   }
 }
 

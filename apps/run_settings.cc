@@ -86,7 +86,7 @@ void add_packing(Settings& settings, std::string name, std::optional<StereoPacki
 }
 
 void add_input_settings(Settings& settings, RunJob& job) {
-  settings.begin_group("Input: one of --left with --right, --stereo, --pairs, --sequence");
+  settings.start_group("Input: one of --left with --right, --stereo, --pairs, --sequence");
   const auto path = [&](std::string name, std::string& field, std::string value_name,
                         std::string help) -> Setting& {
     Setting& setting =
@@ -136,7 +136,7 @@ void add_stereo_views_setting(Settings& settings, std::array<double, 2>& views_x
 }
 
 void add_output_settings(Settings& settings, RunJob& job) {
-  settings.begin_group("Output");
+  settings.start_group("Output");
   Setting& output =
       settings.path("output", job.output, "DIR",
                     "Output folder: DIR/disparity/000000.pfm, DIR/views.mp4 and so on");
@@ -180,7 +180,7 @@ void add_output_settings(Settings& settings, RunJob& job) {
 }
 
 void add_steadiness_settings(Settings& settings, SequenceOptions& options) {
-  settings.begin_group("Temporal stability");
+  settings.start_group("Temporal stability");
   settings.choice<FitScope>("intensity-fit", options.intensity_fit,
                             {{"frame", FitScope::kFrame}, {"shot", FitScope::kShot}},
                             "Match the brightness of both images once per frame or once per shot");
@@ -197,7 +197,7 @@ void add_steadiness_settings(Settings& settings, SequenceOptions& options) {
 }
 
 void add_part_settings(Settings& settings, RunJob& job) {
-  settings.begin_group("Parts of a run, and resuming", false);
+  settings.start_group("Parts of a run, and resuming", false);
   Setting& frames = settings.add("frames", "A-B", "Process frames A to B only, counted from 0");
   frames.set = [&job](const SettingValue& value) {
     if (value == "all") {
@@ -243,7 +243,7 @@ void add_part_settings(Settings& settings, RunJob& job) {
 }
 
 void add_pipeline_settings(Settings& settings, RunJob& job) {
-  settings.begin_group("Pipeline", false);
+  settings.start_group("Pipeline", false);
   settings.integer(
       "in-flight", job.in_flight, "N",
       "Number of frames in flight, 1 to 64; auto: threads + 2, fewer if memory is short");

@@ -16,8 +16,8 @@ GridSize to_grid(const SettingValue& value) {
   try {
     if (parts.size() == 2) {
       const GridSize grid{to_integer(parts[0]), to_integer(parts[1])};
-      if (grid.columns >= 1 && grid.rows >= 1 && grid.columns <= SceneLayout::kMostVertices &&
-          grid.rows <= SceneLayout::kMostVertices) {
+      if (grid.columns >= 1 && grid.rows >= 1 && grid.columns <= SceneLayout::kMaxVertices &&
+          grid.rows <= SceneLayout::kMaxVertices) {
         return grid;
       }
     }

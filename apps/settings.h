@@ -50,7 +50,7 @@ class Settings {
 
   /// Settings added after this call appear under `title` in --help-all and --print-config.
   /// `changes_results` applies to all of them.
-  void begin_group(std::string title, bool changes_results = true) {
+  void start_group(std::string title, bool changes_results = true) {
     group_ = std::move(title);
     group_changes_results_ = changes_results;
   }

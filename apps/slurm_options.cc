@@ -96,7 +96,7 @@ int SlurmOptions::drain_seconds_or_default() const {
 }
 
 void add_slurm_settings(Settings& settings, SlurmOptions& options) {
-  settings.begin_group("Slurm");
+  settings.start_group("Slurm");
   Setting& shards = settings.integer("shards", options.shards, "N", "Number of tasks");
   shards.required = true;
   shards.get = [&options] {

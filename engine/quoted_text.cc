@@ -7,7 +7,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t kMostQuotedBytes = 100;
+constexpr std::size_t kMaxQuotedBytes = 100;
 
 bool is_continuation(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
 
@@ -66,11 +66,11 @@ std::string printable(std::string_view text) {
 }
 
 std::string quotable(std::string_view text) {
-  if (text.size() <= kMostQuotedBytes) {
+  if (text.size() <= kMaxQuotedBytes) {
     return printable(text);
   }
-  std::size_t end = kMostQuotedBytes;
-  while (end > kMostQuotedBytes - 4 && is_continuation(text[end])) {
+  std::size_t end = kMaxQuotedBytes;
+  while (end > kMaxQuotedBytes - 4 && is_continuation(text[end])) {
     --end;  // not in the middle of a character
   }
   return fmt::format("{}... ({} bytes)", printable(text.substr(0, end)), text.size());

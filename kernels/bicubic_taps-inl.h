@@ -42,8 +42,8 @@ struct TapSums {
   float weight_y[4 * kTapBlock];  // a pixel's four weights are adjacent
   float
       sum_down[kTapLanes * kTapBlock];  // [i · taps + tap · channels + c], sums over the four lines
-  float least_down[kTapLanes * kTapBlock];  // floats only
-  float most_down[kTapLanes * kTapBlock];
+  float min_down[kTapLanes * kTapBlock];  // floats only
+  float max_down[kTapLanes * kTapBlock];
 };
 
 // Weights of new pixels i, i + 1, … from the fractions of their positions.
@@ -81,18 +81,18 @@ HWY_INLINE void sum_down(const T* HWY_RESTRICT tap, std::ptrdiff_t stride, int i
                d, sums.sum_down + kTaps * i + lane);
     if constexpr (std::is_same_v<T, float>) {
       hn::StoreU(hn::Min(hn::Min(line0, line1), hn::Min(line2, line3)), d,
-                 sums.least_down + kTaps * i + lane);
+                 sums.min_down + kTaps * i + lane);
       hn::StoreU(hn::Max(hn::Max(line0, line1), hn::Max(line2, line3)), d,
-                 sums.most_down + kTaps * i + lane);
+                 sums.max_down + kTaps * i + lane);
     }
   }
 }
 
 template <typename T, class D, class V = hwy::HWY_NAMESPACE::VFromD<D>>
-HWY_INLINE V limited(D d, V sum, V least, V most) {
+HWY_INLINE V limited(D d, V sum, V min, V max) {
   namespace hn = hwy::HWY_NAMESPACE;
-  const auto smallest = hn::Min(hn::Zero(d), least);
-  const auto largest = hn::Max(hn::Set(d, kLargestValue<T>), most);
+  const auto smallest = hn::Min(hn::Zero(d), min);
+  const auto largest = hn::Max(hn::Set(d, kLargestValue<T>), max);
   return hn::Min(hn::Max(sum, smallest), largest);
 }
 
@@ -109,15 +109,15 @@ HWY_INLINE hwy::HWY_NAMESPACE::VFromD<D> sum_along_grey(D d, const TapSums& sums
                                    hn::Mul(hn::LoadU(d, sums.weight_x[1] + i), tap1)),
                            hn::Add(hn::Mul(hn::LoadU(d, sums.weight_x[2] + i), tap2),
                                    hn::Mul(hn::LoadU(d, sums.weight_x[3] + i), tap3)));
-  auto least = hn::Zero(d);
-  auto most = least;
+  auto min = hn::Zero(d);
+  auto max = min;
   if constexpr (std::is_same_v<T, float>) {
-    hn::LoadInterleaved4(d, sums.least_down + 4 * i, tap0, tap1, tap2, tap3);
-    least = hn::Min(hn::Min(tap0, tap1), hn::Min(tap2, tap3));
-    hn::LoadInterleaved4(d, sums.most_down + 4 * i, tap0, tap1, tap2, tap3);
-    most = hn::Max(hn::Max(tap0, tap1), hn::Max(tap2, tap3));
+    hn::LoadInterleaved4(d, sums.min_down + 4 * i, tap0, tap1, tap2, tap3);
+    min = hn::Min(hn::Min(tap0, tap1), hn::Min(tap2, tap3));
+    hn::LoadInterleaved4(d, sums.max_down + 4 * i, tap0, tap1, tap2, tap3);
+    max = hn::Max(hn::Max(tap0, tap1), hn::Max(tap2, tap3));
   }
-  return limited<T>(d, sum, least, most);
+  return limited<T>(d, sum, min, max);
 }
 
 // Colour pixel i, one vector. With three channels the fourth lane is meaningless.
@@ -132,15 +132,15 @@ HWY_INLINE hwy::HWY_NAMESPACE::VFromD<hwy::HWY_NAMESPACE::FixedTag<float, 4>> su
     return hn::Mul(hn::Set(d, sums.weight_x[k][i]), tap(sums.sum_down, k));
   };
   const auto sum = hn::Add(hn::Add(weighted(0), weighted(1)), hn::Add(weighted(2), weighted(3)));
-  auto least = hn::Zero(d);
-  auto most = least;
+  auto min = hn::Zero(d);
+  auto max = min;
   if constexpr (std::is_same_v<T, float>) {
-    const float* down = sums.least_down;
-    least = hn::Min(hn::Min(tap(down, 0), tap(down, 1)), hn::Min(tap(down, 2), tap(down, 3)));
-    down = sums.most_down;
-    most = hn::Max(hn::Max(tap(down, 0), tap(down, 1)), hn::Max(tap(down, 2), tap(down, 3)));
+    const float* down = sums.min_down;
+    min = hn::Min(hn::Min(tap(down, 0), tap(down, 1)), hn::Min(tap(down, 2), tap(down, 3)));
+    down = sums.max_down;
+    max = hn::Max(hn::Max(tap(down, 0), tap(down, 1)), hn::Max(tap(down, 2), tap(down, 3)));
   }
-  return limited<T>(d, sum, least, most);
+  return limited<T>(d, sum, min, max);
 }
 
 }  // namespace vantage::kernels::HWY_NAMESPACE

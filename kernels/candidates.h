@@ -42,18 +42,18 @@ struct CandidateGeometry {
     const int low = margin;
     const int high = width - 1 - margin;
     // direction −1: low ≤ first − d and last − d ≤ high; direction +1: likewise with + d.
-    const int least = direction < 0 ? last - high : low - first;
-    const int most = direction < 0 ? first - low : high - last;
-    return {std::clamp(least - disparity_min, 0, count),
-            std::clamp(most - disparity_min + 1, 0, count)};
+    const int min = direction < 0 ? last - high : low - first;
+    const int max = direction < 0 ? first - low : high - last;
+    return {std::clamp(min - disparity_min, 0, count),
+            std::clamp(max - disparity_min + 1, 0, count)};
   }
   /// Columns [begin, end) where every candidate has a partner for all columns within `radius` that
   /// lie in the reference image. `begin` may exceed `end`; both may exceed the image width.
   [[nodiscard]] CandidateRange columns_with_all_partners(int radius = 0) const {
     // partner = x − shift for shifts in [least, most].
-    const int least = direction < 0 ? disparity_min : -(disparity_min + count - 1);
-    const int most = least + count - 1;
-    return {most > 0 ? most + radius : 0, least < 0 ? width + least - radius : width};
+    const int min = direction < 0 ? disparity_min : -(disparity_min + count - 1);
+    const int max = min + count - 1;
+    return {max > 0 ? max + radius : 0, min < 0 ? width + min - radius : width};
   }
 };
 

@@ -14,13 +14,12 @@ namespace vantage::perf {
 
 /// "1.97 (1.80-2.10)": median and range; `digits` applies to the median.
 inline std::string with_range(const std::vector<double>& values, int digits = 2) {
-  return fmt::format("{:.{}f} ({:.2f}-{:.2f})", median(values), digits, least(values),
-                     most(values));
+  return fmt::format("{:.{}f} ({:.2f}-{:.2f})", median(values), digits, min(values), max(values));
 }
 
 /// Same for --json.
 inline nlohmann::json figures(const std::vector<double>& values) {
-  return {{"median", median(values)}, {"least", least(values)}, {"most", most(values)}};
+  return {{"median", median(values)}, {"least", min(values)}, {"most", max(values)}};
 }
 
 /// Writes the file of --json, if it was given.

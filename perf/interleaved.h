@@ -20,9 +20,9 @@ struct Timing {
   std::vector<double> seconds;   ///< sorted
   std::vector<double> by_round;  ///< in order of measurement
 
-  [[nodiscard]] double least() const { return seconds.front(); }
+  [[nodiscard]] double min() const { return seconds.front(); }
   [[nodiscard]] double median() const { return seconds[seconds.size() / 2]; }
-  [[nodiscard]] double most() const { return seconds.back(); }
+  [[nodiscard]] double max() const { return seconds.back(); }
 };
 
 /// Runs all contenders in turn, `rounds` times after one warm-up round, so that changes of the

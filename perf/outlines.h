@@ -25,8 +25,8 @@ inline DisparityMap seen_from(const DisparityMaps& maps, double view_x) {
         ++end;
       }
       const float before = begin > 0 ? seen.at(begin - 1, y) : seen.at(std::min(end, width - 1), y);
-      const float behind = end < width ? seen.at(end, y) : before;
-      std::fill(seen.row(y) + begin, seen.row(y) + end, std::min(before, behind));
+      const float after = end < width ? seen.at(end, y) : before;
+      std::fill(seen.row(y) + begin, seen.row(y) + end, std::min(before, after));
       begin = end;
     }
   }

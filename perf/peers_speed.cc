@@ -57,14 +57,14 @@ cv::Mat random_values(int rows, int columns, int type) {
   return values;
 }
 
-/// Ends the program if two results that must be equal differ by more than `most`.
-void expect_equal(const std::string& what, const cv::Mat& a, const cv::Mat& b, double most) {
+/// Ends the program if two results that must be equal differ by more than `max`.
+void expect_equal(const std::string& what, const cv::Mat& a, const cv::Mat& b, double max) {
   cv::Mat b_converted;
   b.convertTo(b_converted, a.type());
   const double difference = cv::norm(a, b_converted, cv::NORM_INF);
-  if (difference > most) {
+  if (difference > max) {
     fmt::print(stderr, "peers_speed: {}: results differ by {}, expected at most {}\n", what,
-               difference, most);
+               difference, max);
     std::exit(1);
   }
 }

@@ -54,7 +54,7 @@ struct Settings {
 // Widths and heights that divide the image equally; each number of parts is about this factor times
 // the previous one.
 constexpr double kPartsStep = 1.4;
-constexpr int kLeastStripColumns = 16;
+constexpr int kMinStripColumns = 16;
 constexpr std::array kBands = {1, 2, 3, 4, 6, 8, 12, 16};
 constexpr std::array kIterationsPerPass = {1, 2, 3, 5, 10};
 // This many of the sweep's best strips are combined, at full height, with all band heights; then
@@ -62,7 +62,7 @@ constexpr std::array kIterationsPerPass = {1, 2, 3, 5, 10};
 constexpr std::size_t kBestStrips = 2;
 constexpr std::size_t kFinalists = 3;
 // Minimum height of the images of reduced height in the sweep.
-constexpr int kLeastRows = 128;
+constexpr int kMinRows = 128;
 
 int divide_up(int total, int part) { return (total + part - 1) / part; }
 
@@ -93,8 +93,8 @@ class Case {
     subject_ = std::make_unique<MatchSubject>(
         MatchSubjectOptions{.match = method.options, .execution = execution}, pair_);
     const double frame_seconds = measure(*subject_, {});
-    const int rows = std::max(kLeastRows, static_cast<int>(size.height * settings.seconds /
-                                                           (frame_seconds * kSweepFrames)));
+    const int rows = std::max(kMinRows, static_cast<int>(size.height * settings.seconds /
+                                                         (frame_seconds * kSweepFrames)));
     sweep_rows_ = std::min(size.height, rows);
     lower_pair_ = top_rows(pair_, sweep_rows_);
     lower_ = std::make_unique<MatchSubject>(
@@ -138,7 +138,7 @@ class Case {
       iterations.assign(kIterationsPerPass.begin(), kIterationsPerPass.end());
     }
     std::vector<Measured> strips;
-    for (double parts = 1; size_.width / parts >= kLeastStripColumns;
+    for (double parts = 1; size_.width / parts >= kMinStripColumns;
          parts = std::max(parts + 1, parts * kPartsStep)) {
       const int strip_px = divide_up(size_.width, static_cast<int>(parts));
       for (const std::optional<int>& of_pass : iterations) {

@@ -141,13 +141,13 @@ nlohmann::json fit_curves(const Pair& pair, int rounds) {
   return tables;
 }
 
-/// 1, 2, 4, … threads, and `most`.
-std::vector<int> thread_counts(int most) {
+/// 1, 2, 4, … threads, and `max`.
+std::vector<int> thread_counts(int max) {
   std::vector<int> counts;
-  for (int threads = 1; threads < most; threads *= 2) {
+  for (int threads = 1; threads < max; threads *= 2) {
     counts.push_back(threads);
   }
-  counts.push_back(most);
+  counts.push_back(max);
   return counts;
 }
 
@@ -196,9 +196,9 @@ class ThreadScaling {
                  with_range(efficiency));
       rows.push_back({{"name", strong.name},
                       {"threads", counts_[i]},
-                      {"min_seconds", strong.least()},
+                      {"min_seconds", strong.min()},
                       {"median_seconds", strong.median()},
-                      {"max_seconds", strong.most()},
+                      {"max_seconds", strong.max()},
                       {"speed_up", figures(speed_up)},
                       {"serial_fraction", serial},
                       {"weak_efficiency", figures(efficiency)}});

@@ -228,14 +228,14 @@ nlohmann::json print_table(const std::string& title, const std::vector<Contender
   nlohmann::json rows = nlohmann::json::array();
   const auto row = [&](const Contender& contender) {
     const std::vector<double> wall = of(contender.rounds, &FrameTime::wall);
-    const double processor = least(of(contender.rounds, &FrameTime::processor));
+    const double processor = min(of(contender.rounds, &FrameTime::processor));
     const double efficiency = median_efficiency(contenders.front(), contender, cores);
     const double ratio = median(wall) / median(of(peer.rounds, &FrameTime::wall));
     fmt::print("{:<38} {:>9.2f} {:>9.2f} {:>9.2f} {:>9.1f} {:>10.3f} {:>10.3f}\n", contender.name,
-               least(wall) * 1e3, median(wall) * 1e3, processor * 1e3, 1 / median(wall), efficiency,
+               min(wall) * 1e3, median(wall) * 1e3, processor * 1e3, 1 / median(wall), efficiency,
                ratio);
     rows.push_back({{"name", contender.name},
-                    {"least_seconds", least(wall)},
+                    {"least_seconds", min(wall)},
                     {"median_seconds", median(wall)},
                     {"processor_seconds", processor},
                     {"efficiency", efficiency},

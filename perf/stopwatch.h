@@ -38,11 +38,11 @@ class Stopwatch {
   double processor_start_ = processor_seconds();
 };
 
-inline double least(const std::vector<double>& values) {
+inline double min(const std::vector<double>& values) {
   return *std::min_element(values.begin(), values.end());
 }
 
-inline double most(const std::vector<double>& values) {
+inline double max(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
 }
 

@@ -155,9 +155,9 @@ nlohmann::json time_place(const SyntheticPair& pair, const ViewPlace& place,
     const double processor = median(of(contender.rounds, &FrameTime::processor));
     const double ratio = median(ratios(contender.rounds, contenders[2].rounds));
     fmt::print("{:<26} {:>9.2f} {:>9.2f} {:>9.2f} {:>9.1f} {:>12.3f}\n", contender.name,
-               1e3 * least(wall), 1e3 * median(wall), 1e3 * processor, 1 / median(wall), ratio);
+               1e3 * min(wall), 1e3 * median(wall), 1e3 * processor, 1 / median(wall), ratio);
     rows.push_back({{"name", contender.name},
-                    {"least_seconds", least(wall)},
+                    {"least_seconds", min(wall)},
                     {"median_seconds", median(wall)},
                     {"processor_seconds", processor},
                     {"ratio_to_encoding", ratio}});

@@ -22,12 +22,12 @@ inline nlohmann::json print_table(const std::string& title, const std::vector<Ti
     const Timing& timing = timings[i];
     const double ratio = timing.median() / timings.front().median();
     fmt::print("{:<42} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.4f} {:>7.3f}\n", timing.name,
-               timing.least() * 1e3, timing.median() * 1e3, timing.most() * 1e3,
+               timing.min() * 1e3, timing.median() * 1e3, timing.max() * 1e3,
                timing.median() / work[i] * 1e9, ratio);
     rows.push_back({{"name", timing.name},
-                    {"min_seconds", timing.least()},
+                    {"min_seconds", timing.min()},
                     {"median_seconds", timing.median()},
-                    {"max_seconds", timing.most()},
+                    {"max_seconds", timing.max()},
                     {"ns_per_" + unit, timing.median() / work[i] * 1e9},
                     {"ratio_to_first", ratio}});
   }

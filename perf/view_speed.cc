@@ -79,7 +79,7 @@ class Row {
       return 1e3 * median(of(rounds, &FrameTime::wall));
     };
     const auto processor_ms = [](const std::vector<FrameTime>& rounds) {
-      return 1e3 * least(of(rounds, &FrameTime::processor));
+      return 1e3 * min(of(rounds, &FrameTime::processor));
     };
     const std::vector<double> speed_up = ratios(ours_[0], ours_[1]);
     const std::array<std::vector<double>, 2> to_fixed = {ratios(ours_[0], fixed_[0]),

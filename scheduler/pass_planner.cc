@@ -29,7 +29,7 @@ constexpr double kLevel3Time = 1.5;
 // 2026-11-22). Where it has more bytes for each core in sight than this many level 2, which no core
 // has for its own, most of its cores are out of sight: of a virtual machine or an affinity mask.
 constexpr double kFarLevel3Time = 3.0;
-constexpr double kMostLevel3PerCore = 32;
+constexpr double kMaxLevel3PerCore = 32;
 constexpr double kMemoryTime = 4.0;
 // Starting a row of a stage takes as long as this many bytes of its cells.
 constexpr double kRowStartBytes = 1024;
@@ -38,9 +38,9 @@ constexpr int kTaskStartRows = 8;
 // Tasks take unequal time: at the end of a pass threads wait for this part of a task.
 constexpr double kUnevenTask = 0.15;
 // More tasks per thread than this gain nothing.
-constexpr int kMostTasksPerThread = 8;
+constexpr int kMaxTasksPerThread = 8;
 // Narrower strips are only tried when they are asked for.
-constexpr int kLeastStripColumns = 16;
+constexpr int kMinStripColumns = 16;
 // Numbers of strips and bands to try: all up to kSmallCount, then each about this times the last.
 constexpr int kSmallCount = 12;
 constexpr double kCountStep = 1.2;
@@ -51,10 +51,10 @@ int next_count(int count) {
   return count < kSmallCount ? count + 1 : static_cast<int>(count * kCountStep);
 }
 
-/// Sizes of equal parts of `total`, from the whole down to `least` (the whole in any case).
-std::vector<int> part_sizes(int total, int least, int most_parts) {
+/// Sizes of equal parts of `total`, from the whole down to `min` (the whole in any case).
+std::vector<int> part_sizes(int total, int min, int max_parts) {
   std::vector<int> sizes = {std::max(1, total)};
-  for (int count = 2; count <= most_parts && divide_up(total, count) >= least;
+  for (int count = 2; count <= max_parts && divide_up(total, count) >= min;
        count = next_count(count)) {
     if (const int size = divide_up(total, count); size != sizes.back()) {
       sizes.push_back(size);
@@ -84,11 +84,11 @@ PassPlan PassPlanner::plan(int step_rows) {
   const std::vector<int> widths =
       request_.strip_columns
           ? std::vector{std::clamp(*request_.strip_columns, 1, std::max(1, output_.columns))}
-          : part_sizes(output_.columns, kLeastStripColumns, output_.columns);
+          : part_sizes(output_.columns, kMinStripColumns, output_.columns);
   const std::vector<int> heights =
       request_.band_rows
           ? std::vector{std::clamp(*request_.band_rows, 1, step_rows)}
-          : part_sizes(step_rows, 1, threads_ > 1 ? kMostTasksPerThread * threads_ : 1);
+          : part_sizes(step_rows, 1, threads_ > 1 ? kMaxTasksPerThread * threads_ : 1);
   std::vector<std::vector<int>> rows;
   for (const int height : heights) {
     rows.push_back(rows_made(height));
@@ -179,7 +179,7 @@ double PassPlanner::cache_time(std::size_t scratch_bytes) const {
     return kMemoryTime;
   }
   const bool is_far = static_cast<double>(machine_.l3_bytes) >
-                      kMostLevel3PerCore * static_cast<double>(machine_.l2_bytes) * machine_.cores;
+                      kMaxLevel3PerCore * static_cast<double>(machine_.l2_bytes) * machine_.cores;
   return is_far ? kFarLevel3Time : kLevel3Time;
 }
 

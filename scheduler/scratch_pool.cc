@@ -7,7 +7,7 @@ namespace vantage::scheduler {
 namespace {
 
 // A block serves leases down to its size divided by this.
-constexpr std::size_t kMostWaste = 4;
+constexpr std::size_t kMaxWaste = 4;
 
 }  // namespace
 
@@ -18,7 +18,7 @@ void ScratchPool::Free::operator()(std::byte* memory) const noexcept {
 ScratchPool::Lease ScratchPool::hand_out(Block block, ScratchUse use) {
   Leased& leased = leased_[static_cast<std::size_t>(use)];
   leased.bytes += block.bytes;
-  leased.most_bytes = std::max(leased.most_bytes, leased.bytes);
+  leased.max_bytes = std::max(leased.max_bytes, leased.bytes);
   block.use = use;
   return {this, std::move(block)};
 }
@@ -30,7 +30,7 @@ ScratchPool::Lease ScratchPool::lease(std::size_t bytes, ScratchUse use) {
   // states, which would otherwise have to be allocated again, page by page.
   auto best = free_.end();
   for (auto it = free_.begin(); it != free_.end(); ++it) {
-    if (it->bytes >= bytes && it->bytes <= kMostWaste * bytes &&
+    if (it->bytes >= bytes && it->bytes <= kMaxWaste * bytes &&
         (best == free_.end() || it->bytes < best->bytes)) {
       best = it;
     }
@@ -66,9 +66,9 @@ std::size_t ScratchPool::bytes_held() const {
   return bytes_held_;
 }
 
-std::size_t ScratchPool::most_leased_bytes(ScratchUse use) const {
+std::size_t ScratchPool::max_leased_bytes(ScratchUse use) const {
   std::lock_guard lock(mutex_);
-  return leased_[static_cast<std::size_t>(use)].most_bytes;
+  return leased_[static_cast<std::size_t>(use)].max_bytes;
 }
 
 }  // namespace vantage::scheduler

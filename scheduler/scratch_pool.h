@@ -63,12 +63,12 @@ class ScratchPool {
   /// Bytes that this pool holds, leased or free.
   [[nodiscard]] std::size_t bytes_held() const;
   /// Peak of the bytes leased for `use`.
-  [[nodiscard]] std::size_t most_leased_bytes(ScratchUse use) const;
+  [[nodiscard]] std::size_t max_leased_bytes(ScratchUse use) const;
 
  private:
   struct Leased {
     std::size_t bytes = 0;
-    std::size_t most_bytes = 0;
+    std::size_t max_bytes = 0;
   };
 
   [[nodiscard]] Lease hand_out(Block block, ScratchUse use);

@@ -18,7 +18,7 @@ constexpr double kPassCost = 4.0;
 constexpr int kFewPasses = 12;
 constexpr double kPassesStep = 1.15;
 // Passes of more stages are only made when they are asked for.
-constexpr int kMostStages = 64;
+constexpr int kMaxStages = 64;
 
 int divide_up(int total, int part) { return (total + part - 1) / part; }
 
@@ -156,23 +156,23 @@ class ChainPlanner {
   /// Rings live together; of whole images only a pass's input and output do.
   [[nodiscard]] std::size_t stored_bytes(const ChainPlan& plan) const {
     std::size_t all = 0;
-    std::size_t most_of_two = 0;
+    std::size_t max_of_two = 0;
     std::size_t before = 0;
     for (const PassPlan& pass : plan.passes) {
       const std::size_t bytes = row_bytes(pass) * static_cast<std::size_t>(pass.stored_rows);
       all += bytes;
-      most_of_two = std::max(most_of_two, before + bytes);
+      max_of_two = std::max(max_of_two, before + bytes);
       before = bytes;
     }
-    return plan.steps > 1 ? all : most_of_two;
+    return plan.steps > 1 ? all : max_of_two;
   }
 
   [[nodiscard]] std::size_t scratch_bytes(const ChainPlan& plan) const {
-    std::size_t most = 0;
+    std::size_t max = 0;
     for (const PassPlan& pass : plan.passes) {
-      most = std::max(most, pass.scratch_bytes);
+      max = std::max(max, pass.scratch_bytes);
     }
-    return most * static_cast<std::size_t>(std::max(1, request_.threads));
+    return max * static_cast<std::size_t>(std::max(1, request_.threads));
   }
 
   /// The largest steps whose rings fit beside the scratch of `plan`; 0 if none do.
@@ -241,12 +241,12 @@ ChainPlan plan_chain(Chain chain, const Machine& machine, const PlanRequest& req
     }
     return planner.plan(ends);
   };
-  const int least = divide_up(stages, kMostStages);
+  const int min = divide_up(stages, kMaxStages);
   const auto next = [](int passes) {
     return passes < kFewPasses ? passes + 1 : static_cast<int>(passes * kPassesStep);
   };
-  ChainPlan best = equal_passes(least);
-  for (int passes = next(least); passes <= stages; passes = next(passes)) {
+  ChainPlan best = equal_passes(min);
+  for (int passes = next(min); passes <= stages; passes = next(passes)) {
     if (planner.fits(best) && kPassCost * (passes - 1) > total_expected_time(best)) {
       break;
     }

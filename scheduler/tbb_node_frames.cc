@@ -150,13 +150,13 @@ std::vector<int> deal(int slots, const std::vector<int>& threads_of_nodes) {
 
 /// All slots make equally many frames, so a node with a slot too many is what others wait for.
 bool is_fair(const std::vector<int>& node_of_slot, const std::vector<int>& threads_of_nodes) {
-  constexpr double kMostExcess = 1.25;
+  constexpr double kMaxExcess = 1.25;
   const int threads = std::accumulate(threads_of_nodes.begin(), threads_of_nodes.end(), 0);
   for (std::size_t node = 0; node < threads_of_nodes.size(); ++node) {
     const auto dealt = std::ranges::count(node_of_slot, static_cast<int>(node));
     const double share =
         static_cast<double>(node_of_slot.size()) * threads_of_nodes[node] / threads;
-    if (dealt < 1 || static_cast<double>(dealt) > kMostExcess * share) {
+    if (dealt < 1 || static_cast<double>(dealt) > kMaxExcess * share) {
       return false;
     }
   }

@@ -31,8 +31,8 @@ std::int64_t trace_clock_ns() {
       .count();
 }
 
-Trace::Trace(std::int64_t most_spans)
-    : start_ns_(trace_clock_ns()), serial_(++g_last_serial), spans_left_(most_spans) {
+Trace::Trace(std::int64_t max_spans)
+    : start_ns_(trace_clock_ns()), serial_(++g_last_serial), spans_left_(max_spans) {
   active_.store(this, std::memory_order_release);
   log_of_this_thread()->data.name = "main";
 }

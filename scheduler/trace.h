@@ -65,7 +65,7 @@ struct ThreadTrace {
 /// What a trace has recorded.
 struct TraceData {
   std::int64_t wall_ns = 0;
-  std::int64_t dropped_spans = 0;    ///< those beyond most_spans
+  std::int64_t dropped_spans = 0;    ///< those beyond max_spans
   std::vector<ThreadTrace> threads;  ///< in the order of their first spans; the first is "main"
 };
 
@@ -76,9 +76,9 @@ struct TraceData {
 /// while no other thread has a span open.
 class Trace {
  public:
-  static constexpr std::int64_t kMostSpans = 4'000'000;  // about 300 MB
+  static constexpr std::int64_t kMaxSpans = 4'000'000;  // about 300 MB
 
-  explicit Trace(std::int64_t most_spans = kMostSpans);
+  explicit Trace(std::int64_t max_spans = kMaxSpans);
   Trace(const Trace&) = delete;
   Trace& operator=(const Trace&) = delete;
   ~Trace();

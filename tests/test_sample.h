@@ -90,7 +90,7 @@ inline std::vector<SampleRow> covering_rows(const std::vector<int>& sizes, std::
   /// allowed.
   const auto best_row = [&](const SampleRow& fixed) {
     SampleRow best;
-    int most = -1;
+    int max = -1;
     for (int trial = 0, found = 0; trial < 300 && found < 30; ++trial) {
       SampleRow row = fixed;
       for (std::size_t k = 0; k < dimensions; ++k) {
@@ -104,8 +104,8 @@ inline std::vector<SampleRow> covering_rows(const std::vector<int>& sizes, std::
       ++found;
       int gain = 0;
       for_each_pair(row, [&](char pair) { gain += pair; });
-      if (gain > most) {
-        most = gain;
+      if (gain > max) {
+        max = gain;
         best = std::move(row);
       }
     }

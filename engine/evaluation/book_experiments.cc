@@ -10,9 +10,9 @@
 namespace vantage {
 namespace {
 
-constexpr int kLeastSizePx = 16;
-constexpr int kMostSizePx = 4096;
-constexpr int kMostIterations = 10000;
+constexpr int kMinSizePx = 16;
+constexpr int kMaxSizePx = 4096;
+constexpr int kMaxIterations = 10000;
 constexpr std::string_view kIterationPair = "ramp-square";
 
 /// The strength of the texture's signal (6.6).
@@ -161,13 +161,11 @@ void BookExperimentOptions::validate() const {
   for (const std::string& pair : pairs) {
     book_pair_options(pair);  // throws for unknown names
   }
-  if (size_px < kLeastSizePx || size_px > kMostSizePx) {
-    throw UsageError(
-        fmt::format("size is {}, expected {} to {}", size_px, kLeastSizePx, kMostSizePx));
+  if (size_px < kMinSizePx || size_px > kMaxSizePx) {
+    throw UsageError(fmt::format("size is {}, expected {} to {}", size_px, kMinSizePx, kMaxSizePx));
   }
-  if (iterations < 0 || iterations > kMostIterations) {
-    throw UsageError(
-        fmt::format("iterations is {}, expected 0 to {}", iterations, kMostIterations));
+  if (iterations < 0 || iterations > kMaxIterations) {
+    throw UsageError(fmt::format("iterations is {}, expected 0 to {}", iterations, kMaxIterations));
   }
 }
 

@@ -106,7 +106,7 @@ std::optional<Displacement> CumulativeResponse::dominant(ImagePart part) const {
   const PixelBlock block = block_of(part, width_px, height_px);
   std::optional<Displacement> best;
   double largest = 0;
-  double least = 0;
+  double min = 0;
   for (int dy = displacements_y.min; dy <= displacements_y.max; ++dy) {
     for (int dx = displacements_x.min; dx <= displacements_x.max; ++dx) {
       const Displacement displacement{dx, dy};
@@ -114,7 +114,7 @@ std::optional<Displacement> CumulativeResponse::dominant(ImagePart part) const {
         continue;
       }
       const double sum = at(part, displacement);
-      least = best ? std::min(least, sum) : sum;
+      min = best ? std::min(min, sum) : sum;
       if (!best || sum > largest) {
         best = displacement;
         largest = sum;
@@ -122,7 +122,7 @@ std::optional<Displacement> CumulativeResponse::dominant(ImagePart part) const {
     }
   }
   const bool is_only = displacements_x.count() == 1 && displacements_y.count() == 1;
-  return largest > least || (is_only && largest > 0) ? best : std::nullopt;
+  return largest > min || (is_only && largest > 0) ? best : std::nullopt;
 }
 
 CumulativeResponse cumulative_response(const Photograph& left, const Photograph& right,

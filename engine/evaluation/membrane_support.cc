@@ -15,18 +15,18 @@
 namespace vantage {
 namespace {
 
-constexpr double kLeastBeta = 0.01;
-constexpr int kMostRadius = 256;
+constexpr double kMinBeta = 0.01;
+constexpr int kMaxRadius = 256;
 /// Side of the torus: at least this, and at least this multiple of the support's radius.
-constexpr int kLeastTorusSide = 128;
+constexpr int kMinTorusSide = 128;
 constexpr int kTorusRadii = 4;
 
 void require(double beta, int radius) {
-  if (!(beta >= kLeastBeta && std::isfinite(beta))) {
-    throw UsageError(fmt::format("beta is {}, expected a number of at least {}", beta, kLeastBeta));
+  if (!(beta >= kMinBeta && std::isfinite(beta))) {
+    throw UsageError(fmt::format("beta is {}, expected a number of at least {}", beta, kMinBeta));
   }
-  if (radius < 1 || radius > kMostRadius) {
-    throw UsageError(fmt::format("radius is {}, expected 1 to {}", radius, kMostRadius));
+  if (radius < 1 || radius > kMaxRadius) {
+    throw UsageError(fmt::format("radius is {}, expected 1 to {}", radius, kMaxRadius));
   }
 }
 
@@ -40,7 +40,7 @@ double SupportFunction::sum() const { return std::accumulate(values_.begin(), va
 SupportFunction membrane_support(double beta, int radius) {
   require(beta, radius);
   prepare_opencv();
-  const int side = cv::getOptimalDFTSize(std::max(kLeastTorusSide, kTorusRadii * radius));
+  const int side = cv::getOptimalDFTSize(std::max(kMinTorusSide, kTorusRadii * radius));
   cv::Mat spectrum(side, side, CV_64FC2);
   for (int v = 0; v < side; ++v) {
     for (int u = 0; u < side; ++u) {

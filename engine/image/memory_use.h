@@ -53,9 +53,9 @@ std::size_t held_bytes(const std::vector<T>& values) {
 inline void add_scratch_use(Execution& execution, MemoryUse& use) {
   using scheduler::ScratchUse;
   const scheduler::ScratchPool& scratch = execution.scratch();
-  use.add("rings", scratch.most_leased_bytes(ScratchUse::kRings));
-  use.add("stored iterations", scratch.most_leased_bytes(ScratchUse::kStored));
-  use.add("row work", scratch.most_leased_bytes(ScratchUse::kOther));
+  use.add("rings", scratch.max_leased_bytes(ScratchUse::kRings));
+  use.add("stored iterations", scratch.max_leased_bytes(ScratchUse::kStored));
+  use.add("row work", scratch.max_leased_bytes(ScratchUse::kOther));
 }
 
 }  // namespace vantage

@@ -40,7 +40,7 @@ void fill(const fs::path& target, std::span<const std::uint8_t> bytes, const fs:
 
 }  // namespace
 
-AtomicFile::AtomicFile(const fs::path& path) : given_path_(path), final_path_(behind_links(path)) {
+AtomicFile::AtomicFile(const fs::path& path) : given_path_(path), final_path_(through_links(path)) {
   if (!path.has_filename()) {
     throw Error(fmt::format("cannot write '{}': expected a file name", path.string()));
   }
@@ -115,13 +115,13 @@ bool AtomicFile::commit_if_absent() {
   return true;
 }
 
-fs::path behind_links(const fs::path& path) {
-  constexpr int kMostLinks = 40;  // the limit of Linux
+fs::path through_links(const fs::path& path) {
+  constexpr int kMaxLinks = 40;  // the limit of Linux
   std::error_code error;
   fs::path place = path;
   for (int links = 0; fs::is_symlink(place, error); ++links) {
     const fs::path target = fs::read_symlink(place, error);
-    if (error || links == kMostLinks) {
+    if (error || links == kMaxLinks) {
       return path;
     }
     place = place.parent_path() / target;  // an absolute target is unchanged

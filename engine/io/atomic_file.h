@@ -44,7 +44,7 @@ class AtomicFile {
 };
 
 /// Target of `path` if it is a link, else itself. Circular links are returned unchanged.
-std::filesystem::path behind_links(const std::filesystem::path& path);
+std::filesystem::path through_links(const std::filesystem::path& path);
 
 /// Writes `bytes` to the file `path` atomically. Throws Error.
 void write_binary_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);

@@ -100,15 +100,15 @@ void write_disparity(const std::filesystem::path& path, ImageView<const float> d
   write_binary_file(path, bytes);
 }
 
-void require_holds_search(const std::filesystem::path& path, int least_px, int most_px) {
+void require_holds_search(const std::filesystem::path& path, int min_px, int max_px) {
   const MapFormat* const format = find_map_format(path, MapContent::kDisparity);
   if (format != nullptr && !format->holds_any_value &&
-      (least_px < 0 || most_px * kIntegerDisparityScale > kLargestIntegerDisparity)) {
+      (min_px < 0 || max_px * kIntegerDisparityScale > kLargestIntegerDisparity)) {
     throw UsageError(
         fmt::format("{} is a 16-bit PNG, which holds disparities from 0 to 255.99, but the search "
                     "range is {}:{}; expected {}, which have no limits, or --disparities MIN:MAX "
                     "within 0:255",
-                    path.string(), least_px, most_px, listed_map_formats(MapContent::kConfidence)));
+                    path.string(), min_px, max_px, listed_map_formats(MapContent::kConfidence)));
   }
 }
 

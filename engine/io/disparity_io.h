@@ -28,9 +28,9 @@ void write_disparity(const std::filesystem::path& path, ImageView<const float> d
 void encode_disparity(const std::filesystem::path& path, ImageView<const float> disparity,
                       std::vector<std::uint8_t>& bytes);
 
-/// Throws UsageError unless a file named `path` can hold every disparity of a search from least_px
-/// to most_px: a 16-bit PNG holds 0 to 255.99. Call it before the search, whose result would
+/// Throws UsageError unless a file named `path` can hold every disparity of a search from min_px
+/// to max_px: a 16-bit PNG holds 0 to 255.99. Call it before the search, whose result would
 /// otherwise be lost.
-void require_holds_search(const std::filesystem::path& path, int least_px, int most_px);
+void require_holds_search(const std::filesystem::path& path, int min_px, int max_px);
 
 }  // namespace vantage

@@ -24,7 +24,7 @@ namespace {
 constexpr int kFirstRowsOf709 = 720;
 
 /// Integer grey levels in the byte order of this machine.
-bool has_plain_grey_levels(const AVPixFmtDescriptor& format) {
+bool has_plain_intensities(const AVPixFmtDescriptor& format) {
   constexpr auto kNotPlain = AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_BITSTREAM |
                              AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_FLOAT |
                              (std::endian::native == std::endian::little ? AV_PIX_FMT_FLAG_BE : 0U);
@@ -159,7 +159,7 @@ void FrameToPhotograph::prepare(const AVFrame& frame) {
   levels_.clear();
   yuv_.reset();
   scaler_.reset();
-  if (has_plain_grey_levels(format)) {
+  if (has_plain_intensities(format)) {
     levels_ = grey_levels(bits, frame.color_range == AVCOL_RANGE_MPEG, wide_ ? 65535 : 255);
     source_ = source;
     return;

@@ -16,12 +16,12 @@ constexpr std::endian kLittle = std::endian::little;
 constexpr std::endian kBig = std::endian::big;
 
 /// Two bytes of a run are at most 255 pixels.
-constexpr long long kMostRunPixelsPerByte = 128;
+constexpr long long kMaxRunPixelsPerByte = 128;
 /// Each 8×8 block takes at least one bit of Huffman code. Doubled, because components may be
 /// subsampled.
-constexpr long long kMostJpegPixelsPerByte = 1024;
+constexpr long long kMaxJpegPixelsPerByte = 1024;
 /// Arithmetic code has no such minimum; this is far beyond what photographs reach.
-constexpr long long kMostArithmeticPixelsPerByte = 65536;
+constexpr long long kMaxArithmeticPixelsPerByte = 65536;
 
 /// Checked before allocation: a few bytes must not allocate gigabytes. `min_bytes`: what an image
 /// takes at least.
@@ -55,7 +55,7 @@ void check_bmp(const FileBytes& file) {
     (void)file.part(file.integer<std::uint32_t>(10, kLittle),
                     static_cast<std::size_t>(row_bytes * height));
   } else {
-    check_holds_pixels(file, width, height, width * height / kMostRunPixelsPerByte);
+    check_holds_pixels(file, width, height, width * height / kMaxRunPixelsPerByte);
   }
 }
 
@@ -94,7 +94,7 @@ void check_jpeg(const FileBytes& file) {
       check_holds_pixels(
           file, width, height,
           static_cast<long long>(width) * height /
-              (is_huffman_frame(marker) ? kMostJpegPixelsPerByte : kMostArithmeticPixelsPerByte));
+              (is_huffman_frame(marker) ? kMaxJpegPixelsPerByte : kMaxArithmeticPixelsPerByte));
       has_frame = true;
     }
     has_scan = has_scan || marker == 0xDA;
@@ -106,14 +106,14 @@ void check_jpeg(const FileBytes& file) {
 }
 
 /// Bytes that a byte of TIFF data can stand for; empty: no limit is known.
-std::optional<long long> most_tiff_bytes_per_byte(int compression, long long pixel_bytes) {
+std::optional<long long> max_tiff_bytes_per_byte(int compression, long long pixel_bytes) {
   switch (compression) {
     case 1:  // none
       return 1;
     case 5:  // LZW: codes of 12 bits for strings of at most 3838 bytes
       return 2559;
     case 7:
-      return kMostJpegPixelsPerByte * pixel_bytes;
+      return kMaxJpegPixelsPerByte * pixel_bytes;
     case 8:
     case 32946:  // deflate
       return 1032;
@@ -170,8 +170,8 @@ void check_tiff(const FileBytes& file) {
                           samples, bits));
   }
   const long long pixel_bits = is_subsampled ? bits : bits * samples;
-  if (const auto most = most_tiff_bytes_per_byte(compression, (pixel_bits + 7) / 8)) {
-    check_holds_pixels(file, width, height, width * height * pixel_bits / 8 / *most);
+  if (const auto max = max_tiff_bytes_per_byte(compression, (pixel_bits + 7) / 8)) {
+    check_holds_pixels(file, width, height, width * height * pixel_bits / 8 / *max);
   }
 }
 

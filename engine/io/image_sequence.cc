@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kMostMissingPerFile = 100;
+constexpr std::int64_t kMaxMissingPerFile = 100;
 
 /// Names of the regular files in `folder` ("" is the current one) that `wanted` accepts.
 template <typename Wanted>
@@ -109,11 +109,11 @@ std::unique_ptr<FrameSource> open_image_pattern(const std::string& spec) {
     throw Error(fmt::format("{}: number {} is too large", spec, largest));
   }
   // Each missing number is a missing frame, but time stamps have millions between them.
-  if (std::int64_t{largest} - *smallest + 1 - present > kMostMissingPerFile * present) {
+  if (std::int64_t{largest} - *smallest + 1 - present > kMaxMissingPerFile * present) {
     throw Error(
         fmt::format("{}: {} files have numbers from {} to {}, expected at most {} missing numbers "
                     "per file; '{}' reads the files in order, ignoring gaps",
-                    spec, present, *smallest, largest, kMostMissingPerFile,
+                    spec, present, *smallest, largest, kMaxMissingPerFile,
                     (path.parent_path() / pattern.wildcard()).string()));
   }
   return std::make_unique<NumberedImages>(spec, path.parent_path(), std::move(pattern), *smallest,

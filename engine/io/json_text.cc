@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kMostLevels = 64;
+constexpr int kMaxLevels = 64;
 
 [[noreturn]] void fail_at(std::size_t byte, std::string_view text, const std::string& name,
                           const std::string& problem) {
@@ -36,7 +36,7 @@ std::optional<std::size_t> find_too_deep(std::string_view text) {
     } else if (c == '"') {
       in_string = true;
     } else if (c == '[' || c == '{') {
-      if (++level > kMostLevels) {
+      if (++level > kMaxLevels) {
         return i;
       }
     } else if (c == ']' || c == '}') {
@@ -61,7 +61,7 @@ std::string reason_of(std::string_view message) {
 Json parse_json(std::string_view text, const std::string& name) {
   if (const auto place = find_too_deep(text)) {
     fail_at(*place, text, name,
-            fmt::format("brackets are nested too deep, expected at most {} levels", kMostLevels));
+            fmt::format("brackets are nested too deep, expected at most {} levels", kMaxLevels));
   }
   try {
     return Json::parse(text);

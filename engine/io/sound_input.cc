@@ -75,7 +75,7 @@ double SoundInput::seconds(long long time) const {
   return static_cast<double>(time) * av_q2d(stream_->time_base) - begin_seconds_;
 }
 
-long long SoundInput::begin_time() const {
+long long SoundInput::start_time() const {
   return std::llround(begin_seconds_ / av_q2d(stream_->time_base));
 }
 

@@ -24,7 +24,7 @@ class SoundInput {
   /// Presentation time in seconds of `time`, in the stream's unit.
   [[nodiscard]] double seconds(long long time) const;
   /// Inverse of seconds() at 0, in the stream's unit, rounded.
-  [[nodiscard]] long long begin_time() const;
+  [[nodiscard]] long long start_time() const;
 
   [[noreturn]] void fail(const std::string& problem) const;
 

@@ -27,7 +27,7 @@ class CopiedSound : public SoundPackets {
     while (input_.read(packet)) {
       // One packet more than is audible: the decoder needs its state for the first one.
       if (input_.seconds(packet.pts + 2 * packet.duration) > 0) {
-        packet.pts -= input_.begin_time();
+        packet.pts -= input_.start_time();
         packet.dts = packet.pts;
         return true;
       }

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kMark = ".tmp-";
 constexpr std::size_t kHostDigits = 8;
 /// Length of the mark, the host and two numbers with their dashes.
-constexpr std::size_t kMostAdded = 1 + kMark.size() + kHostDigits + 2 * 11;
+constexpr std::size_t kMaxAdded = 1 + kMark.size() + kHostDigits + 2 * 11;
 /// Longer suffixes are not extensions of any format.
 constexpr std::size_t kLongestExtension = 16;
 
@@ -43,7 +43,7 @@ std::pair<std::string, std::string> shortened(const fs::path& file) {
     stem += extension;
     extension.clear();
   }
-  const std::size_t room = NAME_MAX - kMostAdded - extension.size();
+  const std::size_t room = NAME_MAX - kMaxAdded - extension.size();
   if (stem.size() > room) {
     std::size_t end = room;
     while (end > 0 && (static_cast<unsigned char>(stem[end]) & 0xc0U) == 0x80U) {

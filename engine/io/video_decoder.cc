@@ -95,7 +95,7 @@ void VideoDecoder::read_packet() {
   packet_is_cut_off_ = read_result_ >= 0 && cut_->is_cut_off(*packet_);
 }
 
-bool VideoDecoder::begin_at(const PossibleStart& start) {
+bool VideoDecoder::start_at(const PossibleStart& start) {
   if (cut_->misses_frames()) {
     return false;
   }
@@ -148,8 +148,8 @@ VideoDecoder::Step VideoDecoder::check_frame() {
     gave_all_before_damage_ = gave_all_before_damage_ && threads_ == 1;
     return Step::kDamaged;
   }
-  const bool behind_damage = !problem_.empty() && frame_->best_effort_timestamp >= damaged_time_;
-  return behind_damage ? Step::kDamaged : Step::kFrame;
+  const bool after_damage = !problem_.empty() && frame_->best_effort_timestamp >= damaged_time_;
+  return after_damage ? Step::kDamaged : Step::kFrame;
 }
 
 void VideoDecoder::feed() {

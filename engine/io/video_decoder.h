@@ -27,7 +27,7 @@ class VideoDecoder {
 
   /// Starts decoding at that packet; call it before any decoding. False when that is not possible,
   /// see begins_afresh(): try another one.
-  bool begin_at(const PossibleStart& start);
+  bool start_at(const PossibleStart& start);
   Step next();
   /// The frame after kFrame, valid until the next next().
   [[nodiscard]] const AVFrame& frame() const { return *frame_; }

@@ -65,9 +65,9 @@ struct VideoReader::State {
   /// Restarts decoding at one of the starts in first..last, the `which` one of those where it is
   /// possible. Returns empty and does nothing when there is none.
   enum class Which { kFirst, kLast };
-  std::optional<int> begin_within(int first, int last, Which which, int threads);
+  std::optional<int> start_within(int first, int last, Which which, int threads);
   /// As above at the last start up to `last`; frame 0 always is one.
-  void begin_up_to(int last, int threads);
+  void start_up_to(int last, int threads);
   void forget_last_frame();
   void note_time();
 };
@@ -75,7 +75,7 @@ struct VideoReader::State {
 /// Decodes again with one thread up to the next frame, which is then the damaged one or still good.
 VideoDecoder::Step VideoReader::State::decode_exactly() {
   const int frame_due = frames_read;
-  begin_up_to(frame_due, 1);
+  start_up_to(frame_due, 1);
   auto step = decoder->next();
   while (frames_read < frame_due && step == VideoDecoder::Step::kFrame) {
     ++frames_read;
@@ -85,7 +85,7 @@ VideoDecoder::Step VideoReader::State::decode_exactly() {
   return step;
 }
 
-std::optional<int> VideoReader::State::begin_within(int first, int last, Which which, int threads) {
+std::optional<int> VideoReader::State::start_within(int first, int last, Which which, int threads) {
   std::vector<PossibleStart>& starts = timing.starts;
   std::unique_ptr<VideoDecoder> begun;
   for (;;) {
@@ -98,7 +98,7 @@ std::optional<int> VideoReader::State::begin_within(int first, int last, Which w
       begun = std::make_unique<VideoDecoder>(path, threads);
     }
     const auto start = which == Which::kFirst ? begin : end - 1;
-    if (begun->begin_at(*start)) {
+    if (begun->start_at(*start)) {
       decoder = std::move(begun);
       frames_read = start->frame;
       return frames_read;
@@ -107,8 +107,8 @@ std::optional<int> VideoReader::State::begin_within(int first, int last, Which w
   }
 }
 
-void VideoReader::State::begin_up_to(int last, int threads) {
-  if (!begin_within(0, last, Which::kLast, threads)) {
+void VideoReader::State::start_up_to(int last, int threads) {
+  if (!start_within(0, last, Which::kLast, threads)) {
     decoder = std::make_unique<VideoDecoder>(path, threads);
     frames_read = 0;
   }
@@ -152,9 +152,9 @@ bool VideoReader::State::advance() {
   }
   note_time();
   const std::int64_t time = frame.best_effort_timestamp;
-  const bool is_behind_cut = (timing.cut_time && time >= *timing.cut_time) ||
-                             (timing.last_decoded && time > *timing.last_decoded);
-  if (is_behind_cut && frames_missing > 0) {
+  const bool is_after_cut = (timing.cut_time && time >= *timing.cut_time) ||
+                            (timing.last_decoded && time > *timing.last_decoded);
+  if (is_after_cut && frames_missing > 0) {
     fail_cut_off();
   }
   ++frames_read;
@@ -218,8 +218,8 @@ bool VideoReader::skip() { return state_->advance(); }
 std::optional<int> VideoReader::go_to_start(int first, int last) {
   State& state = *state_;
   if (first == 0) {
-    state.begin_up_to(last, decoder_threads());
-  } else if (!state.begin_within(first, last, State::Which::kLast, decoder_threads())) {
+    state.start_up_to(last, decoder_threads());
+  } else if (!state.start_within(first, last, State::Which::kLast, decoder_threads())) {
     return std::nullopt;
   }
   state.forget_last_frame();
@@ -228,7 +228,7 @@ std::optional<int> VideoReader::go_to_start(int first, int last) {
 
 std::optional<int> VideoReader::go_to_next_start(int first) {
   State& state = *state_;
-  const std::optional<int> start = state.begin_within(first, std::numeric_limits<int>::max(),
+  const std::optional<int> start = state.start_within(first, std::numeric_limits<int>::max(),
                                                       State::Which::kFirst, decoder_threads());
   if (start) {
     state.forget_last_frame();

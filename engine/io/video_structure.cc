@@ -53,9 +53,9 @@ class SparseFile {
 
  private:
   void load(std::uint64_t offset) {
-    constexpr std::uint64_t kMostBytes = 4096;
+    constexpr std::uint64_t kMaxBytes = 4096;
     begin_ = offset;
-    buffer_.resize(static_cast<std::size_t>(std::min(kMostBytes, size_ - offset)));
+    buffer_.resize(static_cast<std::size_t>(std::min(kMaxBytes, size_ - offset)));
     stream_.seekg(static_cast<std::streamoff>(offset));
     if (!stream_.read(buffer_.data(), static_cast<std::streamsize>(buffer_.size()))) {
       throw Error(fmt::format("cannot read {}", path_.string()));
@@ -124,19 +124,19 @@ std::uint64_t samples_without_entries(SparseFile& file, const Box& box) {
 /// Readers allocate an entry for each sample that a table promises. Each takes at least one byte of
 /// the file; samples of compressed sound may be counted as decoded ones.
 void check_sample_tables(SparseFile& file, std::uint64_t begin, std::uint64_t end, int level = 0) {
-  constexpr int kMostLevels = 6;  // moov, trak, mdia, minf, stbl, stsz
-  constexpr std::uint64_t kMostSamplesPerByte = 16;
+  constexpr int kMaxLevels = 6;  // moov, trak, mdia, minf, stbl, stsz
+  constexpr std::uint64_t kMaxSamplesPerByte = 16;
   for (std::uint64_t offset = begin; offset < end;) {
     const std::optional<Box> box = whole_box(file, offset);
     if (!box) {
       return;
     }
     if (const std::uint64_t samples = samples_without_entries(file, *box);
-        samples / kMostSamplesPerByte > file.size()) {
+        samples / kMaxSamplesPerByte > file.size()) {
       file.fail(fmt::format("is damaged, {} bytes cannot hold the {} samples of its index",
                             file.size(), samples));
     }
-    if (level + 1 < kMostLevels && holds_boxes(box->type)) {
+    if (level + 1 < kMaxLevels && holds_boxes(box->type)) {
       check_sample_tables(file, box->begin, std::min(box->end, end), level + 1);
     }
     offset = box->end;

@@ -76,7 +76,7 @@ void CoarseLevels::resize(const MethodParameters& parameters,
   }
 }
 
-LevelVolume& CoarseLevels::begin_result(int level) {
+LevelVolume& CoarseLevels::start_result(int level) {
   const LevelVolume& like = costs(level);
   LevelVolume& volume = result(level);
   const CandidateBlocks* const of_level = blocks(level);
@@ -92,7 +92,7 @@ void CoarseLevels::choose_blocks(int level, const kernels::CandidateGeometry& ge
       winners_.view(), level == 0 ? std::optional(geometry) : std::nullopt, execution);
 }
 
-Image<std::int32_t>& CoarseLevels::begin_winners(int level) {
+Image<std::int32_t>& CoarseLevels::start_winners(int level) {
   const scheduler::Extent extent = costs(level).extent();
   winners_.resize(extent.columns, extent.rows);
   return winners_;
@@ -161,11 +161,11 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
     }
     const bool is_mapped = level > 0 && level == coarse_map.level;
     if (is_mapped || levels.needs_winners(level)) {
-      place.winners = &levels.begin_winners(level);
+      place.winners = &levels.start_winners(level);
     }
     if (level > 0) {
       place.costs = &levels.costs(level);
-      place.result = &levels.begin_result(level);
+      place.result = &levels.start_result(level);
     }
     run(MatchChain(parameters, of_level, input, outputs, place));
     cells.finest_level = place.blocks != nullptr

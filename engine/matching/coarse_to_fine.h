@@ -33,7 +33,7 @@ class CoarseLevels {
     return results_[static_cast<std::size_t>(level) % 2];
   }
   /// Resizes the result of `level`.
-  LevelVolume& begin_result(int level);
+  LevelVolume& start_result(int level);
 
   /// Candidate blocks of `level`; null: all candidates. choose_blocks() must come first on pruned
   /// levels.
@@ -48,7 +48,7 @@ class CoarseLevels {
     return level > 0 && level <= pruned_levels();
   }
   /// Image for the winners of `level` ≥ 1, resized to the level.
-  Image<std::int32_t>& begin_winners(int level);
+  Image<std::int32_t>& start_winners(int level);
 
   [[nodiscard]] std::size_t held_bytes() const;
 

@@ -64,7 +64,7 @@ ConfidenceMeasure confidence_measure(const MethodParameters& parameters) {
 CostBounds bounds_of(const MethodParameters& parameters, const ChainInput& input) {
   CostBounds bounds = cost_bounds(parameters, static_cast<int>(input.partners.size()));
   if (!input.prior_px.empty()) {
-    bounds.largest += static_cast<float>(input.prior_weight) * (bounds.largest - bounds.least);
+    bounds.largest += static_cast<float>(input.prior_weight) * (bounds.largest - bounds.min);
   }
   return bounds;
 }
@@ -287,7 +287,7 @@ void MatchChain::add_column_ssd(const MethodParameters& parameters, const Prepar
 void MatchChain::add_box(const MethodParameters& parameters, const ChainInput& input) {
   const CostBounds bounds = bounds_of(parameters, input);
   const ColumnSumScale quantised =
-      column_sum_scale(bounds.least, bounds.largest, parameters.window_px);
+      column_sum_scale(bounds.min, bounds.largest, parameters.window_px);
   WindowSelectionSettings settings = window_selection(parameters);
   settings.energy_scale = 1.0F / quantised.scale;
   settings.energy_offset = quantised.offset;

@@ -37,10 +37,10 @@ void require_different_baselines(std::span<const OtherView> others) {
 }
 
 void require_usable(const DisparityPrior& prior, const Photograph& image) {
-  constexpr double kMostWeight = 100;
-  if (!(prior.weight >= 0 && prior.weight <= kMostWeight)) {
+  constexpr double kMaxWeight = 100;
+  if (!(prior.weight >= 0 && prior.weight <= kMaxWeight)) {
     throw UsageError(fmt::format("the weight of the prior is {}, expected a number from 0 to {}",
-                                 prior.weight, kMostWeight));
+                                 prior.weight, kMaxWeight));
   }
   for (const ImageView<const float>& map : {prior.left_px, prior.right_px}) {
     if (!map.empty() && (map.width() != image.width() || map.height() != image.height())) {

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/matching/pair_levels.h"
+#include "engine/matching/pair_exposure.h"
 #include "scheduler/strip_plan.h"
 
 namespace vantage {
@@ -27,7 +27,7 @@ struct MatchReport {
   double finest_cells = 0;   ///< of `cells`, those of the finest level
   double finest_pixels = 0;  ///< width × height × maps computed to the finest level
   /// Levels estimated from the images, if parameters ask for it; of several views, the first's.
-  std::optional<PairLevels> levels;
+  std::optional<PairExposure> exposure;
 };
 
 }  // namespace vantage

@@ -10,23 +10,23 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/image/grey_levels.h"
+#include "engine/image/intensity_rows.h"
 #include "engine/matching/stereo_matcher.h"
 
 namespace vantage {
 namespace {
 
-/// Images are reduced by at most this factor as long as they stay at least kLeastWidthPx wide, and
-/// by more if they would stay wider than kMostWidthPx. A search takes 1/factor³ of its time on full
+/// Images are reduced by at most this factor as long as they stay at least kMinWidthPx wide, and
+/// by more if they would stay wider than kMaxWidthPx. A search takes 1/factor³ of its time on full
 /// images, so these determine the cost of the estimate.
 constexpr int kUsualFactor = 4;
-constexpr int kLeastWidthPx = 128;
-constexpr int kMostWidthPx = 320;
+constexpr int kMinWidthPx = 128;
+constexpr int kMaxWidthPx = 320;
 
 // Pixels of the reduced images.
-constexpr int kLeastRegionPixels = 10;
+constexpr int kMinRegionPixels = 10;
 /// Winners below this confidence are ignored: in uniform areas all disparities are equally likely.
-constexpr double kLeastConfidence = 0.3;
+constexpr double kMinConfidence = 0.3;
 /// Disparities separated from all others by more than this, plus this fraction of them, are
 /// outliers.
 constexpr float kGapPx = 2;
@@ -45,10 +45,10 @@ constexpr double kBehindShare = 0.0003;
 /// A small part of an untextured sky may match at any disparity.
 constexpr double kNegativeShare = 0.02;
 /// Share of both images; unrelated images agree by chance.
-constexpr double kLeastMatchedShare = 0.05;
+constexpr double kMinMatchedShare = 0.05;
 
 /// Winners spread over a larger part of the search range are random, as with repeated texture.
-constexpr double kMostSpread = 0.75;
+constexpr double kMaxSpread = 0.75;
 
 /// The range is widened by this plus this fraction of it: winners are accurate to reduced pixels.
 constexpr double kMarginReducedPx = 0.5;
@@ -57,7 +57,7 @@ constexpr double kMarginRatio = 0.03;
 
 int reduction_of(int width) {
   const auto parts = [width](int part) { return (width + part - 1) / part; };
-  return std::max({1, std::min(kUsualFactor, parts(kLeastWidthPx)), parts(kMostWidthPx)});
+  return std::max({1, std::min(kUsualFactor, parts(kMinWidthPx)), parts(kMaxWidthPx)});
 }
 
 /// Grey levels averaged over blocks of `factor` × `factor` pixels; the remainder at the right and
@@ -75,7 +75,7 @@ Photograph reduced(const Photograph& photograph, int factor, Execution& executio
       float* sums = result.row(y);
       std::fill_n(sums, width, 0.0F);
       for (int row = 0; row < rows; ++row) {
-        grey_levels_row(photograph, y * factor + row, grey.data());
+        intensity_row(photograph, y * factor + row, grey.data());
         const float* block = grey.data();
         for (int x = 0; x < width; ++x, block += factor) {
           for (int column = 0; column < factor; ++column) {
@@ -112,8 +112,8 @@ std::vector<float> agreed_disparities(const Photograph& left, const Photograph& 
   }
   options.parameters.levels = 4;  // more suit larger images
   options.refinement.cross_check_level = 0;
-  options.refinement.confidence_threshold = kLeastConfidence;
-  options.refinement.speckle_size_px = kLeastRegionPixels;
+  options.refinement.confidence_threshold = kMinConfidence;
+  options.refinement.speckle_size_px = kMinRegionPixels;
   options.refinement.surface_fit_px = 0;
   options.refinement.fill = Fill::kNone;
   DisparityMaps maps;
@@ -130,8 +130,8 @@ std::vector<float> agreed_disparities(const Photograph& left, const Photograph& 
 }
 
 struct Span {
-  float least = 0;
-  float most = 0;
+  float min = 0;
+  float max = 0;
 };
 
 /// Span of the sorted values (at least one) without stray ones and small separate groups.
@@ -147,7 +147,7 @@ Span span_of(const std::vector<float>& values) {
     }
     const bool is_behind = !span && values[begin] >= -kExactnessPx;
     if (static_cast<double>(end - begin) >= (is_behind ? kBehindShare : kApartShare) * count) {
-      span = Span{span ? span->least : values[begin], values[end - 1]};
+      span = Span{span ? span->min : values[begin], values[end - 1]};
     }
     begin = end;
   }
@@ -182,7 +182,7 @@ Agreement agreement_of(const Photograph& left, const Photograph& right, Disparit
                          reduced(vertical, factor), execution);
   const double pixels = 2.0 * (left.width() / factor) * std::max(1, left.height() / factor);
   agreement.says_something =
-      static_cast<double>(agreement.values.size()) >= std::max(1.0, kLeastMatchedShare * pixels);
+      static_cast<double>(agreement.values.size()) >= std::max(1.0, kMinMatchedShare * pixels);
   return agreement;
 }
 
@@ -197,17 +197,16 @@ std::optional<DisparityRange> find_disparity_range(const Photograph& left, const
     return std::nullopt;
   }
   const Span span = span_of(values);
-  if (span.most - span.least > kMostSpread * agreement.search.count()) {
+  if (span.max - span.min > kMaxSpread * agreement.search.count()) {
     return std::nullopt;
   }
-  const double least_px = factor * static_cast<double>(span.least);
-  const double most_px = factor * static_cast<double>(span.most);
-  const double margin_px =
-      kMarginPx + kMarginReducedPx * factor + kMarginRatio * (most_px - least_px);
+  const double min_px = factor * static_cast<double>(span.min);
+  const double max_px = factor * static_cast<double>(span.max);
+  const double margin_px = kMarginPx + kMarginReducedPx * factor + kMarginRatio * (max_px - min_px);
   const int farthest = left.width() - 1;
   DisparityRange range{
-      std::clamp(static_cast<int>(std::floor(least_px - margin_px)), -farthest, farthest),
-      std::clamp(static_cast<int>(std::ceil(most_px + margin_px)), -farthest, farthest)};
+      std::clamp(static_cast<int>(std::floor(min_px - margin_px)), -farthest, farthest),
+      std::clamp(static_cast<int>(std::ceil(max_px + margin_px)), -farthest, farthest)};
   // Infinity is at 0 in rectified pairs, so negative values count only if there are many.
   const auto negative = std::lower_bound(values.begin(), values.end(), -kExactnessPx);
   if (static_cast<double>(negative - values.begin()) <

@@ -17,7 +17,7 @@ class StageClock {
   StageClock& operator=(const StageClock&) = delete;
   ~StageClock() { end(); }
   /// Ends the previous stage. `name` has static storage.
-  void begin(std::string_view name) {
+  void start(std::string_view name) {
     end();
     name_ = name;
     start_ = Clock::now();

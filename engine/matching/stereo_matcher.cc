@@ -29,8 +29,8 @@ ResolvedMatchOptions checked(const MatchOptions& options) {
 
 StereoMatcher::StereoMatcher(const MatchOptions& options, Execution& execution)
     : in_force_(checked(options)), execution_(execution) {
-  if (uses_pair_levels(in_force_.parameters)) {
-    levels_ = std::make_unique<PairLevelsEstimator>(in_force_.disparities, execution_);
+  if (uses_pair_exposure(in_force_.parameters)) {
+    exposure_ = std::make_unique<PairExposureEstimator>(in_force_.disparities, execution_);
   }
 }
 
@@ -48,43 +48,42 @@ bool StereoMatcher::wants_confidence(const MatchRequest& request) const {
 }
 
 /// Estimates grey level parameters from a pair.
-void StereoMatcher::settle_levels(const Photograph& left, const Photograph& right,
-                                  Prepared& prepared, MatchReport& report) const {
+void StereoMatcher::estimate_exposure(const Photograph& left, const Photograph& right,
+                                      Prepared& prepared, MatchReport& report) const {
   // Throws for the whole images: the bands' own message would name the size of the bands.
   candidate_geometry(in_force_, Side::kLeft, left.width(), left.height());
-  const PairLevels levels = levels_->estimate(left, right, in_force_.parameters.colour,
-                                              in_force_.parameters.match_exposure);
-  prepared.of_right = levels.of_right;
-  if (in_force_.parameters.estimate_sigma_measurement && levels.sigma_measurement) {
-    prepared.parameters.sigma_measurement = *levels.sigma_measurement;
+  const PairExposure exposure = exposure_->estimate(left, right, in_force_.parameters.colour,
+                                                    in_force_.parameters.match_exposure);
+  prepared.of_right = exposure.of_right;
+  if (in_force_.parameters.estimate_sigma_measurement && exposure.sigma_measurement) {
+    prepared.parameters.sigma_measurement = *exposure.sigma_measurement;
   }
-  report.levels = levels;
+  report.exposure = exposure;
 }
 
 /// Estimates each other image against the reference; σ is that of the noisiest.
-std::vector<LevelChanges> StereoMatcher::settle_levels(const Photograph& reference,
-                                                       std::span<const OtherView> others,
-                                                       Prepared& prepared,
-                                                       MatchReport& report) const {
-  std::vector<LevelChanges> changes;
+std::vector<IntensityChanges> StereoMatcher::estimate_exposure(const Photograph& reference,
+                                                               std::span<const OtherView> others,
+                                                               Prepared& prepared,
+                                                               MatchReport& report) const {
+  std::vector<IntensityChanges> changes;
   std::optional<double> sigma;
   for (const OtherView& other : others) {
     // In units of x_reference − x_other.
     const double ratio = other.baseline / std::abs(others.front().baseline);
-    const auto [least, most] =
+    const auto [min, max] =
         std::minmax({in_force_.disparities.min * ratio, in_force_.disparities.max * ratio});
-    const DisparityRange range{static_cast<int>(std::floor(least)),
-                               static_cast<int>(std::ceil(most))};
-    const PairLevels levels =
-        PairLevelsEstimator(range, execution_)
+    const DisparityRange range{static_cast<int>(std::floor(min)), static_cast<int>(std::ceil(max))};
+    const PairExposure exposure =
+        PairExposureEstimator(range, execution_)
             .estimate(reference, *other.photograph, in_force_.parameters.colour,
                       in_force_.parameters.match_exposure);
-    changes.push_back(levels.of_right);
-    if (levels.sigma_measurement) {
-      sigma = std::max(sigma.value_or(0), *levels.sigma_measurement);
+    changes.push_back(exposure.of_right);
+    if (exposure.sigma_measurement) {
+      sigma = std::max(sigma.value_or(0), *exposure.sigma_measurement);
     }
-    if (!report.levels) {
-      report.levels = levels;
+    if (!report.exposure) {
+      report.exposure = exposure;
     }
   }
   if (in_force_.parameters.estimate_sigma_measurement && sigma) {
@@ -189,7 +188,7 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
   if (!task.need.any()) {
     return;
   }
-  clock.begin(name);
+  clock.start(name);
   task.input.edges = prepared.edges.prepare(*task.image, in_force_.parameters, execution_);
   CoarseMap coarse;
   if (task.need.coarse) {
@@ -226,7 +225,7 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   MatchReport& times = report != nullptr ? *report : own_report;
   times = {};
   StageClock clock(times);
-  clock.begin("prepare");
+  clock.start("prepare");
   const int check_level = this->check_level({left.width(), left.height()});
   MapTask of_left{.side = Side::kLeft, .image = &left, .map = &maps.left};
   MapTask of_right{.side = Side::kRight, .image = &right, .map = &maps.right};
@@ -234,10 +233,10 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   const auto prepared = prepared_.borrow();
   prepared->parameters = in_force_.parameters;
   prepared->of_right = {};
-  if (levels_) {
-    clock.begin("grey levels");
-    settle_levels(left, right, *prepared, times);
-    clock.begin("prepare");
+  if (exposure_) {
+    clock.start("grey levels");
+    estimate_exposure(left, right, *prepared, times);
+    clock.start("prepare");
   }
   prepare_inputs(of_left, of_right, uses_prior, *prepared);
   if (uses_prior) {
@@ -260,7 +259,7 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   const MapToRefine left_map = to_refine(of_left, request.left);
   const MapToRefine right_map = to_refine(of_right, request.right);
   refine_maps(*in_force_.refinement, left_map, &right_map, execution_, *work,
-              [&](std::string_view step) { clock.begin(step); });
+              [&](std::string_view step) { clock.start(step); });
 }
 
 void StereoMatcher::match_several(const Photograph& reference, std::span<const OtherView> others,
@@ -275,16 +274,16 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
   MatchReport& times = report != nullptr ? *report : own_report;
   times = {};
   StageClock clock(times);
-  clock.begin("prepare");
+  clock.start("prepare");
   const auto geometry =
       candidate_geometry(in_force_, Side::kLeft, reference.width(), reference.height());
   const auto prepared = prepared_.borrow();
   prepared->parameters = in_force_.parameters;
-  std::vector<LevelChanges> changes(others.size());
-  if (levels_) {
-    clock.begin("grey levels");
-    changes = settle_levels(reference, others, *prepared, times);
-    clock.begin("prepare");
+  std::vector<IntensityChanges> changes(others.size());
+  if (exposure_) {
+    clock.start("grey levels");
+    changes = estimate_exposure(reference, others, *prepared, times);
+    clock.start("prepare");
   }
   prepared->images.resize(others.size() + 1);
   prepared->images[0].prepare(reference, prepared->parameters, geometry, {true, false, false},
@@ -311,12 +310,12 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
   }
   const auto work = refinement_works_.borrow();
   refine_maps(*in_force_.refinement, to_refine(task, true), nullptr, execution_, *work,
-              [&](std::string_view step) { clock.begin(step); });
+              [&](std::string_view step) { clock.start(step); });
 }
 
 void StereoMatcher::add_memory_use(MemoryUse& use) const {
-  if (levels_) {
-    levels_->add_memory_use(use);
+  if (exposure_) {
+    exposure_->add_memory_use(use);
   }
   prepared_.for_each_idle([&use](const Prepared& prepared) {
     std::size_t bytes = prepared.pair.grey_8.held_bytes() + prepared.pair.grey_float.held_bytes() +

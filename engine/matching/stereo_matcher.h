@@ -16,7 +16,7 @@
 #include "engine/matching/match_inputs.h"
 #include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
-#include "engine/matching/pair_levels.h"
+#include "engine/matching/pair_exposure.h"
 #include "engine/object_pool.h"
 #include "engine/refinement/refine_maps.h"
 #include "scheduler/strip_plan.h"
@@ -81,7 +81,7 @@ class StereoMatcher {
     PreparedPair pair;
     std::vector<CostImage> images;
     MethodParameters parameters;  ///< in force, plus the values estimated from the images
-    LevelChanges of_right;
+    IntensityChanges of_right;
     EdgeWeightLevels edges;  ///< of the map being computed
     MapSearchWork search;
     /// Coarse maps of the left and the right image for the cross-check; empty: the maps themselves
@@ -111,19 +111,19 @@ class StereoMatcher {
                                                   int check_level) const;
   [[nodiscard]] bool wants_confidence(const MatchRequest& request) const;
   void prepare_inputs(MapTask& left, MapTask& right, bool uses_prior, Prepared& prepared) const;
-  void settle_levels(const Photograph& left, const Photograph& right, Prepared& prepared,
-                     MatchReport& report) const;
-  [[nodiscard]] std::vector<LevelChanges> settle_levels(const Photograph& reference,
-                                                        std::span<const OtherView> others,
-                                                        Prepared& prepared,
-                                                        MatchReport& report) const;
+  void estimate_exposure(const Photograph& left, const Photograph& right, Prepared& prepared,
+                         MatchReport& report) const;
+  [[nodiscard]] std::vector<IntensityChanges> estimate_exposure(const Photograph& reference,
+                                                                std::span<const OtherView> others,
+                                                                Prepared& prepared,
+                                                                MatchReport& report) const;
   void compute(MapTask& task, std::string_view name, bool wants_confidence, int check_level,
                Prepared& prepared, StageClock& clock, MatchReport& report) const;
   [[nodiscard]] MapToRefine to_refine(const MapTask& task, bool is_result) const;
 
   const ResolvedMatchOptions in_force_;
   Execution& execution_;
-  std::unique_ptr<PairLevelsEstimator> levels_;  ///< null: nothing is estimated
+  std::unique_ptr<PairExposureEstimator> exposure_;  ///< null: nothing is estimated
   mutable ObjectPool<Prepared> prepared_;
   mutable ObjectPool<RefinementWork> refinement_works_;
 };

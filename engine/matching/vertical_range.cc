@@ -16,7 +16,7 @@
 namespace vantage {
 namespace {
 
-constexpr int kMostFeatures = 1000;
+constexpr int kMaxFeatures = 1000;
 constexpr int kLargestSide_px = 640;
 constexpr int kMinMatches = 20;
 
@@ -70,7 +70,7 @@ std::optional<DisparityRange> find_vertical_range(const Photograph& left, const 
   }
   const std::vector<PointMatch> matches = match_features(left, right,
                                                          {.kind = FeatureKind::kOrb,
-                                                          .most_features = kMostFeatures,
+                                                          .max_features = kMaxFeatures,
                                                           .largest_side_px = kLargestSide_px});
   if (static_cast<int>(matches.size()) < kMinMatches) {
     return std::nullopt;

@@ -10,13 +10,13 @@
 namespace vantage {
 namespace {
 
-constexpr int kMostSteps = 6;
+constexpr int kMaxSteps = 6;
 
-/// The smallest of 1, 2 and 5 times a power of ten that covers `span` in at most kMostSteps steps.
+/// The smallest of 1, 2 and 5 times a power of ten that covers `span` in at most kMaxSteps steps.
 double round_step(double span) {
-  const double power = std::pow(10, std::floor(std::log10(span / kMostSteps)));
+  const double power = std::pow(10, std::floor(std::log10(span / kMaxSteps)));
   for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power * kMostSteps >= span * (1 - 1e-9)) {
+    if (factor * power * kMaxSteps >= span * (1 - 1e-9)) {
       return factor * power;
     }
   }
@@ -25,13 +25,13 @@ double round_step(double span) {
 
 }  // namespace
 
-Axis::Axis(AxisOptions options, double least, double most, bool round_ends)
+Axis::Axis(AxisOptions options, double min, double max, bool round_ends)
     : options_(std::move(options)) {
-  if (!std::isfinite(least) || !std::isfinite(most)) {
-    least = most = options_.scale == AxisScale::kLogarithmic ? 1 : 0;
+  if (!std::isfinite(min) || !std::isfinite(max)) {
+    min = max = options_.scale == AxisScale::kLogarithmic ? 1 : 0;
   }
-  begin_ = std::min(least, most);
-  end_ = std::max(least, most);
+  begin_ = std::min(min, max);
+  end_ = std::max(min, max);
   if (options_.scale == AxisScale::kCategories) {
     begin_ = 0;
     end_ = std::max<double>(1, static_cast<double>(options_.categories.size()) - 1);
@@ -89,7 +89,7 @@ void Axis::make_logarithmic_ticks(bool round_ends) {
     begin_ = std::floor(begin_ + 1e-9);
     end_ = std::ceil(end_ - 1e-9);
   }
-  const int decade_step = std::max(1, static_cast<int>(std::ceil((end_ - begin_) / kMostSteps)));
+  const int decade_step = std::max(1, static_cast<int>(std::ceil((end_ - begin_) / kMaxSteps)));
   const bool few_decades = end_ - begin_ <= 2;
   const auto first = static_cast<int>(std::floor(begin_));
   for (int exponent = first; exponent <= end_ + 1e-9; ++exponent) {

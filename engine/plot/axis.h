@@ -29,9 +29,9 @@ class Axis {
     std::string label;
   };
 
-  /// An axis for values from `least` to `most` (equal, reversed or not finite: some range around
+  /// An axis for values from `min` to `max` (equal, reversed or not finite: some range around
   /// them). `round_ends`: it starts and ends at ticks.
-  Axis(AxisOptions options, double least, double most, bool round_ends);
+  Axis(AxisOptions options, double min, double max, bool round_ends);
 
   [[nodiscard]] const std::string& title() const { return options_.title; }
   [[nodiscard]] const std::vector<Tick>& ticks() const { return ticks_; }

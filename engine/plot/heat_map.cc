@@ -11,8 +11,8 @@ namespace vantage {
 namespace {
 
 constexpr double kMapWidth = 320;
-constexpr double kLeastMapHeight = 90;
-constexpr double kMostMapHeight = 320;
+constexpr double kMinMapHeight = 90;
+constexpr double kMaxMapHeight = 320;
 constexpr double kScaleGap = 10;
 constexpr double kScaleWidth = 12;
 constexpr double kScaleLabels = 60;
@@ -20,27 +20,27 @@ constexpr double kHeatMapMargin = 16;
 constexpr double kPanelWidth = kFrameLeft + kMapWidth + kScaleGap + kScaleWidth + kScaleLabels;
 
 PreviewRange range_of(const Image<float>& values) {
-  float least = std::numeric_limits<float>::infinity();
-  float most = -least;
+  float min = std::numeric_limits<float>::infinity();
+  float max = -min;
   for (int y = 0; y < values.height(); ++y) {
     for (int x = 0; x < values.width(); ++x) {
       if (std::isfinite(values.at(x, y))) {
-        least = std::min(least, values.at(x, y));
-        most = std::max(most, values.at(x, y));
+        min = std::min(min, values.at(x, y));
+        max = std::max(max, values.at(x, y));
       }
     }
   }
-  if (!(least <= most)) {
+  if (!(min <= max)) {
     return {0, 1};
   }
-  const float half = std::max(std::abs(least), std::abs(most)) * 1e-3F;
-  return least < most ? PreviewRange{least, most}
-                      : PreviewRange{least - std::max(half, 1e-3F), most + std::max(half, 1e-3F)};
+  const float half = std::max(std::abs(min), std::abs(max)) * 1e-3F;
+  return min < max ? PreviewRange{min, max}
+                   : PreviewRange{min - std::max(half, 1e-3F), max + std::max(half, 1e-3F)};
 }
 
 double map_height(const HeatMap& map) {
-  return std::clamp(kMapWidth * map.values.height() / map.values.width(), kLeastMapHeight,
-                    kMostMapHeight);
+  return std::clamp(kMapWidth * map.values.height() / map.values.width(), kMinMapHeight,
+                    kMaxMapHeight);
 }
 
 void draw_colour_scale(const PreviewRange& range, const ChartArea& beside, Drawing& drawing) {
@@ -101,7 +101,7 @@ void draw_map(const HeatMap& map, const ChartArea& area, Drawing& drawing) {
 Drawing draw_heat_maps(const std::string& title, const std::vector<HeatMap>& maps, int columns) {
   const int count = static_cast<int>(maps.size());
   const int used_columns = std::clamp(columns, 1, std::max(1, count));
-  double height = kLeastMapHeight;
+  double height = kMinMapHeight;
   for (const HeatMap& map : maps) {
     height = std::max(height, map_height(map));
   }

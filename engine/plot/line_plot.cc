@@ -24,16 +24,16 @@ constexpr std::array<Colour, 8> kColours = {
     Colour{230, 159, 0}, Colour{86, 180, 233}, Colour{110, 110, 110}, Colour{150, 75, 30}};
 
 struct Bounds {
-  double least = std::numeric_limits<double>::infinity();
-  double most = -std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
+  double max = -std::numeric_limits<double>::infinity();
 };
 
 /// Extends `bounds` by the values that an axis can show.
 void include(const std::vector<double>& values, AxisScale scale, Bounds& bounds) {
   for (const double value : values) {
     if (std::isfinite(value) && (scale != AxisScale::kLogarithmic || value > 0)) {
-      bounds.least = std::min(bounds.least, value);
-      bounds.most = std::max(bounds.most, value);
+      bounds.min = std::min(bounds.min, value);
+      bounds.max = std::max(bounds.max, value);
     }
   }
 }
@@ -115,12 +115,12 @@ void draw_plot(const LinePlot& plot, const ChartArea& area, const std::vector<st
   }
   if (plot.y_from_zero && plot.y_axis.scale == AxisScale::kLinear) {
     include({0}, plot.y_axis.scale, y_bounds);
-    if (y_bounds.most == 0 && y_bounds.least == 0) {
-      y_bounds.most = 1;
+    if (y_bounds.max == 0 && y_bounds.min == 0) {
+      y_bounds.max = 1;
     }
   }
-  const Axis x_axis(plot.x_axis, x_bounds.least, x_bounds.most, false);
-  const Axis y_axis(plot.y_axis, y_bounds.least, y_bounds.most, true);
+  const Axis x_axis(plot.x_axis, x_bounds.min, x_bounds.max, false);
+  const Axis y_axis(plot.y_axis, y_bounds.min, y_bounds.max, true);
   draw_chart_frame(area, plot.title, x_axis, y_axis, true, drawing);
   for (const PlotSeries& series : plot.series) {
     draw_series(series, area, x_axis, y_axis, colour_of(names, series.name), plot.markers, drawing);

@@ -52,7 +52,7 @@ double best_rate(Execution& execution, int threads, double seconds, const Work& 
 }  // namespace
 
 MachineCeilings measure_ceilings(Execution& execution, double seconds) {
-  constexpr std::size_t kMostMemoryBytes = std::size_t{64} << 20U;  // per thread and array
+  constexpr std::size_t kMaxMemoryBytes = std::size_t{64} << 20U;  // per thread and array
   const scheduler::Machine& machine = execution.machine();
   const int threads = execution.executor().thread_count();
   const auto all = static_cast<std::size_t>(threads);
@@ -62,7 +62,7 @@ MachineCeilings measure_ceilings(Execution& execution, double seconds) {
   const std::size_t l2_floats = std::max<std::size_t>(machine.l2_bytes / 2, 64) / sizeof(float);
   const std::size_t last_cache = std::max(machine.l3_bytes, machine.l2_bytes * all);
   const std::size_t memory_floats =
-      std::min(kMostMemoryBytes, std::max<std::size_t>(2 * last_cache, 1U << 20U)) / sizeof(float);
+      std::min(kMaxMemoryBytes, std::max<std::size_t>(2 * last_cache, 1U << 20U)) / sizeof(float);
   struct Arrays {
     std::vector<float> a, b, c, near;
     float sink = 0;

@@ -13,8 +13,8 @@ namespace vantage {
 /// A figure over the runs of a profile.
 struct ProfileSample {
   double median = 0;
-  double least = 0;
-  double most = 0;
+  double min = 0;
+  double max = 0;
 
   bool operator==(const ProfileSample&) const = default;
 };

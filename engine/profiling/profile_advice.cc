@@ -14,7 +14,7 @@ constexpr double kFastOfBalanced = 0.5;
 constexpr double kFastOfQuality = 0.35;
 /// Time of a map at half size, with all coarser levels, relative to that of a whole map.
 constexpr double kHalfSizeMap = 0.5;
-constexpr double kLeastShare = 0.05;
+constexpr double kMinShare = 0.05;
 /// More threads must save more than this.
 constexpr double kAsFast = 1.05;
 constexpr int kManyCandidates = 64;
@@ -111,23 +111,23 @@ Advice about_one_map(const Steps& steps, const ProfiledChoices& choices) {
 
 /// Advises fewer threads that are as fast, or more if available.
 Advice about_threads(const Profile& profile) {
-  const ThreadCountProfile& most = profile.thread_counts.back();
+  const ThreadCountProfile& max = profile.thread_counts.back();
   const auto best = std::ranges::min_element(
       profile.thread_counts, {}, [](const ThreadCountProfile& one) { return one.wall_s.median; });
   const auto fewest = std::ranges::find_if(profile.thread_counts, [&](const auto& one) {
     return one.wall_s.median <= kAsFast * best->wall_s.median;
   });
-  if (fewest->threads < most.threads) {
-    return {1 - fewest->wall_s.median / most.wall_s.median + kLeastShare,
+  if (fewest->threads < max.threads) {
+    return {1 - fewest->wall_s.median / max.wall_s.median + kMinShare,
             fmt::format("--threads {}: {}, with {} threads {}; further ones gain nothing for one "
                         "pair or frame.",
-                        fewest->threads, time_text(fewest->wall_s.median), most.threads,
-                        time_text(most.wall_s.median))};
+                        fewest->threads, time_text(fewest->wall_s.median), max.threads,
+                        time_text(max.wall_s.median))};
   }
-  if (most.threads < profile.hardware_threads) {
-    return {kLeastShare, fmt::format("--threads {}: the machine has as many, at most {} were "
-                                     "measured.",
-                                     profile.hardware_threads, most.threads)};
+  if (max.threads < profile.hardware_threads) {
+    return {kMinShare, fmt::format("--threads {}: the machine has as many, at most {} were "
+                                   "measured.",
+                                   profile.hardware_threads, max.threads)};
   }
   return {0, ""};
 }
@@ -148,7 +148,7 @@ std::vector<std::string> profile_advice(const Profile& profile,
   std::ranges::stable_sort(all, std::ranges::greater{}, &Advice::saved_share);
   std::vector<std::string> texts;
   for (Advice& advice : all) {
-    if (advice.saved_share >= kLeastShare) {
+    if (advice.saved_share >= kMinShare) {
       texts.push_back(std::move(advice.text));
     }
   }

@@ -57,10 +57,10 @@ void compare(const ThreadCountProfile& first, const ThreadCountProfile& second,
 }  // namespace
 
 Verdict verdict_of(const ProfileSample& first, const ProfileSample& second) {
-  if (second.most < first.least) {
+  if (second.max < first.min) {
     return Verdict::kLess;
   }
-  return second.least > first.most ? Verdict::kMore : Verdict::kNoDifference;
+  return second.min > first.max ? Verdict::kMore : Verdict::kNoDifference;
 }
 
 ProfileComparison compare_profiles(const Profile& first, const Profile& second) {

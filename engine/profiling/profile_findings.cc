@@ -66,25 +66,24 @@ std::string bound_of(const StageProfile& stage, const std::optional<ThreadRoofs>
       reached, roof);
 }
 
-Finding largest_stage(const ThreadCountProfile& most, const std::optional<ThreadRoofs>& roofs) {
-  const double sum_s = stages_s(most);
+Finding largest_stage(const ThreadCountProfile& max, const std::optional<ThreadRoofs>& roofs) {
+  const double sum_s = stages_s(max);
   if (!(sum_s > 0) || !std::isfinite(sum_s)) {
     return std::nullopt;
   }
-  const StageProfile& stage = largest(most.stages);
+  const StageProfile& stage = largest(max.stages);
   return ProfileFinding{Kind::kStage, fmt::format("The stage \"{}\" takes {} of the {}. {}",
-                                                  stage.name, percent(work_share(stage, most)),
-                                                  pool_work_s(most) > 0 ? "work" : "stages' time",
+                                                  stage.name, percent(work_share(stage, max)),
+                                                  pool_work_s(max) > 0 ? "work" : "stages' time",
                                                   bound_of(stage, roofs))};
 }
 
-Finding largest_part(const ThreadCountProfile& most) {
-  const double work_s = pool_work_s(most);
-  if (most.parts.empty() || !(work_s > 0) || !std::isfinite(work_s) ||
-      stages_s(most) >= work_s / 2) {
+Finding largest_part(const ThreadCountProfile& max) {
+  const double work_s = pool_work_s(max);
+  if (max.parts.empty() || !(work_s > 0) || !std::isfinite(work_s) || stages_s(max) >= work_s / 2) {
     return std::nullopt;
   }
-  const PartProfile& part = largest(most.parts);
+  const PartProfile& part = largest(max.parts);
   if (!(part.seconds.median > 0) || !std::isfinite(part.seconds.median)) {
     return std::nullopt;
   }
@@ -92,21 +91,21 @@ Finding largest_part(const ThreadCountProfile& most) {
       Kind::kPart,
       fmt::format("Stages of matching are only {} of the work; the largest part of it is \"{}\" "
                   "with {:.3g} s of the threads' {:.3g} s.",
-                  percent(stages_s(most) / work_s), part.name, part.seconds.median, work_s)};
+                  percent(stages_s(max) / work_s), part.name, part.seconds.median, work_s)};
 }
 
-Finding waiting(const ThreadCountProfile& most) {
-  if (!(pool_time_s(most) > 0) || !std::isfinite(most.work_share.median)) {
+Finding waiting(const ThreadCountProfile& max) {
+  if (!(pool_time_s(max) > 0) || !std::isfinite(max.work_share.median)) {
     return std::nullopt;
   }
-  const double work_share = most.work_share.median;
+  const double work_share = max.work_share.median;
   const double lost = 1 - work_share;
   if (lost < kLittleWaiting) {
     return ProfileFinding{Kind::kWaiting,
                           fmt::format("Little is lost by waiting: threads work {} of the time.",
                                       percent(work_share))};
   }
-  const WaitingProfile& causes = most.waiting_for;
+  const WaitingProfile& causes = max.waiting_for;
   const std::pair<double, std::string_view> named[] = {
       {causes.reading_s.median, "while images were read or decoded"},
       {causes.computing_s.median, "for tasks of other threads"},
@@ -115,14 +114,14 @@ Finding waiting(const ThreadCountProfile& most) {
   const auto& [seconds, cause] = *std::ranges::max_element(named);
   std::string what;
   if (seconds > 0 && std::isfinite(seconds)) {
-    what = fmt::format(", most of it ({}) {}", percent(seconds / pool_time_s(most)), cause);
+    what = fmt::format(", most of it ({}) {}", percent(seconds / pool_time_s(max)), cause);
   }
   return ProfileFinding{Kind::kWaiting, fmt::format("{} of the threads' time is lost waiting{}.",
                                                     percent(lost), what)};
 }
 
-Finding imbalance(const ThreadCountProfile& most) {
-  const double ratio = most.imbalance.median;
+Finding imbalance(const ThreadCountProfile& max) {
+  const double ratio = max.imbalance.median;
   if (!(ratio >= kUneven) || !std::isfinite(ratio)) {
     return std::nullopt;
   }
@@ -131,13 +130,13 @@ Finding imbalance(const ThreadCountProfile& most) {
       fmt::format("Work is uneven: the busiest thread has {:.2f} times the mean.", ratio)};
 }
 
-Finding halo(const ThreadCountProfile& most) {
+Finding halo(const ThreadCountProfile& max) {
   double repeated_s = 0;
-  for (const StageProfile& stage : most.stages) {
+  for (const StageProfile& stage : max.stages) {
     const double share = std::max(0.0, halo_share(stage));
     repeated_s += stage.seconds.median * share / (1 + share);
   }
-  const double share = repeated_s / std::max(stages_s(most), 1e-12);
+  const double share = repeated_s / std::max(stages_s(max), 1e-12);
   if (!(share >= kMuchHalo) || !std::isfinite(share)) {
     return std::nullopt;
   }
@@ -185,10 +184,10 @@ std::vector<ProfileFinding> profile_findings(const Profile& profile) {
   if (profile.thread_counts.empty()) {
     return findings;
   }
-  const ThreadCountProfile& most = profile.thread_counts.back();
+  const ThreadCountProfile& max = profile.thread_counts.back();
   for (const Finding& finding :
-       {largest_stage(most, roofs_on(profile, most.threads)), largest_part(most), waiting(most),
-        imbalance(most), halo(most), scaling(profile)}) {
+       {largest_stage(max, roofs_on(profile, max.threads)), largest_part(max), waiting(max),
+        imbalance(max), halo(max), scaling(profile)}) {
     if (finding) {
       findings.push_back(*finding);
     }

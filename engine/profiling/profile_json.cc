@@ -28,8 +28,8 @@ concept Maybe = std::same_as<std::remove_const_t<T>, Struct>;
 template <Maybe<ProfileSample> T, typename Visit>
 void visit_fields(T& sample, const Visit& visit) {
   visit("median", sample.median);
-  visit("least", sample.least);
-  visit("most", sample.most);
+  visit("least", sample.min);
+  visit("most", sample.max);
 }
 
 template <Maybe<StageProfile> T, typename Visit>

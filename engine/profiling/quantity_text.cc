@@ -62,10 +62,10 @@ std::string sample_text(const ProfileSample& sample, std::string_view unit) {
   }
   const Prefix prefix = prefix_for(sample.median);
   const std::string median = number_text(sample.median / prefix.factor);
-  const std::string least = number_text(sample.least / prefix.factor);
-  const std::string most = number_text(sample.most / prefix.factor);
-  const bool has_range = least != median || most != median;
-  return median + (has_range ? fmt::format("{}({}–{})", kNoBreak, least, most) : "") +
+  const std::string min = number_text(sample.min / prefix.factor);
+  const std::string max = number_text(sample.max / prefix.factor);
+  const bool has_range = min != median || max != median;
+  return median + (has_range ? fmt::format("{}({}–{})", kNoBreak, min, max) : "") +
          fmt::format("{}{}{}", kNoBreak, prefix.text, unit);
 }
 

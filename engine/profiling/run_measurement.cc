@@ -113,17 +113,17 @@ std::size_t median_run(Runs runs) {
 }
 
 double imbalance_of(std::span<const ThreadProfile> workers) {
-  double most_s = 0;
+  double max_s = 0;
   double sum_s = 0;
   int count = 0;
   for (const ThreadProfile& worker : workers) {
     if (worker.is_in_pool) {
-      most_s = std::max(most_s, worker.work_s);
+      max_s = std::max(max_s, worker.work_s);
       sum_s += worker.work_s;
       ++count;
     }
   }
-  return sum_s > 0 ? most_s * count / sum_s : 1;
+  return sum_s > 0 ? max_s * count / sum_s : 1;
 }
 
 ThreadCountProfile summarise_runs(int threads, Runs runs) {

@@ -80,10 +80,10 @@ std::vector<ThreadPiece> with_short_ones_joined(const std::vector<ThreadPiece>& 
 
 }  // namespace
 
-std::vector<TimelineRow> timeline_of(const scheduler::TraceData& trace, int most_spans) {
+std::vector<TimelineRow> timeline_of(const scheduler::TraceData& trace, int max_spans) {
   std::vector<TimelineRow> rows;
   const auto spans_per_row = std::max<std::int64_t>(
-      1, most_spans / std::max<int>(1, static_cast<int>(trace.threads.size())));
+      1, max_spans / std::max<int>(1, static_cast<int>(trace.threads.size())));
   const std::int64_t shortest_ns = trace.wall_ns / spans_per_row;
   for (const scheduler::ThreadTrace& thread : trace.threads) {
     TimelineRow& row = rows.emplace_back(TimelineRow{thread.name, thread.is_in_pool, {}});

@@ -12,7 +12,7 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t kMostBytes = 16U << 20;
+constexpr std::size_t kMaxBytes = 16U << 20;
 
 using Matrix34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
 
@@ -232,9 +232,9 @@ StereoCalibration parse(std::string_view text) {
 StereoCalibration read_stereo_calibration(const std::filesystem::path& path) {
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
   try {
-    if (bytes.size() > kMostBytes) {
+    if (bytes.size() > kMaxBytes) {
       throw Error(
-          fmt::format("it has {} bytes, expected a text of at most {}", bytes.size(), kMostBytes));
+          fmt::format("it has {} bytes, expected a text of at most {}", bytes.size(), kMaxBytes));
     }
     StereoCalibration calibration =
         parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()});

@@ -122,7 +122,7 @@ std::optional<Eigen::Vector2d> LensModel::position_of(const Eigen::Vector2d& ray
 }
 
 std::optional<Eigen::Vector2d> LensModel::ray_of(const Eigen::Vector2d& position_px) const {
-  constexpr int kMostSteps = 60;
+  constexpr int kMaxSteps = 60;
   constexpr double kDifference = 1e-6;
   constexpr double kPrecision = 1e-10;
   const Eigen::Vector2d wanted = (inverse_matrix_ * position_px.homogeneous()).head<2>();
@@ -131,7 +131,7 @@ std::optional<Eigen::Vector2d> LensModel::ray_of(const Eigen::Vector2d& position
     ray *= 0.9 * largest_ray_ / ray.norm();
   }
   Eigen::Vector2d residual = distorted(ray) - wanted;
-  for (int i = 0; i < kMostSteps && residual.norm() > kPrecision; ++i) {
+  for (int i = 0; i < kMaxSteps && residual.norm() > kPrecision; ++i) {
     Eigen::Matrix2d jacobian;
     for (int axis = 0; axis < 2; ++axis) {
       const Eigen::Vector2d step = kDifference * Eigen::Vector2d::Unit(axis);

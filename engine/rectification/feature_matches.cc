@@ -11,7 +11,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "engine/error.h"
-#include "engine/image/grey_levels.h"
+#include "engine/image/intensity_rows.h"
 #include "engine/io/opencv_setup.h"
 #include "engine/late_library.h"
 
@@ -23,7 +23,7 @@ constexpr int kCellsAlongSide = 12;
 // The nearest descriptor must be closer than this fraction of the second nearest distance.
 constexpr float kRatio = 0.7F;
 constexpr int kRefinementWindow_px = 15;
-constexpr float kMostRefinement_px = 2;
+constexpr float kMaxRefinement_px = 2;
 
 /// cv::calcOpticalFlowPyrLK(). Its library, which loads neural networks too, is opened by the first
 /// call. Throws Error when it cannot be opened.
@@ -47,7 +47,7 @@ struct SearchImage {
 cv::Mat grey_image(const Photograph& photograph) {
   cv::Mat grey(photograph.height(), photograph.width(), CV_32F);
   for (int y = 0; y < grey.rows; ++y) {
-    grey_levels_row(photograph, y, grey.ptr<float>(y));
+    intensity_row(photograph, y, grey.ptr<float>(y));
   }
   return grey;
 }
@@ -63,10 +63,10 @@ cv::Mat stretched(const cv::Mat& grey) {
   }
   std::sort(sample.begin(), sample.end());
   const auto tail = static_cast<std::size_t>(kTail * static_cast<double>(sample.size()));
-  const double least = sample[tail];
-  const double range = std::max<double>(sample[sample.size() - 1 - tail] - least, 1e-3);
+  const double min = sample[tail];
+  const double range = std::max<double>(sample[sample.size() - 1 - tail] - min, 1e-3);
   cv::Mat levels;
-  grey.convertTo(levels, CV_8U, 255 / range, -least * 255 / range);
+  grey.convertTo(levels, CV_8U, 255 / range, -min * 255 / range);
   return levels;
 }
 
@@ -112,7 +112,7 @@ Eigen::Vector2d in_photograph(const SearchImage& image, const cv::Point2f& point
 }
 
 /// The strongest features of every cell, reordered.
-std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> points, const cv::Size& size, int most) {
+std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> points, const cv::Size& size, int max) {
   const auto cell_of = [&](const cv::KeyPoint& point) {
     const auto along = [](float position, int side_px) {
       return std::clamp(static_cast<int>(position) * kCellsAlongSide / side_px, 0,
@@ -126,12 +126,12 @@ std::vector<cv::KeyPoint> spread(std::vector<cv::KeyPoint> points, const cv::Siz
     return first < second;
   });
   // Empty cells leave their share to others, up to twice a share.
-  const int share = std::max(2 * most / (kCellsAlongSide * kCellsAlongSide), 1);
+  const int share = std::max(2 * max / (kCellsAlongSide * kCellsAlongSide), 1);
   std::array<int, kCellsAlongSide * kCellsAlongSide> kept_of_cell{};
   std::vector<cv::KeyPoint> kept;
   for (const cv::KeyPoint& point : points) {
     int& count = kept_of_cell[static_cast<std::size_t>(cell_of(point))];
-    if (count < share && static_cast<int>(kept.size()) < most) {
+    if (count < share && static_cast<int>(kept.size()) < max) {
       ++count;
       kept.push_back(point);
     }
@@ -150,11 +150,11 @@ Features features_of(const SearchImage& image, const FeatureMatchOptions& option
   const cv::Ptr<cv::Feature2D> detector =
       options.kind == FeatureKind::kSift
           ? cv::Ptr<cv::Feature2D>(cv::SIFT::create(0, 3, kSiftContrast))
-          : cv::Ptr<cv::Feature2D>(cv::ORB::create(3 * options.most_features, 1.4F, 3, 15, 0, 2,
+          : cv::Ptr<cv::Feature2D>(cv::ORB::create(3 * options.max_features, 1.4F, 3, 15, 0, 2,
                                                    cv::ORB::FAST_SCORE, 31, kFastThreshold));
   Features features;
   detector->detect(image.levels, features.points);
-  features.points = spread(std::move(features.points), image.levels.size(), options.most_features);
+  features.points = spread(std::move(features.points), image.levels.size(), options.max_features);
   if (!features.points.empty()) {
     detector->compute(image.levels, features.points, features.descriptors);
   }
@@ -185,9 +185,9 @@ std::vector<cv::DMatch> mutual_matches(const Features& left, const Features& rig
 }  // namespace
 
 void FeatureMatchOptions::validate() const {
-  if (most_features < 100 || most_features > 20000) {
+  if (max_features < 100 || max_features > 20000) {
     throw UsageError(
-        fmt::format("most-features is {}, expected a number from 100 to 20000", most_features));
+        fmt::format("most-features is {}, expected a number from 100 to 20000", max_features));
   }
   if (largest_side_px < 64) {
     throw UsageError(fmt::format("largest-side is {}, expected at least 64", largest_side_px));
@@ -216,17 +216,17 @@ std::vector<PointMatch> match_features(const Photograph& left, const Photograph&
   std::vector<cv::Point2f> refined = right_points;
   std::vector<std::uint8_t> found;
   std::vector<float> unused_errors;
-  constexpr double kLeastEigenvalue = 1e-4;  // OpenCV's default
+  constexpr double kMinEigenvalue = 1e-4;  // OpenCV's default
   optical_flow()(left_image.contrast, right_image.contrast, left_points, refined, found,
                  unused_errors, cv::Size(kRefinementWindow_px, kRefinementWindow_px), 0,
                  cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 1e-3),
-                 cv::OPTFLOW_USE_INITIAL_FLOW, kLeastEigenvalue);
+                 cv::OPTFLOW_USE_INITIAL_FLOW, kMinEigenvalue);
 
   std::vector<PointMatch> matches;
   for (std::size_t i = 0; i < mutual.size(); ++i) {
     const cv::Point2f step = refined[i] - right_points[i];
     const bool is_refined =
-        found[i] != 0 && std::max(std::abs(step.x), std::abs(step.y)) <= kMostRefinement_px;
+        found[i] != 0 && std::max(std::abs(step.x), std::abs(step.y)) <= kMaxRefinement_px;
     if (!is_refined && options.kind == FeatureKind::kOrb) {
       continue;
     }

@@ -21,7 +21,7 @@ enum class FeatureKind {
 struct FeatureMatchOptions {
   FeatureKind kind = FeatureKind::kSift;
   /// Features kept per image: the strongest of every part of it. 100..20000.
-  int most_features = 3000;
+  int max_features = 3000;
   /// Images with a longer side are reduced before detection; positions are of the full image. ≥ 64.
   int largest_side_px = 2000;
 

@@ -13,10 +13,10 @@
 namespace vantage {
 namespace {
 
-constexpr double kMostBaselineAngleDegrees = 45;
-constexpr double kMostViewingAngleDegrees = 90;
+constexpr double kMaxBaselineAngleDegrees = 45;
+constexpr double kMaxViewingAngleDegrees = 90;
 /// A window that shows less than this share of a camera's height and width is too small.
-constexpr double kLeastShare = 0.1;
+constexpr double kMinShare = 0.1;
 
 double degrees_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
@@ -31,19 +31,19 @@ Eigen::Matrix3d rectifying_rotation(const StereoCalibration& calibration) {
   const Eigen::Vector3d mean_view = Eigen::Vector3d::UnitZ() + right_axes.row(2).transpose();
 
   const double view_angle = degrees_between(Eigen::Vector3d::UnitZ(), right_axes.row(2));
-  if (!(view_angle <= kMostViewingAngleDegrees)) {
+  if (!(view_angle <= kMaxViewingAngleDegrees)) {
     throw Error(fmt::format("the cameras' viewing directions are {:.1f} degrees apart, limit {}",
-                            view_angle, kMostViewingAngleDegrees));
+                            view_angle, kMaxViewingAngleDegrees));
   }
   const double angle = degrees_between(x_axis, mean_x);
-  if (angle >= 180 - kMostBaselineAngleDegrees) {
+  if (angle >= 180 - kMaxBaselineAngleDegrees) {
     throw Error("the right camera is to the left of the left one, expected the cameras swapped");
   }
-  if (!(angle <= kMostBaselineAngleDegrees)) {
+  if (!(angle <= kMaxBaselineAngleDegrees)) {
     throw Error(
         fmt::format("the baseline is turned {:.1f} degrees from the cameras' x axes, limit {}: "
                     "expected cameras side by side",
-                    angle, kMostBaselineAngleDegrees));
+                    angle, kMaxBaselineAngleDegrees));
   }
   const Eigen::Vector3d z_axis = (mean_view - mean_view.dot(x_axis) * x_axis).normalized();
   Eigen::Matrix3d rotation;
@@ -114,11 +114,11 @@ RectifiedPair pair_of(const StereoCalibration& calibration, int width_px, int he
   const auto inner = largest_window_inside(seen, width_px, height_px);
   const RayWindow outer = smallest_window_around(seen, width_px, height_px);
   const double share = inner ? inner->scale / outer.scale : 0;
-  if (!(share >= kLeastShare)) {
+  if (!(share >= kMinShare)) {
     throw Error(
         fmt::format("the cameras' common view is {:.1f} % as wide as what they see, expected at "
                     "least {} %",
-                    100 * share, 100 * kLeastShare));
+                    100 * share, 100 * kMinShare));
   }
   const double kept = options.kept_outline;
   const RayWindow shown = {.centre = (1 - kept) * inner->centre + kept * outer.centre,

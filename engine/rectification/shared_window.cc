@@ -44,23 +44,23 @@ Box bounds(const RayPolygon& polygon) {
 }
 
 /// Minimum of max(|x|, |y|) on the line from `a` to `b`. Convex, so it is at an end or a kink.
-double least_extent(const Eigen::Array2d& a, const Eigen::Array2d& b, double limit) {
-  double least = std::min(a.abs().maxCoeff(), b.abs().maxCoeff());
+double min_extent(const Eigen::Array2d& a, const Eigen::Array2d& b, double limit) {
+  double min = std::min(a.abs().maxCoeff(), b.abs().maxCoeff());
   const Eigen::Array2d line = b - a;
-  if (least - line.abs().maxCoeff() >= limit) {
-    return least;
+  if (min - line.abs().maxCoeff() >= limit) {
+    return min;
   }
   const auto look_at = [&](double distance, double slope) {
     const double t = -distance / slope;
     if (t > 0 && t < 1) {
-      least = std::min(least, (a + t * line).abs().maxCoeff());
+      min = std::min(min, (a + t * line).abs().maxCoeff());
     }
   };
   look_at(a.x(), line.x());
   look_at(a.y(), line.y());
   look_at(a.x() - a.y(), line.x() - line.y());
   look_at(a.x() + a.y(), line.x() + line.y());
-  return least;
+  return min;
 }
 
 /// The largest scale of a window around `centre`: it grows until it touches a polygon.
@@ -74,7 +74,7 @@ double largest_scale(const std::array<RayPolygon, 2>& polygons, const Eigen::Vec
     Eigen::Array2d previous = (polygon.back() - centre).array() / half_px;
     for (const Eigen::Vector2d& corner : polygon) {
       const Eigen::Array2d next = (corner - centre).array() / half_px;
-      scale = std::min(scale, least_extent(previous, next, scale));
+      scale = std::min(scale, min_extent(previous, next, scale));
       previous = next;
     }
   }
@@ -125,12 +125,12 @@ RayPolygon seen_rays(const LensModel& lens, int width_px, int height_px) {
 }
 
 std::optional<RayPolygon> turned(const RayPolygon& polygon, const Eigen::Matrix3d& rotation) {
-  constexpr double kLeastCosine = 0.087;  // cos 85°
+  constexpr double kMinCosine = 0.087;  // cos 85°
   RayPolygon result;
   result.reserve(polygon.size());
   for (const Eigen::Vector2d& ray : polygon) {
     const Eigen::Vector3d point = rotation * ray.homogeneous();
-    if (!(point.z() >= kLeastCosine * point.norm())) {
+    if (!(point.z() >= kMinCosine * point.norm())) {
       return std::nullopt;
     }
     result.push_back(point.hnormalized());

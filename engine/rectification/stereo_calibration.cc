@@ -17,8 +17,8 @@ constexpr double kOrthonormalTolerance = 1e-3;
 /// Tolerance for corresponding rows of rectified images.
 constexpr double kRowTolerancePx = 0.01;
 /// Share of the baseline that may point up or forward in rectified pairs; KITTI's have half of it.
-constexpr double kMostOffAxis = 0.01;
-constexpr double kLeastFocalPerSide = 0.05;
+constexpr double kMaxOffAxis = 0.01;
+constexpr double kMinFocalPerSide = 0.05;
 
 void require_equal_in_rectified(const char* field, double left, double right) {
   if (!(std::abs(left - right) <= kRowTolerancePx)) {
@@ -67,12 +67,11 @@ void StereoCalibration::validate() const {
       throw Error("the right camera is to the left of the left one, expected the cameras swapped");
     }
     const double off_axis = std::hypot(translation.y(), translation.z()) / baseline();
-    if (!(off_axis <= kMostOffAxis)) {
-      throw Error(
-          fmt::format("the cameras are said to be rectified, but {:.3g} % of the baseline ({:.4g}, "
-                      "{:.4g}, {:.4g}) is not along x, expected at most {:g} %",
-                      100 * off_axis, -translation.x(), -translation.y(), -translation.z(),
-                      100 * kMostOffAxis));
+    if (!(off_axis <= kMaxOffAxis)) {
+      throw Error(fmt::format(
+          "the cameras are said to be rectified, but {:.3g} % of the baseline ({:.4g}, "
+          "{:.4g}, {:.4g}) is not along x, expected at most {:g} %",
+          100 * off_axis, -translation.x(), -translation.y(), -translation.z(), 100 * kMaxOffAxis));
     }
   }
 }
@@ -93,10 +92,10 @@ void StereoCalibration::check_image_size(int width_px, int height_px) const {
     }
     for (const auto& [field, focal_px, side_px] : {std::tuple{"fx", camera->matrix(0, 0), width_px},
                                                    {"fy", camera->matrix(1, 1), height_px}}) {
-      if (!(focal_px >= kLeastFocalPerSide * side_px)) {
+      if (!(focal_px >= kMinFocalPerSide * side_px)) {
         throw Error(fmt::format(
             "the {} camera's {} is {:.6g} pixels, expected at least {:.6g} for {}x{} images", name,
-            field, focal_px, kLeastFocalPerSide * side_px, width_px, height_px));
+            field, focal_px, kMinFocalPerSide * side_px, width_px, height_px));
       }
     }
   }

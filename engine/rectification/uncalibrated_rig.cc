@@ -17,10 +17,10 @@
 namespace vantage {
 namespace {
 
-constexpr std::size_t kMostMatches = 3000;
-constexpr double kLeastShare = 0.3;
+constexpr std::size_t kMaxMatches = 3000;
+constexpr double kMinShare = 0.3;
 constexpr double kRigDeviations = 4.5;
-constexpr double kLeastParallax_px = 0.5;
+constexpr double kMinParallax_px = 0.5;
 /// Matches below this distance count as exact.
 constexpr double kExact_px = 1e-3;
 /// Residual lens errors of neighbouring matches are correlated, so more matches add little
@@ -31,7 +31,7 @@ constexpr double kAlike = 9;
 constexpr double kTolerancePerSide = 2.0 / 640;
 
 std::vector<PointMatch> thinned(const std::vector<PointMatch>& matches) {
-  const std::size_t step = (matches.size() + kMostMatches - 1) / kMostMatches;
+  const std::size_t step = (matches.size() + kMaxMatches - 1) / kMaxMatches;
   std::vector<PointMatch> kept;
   for (std::size_t i = 0; i < matches.size(); i += step) {
     kept.push_back(matches[i]);
@@ -108,9 +108,9 @@ double alike(int matches) { return std::sqrt(std::max(kAlike, matches / kMostInd
 /// Alternates between fitting and reselecting the matches and their deviation.
 Fit epipolar_fit(const RigModel& model, const std::vector<PointMatch>& matches, Fit fit,
                  double tolerance_px) {
-  constexpr int kMostRounds = 40;
+  constexpr int kMaxRounds = 40;
   constexpr int kPatientRounds = 5;
-  for (int round = 0; round < kMostRounds && fit.inliers() >= kLeastMatches; ++round) {
+  for (int round = 0; round < kMaxRounds && fit.inliers() >= kMinMatches; ++round) {
     fit.parameters =
         model.fit(fit.parameters, matches, fit.weights, alike(fit.inliers()) * fit.deviation_px);
     const Eigen::VectorXd distances = model.epipolar_distances(fit.parameters, matches);
@@ -125,8 +125,8 @@ Fit epipolar_fit(const RigModel& model, const std::vector<PointMatch>& matches, 
     const double patience_px =
         std::max(std::ldexp(tolerance_px, 3 * std::min(kPatientRounds - round, 0)), kExact_px);
     // Larger deviations do not agree, however many there are.
-    const double most_px = round < kPatientRounds ? HUGE_VAL : 2 * tolerance_px;
-    const double limit_px = std::min(std::max(kRigDeviations * deviation_px, patience_px), most_px);
+    const double max_px = round < kPatientRounds ? HUGE_VAL : 2 * tolerance_px;
+    const double limit_px = std::min(std::max(kRigDeviations * deviation_px, patience_px), max_px);
     const Eigen::ArrayXd share = (distances.array() / limit_px).square();
     fit.weights = (share < 1).select((1 - share).square(), 0);
     const double change = std::abs(deviation_px - fit.deviation_px);
@@ -182,14 +182,14 @@ void require_parallax(const RigModel& model, const std::vector<PointMatch>& matc
       inliers.push_back(matches[i]);
     }
   }
-  const double least_px = std::max(kLeastParallax_px, 4 * fit.deviation_px);
+  const double min_px = std::max(kMinParallax_px, 4 * fit.deviation_px);
   for (const RigModel::Parameters& start : {RigModel::usual(), fit.parameters}) {
     const double parallax_px = distance_from_turning_px(model, inliers, start, tolerance_px);
-    if (!(parallax_px >= least_px)) {
+    if (!(parallax_px >= min_px)) {
       throw Error(
           fmt::format("the parallax is at most {:.2f} pixels, as if the camera had only turned, "
                       "expected at least {:.2f}",
-                      parallax_px, least_px));
+                      parallax_px, min_px));
     }
   }
 }
@@ -210,10 +210,10 @@ void require_sideways_move(const StereoCalibration& calibration, int width_px, i
 }
 
 void require_enough(int inliers, std::size_t matches) {
-  if (inliers < kLeastMatches || inliers < kLeastShare * static_cast<double>(matches)) {
+  if (inliers < kMinMatches || inliers < kMinShare * static_cast<double>(matches)) {
     throw Error(
         fmt::format("{} of {} common points agree with one rig, expected at least {} and {} %",
-                    inliers, matches, kLeastMatches, 100 * kLeastShare));
+                    inliers, matches, kMinMatches, 100 * kMinShare));
   }
 }
 
@@ -223,9 +223,9 @@ UncalibratedRig estimate_rig(const std::vector<PointMatch>& matches, int width_p
   if (width_px < 2 || height_px < 2) {
     throw Error(fmt::format("the images are {}x{}, expected at least 2x2", width_px, height_px));
   }
-  if (static_cast<int>(matches.size()) < kLeastMatches) {
+  if (static_cast<int>(matches.size()) < kMinMatches) {
     throw Error(fmt::format("the images have {} points in common, expected at least {}",
-                            matches.size(), kLeastMatches));
+                            matches.size(), kMinMatches));
   }
   const std::vector<PointMatch> used = thinned(matches);
   const RigModel model(width_px, height_px);
@@ -240,13 +240,13 @@ UncalibratedRig estimate_rig(const std::vector<PointMatch>& matches, int width_p
     starts.push_back({pose_of(fundamental.matrix, model), fundamental.weights, tolerance_px / 8});
   }
   Fit best;
-  double least_cost = 0;
+  double min_cost = 0;
   for (const Fit& start : starts) {
     const Fit fit = epipolar_fit(model, used, start, tolerance_px);
     const double cost = cost_of(fit, model, used, tolerance_px / 2);
-    if (best.weights.size() == 0 || cost < least_cost) {
+    if (best.weights.size() == 0 || cost < min_cost) {
       best = fit;
-      least_cost = cost;
+      min_cost = cost;
     }
   }
   require_enough(best.inliers(), used.size());

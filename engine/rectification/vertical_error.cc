@@ -29,9 +29,9 @@ Terms terms_of(const std::vector<PointMatch>& matches) {
     values.row(i) << match.left.x(), match.left.y(), match.left.x() - match.right.x();
   }
   for (Eigen::Index column = 0; column < 3; ++column) {
-    const double least = values.col(column).minCoeff();
-    const double half_range = std::max((values.col(column).maxCoeff() - least) / 2, 1e-9);
-    values.col(column) = (values.col(column) - least) / half_range - 1;
+    const double min = values.col(column).minCoeff();
+    const double half_range = std::max((values.col(column).maxCoeff() - min) / 2, 1e-9);
+    values.col(column) = (values.col(column) - min) / half_range - 1;
   }
   const auto x = values.col(0);
   const auto y = values.col(1);
@@ -70,7 +70,7 @@ Eigen::VectorXd smooth_part(const Terms& terms, const Eigen::VectorXd& errors) {
 }  // namespace
 
 std::optional<VerticalError> vertical_error(const std::vector<PointMatch>& matches) {
-  if (static_cast<int>(matches.size()) < kLeastMatches) {
+  if (static_cast<int>(matches.size()) < kMinMatches) {
     return std::nullopt;
   }
   Eigen::VectorXd errors(static_cast<Eigen::Index>(matches.size()));
@@ -103,7 +103,7 @@ std::optional<VerticalError> vertical_error(const std::vector<PointMatch>& match
     smooth_sum_of_squares += smooth[row] * smooth[row];
   }
   result.inliers = static_cast<int>(absolute.size());
-  if (result.inliers < kLeastMatches) {
+  if (result.inliers < kMinMatches) {
     return std::nullopt;
   }
   const double count = result.inliers;
@@ -115,7 +115,7 @@ std::optional<VerticalError> vertical_error(const std::vector<PointMatch>& match
   result.percentile_95_px = percentile(absolute, 0.95);
   result.largest_px = *std::max_element(absolute.begin(), absolute.end());
   result.systematic_px = std::sqrt(smooth_sum_of_squares / count);
-  result.least_disparity_px = percentile(disparities, 0.01);
+  result.min_disparity_px = percentile(disparities, 0.01);
   result.largest_disparity_px = percentile(disparities, 0.99);
   const auto is_negative = [](double disparity) { return disparity < kNegative_px; };
   result.negative_share =
@@ -129,14 +129,14 @@ VerticalError measure_vertical_error(const Photograph& left, const Photograph& r
   const auto error = vertical_error(matches);
   if (!error) {
     throw Error(fmt::format("the rectified images have {} points in common, expected at least {}",
-                            matches.size(), kLeastMatches));
+                            matches.size(), kMinMatches));
   }
   return *error;
 }
 
 std::optional<VerticalError> check_rectification(const Photograph& left, const Photograph& right) {
   return vertical_error(match_features(
-      left, right, {.kind = FeatureKind::kOrb, .most_features = 1000, .largest_side_px = 640}));
+      left, right, {.kind = FeatureKind::kOrb, .max_features = 1000, .largest_side_px = 640}));
 }
 
 }  // namespace vantage

@@ -20,7 +20,7 @@ struct VerticalError {
   /// rectification. The rest of `rms_px` is measurement error of the points.
   double systematic_px = 0;
   /// Range of x_left − x_right without one per cent at each end.
-  double least_disparity_px = 0;
+  double min_disparity_px = 0;
   double largest_disparity_px = 0;
   /// Share of inliers whose disparity x_left − x_right is below −0.5 pixels. Almost 0 if infinity
   /// is at disparity 0, as in rectified images that are not shifted.
@@ -32,15 +32,15 @@ struct VerticalError {
 };
 
 /// Minimum number of matches for a result.
-inline constexpr int kLeastMatches = 20;
+inline constexpr int kMinMatches = 20;
 
 /// The error of these matches, fewer than half of which are wrong. Outliers are more than a pixel
 /// and more than 4 standard deviations from a polynomial of second degree in x and y and first
-/// degree in disparity, fitted to all. None if fewer than kLeastMatches inliers remain. Thread
+/// degree in disparity, fitted to all. None if fewer than kMinMatches inliers remain. Thread
 /// rule: may be called concurrently.
 std::optional<VerticalError> vertical_error(const std::vector<PointMatch>& matches);
 
-/// The error of a pair of images of equal sizes. Throws Error when fewer than kLeastMatches matches
+/// The error of a pair of images of equal sizes. Throws Error when fewer than kMinMatches matches
 /// are found.
 VerticalError measure_vertical_error(const Photograph& left, const Photograph& right);
 

@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "engine/image/grey_levels.h"
+#include "engine/image/intensity_rows.h"
 #include "engine/io/opencv_setup.h"
 #include "kernels/edge_snapping/edge_snapping.h"
 
@@ -64,10 +64,10 @@ void smooth_across_rows(const Image<float>& rows, int y, const HalfKernel& kerne
 
 /// Half the difference of the neighbours, in gradient units.
 std::int16_t central_difference(float before, float after) {
-  constexpr int kMost = std::numeric_limits<std::int16_t>::max();
+  constexpr int kMax = std::numeric_limits<std::int16_t>::max();
   const float steps = (after - before) * (kGradientSteps / 2);
-  const float limited = std::clamp(steps, -static_cast<float>(kMost), static_cast<float>(kMost));
-  return static_cast<std::int16_t>(static_cast<int>(limited + (kMost + 0.5F)) - kMost);
+  const float limited = std::clamp(steps, -static_cast<float>(kMax), static_cast<float>(kMax));
+  return static_cast<std::int16_t>(static_cast<int>(limited + (kMax + 0.5F)) - kMax);
 }
 
 template <typename T>
@@ -90,7 +90,7 @@ void find_edges(const Photograph& photograph, Execution& execution, EdgeSnapping
   execution.for_each_band(height, [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
       float* grey = work.grey.row(y) + kRadius;
-      grey_levels_row(photograph, y, grey);
+      intensity_row(photograph, y, grey);
       smooth_along_row(grey, kernel, width, work.smooth_x.row(y));
     }
   });
@@ -119,11 +119,11 @@ void find_edges(const Photograph& photograph, Execution& execution, EdgeSnapping
             kHighThreshold * kGradientSteps, /*L2gradient=*/true);
 }
 
-void snap_discontinuities(const Mask& edges, int most_px, Execution& execution,
+void snap_discontinuities(const Mask& edges, int max_px, Execution& execution,
                           DisparityMap& map_px) {
   execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
-      kernels::snap_discontinuities_row(edges.row(y), most_px, map_px.width(), map_px.row(y));
+      kernels::snap_discontinuities_row(edges.row(y), max_px, map_px.width(), map_px.row(y));
     }
   });
 }

@@ -30,10 +30,10 @@ inline std::size_t held_bytes(const EdgeSnappingWork& work) {
 /// Identical for any `execution`.
 void find_edges(const Photograph& photograph, Execution& execution, EdgeSnappingWork& work);
 
-/// Moves the discontinuities of a map to edges of its own image, row by row, by at most `most_px`
+/// Moves the discontinuities of a map to edges of its own image, row by row, by at most `max_px`
 /// columns; direction as in kernels::snap_discontinuities_row(). `edges` has the size of the map.
 /// Identical for any `execution`.
-void snap_discontinuities(const Mask& edges, int most_px, Execution& execution,
+void snap_discontinuities(const Mask& edges, int max_px, Execution& execution,
                           DisparityMap& map_px);
 
 }  // namespace vantage

@@ -30,12 +30,12 @@ std::size_t held_bytes(const RefinementWork& work) {
 
 void refine_maps(const RefinementOptions& options, const MapToRefine& map, const MapToRefine* other,
                  Execution& execution, RefinementWork& work,
-                 const std::function<void(std::string_view)>& begin_step) {
+                 const std::function<void(std::string_view)>& start_step) {
   const std::array<const MapToRefine*, 2> both = {&map, other};
   std::span<const MapToRefine* const> maps(both.data(), other != nullptr ? 2 : 1);
 
   if (options.edge_snapping_px > 0) {
-    begin_step("edge snapping");
+    start_step("edge snapping");
     for (const MapToRefine* one : maps) {
       if (one->map->disparity_px.empty()) {
         continue;
@@ -48,7 +48,7 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
   // Both are checked before either is changed.
   const bool is_checked = options.cross_check && other != nullptr;
   if (is_checked) {
-    begin_step("cross-check");
+    start_step("cross-check");
     if (map.is_result) {
       check_against(map, *other, options.cross_check_px, execution);
     }
@@ -65,14 +65,14 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
     }
   }
   if (uses_confidence(options)) {
-    begin_step("confidence");
+    start_step("confidence");
     for (const MapToRefine* one : maps) {
       mark_unsure(one->map->confidence.view(), options.confidence_threshold, execution,
                   one->map->unmatched);
     }
   }
   if (options.speckle_size_px > 1) {
-    begin_step("speckles");
+    start_step("speckles");
     execution.executor().parallel_for(static_cast<int>(maps.size()), [&](int index) {
       MatchedMap& matched = *maps[static_cast<std::size_t>(index)]->map;
       mark_speckles(matched.disparity_px.view(), matched.disparity_y_px.view(),
@@ -81,7 +81,7 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
     });
   }
   if (options.surface_fit_px > 0) {
-    begin_step("surface fit");
+    start_step("surface fit");
     for (const MapToRefine* one : maps) {
       MatchedMap& matched = *one->map;
       fit_surface(matched.unmatched, options.surface_fit_px, one->search, execution,
@@ -92,7 +92,7 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
       }
     }
   }
-  begin_step("fill");
+  start_step("fill");
   for (const MapToRefine* one : maps) {
     MatchedMap& matched = *one->map;
     for (DisparityMap* component_px : {&matched.disparity_px, &matched.disparity_y_px}) {

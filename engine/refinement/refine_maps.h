@@ -52,10 +52,10 @@ std::size_t held_bytes(const RefinementWork& work);
 /// Refines winners to dense maps (EQUATIONS §5): edge snapping → cross-check → confidence →
 /// speckles → surface fit → fill, as set in `options`. `other`: the map of the other image, also
 /// refined if it is a result; null: no cross-check, and unknown pixels are unmatched instead.
-/// `begin_step` is called with the name of each step before it runs (static storage). Identical for
+/// `start_step` is called with the name of each step before it runs (static storage). Identical for
 /// any `execution`.
 void refine_maps(const RefinementOptions& options, const MapToRefine& map, const MapToRefine* other,
                  Execution& execution, RefinementWork& work,
-                 const std::function<void(std::string_view)>& begin_step);
+                 const std::function<void(std::string_view)>& start_step);
 
 }  // namespace vantage

@@ -141,7 +141,7 @@ class Regions {
 
 }  // namespace
 
-void mark_speckles(ImageView<const float> map_px, ImageView<const float> map_y_px, int least_pixels,
+void mark_speckles(ImageView<const float> map_px, ImageView<const float> map_y_px, int min_pixels,
                    SpeckleWork& work, Mask& unmatched) {
   if (map_px.empty()) {
     return;
@@ -151,7 +151,7 @@ void mark_speckles(ImageView<const float> map_px, ImageView<const float> map_y_p
     const auto row = static_cast<std::size_t>(y);
     for (std::int32_t i = work.row_begin[row]; i < work.row_begin[row + 1]; ++i) {
       const Run& run = work.runs[static_cast<std::size_t>(i)];
-      if (work.runs[static_cast<std::size_t>(run.joined)].pixels < least_pixels) {
+      if (work.runs[static_cast<std::size_t>(run.joined)].pixels < min_pixels) {
         std::fill(unmatched.row(y) + run.begin, unmatched.row(y) + run.end, std::uint8_t{255});
       }
     }

@@ -38,12 +38,12 @@ inline std::size_t held_bytes(const SpeckleWork& work) {
 }
 
 /// Marks as unmatched (255) the matched pixels (0 in `unmatched`) of regions smaller than
-/// `least_pixels` (≥ 0). A region is 4-connected over neighbours whose disparities differ by at
+/// `min_pixels` (≥ 0). A region is 4-connected over neighbours whose disparities differ by at
 /// most 1 px: one surface in the sense of the gradient limit (EQUATIONS §6). Wrong matches that
 /// pass the cross-check are small islands, which constant-depth fill would smear into streaks.
 /// map_px and unmatched have the same size; pixels with unmatched = 0 are finite. map_y_px: second
 /// component of a two-dimensional search, which must agree as well; else empty.
-void mark_speckles(ImageView<const float> map_px, ImageView<const float> map_y_px, int least_pixels,
+void mark_speckles(ImageView<const float> map_px, ImageView<const float> map_y_px, int min_pixels,
                    SpeckleWork& work, Mask& unmatched);
 
 }  // namespace vantage

@@ -34,8 +34,8 @@ void fit_surface(const Mask& unmatched, int radius_px, DisparityRange search, Ex
            .pitch = static_cast<std::ptrdiff_t>(work.matched_px.view().stride()),
            .radius_px = radius_px,
            .width = width,
-           .least_px = static_cast<float>(search.min),
-           .most_px = static_cast<float>(search.max)},
+           .min_px = static_cast<float>(search.min),
+           .max_px = static_cast<float>(search.max)},
           map_px.row(y));
     }
   });

@@ -33,7 +33,7 @@ struct PixelVotes {
     // on the order of the edges.
     std::sort(matched.begin(), matched.end());
     float best = matched.front();
-    int most = 0;
+    int max = 0;
     for (const float centre : matched) {
       float sum = 0;
       int supporters = 0;
@@ -43,8 +43,8 @@ struct PixelVotes {
           ++supporters;
         }
       }
-      if (supporters > most) {
-        most = supporters;
+      if (supporters > max) {
+        max = supporters;
         best = sum / static_cast<float>(supporters);
       }
     }

@@ -55,8 +55,8 @@ double distance_to_segment(ScenePosition p, ScenePosition a, ScenePosition b) {
 SceneLayout::SceneLayout(std::vector<ScenePosition> positions, std::span<const std::string> names)
     : positions_(std::move(positions)) {
   const std::size_t count = positions_.size();
-  if (count < 2 || count > kMostVertices) {
-    throw Error(fmt::format("scene has {} images, expected 2 to {}", count, kMostVertices));
+  if (count < 2 || count > kMaxVertices) {
+    throw Error(fmt::format("scene has {} images, expected 2 to {}", count, kMaxVertices));
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (!std::isfinite(positions_[i].x) || !std::isfinite(positions_[i].y)) {

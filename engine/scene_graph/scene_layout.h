@@ -47,7 +47,7 @@ struct ScenePlace {
 /// Thread rule: immutable.
 class SceneLayout {
  public:
-  static constexpr int kMostVertices = 4096;
+  static constexpr int kMaxVertices = 4096;
 
   /// `names`: of the images, for messages. The neighbours of a vertex are the nearest ones in each
   /// direction with the same y or the same x, up to a thousandth of their distance: along such

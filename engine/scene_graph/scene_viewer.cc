@@ -16,8 +16,8 @@ namespace {
 constexpr double kSameDirection = 1e-9;  // of an edge
 // Objects kept in addition to those of views in progress: vertices, of which a stereo view needs up
 // to six, and sources.
-constexpr std::size_t kMostLoaded = 8;
-constexpr std::size_t kMostSources = 2;
+constexpr std::size_t kMaxLoaded = 8;
+constexpr std::size_t kMaxSources = 2;
 
 SynthesisOptions with_moving_brightness(SynthesisOptions options) {
   if (options.warp == WarpColour::kForward) {
@@ -83,7 +83,7 @@ void SceneViewer::require_near(ScenePosition position) const {
   }
 }
 
-// A reference is valid until kMostLoaded others have been requested.
+// A reference is valid until kMaxLoaded others have been requested.
 const std::shared_ptr<const SceneVertex>& SceneViewer::vertex(int number) {
   const auto found = std::find_if(loaded_.begin(), loaded_.end(),
                                   [&](const Loaded& loaded) { return loaded.number == number; });
@@ -91,7 +91,7 @@ const std::shared_ptr<const SceneVertex>& SceneViewer::vertex(int number) {
     loaded_.splice(loaded_.begin(), loaded_, found);
   } else {
     loaded_.push_front({number, std::make_shared<const SceneVertex>(load_vertex_(number))});
-    if (loaded_.size() > kMostLoaded) {
+    if (loaded_.size() > kMaxLoaded) {
       loaded_.pop_back();
     }
   }
@@ -117,7 +117,7 @@ PreparedSceneView SceneViewer::prepare(ScenePosition position) {
     sources_.splice(sources_.begin(), sources_, found);
   } else {
     sources_.push_front(make_sources(prepared.place));
-    if (sources_.size() > kMostSources) {
+    if (sources_.size() > kMaxSources) {
       sources_.pop_back();
     }
   }

@@ -30,12 +30,12 @@ struct Levels {
   std::int64_t sum = 0;
 
   void take(const Photograph& image, Execution& execution) {
-    luma_levels(image, execution, levels);
+    luma_intensity(image, execution, levels);
     std::atomic<std::int64_t> total = 0;
     execution.for_each_band(levels.height(), [&](int first_row, int end_row) {
       std::int64_t of_band = 0;
       for (int y = first_row; y < end_row; ++y) {
-        of_band += kernels::level_sum_row(levels.row(y), levels.width());
+        of_band += kernels::intensity_sum_row(levels.row(y), levels.width());
       }
       total += of_band;
     });
@@ -144,7 +144,7 @@ struct FlickerMeter::State {
   void add_row(int y, std::uint8_t* still_view, FlickerSums& sums) const {
     const int width = now.width();
     const std::uint8_t* is_still = still.row(y);
-    const kernels::LevelChange left = kernels::level_change_row(
+    const kernels::IntensityChange left = kernels::intensity_change_row(
         now.left.levels.row(y), before.left.levels.row(y), is_still, width);
     sums.still += left.compared;
     sums.grey_change += left.change;
@@ -157,7 +157,7 @@ struct FlickerMeter::State {
     sums.compared += map.compared;
     sums.jumped += map.jumped;
     sums.disparity_change += map.change;
-    if (!(map.least_px <= map.most_px)) {
+    if (!(map.min_px <= map.max_px)) {
       return;
     }
     for (std::size_t v = 0; v < sums.views.size(); ++v) {
@@ -167,12 +167,12 @@ struct FlickerMeter::State {
         continue;
       }
       // (3.5): a view's pixel at x was at x + XS · d in the left image.
-      const double first = position->x * map.least_px;
-      const double second = position->x * map.most_px;
+      const double first = position->x * map.min_px;
+      const double second = position->x * map.max_px;
       kernels::still_view_row(is_still, width,
                               static_cast<int>(std::floor(std::min(first, second))),
                               static_cast<int>(std::ceil(std::max(first, second))), still_view);
-      const kernels::LevelChange view = kernels::level_change_row(
+      const kernels::IntensityChange view = kernels::intensity_change_row(
           now.views[v].levels.row(y), before.views[v].levels.row(y), still_view, width);
       sums.views[v].compared += view.compared;
       sums.views[v].grey_change += view.change;

@@ -15,7 +15,7 @@ class FrameFeed {
     for (const FrameRun& run : runs_) {
       frames_total_ += run.frames.count();
     }
-    begin_run();
+    start_run();
   }
 
   /// Number of frames to deliver.
@@ -30,13 +30,13 @@ class FrameFeed {
     is_lead_in = frame < runs_[run_].frames.first;
     if (next_frame_ == runs_[run_].frames.end) {
       ++run_;
-      begin_run();
+      start_run();
     }
     return true;
   }
 
  private:
-  void begin_run() {
+  void start_run() {
     if (run_ < runs_.size()) {
       next_frame_ = runs_[run_].frames.first - runs_[run_].lead_in;
     }

@@ -26,7 +26,7 @@ namespace {
 
 /// A look takes up to a tenth of the time of a match; whether frames are cut off is known after a
 /// few.
-constexpr int kMostLooksBeyond = 4;
+constexpr int kMaxLooksBeyond = 4;
 
 using Clock = std::chrono::steady_clock;
 
@@ -193,7 +193,7 @@ void FrameWorker::check_range(FrameSlot& slot) {
   const MatchesAtEnds matches = matches_at_ends(slot.maps, options_.match);
   slot.may_be_cut = may_be_cut(matches, options_.match, false);
   slot.cut.reset();
-  if (slot.may_be_cut && looks_beyond_++ < kMostLooksBeyond) {
+  if (slot.may_be_cut && looks_beyond_++ < kMaxLooksBeyond) {
     const TimedStep step(slot, "range check");
     slot.cut = look_beyond(matches, *slot.left, *slot.right, options_.match, execution_);
   }

@@ -25,8 +25,8 @@ constexpr int kJournalFormat = 2;
 
 /// Throws nlohmann's exceptions unless it is an integer ≥ 0.
 int count_of(const Json& json) {
-  constexpr Json::number_unsigned_t kMost = std::numeric_limits<int>::max() - 1;
-  return static_cast<int>(std::min(json.get_ref<const Json::number_unsigned_t&>(), kMost));
+  constexpr Json::number_unsigned_t kMax = std::numeric_limits<int>::max() - 1;
+  return static_cast<int>(std::min(json.get_ref<const Json::number_unsigned_t&>(), kMax));
 }
 
 Json range_json(FrameRange frames) { return Json::array({frames.first, frames.end}); }
@@ -152,8 +152,8 @@ std::string_view content_of(std::string_view input) {
 
 /// Lists of poses would fill pages.
 std::string change_of(const std::string& key, const std::string& before, const std::string& now) {
-  constexpr std::size_t kMostShown = 100;
-  return before.size() > kMostShown || now.size() > kMostShown
+  constexpr std::size_t kMaxShown = 100;
+  return before.size() > kMaxShown || now.size() > kMaxShown
              ? fmt::format("{} was another one", key)
              : fmt::format("{} was {}, now {}", key, before, now);
 }

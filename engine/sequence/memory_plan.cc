@@ -16,8 +16,8 @@
 namespace vantage {
 namespace {
 
-constexpr int kMostInFlight = 64;
-constexpr int kDefaultMostInFlight = 34;  // more only even out unequal frames
+constexpr int kMaxInFlight = 64;
+constexpr int kDefaultMaxInFlight = 34;  // more only even out unequal frames
 /// The program, its libraries and their one-time initialisation.
 constexpr std::size_t kProcessBytes = std::size_t{84} << 20;
 /// Per thread: stack, allocator arena.
@@ -152,18 +152,18 @@ std::size_t view_bytes(const SequenceOptions& options, const PairShape& shape) {
       throw Error(view.moves() ? fmt::format("frame {}: {}", frame, error.what()) : error.what());
     }
   };
-  std::size_t most =
+  std::size_t max =
       options.saves(SequenceOutput::kStereo) ? baseline_view_bytes(options, shape) : 0;
   for (const ViewPath& view : options.views) {
     if (is_on_baseline(options, view)) {
-      most = std::max(most, baseline_view_bytes(options, shape));
+      max = std::max(max, baseline_view_bytes(options, shape));
       continue;
     }
     for (int frame = 0; frame < frames_that_differ(view, shape); ++frame) {
-      most = std::max(most, bytes_at(frame, view));
+      max = std::max(max, bytes_at(frame, view));
     }
   }
-  return most;
+  return max;
 }
 
 /// State of the previous frame, and the comparison with it.
@@ -202,7 +202,7 @@ std::size_t video_bytes(const SequenceOptions& options, const PairShape& shape) 
 
 }  // namespace
 
-int default_frames_in_flight(int threads) { return std::min(threads + 2, kDefaultMostInFlight); }
+int default_frames_in_flight(int threads) { return std::min(threads + 2, kDefaultMaxInFlight); }
 
 MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& request,
                        const PairShape& shape, const Photograph& left, const Photograph& right,
@@ -223,7 +223,7 @@ MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& requ
   const std::size_t of_worked_on =
       match_bytes(options, shape) + view_bytes(options, shape) + conversion_bytes(shape);
   const int wanted = request.in_flight.value_or(default_frames_in_flight(threads));
-  for (plan.in_flight = std::min(wanted, kMostInFlight); plan.in_flight >= 1; --plan.in_flight) {
+  for (plan.in_flight = std::min(wanted, kMaxInFlight); plan.in_flight >= 1; --plan.in_flight) {
     const auto matched = static_cast<std::size_t>(std::min(plan.in_flight, threads));
     const std::size_t frames =
         static_cast<std::size_t>(plan.in_flight) * plan.frame_bytes + matched * of_worked_on;

@@ -10,7 +10,7 @@ namespace {
 
 /// Estimating the range of a pair takes an eighth of its matching time: little compared with a long
 /// sequence, and at most that of a single pair for a short one.
-constexpr int kMostPairs = 16;
+constexpr int kMaxPairs = 16;
 
 std::optional<DisparityRange> range_of_pair(PairSource& pairs, int index,
                                             const PreparePair& prepare, FramePair& pair,
@@ -35,7 +35,7 @@ std::optional<DisparityRange> range_of_pair(PairSource& pairs, int index,
 std::optional<DisparityRange> find_sequence_range(PairSource& pairs, const PreparePair& prepare,
                                                   Execution& execution) {
   const int all = pairs.pair_count();
-  const int count = std::min(all, kMostPairs);
+  const int count = std::min(all, kMaxPairs);
   std::optional<DisparityRange> together;
   FramePair pair;
   for (int i = 0; i < count; ++i) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "engine/image/grey_levels.h"
+#include "engine/image/intensity_rows.h"
 
 namespace vantage {
 namespace {
@@ -37,7 +37,7 @@ Thumbnail make_thumbnail(const Photograph& photograph) {
     const int first_row = part_begin(j, kHeight, height);
     const int end_row = part_end(j, kHeight, height);
     for (int y = first_row; y < end_row; ++y) {
-      grey_levels_row(photograph, y, grey.data());
+      intensity_row(photograph, y, grey.data());
       for (int i = 0; i < kWidth; ++i) {
         for (int x = part_begin(i, kWidth, width); x < part_end(i, kWidth, width); ++x) {
           sums[static_cast<std::size_t>(i)] += grey[static_cast<std::size_t>(x)];

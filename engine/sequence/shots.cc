@@ -18,15 +18,15 @@ namespace {
 constexpr double kViewOfFit = 0.5;  // baselines
 constexpr double kOutside = 0.01;   // share of the disparities on either side of the range
 constexpr float kWidening = 0.05F;
-constexpr float kLeastWideningPx = 0.5F;
-constexpr std::size_t kMostSamples = 3;  // of a shot
+constexpr float kMinWideningPx = 0.5F;
+constexpr std::size_t kMaxSamples = 3;  // of a shot
 
 /// The disparities of some maps, and their preview range.
 class DisparitySamples {
  public:
   void add(ImageView<const float> map_px) {
     // At once: growing would take twice the memory.
-    values_.reserve(kMostSamples * static_cast<std::size_t>(map_px.width()) *
+    values_.reserve(kMaxSamples * static_cast<std::size_t>(map_px.width()) *
                     static_cast<std::size_t>(map_px.height()));
     for (int y = 0; y < map_px.height(); ++y) {
       std::copy_if(map_px.row(y), map_px.row(y) + map_px.width(), std::back_inserter(values_),
@@ -35,10 +35,10 @@ class DisparitySamples {
   }
   [[nodiscard]] bool empty() const { return values_.empty(); }
   [[nodiscard]] PreviewRange range() {
-    const float least = percentile(kOutside);
-    const float most = percentile(1 - kOutside);
-    const float margin = std::max(kLeastWideningPx, kWidening * (most - least));
-    return {least - margin, most + margin};
+    const float min = percentile(kOutside);
+    const float max = percentile(1 - kOutside);
+    const float margin = std::max(kMinWideningPx, kWidening * (max - min));
+    return {min - margin, max + margin};
   }
   void clear() { values_.clear(); }
 
@@ -230,10 +230,10 @@ class Survey {
 }  // namespace
 
 const Shot& ShotTable::shot_of(int frame) const {
-  const auto behind =
+  const auto after =
       std::upper_bound(shots.begin(), shots.end(), frame,
                        [](int number, const Shot& shot) { return number < shot.first_frame; });
-  return behind == shots.begin() ? shots.front() : *std::prev(behind);
+  return after == shots.begin() ? shots.front() : *std::prev(after);
 }
 
 std::optional<ShotTable> survey_shots(PairSource& pairs, int first_frame, int end_frame,

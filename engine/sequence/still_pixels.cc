@@ -10,9 +10,9 @@
 #include <variant>
 
 #include "engine/error.h"
-#include "engine/image/grey_levels.h"
+#include "engine/image/intensity_rows.h"
 #include "kernels/flicker_sums/flicker_sums.h"
-#include "kernels/luma_levels/luma_levels.h"
+#include "kernels/luma_intensity/luma_intensity.h"
 #include "kernels/still_pixels/still_pixels.h"
 
 namespace vantage {
@@ -24,7 +24,7 @@ constexpr int kBoxPixels = 9;
 void luma_rows(const Photograph& photograph, int first_row, int end_row, float* grey,
                Image<std::uint8_t>& levels) {
   for (int y = first_row; y < end_row; ++y) {
-    grey_levels_row(photograph, y, grey);
+    intensity_row(photograph, y, grey);
     std::transform(grey, grey + levels.width(), levels.row(y), [](float level) {
       return static_cast<std::uint8_t>(std::clamp(level, 0.0F, 255.0F) + 0.5F);
     });
@@ -70,7 +70,8 @@ class ChangeRows {
 
 }  // namespace
 
-void luma_levels(const Photograph& photograph, Execution& execution, Image<std::uint8_t>& levels) {
+void luma_intensity(const Photograph& photograph, Execution& execution,
+                    Image<std::uint8_t>& levels) {
   const int width = photograph.width();
   levels.resize(width, photograph.height());
   const auto* bytes = std::get_if<Image<std::uint8_t>>(&photograph.pixels);
@@ -81,7 +82,7 @@ void luma_levels(const Photograph& photograph, Execution& execution, Image<std::
       return;
     }
     for (int y = first_row; y < end_row; ++y) {
-      kernels::luma_levels_row(bytes->row(y), width, bytes->channels(), levels.row(y));
+      kernels::luma_intensity_row(bytes->row(y), width, bytes->channels(), levels.row(y));
     }
   });
 }
@@ -112,7 +113,7 @@ std::int64_t StillPixels::find(const Image<std::uint8_t>& before, const Image<st
         changes.make(y + 1);
       }
       kernels::still_row(changes.around(y).data(), width, limit_, still.row(y));
-      of_band += kernels::level_sum_row(still.row(y), width) / 255;
+      of_band += kernels::intensity_sum_row(still.row(y), width) / 255;
     }
     count += of_band;
   });

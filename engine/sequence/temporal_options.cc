@@ -8,10 +8,10 @@
 namespace vantage {
 
 void TemporalOptions::validate() const {
-  constexpr double kMostWeight = 100;
-  if (!(weight >= 0 && weight <= kMostWeight)) {
+  constexpr double kMaxWeight = 100;
+  if (!(weight >= 0 && weight <= kMaxWeight)) {
     throw UsageError(
-        fmt::format("temporal-prior is {}, expected a number from 0 to {}", weight, kMostWeight));
+        fmt::format("temporal-prior is {}, expected a number from 0 to {}", weight, kMaxWeight));
   }
   StillPixels{threshold};
 }

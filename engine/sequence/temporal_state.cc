@@ -9,7 +9,7 @@ namespace vantage {
 namespace {
 
 /// With a smaller share of still pixels there was a cut, and they are alike by chance.
-constexpr std::int64_t kLeastStillShare = 50;  // one in this many
+constexpr std::int64_t kMinStillShare = 50;  // one in this many
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
@@ -42,16 +42,16 @@ DisparityPrior TemporalState::priors_for(const Photograph& left, const Photograp
 
 ImageView<const float> TemporalState::prior_for(const Photograph& image, Side& side,
                                                 Execution& execution) {
-  luma_levels(image, execution, side.next_levels);
-  side.levels_are_next = true;
+  luma_intensity(image, execution, side.next_intensity);
+  side.intensity_is_next = true;
   if (side.matched_px.empty() || !same_size(image, side.levels)) {
     return {};
   }
   const std::int64_t still_pixels =
-      still_pixels_.find(side.levels, side.next_levels, execution, side.still);
+      still_pixels_.find(side.levels, side.next_intensity, execution, side.still);
   const int width = image.width();
   const int height = image.height();
-  if (still_pixels * kLeastStillShare < static_cast<std::int64_t>(width) * height) {
+  if (still_pixels * kMinStillShare < static_cast<std::int64_t>(width) * height) {
     return {};
   }
   side.prior_px.resize(width, height);
@@ -76,10 +76,10 @@ void TemporalState::remember(const Photograph& left, const Photograph& right,
 
 void TemporalState::remember_side(const Photograph& image, const DisparityMap& map,
                                   const Mask& unmatched, Side& side, Execution& execution) {
-  if (!std::exchange(side.levels_are_next, false)) {
-    luma_levels(image, execution, side.next_levels);
+  if (!std::exchange(side.intensity_is_next, false)) {
+    luma_intensity(image, execution, side.next_intensity);
   }
-  std::swap(side.levels, side.next_levels);
+  std::swap(side.levels, side.next_intensity);
   side.matched_px.resize(map.width(), map.height());
   execution.for_each_band(map.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {

@@ -39,8 +39,8 @@ class TemporalState {
     Image<std::uint8_t> levels;  ///< of the previous frame
     DisparityMap matched_px;     ///< of the previous frame, NaN where filled; empty: none
     DisparityMap prior_px;
-    Image<std::uint8_t> next_levels;
-    bool levels_are_next = false;  ///< next_levels are those of the current frame
+    Image<std::uint8_t> next_intensity;
+    bool intensity_is_next = false;  ///< next_intensity are those of the current frame
     Mask still;
   };
   ImageView<const float> prior_for(const Photograph& image, Side& side, Execution& execution);

@@ -87,13 +87,13 @@ void inpaint_background(ImageView<T> image, ImageView<const std::uint8_t> wanted
   cv::Mat painted;
   for (int channel = 0; channel < image.channels(); ++channel) {
     cv::extractChannel(pixels, plane, channel);
-    double least = 0;
+    double min = 0;
     double largest = double{kernels::kLargestValue<T>};
     if constexpr (kIsFloat) {
-      double most = 0;
-      cv::minMaxLoc(plane, &least, &most);
-      least = std::min(least, 0.0);
-      largest = std::max(largest, most);
+      double max = 0;
+      cv::minMaxLoc(plane, &min, &max);
+      min = std::min(min, 0.0);
+      largest = std::max(largest, max);
       plane *= 1 / kUnit;
     }
     cv::inpaint(plane, avoided, painted, kRadiusPx, cv::INPAINT_TELEA);
@@ -101,7 +101,7 @@ void inpaint_background(ImageView<T> image, ImageView<const std::uint8_t> wanted
       for (int x = 0; x < width; ++x) {
         if (wanted.at(x, y) != 0) {
           const double value = (static_cast<double>(painted.at<T>(y, x)) - kBias) * kUnit;
-          image.at(x, y, channel) = static_cast<T>(std::clamp(value, least, largest));
+          image.at(x, y, channel) = static_cast<T>(std::clamp(value, min, largest));
         }
       }
     }

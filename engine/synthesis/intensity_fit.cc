@@ -6,7 +6,7 @@ namespace vantage {
 namespace {
 
 // In grey levels squared: less than one pixel in a thousand that differs from the rest by one.
-constexpr double kLeastVariance = 1e-3;
+constexpr double kMinVariance = 1e-3;
 constexpr double kLargestGain = 16;
 
 }  // namespace
@@ -22,7 +22,7 @@ IntensityFit fit_intensities(const kernels::IntensitySums& sums, int channel,
   const double variance = sums.left_left[channel] / n - mean_left * mean_left;
   const double covariance = sums.left_right[channel] / n - mean_left * mean_right;
   const double unit = grey_levels_per_unit;
-  if (!(variance * unit * unit >= kLeastVariance)) {
+  if (!(variance * unit * unit >= kMinVariance)) {
     return {};
   }
   const double gain = covariance / variance;

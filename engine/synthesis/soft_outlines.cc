@@ -15,9 +15,9 @@ namespace {
 
 // Columns of a row that are processed together.
 constexpr int kBlock = 1024;
-constexpr std::size_t kMostChannels = 4;
+constexpr std::size_t kMaxChannels = 4;
 
-using Colour = std::array<double, kMostChannels>;
+using Colour = std::array<double, kMaxChannels>;
 
 std::size_t row_bytes(int width, int channels, std::size_t value_bytes) {
   constexpr std::size_t kLine = 64;
@@ -194,7 +194,7 @@ class OutlineSoftener {
 
   // Fills the fraction covered by nearer surfaces with them.
   void mix_nearer(const Neighbours& nearer, const Neighbour& own, Colour& colour) const {
-    double most_covered = 0;
+    double max_covered = 0;
     double sum = 0;
     Colour beside{};
     for (std::size_t k = 0; k < nearer.count; ++k) {
@@ -208,14 +208,14 @@ class OutlineSoftener {
       if (covered > 0) {
         add(surface, covered, beside);
         sum += covered;
-        most_covered = std::max(most_covered, covered);
+        max_covered = std::max(max_covered, covered);
       }
     }
     if (sum > 0) {
       for (double& value : beside) {
         value /= sum;
       }
-      move_towards(beside, most_covered, colour);
+      move_towards(beside, max_covered, colour);
     }
   }
 
@@ -234,7 +234,7 @@ class OutlineSoftener {
   }
 
   static void move_towards(const Colour& other, double share, Colour& colour) {
-    for (std::size_t c = 0; c < kMostChannels; ++c) {
+    for (std::size_t c = 0; c < kMaxChannels; ++c) {
       colour[c] += share * (other[c] - colour[c]);
     }
   }

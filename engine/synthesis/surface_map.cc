@@ -18,9 +18,9 @@ constexpr int kTileColumns = 64;
 constexpr int kTileRows = 16;
 
 // Bands with fewer lines would process most tiles twice; a few bands per thread balance the load.
-constexpr int kLeastBandLines = 64;
+constexpr int kMinBandLines = 64;
 constexpr int kBandsPerThread = 4;
-constexpr std::int64_t kMostBandPixels = std::int64_t{1} << 30;
+constexpr std::int64_t kMaxBandPixels = std::int64_t{1} << 30;
 
 int tiles_in(int size, int tile_size) { return (size + tile_size - 1) / tile_size; }
 
@@ -43,41 +43,41 @@ struct PositionBox {
 // of the box.
 Reach reach_of(const PositionBox& box, const kernels::ViewProjection& view,
                ImageView<const float> target) {
-  if (!(box.disparity_px.least <= box.disparity_px.most)) {
+  if (!(box.disparity_px.min <= box.disparity_px.max)) {
     return {};
   }
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  double least_u = kInfinity;
-  double most_u = -kInfinity;
-  double least_v = kInfinity;
-  double most_v = -kInfinity;
-  int behind = 0;
+  double min_u = kInfinity;
+  double max_u = -kInfinity;
+  double min_v = kInfinity;
+  double max_v = -kInfinity;
+  int after = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const kernels::ExactTarget at =
         kernels::exact_target(view, (corner & 1) != 0 ? box.last_x : box.first_x,
                               (corner & 2) != 0 ? box.last_y : box.first_y,
-                              (corner & 4) != 0 ? box.disparity_px.most : box.disparity_px.least);
-    behind += at.depth_ratio > kernels::kLeastDepthRatio ? 0 : 1;
-    least_u = std::min(least_u, at.u);
-    most_u = std::max(most_u, at.u);
-    least_v = std::min(least_v, at.v);
-    most_v = std::max(most_v, at.v);
+                              (corner & 4) != 0 ? box.disparity_px.max : box.disparity_px.min);
+    after += at.depth_ratio > kernels::kMinDepthRatio ? 0 : 1;
+    min_u = std::min(min_u, at.u);
+    max_u = std::max(max_u, at.u);
+    min_v = std::min(min_v, at.v);
+    max_v = std::max(max_v, at.v);
   }
-  if (behind == 8) {
+  if (after == 8) {
     return {};
   }
-  if (behind > 0) {
+  if (after > 0) {
     return {.first_line = 0, .end_line = target.height()};
   }
   constexpr double kMargin = 2;  // rounding to whole pixels, and rounding errors
-  if (most_u < -kMargin || least_u > target.width() + kMargin) {
+  if (max_u < -kMargin || min_u > target.width() + kMargin) {
     return {};
   }
   const auto limited = [&](double line) {
     return static_cast<int>(std::clamp(line, 0.0, 1.0 * target.height()));
   };
-  return {.first_line = limited(std::floor(least_v - kMargin)),
-          .end_line = limited(std::ceil(most_v + kMargin))};
+  return {.first_line = limited(std::floor(min_v - kMargin)),
+          .end_line = limited(std::ceil(max_v + kMargin))};
 }
 
 /// Memory for two rows of projected pixels.
@@ -138,8 +138,8 @@ class SurfaceMapper {
     const int threads = execution_.executor().thread_count();
     const int bands = threads == 1 ? 1 : kBandsPerThread * threads;
     return static_cast<int>(
-        std::min<std::int64_t>(std::max(kLeastBandLines, tiles_in(nearness_.height(), bands)),
-                               kMostBandPixels / static_cast<std::int64_t>(nearness_.stride())));
+        std::min<std::int64_t>(std::max(kMinBandLines, tiles_in(nearness_.height(), bands)),
+                               kMaxBandPixels / static_cast<std::int64_t>(nearness_.stride())));
   }
 
   void find_reaches(int tile_row) {

@@ -12,14 +12,14 @@
 namespace vantage {
 namespace {
 
-constexpr double kLeastShare = 1e-6;
+constexpr double kMinShare = 1e-6;
 
 double share(const TripleView& view, double of_wanted, double of_others) {
   if (std::find(view.weights.begin(), view.weights.end(), 1.0) != view.weights.end()) {
     return of_wanted > 0 ? 1 : 0;
   }
   const double sum = of_wanted + of_others;
-  return sum > 0 ? std::clamp(of_wanted / sum, kLeastShare, 1 - kLeastShare) : 0.5;
+  return sum > 0 ? std::clamp(of_wanted / sum, kMinShare, 1 - kMinShare) : 0.5;
 }
 
 /// Offsets of the parts of the scratch memory.

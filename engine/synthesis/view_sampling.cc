@@ -14,7 +14,7 @@
 namespace vantage {
 namespace {
 
-constexpr int kMostSamples = 8;
+constexpr int kMaxSamples = 8;
 constexpr int kLargestSide = 65500;
 
 // Excess over a whole number that needs no further sample: there is little aliasing.
@@ -59,13 +59,13 @@ Reduction reduction_of(const ViewWarp& warp, const NewView& view, int width, int
       const Eigen::Matrix2d growth = (warp.homography.topLeftCorner<2, 2>() -
                                       target * warp.homography.bottomLeftCorner<1, 2>()) /
                                      at.z();
-      // A small circle becomes an ellipse of area `least` · `most`, which reduces by 1 / `least`.
+      // A small circle becomes an ellipse of area `min` · `max`, which reduces by 1 / `min`.
       const double area = std::abs(growth.determinant());
       const double squares = growth.squaredNorm();
-      const double most = std::sqrt(
+      const double max = std::sqrt(
           0.5 * (squares + std::sqrt(std::max(squares * squares - 4 * area * area, 0.0))));
       result.area += area;
-      result.sum += most;
+      result.sum += max;
     }
   }
   return result;
@@ -73,9 +73,9 @@ Reduction reduction_of(const ViewWarp& warp, const NewView& view, int width, int
 
 int samples_for(double reduction, const NewView& view) {
   const int largest_side = std::max(view.width_px, view.height_px);
-  const int most = std::clamp(kLargestSide / std::max(largest_side, 1), 1, kMostSamples);
+  const int max = std::clamp(kLargestSide / std::max(largest_side, 1), 1, kMaxSamples);
   const double wanted = std::ceil(reduction - kToleratedReduction);
-  return wanted > 1 ? static_cast<int>(std::min(wanted, 1.0 * most)) : 1;  // 1 also for NaN
+  return wanted > 1 ? static_cast<int>(std::min(wanted, 1.0 * max)) : 1;  // 1 also for NaN
 }
 
 bool keeps_sizes(const NewView& view) {
@@ -108,7 +108,7 @@ class SampleWeights {
 
  private:
   int count_;
-  std::array<float, kMostSamples + 2> weights_{};
+  std::array<float, kMaxSamples + 2> weights_{};
 };
 
 // `line`: memory for the values of a row of `fine`.
@@ -171,24 +171,23 @@ ViewSampling view_sampling(const NewView& view, ImageView<const float> left_disp
   if (samples == 1) {
     return {};
   }
-  const int most =
-      most_samples_per_side(view, left_disparity_px.width(), left_disparity_px.height());
-  return {.samples = std::min(samples, most), .reduction = reduction.mean()};
+  const int max = max_samples_per_side(view, left_disparity_px.width(), left_disparity_px.height());
+  return {.samples = std::min(samples, max), .reduction = reduction.mean()};
 }
 
-int most_samples_per_side(const NewView& view, int source_width, int source_height) {
+int max_samples_per_side(const NewView& view, int source_width, int source_height) {
   if (keeps_sizes(view)) {
     return 1;
   }
-  double most = 1;
+  double max = 1;
   for (const double nearest : {0.0, kLargestDisparity * source_width}) {
     for (const ViewWarp* warp : {&view.from_left, &view.from_right}) {
-      most = std::max(most, reduction_of(*warp, view, source_width, source_height, [&](int, int) {
-                              return view.infinity_disparity_px + nearest;
-                            }).mean());
+      max = std::max(max, reduction_of(*warp, view, source_width, source_height, [&](int, int) {
+                            return view.infinity_disparity_px + nearest;
+                          }).mean());
     }
   }
-  return samples_for(most, view);
+  return samples_for(max, view);
 }
 
 NewView with_samples(const NewView& view, int samples) {

@@ -24,7 +24,7 @@ struct ViewSampling {
                                          ImageView<const float> right_disparity_px);
 
 /// Upper bound of the samples per side, for any maps of that size.
-[[nodiscard]] int most_samples_per_side(const NewView& view, int source_width, int source_height);
+[[nodiscard]] int max_samples_per_side(const NewView& view, int source_width, int source_height);
 
 /// The view with samples × samples pixels for each of its pixels.
 [[nodiscard]] NewView with_samples(const NewView& view, int samples);

@@ -28,7 +28,7 @@ constexpr double kFarthestView = 16;  // baselines
 /// Warped rows are kept between the two passes over an image as long as they largely fit in the
 /// caches: more would take several times the memory of all inputs, and as much time as warping
 /// again.
-constexpr std::size_t kMostKeptBytes = std::size_t{32} << 20;
+constexpr std::size_t kMaxKeptBytes = std::size_t{32} << 20;
 
 void require_size_of_left(const Photograph& left, const char* what, int width, int height) {
   if (width != left.width() || height != left.height()) {
@@ -473,12 +473,12 @@ std::size_t ViewSynthesizer::working_bytes(int width, int height, int channels) 
   // Independent of the pixel type: rows are floats.
   const std::size_t bytes =
       WarpedPairLayout(width, channels).floats * sizeof(float) * static_cast<std::size_t>(height);
-  return bytes <= kMostKeptBytes ? bytes : 0;
+  return bytes <= kMaxKeptBytes ? bytes : 0;
 }
 
 std::size_t ViewSynthesizer::working_bytes(const NewView& view, int width, int height,
                                            int channels) {
-  const int samples = most_samples_per_side(view, width, height);
+  const int samples = max_samples_per_side(view, width, height);
   const NewView fine = with_samples(view, samples);
   const std::size_t sampled_bytes = samples == 1
                                         ? 0
@@ -497,7 +497,7 @@ std::size_t ViewSynthesizer::filling_bytes(const SynthesisOptions& options, int 
 
 std::size_t ViewSynthesizer::filling_bytes(const SynthesisOptions& options, const NewView& view,
                                            int width, int height, int channels) {
-  const NewView fine = with_samples(view, most_samples_per_side(view, width, height));
+  const NewView fine = with_samples(view, max_samples_per_side(view, width, height));
   return filling_bytes(options, fine.width_px, fine.height_px, channels);
 }
 

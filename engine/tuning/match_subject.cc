@@ -18,26 +18,26 @@ constexpr double kHopelessModelRatio = 4;
 constexpr double kMeasuredMargin = 1.2;
 constexpr double kModelMargin = 2.5;
 // Faster frames are repeated for this long: short times are mostly noise.
-constexpr std::chrono::milliseconds kLeastMeasurement{25};
+constexpr std::chrono::milliseconds kMinMeasurement{25};
 // Runners keep their scratch memory and threads; the least recently used ones are evicted.
-constexpr std::size_t kMostRunners = 12;
-constexpr std::size_t kMostRunnerBytes = std::size_t{3} << 29;
+constexpr std::size_t kMaxRunners = 12;
+constexpr std::size_t kMaxRunnerBytes = std::size_t{3} << 29;
 // Limits of the search: narrower strips, lower bands and more bands per thread are not tried.
-constexpr int kLeastStripColumns = 16;
-constexpr int kLeastBandRows = 8;
-constexpr int kMostBandsPerThread = 16;
+constexpr int kMinStripColumns = 16;
+constexpr int kMinBandRows = 8;
+constexpr int kMaxBandsPerThread = 16;
 // The planner cuts longer chains at least once.
-constexpr int kMostPasses = 32;
+constexpr int kMaxPasses = 32;
 
 int divide_up(int total, int part) { return (total + part - 1) / part; }
 
-/// Part sizes of `total`: for all numbers of parts up to `most_parts`, or only near parts of
+/// Part sizes of `total`: for all numbers of parts up to `max_parts`, or only near parts of
 /// `size`.
-std::vector<int> part_sizes(int total, int size, int most_parts, bool finely) {
-  most_parts = std::max(1, most_parts);
+std::vector<int> part_sizes(int total, int size, int max_parts, bool finely) {
+  max_parts = std::max(1, max_parts);
   std::vector<int> sizes;
   for (const int count :
-       finely ? fine_ladder(divide_up(total, size), most_parts) : coarse_ladder(most_parts)) {
+       finely ? fine_ladder(divide_up(total, size), max_parts) : coarse_ladder(max_parts)) {
     sizes.push_back(divide_up(total, count));
   }
   return sizes;
@@ -103,18 +103,18 @@ std::vector<int> MatchSubject::values(const TuningCoordinate& coordinate,
   }
   if (coordinate.field == &TunedSettings::strip_width_px) {
     const int width = pair_.left.width();
-    return part_sizes(width, pass.strip_columns, width / kLeastStripColumns, finely);
+    return part_sizes(width, pass.strip_columns, width / kMinStripColumns, finely);
   }
   if (coordinate.field == &TunedSettings::band_height_px) {
     const int rows = std::max(1, plan.step_rows);
     return part_sizes(rows, pass.band_rows,
-                      std::min(rows / kLeastBandRows, kMostBandsPerThread * threads), finely);
+                      std::min(rows / kMinBandRows, kMaxBandsPerThread * threads), finely);
   }
   if (coordinate.field == &TunedSettings::iterations_per_pass) {
     const int iterations = options_.match.resolved().iterations;
     const int of_pass = divide_up(iterations, static_cast<int>(plan.passes.size()));
     return part_sizes(iterations, incumbent.iterations_per_pass.value_or(of_pass),
-                      std::min(iterations, kMostPasses), finely);
+                      std::min(iterations, kMaxPasses), finely);
   }
   return more_values(coordinate, incumbent, finely);
 }
@@ -178,13 +178,13 @@ double MatchSubject::expected_seconds(const TunedSettings& settings) {
   if (wanted.work_seconds) {
     return kMeasuredMargin * *wanted.work_seconds;
   }
-  double most = 0;  // maximum of the measured ones, seconds per unit of the model
+  double max = 0;  // maximum of the measured ones, seconds per unit of the model
   for (const Known& one : known_) {
     if (one.work_seconds) {
-      most = std::max(most, *one.work_seconds / one.model_time);
+      max = std::max(max, *one.work_seconds / one.model_time);
     }
   }
-  return kModelMargin * most * wanted.model_time;
+  return kModelMargin * max * wanted.model_time;
 }
 
 double MatchSubject::measure(const TunedSettings& settings) {
@@ -206,7 +206,7 @@ double MatchSubject::measure(const TunedSettings& settings) {
 
 int MatchSubject::work(Runner& runner) {
   using Clock = std::chrono::steady_clock;
-  const Clock::time_point end = Clock::now() + kLeastMeasurement;
+  const Clock::time_point end = Clock::now() + kMinMeasurement;
   int frames = 0;
   do {
     runner.matcher.match(pair_.left, pair_.right, {.right = false, .unmatched = false},
@@ -257,7 +257,7 @@ MatchSubject::Runner& MatchSubject::runner_of(const TunedSettings& settings) {
   for (const auto& runner : runners_) {
     bytes += runner->execution.scratch().bytes_held();
   }
-  while (!runners_.empty() && (runners_.size() >= kMostRunners || bytes > kMostRunnerBytes)) {
+  while (!runners_.empty() && (runners_.size() >= kMaxRunners || bytes > kMaxRunnerBytes)) {
     bytes -= runners_.back()->execution.scratch().bytes_held();
     runners_.pop_back();
   }

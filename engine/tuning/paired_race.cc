@@ -8,14 +8,14 @@ namespace vantage {
 namespace {
 
 // A smaller gain does not justify a difference from the default.
-constexpr double kLeastGain = 0.01;
+constexpr double kMinGain = 0.01;
 constexpr double kStandardErrors = 2;
 // A winner may lose none of the first kRoundsToWin rounds, and one of each kRoundsPerLoss more: by
 // chance that happens once in twenty times.
 constexpr int kRoundsToWin = 3;
 constexpr int kRoundsPerLoss = 4;
-constexpr int kLeastRounds = 5;
-constexpr int kMostRounds = 15;
+constexpr int kMinRounds = 5;
+constexpr int kMaxRounds = 15;
 // Fewer rounds decide nothing, even if time ran out.
 constexpr int kFewestRounds = 3;
 // The first measurement of a plan only shows whether it is hopeless.
@@ -39,23 +39,23 @@ std::vector<Runner> scout(const TunedSettings& incumbent,
   if (!incumbent_seconds) {
     return runners;
   }
-  double least = *incumbent_seconds;
+  double min = *incumbent_seconds;
   for (const TunedSettings& candidate : candidates) {
     // Slow candidates may precede fast ones, so the search continues after one without enough time.
     if (const std::optional<double> seconds = trials.measure(candidate)) {
-      least = std::min(least, *seconds);
+      min = std::min(min, *seconds);
       runners.push_back({candidate, *seconds, {}});
     }
   }
   for (const Runner& runner : runners) {
-    if (runner.first_seconds > kHopelessTimeRatio * least) {
+    if (runner.first_seconds > kHopelessTimeRatio * min) {
       trials.trial(runner.settings).ratio_to_default =
           trials.trial(incumbent).ratio_to_default.value_or(1) * runner.first_seconds /
           *incumbent_seconds;
     }
   }
   std::erase_if(runners, [&](const Runner& runner) {
-    return runner.first_seconds > kHopelessTimeRatio * least;
+    return runner.first_seconds > kHopelessTimeRatio * min;
   });
   return runners;
 }
@@ -132,14 +132,14 @@ double PairedComparison::noise() const {
   return distances.empty() ? 0 : kDeviationsPerMedian * median(std::move(distances));
 }
 
-bool PairedComparison::is_won(int least_rounds) const {
-  if (rounds() < std::max(1, least_rounds)) {
+bool PairedComparison::is_won(int min_rounds) const {
+  if (rounds() < std::max(1, min_rounds)) {
     return false;
   }
   const double error = spread(ratios) / std::sqrt(rounds());
   const int losses = rounds() - wins();
   return losses <= (rounds() - kRoundsToWin) / kRoundsPerLoss &&
-         1 - median_ratio() >= std::max({kLeastGain, kStandardErrors * error, noise()});
+         1 - median_ratio() >= std::max({kMinGain, kStandardErrors * error, noise()});
 }
 
 RaceResult race(const TunedSettings& incumbent, const std::vector<TunedSettings>& candidates,
@@ -147,7 +147,7 @@ RaceResult race(const TunedSettings& incumbent, const std::vector<TunedSettings>
   RaceResult result;
   std::vector<Runner> runners = scout(incumbent, candidates, trials);
   bool in_time = !runners.empty() || trials.is_affordable(incumbent);
-  for (int round = 1; in_time && !runners.empty() && round <= kMostRounds; ++round) {
+  for (int round = 1; in_time && !runners.empty() && round <= kMaxRounds; ++round) {
     in_time = run_round(incumbent, runners, round % 2 == 1, trials);
     if (!in_time) {
       break;
@@ -157,14 +157,14 @@ RaceResult race(const TunedSettings& incumbent, const std::vector<TunedSettings>
     if (is_lost(runners.front().comparison)) {
       return result;
     }
-    if (runners.size() == 1 && runners.front().comparison.is_won(kLeastRounds)) {
+    if (runners.size() == 1 && runners.front().comparison.is_won(kMinRounds)) {
       break;
     }
   }
   result.complete = in_time;
   if (!runners.empty()) {
     Runner& best = runners.front();
-    if (best.comparison.is_won(in_time ? kLeastRounds : kFewestRounds)) {
+    if (best.comparison.is_won(in_time ? kMinRounds : kFewestRounds)) {
       result.winner = best.settings;
       result.comparison = std::move(best.comparison);
     }
@@ -185,12 +185,12 @@ PairedComparison compare(const TunedSettings& incumbent, const TunedSettings& ch
   for (int round = 1; round <= rounds && !is_lost(comparison); ++round) {
     const auto before = trials.measure(incumbent);
     const auto seconds = before ? trials.measure(challenger) : std::nullopt;
-    const auto behind = seconds ? trials.measure(incumbent) : std::nullopt;
-    if (!behind) {
+    const auto after = seconds ? trials.measure(incumbent) : std::nullopt;
+    if (!after) {
       break;
     }
-    comparison.ratios.push_back(2 * *seconds / (*before + *behind));
-    comparison.repeats.push_back(*behind / *before);
+    comparison.ratios.push_back(2 * *seconds / (*before + *after));
+    comparison.repeats.push_back(*after / *before);
   }
   if (!comparison.ratios.empty()) {
     note_ratios(incumbent, runners, trials);

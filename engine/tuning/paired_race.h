@@ -20,8 +20,8 @@ struct PairedComparison {
   /// Standard deviation of the incumbent's repeats; 0 without repeats.
   [[nodiscard]] double noise() const;
   /// Whether the challenger is faster beyond noise: by at least 1 %, twice the standard error and
-  /// noise(), in all but a few of at least `least_rounds` rounds.
-  [[nodiscard]] bool is_won(int least_rounds) const;
+  /// noise(), in all but a few of at least `min_rounds` rounds.
+  [[nodiscard]] bool is_won(int min_rounds) const;
 };
 
 struct RaceResult {

@@ -14,16 +14,15 @@
 namespace vantage {
 namespace {
 
-constexpr int kMostInFlight = 64;
+constexpr int kMaxInFlight = 64;
 // Enough for the pipeline to be full most of the time.
-constexpr int kLeastFrames = 8;
+constexpr int kMinFrames = 8;
 
 }  // namespace
 
 SequenceSubject::SequenceSubject(const MatchSubjectOptions& options, const TuningPair& pair)
     : MatchSubject(options, pair),
-      frames_(
-          std::clamp(2 * default_frames_in_flight(threads_of({})), kLeastFrames, kMostInFlight)) {
+      frames_(std::clamp(2 * default_frames_in_flight(threads_of({})), kMinFrames, kMaxInFlight)) {
   encode_photograph("left.png", pair.left, left_file_);
   encode_photograph("right.png", pair.right, right_file_);
 }

@@ -9,9 +9,9 @@ namespace vantage {
 void TunedSettings::validate() const {
   for (const TuningCoordinate& coordinate : kTuningCoordinates) {
     const std::optional<int>& value = this->*coordinate.field;
-    if (value && (*value < 1 || *value > coordinate.most)) {
+    if (value && (*value < 1 || *value > coordinate.max)) {
       throw UsageError(fmt::format("{} is {}, expected a whole number from 1 to {}",
-                                   coordinate.name, *value, coordinate.most));
+                                   coordinate.name, *value, coordinate.max));
     }
   }
 }

@@ -27,7 +27,7 @@ struct TunedSettings {
 struct TuningCoordinate {
   std::string_view name;  ///< as the option on the command line
   std::optional<int> TunedSettings::*field;
-  int most = 1;  ///< the largest value
+  int max = 1;  ///< the largest value
 };
 
 /// All coordinates, in search order.

@@ -17,9 +17,9 @@ constexpr int kFinalRounds = 9;
 constexpr int kFewestFinalRounds = 5;  // if time is short; three are won by chance too often
 // The time for this many of them is reserved, up to this share of the budget.
 constexpr int kReservedRounds = 5;
-constexpr double kMostFinalShare = 0.3;
+constexpr double kMaxFinalShare = 0.3;
 // Maximum number of sweeps over the coordinates; later improvements are below noise.
-constexpr int kMostSweeps = 5;
+constexpr int kMaxSweeps = 5;
 constexpr int kSearches = 2;
 
 }  // namespace
@@ -45,9 +45,9 @@ class Tuner::RacedPairs {
 Tuner::Tuner(TuningSubject& subject, TuningSubject& final_subject, const TuningClock& clock,
              const TunerOptions& options)
     : subject_(subject), final_subject_(final_subject), clock_(clock), options_(options) {
-  if (!(options_.budget_seconds > 0 && options_.budget_seconds <= kMostBudgetSeconds)) {
+  if (!(options_.budget_seconds > 0 && options_.budget_seconds <= kMaxBudgetSeconds)) {
     throw UsageError(fmt::format("budget is {}, expected seconds above 0 and at most {}",
-                                 options_.budget_seconds, kMostBudgetSeconds));
+                                 options_.budget_seconds, kMaxBudgetSeconds));
   }
   options_.start.validate();
 }
@@ -63,7 +63,7 @@ bool Tuner::search(BudgetedTrials& trials, TunedSettings& incumbent) {
   // The second search confirms: noise may have hidden a gain from the first.
   for (int time = 0; time < kSearches; ++time) {
     RacedPairs raced;
-    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
       const TunedSettings before = incumbent;
       for (const TuningCoordinate& coordinate : kTuningCoordinates) {
         if (!search_coordinate(coordinate, sweep > 0, raced, trials, incumbent)) {
@@ -114,7 +114,7 @@ TuningOutcome Tuner::tune() {
     const double wanted =
         (3 * kReservedRounds + 2) * std::max(final_subject_.expected_seconds(by_default),
                                              final_subject_.expected_seconds(incumbent));
-    trials.set_deadline(deadline - std::min(wanted, kMostFinalShare * options_.budget_seconds));
+    trials.set_deadline(deadline - std::min(wanted, kMaxFinalShare * options_.budget_seconds));
     outcome.complete = search(trials, incumbent);
   }
 

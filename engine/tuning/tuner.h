@@ -10,7 +10,7 @@
 
 namespace vantage {
 
-inline constexpr double kMostBudgetSeconds = 1e6;
+inline constexpr double kMaxBudgetSeconds = 1e6;
 
 struct TunerOptions {
   /// From the call of tune() on; measurements that are not expected to end in time do not start.

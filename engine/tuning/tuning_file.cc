@@ -29,7 +29,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kKind = "vantage tuning";
 constexpr int kTuningFormat = 1;
 // Larger files are not tuning files.
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{16} << 20;
+constexpr std::uintmax_t kMaxBytes = std::uintmax_t{16} << 20;
 
 Json json_of(const TunedPlan& plan) {
   Json settings = Json::object();
@@ -79,11 +79,11 @@ int whole_number(const Json& json, const std::string& field) {
   return json.get<int>();
 }
 
-double number(const Json& json, const std::string& field, double least) {
+double number(const Json& json, const std::string& field, double min) {
   const double value = json.is_number() ? json.get<double>() : std::nan("");
-  if (!(std::isfinite(value) && value >= least)) {
+  if (!(std::isfinite(value) && value >= min)) {
     throw UsageError(
-        fmt::format("{} is {}, expected a number of at least {}", field, quoted_json(json), least));
+        fmt::format("{} is {}, expected a number of at least {}", field, quoted_json(json), min));
   }
   return value;
 }
@@ -137,7 +137,7 @@ std::optional<std::string> text_of_file(const fs::path& path) {
   if (!fs::is_regular_file(status)) {
     throw Error(fmt::format("{}: it is not a regular file", path.string()));
   }
-  if (fs::file_size(path, error) > kMostBytes) {
+  if (fs::file_size(path, error) > kMaxBytes) {
     throw Error(fmt::format("{}: it is larger than any tuning file", path.string()));
   }
   std::ifstream stream(path, std::ios::binary);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/generation/layered_scene.h"
-#include "engine/image/grey_levels.h"
+#include "engine/image/intensity_rows.h"
 
 namespace vantage {
 namespace {
@@ -28,7 +28,7 @@ Photograph to_grey(const Photograph& colour) {
   Image<std::uint8_t> grey(colour.width(), colour.height());
   std::vector<float> levels(static_cast<std::size_t>(colour.width()));
   for (int y = 0; y < grey.height(); ++y) {
-    grey_levels_row(colour, y, levels.data());
+    intensity_row(colour, y, levels.data());
     std::ranges::transform(levels, grey.row(y), [](float level) {
       return static_cast<std::uint8_t>(std::lround(level));
     });

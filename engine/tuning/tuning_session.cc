@@ -16,7 +16,7 @@
 namespace vantage {
 namespace {
 
-constexpr int kMostSide = 16384;  // of synthetic scenes
+constexpr int kMaxSide = 16384;  // of synthetic scenes
 // A use's budget should suffice for this many measurements, and this share of it for the final
 // comparison with this many of its higher images.
 constexpr double kMeasurements = 150;
@@ -28,7 +28,7 @@ constexpr int kPilotRows = 64;
 // From this share of the full height on, the full height is used.
 constexpr double kNearlyAll = 0.7;
 // Less time than this is not enough for a result.
-constexpr double kLeastSeconds = 0.05;
+constexpr double kMinSeconds = 0.05;
 
 double now_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -46,7 +46,7 @@ class Session {
   explicit Session(const TuningRequest& request)
       : request_(request),
         height_(request.images.height_px),
-        least_rows_(std::min(height_, kPilotRows + windows_height(request.match))) {
+        min_rows_(std::min(height_, kPilotRows + windows_height(request.match))) {
     Execution execution(request.execution);
     pair_ = make_tuning_pair(request.images.width_px, height_, request.match.disparities,
                              request.images.is_8_bit_grey, execution);
@@ -72,7 +72,7 @@ class Session {
     }
     report.frames = search.frames;
     TunerOptions options;
-    options.budget_seconds = std::max(kLeastSeconds, budget_seconds - (clock() - begin));
+    options.budget_seconds = std::max(kMinSeconds, budget_seconds - (clock() - begin));
     options.stop = stop;
     Tuner tuner(*search.subject, higher ? *higher->subject : *search.subject, clock, options);
     tuner.on_progress(on_progress);
@@ -104,22 +104,22 @@ class Session {
 
   /// Seconds of one measurement of the lowest images.
   double pilot(TunedUse use) const {
-    const Bench bench = make_bench(use, least_rows_, false);
+    const Bench bench = make_bench(use, min_rows_, false);
     const double first = bench.subject->measure({});  // also allocates
-    const double least = std::min(first, bench.subject->measure({}));
-    return least * bench.frames;
+    const double min = std::min(first, bench.subject->measure({}));
+    return min * bench.frames;
   }
 
   /// The height at which a measurement takes about `seconds`, if the lowest images take
-  /// `least_seconds`.
-  [[nodiscard]] int rows_for(double seconds, double least_seconds) const {
-    const double rows = least_rows_ * seconds / std::max(1e-9, least_seconds);
-    return rows >= kNearlyAll * height_ ? height_ : std::max(least_rows_, static_cast<int>(rows));
+  /// `min_seconds`.
+  [[nodiscard]] int rows_for(double seconds, double min_seconds) const {
+    const double rows = min_rows_ * seconds / std::max(1e-9, min_seconds);
+    return rows >= kNearlyAll * height_ ? height_ : std::max(min_rows_, static_cast<int>(rows));
   }
 
   const TuningRequest& request_;
   int height_;
-  int least_rows_;
+  int min_rows_;
   TuningPair pair_;
 };
 
@@ -140,14 +140,14 @@ void TuningRequest::validate() const {
   match.validate();
   execution.validate();
   for (const int side : {images.width_px, images.height_px}) {
-    if (side < 1 || side > kMostSide) {
+    if (side < 1 || side > kMaxSide) {
       throw UsageError(fmt::format("size is {}x{}, expected sides from 1 to {}", images.width_px,
-                                   images.height_px, kMostSide));
+                                   images.height_px, kMaxSide));
     }
   }
-  if (!(budget_seconds > 0 && budget_seconds <= kMostBudgetSeconds)) {
+  if (!(budget_seconds > 0 && budget_seconds <= kMaxBudgetSeconds)) {
     throw UsageError(fmt::format("budget is {}, expected seconds above 0 and at most {}",
-                                 budget_seconds, kMostBudgetSeconds));
+                                 budget_seconds, kMaxBudgetSeconds));
   }
 }
 

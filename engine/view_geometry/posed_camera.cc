@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kLargestCameraSide = 16384;
 constexpr double kRotationTolerance = 1e-6;
-constexpr double kLeastFocal_px = 0.001;
+constexpr double kMinFocal_px = 0.001;
 constexpr double kLargestFocal_px = 1e7;
 
 }  // namespace
@@ -27,11 +27,11 @@ void PosedCamera::validate(const std::string& name) const {
   if (!matrix.allFinite() || !rotation.allFinite() || !translation.allFinite()) {
     throw Error(fmt::format("{}: K, R or t holds a value that is not finite", name));
   }
-  const double least = std::min(matrix(0, 0), matrix(1, 1));
+  const double min = std::min(matrix(0, 0), matrix(1, 1));
   const double largest = std::max(matrix(0, 0), matrix(1, 1));
-  if (!(least >= kLeastFocal_px && largest <= kLargestFocal_px)) {
+  if (!(min >= kMinFocal_px && largest <= kLargestFocal_px)) {
     throw Error(fmt::format("{}: focal lengths are {} and {} px, expected {} to {:g}", name,
-                            matrix(0, 0), matrix(1, 1), kLeastFocal_px, kLargestFocal_px));
+                            matrix(0, 0), matrix(1, 1), kMinFocal_px, kLargestFocal_px));
   }
   if (matrix(1, 0) != 0 || matrix(2, 0) != 0 || matrix(2, 1) != 0 || matrix(2, 2) != 1) {
     throw Error(

@@ -19,7 +19,7 @@ namespace {
 constexpr std::array<std::string_view, 3> kNames = {"first camera", "second camera",
                                                     "camera of the new view"};
 constexpr double kLargestRectifiedSide = 16384;
-constexpr double kLeastElevationDegrees = 5;
+constexpr double kMinElevationDegrees = 5;
 // C3 counts as on the baseline if it is off by less than this share of its distance: otherwise
 // rounding errors would determine the plane.
 constexpr double kOnBaseline = 1e-9;
@@ -88,21 +88,21 @@ TrifocalRectification trifocal_rectification(const PosedCamera& first, const Pos
   result.view_y = position.y();
 
   std::array<Eigen::Matrix3d, 3> ray_from_pixel;
-  Eigen::Vector2d least = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Vector2d largest = -least;
+  Eigen::Vector2d min = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d largest = -min;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     ray_from_pixel[i] =
         result.rotation * cameras[i]->rotation.transpose() * cameras[i]->matrix.inverse();
     for (const Eigen::Vector3d& corner : corners_of(*cameras[i])) {
       const Eigen::Vector3d ray = ray_from_pixel[i] * corner;
       const double elevation = std::asin(ray.z() / ray.norm()) * 180 / std::numbers::pi;
-      if (!(elevation >= kLeastElevationDegrees)) {
+      if (!(elevation >= kMinElevationDegrees)) {
         throw Error(fmt::format(
             "{} sees as low as {:.1f}° above the plane through the three cameras, which would cut "
             "the scene; expected at least {}°",
-            kNames[i], elevation, kLeastElevationDegrees));
+            kNames[i], elevation, kMinElevationDegrees));
       }
-      least = least.cwiseMin(ray.hnormalized());
+      min = min.cwiseMin(ray.hnormalized());
       largest = largest.cwiseMax(ray.hnormalized());
     }
   }
@@ -113,7 +113,7 @@ TrifocalRectification trifocal_rectification(const PosedCamera& first, const Pos
   // cameras keep their pixel grid.
   const Eigen::Vector2d corner_px =
       result.focal_length_px * (ray_from_pixel[0] * corners_of(first).front()).hnormalized().eval();
-  const Eigen::Array2d above_px = result.focal_length_px * least - corner_px;
+  const Eigen::Array2d above_px = result.focal_length_px * min - corner_px;
   const Eigen::Array2d below_px = result.focal_length_px * largest - corner_px;
   const Eigen::Vector2d first_edge_px = corner_px.array() + (above_px + kRounding).floor();
   const Eigen::Vector2d size_px = (below_px - kRounding).ceil() - (above_px + kRounding).floor();

@@ -61,8 +61,8 @@ struct BayesRow {
 /// Columns whose probabilities are in work memory at a time: some are summed while others are
 /// normalised.
 inline int bayes_work_columns(int lanes) {
-  constexpr int kMostFloats = 1024;
-  return std::clamp(kMostFloats / lanes, 1, 8);
+  constexpr int kMaxFloats = 1024;
+  return std::clamp(kMaxFloats / lanes, 1, 8);
 }
 
 /// Number of zeros that smoothing needs on each side of a column.
@@ -88,7 +88,7 @@ void bayes_half_row(const BayesRow& row);
 /// Whether 2^(sum over the star) could underflow in all lanes of a column. If so, the column's
 /// maximum sum must be subtracted first. For any μ.
 inline bool bayes_scales_sums(float mu, float floor) {
-  return 5.0F * mu * std::log2(floor) <= 0.8F * kLeastExponent;
+  return 5.0F * mu * std::log2(floor) <= 0.8F * kMinExponent;
 }
 
 /// Any μ: p ∝ p0 · 2^(weighted sum of μ · log₂ pS over the star). Cells are μ · log₂ pS; neutral

@@ -91,7 +91,7 @@ class WorkColumns {
   // Computes p = weight(columns)(lane) for all columns of the row and stores the row's state.
   template <class Weight>
   HWY_INLINE void run(Weight weight) const {
-    FloatVec normalise[kMostColumns];
+    FloatVec normalise[kMaxColumns];
     float* block_output = row_.output;
     int filled = 0;
     each_column(row_, [&](const StarColumns<float>& at, float* output) HWY_ATTR {
@@ -108,7 +108,7 @@ class WorkColumns {
   }
 
  private:
-  static constexpr int kMostColumns = 8;  // maximum of bayes_work_columns()
+  static constexpr int kMaxColumns = 8;  // maximum of bayes_work_columns()
 
   void clear_margin(float* margin) const {
     for (int lane = 0; lane < margin_; lane += kFloatLanes) {
@@ -336,14 +336,14 @@ struct WeightedStarSum {
 template <class Sum>
 HWY_INLINE FloatVec largest_sum(const Sum& star, int lanes) {
   const FloatTag df;
-  LaneBlock16 most;
-  most.fill(hn::Set(df, std::numeric_limits<float>::lowest()));
+  LaneBlock16 max;
+  max.fill(hn::Set(df, std::numeric_limits<float>::lowest()));
   for (int lane = 0; lane < lanes; lane += kLaneMultiple) {
     for (int part = 0; part < kParts; ++part) {
-      most.part[part] = hn::Max(most.part[part], star.of(lane + part * kFloatLanes));
+      max.part[part] = hn::Max(max.part[part], star.of(lane + part * kFloatLanes));
     }
   }
-  return max_lanes(most);
+  return max_lanes(max);
 }
 
 // kScaled: shifts the maximum sum to 0, so that at least one lane does not underflow.

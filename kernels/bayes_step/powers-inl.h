@@ -22,7 +22,7 @@ namespace vantage::kernels::HWY_NAMESPACE {
 using PowerBits = hwy::HWY_NAMESPACE::RebindToSigned<FloatTag>;
 
 // 2^exponent, relative error below 3.2e-6, for exponents ≤ 0 (or above by rounding only). kClamped:
-// exponents below kLeastExponent are clamped to it; otherwise there must be none.
+// exponents below kMinExponent are clamped to it; otherwise there must be none.
 template <bool kClamped>
 HWY_INLINE FloatVec power_of_two(FloatVec exponent) {
   namespace hn = hwy::HWY_NAMESPACE;
@@ -30,7 +30,7 @@ HWY_INLINE FloatVec power_of_two(FloatVec exponent) {
   const PowerBits d32;
   const auto c = [df](float value) HWY_ATTR { return hn::Set(df, value); };
   if constexpr (kClamped) {
-    exponent = hn::Max(exponent, c(kLeastExponent));
+    exponent = hn::Max(exponent, c(kMinExponent));
   }
   // 2^f = 1 + f · (…), f in [−½, ½]; relative error of the fit 2.8e-6.
   const FloatVec shifted = hn::Add(exponent, c(kRoundToInteger));

@@ -22,11 +22,11 @@ CandidateRange candidates_inside(const CandidateShift* shifts, int count, int wi
   const CandidateShift* const end = shifts + count;
   const CandidateShift* const first = std::partition_point(
       shifts, end, [&](const CandidateShift& shift) { return position + shift.whole < 0; });
-  const CandidateShift* const behind =
+  const CandidateShift* const after =
       std::partition_point(first, end, [&](const CandidateShift& shift) {
         return position + shift.whole + (shift.fraction > 0 ? 1 : 0) < width;
       });
-  return {static_cast<int>(first - shifts), static_cast<int>(behind - shifts)};
+  return {static_cast<int>(first - shifts), static_cast<int>(after - shifts)};
 }
 
 }  // namespace vantage::kernels

@@ -73,7 +73,7 @@ HWY_INLINE VecF energies(const float* cells) {
 template <bool kNegated, bool kMargin>
 class Spread {
  public:
-  HWY_INLINE Spread() : least_(hn::Set(TagF(), kInfinity)), second_(least_) {
+  HWY_INLINE Spread() : min_(hn::Set(TagF(), kInfinity)), second_(min_) {
     for (int p = 0; p < kParts; ++p) {
       sum_[p] = hn::Zero(TagF());
     }
@@ -87,14 +87,14 @@ class Spread {
       const VecF v = energies<kNegated>(cells + lane + p * kStep);
       const VecF candidate = counts.cells_or(v, hn::Set(d, kInfinity));
       if constexpr (kMargin) {
-        second_ = hn::Min(second_, hn::Max(least_, candidate));
+        second_ = hn::Min(second_, hn::Max(min_, candidate));
         sum_[p] = hn::Add(sum_[p], counts.cells_or(v, hn::Zero(d)));
       }
-      least_ = hn::Min(least_, candidate);
+      min_ = hn::Min(min_, candidate);
     }
   }
   // Stores kStep values.
-  HWY_INLINE void store_least(float* least) const { hn::Store(least_, TagF(), least); }
+  HWY_INLINE void store_min(float* min) const { hn::Store(min_, TagF(), min); }
   HWY_INLINE void store_second(float* second) const { hn::Store(second_, TagF(), second); }
   // Stores kLaneMultiple values.
   HWY_INLINE void store_sums(float* sums) const {
@@ -104,7 +104,7 @@ class Spread {
   }
 
  private:
-  VecF least_;
+  VecF min_;
   VecF second_;
   VecF sum_[kParts];
 };
@@ -141,8 +141,8 @@ class Places {
 // Per lane, sums of e and e·t with e = 2^−t, t = scale · (E − Emin).
 class Weights {
  public:
-  HWY_INLINE Weights(float least, float scale)
-      : least_(hn::Set(TagF(), least)), scale_(hn::Set(TagF(), scale)) {
+  HWY_INLINE Weights(float min, float scale)
+      : min_(hn::Set(TagF(), min)), scale_(hn::Set(TagF(), scale)) {
     for (int p = 0; p < kParts; ++p) {
       sum_[p] = weighted_[p] = hn::Zero(TagF());
     }
@@ -151,14 +151,14 @@ class Weights {
   HWY_INLINE void add(const float* cells, const LaneRange& range, int lane) {
     const TagF d;
     // At this limit e is negligible beside the winner's 1.
-    const VecF most = hn::Set(d, -kLeastExponent);
+    const VecF max = hn::Set(d, -kMinExponent);
 #pragma GCC unroll 4
     for (int p = 0; p < kParts; ++p) {
       const int first = lane + p * kStep;
-      const VecF above = hn::Mul(scale_, hn::Sub(hn::LoadU(d, cells + first), least_));
+      const VecF above = hn::Mul(scale_, hn::Sub(hn::LoadU(d, cells + first), min_));
       const Lanes counts(range, first);
       // Also masked before the exponential: other lanes may hold NaN.
-      const VecF t = counts.cells_or(hn::Min(above, most), most);
+      const VecF t = counts.cells_or(hn::Min(above, max), max);
       const VecF weight = counts.cells_or(exp2_of_negative(hn::Neg(t)), hn::Zero(d));
       sum_[p] = hn::Add(sum_[p], weight);
       weighted_[p] = hn::Add(weighted_[p], hn::Mul(weight, t));
@@ -173,7 +173,7 @@ class Weights {
   }
 
  private:
-  VecF least_;
+  VecF min_;
   VecF scale_;
   VecF sum_[kParts];
   VecF weighted_[kParts];
@@ -235,16 +235,16 @@ class Stretch {
   template <bool kNegated, bool kMargin>
   HWY_INLINE void select(const CellWinners& outputs) const {
     const TagF d;
-    HWY_ALIGN float lane_least[kStep * kStep] = {};
+    HWY_ALIGN float lane_min[kStep * kStep] = {};
     HWY_ALIGN float lane_second[kMargin ? kStep * kStep : 1] = {};
     HWY_ALIGN float lane_sums[kMargin ? kStep * kLaneMultiple : 1] = {};
-    HWY_ALIGN float least[kStep];
+    HWY_ALIGN float min[kStep];
     for (int j = begin_; j < end_; j += kStep) {
       const int columns = std::min(kStep, end_ - j);
       for (int k = 0; k < columns; ++k) {
         Spread<kNegated, kMargin> spread;
         visit_up<kAll>(spread, cells(j + k), candidates(j + k), lanes_);
-        spread.store_least(lane_least + k * kStep);
+        spread.store_min(lane_min + k * kStep);
         if constexpr (kMargin) {
           spread.store_second(lane_second + k * kStep);
           spread.store_sums(lane_sums + k * kLaneMultiple);
@@ -252,12 +252,12 @@ class Stretch {
       }
       VecF best;
       if constexpr (kMargin) {
-        const TwoLeast two = joined_two_least<kStep>(lane_least, lane_second);
-        best = two.least;
+        const TwoSmallest two = joined_two_smallest<kStep>(lane_min, lane_second);
+        best = two.min;
         store_first(d, margins(two, joined_lanes<Sum, kLaneMultiple>(lane_sums)), columns,
                     outputs.margin + j);
       } else {
-        best = joined_lanes<Minimum, kStep>(lane_least);
+        best = joined_lanes<Minimum, kStep>(lane_min);
       }
       const auto none = hn::Eq(best, hn::Set(d, kInfinity));
       if (outputs.best != nullptr) {
@@ -267,13 +267,13 @@ class Stretch {
       if (outputs.winners == nullptr) {
         continue;
       }
-      hn::Store(best, d, least);
+      hn::Store(best, d, min);
       for (int k = 0; k < columns; ++k) {
-        Places<kNegated> places(hn::Set(d, least[k]));
+        Places<kNegated> places(hn::Set(d, min[k]));
         visit_down<kAll>(places, cells(j + k), candidates(j + k), lanes_);
-        places.store(lane_least + k * kStep);
+        places.store(lane_min + k * kStep);
       }
-      const VecF place = joined_lanes<Minimum, kStep>(lane_least);
+      const VecF place = joined_lanes<Minimum, kStep>(lane_min);
       const Tag32 d32;
       store_first(d32,
                   hn::ConvertTo(d32, hn::IfThenElse(none, hn::Set(d, float{kNoWinner}), place)),
@@ -311,12 +311,12 @@ class Stretch {
     return LaneRange(kAll ? CandidateRange{0, count_} : row_.candidates(row_.first_column + j));
   }
 
-  static HWY_INLINE VecF margins(const TwoLeast& two, VecF sum) {
+  static HWY_INLINE VecF margins(const TwoSmallest& two, VecF sum) {
     const TagF d;
     const VecF infinity = hn::Set(d, kInfinity);
-    const VecF quotient = hn::Div(hn::Sub(two.second, two.least), sum);
+    const VecF quotient = hn::Div(hn::Sub(two.second, two.min), sum);
     const auto defined = hn::And(hn::Lt(two.second, infinity), hn::Ne(sum, hn::Zero(d)));
-    const auto none = hn::Eq(two.least, infinity);
+    const auto none = hn::Eq(two.min, infinity);
     return hn::IfThenElse(none, hn::Set(d, kUnknown), hn::IfThenElseZero(defined, quotient));
   }
 

@@ -62,23 +62,23 @@ HWY_INLINE VecF joined_lanes(const float* values) {
 }
 
 /// The smallest and second smallest of some values.
-struct TwoLeast {
-  VecF least;
+struct TwoSmallest {
+  VecF min;
   VecF second;
 };
 
 // Same for values that are given as pairs (smallest, second smallest).
 template <int kCount>
-HWY_INLINE TwoLeast joined_two_least(const float* least, const float* second) {
+HWY_INLINE TwoSmallest joined_two_smallest(const float* min, const float* second) {
   namespace hn = hwy::HWY_NAMESPACE;
   if constexpr (kCount == 1) {
-    return {hn::Load(TagF(), least), hn::Load(TagF(), second)};
+    return {hn::Load(TagF(), min), hn::Load(TagF(), second)};
   } else {
     constexpr int half = kCount / 2 * kStep;
-    const TwoLeast low = joined_two_least<kCount / 2>(least, second);
-    const TwoLeast high = joined_two_least<kCount / 2>(least + half, second + half);
-    const VecF even = even_lanes(low.least, high.least);
-    const VecF odd = odd_lanes(low.least, high.least);
+    const TwoSmallest low = joined_two_smallest<kCount / 2>(min, second);
+    const TwoSmallest high = joined_two_smallest<kCount / 2>(min + half, second + half);
+    const VecF even = even_lanes(low.min, high.min);
+    const VecF odd = odd_lanes(low.min, high.min);
     const VecF seconds =
         hn::Min(even_lanes(low.second, high.second), odd_lanes(low.second, high.second));
     return {hn::Min(even, odd), hn::Min(hn::Max(even, odd), seconds)};

@@ -25,7 +25,7 @@ inline constexpr int kEnergyLanes = static_cast<int>(hwy::HWY_NAMESPACE::MaxLane
 
 // Minimum over the lanes, in every lane.
 template <class Vec>
-HWY_INLINE Vec least_of_lanes(Vec energies) {
+HWY_INLINE Vec min_of_lanes(Vec energies) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::DFromV<Vec> d;
   // Energies are not negative, so unsigned: processors find the minimum of eight unsigned words in
@@ -34,8 +34,8 @@ HWY_INLINE Vec least_of_lanes(Vec energies) {
   const hn::RebindToSigned<decltype(d8)> signed8;
   if constexpr (hn::MaxLanes(hn::DFromV<Vec>()) == 16) {
     const auto half = hn::Min(hn::LowerHalf(signed8, energies), hn::UpperHalf(signed8, energies));
-    const auto least = hn::BitCast(signed8, hn::MinOfLanes(d8, hn::BitCast(d8, half)));
-    return hn::Combine(d, least, least);
+    const auto min = hn::BitCast(signed8, hn::MinOfLanes(d8, hn::BitCast(d8, half)));
+    return hn::Combine(d, min, min);
   } else {
     return hn::BitCast(d, hn::MinOfLanes(d8, hn::BitCast(d8, energies)));
   }

@@ -29,7 +29,7 @@ HWY_INLINE ExpLogVec exp2_of_negative(ExpLogVec exponent) {
   const hn::ScalableTag<float> df;
   const hn::ScalableTag<std::int32_t> d32;
   const ExpLogVec round = hn::Set(df, kRoundToInteger);
-  exponent = hn::Max(exponent, hn::Set(df, kLeastExponent));
+  exponent = hn::Max(exponent, hn::Set(df, kMinExponent));
   const ExpLogVec shifted = hn::Add(exponent, round);
   const ExpLogVec f = hn::Sub(exponent, hn::Sub(shifted, round));
   const auto line = [&](int k) HWY_ATTR {

@@ -17,7 +17,7 @@ inline constexpr float kLogPolynomial[] = {0.333341659F, -0.250016987F, 0.199548
                                            0.14977992F,  -0.143790087F, 0.0867219099F};
 
 /// Exponents are clamped to at least this: 2^−125 is still a normal float.
-inline constexpr float kLeastExponent = -125.0F;
+inline constexpr float kMinExponent = -125.0F;
 /// 1.5 · 2²³: adding it to a small number rounds that to an integer, which is then in the low bits.
 inline constexpr float kRoundToInteger = 12582912.0F;
 /// Bits of √½, the lower end of the significand range of logarithms.
@@ -27,7 +27,7 @@ inline constexpr float kLog2E = 1.44269504F;
 
 /// 2^exponent for exponents ≤ 0; relative error below 3e-7, exactly 1 at 0.
 inline float exp2_of_negative(float exponent) {
-  exponent = exponent > kLeastExponent ? exponent : kLeastExponent;
+  exponent = exponent > kMinExponent ? exponent : kMinExponent;
   const float shifted = exponent + kRoundToInteger;
   const float f = exponent - (shifted - kRoundToInteger);
   const float f2 = f * f;

@@ -47,17 +47,17 @@ using RayCensusRows = std::array<const float*, 2 * kRayCensusRadius + 1>;
 /// this many grey levels, which separates noise from real differences. Grey levels of 8-bit pixels
 /// are multiples of 1/1000 or coarser, so rounding never decides.
 inline constexpr float kRayCensusMargin = 1.2505F;
-inline constexpr int kMostRayCensusThresholds = 3;
+inline constexpr int kMaxRayCensusThresholds = 3;
 
 /// Each byte holds one bit of 8 neighbours, so that a vector of bytes compares that many
 /// candidates.
 inline constexpr int kRayCensusBytes = kRayCensusNeighbours / 8;
-inline constexpr int kMostRayCensusBytes = 2 * kRayCensusBytes;
+inline constexpr int kMaxRayCensusBytes = 2 * kRayCensusBytes;
 /// Bytes per code. thresholds: 1 or 3.
 constexpr int ray_census_bytes(int thresholds) {
-  return thresholds == 1 ? kRayCensusBytes : kMostRayCensusBytes;
+  return thresholds == 1 ? kRayCensusBytes : kMaxRayCensusBytes;
 }
-using RayCensusCodes = std::array<std::uint8_t*, kMostRayCensusBytes>;
+using RayCensusCodes = std::array<std::uint8_t*, kMaxRayCensusBytes>;
 
 /// Ray census codes of `width` pixels: the number of thresholds that a neighbour is less than, as a
 /// binary number. One threshold (the centre): 0 or 1. Three (centre − kRayCensusMargin, centre,
@@ -73,7 +73,7 @@ void ray_census_code_row_ref(const RayCensusRows& rows, int width, int threshold
 /// Planes: the two halves of census codes.
 using CensusPairs = FeaturePairs<std::uint32_t, 2>;
 /// Planes: the bytes of ray census codes, as many as `thresholds` requires.
-struct RayCensusPairs : FeaturePairs<std::uint8_t, kMostRayCensusBytes> {
+struct RayCensusPairs : FeaturePairs<std::uint8_t, kMaxRayCensusBytes> {
   int thresholds = 1;  ///< 1 or 3
 };
 

@@ -59,9 +59,9 @@ void census_codes(const CensusRows& rows, int width, std::uint32_t* first_half,
 HWY_INLINE void store_code(VecCode code, int x, std::uint8_t* const* bytes) {
   const TagCode d32;
   const hn::Rebind<std::uint8_t, TagCode> d8;
-  const VecCode least_byte = hn::Set(d32, 0xFF);
+  const VecCode min_byte = hn::Set(d32, 0xFF);
   const auto store = [&](VecCode bits, std::uint8_t* byte) HWY_ATTR {
-    const auto low = hn::BitCast(hn::ScalableTag<std::int32_t>(), hn::And(bits, least_byte));
+    const auto low = hn::BitCast(hn::ScalableTag<std::int32_t>(), hn::And(bits, min_byte));
     hn::StoreU(hn::DemoteTo(d8, low), d8, byte + x);
   };
   store(hn::ShiftRight<16>(code), bytes[0]);

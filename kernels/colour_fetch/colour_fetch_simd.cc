@@ -37,8 +37,8 @@ HWY_INLINE void weigh_taps(D64 d64, const BicubicFetchRow& row, int begin, int f
   const hn::Rebind<float, D64> d32;
   const hn::Rebind<std::int32_t, D64> di32;
   const auto offset = hn::Set(d64, row.camera_offset);
-  const auto least = hn::Set(d64, -1.0);
-  const auto most = hn::Set(d64, row.width - 0.5);
+  const auto min = hn::Set(d64, -1.0);
+  const auto max = hn::Set(d64, row.width - 0.5);
   const int step = static_cast<int>(hn::Lanes(d64));
   for (int i = first; i + step <= count; i += step) {
     const auto read = hn::LoadU(d32, row.warped_disparity_px + begin + i);
@@ -46,7 +46,7 @@ HWY_INLINE void weigh_taps(D64 d64, const BicubicFetchRow& row, int begin, int f
     // Not Iota(d64, begin + i): only a constant start avoids a detour through memory.
     const auto position = hn::Add(hn::Iota(d64, 0), hn::Set(d64, begin + i));
     const auto exact = hn::Add(position, hn::Mul(offset, hn::PromoteTo(d64, d)));
-    const auto column = hn::Min(hn::Max(exact, least), most);
+    const auto column = hn::Min(hn::Max(exact, min), max);
     const auto whole = hn::Floor(column);
     hn::StoreU(hn::DemoteTo(di32, whole), di32, block.whole + i);
     const auto f = hn::DemoteTo(d32, hn::Sub(column, whole));

@@ -15,13 +15,13 @@ namespace vantage::kernels {
 // of a step is looked up in tables of 16-bit values, 32 cells at a time. Everything before the
 // lookup is integer arithmetic, so cells are identical on every instruction set.
 
-/// Grey levels and gradients are 16-bit: (value + offset) · kFixedPerLevel, rounded and clamped.
-/// The offsets leave room for grey levels that were adjusted to match another camera's.
-inline constexpr int kFixedPerLevel = 32;
-inline constexpr int kFixedLevelOffset = 128;     ///< −128..383 grey levels
-inline constexpr int kFixedGradientOffset = 512;  ///< ±511 grey levels per pixel
-inline constexpr int kMostFixed = 511 * kFixedPerLevel;
-inline constexpr int kMostFixedGradient = 1023 * kFixedPerLevel;
+/// Grey levels and gradients are 16-bit: (value + offset) · kFixedPerIntensity, rounded and
+/// clamped. The offsets leave room for grey levels that were adjusted to match another camera's.
+inline constexpr int kFixedPerIntensity = 32;
+inline constexpr int kFixedIntensityOffset = 128;  ///< −128..383 grey levels
+inline constexpr int kFixedGradientOffset = 512;   ///< ±511 grey levels per pixel
+inline constexpr int kMaxFixed = 511 * kFixedPerIntensity;
+inline constexpr int kMaxFixedGradient = 1023 * kFixedPerIntensity;
 
 /// Steps of a residual; residuals beyond the last step are clamped to it.
 inline constexpr int kResidualSteps = 64;
@@ -59,7 +59,7 @@ struct CombinedSigmas {
 };
 
 /// Smallest ε in use: its cube is still a normal float.
-inline constexpr double kLeastCombinedEpsilon = 1e-12;
+inline constexpr double kMinCombinedEpsilon = 1e-12;
 
 /// Grey steps extend to where the Gaussian is a sixteenth of ε, so a step is 0.05 to 0.1 σ (at
 /// least 1/32 grey level). σ > 0, ε in (0, 1); channels: 1 or 3, for the grey term.
@@ -67,14 +67,14 @@ CombinedModel combined_model(const CombinedSigmas& sigmas, double epsilon, int c
                              CombinedCells cells);
 
 /// Planes: 16-bit grey levels, their minimum and maximum within half a pixel.
-using FixedLevelPairs = FeaturePairs<std::uint16_t, 3>;
+using FixedIntensityPairs = FeaturePairs<std::uint16_t, 3>;
 /// Planes: 16-bit gx and gy. One channel.
 using FixedGradientPairs = FeaturePairs<std::uint16_t, 2>;
 
 /// Rows of equal shape. `codes` and `gradients` are used only if the model has their terms, and
 /// have one channel.
 struct CombinedRow {
-  FixedLevelPairs levels;
+  FixedIntensityPairs levels;
   CensusPairs codes;
   FixedGradientPairs gradients;
 };

@@ -16,7 +16,7 @@ int step_of(int residual, const CombinedTerm& term) {
   return static_cast<int>(std::min<std::uint32_t>(product >> 16U, kResidualSteps - 1));
 }
 
-int grey_step(const FixedLevelPairs& row, int j, int k, const CombinedTerm& term) {
+int grey_step(const FixedIntensityPairs& row, int j, int k, const CombinedTerm& term) {
   int sum = 0;
   for (int c = 0; c < row.channels; ++c) {
     const auto& [reference, partner] = row.channel[static_cast<std::size_t>(c)];
@@ -47,7 +47,7 @@ std::uint32_t value_of(const CombinedTerm& term, int step) {
 
 void combined_row_ref(const CombinedRow& row, const CombinedModel& model, CombinedCells meaning,
                       float* cells) {
-  const FixedLevelPairs& shape = row.levels;
+  const FixedIntensityPairs& shape = row.levels;
   for (int j = 0; j < shape.columns; ++j) {
     for (int i = 0; i < shape.lanes; ++i) {
       const int k = j * shape.partner_step + i;

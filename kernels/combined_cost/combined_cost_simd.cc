@@ -71,18 +71,19 @@ HWY_INLINE VecOf<Tag16<D8> > difference(VecOf<Tag16<D8> > a, VecOf<Tag16<D8> > b
 }
 
 template <class D8>
-HWY_INLINE VecOf<D8> grey_steps(D8 d, const FixedLevelPairs& row, const ReferencePixel<D8>& pixel,
-                                std::ptrdiff_t k, VecOf<Tag16<D8> > multiplier) {
+HWY_INLINE VecOf<D8> grey_steps(D8 d, const FixedIntensityPairs& row,
+                                const ReferencePixel<D8>& pixel, std::ptrdiff_t k,
+                                VecOf<Tag16<D8> > multiplier) {
   const Tag16<D8> d16;
   const auto residual = [&](std::ptrdiff_t at) HWY_ATTR {
     auto sum = hn::Zero(d16);
     for (int c = 0; c < row.channels; ++c) {
-      const auto& [level, least, most] = pixel.level[c];
+      const auto& [level, min, max] = pixel.level[c];
       const auto& partner = row.channel[static_cast<std::size_t>(c)].partner;
       const auto other = hn::LoadU(d16, partner[0] + at);
       sum = hn::Add(sum, hn::Min(outside<D8>(level, hn::LoadU(d16, partner[1] + at),
                                              hn::LoadU(d16, partner[2] + at)),
-                                 outside<D8>(other, least, most)));
+                                 outside<D8>(other, min, max)));
     }
     return sum;
   };

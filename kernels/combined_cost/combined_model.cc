@@ -16,7 +16,7 @@ double measurement(double residual_sigmas, double epsilon) {
 }
 
 /// In units of σ.
-double most_residual(double epsilon) {
+double max_residual(double epsilon) {
   const double ratio = (1 - epsilon) / (epsilon * kSmallestPart);
   return std::sqrt(2 * std::max(2.0, std::log(ratio)));
 }
@@ -45,7 +45,7 @@ TermTable term_table(double epsilon, CombinedCells cells, const ResidualOfStep& 
 CombinedTerm fixed_term(double sigma, double epsilon, CombinedCells cells) {
   constexpr double kOne = 65536;
   CombinedTerm term;
-  const double multiplier = kResidualSteps * kOne / (most_residual(epsilon) * sigma);
+  const double multiplier = kResidualSteps * kOne / (max_residual(epsilon) * sigma);
   term.multiplier = static_cast<std::uint16_t>(std::clamp(multiplier, 1.0, kOne - 1));
   term.table = term_table(epsilon, cells, [&](int step) {
     // Midpoint of the integer residuals in this step.
@@ -60,10 +60,10 @@ CombinedTerm fixed_term(double sigma, double epsilon, CombinedCells cells) {
 
 CombinedModel combined_model(const CombinedSigmas& sigmas, double epsilon, int channels,
                              CombinedCells cells) {
-  constexpr double kLeastSigma = 1e-30;
-  epsilon = std::max(kLeastCombinedEpsilon, epsilon);
+  constexpr double kMinSigma = 1e-30;
+  epsilon = std::max(kMinCombinedEpsilon, epsilon);
   CombinedModel model;
-  model.grey = fixed_term(std::max(kLeastSigma, sigmas.grey_levels * kFixedPerLevel * channels),
+  model.grey = fixed_term(std::max(kMinSigma, sigmas.grey_levels * kFixedPerIntensity * channels),
                           epsilon, cells);
   model.has_census = sigmas.census_share > 0;
   if (model.has_census) {
@@ -73,7 +73,7 @@ CombinedModel combined_model(const CombinedSigmas& sigmas, double epsilon, int c
   }
   model.has_gradient = sigmas.gradient_levels_px > 0;
   if (model.has_gradient) {
-    model.gradient = fixed_term(sigmas.gradient_levels_px * kFixedPerLevel, epsilon, cells);
+    model.gradient = fixed_term(sigmas.gradient_levels_px * kFixedPerIntensity, epsilon, cells);
   }
   return model;
 }

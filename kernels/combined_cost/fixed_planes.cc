@@ -7,26 +7,28 @@
 namespace vantage::kernels {
 namespace {
 
-std::uint16_t fixed(float value, int offset, int most) {
-  const float scaled = (value + static_cast<float>(offset)) * kFixedPerLevel + 0.5F;
-  return static_cast<std::uint16_t>(std::clamp(scaled, 0.0F, static_cast<float>(most)));
+std::uint16_t fixed(float value, int offset, int max) {
+  const float scaled = (value + static_cast<float>(offset)) * kFixedPerIntensity + 0.5F;
+  return static_cast<std::uint16_t>(std::clamp(scaled, 0.0F, static_cast<float>(max)));
 }
 
-std::uint16_t fixed_level(float level) { return fixed(level, kFixedLevelOffset, kMostFixed); }
+std::uint16_t fixed_intensity(float level) {
+  return fixed(level, kFixedIntensityOffset, kMaxFixed);
+}
 
 std::uint16_t fixed_gradient(float gradient) {
-  return fixed(gradient, kFixedGradientOffset, kMostFixedGradient);
+  return fixed(gradient, kFixedGradientOffset, kMaxFixedGradient);
 }
 
 }  // namespace
 
-void fixed_levels_row(const float* grey, int width, const FixedLevelRow& fixed) {
+void fixed_intensities_row(const float* grey, int width, const FixedIntensityRow& fixed) {
   for (int x = 0; x < width; ++x) {
     const float before = 0.5F * (grey[x] + grey[x - 1]);
     const float after = 0.5F * (grey[x] + grey[x + 1]);
-    fixed.level[x] = fixed_level(grey[x]);
-    fixed.least[x] = fixed_level(std::min({before, after, grey[x]}));
-    fixed.most[x] = fixed_level(std::max({before, after, grey[x]}));
+    fixed.level[x] = fixed_intensity(grey[x]);
+    fixed.min[x] = fixed_intensity(std::min({before, after, grey[x]}));
+    fixed.max[x] = fixed_intensity(std::max({before, after, grey[x]}));
   }
 }
 

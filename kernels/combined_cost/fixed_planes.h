@@ -8,12 +8,12 @@ namespace vantage::kernels {
 // levels with a margin of at least one column on both sides. Identical on every instruction set.
 
 /// One row of grey levels in 16 bits.
-struct FixedLevelRow {
+struct FixedIntensityRow {
   std::uint16_t* level = nullptr;
-  std::uint16_t* least = nullptr;  ///< minimum within half a pixel, linearly interpolated
-  std::uint16_t* most = nullptr;
+  std::uint16_t* min = nullptr;  ///< minimum within half a pixel, linearly interpolated
+  std::uint16_t* max = nullptr;
 };
-void fixed_levels_row(const float* grey, int width, const FixedLevelRow& fixed);
+void fixed_intensities_row(const float* grey, int width, const FixedIntensityRow& fixed);
 
 /// Central differences of `row`, in grey levels per pixel.
 void fixed_gradient_row(const float* above, const float* row, const float* below, int width,

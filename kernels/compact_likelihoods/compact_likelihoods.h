@@ -15,11 +15,11 @@ namespace vantage::kernels {
 inline constexpr float kEnergyStep = 1.0F / 8;
 /// Probabilities as −log₂ p in steps of 1/8; 255 stands for all up to 2^−31.9.
 inline constexpr float kProbabilityExponentStep = 1.0F / 8;
-inline constexpr int kMostCompact = 255;
+inline constexpr int kMaxCompact = 255;
 /// Probabilities are clamped to at least 2^−32.
-inline constexpr float kLeastCompactProbability = 2.3283064365386963e-10F;
+inline constexpr float kMinCompactProbability = 2.3283064365386963e-10F;
 /// Likelihoods are clamped to at least 2^−31: the product of four is still a normal float.
-inline constexpr float kLeastReducedLikelihood = 4.656612873077393e-10F;
+inline constexpr float kMinReducedLikelihood = 4.656612873077393e-10F;
 
 /// Reduces blocks of four columns: the block's energy is `weight` (in (0, 1]) times the sum of its
 /// four columns' energies. Cells are likelihoods in [0, 1], up to a factor per column; lanes that

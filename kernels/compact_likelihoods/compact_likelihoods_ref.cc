@@ -11,7 +11,7 @@ namespace {
 
 std::uint8_t to_byte(float steps) {
   return static_cast<std::uint8_t>(
-      std::min(std::nearbyint(steps), static_cast<float>(kMostCompact)));
+      std::min(std::nearbyint(steps), static_cast<float>(kMaxCompact)));
 }
 
 void powers_row(const CompactRow& row, float exponent_of_step, float* output) {
@@ -26,7 +26,7 @@ void powers_row(const CompactRow& row, float exponent_of_step, float* output) {
 
 void reduce_likelihoods_row_ref(const BlockRow<float>& row, float weight, std::uint8_t* energies) {
   const auto likelihood = [](const float* cells, std::ptrdiff_t cell) {
-    return std::max(cells[cell], kLeastReducedLikelihood);
+    return std::max(cells[cell], kMinReducedLikelihood);
   };
   const auto log = [&](int block, int lane) {
     const std::ptrdiff_t left = row.left(block) + lane;
@@ -36,12 +36,12 @@ void reduce_likelihoods_row_ref(const BlockRow<float>& row, float weight, std::u
     return log_of_normal(upper * lower);
   };
   for (int b = 0; b < row.blocks(); ++b) {
-    float most = log(b, 0);
+    float max = log(b, 0);
     for (int lane = 1; lane < row.lanes; ++lane) {
-      most = std::max(most, log(b, lane));
+      max = std::max(max, log(b, lane));
     }
     for (int lane = 0; lane < row.lanes; ++lane) {
-      energies[b * row.lanes + lane] = to_byte((most - log(b, lane)) * (weight / kEnergyStep));
+      energies[b * row.lanes + lane] = to_byte((max - log(b, lane)) * (weight / kEnergyStep));
     }
   }
 }
@@ -55,14 +55,14 @@ void reduce_compact_energies_row_ref(const BlockRow<std::uint8_t>& row, float we
     return row.upper[left] + row.upper[right] + row.lower[left] + row.lower[right];
   };
   for (int b = 0; b < row.blocks(); ++b) {
-    int least = sum(b, 0);
+    int min = sum(b, 0);
     for (int lane = 1; lane < row.lanes; ++lane) {
-      least = std::min(least, sum(b, lane));
+      min = std::min(min, sum(b, lane));
     }
     for (int lane = 0; lane < row.lanes; ++lane) {
-      const long above = (sum(b, lane) - least) * units;
+      const long above = (sum(b, lane) - min) * units;
       energies[b * row.lanes + lane] = static_cast<std::uint8_t>(
-          std::min<long>((above + kCompactWeightUnits / 2) / kCompactWeightUnits, kMostCompact));
+          std::min<long>((above + kCompactWeightUnits / 2) / kCompactWeightUnits, kMaxCompact));
     }
   }
 }
@@ -78,7 +78,7 @@ void probabilities_of_compact_row_ref(const CompactRow& row, float* probabilitie
 void compact_probabilities_row_ref(const float* probabilities, int cells, std::uint8_t* compact) {
   const float steps = -kLog2E / kProbabilityExponentStep;
   for (int k = 0; k < cells; ++k) {
-    const float log = log_of_normal(std::max(probabilities[k], kLeastCompactProbability));
+    const float log = log_of_normal(std::max(probabilities[k], kMinCompactProbability));
     compact[k] = to_byte(std::max(log * steps, 0.0F));
   }
 }

@@ -24,8 +24,8 @@ using ByteTag = hn::Rebind<std::uint8_t, FloatTag>;
 
 // Rounds step numbers ≥ 0 and stores them as bytes.
 HWY_INLINE void store_steps(FloatVec steps, std::uint8_t* bytes) {
-  const FloatVec most = hn::Set(FloatTag(), static_cast<float>(kMostCompact));
-  hn::StoreU(hn::DemoteTo(ByteTag(), hn::NearestInt(hn::Min(steps, most))), ByteTag(), bytes);
+  const FloatVec max = hn::Set(FloatTag(), static_cast<float>(kMaxCompact));
+  hn::StoreU(hn::DemoteTo(ByteTag(), hn::NearestInt(hn::Min(steps, max))), ByteTag(), bytes);
 }
 
 HWY_INLINE FloatVec load_steps(const std::uint8_t* bytes) {
@@ -35,13 +35,13 @@ HWY_INLINE FloatVec load_steps(const std::uint8_t* bytes) {
 void reduce_likelihoods(const BlockRow<float>& row, float weight, float* work,
                         std::uint8_t* energies) {
   const FloatTag df;
-  const FloatVec least = hn::Set(df, kLeastReducedLikelihood);
+  const FloatVec min = hn::Set(df, kMinReducedLikelihood);
   const FloatVec steps = hn::Set(df, weight / kEnergyStep);
   for (int b = 0; b < row.blocks(); ++b, energies += row.lanes) {
     const auto load = [&](const float* cells, std::ptrdiff_t at)
-                          HWY_ATTR { return hn::Max(hn::LoadU(df, cells + at), least); };
-    LaneBlock16 most;
-    most.fill(hn::Set(df, std::numeric_limits<float>::lowest()));
+                          HWY_ATTR { return hn::Max(hn::LoadU(df, cells + at), min); };
+    LaneBlock16 max;
+    max.fill(hn::Set(df, std::numeric_limits<float>::lowest()));
     for (int lane = 0; lane < row.lanes; lane += kLaneMultiple) {
       for (int part = 0; part < kParts; ++part) {
         const int first = lane + part * kFloatLanes;
@@ -50,11 +50,11 @@ void reduce_likelihoods(const BlockRow<float>& row, float weight, float* work,
         const FloatVec product = hn::Mul(hn::Mul(load(row.upper, left), load(row.upper, right)),
                                          hn::Mul(load(row.lower, left), load(row.lower, right)));
         const FloatVec log = log_of_normal(product);
-        most.part[part] = hn::Max(most.part[part], log);
+        max.part[part] = hn::Max(max.part[part], log);
         hn::StoreU(log, df, work + first);
       }
     }
-    const FloatVec top = max_lanes(most);
+    const FloatVec top = max_lanes(max);
     for (int lane = 0; lane < row.lanes; lane += kFloatLanes) {
       store_steps(hn::Mul(hn::Sub(top, hn::LoadU(df, work + lane)), steps), energies + lane);
     }
@@ -94,20 +94,20 @@ HWY_INLINE BlockSums<D8> block_sums(D8 d, const BlockRow<std::uint8_t>& row, int
 
 // Minimum per lane over the 128-bit blocks.
 template <class D16>
-HWY_INLINE VecOf<SumTag> fold_least(D16 d16, VecOf<D16> sums) {
+HWY_INLINE VecOf<SumTag> fold_min(D16 d16, VecOf<D16> sums) {
   if constexpr (hn::MaxLanes(D16()) == hn::MaxLanes(SumTag())) {
     return sums;
   } else {
     const hn::Half<D16> half;
-    return fold_least(half, hn::Min(hn::LowerHalf(half, sums), hn::UpperHalf(half, sums)));
+    return fold_min(half, hn::Min(hn::LowerHalf(half, sums), hn::UpperHalf(half, sums)));
   }
 }
 
 // Writes the sums of one block to `work`, in vectors of D8's size while whole vectors fit. `lane`
-// becomes the first remaining lane, `least` the minimum per lane.
+// becomes the first remaining lane, `min` the minimum per lane.
 template <class D8>
 HWY_INLINE void sum_block(D8 d, const BlockRow<std::uint8_t>& row, int block, std::uint16_t* work,
-                          int& lane, VecOf<SumTag>& least) {
+                          int& lane, VecOf<SumTag>& min) {
   const Tag16<D8> d16;
   const int step = static_cast<int>(hn::Lanes(d));
   if (lane + step > row.lanes) {
@@ -120,7 +120,7 @@ HWY_INLINE void sum_block(D8 d, const BlockRow<std::uint8_t>& row, int block, st
     hn::StoreU(sums.odd, d16, work + lane + step / 2);
     of_lanes = hn::Min(of_lanes, hn::Min(sums.even, sums.odd));
   }
-  least = hn::Min(least, fold_least(d16, of_lanes));
+  min = hn::Min(min, fold_min(d16, of_lanes));
 }
 
 // (sums in `work` − `bottom`) · units / kCompactWeightUnits.
@@ -132,12 +132,12 @@ HWY_INLINE void weigh_block(D8 d, const std::uint16_t* work, int lanes, std::uin
   const int step = static_cast<int>(hn::Lanes(d));
   const auto of_bottom = hn::Set(d16, bottom);
   const auto factor = hn::Set(di16, units);
-  const auto most = hn::Set(d16, static_cast<std::uint16_t>(kMostCompact));
+  const auto max = hn::Set(d16, static_cast<std::uint16_t>(kMaxCompact));
   // At most 4 · 255, doubled: the product's fixed point is at 2^15.
   const auto energy = [&](const std::uint16_t* sums) HWY_ATTR {
     const auto above = hn::ShiftLeft<1>(hn::Sub(hn::LoadU(d16, sums), of_bottom));
     const auto product = hn::MulFixedPoint15(hn::BitCast(di16, above), factor);
-    return hn::Min(hn::BitCast(d16, product), most);
+    return hn::Min(hn::BitCast(d16, product), max);
   };
   for (; lane + step <= lanes; lane += step) {
     const auto even = energy(work + lane);
@@ -153,12 +153,12 @@ void reduce_compact_energies(const BlockRow<std::uint8_t>& row, float weight, st
   const hn::CappedTag<std::uint8_t, kLaneMultiple> narrow;
   const auto units = static_cast<std::int16_t>(std::lround(weight * kCompactWeightUnits));
   for (int b = 0; b < row.blocks(); ++b, energies += row.lanes) {
-    auto least = hn::Set(SumTag(), std::numeric_limits<std::uint16_t>::max());
+    auto min = hn::Set(SumTag(), std::numeric_limits<std::uint16_t>::max());
     int lane = 0;
-    sum_block(widest, row, b, work, lane, least);
-    sum_block(middle, row, b, work, lane, least);
-    sum_block(narrow, row, b, work, lane, least);
-    const std::uint16_t bottom = hn::GetLane(hn::MinOfLanes(SumTag(), least));
+    sum_block(widest, row, b, work, lane, min);
+    sum_block(middle, row, b, work, lane, min);
+    sum_block(narrow, row, b, work, lane, min);
+    const std::uint16_t bottom = hn::GetLane(hn::MinOfLanes(SumTag(), min));
     lane = 0;
     weigh_block(widest, work, row.lanes, bottom, units, lane, energies);
     weigh_block(middle, work, row.lanes, bottom, units, lane, energies);
@@ -196,10 +196,10 @@ void probabilities(const CompactRow& row, float* output) {
 
 void compact_probabilities(const float* probabilities, int cells, std::uint8_t* compact) {
   const FloatTag df;
-  const FloatVec least = hn::Set(df, kLeastCompactProbability);
+  const FloatVec min = hn::Set(df, kMinCompactProbability);
   const FloatVec steps = hn::Set(df, -kLog2E / kProbabilityExponentStep);
   for (int k = 0; k < cells; k += kFloatLanes) {
-    const FloatVec log = log_of_normal(hn::Max(hn::LoadU(df, probabilities + k), least));
+    const FloatVec log = log_of_normal(hn::Max(hn::LoadU(df, probabilities + k), min));
     store_steps(hn::Max(hn::Mul(log, steps), hn::Zero(df)), compact + k);
   }
 }

@@ -33,7 +33,7 @@ struct DisparityPriorRow {
   int first_candidate = 0;
   float weight = 1;  ///< ≥ 0
   /// Energies only: upper limit of a column's contrast, see energies_with_prior_row().
-  float most_contrast = std::numeric_limits<float>::infinity();
+  float max_contrast = std::numeric_limits<float>::infinity();
 
   [[nodiscard]] bool has_prior(int column) const {
     const float offset = prior_px[column] - static_cast<float>(disparity_min);
@@ -42,7 +42,7 @@ struct DisparityPriorRow {
 };
 
 /// Energies: E += weight · s · min(k²/4, 1). s is the mean of the column's candidates minus their
-/// minimum, at most most_contrast; it gives the prior the unit and contrast of the costs. All lanes
+/// minimum, at most max_contrast; it gives the prior the unit and contrast of the costs. All lanes
 /// are changed; non-candidate lanes must be finite and count neither for the mean nor for the
 /// minimum.
 void energies_with_prior_row(const DisparityPriorRow& row, float* cells);
@@ -51,8 +51,8 @@ void energies_with_prior_row_ref(const DisparityPriorRow& row, float* cells);
 /// Exponent (base 2) of the prior's likelihood at two pixels and beyond. Clamped where products
 /// with the smallest likelihoods would no longer be normal floats.
 inline float prior_exponent_scale(float weight) {
-  constexpr float kLeast = -20.0F;
-  return std::max(-kPriorDepth * kLog2E * weight, kLeast);
+  constexpr float kMin = -20.0F;
+  return std::max(-kPriorDepth * kLog2E * weight, kMin);
 }
 
 /// Likelihoods: p *= exp(−w · min(k²/4, 1)), w = weight, at most 20 log 2.

@@ -14,19 +14,19 @@ float share_of_depth(const DisparityPriorRow& row, int column, int i) {
 }
 
 /// Sums every sixteenth lane, then reduces the sixteen sums by the tree of lane_sums-inl.h.
-float mean_above_least(const float* cells, int count) {
+float mean_above_min(const float* cells, int count) {
   float sums[kLaneMultiple] = {};
-  float least = cells[0];
+  float min = cells[0];
   for (int i = 0; i < count; ++i) {
     sums[i % kLaneMultiple] += cells[i];
-    least = std::min(least, cells[i]);
+    min = std::min(min, cells[i]);
   }
   for (int half = kLaneMultiple / 2; half >= 1; half /= 2) {
     for (int i = 0; i < half; ++i) {
       sums[i] += sums[i + half];
     }
   }
-  return std::max(sums[0] / static_cast<float>(count) - least, 0.0F);
+  return std::max(sums[0] / static_cast<float>(count) - min, 0.0F);
 }
 
 }  // namespace
@@ -36,8 +36,7 @@ void energies_with_prior_row_ref(const DisparityPriorRow& row, float* cells) {
     if (!row.has_prior(j)) {
       continue;
     }
-    const float scale =
-        row.weight * std::min(mean_above_least(cells, row.count), row.most_contrast);
+    const float scale = row.weight * std::min(mean_above_min(cells, row.count), row.max_contrast);
     for (int i = 0; i < row.lanes; ++i) {
       cells[i] += scale * share_of_depth(row, j, i);
     }

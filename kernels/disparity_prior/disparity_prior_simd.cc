@@ -33,18 +33,18 @@ class ShareOfDepth {
   FloatVec offset_;
 };
 
-HWY_INLINE float mean_above_least(const float* cells, int count) {
+HWY_INLINE float mean_above_min(const float* cells, int count) {
   const FloatTag d;
   LaneBlock16 sums;
-  LaneBlock16 least;
+  LaneBlock16 min;
   sums.fill(hn::Zero(d));
-  least.fill(hn::Set(d, cells[0]));
+  min.fill(hn::Set(d, cells[0]));
   const int whole = count / kLaneMultiple * kLaneMultiple;
   for (int lane = 0; lane < whole; lane += kLaneMultiple) {
     for (int p = 0; p < kParts; ++p) {
       const FloatVec v = hn::LoadU(d, cells + lane + p * kFloatLanes);
       sums.part[p] = hn::Add(sums.part[p], v);
-      least.part[p] = hn::Min(least.part[p], v);
+      min.part[p] = hn::Min(min.part[p], v);
     }
   }
   if (whole < count) {
@@ -53,11 +53,11 @@ HWY_INLINE float mean_above_least(const float* cells, int count) {
       const auto counts = hn::FirstN(d, static_cast<std::size_t>(std::max(count - lane, 0)));
       const FloatVec v = hn::LoadU(d, cells + lane);
       sums.part[p] = hn::Add(sums.part[p], hn::IfThenElseZero(counts, v));
-      least.part[p] = hn::Min(least.part[p], hn::IfThenElse(counts, v, least.part[p]));
+      min.part[p] = hn::Min(min.part[p], hn::IfThenElse(counts, v, min.part[p]));
     }
   }
   const float mean = hn::GetLane(sum_lanes(sums)) / static_cast<float>(count);
-  return std::max(mean - hn::GetLane(min_lanes(least)), 0.0F);
+  return std::max(mean - hn::GetLane(min_lanes(min)), 0.0F);
 }
 
 void energies_with_prior(const DisparityPriorRow& row, float* HWY_RESTRICT cells) {
@@ -66,7 +66,7 @@ void energies_with_prior(const DisparityPriorRow& row, float* HWY_RESTRICT cells
     if (!row.has_prior(j)) {
       continue;
     }
-    const float contrast = std::min(mean_above_least(cells, row.count), row.most_contrast);
+    const float contrast = std::min(mean_above_min(cells, row.count), row.max_contrast);
     const FloatVec scale = hn::Set(d, row.weight * contrast);
     const ShareOfDepth share(row, j);
     for (int lane = 0; lane < row.lanes; lane += kFloatLanes) {

@@ -28,13 +28,13 @@ struct Row {
 };
 
 /// New position of the discontinuity at `place`, strictly between `first` and `last`.
-int nearest_edge(const Row& row, int place, int first, int last, int most_px) {
+int nearest_edge(const Row& row, int place, int first, int last, int max_px) {
   if (row.is_at_edge(place)) {
     return place;
   }
   bool may_go_left = true;
   bool may_go_right = true;
-  for (int move = 1; move <= most_px; ++move) {
+  for (int move = 1; move <= max_px; ++move) {
     may_go_left = may_go_left && place - move > first && row.is_known(place - move + 1);
     if (may_go_left && row.is_at_edge(place - move)) {
       return place - move;
@@ -49,14 +49,14 @@ int nearest_edge(const Row& row, int place, int first, int last, int most_px) {
 
 }  // namespace
 
-void snap_discontinuities_row(const std::uint8_t* edges, int most_px, int width,
+void snap_discontinuities_row(const std::uint8_t* edges, int max_px, int width,
                               float* disparity_px) {
   const int end = width - 1;  // positions are to its left
   int first = -1;
   for (int place = next_discontinuity(disparity_px, 0, width); place < end;) {
     // Found before this one moves: the next one does not move until its own turn.
     const int next = next_discontinuity(disparity_px, place + 1, width);
-    const int moved = nearest_edge({edges, disparity_px}, place, first, next, most_px);
+    const int moved = nearest_edge({edges, disparity_px}, place, first, next, max_px);
     if (moved < place) {
       std::fill(disparity_px + moved + 1, disparity_px + place + 1, disparity_px[place + 1]);
     } else {

@@ -7,7 +7,7 @@ namespace vantage::kernels {
 /// Weight of two neighbouring pixels for each other, given their grey levels: where these differ,
 /// there may be a depth discontinuity between them (7.3).
 struct EdgeModel {
-  float least = 1;     ///< weight across the strongest edges, 0..1
+  float min = 1;       ///< weight across the strongest edges, 0..1
   float contrast = 8;  ///< grey-level difference over which the rest falls to 1/e, > 0
 };
 

@@ -16,13 +16,13 @@ void edge_weights(const float* first, const float* second, int count, const Edge
   const hn::ScalableTag<float> df;
   const int step = static_cast<int>(hn::Lanes(df));
   const auto exponent_of_level = hn::Set(df, -kLog2E / model.contrast);
-  const auto least = hn::Set(df, model.least);
-  const auto rest = hn::Set(df, 1.0F - model.least);
+  const auto min = hn::Set(df, model.min);
+  const auto rest = hn::Set(df, 1.0F - model.min);
   int x = 0;
   for (; x + step <= count; x += step) {
     const auto difference = hn::AbsDiff(hn::LoadU(df, first + x), hn::LoadU(df, second + x));
     const auto power = exp2_of_negative(hn::Mul(difference, exponent_of_level));
-    hn::StoreU(hn::Add(hn::Mul(rest, power), least), df, weights + x);
+    hn::StoreU(hn::Add(hn::Mul(rest, power), min), df, weights + x);
   }
   edge_weights_row_ref(first + x, second + x, count - x, model, weights + x);
 }

@@ -10,8 +10,7 @@ constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 
-void select_energy_winners_row_ref(const EnergyRow& row, std::int32_t* winners,
-                                   FixedEnergy* least) {
+void select_energy_winners_row_ref(const EnergyRow& row, std::int32_t* winners, FixedEnergy* min) {
   for (int j = 0; j < row.columns; ++j) {
     const FixedEnergy* const cells = row.cells + j * row.pitch;
     const CandidateRange candidates = row.candidates(row.first_column + j);
@@ -21,7 +20,7 @@ void select_energy_winners_row_ref(const EnergyRow& row, std::int32_t* winners,
         winners[j] = i;
       }
     }
-    least[j] = candidates.empty() ? kMostEnergy : cells[winners[j]];
+    min[j] = candidates.empty() ? kMaxEnergy : cells[winners[j]];
   }
 }
 
@@ -50,7 +49,7 @@ void energy_disparity_row(const EnergyRow& row, const std::int32_t* winners, boo
   }
 }
 
-void energy_probability_row_ref(const EnergyColumnsRow& row, const FixedEnergy* least,
+void energy_probability_row_ref(const EnergyColumnsRow& row, const FixedEnergy* min,
                                 float steps_per_nat, float* probability) {
   for (int j = 0; j < row.columns; ++j) {
     const FixedEnergy* const cells = row.cells + j * row.pitch;
@@ -58,8 +57,8 @@ void energy_probability_row_ref(const EnergyColumnsRow& row, const FixedEnergy* 
     for (int i = 0; i < row.lanes; ++i) {
       sum += std::exp(-cells[i] / static_cast<double>(steps_per_nat));
     }
-    const double winner = std::exp(-least[j] / static_cast<double>(steps_per_nat));
-    probability[j] = least[j] == kMostEnergy ? kUnknown : static_cast<float>(winner / sum);
+    const double winner = std::exp(-min[j] / static_cast<double>(steps_per_nat));
+    probability[j] = min[j] == kMaxEnergy ? kUnknown : static_cast<float>(winner / sum);
   }
 }
 

@@ -18,8 +18,8 @@ namespace vantage::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
-void winners(const EnergyRow& row, std::int32_t* indices, FixedEnergy* least) {
-  select_energy_winners_row_ref(row, indices, least);
+void winners(const EnergyRow& row, std::int32_t* indices, FixedEnergy* min) {
+  select_energy_winners_row_ref(row, indices, min);
 }
 #else
 
@@ -34,9 +34,9 @@ HWY_INLINE EnergyVec energy_lane_numbers() {
 // counts, and no other lane is below them.
 template <bool kAll>
 HWY_INLINE void select(const FixedEnergy* cells, int lanes, CandidateRange candidates,
-                       std::int32_t& winner, FixedEnergy& least) {
+                       std::int32_t& winner, FixedEnergy& min) {
   const EnergyTag d;
-  const EnergyVec most = hn::Set(d, kMostEnergy);
+  const EnergyVec max = hn::Set(d, kMaxEnergy);
   const EnergyVec before = hn::Set(d, static_cast<FixedEnergy>(candidates.begin - 1));
   const EnergyVec end = hn::Set(d, static_cast<FixedEnergy>(candidates.end));
   const auto load = [&](int lane) HWY_ATTR {
@@ -47,46 +47,46 @@ HWY_INLINE void select(const FixedEnergy* cells, int lanes, CandidateRange candi
       const EnergyVec number =
           hn::Add(energy_lane_numbers(), hn::Set(d, static_cast<FixedEnergy>(lane)));
       const auto counts = hn::And(hn::Gt(number, before), hn::Lt(number, end));
-      return hn::IfThenElse(counts, energies, most);
+      return hn::IfThenElse(counts, energies, max);
     }
   };
-  EnergyVec lowest = most;
+  EnergyVec lowest = max;
   for (int lane = 0; lane < lanes; lane += kEnergyLanes) {
     lowest = hn::Min(lowest, load(lane));
   }
-  lowest = least_of_lanes(lowest);
+  lowest = min_of_lanes(lowest);
   // Reads all lanes: the winner's position is as good as random, and a mispredicted branch costs
   // more than the vectors.
-  EnergyVec place = most;
+  EnergyVec place = max;
   EnergyVec number = energy_lane_numbers();
   for (int lane = 0; lane < lanes; lane += kEnergyLanes) {
-    place = hn::Min(place, hn::IfThenElse(hn::Eq(load(lane), lowest), number, most));
+    place = hn::Min(place, hn::IfThenElse(hn::Eq(load(lane), lowest), number, max));
     number = hn::Add(number, hn::Set(d, kEnergyLanes));
   }
-  // If the minimum is kMostEnergy, lanes that do not count hold it too.
-  winner = std::max<std::int32_t>(hn::GetLane(least_of_lanes(place)), candidates.begin);
-  least = hn::GetLane(lowest);
+  // If the minimum is kMaxEnergy, lanes that do not count hold it too.
+  winner = std::max<std::int32_t>(hn::GetLane(min_of_lanes(place)), candidates.begin);
+  min = hn::GetLane(lowest);
 }
 
-void winners(const EnergyRow& row, std::int32_t* indices, FixedEnergy* least) {
+void winners(const EnergyRow& row, std::int32_t* indices, FixedEnergy* min) {
   const CandidateRange plain = row.plain_columns();
   const int lanes = row.geometry.lanes();
   for (int j = 0; j < row.columns; ++j) {
     const int x = row.first_column + j;
     const FixedEnergy* const cells = row.cells + j * row.pitch;
     if (x >= plain.begin && x < plain.end) {
-      select<true>(cells, lanes, {0, row.geometry.count}, indices[j], least[j]);
+      select<true>(cells, lanes, {0, row.geometry.count}, indices[j], min[j]);
     } else if (const CandidateRange candidates = row.candidates(x); !candidates.empty()) {
-      select<false>(cells, lanes, candidates, indices[j], least[j]);
+      select<false>(cells, lanes, candidates, indices[j], min[j]);
     } else {
       indices[j] = kNoWinner;
-      least[j] = kMostEnergy;
+      min[j] = kMaxEnergy;
     }
   }
 }
 #endif
 
-void probabilities(const EnergyColumnsRow& row, const FixedEnergy* least, float steps_per_nat,
+void probabilities(const EnergyColumnsRow& row, const FixedEnergy* min, float steps_per_nat,
                    float* probability) {
   const FloatTag df;
   const hn::Rebind<FixedEnergy, FloatTag> d16;
@@ -104,9 +104,9 @@ void probabilities(const EnergyColumnsRow& row, const FixedEnergy* least, float 
       }
     }
     const FloatVec winner =
-        exp2_of_negative(hn::Mul(hn::Set(df, static_cast<float>(least[j])), exponent_of_step));
-    probability[j] = least[j] == kMostEnergy ? std::numeric_limits<float>::quiet_NaN()
-                                             : hn::GetLane(hn::Div(winner, sum_lanes(sums)));
+        exp2_of_negative(hn::Mul(hn::Set(df, static_cast<float>(min[j])), exponent_of_step));
+    probability[j] = min[j] == kMaxEnergy ? std::numeric_limits<float>::quiet_NaN()
+                                          : hn::GetLane(hn::Div(winner, sum_lanes(sums)));
   }
 }
 
@@ -118,12 +118,12 @@ namespace vantage::kernels {
 HWY_EXPORT(winners);
 HWY_EXPORT(probabilities);
 
-void select_energy_winners_row(const EnergyRow& row, std::int32_t* indices, FixedEnergy* least) {
-  HWY_DYNAMIC_DISPATCH(winners)(row, indices, least);
+void select_energy_winners_row(const EnergyRow& row, std::int32_t* indices, FixedEnergy* min) {
+  HWY_DYNAMIC_DISPATCH(winners)(row, indices, min);
 }
-void energy_probability_row(const EnergyColumnsRow& row, const FixedEnergy* least,
+void energy_probability_row(const EnergyColumnsRow& row, const FixedEnergy* min,
                             float steps_per_nat, float* probability) {
-  HWY_DYNAMIC_DISPATCH(probabilities)(row, least, steps_per_nat, probability);
+  HWY_DYNAMIC_DISPATCH(probabilities)(row, min, steps_per_nat, probability);
 }
 
 }  // namespace vantage::kernels

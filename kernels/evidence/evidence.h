@@ -10,7 +10,7 @@ using GradientPairs = FeaturePairs<float, 3>;
 
 /// Weights of the octagonal norm f1·L1 + f∞·L∞ (5.15–5.17).
 inline constexpr float kOctagonSum = 0.3978247F;
-inline constexpr float kOctagonMost = 0.5626091F;
+inline constexpr float kOctagonMax = 0.5626091F;
 
 /// A row of gradients, converted to those planes. On input x and y hold gx and gy.
 struct GradientRowPlanes {
@@ -39,7 +39,7 @@ struct EvidenceRow {
 };
 
 /// Smallest σ for which differences of evidence divided by σ stay finite.
-inline constexpr double kLeastEvidenceSigma = 1e-30;
+inline constexpr double kMinEvidenceSigma = 1e-30;
 
 /// In place: (1−ε) exp((E − max E) / σ) + ε, with the maximum over the column's candidates with a
 /// partner; ε for those without, 0 in the lanes after them. σ in (0, ∞), ε in (0, 1).

@@ -13,7 +13,7 @@ float norm(float x, float y, bool octagon) {
     return std::sqrt(x * x + y * y);
   }
   return kOctagonSum * (std::abs(x) + std::abs(y)) +
-         kOctagonMost * std::max(std::abs(x), std::abs(y));
+         kOctagonMax * std::max(std::abs(x), std::abs(y));
 }
 
 }  // namespace
@@ -45,12 +45,11 @@ void likelihood_of_evidence_ref(const EvidenceRow& row, float sigma, float epsil
   const float exponent_scale = kLog2E / sigma;
   for (int j = 0; j < row.columns; ++j, cells += row.geometry.lanes()) {
     const CandidateRange inside = row.geometry.with_partner(row.first_column + j);
-    const float least =
+    const float min =
         inside.empty() ? 0 : *std::min_element(cells + inside.begin, cells + inside.end);
     for (int i = 0; i < row.geometry.lanes(); ++i) {
       if (i >= inside.begin && i < inside.end) {
-        cells[i] =
-            (1.0F - epsilon) * exp2_of_negative((least - cells[i]) * exponent_scale) + epsilon;
+        cells[i] = (1.0F - epsilon) * exp2_of_negative((min - cells[i]) * exponent_scale) + epsilon;
       } else {
         cells[i] = i < row.geometry.count ? epsilon : 0;
       }

@@ -32,7 +32,7 @@ struct NormOctagon {
     const Vec across = hn::Abs(x);
     const Vec down = hn::Abs(y);
     return hn::Add(hn::Mul(hn::Set(d, kOctagonSum), hn::Add(across, down)),
-                   hn::Mul(hn::Set(d, kOctagonMost), hn::Max(across, down)));
+                   hn::Mul(hn::Set(d, kOctagonMax), hn::Max(across, down)));
   }
 };
 
@@ -88,7 +88,7 @@ void evidence_to_likelihood(const EvidenceRow& row, float sigma, float epsilon, 
   const int lanes = row.geometry.lanes();
   const int count = row.geometry.count;
   const Vec exponent_scale = hn::Set(d, kLog2E / sigma);
-  const Vec least_likelihood = hn::Set(d, epsilon);
+  const Vec min_likelihood = hn::Set(d, epsilon);
   const Vec rest = hn::Set(d, 1.0F - epsilon);
   const Vec infinity = hn::Set(d, std::numeric_limits<float>::infinity());
   for (int j = 0; j < row.columns; ++j, cells += lanes) {
@@ -98,11 +98,11 @@ void evidence_to_likelihood(const EvidenceRow& row, float sigma, float epsilon, 
       const Vec cell = hn::LoadU(d, cells + lane);
       minima = hn::Min(minima, hn::IfThenElse(lanes_in(inside, lane), cell, infinity));
     }
-    const Vec least = hn::MinOfLanes(d, minima);
+    const Vec min = hn::MinOfLanes(d, minima);
     for (int lane = 0; lane < lanes; lane += step) {
-      const Vec exponent = hn::Mul(hn::Sub(least, hn::LoadU(d, cells + lane)), exponent_scale);
-      const Vec likelihood = hn::Add(hn::Mul(rest, exp2_of_negative(exponent)), least_likelihood);
-      const Vec candidate = hn::IfThenElse(lanes_in(inside, lane), likelihood, least_likelihood);
+      const Vec exponent = hn::Mul(hn::Sub(min, hn::LoadU(d, cells + lane)), exponent_scale);
+      const Vec likelihood = hn::Add(hn::Mul(rest, exp2_of_negative(exponent)), min_likelihood);
+      const Vec candidate = hn::IfThenElse(lanes_in(inside, lane), likelihood, min_likelihood);
       hn::StoreU(hn::IfThenElseZero(lanes_in({0, count}, lane), candidate), d, cells + lane);
     }
   }

@@ -29,7 +29,7 @@ double evidence_sum_ref(const EvidenceBlock& block) {
       const float across = std::abs(dx);
       const float down = std::abs(dy);
       const float difference =
-          octagon ? kOctagonSum * (across + down) + kOctagonMost * std::max(across, down)
+          octagon ? kOctagonSum * (across + down) + kOctagonMax * std::max(across, down)
                   : std::sqrt(dx * dx + dy * dy);
       lanes[j % kLaneMultiple] +=
           reference.half_norm[at] + partner.half_norm[partner_at] - difference;

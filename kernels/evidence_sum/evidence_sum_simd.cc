@@ -27,7 +27,7 @@ HWY_INLINE Vec evidence(const GradientBlock& reference, const GradientBlock& par
     const Vec across = hn::Abs(dx);
     const Vec down = hn::Abs(dy);
     return hn::Sub(norms, hn::Add(hn::Mul(hn::Set(d, kOctagonSum), hn::Add(across, down)),
-                                  hn::Mul(hn::Set(d, kOctagonMost), hn::Max(across, down))));
+                                  hn::Mul(hn::Set(d, kOctagonMax), hn::Max(across, down))));
   }
 }
 

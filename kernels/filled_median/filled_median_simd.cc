@@ -37,10 +37,10 @@ struct Samples {
   HWY_ALIGN std::int32_t weight[kSamples * kStep];
 };
 
-// The median is one of the samples in [`least`, `most`]: samples below `least` have less than half
-// of the total weight, samples up to `most` have at least half.
+// The median is one of the samples in [`min`, `max`]: samples below `min` have less than half
+// of the total weight, samples up to `max` have at least half.
 struct Brackets {
-  Vec least, most;
+  Vec min, max;
   VecI total;  // weight of all samples
 };
 
@@ -79,9 +79,8 @@ HWY_INLINE Brackets take_samples(const FilledRow& row, int x, const std::int32_t
       const VecI weight = hn::IfThenElseZero(is_known, hn::GatherIndex(di, weights, unlike));
       const auto counts = hn::RebindMask(d, hn::Gt(weight, hn::Zero(di)));
       const Vec counted_px = hn::IfThenElse(counts, disparity_px, infinity);
-      brackets.least = hn::Min(brackets.least, counted_px);
-      brackets.most =
-          hn::Max(brackets.most, hn::IfThenElse(counts, disparity_px, hn::Neg(infinity)));
+      brackets.min = hn::Min(brackets.min, counted_px);
+      brackets.max = hn::Max(brackets.max, hn::IfThenElse(counts, disparity_px, hn::Neg(infinity)));
       brackets.total = hn::Add(brackets.total, weight);
       hn::Store(counted_px, d, sample_px);
       hn::Store(weight, di, sample_weight);
@@ -92,27 +91,27 @@ HWY_INLINE Brackets take_samples(const FilledRow& row, int x, const std::int32_t
   return brackets;
 }
 
-// Removes the samples on the wrong side of `pivots`. Pivots in [`least`, `most`) remove at least
+// Removes the samples on the wrong side of `pivots`. Pivots in [`min`, `max`) remove at least
 // one.
 HWY_INLINE void narrow(const Samples& samples, Vec pivots, Brackets& brackets) {
   const TagF d;
   const TagI di;
   const Vec infinity = hn::Set(d, kInfinity);
   VecI weight = hn::Zero(di);
-  Vec most_below = hn::Neg(infinity);
-  Vec least_above = infinity;
+  Vec max_below = hn::Neg(infinity);
+  Vec min_above = infinity;
   HWY_UNROLL(kFilledMedianSamples)
   for (int i = 0; i < kSamples * kStep; i += kStep) {
     const Vec disparity_px = hn::Load(d, samples.disparity_px + i);
     const auto is_below = hn::Le(disparity_px, pivots);
     weight = hn::Add(
         weight, hn::IfThenElseZero(hn::RebindMask(di, is_below), hn::Load(di, samples.weight + i)));
-    most_below = hn::Max(most_below, hn::IfThenElse(is_below, disparity_px, hn::Neg(infinity)));
-    least_above = hn::Min(least_above, hn::IfThenElse(is_below, infinity, disparity_px));
+    max_below = hn::Max(max_below, hn::IfThenElse(is_below, disparity_px, hn::Neg(infinity)));
+    min_above = hn::Min(min_above, hn::IfThenElse(is_below, infinity, disparity_px));
   }
   const auto is_above = hn::RebindMask(d, hn::Lt(hn::Add(weight, weight), brackets.total));
-  brackets.least = hn::IfThenElse(is_above, least_above, brackets.least);
-  brackets.most = hn::IfThenElse(is_above, brackets.most, most_below);
+  brackets.min = hn::IfThenElse(is_above, min_above, brackets.min);
+  brackets.max = hn::IfThenElse(is_above, brackets.max, max_below);
 }
 
 void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
@@ -136,18 +135,17 @@ void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
     const auto is_taken =
         hn::And(hn::Gt(hn::Load(di, taken), hn::Zero(di)), hn::Gt(brackets.total, hn::Zero(di)));
     // Pixels that keep their values need no search.
-    brackets.most = hn::IfThenElse(hn::RebindMask(d, is_taken), brackets.most, brackets.least);
-    while (!hn::AllFalse(d, hn::Lt(brackets.least, brackets.most))) {
-      const Vec middle = hn::Add(hn::Mul(brackets.least, half), hn::Mul(brackets.most, half));
+    brackets.max = hn::IfThenElse(hn::RebindMask(d, is_taken), brackets.max, brackets.min);
+    while (!hn::AllFalse(d, hn::Lt(brackets.min, brackets.max))) {
+      const Vec middle = hn::Add(hn::Mul(brackets.min, half), hn::Mul(brackets.max, half));
       // If there is no float in between, the pivot is the smallest sample: that removes it or all
       // others.
-      const auto is_between =
-          hn::And(hn::Ge(middle, brackets.least), hn::Lt(middle, brackets.most));
-      narrow(samples, hn::IfThenElse(is_between, middle, brackets.least), brackets);
+      const auto is_between = hn::And(hn::Ge(middle, brackets.min), hn::Lt(middle, brackets.max));
+      narrow(samples, hn::IfThenElse(is_between, middle, brackets.min), brackets);
     }
     hn::Store(hn::VecFromMask(di, is_taken), di, taken);
     // The addition turns −0 into 0.
-    hn::Store(hn::Add(brackets.most, hn::Zero(d)), d, medians_px);
+    hn::Store(hn::Add(brackets.max, hn::Zero(d)), d, medians_px);
     for (int i = 0; i < lanes; ++i) {
       filled_px[x + i] = taken[i] != 0 ? medians_px[i] : filled_px[x + i];
     }

@@ -15,7 +15,7 @@ namespace vantage::kernels {
 
 /// Likelihoods are clamped to at least this, e^−87.3, the smallest normal float: products over
 /// several images get that small.
-inline constexpr float kLeastFixedLikelihood = std::numeric_limits<float>::min();
+inline constexpr float kMinFixedLikelihood = std::numeric_limits<float>::min();
 
 /// Fixed-point steps per step of a byte energy, in (0, 128), in units of 1/256.
 class ByteSteps {
@@ -34,7 +34,7 @@ class ByteSteps {
   std::int16_t units_;
 };
 
-/// Fixed-point energies of byte energies; kMostEnergy in lanes that are not candidates.
+/// Fixed-point energies of byte energies; kMaxEnergy in lanes that are not candidates.
 void fixed_energies_of_bytes_row(const CompactRow& row, ByteSteps steps, FixedEnergy* energies);
 void fixed_energies_of_bytes_row_ref(const CompactRow& row, ByteSteps steps, FixedEnergy* energies);
 
@@ -46,7 +46,7 @@ struct LikelihoodRow {
   int count = 0;  ///< candidates: lanes [0, count)
 };
 
-/// −ln p · steps_per_nat, rounded, for candidates; kMostEnergy in the other lanes. steps_per_nat:
+/// −ln p · steps_per_nat, rounded, for candidates; kMaxEnergy in the other lanes. steps_per_nat:
 /// above 0, at most 374.
 void fixed_energies_of_likelihoods_row(const LikelihoodRow& row, float steps_per_nat,
                                        FixedEnergy* energies);

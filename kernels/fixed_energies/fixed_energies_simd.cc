@@ -35,7 +35,7 @@ template <class Row>
 HWY_INLINE void close_lanes(const Row& row, FixedEnergy* energies) {
   if (row.count < row.lanes) {
     for (int x = 0; x < row.columns; ++x, energies += row.lanes) {
-      std::fill(energies + std::max(0, row.count), energies + row.lanes, kMostEnergy);
+      std::fill(energies + std::max(0, row.count), energies + row.lanes, kMaxEnergy);
     }
   }
 }
@@ -57,10 +57,10 @@ void of_likelihoods(const LikelihoodRow& row, float steps_per_nat, FixedEnergy* 
   const hn::ScalableTag<float> df;
   const hn::Rebind<FixedEnergy, decltype(df)> d16;
   const int step = static_cast<int>(hn::Lanes(df));
-  const auto least = hn::Set(df, kLeastFixedLikelihood);
+  const auto min = hn::Set(df, kMinFixedLikelihood);
   const auto scale = hn::Set(df, -steps_per_nat);
   for (int k = 0; k < row.columns * row.lanes; k += step) {
-    const auto log = log_of_normal(hn::Max(hn::LoadU(df, row.cells + k), least));
+    const auto log = log_of_normal(hn::Max(hn::LoadU(df, row.cells + k), min));
     const auto steps = hn::Max(hn::Mul(log, scale), hn::Zero(df));
     hn::StoreU(hn::DemoteTo(d16, hn::NearestInt(steps)), d16, energies + k);
   }

@@ -11,12 +11,12 @@ struct DisparityChange {
   std::int64_t jumped = 0;  ///< of these: |difference| > 1 px
   std::int64_t change = 0;  ///< Σ min(|difference|, 1024) in 1/1024 px, each rounded
   /// Range of all known disparities of both maps; +infinity and −infinity if there are none.
-  float least_px = 0;
-  float most_px = 0;
+  float min_px = 0;
+  float max_px = 0;
 };
 
 /// Change between one row of two images of grey levels.
-struct LevelChange {
+struct IntensityChange {
   std::int64_t compared = 0;  ///< pixels where `mask` is set
   std::int64_t change = 0;    ///< Σ |difference| over them
 };
@@ -27,13 +27,13 @@ DisparityChange disparity_change_row(const float* now_px, const float* before_px
 DisparityChange disparity_change_row_ref(const float* now_px, const float* before_px,
                                          const std::uint8_t* mask, int width);
 
-LevelChange level_change_row(const std::uint8_t* now, const std::uint8_t* before,
-                             const std::uint8_t* mask, int width);
-LevelChange level_change_row_ref(const std::uint8_t* now, const std::uint8_t* before,
-                                 const std::uint8_t* mask, int width);
+IntensityChange intensity_change_row(const std::uint8_t* now, const std::uint8_t* before,
+                                     const std::uint8_t* mask, int width);
+IntensityChange intensity_change_row_ref(const std::uint8_t* now, const std::uint8_t* before,
+                                         const std::uint8_t* mask, int width);
 
 /// Σ levels.
-std::int64_t level_sum_row(const std::uint8_t* levels, int width);
-std::int64_t level_sum_row_ref(const std::uint8_t* levels, int width);
+std::int64_t intensity_sum_row(const std::uint8_t* levels, int width);
+std::int64_t intensity_sum_row_ref(const std::uint8_t* levels, int width);
 
 }  // namespace vantage::kernels

@@ -42,8 +42,8 @@ HWY_INLINE void add_disparity_change(const float* HWY_RESTRICT now,
   const auto infinity = hn::Set(d, std::numeric_limits<float>::infinity());
   const auto one = hn::Set(d, 1.0F);
   const auto units = hn::Set(d, 1024.0F);
-  auto least = infinity;
-  auto most = hn::Neg(infinity);
+  auto min = infinity;
+  auto max = hn::Neg(infinity);
   auto compared = hn::Zero(di);
   auto jumped = hn::Zero(di);
   auto change = hn::Zero(di);
@@ -52,10 +52,10 @@ HWY_INLINE void add_disparity_change(const float* HWY_RESTRICT now,
     const auto b = hn::LoadU(d, before + x);
     const auto known_a = hn::Eq(a, a);
     const auto known_b = hn::Eq(b, b);
-    least = hn::Min(
-        least, hn::Min(hn::IfThenElse(known_a, a, infinity), hn::IfThenElse(known_b, b, infinity)));
-    most = hn::Max(most, hn::Max(hn::IfThenElse(known_a, a, hn::Neg(infinity)),
-                                 hn::IfThenElse(known_b, b, hn::Neg(infinity))));
+    min = hn::Min(
+        min, hn::Min(hn::IfThenElse(known_a, a, infinity), hn::IfThenElse(known_b, b, infinity)));
+    max = hn::Max(max, hn::Max(hn::IfThenElse(known_a, a, hn::Neg(infinity)),
+                               hn::IfThenElse(known_b, b, hn::Neg(infinity))));
     const auto difference = hn::Abs(hn::Sub(a, b));
     const auto masked =
         hn::RebindMask(d, hn::Ne(hn::PromoteTo(di, hn::LoadU(d8, mask + x)), hn::Zero(di)));
@@ -70,12 +70,12 @@ HWY_INLINE void add_disparity_change(const float* HWY_RESTRICT now,
   sums.compared += sum_of(di, compared);
   sums.jumped += sum_of(di, jumped);
   sums.change += sum_of(di, change);
-  sums.least_px = std::min(sums.least_px, joined(d, least, [](const float* a, const float* z) {
-                             return *std::min_element(a, z);
-                           }));
-  sums.most_px = std::max(sums.most_px, joined(d, most, [](const float* a, const float* z) {
-                            return *std::max_element(a, z);
-                          }));
+  sums.min_px = std::min(sums.min_px, joined(d, min, [](const float* a, const float* z) {
+                           return *std::min_element(a, z);
+                         }));
+  sums.max_px = std::max(sums.max_px, joined(d, max, [](const float* a, const float* z) {
+                           return *std::max_element(a, z);
+                         }));
 }
 
 DisparityChange disparity_change(const float* now, const float* before, const std::uint8_t* mask,
@@ -95,7 +95,7 @@ class ByteSum {
  public:
   using D = hn::ScalableTag<std::uint16_t>;
   static constexpr int kStep = static_cast<int>(hn::MaxLanes(D()));
-  static constexpr int kMostSteps = 256;
+  static constexpr int kMaxSteps = 256;
 
   HWY_INLINE ByteSum() : lanes_(hn::Zero(D())) {}
   HWY_INLINE void add(hn::VFromD<hn::Rebind<std::uint8_t, D>> bytes) {
@@ -108,14 +108,15 @@ class ByteSum {
 };
 using TagOfBytes = hn::Rebind<std::uint8_t, ByteSum::D>;
 
-LevelChange level_change(const std::uint8_t* HWY_RESTRICT now,
-                         const std::uint8_t* HWY_RESTRICT before,
-                         const std::uint8_t* HWY_RESTRICT mask, int width) {
+IntensityChange intensity_change(const std::uint8_t* HWY_RESTRICT now,
+                                 const std::uint8_t* HWY_RESTRICT before,
+                                 const std::uint8_t* HWY_RESTRICT mask, int width) {
   const TagOfBytes d8;
   const int whole = width - width % ByteSum::kStep;
-  LevelChange sums = level_change_row_ref(now + whole, before + whole, mask + whole, width - whole);
+  IntensityChange sums =
+      intensity_change_row_ref(now + whole, before + whole, mask + whole, width - whole);
   for (int x = 0; x < whole;) {
-    const int end = std::min(whole, x + ByteSum::kMostSteps * ByteSum::kStep);
+    const int end = std::min(whole, x + ByteSum::kMaxSteps * ByteSum::kStep);
     ByteSum compared;
     ByteSum change;
     for (; x < end; x += ByteSum::kStep) {
@@ -132,12 +133,12 @@ LevelChange level_change(const std::uint8_t* HWY_RESTRICT now,
   return sums;
 }
 
-std::int64_t level_sum(const std::uint8_t* levels, int width) {
+std::int64_t intensity_sum(const std::uint8_t* levels, int width) {
   const TagOfBytes d8;
   const int whole = width - width % ByteSum::kStep;
-  std::int64_t total = level_sum_row_ref(levels + whole, width - whole);
+  std::int64_t total = intensity_sum_row_ref(levels + whole, width - whole);
   for (int x = 0; x < whole;) {
-    const int end = std::min(whole, x + ByteSum::kMostSteps * ByteSum::kStep);
+    const int end = std::min(whole, x + ByteSum::kMaxSteps * ByteSum::kStep);
     ByteSum sum;
     for (; x < end; x += ByteSum::kStep) {
       sum.add(hn::LoadU(d8, levels + x));
@@ -153,19 +154,19 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vantage::kernels {
 HWY_EXPORT(disparity_change);
-HWY_EXPORT(level_change);
-HWY_EXPORT(level_sum);
+HWY_EXPORT(intensity_change);
+HWY_EXPORT(intensity_sum);
 
 DisparityChange disparity_change_row(const float* now_px, const float* before_px,
                                      const std::uint8_t* mask, int width) {
   return HWY_DYNAMIC_DISPATCH(disparity_change)(now_px, before_px, mask, width);
 }
-LevelChange level_change_row(const std::uint8_t* now, const std::uint8_t* before,
-                             const std::uint8_t* mask, int width) {
-  return HWY_DYNAMIC_DISPATCH(level_change)(now, before, mask, width);
+IntensityChange intensity_change_row(const std::uint8_t* now, const std::uint8_t* before,
+                                     const std::uint8_t* mask, int width) {
+  return HWY_DYNAMIC_DISPATCH(intensity_change)(now, before, mask, width);
 }
-std::int64_t level_sum_row(const std::uint8_t* levels, int width) {
-  return HWY_DYNAMIC_DISPATCH(level_sum)(levels, width);
+std::int64_t intensity_sum_row(const std::uint8_t* levels, int width) {
+  return HWY_DYNAMIC_DISPATCH(intensity_sum)(levels, width);
 }
 
 }  // namespace vantage::kernels

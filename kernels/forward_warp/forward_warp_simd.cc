@@ -38,7 +38,7 @@ HWY_INLINE void find_targets(D64 d64, const ForwardWarpRow& row, int first, int 
   const auto offset = hn::Set(d64, row.camera_offset);
   const auto far = hn::Set(d64, kFarColumns);
   const auto before = hn::Set(di32, -1);
-  const auto behind = hn::Set(di32, row.width);
+  const auto after = hn::Set(di32, row.width);
   for (int i = first; i < first + count; i += static_cast<int>(hn::Lanes(d64))) {
     const auto read = hn::LoadU(d32, row.disparity_px + block.begin + i);
     const auto known = hn::Le(hn::Abs(read), largest);
@@ -47,7 +47,7 @@ HWY_INLINE void find_targets(D64 d64, const ForwardWarpRow& row, int first, int 
     const auto shift = hn::DemoteTo(di32, hn::Min(hn::Max(floored, hn::Neg(far)), far));
     // Not Iota(di32, x): only a constant start avoids a detour through memory.
     const auto column = hn::Add(hn::Iota(di32, 0), hn::Set(di32, block.begin + i));
-    const auto target = hn::Min(hn::Max(hn::Add(column, shift), before), behind);
+    const auto target = hn::Min(hn::Max(hn::Add(column, shift), before), after);
     hn::StoreU(hn::IfThenElse(known, read, unknown), d32, block.disparity_px + 1 + i);
     hn::StoreU(hn::IfThenElse(hn::RebindMask(di32, known), target, before), di32,
                block.target + 1 + i);

@@ -6,8 +6,8 @@ namespace vantage::kernels {
 
 /// Minimum and maximum of the known disparities; least > most if there are none.
 struct KnownRange {
-  float least = std::numeric_limits<float>::infinity();
-  float most = -std::numeric_limits<float>::infinity();
+  float min = std::numeric_limits<float>::infinity();
+  float max = -std::numeric_limits<float>::infinity();
 };
 
 /// Extends `range` by the values of a row; NaN and ±inf are unknown. Identical on every instruction

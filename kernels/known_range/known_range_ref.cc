@@ -8,8 +8,8 @@ namespace vantage::kernels {
 KnownRange known_range_row_ref(const float* disparity_px, int count, KnownRange range) {
   for (int i = 0; i < count; ++i) {
     if (std::isfinite(disparity_px[i])) {
-      range.least = std::min(range.least, disparity_px[i]);
-      range.most = std::max(range.most, disparity_px[i]);
+      range.min = std::min(range.min, disparity_px[i]);
+      range.max = std::max(range.max, disparity_px[i]);
     }
   }
   return range;

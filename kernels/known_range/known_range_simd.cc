@@ -15,19 +15,19 @@ KnownRange known_range(const float* disparity_px, int count, KnownRange range) {
   const int step = static_cast<int>(hn::Lanes(d));
   const auto largest = hn::Set(d, std::numeric_limits<float>::max());
   const auto infinity = hn::Set(d, std::numeric_limits<float>::infinity());
-  auto least = infinity;
-  auto most = hn::Neg(infinity);
+  auto min = infinity;
+  auto max = hn::Neg(infinity);
   int i = 0;
   for (; i + step <= count; i += step) {
     const auto read = hn::LoadU(d, disparity_px + i);
     const auto known = hn::Le(hn::Abs(read), largest);
-    least = hn::Min(least, hn::IfThenElse(known, read, infinity));
-    most = hn::Max(most, hn::IfThenElse(known, read, hn::Neg(infinity)));
+    min = hn::Min(min, hn::IfThenElse(known, read, infinity));
+    max = hn::Max(max, hn::IfThenElse(known, read, hn::Neg(infinity)));
   }
-  const float least_of_vectors = hn::GetLane(hn::MinOfLanes(d, least));
-  const float most_of_vectors = hn::GetLane(hn::MaxOfLanes(d, most));
-  range.least = range.least < least_of_vectors ? range.least : least_of_vectors;
-  range.most = range.most > most_of_vectors ? range.most : most_of_vectors;
+  const float min_of_vectors = hn::GetLane(hn::MinOfLanes(d, min));
+  const float max_of_vectors = hn::GetLane(hn::MaxOfLanes(d, max));
+  range.min = range.min < min_of_vectors ? range.min : min_of_vectors;
+  range.max = range.max > max_of_vectors ? range.max : max_of_vectors;
   return known_range_row_ref(disparity_px + i, count - i, range);
 }
 

@@ -42,19 +42,19 @@ class CandidateLanes {
 
 // Smallest and second smallest element and sum of a column, per lane.
 struct Margin {
-  LaneBlock16 least;
+  LaneBlock16 min;
   LaneBlock16 second;
   LaneBlock16 sum;
 
   HWY_INLINE Margin() {
     const FloatTag df;
-    least.fill(hn::Set(df, std::numeric_limits<float>::infinity()));
-    second = least;
+    min.fill(hn::Set(df, std::numeric_limits<float>::infinity()));
+    second = min;
     sum.fill(hn::Zero(df));
   }
   HWY_INLINE void add(int part, FloatVec energy, FloatVec summand) {
-    second.part[part] = hn::Min(second.part[part], hn::Max(least.part[part], energy));
-    least.part[part] = hn::Min(least.part[part], energy);
+    second.part[part] = hn::Min(second.part[part], hn::Max(min.part[part], energy));
+    min.part[part] = hn::Min(min.part[part], energy);
     sum.part[part] = hn::Add(sum.part[part], summand);
   }
   HWY_INLINE void add(int part, FloatVec energy) { add(part, energy, energy); }
@@ -71,7 +71,7 @@ struct Margin {
       return hn::Zero(df);
     }
     const FloatVec total = sum_lanes(sum);
-    const FloatVec best = min_lanes(least);
+    const FloatVec best = min_lanes(min);
     const FloatVec next = second_of_lanes(best);
     const FloatVec margin = hn::Div(hn::Sub(next, best), total);
     return hn::IfThenElse(hn::Eq(total, hn::Zero(df)), hn::Zero(df), margin);
@@ -82,12 +82,12 @@ struct Margin {
   // smallest without one occurrence of the best.
   [[nodiscard]] HWY_INLINE FloatVec second_of_lanes(FloatVec best) const {
     const FloatTag df;
-    LaneBlock16 others = least;
+    LaneBlock16 others = min;
     LaneBlock16 ties;
     for (int part = 0; part < kParts; ++part) {
-      const auto is_best = hn::Eq(least.part[part], best);
+      const auto is_best = hn::Eq(min.part[part], best);
       others.part[part] = hn::IfThenElse(
-          is_best, hn::Set(df, std::numeric_limits<float>::infinity()), least.part[part]);
+          is_best, hn::Set(df, std::numeric_limits<float>::infinity()), min.part[part]);
       ties.part[part] = hn::IfThenElseZero(is_best, hn::Set(df, 1.0F));
       others.part[part] = hn::Min(others.part[part], second.part[part]);
     }
@@ -148,16 +148,15 @@ HWY_INLINE FloatVec negative_entropy(const CandidateLanes& lanes, float scale, c
   const FloatTag df;
   const auto load = [&](int lane) HWY_ATTR { return hn::Load(df, cells + lane); };
   const FloatVec infinity = hn::Set(df, std::numeric_limits<float>::infinity());
-  LaneBlock16 least;
-  least.fill(infinity);
+  LaneBlock16 min;
+  min.fill(infinity);
   each_candidate(
       lanes, load,
-      [&](int part, FloatVec energy)
-          HWY_ATTR { least.part[part] = hn::Min(least.part[part], energy); },
+      [&](int part, FloatVec energy) HWY_ATTR { min.part[part] = hn::Min(min.part[part], energy); },
       [&](auto mask, int part, FloatVec energy) HWY_ATTR {
-        least.part[part] = hn::Min(least.part[part], hn::IfThenElse(mask, energy, infinity));
+        min.part[part] = hn::Min(min.part[part], hn::IfThenElse(mask, energy, infinity));
       });
-  const FloatVec best = min_lanes(least);
+  const FloatVec best = min_lanes(min);
   const FloatVec scales = hn::Set(df, scale * kLog2E);
   LaneBlock16 total;
   LaneBlock16 moment;
@@ -169,7 +168,7 @@ HWY_INLINE FloatVec negative_entropy(const CandidateLanes& lanes, float scale, c
   };
   // Beyond the minimum exponent the weight is negligible; the clamp keeps the product finite.
   const auto exponent_of = [&](FloatVec energy) HWY_ATTR {
-    return hn::Min(hn::Mul(scales, hn::Sub(energy, best)), hn::Set(df, -kLeastExponent));
+    return hn::Min(hn::Mul(scales, hn::Sub(energy, best)), hn::Set(df, -kMinExponent));
   };
   each_candidate(
       lanes, load,

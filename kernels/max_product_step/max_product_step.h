@@ -36,7 +36,7 @@ struct EnergyStarWeights {
 
 /// One row of an iteration: E = E0 + μ · ES + Σ weight · ES over the neighbours. Cells are ES, 0 in
 /// neutral columns; `star.source` holds E0. The sum over a star without its source must stay below
-/// kMostEnergy minus the ceiling.
+/// kMaxEnergy minus the ceiling.
 struct MaxProductRow {
   CellStarRow<FixedEnergy> star;
   EnergyPrior prior;
@@ -62,11 +62,11 @@ struct MaxProductRow {
 
 /// Columns whose energies are in work memory at a time: some are summed while others are smoothed.
 inline int max_product_work_columns(int lanes) {
-  constexpr int kMostCells = 2048;
-  return std::clamp(kMostCells / lanes, 1, 16);
+  constexpr int kMaxCells = 2048;
+  return std::clamp(kMaxCells / lanes, 1, 16);
 }
 
-/// Number of unreachable cells (kMostEnergy) that smoothing needs on each side of a run of
+/// Number of unreachable cells (kMaxEnergy) that smoothing needs on each side of a run of
 /// candidates.
 inline int max_product_work_margin(int prior_radius) {
   return (prior_radius + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;

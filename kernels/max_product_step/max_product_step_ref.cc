@@ -28,9 +28,9 @@ FixedEnergy smoothed_in_plane(const MaxProductRow& row, std::span<const FixedEne
 // Subtracts the minimum of the column in work memory and stores the row's kind of result.
 void finish_column(const MaxProductRow& row, FixedEnergy* output) {
   const std::span<FixedEnergy> energies(row.work, static_cast<std::size_t>(row.star.lanes));
-  const FixedEnergy least = *std::min_element(energies.begin(), energies.end());
+  const FixedEnergy min = *std::min_element(energies.begin(), energies.end());
   for (FixedEnergy& energy : energies) {
-    energy = static_cast<FixedEnergy>(energy - least);
+    energy = static_cast<FixedEnergy>(energy - min);
   }
   if (!row.smooths) {
     std::copy(energies.begin(), energies.end(), output);

@@ -71,20 +71,20 @@ class StarEnergies {
 
 // Minimum of the energies kOffset lanes before and after those of vector v.
 template <int kOffset, int kVectors>
-HWY_INLINE EnergyVec least_beside(const EnergyVec (&energies)[kVectors], int v) {
+HWY_INLINE EnergyVec min_beside(const EnergyVec (&energies)[kVectors], int v) {
   const EnergyTag d;
-  const EnergyVec most = hn::Set(d, kMostEnergy);
+  const EnergyVec max = hn::Set(d, kMaxEnergy);
   const EnergyVec here = energies[v];
-  EnergyVec before = v > 0 ? energies[v - 1] : most;
-  EnergyVec behind = v + 1 < kVectors ? energies[v + 1] : most;
+  EnergyVec before = v > 0 ? energies[v - 1] : max;
+  EnergyVec after = v + 1 < kVectors ? energies[v + 1] : max;
   if constexpr (kEnergyLanes > 8) {
     // Byte shifts work within 16-byte blocks: first fetches the adjacent block.
     before = hn::ConcatLowerUpper(d, here, before);
-    behind = hn::ConcatLowerUpper(d, behind, here);
+    after = hn::ConcatLowerUpper(d, after, here);
   }
   constexpr int kBytes = kOffset * static_cast<int>(sizeof(FixedEnergy));
   return hn::Min(hn::CombineShiftRightBytes<16 - kBytes>(d, here, before),
-                 hn::CombineShiftRightBytes<kBytes>(d, behind, here));
+                 hn::CombineShiftRightBytes<kBytes>(d, after, here));
 }
 
 // ES of columns of kVectors vectors and a single segment, entirely in registers: takes three
@@ -100,22 +100,22 @@ HWY_INLINE void run_in_registers(const MaxProductRow& given) {
       __attribute__((always_inline)) {
     const Energies of_lanes(row, at);
     EnergyVec energies[kVectors];
-    EnergyVec least = hn::Set(d, kMostEnergy);
+    EnergyVec min = hn::Set(d, kMaxEnergy);
 #pragma GCC unroll 16
     for (int v = 0; v < kVectors; ++v) {
       energies[v] = of_lanes.of(v * kEnergyLanes);
-      least = hn::Min(least, energies[v]);
+      min = hn::Min(min, energies[v]);
     }
-    least = least_of_lanes(least);
+    min = min_of_lanes(min);
 #pragma GCC unroll 16
     for (int v = 0; v < kVectors; ++v) {
       EnergyVec smoothed =
-          hn::Min(energies[v], hn::SaturatedAdd(least_beside<1>(energies, v), first_rise));
+          hn::Min(energies[v], hn::SaturatedAdd(min_beside<1>(energies, v), first_rise));
       if constexpr (kRadius >= 2) {
-        smoothed = hn::Min(smoothed, hn::SaturatedAdd(least_beside<2>(energies, v), second_rise));
+        smoothed = hn::Min(smoothed, hn::SaturatedAdd(min_beside<2>(energies, v), second_rise));
       }
       // Saturated sums do not matter: the lane's own energy is not above them.
-      hn::Store(hn::Min(hn::Sub(smoothed, least), ceiling), d, output + v * kEnergyLanes);
+      hn::Store(hn::Min(hn::Sub(smoothed, min), ceiling), d, output + v * kEnergyLanes);
     }
   };
   each_column(row, column);
@@ -135,25 +135,25 @@ class EnergyWork {
         pitch_(row.star.lanes + (static_cast<int>(segment_ends_.size()) + 1) * margin_) {
     for (int j = 0; j < std::min(columns_, row.star.columns); ++j) {
       clear_margin(energies(j) - margin_);
-      FixedEnergy* behind = energies(j);
+      FixedEnergy* after = energies(j);
       for (const int end : segment_ends_) {
-        clear_margin(behind + end);
-        behind += margin_;
+        clear_margin(after + end);
+        after += margin_;
       }
     }
   }
 
   template <class Energies>
   HWY_INLINE void run() const {
-    EnergyVec least[kMostColumns];
+    EnergyVec min[kMaxColumns];
     FixedEnergy* block_output = row_.output;
     int filled = 0;
     const auto column = [&](const EnergyColumns& at, FixedEnergy* /*output*/) HWY_ATTR
         __attribute__((always_inline)) {
-      least[filled] = make(Energies(row_, at), energies(filled));
+      min[filled] = make(Energies(row_, at), energies(filled));
       ++filled;
       if (filled == columns_ || at.x + 1 == row_.star.columns) {
-        finish(least, filled, block_output);
+        finish(min, filled, block_output);
         block_output += filled * row_.output_pitch;
         filled = 0;
       }
@@ -162,11 +162,11 @@ class EnergyWork {
   }
 
  private:
-  static constexpr int kMostColumns = 16;  // maximum of max_product_work_columns()
+  static constexpr int kMaxColumns = 16;  // maximum of max_product_work_columns()
 
   void clear_margin(FixedEnergy* margin) const {
     for (int lane = 0; lane < margin_; lane += kEnergyLanes) {
-      hn::Store(hn::Set(EnergyTag(), kMostEnergy), EnergyTag(), margin + lane);
+      hn::Store(hn::Set(EnergyTag(), kMaxEnergy), EnergyTag(), margin + lane);
     }
   }
   [[nodiscard]] FixedEnergy* energies(int column) const {
@@ -177,44 +177,44 @@ class EnergyWork {
   template <class Energies>
   HWY_INLINE EnergyVec make(const Energies& of_lanes, FixedEnergy* energies) const {
     const EnergyTag d;
-    EnergyVec least = hn::Set(d, kMostEnergy);
+    EnergyVec min = hn::Set(d, kMaxEnergy);
     int lane = 0;
     for (const int end : segment_ends_) {
 #pragma GCC unroll 4
       for (; lane < end; lane += kEnergyLanes) {
         const EnergyVec value = of_lanes.of(lane);
         hn::Store(value, d, energies + lane);
-        least = hn::Min(least, value);
+        min = hn::Min(min, value);
       }
       energies += margin_;
     }
-    return least_of_lanes(least);
+    return min_of_lanes(min);
   }
 
   // Stores the row's kind of result for the first `columns` columns in work memory.
-  HWY_NOINLINE void finish(const EnergyVec* least, int columns, FixedEnergy* output) const {
+  HWY_NOINLINE void finish(const EnergyVec* min, int columns, FixedEnergy* output) const {
     if (!row_.smooths) {
-      return finish_columns<false, 0>(least, columns, output);
+      return finish_columns<false, 0>(min, columns, output);
     }
     if (row_.plane.is_given()) {
       for (int j = 0; j < columns; ++j) {
-        finish_plane(energies(j), least[j], output + j * row_.output_pitch);
+        finish_plane(energies(j), min[j], output + j * row_.output_pitch);
       }
       return;
     }
     switch (row_.prior.radius) {
       case 1:
-        return finish_columns<true, 1>(least, columns, output);
+        return finish_columns<true, 1>(min, columns, output);
       case 2:
-        return finish_columns<true, 2>(least, columns, output);
+        return finish_columns<true, 2>(min, columns, output);
       default:
-        return finish_columns<true, -1>(least, columns, output);
+        return finish_columns<true, -1>(min, columns, output);
     }
   }
 
   // kRadius: radius of the prior; −1 for any.
   template <bool kSmooths, int kRadius>
-  HWY_INLINE void finish_columns(const EnergyVec* least, int columns, FixedEnergy* output) const {
+  HWY_INLINE void finish_columns(const EnergyVec* min, int columns, FixedEnergy* output) const {
     const EnergyTag d;
     const MaxProductRow row = row_;  // a copy: stores cannot alias it
     const int radius = kRadius >= 0 ? kRadius : row.prior.radius;
@@ -233,7 +233,7 @@ class EnergyWork {
             const EnergyVec rise = k == 1 ? first_rise : hn::Set(d, row.prior.rises[k - 1]);
             result = hn::Min(result, hn::SaturatedAdd(beside, rise));
           }
-          result = hn::Sub(result, least[j]);
+          result = hn::Sub(result, min[j]);
           hn::Store(kSmooths ? hn::Min(result, ceiling) : result, d, output + lane);
         }
         column += margin_;
@@ -242,7 +242,7 @@ class EnergyWork {
   }
 
   // ES of a column of a two-dimensional search: the minimum horizontally, then vertically.
-  HWY_INLINE void finish_plane(const FixedEnergy* energies, EnergyVec least,
+  HWY_INLINE void finish_plane(const FixedEnergy* energies, EnergyVec min,
                                FixedEnergy* output) const {
     const EnergyTag d;
     const CandidatePlane& plane = row_.plane;
@@ -252,7 +252,7 @@ class EnergyWork {
     FixedEnergy* const spread = row_.work + columns_ * pitch_ + margin_;
     FixedEnergy* const across = spread + plane.rows * spread_pitch;
     FixedEnergy* const smoothed = across + plane.rows * row_lanes;
-    std::fill(spread - margin_, across, kMostEnergy);
+    std::fill(spread - margin_, across, kMaxEnergy);
     for (int r = 0; r < plane.rows; ++r) {
       std::copy_n(energies + r * plane.row_candidates, plane.row_candidates,
                   spread + r * spread_pitch);
@@ -280,7 +280,7 @@ class EnergyWork {
           }
         }
         // Values stored after a run's candidates are overwritten by the next run.
-        hn::StoreU(hn::Min(hn::Sub(result, least), ceiling), d,
+        hn::StoreU(hn::Min(hn::Sub(result, min), ceiling), d,
                    smoothed + r * plane.row_candidates + lane);
       }
     }

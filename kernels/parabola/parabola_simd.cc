@@ -129,14 +129,14 @@ HWY_INLINE void refine_plain(const Row& row, const Cell* cells, const std::int32
                              Energy energy, int begin, int end, float* disparity_px) {
   Triples<Cell> triples = {};
   const std::ptrdiff_t lanes = row.geometry.lanes();
-  const int most = row.geometry.count - 2;
+  const int max = row.geometry.count - 2;
   const SameCandidates candidates{{0, row.geometry.count}};
   cells += begin * lanes;
   for (int first = begin; first < end; first += kBlock) {
     const int columns = std::min(kBlock, end - first);
     const std::int32_t* block_winners = winners + first;
     for (int j = 0; j < columns; ++j, cells += lanes) {
-      triples.gather(j, cells, std::min(block_winners[j], most));
+      triples.gather(j, cells, std::min(block_winners[j], max));
     }
     refine_block(triples, energy, candidates, block_winners, columns, row.geometry.disparity_min,
                  disparity_px + first);
@@ -153,7 +153,7 @@ HWY_INLINE void refine_border(const CellRow& row, const std::int32_t* winners, E
   Triples<float> triples = {};
   OwnCandidates candidates;
   const std::ptrdiff_t lanes = row.geometry.lanes();
-  const int most = row.geometry.count - 2;
+  const int max = row.geometry.count - 2;
   const float* cells = row.cells + begin * lanes;
   for (int first = begin; first < end; first += kBlock) {
     const int columns = std::min(kBlock, end - first);
@@ -161,7 +161,7 @@ HWY_INLINE void refine_border(const CellRow& row, const std::int32_t* winners, E
       const CandidateRange own = row.candidates(row.first_column + first + j);
       candidates.firsts[j] = own.begin;
       candidates.lasts[j] = own.end - 1;
-      triples.gather(j, cells, std::min(winners[first + j], most));
+      triples.gather(j, cells, std::min(winners[first + j], max));
     }
     refine_block(triples, energy, candidates, winners + first, columns, row.geometry.disparity_min,
                  disparity_px + first);

@@ -21,8 +21,8 @@ void convert_positions(const PhotographTable& given_table, const SourcePositions
   const hn::ScalableTag<float> d;
   const hn::RebindToSigned<decltype(d)> di;
   // Gathers use 32-bit indices.
-  constexpr std::ptrdiff_t kMostValues = std::numeric_limits<std::int32_t>::max();
-  if (table.stride * table.height > kMostValues) {
+  constexpr std::ptrdiff_t kMaxValues = std::numeric_limits<std::int32_t>::max();
+  if (table.stride * table.height > kMaxValues) {
     photograph_positions_row_ref(table, at, count);
     return;
   }
@@ -32,9 +32,9 @@ void convert_positions(const PhotographTable& given_table, const SourcePositions
   const auto stride = hn::Set(di, static_cast<std::int32_t>(table.stride));
   const std::ptrdiff_t right = table.width > 1 ? 1 : 0;
   const std::ptrdiff_t down = table.height > 1 ? table.stride : 0;
-  const auto least = hn::Set(d, -0.5F);
-  const auto most_x = hn::Set(d, static_cast<float>(table.photograph_width) - 0.5F);
-  const auto most_y = hn::Set(d, static_cast<float>(table.photograph_height) - 0.5F);
+  const auto min = hn::Set(d, -0.5F);
+  const auto max_x = hn::Set(d, static_cast<float>(table.photograph_width) - 0.5F);
+  const auto max_y = hn::Set(d, static_cast<float>(table.photograph_height) - 0.5F);
   const auto unknown = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
 
   const int step = static_cast<int>(hn::Lanes(d));
@@ -62,8 +62,8 @@ void convert_positions(const PhotographTable& given_table, const SourcePositions
     const auto disparity = hn::LoadU(d, at.disparity_px + n);
     auto x = between(table.x_px);
     auto y = between(table.y_px);
-    const auto in_columns = hn::And(hn::Ge(x, least), hn::Le(x, most_x));
-    const auto in_lines = hn::And(hn::Ge(y, least), hn::Le(y, most_y));
+    const auto in_columns = hn::And(hn::Ge(x, min), hn::Le(x, max_x));
+    const auto in_lines = hn::And(hn::Ge(y, min), hn::Le(y, max_y));
     const auto is_known = hn::Eq(disparity, disparity);
     const auto is_seen = hn::And(hn::And(in_columns, in_lines), is_known);
     x = hn::IfThenElseZero(is_seen, x);

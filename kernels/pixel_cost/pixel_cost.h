@@ -25,10 +25,10 @@ struct ContaminatedGaussian {
   /// σ > 0 in grey levels, 0 < ε < 1. Both are clamped to the smallest value that floats can
   /// represent here (ε: 1e-30).
   static ContaminatedGaussian of(double sigma, double epsilon) {
-    constexpr double kMostScale = 1e30;
-    constexpr double kLeastEpsilon = 1e-30;
-    const double scale = std::min(kMostScale, 1 / (2 * sigma * sigma * std::log(2.0)));
-    return {static_cast<float>(-scale), static_cast<float>(std::max(kLeastEpsilon, epsilon))};
+    constexpr double kMaxScale = 1e30;
+    constexpr double kMinEpsilon = 1e-30;
+    const double scale = std::min(kMaxScale, 1 / (2 * sigma * sigma * std::log(2.0)));
+    return {static_cast<float>(-scale), static_cast<float>(std::max(kMinEpsilon, epsilon))};
   }
   /// −log ε and ε: values of a cell without partner.
   [[nodiscard]] float energy_without_partner() const { return -log_of_normal(epsilon); }
@@ -84,7 +84,7 @@ void multiply_cells_ref(const float* factor, int cells_count, float* cells);
 /// Minimum and maximum grey level within half a pixel of each pixel, linearly interpolated. Columns
 /// −1 and width are read. The outputs may be written up to the next multiple of kLaneMultiple; the
 /// input is read one column farther.
-void sampling_bounds_row(const float* grey, int width, float* least, float* most);
-void sampling_bounds_row_ref(const float* grey, int width, float* least, float* most);
+void sampling_bounds_row(const float* grey, int width, float* min, float* max);
+void sampling_bounds_row_ref(const float* grey, int width, float* min, float* max);
 
 }  // namespace vantage::kernels

@@ -110,12 +110,12 @@ void multiply_cells_ref(const float* factor, int cells_count, float* cells) {
   }
 }
 
-void sampling_bounds_row_ref(const float* grey, int width, float* least, float* most) {
+void sampling_bounds_row_ref(const float* grey, int width, float* min, float* max) {
   for (int x = 0; x < width; ++x) {
     const float before = 0.5F * (grey[x] + grey[x - 1]);
     const float after = 0.5F * (grey[x] + grey[x + 1]);
-    least[x] = std::min({before, after, grey[x]});
-    most[x] = std::max({before, after, grey[x]});
+    min[x] = std::min({before, after, grey[x]});
+    max[x] = std::max({before, after, grey[x]});
   }
 }
 

@@ -147,15 +147,15 @@ void multiply(const float* factor, int cells_count, float* cells) {
   }
 }
 
-void sampling_bounds(const float* grey, int width, float* least, float* most) {
+void sampling_bounds(const float* grey, int width, float* min, float* max) {
   const Tag d;
   const Vec half = hn::Set(d, 0.5F);
   for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(d))) {
     const Vec at = hn::LoadU(d, grey + x);
     const Vec before = hn::Mul(half, hn::Add(at, hn::LoadU(d, grey + x - 1)));
     const Vec after = hn::Mul(half, hn::Add(at, hn::LoadU(d, grey + x + 1)));
-    hn::StoreU(hn::Min(hn::Min(before, after), at), d, least + x);
-    hn::StoreU(hn::Max(hn::Max(before, after), at), d, most + x);
+    hn::StoreU(hn::Min(hn::Min(before, after), at), d, min + x);
+    hn::StoreU(hn::Max(hn::Max(before, after), at), d, max + x);
   }
 }
 
@@ -200,8 +200,8 @@ void add_cells(const float* addend, int cells_count, float* cells) {
 void multiply_cells(const float* factor, int cells_count, float* cells) {
   HWY_DYNAMIC_DISPATCH(multiply)(factor, cells_count, cells);
 }
-void sampling_bounds_row(const float* grey, int width, float* least, float* most) {
-  HWY_DYNAMIC_DISPATCH(sampling_bounds)(grey, width, least, most);
+void sampling_bounds_row(const float* grey, int width, float* min, float* max) {
+  HWY_DYNAMIC_DISPATCH(sampling_bounds)(grey, width, min, max);
 }
 
 }  // namespace vantage::kernels

@@ -19,16 +19,16 @@ void ray_hamming_row_ref(const RayCensusPairs& row, float* cells);
 
 /// Number of table entries, indexed by the number of differing bits (at most 24 per threshold).
 constexpr int ray_census_distances(int thresholds) { return kRayCensusNeighbours * thresholds + 1; }
-inline constexpr int kMostRayCensusDistances = ray_census_distances(kMostRayCensusThresholds);
+inline constexpr int kMaxRayCensusDistances = ray_census_distances(kMaxRayCensusThresholds);
 /// Tables are looked up in parts of 16 entries.
 inline constexpr int kRayCensusTableBytes =
-    (kMostRayCensusDistances + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
+    (kMaxRayCensusDistances + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
 
 /// Floats indexed by distance, in the layout of the vector lookup.
 class LikelihoodByDistance {
  public:
   LikelihoodByDistance() = default;
-  explicit LikelihoodByDistance(const std::array<float, kMostRayCensusDistances>& likelihoods);
+  explicit LikelihoodByDistance(const std::array<float, kMaxRayCensusDistances>& likelihoods);
 
   /// distance: 0..72.
   [[nodiscard]] float at(int distance) const;

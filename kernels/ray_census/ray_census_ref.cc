@@ -42,7 +42,7 @@ void each_cell(const RayCensusPairs& row, Value* cells, const Cell& cell) {
 }  // namespace
 
 LikelihoodByDistance::LikelihoodByDistance(
-    const std::array<float, kMostRayCensusDistances>& likelihoods) {
+    const std::array<float, kMaxRayCensusDistances>& likelihoods) {
   for (std::size_t i = 0; i < likelihoods.size(); ++i) {
     const auto bits = std::bit_cast<std::uint32_t>(likelihoods[i]);
     for (std::size_t b = 0; b < bytes_.size(); ++b) {

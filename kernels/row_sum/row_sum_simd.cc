@@ -100,7 +100,7 @@ class LaneBlock {
       sum[v] = sum_[v];
     }
     for (int column = 0; column < columns; ++column) {
-      Vec32 least = hn::Zero(d32);
+      Vec32 min = hn::Zero(d32);
 #pragma GCC unroll 4
       for (int v = 0; v < kVectors; ++v) {
         if constexpr (kEnter) {
@@ -114,7 +114,7 @@ class LaneBlock {
         }
         if constexpr (kDeliver && kMinima != Minima::kNone) {
           const Vec32 cells = kPadded ? hn::Max(sum[v], floor_[v]) : sum[v];
-          least = v == 0 ? cells : hn::Min(least, cells);
+          min = v == 0 ? cells : hn::Min(min, cells);
         }
       }
       entering += kEnter ? lanes : 0;
@@ -122,9 +122,9 @@ class LaneBlock {
       output += kDeliver && kStore ? lanes : 0;
       if constexpr (kDeliver && kMinima != Minima::kNone) {
         if constexpr (kMinima == Minima::kContinue) {
-          least = hn::Min(least, hn::LoadU(d32, minima));
+          min = hn::Min(min, hn::LoadU(d32, minima));
         }
-        hn::StoreU(least, d32, minima);
+        hn::StoreU(min, d32, minima);
         minima += kLaneMultiple;
       }
     }

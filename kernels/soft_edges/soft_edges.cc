@@ -12,7 +12,7 @@ namespace vantage::kernels {
 namespace {
 
 constexpr double kUsualShare = 0.2;
-constexpr double kMostShare = 0.5;
+constexpr double kMaxShare = 0.5;
 constexpr double kSyntheticShiftPx = 2;
 
 /// Weight of each image in what the view shows at a position.
@@ -62,7 +62,7 @@ void share_pixels(const OutlineRow& row, int x, std::uint8_t* shares) {
       std::abs(double{left_d} - right_d);
   const double strength = std::min(1.0, shift_px / kSyntheticShiftPx);
   const auto share = [strength](double part) {
-    const double slope = part > 0 ? kMostShare - kUsualShare : kUsualShare;  // per half pixel
+    const double slope = part > 0 ? kMaxShare - kUsualShare : kUsualShare;  // per half pixel
     return static_cast<std::uint8_t>(strength * (kUsualShare + 2 * slope * part) * kWholeShare +
                                      0.5);
   };

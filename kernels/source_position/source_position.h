@@ -34,7 +34,7 @@ inline ExactSource exact_source(const SourceProjection& source, double u, double
   }
   const double* g = source.homography;
   const double inverse_ratio = (g[6] * u + (g[7] * v + g[8])) - source.parallax[2] * q;
-  if (!(inverse_ratio > kLeastDepthRatio)) {
+  if (!(inverse_ratio > kMinDepthRatio)) {
     return {};
   }
   const double depth_ratio = 1 / inverse_ratio;

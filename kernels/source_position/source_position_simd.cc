@@ -33,9 +33,9 @@ HWY_INLINE void find_positions(D64 d64, const SourceProjection& source,
   const auto start0 = hn::Set(d64, g[1] * v + g[2]);
   const auto start1 = hn::Set(d64, g[4] * v + g[5]);
   const auto start2 = hn::Set(d64, g[7] * v + g[8]);
-  const auto least = hn::Set(d64, -1.0);
-  const auto most_x = hn::Set(d64, row.source_width - 0.5);
-  const auto most_y = hn::Set(d64, row.source_height - 0.5);
+  const auto min = hn::Set(d64, -1.0);
+  const auto max_x = hn::Set(d64, row.source_width - 0.5);
+  const auto max_y = hn::Set(d64, row.source_height - 0.5);
   for (int i = first; i < end; i += static_cast<int>(hn::Lanes(d64))) {
     const auto nearness = hn::LoadU(d32, row.nearness + i);
     auto known = hn::Gt(nearness, nowhere);
@@ -51,7 +51,7 @@ HWY_INLINE void find_positions(D64 d64, const SourceProjection& source,
       y = hn::Sub(line, hn::Mul(parallax1, d));
     } else {
       const auto inverse_ratio = hn::Sub(hn::Add(hn::Mul(step2, u), start2), hn::Mul(parallax2, q));
-      const auto is_seen = hn::Gt(inverse_ratio, hn::Set(d64, kLeastDepthRatio));
+      const auto is_seen = hn::Gt(inverse_ratio, hn::Set(d64, kMinDepthRatio));
       const auto one = hn::Set(d64, 1.0);
       const auto depth_ratio = hn::Div(one, hn::IfThenElse(is_seen, inverse_ratio, one));
       x = hn::Mul(hn::Sub(hn::Add(hn::Mul(step0, u), start0), hn::Mul(parallax0, q)), depth_ratio);
@@ -61,8 +61,8 @@ HWY_INLINE void find_positions(D64 d64, const SourceProjection& source,
       known = hn::And(known,
                       hn::Gt(hn::DemoteTo(d32, hn::IfThenElseZero(is_seen, one)), hn::Zero(d32)));
     }
-    x = hn::Min(hn::Max(x, least), most_x);
-    y = hn::Min(hn::Max(y, least), most_y);
+    x = hn::Min(hn::Max(x, min), max_x);
+    y = hn::Min(hn::Max(y, min), max_y);
     const auto whole_x = hn::Floor(x);
     const auto whole_y = hn::Floor(y);
     const auto known_int = hn::RebindMask(di32, known);

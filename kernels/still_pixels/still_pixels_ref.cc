@@ -24,11 +24,11 @@ void box_change_row_ref(const FrameRows& rows, std::int16_t* /*work*/, std::int1
 void still_row_ref(const std::int16_t* const changes[3], int width, std::int16_t limit,
                    std::uint8_t* still) {
   for (int x = 0; x < width; ++x) {
-    std::int16_t most = 0;
+    std::int16_t max = 0;
     for (int k = 0; k < 3; ++k) {
-      most = std::max({most, changes[k][x - 1], changes[k][x], changes[k][x + 1]});
+      max = std::max({max, changes[k][x - 1], changes[k][x], changes[k][x + 1]});
     }
-    still[x] = most <= limit ? 255 : 0;
+    still[x] = max <= limit ? 255 : 0;
   }
 }
 

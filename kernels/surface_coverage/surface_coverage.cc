@@ -14,7 +14,7 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSyntheticShiftPx = 2;
 
 // Upper limit of each image's certainty: outlines of round objects differ between images.
-constexpr double kMostCertain = 0.98;
+constexpr double kMaxCertainty = 0.98;
 
 // Weights of the pixels at −1, 0 and 1 for a position at `offset` = −½..½.
 struct Weights {
@@ -22,8 +22,8 @@ struct Weights {
 
   Weights(double offset, double spline_share) {
     const double before = 0.5 - offset;
-    const double behind = 0.5 + offset;
-    const double spline[3] = {0.5 * before * before, 0.75 - offset * offset, 0.5 * behind * behind};
+    const double after = 0.5 + offset;
+    const double spline[3] = {0.5 * before * before, 0.75 - offset * offset, 0.5 * after * after};
     const double linear[3] = {std::max(-offset, 0.0), 1 - std::abs(offset), std::max(offset, 0.0)};
     for (int k = 0; k < 3; ++k) {
       at[k] = linear[k] + spline_share * (spline[k] - linear[k]);
@@ -75,8 +75,8 @@ double joint_coverage(double alpha, double first, double second) {
     return std::isnan(first) ? second : first;
   }
   const double mean = alpha * first + (1 - alpha) * second;
-  const double a = std::clamp(first, 1 - kMostCertain, kMostCertain);
-  const double b = std::clamp(second, 1 - kMostCertain, kMostCertain);
+  const double a = std::clamp(first, 1 - kMaxCertainty, kMaxCertainty);
+  const double b = std::clamp(second, 1 - kMaxCertainty, kMaxCertainty);
   const double together = a * b / (a * b + (1 - a) * (1 - b));
   return mean + 4 * alpha * (1 - alpha) * (together - mean);
 }

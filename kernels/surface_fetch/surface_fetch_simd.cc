@@ -143,8 +143,8 @@ HWY_INLINE void sum_down_nothing(int i, TapSums& sums) {
   constexpr int kTaps = kTapsLoaded<kChannels>;
   std::fill_n(sums.sum_down + kTaps * i, kTaps, 0.0F);
   if constexpr (std::is_same_v<T, float>) {
-    std::fill_n(sums.least_down + kTaps * i, kTaps, 0.0F);
-    std::fill_n(sums.most_down + kTaps * i, kTaps, 0.0F);
+    std::fill_n(sums.min_down + kTaps * i, kTaps, 0.0F);
+    std::fill_n(sums.max_down + kTaps * i, kTaps, 0.0F);
   }
 }
 

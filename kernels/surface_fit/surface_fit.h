@@ -17,8 +17,8 @@ struct SurfaceRow {
   int radius_px = 1;         ///< radius of the square window, 1..kMaxSurfaceRadiusPx
   int width = 0;
   /// Planes are clamped to this range: a slope may continue beyond the search range.
-  float least_px = -kNoSurfacePx;
-  float most_px = kNoSurfacePx;
+  float min_px = -kNoSurfacePx;
+  float max_px = kNoSurfacePx;
 };
 
 constexpr int kMaxSurfaceRadiusPx = 16;
@@ -26,7 +26,7 @@ constexpr int kMaxSurfaceRadiusPx = 16;
 constexpr int kSurfaceRowSlack = 15;
 
 /// Maximum number of steps to samples on a square lattice, on either side of the pixel.
-constexpr int kMostSurfaceSteps = 2;
+constexpr int kMaxSurfaceSteps = 2;
 /// A sample has weight 1 − (e/this)², where e is its distance from the plane in pixels, and 0
 /// beyond.
 constexpr float kSurfaceReachPx = 1.5F;
@@ -36,14 +36,14 @@ constexpr int kSurfacePasses = 2;
 /// select a horizontal plane where samples give no information, too little to matter where they do.
 constexpr float kSlopeRidge = 1.0F / 16384;
 /// Added to the total weight, to avoid a division by 0 without samples.
-constexpr float kLeastSurfaceWeight = 1e-6F;
+constexpr float kMinSurfaceWeight = 1e-6F;
 
 /// Sample positions relative to the pixel. Steps along the lattice are (step_x, step_y) and
 /// (−step_y, step_x). The lattice is rotated against the map's rows and columns, because steps
 /// between winners on a slanted surface are regular, and a lattice along them would sample the same
 /// phase repeatedly.
 struct SurfaceLattice {
-  int steps = 1;   ///< 1 or kMostSurfaceSteps on either side, in both directions
+  int steps = 1;   ///< 1 or kMaxSurfaceSteps on either side, in both directions
   int step_x = 1;  ///< columns
   int step_y = 0;  ///< rows
   /// Column and row offsets of the position i, j steps along the arms.
@@ -55,7 +55,7 @@ struct SurfaceLattice {
 SurfaceLattice surface_lattice(int radius_px);
 
 /// fitted_px[x] of matched pixels becomes the value at the pixel of the plane through the
-/// surrounding disparities, clamped to [least_px, most_px]. The fit is weighted least squares;
+/// surrounding disparities, clamped to [min_px, max_px]. The fit is weighted least squares;
 /// samples too far from the plane have weight 0, so other surfaces do not affect it. Winners form
 /// steps on slanted surfaces, and sub-pixel fits prefer whole pixels; a plane averages over several
 /// of both. A pixel keeps its value if the plane is kSurfaceReachPx or more away. On entry

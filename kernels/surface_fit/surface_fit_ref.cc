@@ -75,7 +75,7 @@ Sums sum_samples(const SurfaceRow& row, int x, const SurfaceLattice& lattice, co
 
 /// Moves `plane` to the best fit, given the sums of distances from it.
 void improve(const Sums& sums, Plane& plane) {
-  const float w = sums.w + kLeastSurfaceWeight;
+  const float w = sums.w + kMinSurfaceWeight;
   const float n = 1 / w;
   const float u = sums.wu * n;
   const float v = sums.wv * n;
@@ -96,14 +96,14 @@ void improve(const Sums& sums, Plane& plane) {
 }  // namespace
 
 SurfaceLattice surface_lattice(int radius_px) {
-  if (radius_px < kMostSurfaceSteps) {
+  if (radius_px < kMaxSurfaceSteps) {
     return {};
   }
   // Arms of two steps reach 2 · (step_x + step_y) columns and rows. At a ratio near 3 : 2 they are
   // about equally far from the rows and from the diagonals.
-  const int both = radius_px / kMostSurfaceSteps;
+  const int both = radius_px / kMaxSurfaceSteps;
   const int step_y = radius_px / 5;
-  return {.steps = kMostSurfaceSteps, .step_x = both - step_y, .step_y = step_y};
+  return {.steps = kMaxSurfaceSteps, .step_x = both - step_y, .step_y = step_y};
 }
 
 void fit_surface_row_ref(const SurfaceRow& row, float* fitted_px) {
@@ -117,7 +117,7 @@ void fit_surface_row_ref(const SurfaceRow& row, float* fitted_px) {
       improve(sum_samples(row, x, lattice, plane), plane);
     }
     if (std::abs(plane.height) < kSurfaceReachPx) {
-      fitted_px[x] = std::clamp(row.disparity_px[x] + plane.height, row.least_px, row.most_px);
+      fitted_px[x] = std::clamp(row.disparity_px[x] + plane.height, row.min_px, row.max_px);
     }
   }
 }

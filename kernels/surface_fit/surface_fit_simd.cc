@@ -74,7 +74,7 @@ HWY_INLINE Sums sum_samples(const float* disparity_px, const Places<kSteps>& pla
     Vec line_wuu = zero;
     Vec line_we = middle.we;
     Vec line_weu = zero;
-    HWY_UNROLL(kMostSurfaceSteps)
+    HWY_UNROLL(kMaxSurfaceSteps)
     for (int i = 1; i <= kSteps; ++i) {
       const float step = static_cast<float>(i) / kStepsF;
       const Vec u = hn::Set(d, step);
@@ -104,7 +104,7 @@ HWY_INLINE Sums sum_samples(const float* disparity_px, const Places<kSteps>& pla
 
 HWY_INLINE void improve(const Sums& sums, Planes& planes) {
   const TagF d;
-  const Vec w = hn::Add(sums.w, hn::Set(d, kLeastSurfaceWeight));
+  const Vec w = hn::Add(sums.w, hn::Set(d, kMinSurfaceWeight));
   const Vec n = hn::Div(hn::Set(d, 1.0F), w);
   const Vec u = hn::Mul(sums.wu, n);
   const Vec v = hn::Mul(sums.wv, n);
@@ -127,9 +127,9 @@ HWY_INLINE void improve(const Sums& sums, Planes& planes) {
 // Range that fitted values are clamped to.
 struct Limits {
   explicit Limits(const SurfaceRow& row)
-      : least(hn::Set(TagF(), row.least_px)), most(hn::Set(TagF(), row.most_px)) {}
-  Vec least;
-  Vec most;
+      : min(hn::Set(TagF(), row.min_px)), max(hn::Set(TagF(), row.max_px)) {}
+  Vec min;
+  Vec max;
 };
 
 // `before`: values of pixels that are not changed.
@@ -144,7 +144,7 @@ HWY_INLINE Vec fitted(const float* disparity_px, const Places<kSteps>& places, c
   const Vec own = hn::LoadU(d, disparity_px);
   const auto is_near = hn::Lt(hn::Abs(planes.height), hn::Set(d, kSurfaceReachPx));
   const auto is_matched = hn::Lt(own, hn::Set(d, kNoSurfacePx));
-  const Vec within = hn::Min(hn::Max(hn::Add(own, planes.height), limits.least), limits.most);
+  const Vec within = hn::Min(hn::Max(hn::Add(own, planes.height), limits.min), limits.max);
   return hn::IfThenElse(hn::And(is_near, is_matched), within, before);
 }
 
@@ -168,8 +168,8 @@ HWY_INLINE void fit_row(const SurfaceRow& row, float* fitted_px) {
 }
 
 void fit_surface_simd(const SurfaceRow& row, float* fitted_px) {
-  if (surface_lattice(row.radius_px).steps == kMostSurfaceSteps) {
-    fit_row<kMostSurfaceSteps>(row, fitted_px);
+  if (surface_lattice(row.radius_px).steps == kMaxSurfaceSteps) {
+    fit_row<kMaxSurfaceSteps>(row, fitted_px);
   } else {
     fit_row<1>(row, fitted_px);
   }

@@ -38,10 +38,10 @@ void fill_edge(const Corner& from, const Corner& to, EdgeDirection direction,
   const double other = along_lines ? from.u : from.v;
   const double rise_of_other = (along_lines ? to.u : to.v) - other;
   const double rise = double{to.nearness} - double{from.nearness};
-  const int least = along_lines ? band.first_line : 0;
-  const int most = along_lines ? band.first_line + band.lines - 1 : band.width - 1;
-  const int last = std::min(std::max(begin, end) - 1, most);
-  for (int n = std::max(std::min(begin, end) + 1, least); n <= last; ++n) {
+  const int min = along_lines ? band.first_line : 0;
+  const int max = along_lines ? band.first_line + band.lines - 1 : band.width - 1;
+  const int last = std::min(std::max(begin, end) - 1, max);
+  for (int n = std::max(std::min(begin, end) + 1, min); n <= last; ++n) {
     const double fraction = (n - first) / spacing;
     const double exact = other + fraction * rise_of_other;
     const double rounded = std::floor(exact + 0.5);
@@ -101,11 +101,11 @@ void add_inside(const Corner& a, const Corner& b, const Corner& c, int u, int v,
 // fourth: one more corner whose target is left out, or null.
 void fill_triangle(const Corner& a, const Corner& b, const Corner& c, const Corner* fourth,
                    const SplatBand& band) {
-  const int least_column = std::min({a.column, b.column, c.column});
-  const int most_column = std::max({a.column, b.column, c.column});
-  const int least_line = std::min({a.line, b.line, c.line});
-  const int most_line = std::max({a.line, b.line, c.line});
-  if (most_column - least_column <= 1 && most_line - least_line <= 1) {
+  const int min_column = std::min({a.column, b.column, c.column});
+  const int max_column = std::max({a.column, b.column, c.column});
+  const int min_line = std::min({a.line, b.line, c.line});
+  const int max_line = std::max({a.line, b.line, c.line});
+  if (max_column - min_column <= 1 && max_line - min_line <= 1) {
     return;
   }
   const int first_line = std::max(
@@ -140,13 +140,13 @@ struct WholeRange {
   int first;
   int last;
 
-  WholeRange(double least, double most, int least_limit, int most_limit) {
-    const double from = std::clamp(least - kOutsidePx, least_limit - 1.0, most_limit + 1.0);
-    const double to = std::clamp(most + kOutsidePx, least_limit - 1.0, most_limit + 1.0);
+  WholeRange(double min, double max, int min_limit, int max_limit) {
+    const double from = std::clamp(min - kOutsidePx, min_limit - 1.0, max_limit + 1.0);
+    const double to = std::clamp(max + kOutsidePx, min_limit - 1.0, max_limit + 1.0);
     const int whole_from = static_cast<int>(from);
     const int whole_to = static_cast<int>(to);
-    first = std::max(whole_from + (whole_from < from ? 1 : 0), least_limit);
-    last = std::min(whole_to - (whole_to > to ? 1 : 0), most_limit);
+    first = std::max(whole_from + (whole_from < from ? 1 : 0), min_limit);
+    last = std::min(whole_to - (whole_to > to ? 1 : 0), max_limit);
   }
 };
 
@@ -304,7 +304,7 @@ void fill_torn_quad(const SplatRows& rows, int i, const SplatBand& band) {
     bool is_before = true;
     const auto set = [&](unsigned place, double x, double y, double d) {
       const ExactTarget at = exact_target(view, x, y, d);
-      is_before = is_before && at.depth_ratio > kLeastDepthRatio;
+      is_before = is_before && at.depth_ratio > kMinDepthRatio;
       quarter[place].u = at.u;
       quarter[place].v = at.v;
       quarter[place].nearness =

@@ -67,20 +67,20 @@ HWY_INLINE Corners load_corners(const std::int32_t* upper, const std::int32_t* l
           hn::LoadU(di, lower + 1)};
 }
 
-HWY_INLINE VecInt least(const Corners& at) {
+HWY_INLINE VecInt min(const Corners& at) {
   return hn::Min(hn::Min(at.a, at.b), hn::Min(at.c, at.d));
 }
 
-HWY_INLINE VecInt most(const Corners& at) {
+HWY_INLINE VecInt max(const Corners& at) {
   return hn::Max(hn::Max(at.a, at.b), hn::Max(at.c, at.d));
 }
 
-HWY_INLINE VecInt extent(const Corners& at) { return hn::Sub(most(at), least(at)); }
+HWY_INLINE VecInt extent(const Corners& at) { return hn::Sub(max(at), min(at)); }
 
 // True where the span of the corners overlaps [first, end).
 HWY_INLINE auto reaches(const Corners& at, int first, int end) {
   const TagInt di;
-  return hn::And(hn::Gt(most(at), hn::Set(di, first - 1)), hn::Lt(least(at), hn::Set(di, end)));
+  return hn::And(hn::Gt(max(at), hn::Set(di, first - 1)), hn::Lt(min(at), hn::Set(di, end)));
 }
 
 // Bit i: there may be gaps inside the band between the pixels of the quad of upper columns begin +
@@ -248,10 +248,10 @@ HWY_INLINE std::uint64_t find_complete(const SplatRows& rows, const BlockTargets
     const int at = begin + i;
     const Corners column = load_corners(rows.upper.column + at, rows.lower.column + at);
     const Corners line = load_corners(rows.upper.line + at, rows.lower.line + at);
-    const auto first_u = least(load_corners(upper.first_column + i, lower.first_column + i));
-    const auto last_u = most(load_corners(upper.last_column + i, lower.last_column + i));
-    const auto first_v = least(load_corners(upper.first_line + i, lower.first_line + i));
-    const auto last_v = most(load_corners(upper.last_line + i, lower.last_line + i));
+    const auto first_u = min(load_corners(upper.first_column + i, lower.first_column + i));
+    const auto last_u = max(load_corners(upper.last_column + i, lower.last_column + i));
+    const auto first_v = min(load_corners(upper.first_line + i, lower.first_line + i));
+    const auto last_v = max(load_corners(upper.last_line + i, lower.last_line + i));
     const auto is_landed_on = [&](VecInt u, VecInt v) HWY_ATTR {
       const auto is_at = [&](VecInt corner_u, VecInt corner_v)
                              HWY_ATTR { return hn::And(hn::Eq(u, corner_u), hn::Eq(v, corner_v)); };

@@ -14,8 +14,8 @@ namespace {
 // the row's ends.
 bool goes_on(const float* disparity_px, int width, int x, float limit) {
   const float before = disparity_px[std::max(x - 1, 0)];
-  const float behind = disparity_px[std::min(x + 1, width - 1)];
-  return std::abs(before - disparity_px[x]) <= limit && std::abs(behind - disparity_px[x]) <= limit;
+  const float after = disparity_px[std::min(x + 1, width - 1)];
+  return std::abs(before - disparity_px[x]) <= limit && std::abs(after - disparity_px[x]) <= limit;
 }
 
 float left_weight(const WarpedPairRow& pair, int x, const BlendWeights& weights) {

@@ -29,9 +29,9 @@ template <class D>
 HWY_INLINE hn::Mask<D> goes_on(D d, const float* disparity_px, int width, int x, hn::VFromD<D> own,
                                hn::VFromD<D> limit) {
   const auto before = hn::LoadU(d, disparity_px + (x > 0 ? x - 1 : 0));
-  const auto behind = hn::LoadU(d, disparity_px + (x + 1 < width ? x + 1 : width - 1));
+  const auto after = hn::LoadU(d, disparity_px + (x + 1 < width ? x + 1 : width - 1));
   return hn::And(hn::Le(hn::Abs(hn::Sub(before, own)), limit),
-                 hn::Le(hn::Abs(hn::Sub(behind, own)), limit));
+                 hn::Le(hn::Abs(hn::Sub(after, own)), limit));
 }
 
 // Computes weights of the left image (0 at holes) and the outputs that do not depend on colour for

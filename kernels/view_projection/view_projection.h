@@ -16,7 +16,7 @@ struct ViewProjection {
 };
 
 /// Points with depth ratio λ up to this are behind the camera or practically in its plane.
-inline constexpr double kLeastDepthRatio = 1e-9;
+inline constexpr double kMinDepthRatio = 1e-9;
 
 /// Targets are clamped to ± this: far outside any view, safe to subtract.
 inline constexpr int kFarTargetPx = 1 << 29;
@@ -26,7 +26,7 @@ inline constexpr int kFarTargetPx = 1 << 29;
 struct ExactTarget {
   double u;
   double v;
-  double depth_ratio;  ///< λ; other fields are meaningful only if it exceeds kLeastDepthRatio
+  double depth_ratio;  ///< λ; other fields are meaningful only if it exceeds kMinDepthRatio
 };
 
 inline ExactTarget exact_target(const ViewProjection& view, double x, double y, double d) {
@@ -49,7 +49,7 @@ struct ProjectionSource {
 };
 
 /// Targets of the source's pixels, `count` values each. Dropped points have disparity NaN, nearness
-/// −inf and target (0, 0): unknown disparity, λ ≤ kLeastDepthRatio, or nearness outside the range
+/// −inf and target (0, 0): unknown disparity, λ ≤ kMinDepthRatio, or nearness outside the range
 /// of float.
 struct ProjectedRow {
   float* disparity_px = nullptr;   ///< of the source

@@ -26,7 +26,7 @@ void project_row_ref(const ViewProjection& view, const ProjectionSource& source,
     }
     const int x = source.first_column + i;
     const ExactTarget target = exact_target(view, x, source.line, d);
-    if (!(target.depth_ratio > kLeastDepthRatio)) {
+    if (!(target.depth_ratio > kMinDepthRatio)) {
       continue;
     }
     const double distance = double{d} - view.infinity_disparity_px;

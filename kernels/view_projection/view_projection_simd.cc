@@ -57,7 +57,7 @@ HWY_INLINE void project(D64 d64, const ViewProjection& view, const ProjectionSou
     } else {
       // Mul and Add, never fused: results must not depend on the instruction set.
       const auto depth_ratio = hn::Add(hn::Add(hn::Mul(step2, x), start2), hn::Mul(parallax2, d));
-      const auto is_before = hn::Gt(depth_ratio, hn::Set(d64, kLeastDepthRatio));
+      const auto is_before = hn::Gt(depth_ratio, hn::Set(d64, kMinDepthRatio));
       const auto scale = hn::Div(hn::Set(d64, 1.0), hn::IfThenElse(is_before, depth_ratio, half));
       const auto u =
           hn::Mul(hn::Add(hn::Add(hn::Mul(step0, x), start0), hn::Mul(parallax0, d)), scale);

@@ -24,7 +24,7 @@ struct Least {
 };
 
 // Minimum of cells[begin, end) and its first position; begin < end.
-HWY_INLINE Least least_of(const std::int32_t* cells, CandidateRange range) {
+HWY_INLINE Least min_of(const std::int32_t* cells, CandidateRange range) {
   const Tag32 d32;
   const int step = static_cast<int>(hn::Lanes(d32));
   const Vec32 worst = hn::Set(d32, std::numeric_limits<std::int32_t>::max());
@@ -35,8 +35,8 @@ HWY_INLINE Least least_of(const std::int32_t* cells, CandidateRange range) {
   int i = range.begin / step * step;
   Vec32 number = hn::Add(hn::Set(d32, i), hn::Iota(d32, 0));
   const auto before = hn::Lt(number, hn::Set(d32, range.begin));
-  const auto behind = hn::Gt(number, hn::Set(d32, range.end - 1));
-  Vec32 value = hn::IfThenElse(hn::Or(before, behind), worst, hn::LoadU(d32, cells + i));
+  const auto after = hn::Gt(number, hn::Set(d32, range.end - 1));
+  Vec32 value = hn::IfThenElse(hn::Or(before, after), worst, hn::LoadU(d32, cells + i));
   Vec32 index = number;
   i += step;
   for (; i + step <= range.end; i += step) {
@@ -52,9 +52,9 @@ HWY_INLINE Least least_of(const std::int32_t* cells, CandidateRange range) {
     index = hn::IfThenElse(hn::Lt(next, value), number, index);
     value = hn::Min(value, next);
   }
-  const Vec32 least = hn::MinOfLanes(d32, value);
-  const Vec32 places = hn::IfThenElse(hn::Eq(value, least), index, worst);
-  return {hn::GetLane(least), hn::GetLane(hn::MinOfLanes(d32, places))};
+  const Vec32 min = hn::MinOfLanes(d32, value);
+  const Vec32 places = hn::IfThenElse(hn::Eq(value, min), index, worst);
+  return {hn::GetLane(min), hn::GetLane(hn::MinOfLanes(d32, places))};
 }
 
 // Compares fractions sum/count in order of increasing candidates. Branch-free: near a border the
@@ -99,11 +99,11 @@ std::int32_t winner_of(const WinnerRow& row, const std::int32_t* cells, int x) {
     return best.index();
   }
   offer(candidates.begin, full.begin);
-  const Least least = least_of(cells, full);
+  const Least min = min_of(cells, full);
   if (full == candidates) {
-    return least.index;
+    return min.index;
   }
-  best.offer(least.index, row.sum(least.value), row.full_window_columns(x));
+  best.offer(min.index, row.sum(min.value), row.full_window_columns(x));
   offer(full.end, candidates.end);
   return best.index();
 }
@@ -118,7 +118,7 @@ HWY_INLINE void offer_shortened(const WinnerRow& row, const std::int32_t* cells,
   const int step = static_cast<int>(hn::Lanes(d64));
   const auto none = hn::Set(d64, std::numeric_limits<double>::infinity());
   const auto lane = hn::Iota(d64, 0);
-  auto least = none;
+  auto min = none;
   auto place = hn::Zero(d64);
   int i = range.begin;
   for (; i + step <= range.end; i += step) {
@@ -126,13 +126,13 @@ HWY_INLINE void offer_shortened(const WinnerRow& row, const std::int32_t* cells,
         hn::PromoteTo(d64, hn::ShiftRightSame(hn::LoadU(d32, cells + i), row.index_bits));
     const auto counts = hn::Sub(hn::Set(d64, columns - 1 - (i - range.begin)), lane);
     const auto quotient = hn::Div(sums, counts);
-    const auto wins = hn::Lt(quotient, least);
-    least = hn::IfThenElse(wins, quotient, least);
+    const auto wins = hn::Lt(quotient, min);
+    min = hn::IfThenElse(wins, quotient, min);
     place = hn::IfThenElse(wins, hn::Add(hn::Set(d64, i), lane), place);
   }
   if (i > range.begin) {
-    const auto is_least = hn::Eq(least, hn::MinOfLanes(d64, least));
-    const auto first = hn::MinOfLanes(d64, hn::IfThenElse(is_least, place, none));
+    const auto is_min = hn::Eq(min, hn::MinOfLanes(d64, min));
+    const auto first = hn::MinOfLanes(d64, hn::IfThenElse(is_min, place, none));
     const int index = static_cast<int>(hn::GetLane(first));
     best.offer(index, row.sum(cells[index]), columns - (index - range.begin + 1));
   }
@@ -167,45 +167,45 @@ class BorderWinners {
   HWY_INLINE void run(std::int32_t* HWY_RESTRICT winners) const {
     const Tag32 d32;
     const int step = static_cast<int>(hn::Lanes(d32));
-    HWY_ALIGN std::int32_t per_lane[kMost * kLaneMultiple] = {};
-    HWY_ALIGN std::int32_t least[kMost];
-    HWY_ALIGN std::int32_t place[kMost];
+    HWY_ALIGN std::int32_t per_lane[kMax * kLaneMultiple] = {};
+    HWY_ALIGN std::int32_t min[kMax];
+    HWY_ALIGN std::int32_t place[kMax];
     for (int j = 0; j < row_.columns; j += step) {
       const int columns = std::min(step, row_.columns - j);
       const Columns shape = shape_of(row_.first_column + j);
       for (int k = 0; k < columns; ++k) {
         hn::Store(lane_minima(cells(j + k), shape.full_end[k]), d32, per_lane + k * kLaneMultiple);
       }
-      reduce_minima(per_lane, columns, least);
+      reduce_minima(per_lane, columns, min);
       if (row_.index_bits > 0) {
         for (int k = 0; k < columns; ++k) {
-          place[k] = least[k] & ((1 << row_.index_bits) - 1);
+          place[k] = min[k] & ((1 << row_.index_bits) - 1);
         }
       } else {
         for (int k = 0; k < columns; ++k) {
-          hn::Store(lane_places(cells(j + k), lanes_, least[k]), d32, per_lane + k * kLaneMultiple);
+          hn::Store(lane_places(cells(j + k), lanes_, min[k]), d32, per_lane + k * kLaneMultiple);
         }
         reduce_minima(per_lane, columns, place);
       }
       for (int k = 0; k < columns; ++k) {
         winners[j + k] = shape.full_end[k] == 0
                              ? winner_of(row_, cells(j + k), row_.first_column + j + k)
-                             : winner(cells(j + k), least[k], place[k], shape.full_end[k],
+                             : winner(cells(j + k), min[k], place[k], shape.full_end[k],
                                       shape.candidates_end[k], shape.full_columns[k]);
       }
     }
   }
 
  private:
-  static constexpr std::size_t kMost = hn::MaxLanes(Tag32());
+  static constexpr std::size_t kMax = hn::MaxLanes(Tag32());
 
   /// For a vector of columns: the number of leading candidates with a whole window of partners (0
   /// if those do not start at the first candidate), the number of candidates with a partner, and
   /// the number of columns of a whole window.
   struct Columns {
-    int full_end[kMost];
-    int candidates_end[kMost];
-    int full_columns[kMost];
+    int full_end[kMax];
+    int candidates_end[kMax];
+    int full_columns[kMax];
   };
 
   [[nodiscard]] HWY_INLINE const std::int32_t* cells(int j) const {
@@ -218,20 +218,20 @@ class BorderWinners {
     const int radius = row_.window_radius;
     const int last_column = geometry.width - 1;
     const bool left = geometry.direction < 0;
-    const int least = geometry.disparity_min;
+    const int min = geometry.disparity_min;
     const int count = geometry.count;
     const bool whole_only = row_.whole_windows_only;
     Columns shape;
-    for (std::size_t k = 0; k < kMost; ++k) {
+    for (std::size_t k = 0; k < kMax; ++k) {
       const int x = std::min(first_x + static_cast<int>(k), last_column);
       const int begin = std::max(x - radius, 0);
       const int last = std::min(x + radius, last_column);
       // Columns of the other image in the direction of increasing and of decreasing disparities.
       const int room = left ? begin : last_column - last;
-      const int room_behind = left ? last_column - last : begin;
-      const int full_end = std::clamp(room - least + 1, 0, count);
-      shape.full_end[k] = whole_only || room_behind < -least ? 0 : full_end;
-      shape.candidates_end[k] = std::clamp((left ? x : last_column - x) - least + 1, 0, count);
+      const int room_after = left ? last_column - last : begin;
+      const int full_end = std::clamp(room - min + 1, 0, count);
+      shape.full_end[k] = whole_only || room_after < -min ? 0 : full_end;
+      shape.candidates_end[k] = std::clamp((left ? x : last_column - x) - min + 1, 0, count);
       shape.full_columns[k] = last - begin + 1;
     }
     return shape;
@@ -244,21 +244,21 @@ class BorderWinners {
     const int step = static_cast<int>(hn::Lanes(d32));
     const Vec32 worst = hn::Set(d32, std::numeric_limits<std::int32_t>::max());
     const Vec32 end = hn::Set(d32, count);
-    Vec32 least = worst;
+    Vec32 min = worst;
     for (int i = 0; i < lanes_; i += step) {
       const auto is_candidate = hn::Lt(lane_numbers(i), end);
-      least = hn::Min(least, hn::IfThenElse(is_candidate, hn::LoadU(d32, cells + i), worst));
+      min = hn::Min(min, hn::IfThenElse(is_candidate, hn::LoadU(d32, cells + i), worst));
     }
-    return least;
+    return min;
   }
 
   // Best of the minimum over full windows and the candidates with shortened windows, each of which
   // loses one more column than the previous one.
-  [[nodiscard]] HWY_INLINE std::int32_t winner(const std::int32_t* column, std::int32_t least,
+  [[nodiscard]] HWY_INLINE std::int32_t winner(const std::int32_t* column, std::int32_t min,
                                                std::int32_t place, int full_end, int end,
                                                int full_columns) const {
-    const std::int64_t least_sum = row_.sum(least);
-    BestFraction best(place, least_sum, full_columns);
+    const std::int64_t min_sum = row_.sum(min);
+    BestFraction best(place, min_sum, full_columns);
     if (end - full_end >= kManyCandidates) {
       offer_shortened(row_, column, {full_end, end}, full_columns, best);
       return best.index();

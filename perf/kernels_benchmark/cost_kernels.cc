@@ -45,7 +45,7 @@ using Codes = Pairs<std::uint32_t, 2>;
 
 /// Distances, and table lookups by distance.
 template <int kThresholds>
-struct RayCodes : Pairs<std::uint8_t, kernels::kMostRayCensusBytes> {
+struct RayCodes : Pairs<std::uint8_t, kernels::kMaxRayCensusBytes> {
   kernels::RayCensusPairs pairs{row, kThresholds};
   AlignedValues<std::uint8_t> bytes{kCellCount};
   kernels::LikelihoodByDistance likelihoods;
@@ -80,7 +80,7 @@ struct ImageRows {
   AlignedValues<float> third{kStride};
   AlignedValues<std::uint32_t> first_code{kStride};
   AlignedValues<std::uint32_t> second_code{kStride};
-  AlignedValues<std::uint8_t> code_bytes{kernels::kMostRayCensusBytes * kStride};
+  AlignedValues<std::uint8_t> code_bytes{kernels::kMaxRayCensusBytes * kStride};
 
   const float* row(std::size_t y) { return pixels.data() + y * kStride + kMargin; }
 

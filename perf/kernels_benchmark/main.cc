@@ -41,7 +41,7 @@ void run(benchmark::State& state, long long target, const KernelBenchmark& kerne
   }
   if (work.bytes > 0) {
     state.counters["GB/s"] = work.bytes / unit_ns;
-    state.counters["of_roof"] = 1e9 * least_seconds(work, ceilings) / unit_ns;
+    state.counters["of_roof"] = 1e9 * min_seconds(work, ceilings) / unit_ns;
     state.SetLabel(is_bound_by_arithmetic(work, ceilings) ? "arithmetic" : "loads and stores");
   }
   kernels::force_target(0);

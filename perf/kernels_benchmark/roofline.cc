@@ -60,7 +60,7 @@ const CoreCeilings& ceilings_of(long long target) {
   return place != known.end() ? place->second : known.emplace(target, measure()).first->second;
 }
 
-double least_seconds(const UnitWork& work, const CoreCeilings& ceilings) {
+double min_seconds(const UnitWork& work, const CoreCeilings& ceilings) {
   return std::max(work.operations / ceilings.operations_per_s, work.bytes / ceilings.bytes_per_s);
 }
 

@@ -15,7 +15,7 @@ const CoreCeilings& ceilings_of(long long target);
 
 /// Minimum time for one unit of `work`: the larger of the times for its operations and its bytes. 0
 /// if nothing is counted.
-double least_seconds(const UnitWork& work, const CoreCeilings& ceilings);
+double min_seconds(const UnitWork& work, const CoreCeilings& ceilings);
 
 /// Whether arithmetic, not loads and stores, determines that time.
 bool is_bound_by_arithmetic(const UnitWork& work, const CoreCeilings& ceilings);

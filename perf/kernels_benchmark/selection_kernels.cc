@@ -25,11 +25,11 @@ constexpr int kAtBorder = 0;
 
 struct Rows {
   AlignedValues<std::int32_t> sums{kCellCount, 10000, 1 << kIndexBits};
-  AlignedValues<std::int32_t> least{kColumns};
+  AlignedValues<std::int32_t> min{kColumns};
   AlignedValues<std::int32_t> winners{kColumns};
   AlignedValues<float> cells{kCellCount, 65536, 1.0F / 65536, 2};
   AlignedValues<kernels::FixedEnergy> fixed{kCellCount, 30000, 1, 3};
-  AlignedValues<kernels::FixedEnergy> least_fixed{kColumns};
+  AlignedValues<kernels::FixedEnergy> min_fixed{kColumns};
   AlignedValues<std::int32_t> fixed_winners{kColumns};
   AlignedValues<float> energies{kCellCount};
   AlignedValues<float> best{kColumns};
@@ -39,7 +39,7 @@ struct Rows {
   Rows() {
     for (int x = 0; x < kColumns; ++x) {
       const std::int32_t* column = sums.data() + x * kLanes;
-      least.data()[x] = *std::min_element(column, column + kLanes);
+      min.data()[x] = *std::min_element(column, column + kLanes);
     }
     locate();
     select_energies(kInside);
@@ -59,7 +59,7 @@ struct Rows {
     return {cells.data(), {1000, 0, kLanes, -1}, first_column, kColumns, 0, probabilities};
   }
   void locate() {
-    kernels::locate_minima_row(sums.data(), least.data(), kLanes, kColumns, winners.data());
+    kernels::locate_minima_row(sums.data(), min.data(), kLanes, kColumns, winners.data());
   }
   void select(int index_bits) {
     kernels::select_winners_row(winner_row(index_bits, kAtBorder), winners.data());
@@ -74,15 +74,15 @@ struct Rows {
   }
   void select_energies(int first_column) {
     kernels::select_energy_winners_row(energy_row(first_column), fixed_winners.data(),
-                                       least_fixed.data());
+                                       min_fixed.data());
   }
   void parabola_of_energies() {
     kernels::energy_disparity_row(energy_row(kInside), fixed_winners.data(), true,
                                   disparity_px.data());
   }
   void probability_of_energies() {
-    kernels::energy_probability_row({fixed.data(), kLanes, kColumns, kLanes}, least_fixed.data(),
-                                    256, confidence.data());
+    kernels::energy_probability_row({fixed.data(), kLanes, kColumns, kLanes}, min_fixed.data(), 256,
+                                    confidence.data());
   }
   void entropy() {
     kernels::cell_entropy_row(cell_row(kInside, false), best.data(), 9.0F, confidence.data());

@@ -69,7 +69,7 @@ struct AlongRows {
   static constexpr int kInputColumns = kColumns + 2 * kRadius;
   AlignedValues<std::int32_t> input{kInputColumns * kLanes, 1000, 64};
   AlignedValues<std::int32_t> sums{kColumns * kLanes};
-  AlignedValues<std::int32_t> least{kColumns};
+  AlignedValues<std::int32_t> min{kColumns};
   AlignedValues<std::int32_t> work{kColumns * kernels::kLaneMultiple};
 
   /// Sums and the minimum of each column, with or without storing the sums.
@@ -84,7 +84,7 @@ struct AlongRows {
     row.number_lanes = true;
     row.output = store ? sums.data() : nullptr;
     if (minima) {
-      row.minima = least.data();
+      row.minima = min.data();
       row.minima_work = work.data();
       row.candidates = kLanes;
     }

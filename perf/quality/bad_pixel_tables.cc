@@ -70,14 +70,14 @@ double mean(const std::vector<Outcome>& outcomes, const std::vector<std::size_t>
 }
 
 /// Minimum over StereoSGBM's settings; infinite if there are none.
-double least_of_sgbm(const Results& results, const std::function<double(std::size_t)>& figure) {
-  double least = std::numeric_limits<double>::infinity();
+double min_of_sgbm(const Results& results, const std::function<double(std::size_t)>& figure) {
+  double min = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < results.contenders.size(); ++i) {
     if (results.contenders[i].is_sgbm) {
-      least = std::min(least, figure(i));
+      min = std::min(min, figure(i));
     }
   }
-  return least;
+  return min;
 }
 
 void print_group(const Results& results, const SceneGroup& group) {
@@ -89,7 +89,7 @@ void print_group(const Results& results, const SceneGroup& group) {
   titles.insert(titles.end(), {"visible bad 1 ÷ best SGBM", "ms", "processor ms"});
   print_header(titles);
   const Figure bad_1_visible = contested_columns().front().figure;
-  const double best_sgbm = least_of_sgbm(results, [&](std::size_t contender) {
+  const double best_sgbm = min_of_sgbm(results, [&](std::size_t contender) {
     return mean(results.outcomes[contender], group.scenes, bad_1_visible);
   });
   for (std::size_t i = 0; i < results.contenders.size(); ++i) {
@@ -125,7 +125,7 @@ void print_wins(const Results& results) {
       const Figure& figure = contested_columns()[column].figure;
       int won = 0;
       for (std::size_t scene = 0; scene < results.scenes.size(); ++scene) {
-        const double best_sgbm = least_of_sgbm(results, [&](std::size_t contender) {
+        const double best_sgbm = min_of_sgbm(results, [&](std::size_t contender) {
           return figure(results.outcomes[contender][scene]);
         });
         const bool is_won = figure(results.outcomes[i][scene]) < best_sgbm;

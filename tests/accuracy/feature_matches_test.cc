@@ -145,7 +145,7 @@ TEST(FeatureMatches, AreTheSameFromAnyThread) {
 }
 
 TEST(FeatureMatches, OptionsHaveLimits) {
-  EXPECT_EQ(error_of([] { FeatureMatchOptions{.most_features = 99}.validate(); }),
+  EXPECT_EQ(error_of([] { FeatureMatchOptions{.max_features = 99}.validate(); }),
             "most-features is 99, expected a number from 100 to 20000");
   EXPECT_EQ(error_of([] { FeatureMatchOptions{.largest_side_px = 63}.validate(); }),
             "largest-side is 63, expected at least 64");

@@ -34,7 +34,7 @@ class TwoShots : public PairSource {
   std::set<int> bad;
   std::vector<int> fetched;
   std::vector<int> with_right;           // those of them whose right image was wanted too
-  int most_held = 0;                     // fetched and not decoded yet
+  int max_held = 0;                      // fetched and not decoded yet
   mutable std::atomic<int> decoded = 0;  // or found to be bad
 
   bool fetch(FramePair& pair) override {
@@ -46,7 +46,7 @@ class TwoShots : public PairSource {
     if (pair.wants_right) {
       with_right.push_back(pair.index);
     }
-    most_held = std::max(most_held, static_cast<int>(fetched.size()) - decoded);
+    max_held = std::max(max_held, static_cast<int>(fetched.size()) - decoded);
     if (bad.contains(pair.index) && pair.index % 2 == 0) {
       throw Error("damaged");
     }
@@ -121,12 +121,12 @@ class Shots : public ::testing::Test {
     }
     std::sort(disparities.begin(), disparities.end());
     const auto last = static_cast<double>(disparities.size() - 1);
-    const float least = disparities[static_cast<std::size_t>(std::lround(0.01 * last))];
-    const float most = disparities[static_cast<std::size_t>(std::lround(0.99 * last))];
-    const float margin = std::max(0.5F, 0.05F * (most - least));
+    const float min = disparities[static_cast<std::size_t>(std::lround(0.01 * last))];
+    const float max = disparities[static_cast<std::size_t>(std::lround(0.99 * last))];
+    const float margin = std::max(0.5F, 0.05F * (max - min));
     Shot shot;
     shot.intensity = fit_channels(sums, 3, 1);
-    shot.preview_range = {least - margin, most + margin};
+    shot.preview_range = {min - margin, max + margin};
     return shot;
   }
 
@@ -184,13 +184,13 @@ TEST_F(Shots, DoNotDependOnTheExecution) {
 
 TEST_F(Shots, HoldNoMorePairsThanTheyMay) {
   const auto table = survey();
-  EXPECT_EQ(pairs_.most_held, 3);
-  pairs_.most_held = 0;
+  EXPECT_EQ(pairs_.max_held, 3);
+  pairs_.max_held = 0;
   pairs_.fetched.clear();
   pairs_.decoded = 0;
   hooks_.in_flight = 1;
   EXPECT_EQ(survey(), table);
-  EXPECT_EQ(pairs_.most_held, 1);
+  EXPECT_EQ(pairs_.max_held, 1);
 }
 
 TEST_F(Shots, OfAPartOfTheFrames) {

@@ -61,7 +61,7 @@ TEST(VerticalError, OfExactMatchesIsThatOfTheirRows) {
   EXPECT_EQ(none->inliers, 200);
   EXPECT_EQ(none->rms_px, 0);
   EXPECT_EQ(none->largest_px, 0);
-  EXPECT_NEAR(none->least_disparity_px, -5, 2);
+  EXPECT_NEAR(none->min_disparity_px, -5, 2);
   EXPECT_NEAR(none->largest_disparity_px, 60, 2);
 
   const auto matches = matches_with(
@@ -153,8 +153,8 @@ TEST(VerticalError, SaysNothingOfTooFewMatches) {
   std::mt19937 random(3);
   const auto zero = [](double, double, double) { return 0.0; };
   EXPECT_FALSE(vertical_error({}));
-  EXPECT_FALSE(vertical_error(matches_with(kLeastMatches - 1, zero, random)));
-  EXPECT_TRUE(vertical_error(matches_with(kLeastMatches, zero, random)));
+  EXPECT_FALSE(vertical_error(matches_with(kMinMatches - 1, zero, random)));
+  EXPECT_TRUE(vertical_error(matches_with(kMinMatches, zero, random)));
   // All in one place.
   EXPECT_TRUE(vertical_error(std::vector<PointMatch>(40, {{3, 4}, {1, 4}})));
 
@@ -184,7 +184,7 @@ TEST(VerticalError, IsFoundInPictures) {
       ASSERT_TRUE(found);
       EXPECT_NEAR(found->mean_px, -shift, 0.08);
       EXPECT_NEAR(found->systematic_px, std::abs(shift), 0.08);
-      EXPECT_NEAR(found->least_disparity_px, 4, 3);
+      EXPECT_NEAR(found->min_disparity_px, 4, 3);
       EXPECT_GT(found->largest_disparity_px, 10);
       EXPECT_LT(found->largest_disparity_px, 20.5);
     }

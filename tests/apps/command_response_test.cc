@@ -152,12 +152,12 @@ TEST_F(AutomaticDisparities, MatchTellsTheRangeAndReportsIt) {
   const std::string range = report["settings"]["disparities"];
   EXPECT_THAT(result.err, HasSubstr("--disparities auto is " + range));
   EXPECT_TRUE(report["seconds"]["stages"].contains("range"));
-  int least = 0;
-  int most = 0;
-  ASSERT_EQ(std::sscanf(range.c_str(), "%d:%d", &least, &most), 2) << range;
-  EXPECT_LE(least, 2);
-  EXPECT_GE(most, 6);
-  EXPECT_LE(most - least, 20);
+  int min = 0;
+  int max = 0;
+  ASSERT_EQ(std::sscanf(range.c_str(), "%d:%d", &min, &max), 2) << range;
+  EXPECT_LE(min, 2);
+  EXPECT_GE(max, 6);
+  EXPECT_LE(max - min, 20);
   // The same as giving that range.
   ASSERT_EQ(run_vantage({"match", left_, right_, "-o", folder_ / "b.pfm", "--disparities=" + range})
                 .exit_code,
@@ -265,11 +265,11 @@ TEST_F(AutomaticDisparities, ARunFindsItInAllOfTheInput) {
         read_file(folder_ / "run/.vantage/run.json"))["settings"]["disparities"];
   }
   EXPECT_EQ(ranges[0], ranges[1]);
-  int least = 0;
-  int most = 0;
-  ASSERT_EQ(std::sscanf(ranges[0].c_str(), "%d:%d", &least, &most), 2) << ranges[0];
-  EXPECT_LE(least, 2);
-  EXPECT_GE(most, 36);
+  int min = 0;
+  int max = 0;
+  ASSERT_EQ(std::sscanf(ranges[0].c_str(), "%d:%d", &min, &max), 2) << ranges[0];
+  EXPECT_LE(min, 2);
+  EXPECT_GE(max, 36);
 }
 
 TEST_F(AutomaticDisparities, AResumedRunTakesTheRangeThatItBeganWith) {

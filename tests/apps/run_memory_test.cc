@@ -146,10 +146,10 @@ TEST_F(SlowRunMemory, IsNotMoreThanAllowed) {
     EXPECT_TRUE(is_one_line(refused, "run"));
     EXPECT_FALSE(fs::exists(out_));
     const std::string says = "memory is 10 MiB, expected at least ";
-    const std::size_t least = refused.err.find(says);
-    ASSERT_NE(least, std::string::npos) << refused.err;
-    const int least_mib = std::stoi(refused.err.substr(least + says.size()));
-    std::vector<int> allowed = {least_mib, least_mib * 5 / 4, least_mib * 2};
+    const std::size_t min = refused.err.find(says);
+    ASSERT_NE(min, std::string::npos) << refused.err;
+    const int min_mib = std::stoi(refused.err.substr(min + says.size()));
+    std::vector<int> allowed = {min_mib, min_mib * 5 / 4, min_mib * 2};
     if (!test::runs_everything()) {  // the least is what planning has to be exact for
       allowed.erase(allowed.end() - 1 - static_cast<std::ptrdiff_t>(numbers.below(2)));
     }

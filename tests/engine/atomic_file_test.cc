@@ -41,7 +41,7 @@ TEST(AtomicFileLink, IsFollowedWhereverItLeads) {
   EXPECT_THAT(test::error_of([&] { write_text_file(folder / "lost", "text"); }),
               testing::HasSubstr("there is no folder"));
   fs::create_symlink("circle", folder / "circle");
-  EXPECT_EQ(behind_links(folder / "circle"), folder / "circle");
+  EXPECT_EQ(through_links(folder / "circle"), folder / "circle");
 }
 
 TEST(AtomicFileName, MayBeAsLongAsFileSystemsAllow) {

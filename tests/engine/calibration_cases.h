@@ -33,8 +33,8 @@ inline Eigen::Vector2d plain_projection(const Camera& camera, double x, double y
           camera.matrix(1, 1) * n + camera.matrix(1, 2)};
 }
 
-inline double uniform(std::mt19937& random, double least, double most) {
-  return least + (most - least) * static_cast<double>(random()) / 4294967295.0;
+inline double uniform(std::mt19937& random, double min, double max) {
+  return min + (max - min) * static_cast<double>(random()) / 4294967295.0;
 }
 
 /// A camera for images of this size, with so many (0, 4, 5, 8, 12, 14) mild coefficients.
@@ -51,8 +51,8 @@ inline Camera random_camera(std::mt19937& random, int width, int height, int coe
   return camera;
 }
 
-inline Eigen::Matrix3d random_rotation(std::mt19937& random, double most_radians) {
-  const auto angle = [&] { return uniform(random, -most_radians, most_radians); };
+inline Eigen::Matrix3d random_rotation(std::mt19937& random, double max_radians) {
+  const auto angle = [&] { return uniform(random, -max_radians, max_radians); };
   return (Eigen::AngleAxisd(angle(), Eigen::Vector3d::UnitX()) *
           Eigen::AngleAxisd(angle(), Eigen::Vector3d::UnitY()) *
           Eigen::AngleAxisd(angle(), Eigen::Vector3d::UnitZ()))
@@ -60,11 +60,11 @@ inline Eigen::Matrix3d random_rotation(std::mt19937& random, double most_radians
 }
 
 inline StereoCalibration random_calibration(std::mt19937& random, int width, int height,
-                                            int coefficients, double most_radians = 0.08) {
+                                            int coefficients, double max_radians = 0.08) {
   StereoCalibration calibration;
   calibration.left = random_camera(random, width, height, coefficients);
   calibration.right = random_camera(random, width, height, coefficients);
-  calibration.rotation = random_rotation(random, most_radians);
+  calibration.rotation = random_rotation(random, max_radians);
   const double baseline = uniform(random, 0.05, 2);
   calibration.translation =
       baseline * Eigen::Vector3d(-1, uniform(random, -0.1, 0.1), uniform(random, -0.1, 0.1));

@@ -29,8 +29,8 @@ Image<std::int32_t> random_winners(Extent extent, int candidates, unsigned seed)
 }
 
 /// Block numbers of the tile that pixel (x, y) lies in, pixel by pixel from the definition.
-std::vector<std::uint16_t> plain_blocks(const Image<std::int32_t>& winners, int candidates,
-                                        int most, int x, int y) {
+std::vector<std::uint16_t> plain_blocks(const Image<std::int32_t>& winners, int candidates, int max,
+                                        int x, int y) {
   std::map<int, int> votes;
   for (int v = 0; v < winners.height(); ++v) {
     for (int u = 0; u < winners.width(); ++u) {
@@ -57,7 +57,7 @@ std::vector<std::uint16_t> plain_blocks(const Image<std::int32_t>& winners, int 
   std::ranges::sort(order);
   std::vector<std::uint16_t> blocks;
   for (const auto& [count, block] : order) {
-    if (static_cast<int>(blocks.size()) < most) {
+    if (static_cast<int>(blocks.size()) < max) {
       blocks.push_back(static_cast<std::uint16_t>(block));
     }
   }
@@ -71,17 +71,17 @@ TEST(CandidateBlocks, AreThoseWithTheMostVotes) {
   for (const Extent extent :
        {Extent{1, 1}, Extent{7, 2}, Extent{8, 8}, Extent{9, 17}, Extent{37, 29}, Extent{64, 3}}) {
     for (const int candidates : {1, 16, 17, 40, 130, 300}) {
-      for (const int most : {1, 3, 8}) {
+      for (const int max : {1, 3, 8}) {
         const auto winners = random_winners(extent, candidates, ++seed);
         CandidateBlocks blocks;
-        blocks.resize(extent, candidates, most);
+        blocks.resize(extent, candidates, max);
         blocks.choose(winners.view(), std::nullopt, execution);
-        EXPECT_EQ(blocks.lanes(), 16 * std::min(most, (candidates + 15) / 16));
+        EXPECT_EQ(blocks.lanes(), 16 * std::min(max, (candidates + 15) / 16));
         double cells = 0;
         for (int y = 0; y < extent.rows; ++y) {
           for (int x = 0; x < extent.columns; ++x) {
             const BlockList list = blocks.at(x, y);
-            const auto expected = plain_blocks(winners, candidates, most, x, y);
+            const auto expected = plain_blocks(winners, candidates, max, x, y);
             ASSERT_TRUE(std::ranges::equal(list, expected))
                 << extent.columns << "x" << extent.rows << ", " << candidates << " candidates, at "
                 << x << ", " << y;
@@ -119,7 +119,7 @@ TEST(CandidateBlocks, RunsCoverARowAndHaveOneListEach) {
         ASSERT_EQ(run.columns.begin, x);
         ASSERT_GT(run.columns.end, x);
         ASSERT_LE(run.columns.end, 213);
-        ASSERT_LE(run.columns.size(), CandidateBlocks::kMostRunColumns);
+        ASSERT_LE(run.columns.size(), CandidateBlocks::kMaxRunColumns);
         for (int u = run.columns.begin; u < run.columns.end; ++u) {
           ASSERT_TRUE(std::ranges::equal(blocks.at(u, y), run.blocks));
         }
@@ -128,7 +128,7 @@ TEST(CandidateBlocks, RunsCoverARowAndHaveOneListEach) {
       }
     }
   }
-  EXPECT_EQ(longest, CandidateBlocks::kMostRunColumns);
+  EXPECT_EQ(longest, CandidateBlocks::kMaxRunColumns);
 }
 
 TEST(CandidateBlocks, LeaveEveryPixelACandidateWithAPartner) {
@@ -136,9 +136,9 @@ TEST(CandidateBlocks, LeaveEveryPixelACandidateWithAPartner) {
   unsigned seed = 50;
   for (const int direction : {-1, 1}) {
     for (const int width : {3, 8, 21, 130}) {
-      for (const int least : {-70, -5, 0, 1, 13}) {
+      for (const int min : {-70, -5, 0, 1, 13}) {
         const CandidateGeometry geometry{
-            .width = width, .disparity_min = least, .count = 100, .direction = direction};
+            .width = width, .disparity_min = min, .count = 100, .direction = direction};
         const Extent extent{width, 9};
         CandidateBlocks blocks;
         blocks.resize(extent, 100, 1);
@@ -152,7 +152,7 @@ TEST(CandidateBlocks, LeaveEveryPixelACandidateWithAPartner) {
           const bool has_one = std::ranges::any_of(list, [&](int block) {
             return std::max(inside.begin, 16 * block) < std::min(inside.end, 16 * block + 16);
           });
-          EXPECT_TRUE(has_one) << "column " << x << " of " << width << ", from " << least;
+          EXPECT_TRUE(has_one) << "column " << x << " of " << width << ", from " << min;
         }
       }
     }

@@ -45,12 +45,12 @@ struct CellVolume {
 };
 
 /// Multiples of 1/8 in [least, least + 100].
-inline CellVolume<float> random_cells(scheduler::Extent extent, int lanes, float least,
+inline CellVolume<float> random_cells(scheduler::Extent extent, int lanes, float min,
                                       std::uint32_t seed) {
   std::mt19937 random(seed);
   CellVolume<float> volume(extent, lanes);
   for (float& cell : volume.cells) {
-    cell = least + static_cast<float>(random() % 801U) / 8;
+    cell = min + static_cast<float>(random() % 801U) / 8;
   }
   return volume;
 }

@@ -171,14 +171,14 @@ TEST(ColumnWork, GrowsWithWhatIsAskedFor) {
   const auto selection_operations = [&](const MatchOptions& options, const ChainCase& made) {
     return works_of(options, made).back().work.operations;
   };
-  const double least = selection_operations(ssd, {.wants_all_outputs = false});
-  EXPECT_GT(selection_operations(ssd, {}), least);
+  const double min = selection_operations(ssd, {.wants_all_outputs = false});
+  EXPECT_GT(selection_operations(ssd, {}), min);
   ssd.parameters.subpixel = Subpixel::kParabola;
-  EXPECT_GT(selection_operations(ssd, {.wants_all_outputs = false}), least);
+  EXPECT_GT(selection_operations(ssd, {.wants_all_outputs = false}), min);
   // Running sums: the window does not matter.
   ssd.parameters.subpixel = Subpixel::kNone;
   ssd.parameters.window_px = 3;
-  EXPECT_EQ(selection_operations(ssd, {.wants_all_outputs = false}), least);
+  EXPECT_EQ(selection_operations(ssd, {.wants_all_outputs = false}), min);
   MatchOptions bayes = method_named("bayes");
   const auto iteration_operations = [&](double sigma_prior) {
     bayes.parameters.sigma_prior = sigma_prior;

@@ -171,8 +171,8 @@ TEST(DisparityIo, SaysBeforeASearchWhichFilesHoldIt) {
     EXPECT_NO_THROW(require_holds_search(name, 0, 255)) << name;
   }
   EXPECT_NO_THROW(require_holds_search("d.pfm", -3, 300));
-  for (const auto& [least, most] : {std::pair{-1, 63}, {-90, -10}, {0, 256}}) {
-    EXPECT_THROW(require_holds_search("d.png", least, most), UsageError);
+  for (const auto& [min, max] : {std::pair{-1, 63}, {-90, -10}, {0, 256}}) {
+    EXPECT_THROW(require_holds_search("d.png", min, max), UsageError);
   }
   EXPECT_THAT(error_of([&] { require_holds_search("maps/d.PNG", -3, 60); }),
               testing::AllOf(HasSubstr("maps/d.PNG"), HasSubstr("-3:60"), HasSubstr(".pfm")));

@@ -28,8 +28,8 @@ struct Judged {
 };
 
 Judged judge(DisparityRange range, const DisparityMap& truth) {
-  float least = std::numeric_limits<float>::infinity();
-  float most = -least;
+  float min = std::numeric_limits<float>::infinity();
+  float max = -min;
   int inside = 0;
   int known = 0;
   for (int y = 0; y < truth.height(); ++y) {
@@ -38,12 +38,12 @@ Judged judge(DisparityRange range, const DisparityMap& truth) {
       if (std::isfinite(d)) {
         ++known;
         inside += d >= static_cast<float>(range.min) && d <= static_cast<float>(range.max) ? 1 : 0;
-        least = std::min(least, d);
-        most = std::max(most, d);
+        min = std::min(min, d);
+        max = std::max(max, d);
       }
     }
   }
-  return {static_cast<double>(inside) / known, range.count() / (most - least + 1.0)};
+  return {static_cast<double>(inside) / known, range.count() / (max - min + 1.0)};
 }
 
 /// A pair of texture whose disparities are `disparity` and one more.

@@ -93,14 +93,13 @@ Volume plain_pair_costs(const Photograph& reference, const Photograph& other, co
   }
   for (int y = 0; is_relative && y < grid.height; ++y) {
     for (int x = 0; x < grid.width; ++x) {
-      double least = std::numeric_limits<double>::infinity();
+      double min = std::numeric_limits<double>::infinity();
       for (int i = 0; i < grid.count(); ++i) {
-        least = grid.has_partner(x, y, i) ? std::min(least, costs.at(x, y, i)) : least;
+        min = grid.has_partner(x, y, i) ? std::min(min, costs.at(x, y, i)) : min;
       }
       for (int i = 0; i < grid.count(); ++i) {
         const double epsilon = parameters.epsilon_measurement;
-        const double likeness =
-            std::exp((least - costs.at(x, y, i)) / parameters.sigma_measurement);
+        const double likeness = std::exp((min - costs.at(x, y, i)) / parameters.sigma_measurement);
         costs.at(x, y, i) =
             -std::log(grid.has_partner(x, y, i) ? (1 - epsilon) * likeness + epsilon : epsilon);
       }
@@ -132,16 +131,16 @@ Volume plain_pair_boxes(const Volume& costs, const PlainGrid& grid, int radius) 
 void normalise(Volume& energies) {
   for (int y = 0; y < energies.height; ++y) {
     for (int x = 0; x < energies.width; ++x) {
-      double least = std::numeric_limits<double>::infinity();
+      double min = std::numeric_limits<double>::infinity();
       for (int i = 0; i < energies.count(); ++i) {
-        least = std::min(least, energies.at(x, y, i));
+        min = std::min(min, energies.at(x, y, i));
       }
       double sum = 0;
       for (int i = 0; i < energies.count(); ++i) {
-        sum += std::exp(least - energies.at(x, y, i));
+        sum += std::exp(min - energies.at(x, y, i));
       }
       for (int i = 0; i < energies.count(); ++i) {
-        energies.at(x, y, i) += std::log(sum) - least;
+        energies.at(x, y, i) += std::log(sum) - min;
       }
     }
   }
@@ -159,9 +158,9 @@ Volume plain_pair_bayes(const Volume& first, const PlainGrid& grid,
     Volume smooth = energies;
     for (int y = 0; y < first.height; ++y) {
       for (int x = 0; x < first.width; ++x) {
-        double least = std::numeric_limits<double>::infinity();
+        double min = std::numeric_limits<double>::infinity();
         for (int i = 0; i < first.count(); ++i) {
-          least = std::min(least, energies.at(x, y, i));
+          min = std::min(min, energies.at(x, y, i));
         }
         for (int i = 0; i < first.count(); ++i) {
           double sum = 0;
@@ -171,7 +170,7 @@ Volume plain_pair_bayes(const Volume& first, const PlainGrid& grid,
                 grid.squared_distance(i, j) / (2 * parameters.sigma_prior * parameters.sigma_prior);
             sum +=
                 ((1 - epsilon) * std::exp(-exponent) + epsilon) * std::exp(-energies.at(x, y, j));
-            smallest = std::min(smallest, exponent + energies.at(x, y, j) - least);
+            smallest = std::min(smallest, exponent + energies.at(x, y, j) - min);
           }
           smooth.at(x, y, i) = is_maximum ? smallest : -std::log(sum);
         }
@@ -252,8 +251,8 @@ void expect_equals_pairs(const PhotographPair& pair, const MatchOptions& options
       others[static_cast<std::size_t>(winner)] = kNan;
       const PlainColumn rest(others);
       const double floor = parameters.aggregation == Aggregation::kBayes ? 1 : tolerance.floor;
-      const double magnitude = std::max(std::abs(plain.least()), floor);
-      if (rest.has_candidate() && rest.least() - plain.least() <= 10 * tolerance.tie * magnitude) {
+      const double magnitude = std::max(std::abs(plain.min()), floor);
+      if (rest.has_candidate() && rest.min() - plain.min() <= 10 * tolerance.tie * magnitude) {
         continue;
       }
       ++distinct;
@@ -263,7 +262,7 @@ void expect_equals_pairs(const PhotographPair& pair, const MatchOptions& options
         }
         const double below = column[static_cast<std::size_t>(winner - step)];
         const double above = column[static_cast<std::size_t>(winner + step)];
-        const double curvature = below - 2 * plain.least() + above;
+        const double curvature = below - 2 * plain.min() + above;
         return curvature > 0 ? (below - above) / (2 * curvature) : 0;
       };
       const int in_row = grid.across.count();
@@ -272,11 +271,11 @@ void expect_equals_pairs(const PhotographPair& pair, const MatchOptions& options
       const double off = std::max(std::abs(map_x.at(x, y) - u), std::abs(map_y.at(x, y) - v));
       const double allowed_px = std::max(2e-3, 3 * tolerance.subpixel_px);
       equal += off <= allowed_px ? 1 : 0;
-      const double sure = parameters.aggregation == Aggregation::kBayes ? std::exp(-plain.least())
+      const double sure = parameters.aggregation == Aggregation::kBayes ? std::exp(-plain.min())
                           : parameters.aggregation == Aggregation::kLocalStopping &&
                                   parameters.certainty == Certainty::kEntropy
                               ? plain.entropy(test::entropy_scale(parameters))
-                          : is_evidence(parameters) ? -plain.least()
+                          : is_evidence(parameters) ? -plain.min()
                                                     : plain.margin();
       const double unsure = std::abs(confidence.at(x, y) - sure) /
                             std::max(std::abs(sure), tolerance.confidence_floor);

@@ -10,7 +10,7 @@ namespace vantage {
 namespace energy_format_test {
 
 using kernels::FixedEnergy;
-using kernels::kMostEnergy;
+using kernels::kMaxEnergy;
 
 MethodParameters parameters_with(double mu, double epsilon_prior, int final_iterations) {
   MethodParameters parameters = book_parameters(MatchMethod::kBayes);
@@ -45,12 +45,12 @@ class EnergyFormats : public ::testing::Test {
 TEST_F(EnergyFormats, HaveRoomForTheLargestSums) {
   for_each(
       [](const MethodParameters& parameters, const EnergyFormat& format, const std::string& what) {
-        constexpr double kMostLikelihoodNats = 87.34;
+        constexpr double kMaxLikelihoodNats = 87.34;
         const int star =
             5 * kernels::weighted(format.ceiling(),
                                   kernels::fixed_weight(static_cast<float>(parameters.mu)));
-        const double source = std::ceil(kMostLikelihoodNats * format.steps_per_nat());
-        EXPECT_LT(star + source + format.ceiling(), kMostEnergy) << what;
+        const double source = std::ceil(kMaxLikelihoodNats * format.steps_per_nat());
+        EXPECT_LT(star + source + format.ceiling(), kMaxEnergy) << what;
         EXPECT_GT(format.steps_per_nat(), 5) << what;
         EXPECT_LE(format.steps_per_nat(), 256) << what;
       });
@@ -85,7 +85,7 @@ TEST_F(EnergyFormats, RisesGrowAndStayBelowTheCeiling) {
 TEST_F(EnergyFormats, ResultsReachTheCeiling) {
   for_each(
       [](const MethodParameters& parameters, const EnergyFormat& format, const std::string& what) {
-        constexpr int kLast = kernels::kMostCompact;
+        constexpr int kLast = kernels::kMaxCompact;
         EXPECT_GE(format.of_result().of(kLast), format.ceiling()) << what;
         for (const int byte : {0, 1, 100, kLast - 1, kLast}) {
           const FixedEnergy energy = format.of_result().of(static_cast<std::uint8_t>(byte));

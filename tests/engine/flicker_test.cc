@@ -96,14 +96,14 @@ FlickerSums plain_sums(const MadeUpFrame& a, const MadeUpFrame& b,
   sums.frames = 1;
   sums.pixels = kWidth * kHeight;
   for (int y = 0; y < kHeight; ++y) {
-    float least = 1e9F;
-    float most = -1e9F;
+    float min = 1e9F;
+    float max = -1e9F;
     for (int x = 0; x < kWidth; ++x) {
       const float before = a.map.at(x, y);
       const float now = b.map.at(x, y);
       for (const float d : {before, now}) {
-        least = std::isnan(d) ? least : std::min(least, d);
-        most = std::isnan(d) ? most : std::max(most, d);
+        min = std::isnan(d) ? min : std::min(min, d);
+        max = std::isnan(d) ? max : std::max(max, d);
       }
       if (!is_still(a, b, x, y)) {
         continue;
@@ -117,8 +117,8 @@ FlickerSums plain_sums(const MadeUpFrame& a, const MadeUpFrame& b,
       }
     }
     for (std::size_t v = 0; v < views_x.size(); ++v) {
-      const double first = std::floor(std::min(views_x[v] * least, views_x[v] * most));
-      const double last = std::ceil(std::max(views_x[v] * least, views_x[v] * most));
+      const double first = std::floor(std::min(views_x[v] * min, views_x[v] * max));
+      const double last = std::ceil(std::max(views_x[v] * min, views_x[v] * max));
       for (int x = 0; x < kWidth; ++x) {
         bool is_compared = false;
         for (int s = static_cast<int>(first); s <= static_cast<int>(last); ++s) {

@@ -64,7 +64,7 @@ TEST(Axis, CategoriesAreAtEqualDistances) {
 }
 
 TEST(Axis, HasARangeWhateverTheValues) {
-  for (const auto& [least, most] :
+  for (const auto& [min, max] :
        {std::pair{0.0, 0.0},
         {5.0, 5.0},
         {-3.0, -3.0},
@@ -72,10 +72,10 @@ TEST(Axis, HasARangeWhateverTheValues) {
         {7.0, 1.0},
         {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()}}) {
     for (const AxisScale scale : {AxisScale::kLinear, AxisScale::kLogarithmic}) {
-      const Axis axis({.title = "", .scale = scale}, least, most, true);
-      EXPECT_FALSE(axis.ticks().empty()) << least << ' ' << most;
+      const Axis axis({.title = "", .scale = scale}, min, max, true);
+      EXPECT_FALSE(axis.ticks().empty()) << min << ' ' << max;
       for (const Axis::Tick& tick : axis.ticks()) {
-        EXPECT_TRUE(tick.place >= -1e-6 && tick.place <= 1 + 1e-6) << least << ' ' << most;
+        EXPECT_TRUE(tick.place >= -1e-6 && tick.place <= 1 + 1e-6) << min << ' ' << max;
       }
     }
   }

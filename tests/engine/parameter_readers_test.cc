@@ -25,7 +25,7 @@
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/options/method_fields.h"
 #include "engine/matching/options/method_names.h"
-#include "engine/matching/pair_levels.h"
+#include "engine/matching/pair_exposure.h"
 #include "engine/refinement/refinement_fields.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/engine/table_keys.h"
@@ -73,9 +73,9 @@ class Maps {
     options.method = MatchMethod::kSsd;
     options.disparities = kRange;
     options.parameters = as_overrides(parameters);
-    LevelChanges of_right;
-    if (uses_pair_levels(parameters)) {
-      const PairLevels levels = estimated(parameters.match_exposure);
+    IntensityChanges of_right;
+    if (uses_pair_exposure(parameters)) {
+      const PairExposure levels = estimated(parameters.match_exposure);
       of_right = levels.of_right;
       if (parameters.estimate_sigma_measurement) {
         parameters.sigma_measurement = levels.sigma_measurement.value();
@@ -106,11 +106,11 @@ class Maps {
   }
 
   /// As if estimated from the pair, which is too small for that.
-  static PairLevels estimated(bool match_exposure) {
-    PairLevels levels;
+  static PairExposure estimated(bool match_exposure) {
+    PairExposure levels;
     levels.sigma_measurement = 7.5;
     if (match_exposure) {
-      levels.has_levels = true;
+      levels.has_intensity_change = true;
       levels.of_right.luma = {.gain = 4.0F / 3, .offset = -27};
       levels.of_right.channels.fill(levels.of_right.luma);
     }

@@ -24,12 +24,12 @@ std::vector<double> column_of(const Volume& volume, int x, int y) {
 }
 
 double log_of_sum_of_exponentials(const std::vector<double>& exponents) {
-  const double most = *std::max_element(exponents.begin(), exponents.end());
+  const double max = *std::max_element(exponents.begin(), exponents.end());
   double sum = 0;
   for (const double exponent : exponents) {
-    sum += std::exp(exponent - most);
+    sum += std::exp(exponent - max);
   }
-  return most + std::log(sum);
+  return max + std::log(sum);
 }
 
 /// (6.25), (6.36): p ∝ exp(−E) down each column.
@@ -70,12 +70,12 @@ Volume largest_terms(const Volume& probabilities, double sigma_prior, double eps
   Volume result = Volume::like(probabilities);
   for_each_cell(probabilities, [&](int x, int y, int i) {
     const std::vector<double> column = column_of(probabilities, x, y);
-    const double most = *std::max_element(column.begin(), column.end());
+    const double max = *std::max_element(column.begin(), column.end());
     double energy = ceiling;
     for (int j = 0; j < probabilities.count(); ++j) {
       const double offset = (j - i) / sigma_prior;
       energy = std::min(energy,
-                        offset * offset / 2 - std::log(column[static_cast<std::size_t>(j)] / most));
+                        offset * offset / 2 - std::log(column[static_cast<std::size_t>(j)] / max));
     }
     result.at(x, y, i) = energy;
   });
@@ -143,11 +143,11 @@ std::vector<double> box_cascade_taps(double sigma_px) {
   std::array<int, 4> best = {1, 1, 1, 1};
   double best_distance = std::numeric_limits<double>::infinity();
   double best_flatness = 0;
-  const int most = 2 * static_cast<int>(std::ceil(2 * sigma_px)) + 3;
-  for (int a = 1; a <= most; a += 2) {
-    for (int b = a; b <= most; b += 2) {
-      for (int c = b; c <= most; c += 2) {
-        for (int d = c; d <= most; d += 2) {
+  const int max = 2 * static_cast<int>(std::ceil(2 * sigma_px)) + 3;
+  for (int a = 1; a <= max; a += 2) {
+    for (int b = a; b <= max; b += 2) {
+      for (int c = b; c <= max; c += 2) {
+        for (int d = c; d <= max; d += 2) {
           const double distance = std::abs(a * a + b * b + c * c + d * d - 4 - wanted);
           double flatness = 0;
           for (const int width : {a, b, c, d}) {
@@ -210,10 +210,10 @@ double plain_margin(const std::vector<double>& column) {
 }
 
 double plain_negative_entropy(const std::vector<double>& column, double scale) {
-  const double least = *std::min_element(column.begin(), column.end());
+  const double min = *std::min_element(column.begin(), column.end());
   std::vector<double> exponents;
   for (const double energy : column) {
-    exponents.push_back(-scale * (energy - least));
+    exponents.push_back(-scale * (energy - min));
   }
   const double log_sum = log_of_sum_of_exponentials(exponents);
   double sum = 0;

@@ -24,12 +24,12 @@ class PlainColumn {
 
   [[nodiscard]] bool has_candidate() const { return winner_ >= 0; }
   [[nodiscard]] int winner() const { return winner_; }
-  [[nodiscard]] double least() const { return energy(winner_); }
+  [[nodiscard]] double min() const { return energy(winner_); }
   /// The winner's index, moved to the lowest point of the parabola through its neighbours.
   [[nodiscard]] double refined_winner() const {
     const double below = energy(winner_ - 1);
     const double above = energy(winner_ + 1);
-    const double curvature = below - 2 * least() + above;
+    const double curvature = below - 2 * min() + above;
     const bool moves = std::isfinite(curvature) && curvature > 0;
     return moves ? winner_ + (below - above) / (2 * curvature) : winner_;
   }
@@ -45,11 +45,11 @@ class PlainColumn {
   [[nodiscard]] double entropy(double scale) const {
     double sum = 0;
     for (const double e : sorted_) {
-      sum += std::exp(-scale * (e - least()));
+      sum += std::exp(-scale * (e - min()));
     }
     double entropy = 0;
     for (const double e : sorted_) {
-      const double p = std::exp(-scale * (e - least())) / sum;
+      const double p = std::exp(-scale * (e - min())) / sum;
       entropy += p > 0 ? p * std::log(p) : 0;
     }
     return entropy;

@@ -77,7 +77,7 @@ class PlainCostCells {
     const int height = reference_.front().level.height;
     std::vector<double> energies;
     std::vector<bool> is_inside;
-    double most_evidence = -std::numeric_limits<double>::infinity();
+    double max_evidence = -std::numeric_limits<double>::infinity();
     for (int i = 0; i < geometry_.count; ++i) {
       // Products with ratios that floats cannot hold are meant exactly.
       const double shift = std::round((geometry_.disparity_min + i) * partner.ratio * 1e9) / 1e9;
@@ -87,7 +87,7 @@ class PlainCostCells {
       energies.push_back(mean_cost(p, x, y, std::clamp<double>(at, 0, geometry_.width - 1),
                                    std::clamp(partner_y, 0, height - 1)));
       if (is_inside.back()) {
-        most_evidence = std::max(most_evidence, -energies.back());
+        max_evidence = std::max(max_evidence, -energies.back());
       }
     }
     for (std::size_t i = 0; i < energies.size(); ++i) {
@@ -110,7 +110,7 @@ class PlainCostCells {
             break;
           case MatchCost::kGradient:
             cell =
-                (1 - epsilon) * std::exp((-cell - most_evidence) / parameters_.sigma_measurement) +
+                (1 - epsilon) * std::exp((-cell - max_evidence) / parameters_.sigma_measurement) +
                 epsilon;
             break;
           default:
@@ -225,15 +225,15 @@ class PlainCostCells {
 
   /// How far `value` is from what `plane` takes within half a pixel of (x, y).
   [[nodiscard]] static double distance(double value, const Plane& plane, int x, int y) {
-    double least = std::numeric_limits<double>::infinity();
-    double most = -least;
+    double min = std::numeric_limits<double>::infinity();
+    double max = -min;
     for (const double u : {-.5, 0., .5}) {
       const int neighbour = u < 0 ? x - 1 : u > 0 ? x + 1 : x;
       const double at = (plane.at(x, y) + plane.at(neighbour, y)) / 2;
-      least = std::min(least, at);
-      most = std::max(most, at);
+      min = std::min(min, at);
+      max = std::max(max, at);
     }
-    return std::max({0.0, value - most, least - value});
+    return std::max({0.0, value - max, min - value});
   }
 
   [[nodiscard]] double measurement(double squared_residual) const {

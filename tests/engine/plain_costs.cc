@@ -60,9 +60,9 @@ double distance_to_interval(double value, const Plane& plane, int x, int y) {
   const double here = plane.at(x, y);
   const double before = (plane.at(x - 1, y) + here) / 2;
   const double after = (plane.at(x + 1, y) + here) / 2;
-  const double least = std::min({before, here, after});
-  const double most = std::max({before, here, after});
-  return std::max({0.0, value - most, least - value});
+  const double min = std::min({before, here, after});
+  const double max = std::max({before, here, after});
+  return std::max({0.0, value - max, min - value});
 }
 
 /// Which of the neighbours in a window reaching this far are darker than its centre.
@@ -359,10 +359,10 @@ Volume plain_measurement_energies(const Photograph& reference, const Photograph&
   const double epsilon = parameters.epsilon_measurement;
   for (int y = 0; y < energies.height; ++y) {
     for (int x = 0; x < energies.width; ++x) {
-      double most_evidence = -std::numeric_limits<double>::infinity();
+      double max_evidence = -std::numeric_limits<double>::infinity();
       for (int i = 0; i < energies.count(); ++i) {
         if (energies.has_partner(x, i)) {
-          most_evidence = std::max(most_evidence, -energies.at(x, y, i));
+          max_evidence = std::max(max_evidence, -energies.at(x, y, i));
         }
       }
       for (int i = 0; i < energies.count(); ++i) {
@@ -373,7 +373,7 @@ Volume plain_measurement_energies(const Photograph& reference, const Photograph&
         if (!energies.has_partner(x, i)) {
           cell = -std::log(epsilon);
         } else if (parameters.cost == MatchCost::kGradient) {
-          const double exponent = (-cell - most_evidence) / parameters.sigma_measurement;
+          const double exponent = (-cell - max_evidence) / parameters.sigma_measurement;
           cell = -std::log((1 - epsilon) * std::exp(exponent) + epsilon);
         } else if (parameters.cost == MatchCost::kSquared) {
           cell = contaminated(cell, parameters);

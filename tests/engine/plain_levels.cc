@@ -76,13 +76,13 @@ Volume block_sums(Volume finer, const MethodParameters& parameters, StoredCells 
   }
   Volume coarser = block_means(finer);
   for_each_column(coarser, [&](int x, int y) {
-    double least = coarser.at(x, y, 0);
+    double min = coarser.at(x, y, 0);
     for (int i = 0; i < coarser.count(); ++i) {
-      least = std::min(least, coarser.at(x, y, i));
+      min = std::min(min, coarser.at(x, y, i));
     }
     for (int i = 0; i < coarser.count(); ++i) {
       double& energy = coarser.at(x, y, i);
-      energy = 4 * weight * (energy - least);
+      energy = 4 * weight * (energy - min);
       if (stored == StoredCells::kCompact) {
         energy = std::min(std::floor(8 * energy + 0.5), 255.0) / 8;
       }
@@ -109,12 +109,12 @@ Volume in_bytes_to_ceiling(Volume energies, const MethodParameters& parameters) 
   const double range = std::max(
       {std::log((1 - epsilon) / epsilon), 1.0, parameters.final_iterations == 0 ? 22.0 : 0.0});
   for_each_column(energies, [&](int x, int y) {
-    double least = energies.at(x, y, 0);
+    double min = energies.at(x, y, 0);
     for (int i = 0; i < energies.count(); ++i) {
-      least = std::min(least, energies.at(x, y, i));
+      min = std::min(min, energies.at(x, y, i));
     }
     for (int i = 0; i < energies.count(); ++i) {
-      const double share = (energies.at(x, y, i) - least) / range;
+      const double share = (energies.at(x, y, i) - min) / range;
       energies.at(x, y, i) = std::min(std::floor(255 * share + 0.5), 255.0) / 255 * range;
     }
   });

@@ -12,17 +12,17 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// (5.12), max p, (6.13) or (6.15); over the candidates, whose energies are `candidates`.
-double confidence_of(const std::vector<double>& candidates, double least,
+double confidence_of(const std::vector<double>& candidates, double min,
                      const MethodParameters& parameters) {
   if (parameters.aggregation == Aggregation::kBayes) {
-    return std::exp(-least);
+    return std::exp(-min);
   }
   if (parameters.aggregation == Aggregation::kLocalStopping) {
     return parameters.certainty == Certainty::kMargin
                ? plain_margin(candidates)
                : plain_negative_entropy(candidates, entropy_scale(parameters));
   }
-  return is_evidence(parameters) ? -least : plain_margin(candidates);
+  return is_evidence(parameters) ? -min : plain_margin(candidates);
 }
 
 PlainChoice choose(const Volume& energies, int x, int y, const MethodParameters& parameters) {

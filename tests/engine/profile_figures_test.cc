@@ -13,10 +13,10 @@ namespace profile_figures_test {
 TEST(SampleOf, IsMedianLeastAndMost) {
   const ProfileSample odd = sample_of({3, 9, 1});
   EXPECT_EQ(odd.median, 3);
-  EXPECT_EQ(odd.least, 1);
-  EXPECT_EQ(odd.most, 9);
+  EXPECT_EQ(odd.min, 1);
+  EXPECT_EQ(odd.max, 9);
   EXPECT_EQ(sample_of({4, 1, 2, 8}).median, 3);
-  EXPECT_EQ(sample_of({7}).least, 7);
+  EXPECT_EQ(sample_of({7}).min, 7);
   EXPECT_EQ(sample_of({}).median, 0);
 }
 
@@ -28,13 +28,13 @@ TEST(SpeedUps, AreRatiosOfOneRound) {
   EXPECT_EQ(all[0].ratio.median, 1);
   EXPECT_EQ(all[0].efficiency, 1);
   EXPECT_FALSE(all[0].serial_fraction);
-  EXPECT_EQ(all[1].ratio.least, 2);
-  EXPECT_EQ(all[1].ratio.most, 2);
+  EXPECT_EQ(all[1].ratio.min, 2);
+  EXPECT_EQ(all[1].ratio.max, 2);
   EXPECT_EQ(all[1].efficiency, 1);
   EXPECT_NEAR(*all[1].serial_fraction, 0, 1e-12);
   EXPECT_EQ(all[2].ratio.median, 3);  // of 2, 4, 3
-  EXPECT_EQ(all[2].ratio.least, 2);
-  EXPECT_EQ(all[2].ratio.most, 4);
+  EXPECT_EQ(all[2].ratio.min, 2);
+  EXPECT_EQ(all[2].ratio.max, 4);
   EXPECT_EQ(all[2].efficiency, 0.75);
   EXPECT_NEAR(*all[2].serial_fraction, (1.0 / 3 - 1.0 / 4) / (3.0 / 4), 1e-12);
 }

@@ -71,7 +71,7 @@ TEST(ProfileJson, HoldsWhatIsSaidOfTheFigures) {
 TEST(ProfileJson, UnknownFiguresAreNull) {
   Profile profile = made_up_match();
   profile.ceilings.clear();
-  profile.thread_counts[0].wall_s.most = std::numeric_limits<double>::infinity();
+  profile.thread_counts[0].wall_s.max = std::numeric_limits<double>::infinity();
   profile.command = "\xFF";  // no UTF-8
   const json document = json_of(profile);
   EXPECT_TRUE(document.at("hardware").at("instructions_per_cycle").is_null());

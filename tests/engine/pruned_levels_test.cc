@@ -44,7 +44,7 @@ struct Level {
   CandidateBlocks blocks;
 
   /// `everywhere`: winners lie in all blocks, around every tile.
-  Level(int candidates, int most, bool everywhere)
+  Level(int candidates, int max, bool everywhere)
       : geometry{.width = kExtent.columns, .disparity_min = 0, .count = candidates} {
     std::mt19937 random(static_cast<unsigned>(candidates));
     const Extent coarse{(kExtent.columns + 1) / 2, (kExtent.rows + 1) / 2};
@@ -69,7 +69,7 @@ struct Level {
       }
     }
     Execution execution({.threads = 1});
-    blocks.resize(kExtent, candidates, most);
+    blocks.resize(kExtent, candidates, max);
     blocks.choose(winners.view(), std::nullopt, execution);
   }
 
@@ -81,7 +81,7 @@ struct Level {
         const BlockList list = blocks.at(2 * x, 2 * y);
         for (int lane = 0; lane < geometry.lanes(); ++lane) {
           if (std::ranges::find(list, lane / 16) == list.end()) {
-            coarser.column<std::uint8_t>(x, y)[lane] = kernels::kMostCompact;
+            coarser.column<std::uint8_t>(x, y)[lane] = kernels::kMaxCompact;
           }
         }
         coarser.column<std::uint8_t>(x, y)[candidate_of(list, 1)] = 0;
@@ -161,7 +161,7 @@ class MaskedSource final : public scheduler::RowStage {
       const BlockList list = blocks_.at(x, task.y);
       for (int lane = 0; lane < lanes_; ++lane) {
         if (std::ranges::find(list, lane / 16) == list.end()) {
-          cells[lane] = kernels::kMostEnergy;
+          cells[lane] = kernels::kMaxEnergy;
         }
       }
     }
@@ -178,7 +178,7 @@ class MaskedSource final : public scheduler::RowStage {
 Energies cells_of(const Level& level, const MethodParameters& parameters, bool pruned,
                   const EdgeWeights* edges = nullptr, bool every_way = false) {
   Energies result(kExtent, level.geometry.lanes());
-  std::ranges::fill(result.cells, kernels::kMostEnergy);
+  std::ranges::fill(result.cells, kernels::kMaxEnergy);
   const CandidateBlocks* const blocks = pruned ? &level.blocks : nullptr;
   std::vector<std::unique_ptr<scheduler::RowStage>> stages;
   stages.push_back(make_level_fixed_energy_stage(level.geometry, level.energies,

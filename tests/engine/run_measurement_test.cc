@@ -30,10 +30,10 @@ TEST(SummariseRuns, TakesMediansAndRanges) {
   EXPECT_EQ(profile.threads, 2);
   EXPECT_EQ(profile.runs, 3);
   EXPECT_EQ(profile.wall_s.median, 2);
-  EXPECT_EQ(profile.wall_s.least, 1);
-  EXPECT_EQ(profile.wall_s.most, 3);
+  EXPECT_EQ(profile.wall_s.min, 1);
+  EXPECT_EQ(profile.wall_s.max, 3);
   EXPECT_EQ(profile.compute_s.median, 1);
-  EXPECT_EQ(profile.peak_memory_bytes.most, 3000);
+  EXPECT_EQ(profile.peak_memory_bytes.max, 3000);
   EXPECT_EQ(profile.waiting_for.reading_s.median, 8);
   ASSERT_EQ(profile.stages.size(), 1U);
   EXPECT_EQ(profile.stages[0].seconds.median, 20);
@@ -61,7 +61,7 @@ TEST(SummariseRuns, SortsByTimeAndCountsWhatIsMissingAsNone) {
   EXPECT_EQ(profile.parts[1].name, "short");
   EXPECT_EQ(profile.parts[2].name, "once");
   EXPECT_EQ(profile.parts[2].seconds.median, 0);
-  EXPECT_EQ(profile.parts[2].seconds.most, 9);
+  EXPECT_EQ(profile.parts[2].seconds.max, 9);
 }
 
 TEST(MedianRun, IsTheFasterOfTwoInTheMiddle) {

@@ -19,7 +19,7 @@ Execution& threads() {
 }
 
 /// A smooth picture, 0..1, that can be looked at anywhere.
-double level_at(double x, double y) {
+double intensity_at(double x, double y) {
   return 0.5 + 0.2 * std::sin(0.31 * x + 0.12 * y) + 0.2 * std::cos(0.17 * x - 0.29 * y);
 }
 
@@ -27,7 +27,7 @@ Photograph picture(int width, int height, double right, double down) {
   Image<float> image(width, height);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      image.at(x, y) = static_cast<float>(level_at(x + right, y + down));
+      image.at(x, y) = static_cast<float>(intensity_at(x + right, y + down));
     }
   }
   Photograph photograph;
@@ -50,7 +50,7 @@ TEST(ShearedImages, ShowEveryPositionOnItsLine) {
           const double row = y + slope * x - shear.offset;
           const double last = height - 1;
           if ((row > 1 && row < last - 1) || row <= 0 || row >= last) {
-            ASSERT_NEAR(image.at(x, y), level_at(x, std::clamp(row, 0.0, last)), 2e-3)
+            ASSERT_NEAR(image.at(x, y), intensity_at(x, std::clamp(row, 0.0, last)), 2e-3)
                 << slope << " " << width << "x" << height << " at " << x << "," << y;
           }
         }

@@ -63,20 +63,20 @@ TEST(SmoothingKernels, CascadeIsAsNearAsOddWidthsAllow) {
       }
       return std::abs(sum - sigma_px * sigma_px);
     };
-    double least = std::numeric_limits<double>::max();
+    double min = std::numeric_limits<double>::max();
     for (int a = 1; a <= 25; a += 2) {
       for (int b = 1; b <= 25; b += 2) {
         for (int c = 1; c <= 25; c += 2) {
           for (int d = 1; d <= 25; d += 2) {
-            least = std::min(least, distance({a, b, c, d}));
+            min = std::min(min, distance({a, b, c, d}));
           }
         }
       }
     }
-    EXPECT_NEAR(distance(widths), least, 1e-12) << "sigma " << sigma_px;
+    EXPECT_NEAR(distance(widths), min, 1e-12) << "sigma " << sigma_px;
     const std::vector<float> kernel = box_cascade_kernel(widths);
     EXPECT_NEAR(gain(kernel), 1, 1e-6) << "sigma " << sigma_px;
-    EXPECT_NEAR(variance(kernel), sigma_px * sigma_px, least + 1e-5) << "sigma " << sigma_px;
+    EXPECT_NEAR(variance(kernel), sigma_px * sigma_px, min + 1e-5) << "sigma " << sigma_px;
   }
 }
 

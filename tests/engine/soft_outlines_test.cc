@@ -77,13 +77,13 @@ std::vector<double> plain(const Image<T>& image, const DisparityMap& nearness, i
       colour[c] = covered * colour[c] + (1 - covered) * mean;
     }
   }
-  double most = 0;
+  double max = 0;
   double sum = 0;
   std::vector<double> sums(channels);
   for (const auto& [column, line] : nearer) {
     const double covered = some_coverage({column, line, x, y, nearness.at(column, line), own});
     if (!std::isnan(covered)) {
-      most = std::max(most, covered);
+      max = std::max(max, covered);
       sum += covered;
       for (std::size_t c = 0; c < channels; ++c) {
         sums[c] += covered * value(column, line, c);
@@ -91,7 +91,7 @@ std::vector<double> plain(const Image<T>& image, const DisparityMap& nearness, i
     }
   }
   for (std::size_t c = 0; c < channels && sum > 0; ++c) {
-    colour[c] = (1 - most) * colour[c] + most * sums[c] / sum;
+    colour[c] = (1 - max) * colour[c] + max * sums[c] / sum;
   }
   return colour;
 }

@@ -85,14 +85,14 @@ Case random_case(std::mt19937& random, int width, int height, unsigned holes, un
   return made;
 }
 
-void expect_marked(Case& made, int least, SpeckleWork& work) {
+void expect_marked(Case& made, int min, SpeckleWork& work) {
   const Image<float> sizes = made.region_sizes();
-  mark_speckles(made.map.view(), made.map_y.view(), least, work, made.unmatched);
+  mark_speckles(made.map.view(), made.map_y.view(), min, work, made.unmatched);
   for (int y = 0; y < made.map.height(); ++y) {
     for (int x = 0; x < made.map.width(); ++x) {
-      const bool is_kept = sizes.at(x, y) > 0 && sizes.at(x, y) >= static_cast<float>(least);
+      const bool is_kept = sizes.at(x, y) > 0 && sizes.at(x, y) >= static_cast<float>(min);
       ASSERT_EQ(made.unmatched.at(x, y), is_kept ? 0 : 255)
-          << made.map.width() << "x" << made.map.height() << ", least " << least << ", at " << x
+          << made.map.width() << "x" << made.map.height() << ", least " << min << ", at " << x
           << ", " << y;
     }
   }
@@ -113,11 +113,11 @@ TEST(Speckles, AreTheRegionsBelowTheLimit) {
                                       {129, 7},
                                       {200, 23},
                                       {17, 13}}) {
-    for (const int least : {0, 1, 2, 3, 7, 30, 100, 10000}) {
+    for (const int min : {0, 1, 2, 3, 7, 30, 100, 10000}) {
       for (const auto& [holes, levels] : {std::pair{0U, 4U}, {3U, 3U}, {20U, 4U}, {60U, 2U}}) {
         for (const bool is_two_dimensional : {false, true}) {
           Case made = random_case(random, width, height, holes, levels, is_two_dimensional);
-          expect_marked(made, least, work);
+          expect_marked(made, min, work);
           ASSERT_FALSE(HasFatalFailure());
         }
       }

@@ -120,11 +120,11 @@ double expected_confidence(const Scene& scene, const PlainColumn& column) {
     case ConfidenceMeasure::kEntropy:
       return column.entropy(scene.settings.entropy_scale);
     case ConfidenceMeasure::kProbability:
-      return std::exp(-column.least());
+      return std::exp(-column.min());
     case ConfidenceMeasure::kEvidence:
       break;
   }
-  return -column.least();
+  return -column.min();
 }
 
 void expect_near(float actual, double expected, double tolerance, const char* what) {
@@ -136,7 +136,7 @@ void expect_near(float actual, double expected, double tolerance, const char* wh
 }
 
 void expect_plain_selection(const Scene& scene, const Maps& maps) {
-  const double least_disparity = scene.geometry.disparity_min;
+  const double min_disparity = scene.geometry.disparity_min;
   for (int y = 0; y < maps.energy.height(); ++y) {
     for (int x = 0; x < maps.energy.width(); ++x) {
       SCOPED_TRACE(::testing::Message() << "at " << x << ", " << y);
@@ -150,12 +150,12 @@ void expect_plain_selection(const Scene& scene, const Maps& maps) {
       const bool parabola = scene.settings.subpixel == Subpixel::kParabola;
       const double index = parabola ? column.refined_winner() : column.winner();
       ASSERT_NO_FATAL_FAILURE(
-          expect_near(actual[0], least_disparity + index, parabola ? 1e-6 : 0, "disparity"));
+          expect_near(actual[0], min_disparity + index, parabola ? 1e-6 : 0, "disparity"));
       const bool entropy = scene.settings.confidence == ConfidenceMeasure::kEntropy;
       ASSERT_NO_FATAL_FAILURE(expect_near(actual[1], expected_confidence(scene, column),
                                           entropy ? 1e-5 : 2e-6, "confidence"));
       ASSERT_NO_FATAL_FAILURE(expect_near(
-          actual[2], column.least(), scene.settings.cells_are_probabilities ? 1e-6 : 0, "energy"));
+          actual[2], column.min(), scene.settings.cells_are_probabilities ? 1e-6 : 0, "energy"));
     }
   }
 }

@@ -25,8 +25,8 @@ using scheduler::Extent;
 using test::CellVolume;
 
 /// Costs of random_cells() lie within 100 of this; they are multiples of 1/8.
-constexpr float kLeastCost = -37;
-constexpr float kLargestCost = kLeastCost + 100;
+constexpr float kMinCost = -37;
+constexpr float kLargestCost = kMinCost + 100;
 
 struct Shape {
   Extent extent;
@@ -45,7 +45,7 @@ class ColumnSums : public ::testing::TestWithParam<std::tuple<Shape, int>> {
       : shape_(std::get<0>(GetParam())),
         geometry_{shape_.extent.columns, shape_.disparity_min, shape_.count,
                   std::get<1>(GetParam())},
-        costs_(test::random_cells(shape_.extent, geometry_.lanes(), kLeastCost, 8)) {}
+        costs_(test::random_cells(shape_.extent, geometry_.lanes(), kMinCost, 8)) {}
 
   [[nodiscard]] std::unique_ptr<scheduler::RowStage> make_stage(ColumnSumScale scale) const {
     return make_column_sum_stage(geometry_, shape_.extent.rows, shape_.radius, scale.offset,
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(ColumnSums, AddRoundedCostsOfTheRowsInTheImage) {
   // A coarse scale: units of 4/3 · 2^-k are no multiples of 1/8.
-  const ColumnSumScale scale = {-kLeastCost, 0.75F};
+  const ColumnSumScale scale = {-kMinCost, 0.75F};
   std::vector<std::unique_ptr<scheduler::RowStage>> stages;
   stages.push_back(make_stage(scale));
   const CellVolume<std::int32_t> sums = test::run_every_way<std::int32_t>(costs_, stages);
@@ -117,7 +117,7 @@ TEST_P(ColumnSums, AddRoundedCostsOfTheRowsInTheImage) {
 
 // Multiples of 1/8 are quantised exactly, so winners are those of exact arithmetic.
 TEST_P(ColumnSums, FeedWindowSelectionAsBruteForceDoes) {
-  const ColumnSumScale scale = column_sum_scale(kLeastCost, kLargestCost, 2 * shape_.radius + 1);
+  const ColumnSumScale scale = column_sum_scale(kMinCost, kLargestCost, 2 * shape_.radius + 1);
   ASSERT_GE(scale.scale, 8);
   for (const Border border : {Border::kClip, Border::kValid}) {
     WindowSelectionSettings settings;
@@ -134,11 +134,11 @@ TEST_P(ColumnSums, FeedWindowSelectionAsBruteForceDoes) {
     const auto check = [&] {
       for (int y = 0; y < shape_.extent.rows; ++y) {
         for (int x = 0; x < shape_.extent.columns; ++x) {
-          double least = std::numeric_limits<double>::infinity();
+          double min = std::numeric_limits<double>::infinity();
           double best = std::numeric_limits<double>::quiet_NaN();
           for (int i = 0; i < shape_.count; ++i) {
-            if (const double mean = energy(x, y, i, border); mean < least) {
-              least = mean;
+            if (const double mean = energy(x, y, i, border); mean < min) {
+              min = mean;
               best = shape_.disparity_min + i;
             }
           }
@@ -156,21 +156,21 @@ TEST_P(ColumnSums, FeedWindowSelectionAsBruteForceDoes) {
 
 TEST(ColumnSumScale, LeavesRoomForTheSumOfAWindow) {
   for (const int window_px : {1, 3, 9, 21, 101, 181}) {
-    for (const auto& [least, largest] : {std::pair{0.0F, 65025.0F},
-                                         {-140.0F, 140.0F},
-                                         {0.0F, 1e-3F},
-                                         {3.0F, 3.5F},
-                                         {-1e6F, 1e6F},
-                                         {0.0F, 63.0F},
-                                         {0.0F, 1e-40F}}) {
-      SCOPED_TRACE(::testing::Message() << least << " to " << largest << ", window " << window_px);
-      const ColumnSumScale scale = column_sum_scale(least, largest, window_px);
-      EXPECT_EQ(least + scale.offset, 0);
+    for (const auto& [min, largest] : {std::pair{0.0F, 65025.0F},
+                                       {-140.0F, 140.0F},
+                                       {0.0F, 1e-3F},
+                                       {3.0F, 3.5F},
+                                       {-1e6F, 1e6F},
+                                       {0.0F, 63.0F},
+                                       {0.0F, 1e-40F}}) {
+      SCOPED_TRACE(::testing::Message() << min << " to " << largest << ", window " << window_px);
+      const ColumnSumScale scale = column_sum_scale(min, largest, window_px);
+      EXPECT_EQ(min + scale.offset, 0);
       int exponent = 0;
       EXPECT_EQ(std::frexp(scale.scale, &exponent), 0.5) << "not a power of two";
       const auto fits = [&](double factor) {
-        const double most = std::round((static_cast<double>(largest) - least) * factor);
-        return most < 4194304 && most * window_px * window_px < 2147483647.0;
+        const double max = std::round((static_cast<double>(largest) - min) * factor);
+        return max < 4194304 && max * window_px * window_px < 2147483647.0;
       };
       EXPECT_TRUE(fits(scale.scale));
       EXPECT_TRUE(scale.scale > 1e30F || !fits(2.1 * scale.scale)) << scale.scale;

@@ -132,7 +132,7 @@ class SsdChain {
     }
     // Not the winner's index: of equal fractions, rounded means may prefer either.
     ASSERT_FALSE(std::isnan(disparity_px));
-    ASSERT_NEAR(energy, column.least(), 1e-7 * (1 + std::abs(column.least())));
+    ASSERT_NEAR(energy, column.min(), 1e-7 * (1 + std::abs(column.min())));
     switch (settings_.confidence) {
       case ConfidenceMeasure::kMargin:
         ASSERT_NEAR(confidence, column.margin(), 1e-5 * (1e-2 + std::abs(column.margin())));

@@ -99,7 +99,7 @@ TEST(StillPixels, ThresholdIsChecked) {
   EXPECT_THROW(StillPixels(std::nan("")), UsageError);
 }
 
-TEST(LumaLevels, AreTheSameForAllDepths) {
+TEST(LumaIntensity, AreTheSameForAllDepths) {
   Execution execution({.threads = 2});
   const int width = 37;
   const int height = 21;
@@ -118,9 +118,9 @@ TEST(LumaLevels, AreTheSameForAllDepths) {
   Image<std::uint8_t> of_bytes;
   Image<std::uint8_t> of_words;
   Image<std::uint8_t> of_floats;
-  luma_levels({std::move(bytes)}, execution, of_bytes);
-  luma_levels({std::move(words)}, execution, of_words);
-  luma_levels({std::move(floats)}, execution, of_floats);
+  luma_intensity({std::move(bytes)}, execution, of_bytes);
+  luma_intensity({std::move(words)}, execution, of_words);
+  luma_intensity({std::move(floats)}, execution, of_floats);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       ASSERT_NEAR(of_bytes.at(x, y), of_floats.at(x, y), 1);

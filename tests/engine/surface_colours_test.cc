@@ -244,7 +244,7 @@ TEST(SurfaceColours, OneInterpolationIsNearerToTheTruthThanTwo) {
     NewView view;
     Eigen::Vector3d centre;
     Eigen::Matrix3d ray_from_pixel;
-    double least_gain_db;
+    double min_gain_db;
   };
   const PosedCamera turned = turned_camera(pair);
   const Eigen::Matrix3d straight = pair.left.matrix.inverse();
@@ -267,7 +267,7 @@ TEST(SurfaceColours, OneInterpolationIsNearerToTheTruthThanTwo) {
     }
     const double once = psnr_db(scene.from_photographs(one.view), truth, depth);
     const double twice = psnr_db(scene.from_rectified(one.view), truth, depth);
-    EXPECT_GT(once, twice + one.least_gain_db) << one.name;
+    EXPECT_GT(once, twice + one.min_gain_db) << one.name;
     EXPECT_GT(once, 30) << one.name;
   }
 }

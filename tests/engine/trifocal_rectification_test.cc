@@ -93,20 +93,20 @@ TEST(TrifocalRectification, HoldsWhatAllThreeCamerasSee) {
                                               camera_at(random, {1, 0.1, 0}, 0.1),
                                               camera_at(random, {0.5, -0.8, 0.1}, 0.1)};
   const TrifocalRectification rig = trifocal_rectification(cameras[0], cameras[1], cameras[2]);
-  Eigen::Vector2d least(1e9, 1e9);
+  Eigen::Vector2d min(1e9, 1e9);
   Eigen::Vector2d largest(-1e9, -1e9);
   for (std::size_t i = 0; i < 3; ++i) {
     for (const double x : {-0.5, cameras[i].width_px - 0.5}) {
       for (const double y : {-0.5, cameras[i].height_px - 0.5}) {
         const Eigen::Vector2d corner =
             (rig.homographies[i] * Eigen::Vector3d(x, y, 1)).hnormalized();
-        least = least.cwiseMin(corner);
+        min = min.cwiseMin(corner);
         largest = largest.cwiseMax(corner);
       }
     }
   }
-  EXPECT_GE(least.minCoeff(), -0.5 - 1e-5);
-  EXPECT_LT(least.maxCoeff(), 0.5);
+  EXPECT_GE(min.minCoeff(), -0.5 - 1e-5);
+  EXPECT_LT(min.maxCoeff(), 0.5);
   EXPECT_LE(largest.x(), rig.width_px - 0.5 + 1e-5);
   EXPECT_GT(largest.x(), rig.width_px - 1.5);
   EXPECT_LE(largest.y(), rig.height_px - 0.5 + 1e-5);

@@ -115,8 +115,8 @@ class MadeUpMachine : public TuningSubject {
       }
       return sizes;
     };
-    const auto numbers = [&](int value, int most) {
-      return finely ? fine_ladder(value, most) : coarse_ladder(most);
+    const auto numbers = [&](int value, int max) {
+      return finely ? fine_ladder(value, max) : coarse_ladder(max);
     };
     if (coordinate.field == &TunedSettings::threads) {
       return numbers(plan.threads, kThreads);

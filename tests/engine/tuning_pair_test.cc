@@ -32,10 +32,10 @@ TEST(TuningPair, TheRightImageShowsTheLeftOneShifted) {
     const TuningPair pair = make_tuning_pair(200, 40, range, true, execution);
     const auto& left = std::get<Image<std::uint8_t>>(pair.left.pixels);
     const auto& right = std::get<Image<std::uint8_t>>(pair.right.pixels);
-    double least_sum = 0;
+    double min_sum = 0;
     double mean_sum = 0;
     for (int x = 50; x < 150; ++x) {
-      double least = 1e9;
+      double min = 1e9;
       double sum = 0;
       for (int d = range.min; d <= range.max; ++d) {
         double difference = 0;
@@ -43,13 +43,13 @@ TEST(TuningPair, TheRightImageShowsTheLeftOneShifted) {
           const double delta = left.at(x, y) - right.at(x - d, y);
           difference += delta * delta;
         }
-        least = std::min(least, difference);
+        min = std::min(min, difference);
         sum += difference;
       }
-      least_sum += least;
+      min_sum += min;
       mean_sum += sum / range.count();
     }
-    EXPECT_LT(least_sum, 0.4 * mean_sum);
+    EXPECT_LT(min_sum, 0.4 * mean_sum);
   }
 }
 

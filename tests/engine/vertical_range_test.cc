@@ -51,10 +51,10 @@ Pair made_up_scene(Execution& execution) {
   return {scene.render({0, 0}, 0).image, scene.render({1, 0}, 0).image};
 }
 
-void expect_around(DisparityRange range, int value, int most) {
+void expect_around(DisparityRange range, int value, int max) {
   EXPECT_LT(range.min, value);
   EXPECT_GT(range.max, value);
-  EXPECT_LE(range.count(), most) << range.min << ':' << range.max;
+  EXPECT_LE(range.count(), max) << range.min << ':' << range.max;
 }
 
 TEST(VerticalRange, IsAroundTheRowsThatCorrespond) {

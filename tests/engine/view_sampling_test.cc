@@ -57,7 +57,7 @@ TEST(ViewSampling, HasAsManySamplesAsTheViewReduces) {
     const NewView view = zoomed(160, 120, zoom);
     EXPECT_EQ(sampling_of(view).samples, samples) << zoom;
     EXPECT_NEAR(sampling_of(view).reduction, samples == 1 ? 1 : 1 / zoom, 1e-6);
-    EXPECT_GE(most_samples_per_side(view, 160, 120), samples);
+    EXPECT_GE(max_samples_per_side(view, 160, 120), samples);
   }
   // The direction in which it reduces most counts.
   EXPECT_NEAR(sampling_of(zoomed(160, 120, 1, 0.5)).reduction, 2, 1e-6);

@@ -149,10 +149,10 @@ TEST(Timeline, JoinsWhatIsTooShort) {
   }
   spans.push_back(span("write", 50, 100));
   const TraceData trace = trace_of({pool_thread(spans)});
-  constexpr int kMost = 20;
-  const std::vector<TimelineRow> rows = timeline_of(trace, kMost);
+  constexpr int kMax = 20;
+  const std::vector<TimelineRow> rows = timeline_of(trace, kMax);
   ASSERT_EQ(rows.size(), 1U);
-  EXPECT_LE(rows[0].spans.size(), 2U * kMost);
+  EXPECT_LE(rows[0].spans.size(), 2U * kMax);
   EXPECT_EQ(rows[0].spans.front().name, "match left");
   EXPECT_EQ(rows[0].spans.front().begin_s, 0);
   EXPECT_EQ(rows[0].spans.back().name, "write");

@@ -24,8 +24,8 @@ TEST(WorkPlan, ShardsCoverEveryFrameOnceInWholeChunks) {
     for (const int chunk : {1, 7, 50, 1000}) {
       for (const int shards : {1, 2, 3, 7, 60}) {
         int next = 0;
-        int least = count + 1;
-        int most = 0;
+        int min = count + 1;
+        int max = 0;
         for (int index = 1; index <= shards; ++index) {
           const FrameSelection selection{.frame_count = count,
                                          .chunk_frames = chunk,
@@ -33,7 +33,7 @@ TEST(WorkPlan, ShardsCoverEveryFrameOnceInWholeChunks) {
                                          .shard = Shard{index, shards}};
           const FrameRange own = selection.own();
           if (own.empty()) {
-            least = 0;
+            min = 0;
             continue;
           }
           EXPECT_EQ(own.first, next);
@@ -41,11 +41,11 @@ TEST(WorkPlan, ShardsCoverEveryFrameOnceInWholeChunks) {
           EXPECT_TRUE(own.end % chunk == 0 || own.end == count);
           next = own.end;
           const int chunks = (own.count() + chunk - 1) / chunk;
-          least = std::min(least, chunks);
-          most = std::max(most, chunks);
+          min = std::min(min, chunks);
+          max = std::max(max, chunks);
         }
         EXPECT_EQ(next, count) << chunk << " " << shards;
-        EXPECT_LE(most - least, count == 0 ? count + 1 : 1);
+        EXPECT_LE(max - min, count == 0 ? count + 1 : 1);
       }
     }
   }

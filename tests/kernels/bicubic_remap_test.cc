@@ -152,8 +152,8 @@ TYPED_TEST(BicubicRemap, IsKeysConvolutionWithReplicatedBorder) {
         const bool seen = x >= -0.5 && x <= width - 0.5 && y >= -0.5 && y <= height - 0.5;
         for (int c = 0; c < channels; ++c) {
           double sum = 0;
-          double least = 0;
-          double most = kLargestValue<T>;
+          double min = 0;
+          double max = kLargestValue<T>;
           for (int j = -2; seen && j <= height + 2; ++j) {
             for (int i = -2; i <= width + 2; ++i) {
               const double weight = keys(x - i) * keys(y - j);
@@ -162,14 +162,14 @@ TYPED_TEST(BicubicRemap, IsKeysConvolutionWithReplicatedBorder) {
                   std::clamp(i, 0, width - 1) * channels + c)]);
               sum += weight * value;
               if (std::abs(x - i) < 2 && std::abs(y - j) < 2) {
-                least = std::min(least, value);
-                most = std::max(most, value);
+                min = std::min(min, value);
+                max = std::max(max, value);
               }
             }
           }
           const double tolerance = std::is_same_v<T, float> ? 2e-6 : 0.5 + kLargestValue<T> * 1e-6;
-          ASSERT_NEAR(result[static_cast<std::size_t>(n * channels + c)],
-                      std::clamp(sum, least, most), tolerance)
+          ASSERT_NEAR(result[static_cast<std::size_t>(n * channels + c)], std::clamp(sum, min, max),
+                      tolerance)
               << width << "x" << height << " at " << x << ", " << y;
         }
       }

@@ -9,10 +9,10 @@
 namespace vantage::kernels {
 namespace candidate_interpolation_test {
 
-std::vector<CandidateShift> shifts_of(double least, double step, int lanes) {
+std::vector<CandidateShift> shifts_of(double min, double step, int lanes) {
   std::vector<CandidateShift> shifts;
   for (int i = 0; i < lanes; ++i) {
-    const double shift = least + i * step;
+    const double shift = min + i * step;
     shifts.push_back(
         {static_cast<int>(std::floor(shift)), static_cast<float>(shift - std::floor(shift))});
   }
@@ -26,8 +26,8 @@ TEST(CandidateInterpolation, EqualsLinearInterpolation) {
       row.push_back(static_cast<float>(x * x % 23));
     }
     for (const double step : {.25, .5, 1.375, 2.}) {
-      const double least = -4.25;
-      const auto shifts = shifts_of(least, step, 16);
+      const double min = -4.25;
+      const auto shifts = shifts_of(min, step, 16);
       for (const int position_step : {-1, 1}) {
         const int first = position_step < 0 ? width - 1 : 0;
         std::vector<float> values(static_cast<std::size_t>(width) * 16);
@@ -37,7 +37,7 @@ TEST(CandidateInterpolation, EqualsLinearInterpolation) {
           const int position = first + j * position_step;
           const CandidateRange inside = candidates_inside(shifts.data(), 13, width, position);
           for (int i = 0; i < 16; ++i) {
-            const double exact = position + least + i * step;
+            const double exact = position + min + i * step;
             const double at = std::clamp<double>(exact, 0, width - 1);
             const int below = static_cast<int>(at);
             const int above = std::min(below + 1, width - 1);

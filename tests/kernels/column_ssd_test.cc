@@ -16,7 +16,7 @@ namespace vantage::kernels {
 namespace column_ssd_test {
 
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
-constexpr int kMostShift = 6;
+constexpr int kMaxShift = 6;
 
 std::size_t rounded_up(int count) {
   return static_cast<std::size_t>((count + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple);
@@ -91,7 +91,7 @@ struct PixelRows {
 template <typename Kernel>
 void check_pairs(const Kernel& kernel, std::mt19937& random, Data data, Rows rows, int partner_step,
                  int columns, int lanes) {
-  const int shift = random_int(random, 0, kMostShift);
+  const int shift = random_int(random, 0, kMaxShift);
   const std::size_t offset = random() % 5;
   const std::size_t partners = partner_count(columns, lanes);
   const PixelRows reference(random, data, static_cast<std::size_t>(columns));
@@ -203,8 +203,8 @@ void for_each_shape(const Check& check) {
 
 // The largest square is the last float below the limit. From half the limit on, squares are
 // multiples of a quarter: ties occur.
-const float kMostScale = std::nextafter(std::sqrt(kFloatSquareLimit), 0.0F);
-const float kScales[] = {kMostScale, 255.0F, 1e-20F, 1.0F};
+const float kMaxScale = std::nextafter(std::sqrt(kFloatSquareLimit), 0.0F);
+const float kScales[] = {kMaxScale, 255.0F, 1e-20F, 1.0F};
 
 const auto kPairsKernel = [](const auto& row, const std::int32_t* previous, std::int32_t* sums) {
   column_ssd_row(row, previous, sums);
@@ -241,7 +241,7 @@ TEST_P(ColumnSsd, FloatsAreSumsOfRoundedSquares) { sweep_floats(kPairsKernel); }
 TEST_P(ColumnSsd, InterleavesRows) {
   std::mt19937 random(13);
   for (int count = 1; count <= 70; ++count) {
-    for (int shift = 0; shift <= kMostShift; ++shift) {
+    for (int shift = 0; shift <= kMaxShift; ++shift) {
       for (const Rows rows : kAllRows) {
         const std::size_t offset = random() % 7;
         UnalignedRow<std::uint8_t> entering(rounded_up(count), offset);

@@ -27,8 +27,8 @@ constexpr Quantisation kQuantisations[] = {{0, 1}, {0.5F, 2}, {1000, 1024}, {-3,
 /// A cost whose quantised value lies anywhere in [0, 2²²), often half way between two integers.
 float draw_cost(std::mt19937& random, const Quantisation& quantisation) {
   const int kind = random_int(random, 0, 3);
-  const int most = kind == 0 ? 4 * 4194304 - 1 : 400;
-  const auto quarters = static_cast<double>(random_int(random, 0, most));
+  const int max = kind == 0 ? 4 * 4194304 - 1 : 400;
+  const auto quarters = static_cast<double>(random_int(random, 0, max));
   return static_cast<float>(quarters / 4 / quantisation.scale - quantisation.offset);
 }
 

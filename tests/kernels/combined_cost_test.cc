@@ -29,26 +29,26 @@ constexpr Case kCases[] = {{{5, .2, 4}, .1},     {{3, 0, 0}, .01},       {{5, .1
 class Rows {
  public:
   Rows(std::mt19937& random, int channels, PartnerOrder order, int columns, int lanes)
-      : levels_(random, channels, order, columns, lanes, [&] { return draw(random, kMostFixed); }),
+      : levels_(random, channels, order, columns, lanes, [&] { return draw(random, kMaxFixed); }),
         codes_(random, 1, order, columns, lanes, [&] { return draw_code(random); }),
         gradients_(random, 1, order, columns, lanes,
-                   [&] { return draw(random, kMostFixedGradient); }) {
+                   [&] { return draw(random, kMaxFixedGradient); }) {
     row_ = {levels_.pairs(), codes_.pairs(), gradients_.pairs()};
   }
   [[nodiscard]] const CombinedRow& row() const { return row_; }
 
  private:
   /// Often near the middle, so that small differences are frequent; extremes are, too.
-  static std::uint16_t draw(std::mt19937& random, int most) {
+  static std::uint16_t draw(std::mt19937& random, int max) {
     switch (random() % 8) {
       case 0:
         return 0;
       case 1:
-        return static_cast<std::uint16_t>(most);
+        return static_cast<std::uint16_t>(max);
       case 2:
-        return static_cast<std::uint16_t>(random() % static_cast<unsigned>(most + 1));
+        return static_cast<std::uint16_t>(random() % static_cast<unsigned>(max + 1));
       default:
-        return static_cast<std::uint16_t>(most / 2 + static_cast<int>(random() % 400));
+        return static_cast<std::uint16_t>(max / 2 + static_cast<int>(random() % 400));
     }
   }
   /// 31 bits, few of them set, so that all distances occur.
@@ -82,7 +82,7 @@ double outside(double value, double low, double high) {
   return std::max({0.0, value - high, low - value});
 }
 
-double grey_residual(const FixedLevelPairs& row, int j, int k) {
+double grey_residual(const FixedIntensityPairs& row, int j, int k) {
   double sum = 0;
   for (int c = 0; c < row.channels; ++c) {
     const auto& [a, b] = row.channel[static_cast<std::size_t>(c)];
@@ -109,8 +109,8 @@ double gradient_residual(const FixedGradientPairs& row, int j, int k) {
 
 /// Bounds of −log p that a residual within `reach` of r can have, with room for rounded tables.
 struct Bounds {
-  double least = 0;
-  double most = 0;
+  double min = 0;
+  double max = 0;
 };
 Bounds energy_bounds(double residual, double reach, double sigma, double epsilon) {
   // Beyond the last step energies are those of the last one: the Gaussian is up to ε/9 there.
@@ -123,7 +123,7 @@ Bounds energy_bounds(double residual, double reach, double sigma, double epsilon
 
 TEST_P(CombinedCost, EqualsTheTranscriptionAndTheEquation) {
   for (const Case& made : kCases) {
-    const double epsilon = std::max(made.epsilon, kLeastCombinedEpsilon);
+    const double epsilon = std::max(made.epsilon, kMinCombinedEpsilon);
     for (const CombinedCells meaning : {CombinedCells::kEnergy, CombinedCells::kLikelihood}) {
       for_each_rows([&](const CombinedRow& row) {
         const CombinedModel model =
@@ -148,8 +148,8 @@ TEST_P(CombinedCost, EqualsTheTranscriptionAndTheEquation) {
             Bounds sum = energy_bounds(grey_residual(row.levels, j, k), reach(sigma_grey),
                                        sigma_grey, epsilon);
             const auto add = [&](const Bounds& term) {
-              sum.least += term.least;
-              sum.most += term.most;
+              sum.min += term.min;
+              sum.max += term.max;
             };
             if (sigma_census > 0) {
               add(energy_bounds(census_residual(row.codes, j, k), 0, sigma_census, epsilon));
@@ -159,8 +159,8 @@ TEST_P(CombinedCost, EqualsTheTranscriptionAndTheEquation) {
                                 sigma_gradient, epsilon));
             }
             const double energy = meaning == CombinedCells::kEnergy ? cell : -std::log(cell);
-            ASSERT_GE(energy, sum.least) << "column " << j << ", lane " << i;
-            ASSERT_LE(energy, sum.most) << "column " << j << ", lane " << i;
+            ASSERT_GE(energy, sum.min) << "column " << j << ", lane " << i;
+            ASSERT_LE(energy, sum.max) << "column " << j << ", lane " << i;
           }
         }
       });
@@ -186,7 +186,7 @@ TEST(CombinedModel, StepsAreFineAndReachToWhereOnlyOutliersAre) {
   for (const double epsilon : {.3, .1, .01, 1e-4, 1e-12}) {
     for (const double sigma : {1., 3., 5., 12.}) {
       const CombinedModel model = combined_model({sigma, 0, 0}, epsilon, 1, CombinedCells::kEnergy);
-      const double step_levels = 65536.0 / model.grey.multiplier / kFixedPerLevel;
+      const double step_levels = 65536.0 / model.grey.multiplier / kFixedPerIntensity;
       EXPECT_LE(step_levels, 0.13 * sigma);
       const double p = measurement(64 * step_levels, sigma, epsilon);
       EXPECT_LE(p, 1.08 * epsilon);

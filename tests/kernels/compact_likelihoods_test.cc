@@ -23,11 +23,11 @@ constexpr Shape kShapes[] = {{1, 1}, {2, 3}, {3, 16}, {5, 17}, {7, 40}, {4, 64},
 int lanes_of(const Shape& shape) { return CandidateGeometry{.count = shape.count}.lanes(); }
 
 /// Likelihoods over many orders of magnitude, 0 in lanes that are no candidates.
-std::vector<float> random_likelihoods(const Shape& shape, double least_exponent,
+std::vector<float> random_likelihoods(const Shape& shape, double min_exponent,
                                       std::mt19937& random) {
   std::vector<float> cells;
   for (int k = 0; k < shape.columns * lanes_of(shape); ++k) {
-    const double exponent = least_exponent * random_int(random, 0, 10000) / 10000;
+    const double exponent = min_exponent * random_int(random, 0, 10000) / 10000;
     cells.push_back(k % lanes_of(shape) < shape.count ? static_cast<float>(std::exp2(exponent))
                                                       : 0.0F);
   }
@@ -50,9 +50,9 @@ std::vector<double> plain_energies(const Shape& shape, const std::vector<float>&
       column.push_back(energy(upper, left) + energy(upper, right) + energy(lower, left) +
                        energy(lower, right));
     }
-    const double least = *std::min_element(column.begin(), column.end());
+    const double min = *std::min_element(column.begin(), column.end());
     for (const double energy : column) {
-      energies.push_back(energy - least);
+      energies.push_back(energy - min);
     }
   }
   return energies;
@@ -92,7 +92,7 @@ TEST_P(CompactLikelihoods, EnergiesOfBlocksAreWeightedSums) {
         const double energy =
             weight *
             plain[block * static_cast<std::size_t>(shape.count) + static_cast<std::size_t>(lane)];
-        ASSERT_NEAR(reference[k] * kEnergyStep, std::min(energy, kMostCompact * kEnergyStep + 0.0),
+        ASSERT_NEAR(reference[k] * kEnergyStep, std::min(energy, kMaxCompact * kEnergyStep + 0.0),
                     kEnergyStep / 2 + 1e-4);
       }
     }
@@ -108,8 +108,8 @@ TEST_P(CompactLikelihoods, VanishingLikelihoodsStayFinite) {
   std::vector<std::uint8_t> energies(16);
   reduce_likelihoods_row(row, 1, work.data(), energies.data());
   EXPECT_EQ(energies[3], 0);
-  EXPECT_EQ(energies[2], kMostCompact);
-  EXPECT_EQ(energies[15], kMostCompact);
+  EXPECT_EQ(energies[2], kMaxCompact);
+  EXPECT_EQ(energies[15], kMaxCompact);
 }
 
 TEST_P(CompactLikelihoods, CompactEnergiesOfBlocksAreWeightedSums) {
@@ -119,9 +119,9 @@ TEST_P(CompactLikelihoods, CompactEnergiesOfBlocksAreWeightedSums) {
     std::vector<std::uint8_t> rows[2];
     for (auto& cells : rows) {
       for (int k = 0; k < shape.columns * lanes; ++k) {
-        const int most = k % 3 == 0 ? kMostCompact : 60;
+        const int max = k % 3 == 0 ? kMaxCompact : 60;
         cells.push_back(static_cast<std::uint8_t>(
-            k % lanes < shape.count ? random_int(random, 0, most) : kMostCompact));
+            k % lanes < shape.count ? random_int(random, 0, max) : kMaxCompact));
       }
     }
     for (const int lower : {0, 1}) {

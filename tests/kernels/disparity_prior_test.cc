@@ -30,7 +30,7 @@ struct PriorCase {
     row.disparity_min = random_int(random, -30, 30);
     const float weights[] = {0, 0.3F, 1, 7, 100};
     row.weight = weights[random() % std::size(weights)];
-    row.most_contrast = random() % 3 == 0 ? 20.0F : kInfinity;
+    row.max_contrast = random() % 3 == 0 ? 20.0F : kInfinity;
     for (int j = 0; j < columns; ++j) {
       const int offset = random_int(random, -40, row.count * 10 + 30);
       const float wild[] = {kUnknown, kInfinity, -kInfinity};
@@ -103,7 +103,7 @@ void expect_definition(Kernel kernel, bool likelihoods, const Expected& of_candi
 }
 
 double energy(const DisparityPriorRow& row, double cell, double share, double contrast) {
-  return cell + row.weight * std::min<double>(contrast, row.most_contrast) * share;
+  return cell + row.weight * std::min<double>(contrast, row.max_contrast) * share;
 }
 double likelihood(const DisparityPriorRow& row, double cell, double share, double /*contrast*/) {
   return cell * std::exp(std::max<double>(-row.weight, -20 * std::log(2.0)) * share);

@@ -19,8 +19,8 @@ using Edges = std::vector<std::uint8_t>;
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-Row snapped(const Edges& edges, int most_px, Row disparity_px) {
-  snap_discontinuities_row(edges.data(), most_px, static_cast<int>(disparity_px.size()),
+Row snapped(const Edges& edges, int max_px, Row disparity_px) {
+  snap_discontinuities_row(edges.data(), max_px, static_cast<int>(disparity_px.size()),
                            disparity_px.data());
   return disparity_px;
 }
@@ -90,7 +90,7 @@ TEST(EdgeSnapping, NeverCrossesOrMeetsAnotherDiscontinuity) {
 }
 
 /// EQUATIONS §5.1 place by place, written from the contract with lists instead of running limits.
-Row plain_snapped(const Edges& edges, int most_px, const Row& row) {
+Row plain_snapped(const Edges& edges, int max_px, const Row& row) {
   const int width = static_cast<int>(row.size());
   const auto at = [&](int x) { return row[static_cast<std::size_t>(x)]; };
   const auto edge = [&](int x) { return edges[static_cast<std::size_t>(x)] != 0; };
@@ -105,7 +105,7 @@ Row plain_snapped(const Edges& edges, int most_px, const Row& row) {
   for (std::size_t k = 0; k < before.size(); ++k) {
     const int b = before[k];
     int best = b;
-    int best_move = most_px + 1;
+    int best_move = max_px + 1;
     for (int p = 0; p + 1 < width; ++p) {
       bool allowed = edge(p) || edge(p + 1);
       for (std::size_t other = 0; other < before.size(); ++other) {
@@ -137,7 +137,7 @@ Row plain_snapped(const Edges& edges, int most_px, const Row& row) {
 TEST(EdgeSnapping, EqualsPlainTranscription) {
   std::mt19937 random(5);
   for (int width = 1; width <= 60; ++width) {
-    for (const int most_px : {0, 1, 2, 4, 16}) {
+    for (const int max_px : {0, 1, 2, 4, 16}) {
       for (int trial = 0; trial < 6; ++trial) {
         Edges edges(static_cast<std::size_t>(width));
         Row row(edges.size());
@@ -148,8 +148,8 @@ TEST(EdgeSnapping, EqualsPlainTranscription) {
                    : random() % 5 == 0 ? kUnknown
                                        : static_cast<float>(random() % 12);
         }
-        ASSERT_EQ(bits(snapped(edges, most_px, row)), bits(plain_snapped(edges, most_px, row)))
-            << "width " << width << ", most " << most_px;
+        ASSERT_EQ(bits(snapped(edges, max_px, row)), bits(plain_snapped(edges, max_px, row)))
+            << "width " << width << ", most " << max_px;
       }
     }
   }

@@ -36,9 +36,8 @@ TEST_P(EdgeWeightsRow, FallWithTheDifferenceOfGreyLevels) {
       for (std::size_t x = 0; x < size; ++x) {
         const double difference = std::abs(static_cast<double>(pixels[x]) - second[x]);
         ASSERT_NEAR(reference[x],
-                    model.least + (1.0 - model.least) * std::exp(-difference / model.contrast),
-                    1e-5);
-        ASSERT_GE(reference[x], model.least);
+                    model.min + (1.0 - model.min) * std::exp(-difference / model.contrast), 1e-5);
+        ASSERT_GE(reference[x], model.min);
         ASSERT_LE(reference[x], 1);
       }
     }

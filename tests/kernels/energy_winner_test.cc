@@ -25,8 +25,8 @@ enum class EnergyKind {
   kConstant,
   kFewLevels,   ///< many ties
   kWide,        ///< all that there are
-  kMostOrLess,  ///< most of them kMostEnergy
-  kMostOfThem,  ///< all of them kMostEnergy
+  kMostOrLess,  ///< most of them kMaxEnergy
+  kMostOfThem,  ///< all of them kMaxEnergy
 };
 constexpr EnergyKind kKinds[] = {EnergyKind::kConstant, EnergyKind::kFewLevels, EnergyKind::kWide,
                                  EnergyKind::kMostOrLess, EnergyKind::kMostOfThem};
@@ -38,13 +38,13 @@ FixedEnergy random_energy(std::mt19937& random, EnergyKind kind) {
     case EnergyKind::kFewLevels:
       return static_cast<FixedEnergy>(random_int(random, 3, 6));
     case EnergyKind::kWide:
-      return static_cast<FixedEnergy>(random_int(random, 0, kMostEnergy));
+      return static_cast<FixedEnergy>(random_int(random, 0, kMaxEnergy));
     case EnergyKind::kMostOrLess:
-      return static_cast<FixedEnergy>(kMostEnergy - (random() % 20 == 0 ? random() % 3 : 0));
+      return static_cast<FixedEnergy>(kMaxEnergy - (random() % 20 == 0 ? random() % 3 : 0));
     case EnergyKind::kMostOfThem:
       break;
   }
-  return kMostEnergy;
+  return kMaxEnergy;
 }
 
 /// Random energies of a row. Candidates without partners would win if anyone looked at them, and so
@@ -59,7 +59,7 @@ struct EnergyCells {
       for (int i = 0; i < pitch; ++i) {
         const bool is_lane_only = i >= c.count && i < c.lanes();
         at(x, i) = c.counts(x, i) ? random_energy(random, kind)
-                   : is_lane_only ? kMostEnergy
+                   : is_lane_only ? kMaxEnergy
                                   : static_cast<FixedEnergy>(random_int(random, 0, 3));
       }
     }
@@ -81,22 +81,22 @@ struct EnergyCells {
 /// One column: the definitions, one after the other.
 struct Column {
   std::int32_t winner = kNoWinner;
-  FixedEnergy least = kMostEnergy;
+  FixedEnergy min = kMaxEnergy;
   /// By the parabola, in double.
   double disparity_px = 0;
 
   Column(const WinnerCase& c, const EnergyCells& cells, int x) {
     for (int i = 0; i < c.count; ++i) {
-      if (c.counts(x, i) && (winner == kNoWinner || cells.at(x, i) < least)) {
+      if (c.counts(x, i) && (winner == kNoWinner || cells.at(x, i) < min)) {
         winner = i;
-        least = cells.at(x, i);
+        min = cells.at(x, i);
       }
     }
     disparity_px = c.disparity_min + winner;
     if (c.counts(x, winner - 1) && c.counts(x, winner + 1)) {
       const double before = cells.at(x, winner - 1);
       const double after = cells.at(x, winner + 1);
-      const double curvature = before - 2.0 * least + after;
+      const double curvature = before - 2.0 * min + after;
       disparity_px += curvature > 0 ? (before - after) / (2 * curvature) : 0;
     }
   }
@@ -145,14 +145,14 @@ void sweep(Select select) {
         const EnergyRow row = cells.row(c, begin, end);
         const auto columns = static_cast<std::size_t>(row.columns);
         GuardedRow<std::int32_t> winners(columns, random() % 5, kSentinel);
-        GuardedRow<FixedEnergy> least(columns, random() % 5, kEnergySentinel);
-        select(row, winners.data(), least.data());
-        ASSERT_TRUE(winners.intact() && least.intact()) << c;
+        GuardedRow<FixedEnergy> min(columns, random() % 5, kEnergySentinel);
+        select(row, winners.data(), min.data());
+        ASSERT_TRUE(winners.intact() && min.intact()) << c;
         for (std::size_t j = 0; j < columns; ++j) {
           const int x = begin + static_cast<int>(j);
           const Column column(c, cells, x);
           ASSERT_EQ(winners.values()[j], column.winner) << c << ", column " << x;
-          ASSERT_EQ(least.values()[j], column.least) << c << ", column " << x;
+          ASSERT_EQ(min.values()[j], column.min) << c << ", column " << x;
           columns_with_none += column.winner == kNoWinner ? 1 : 0;
           columns_with_all += c.counts(x, 0) && c.counts(x, c.count - 1) ? 1 : 0;
         }
@@ -181,10 +181,10 @@ TEST_P(EnergyWinner, TiesGoToTheSmallestDisparity) {
         cells.at(75, i) = i < first ? 51 : 50;
       }
       std::int32_t winner = kSentinel;
-      FixedEnergy least = kEnergySentinel;
-      select_energy_winners_row(cells.row(c, 75, 76), &winner, &least);
+      FixedEnergy min = kEnergySentinel;
+      select_energy_winners_row(cells.row(c, 75, 76), &winner, &min);
       ASSERT_EQ(winner, first) << count << " candidates";
-      ASSERT_EQ(least, 50);
+      ASSERT_EQ(min, 50);
     }
   }
 }
@@ -204,10 +204,10 @@ TEST_P(EnergyWinner, TheLastOfManyCandidatesMayWin) {
         all ? CandidateGeometry{40000, 0, kCount, -1} : CandidateGeometry{2, 1 - kCount, kCount, 1};
     row.first_column = all ? 36000 : 1;
     std::int32_t winner = kSentinel;
-    FixedEnergy least = kEnergySentinel;
-    select_energy_winners_row(row, &winner, &least);
+    FixedEnergy min = kEnergySentinel;
+    select_energy_winners_row(row, &winner, &min);
     EXPECT_EQ(winner, kCount - 1) << all;
-    EXPECT_EQ(least, 49) << all;
+    EXPECT_EQ(min, 49) << all;
   }
 }
 
@@ -218,8 +218,8 @@ TEST(EnergyDisparity, IsThatOfTheParabolaThroughWinnerAndNeighbours) {
         const EnergyRow row = cells.row(c, begin, end);
         const auto columns = static_cast<std::size_t>(row.columns);
         std::vector<std::int32_t> winners(columns);
-        std::vector<FixedEnergy> least(columns);
-        select_energy_winners_row_ref(row, winners.data(), least.data());
+        std::vector<FixedEnergy> min(columns);
+        select_energy_winners_row_ref(row, winners.data(), min.data());
         for (const bool refined : {false, true}) {
           GuardedRow<float> disparity_px(columns, random() % 5, kFloatSentinel);
           energy_disparity_row(row, winners.data(), refined, disparity_px.data());
@@ -276,37 +276,37 @@ TEST_P(EnergyProbability, IsTheShareOfTheWinnersLikelihood) {
       Image<FixedEnergy> cells(static_cast<int>(row.pitch) * row.columns, 1);
       cells.fill(0);  // what lies between columns would be as probable as any
       row.cells = cells.row(0);
-      std::vector<FixedEnergy> least;
+      std::vector<FixedEnergy> min;
       for (int j = 0; j < row.columns; ++j) {
         FixedEnergy* const column = cells.row(0) + j * row.pitch;
         // From columns of one candidate to those of equal ones.
-        const int most = random_int(random, 0, 3) * static_cast<int>(4 * steps_per_nat);
+        const int max = random_int(random, 0, 3) * static_cast<int>(4 * steps_per_nat);
         for (int i = 0; i < lanes; ++i) {
-          column[i] = random() % 4 == 0 ? kMostEnergy
-                                        : static_cast<FixedEnergy>(random_int(random, 0, most));
+          column[i] =
+              random() % 4 == 0 ? kMaxEnergy : static_cast<FixedEnergy>(random_int(random, 0, max));
         }
         column[random() % static_cast<unsigned>(lanes)] = 0;
         // The winner may be another than the least of all, which has no partner.
-        least.push_back(
-            static_cast<FixedEnergy>(random_int(random, 0, 1) * random_int(random, 0, most)));
+        min.push_back(
+            static_cast<FixedEnergy>(random_int(random, 0, 1) * random_int(random, 0, max)));
       }
-      least.back() = row.columns > 1 ? kMostEnergy : 0;
-      GuardedRow<float> probability(least.size(), random() % 5, kFloatSentinel);
-      energy_probability_row(row, least.data(), steps_per_nat, probability.data());
+      min.back() = row.columns > 1 ? kMaxEnergy : 0;
+      GuardedRow<float> probability(min.size(), random() % 5, kFloatSentinel);
+      energy_probability_row(row, min.data(), steps_per_nat, probability.data());
       ASSERT_TRUE(probability.intact());
-      std::vector<float> reference(least.size());
-      energy_probability_row_ref(row, least.data(), steps_per_nat, reference.data());
+      std::vector<float> reference(min.size());
+      energy_probability_row_ref(row, min.data(), steps_per_nat, reference.data());
       for (int j = 0; j < row.columns; ++j) {
         const auto at = static_cast<std::size_t>(j);
         const float actual = probability.values()[at];
-        ASSERT_EQ(std::isnan(actual), least[at] == kMostEnergy);
-        ASSERT_EQ(std::isnan(reference[at]), least[at] == kMostEnergy);
-        if (least[at] == kMostEnergy) {
+        ASSERT_EQ(std::isnan(actual), min[at] == kMaxEnergy);
+        ASSERT_EQ(std::isnan(reference[at]), min[at] == kMaxEnergy);
+        if (min[at] == kMaxEnergy) {
           continue;
         }
         double sum = 0;
         for (int i = 0; i < lanes; ++i) {
-          sum += std::exp((least[at] - row.cells[j * row.pitch + i]) / double{steps_per_nat});
+          sum += std::exp((min[at] - row.cells[j * row.pitch + i]) / double{steps_per_nat});
         }
         ASSERT_NEAR(actual, 1 / sum, 1e-5 / sum) << lanes << " lanes, " << steps_per_nat;
         ASSERT_NEAR(reference[at], 1 / sum, 1e-7 / sum) << lanes << " lanes, " << steps_per_nat;
@@ -321,12 +321,12 @@ TEST(EnergyProbabilityOnAllTargets, IsIdentical) {
   Image<FixedEnergy> cells(80 * 30, 1);
   std::generate_n(cells.row(0), 80 * 30, [&] { return static_cast<FixedEnergy>(random() % 2000); });
   row.cells = cells.row(0);
-  const std::vector<FixedEnergy> least(30, 1);
+  const std::vector<FixedEnergy> min(30, 1);
   std::vector<float> first;
   for (const long long target : each_target()) {
     force_target(target);
-    std::vector<float> probability(least.size());
-    energy_probability_row(row, least.data(), 200, probability.data());
+    std::vector<float> probability(min.size());
+    energy_probability_row(row, min.data(), 200, probability.data());
     if (first.empty()) {
       first = probability;
     }

@@ -47,9 +47,9 @@ double plain_sum(const EvidenceBlock& block) {
       const double dx = double{block.reference.x[a]} - block.partner.x[b];
       const double dy = double{block.reference.y[a]} - block.partner.y[b];
       const double total = std::abs(dx) + std::abs(dy);
-      const double most = std::max(std::abs(dx), std::abs(dy));
+      const double max = std::max(std::abs(dx), std::abs(dy));
       sum += double{block.reference.half_norm[a]} + block.partner.half_norm[b] -
-             (block.octagon ? 0.3978247 * total + 0.5626091 * most : std::sqrt(dx * dx + dy * dy));
+             (block.octagon ? 0.3978247 * total + 0.5626091 * max : std::sqrt(dx * dx + dy * dy));
     }
   }
   return sum;

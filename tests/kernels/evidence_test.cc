@@ -99,9 +99,9 @@ TEST_P(Evidence, Likelihood) {
   const auto draw = [&] { return static_cast<float>(random_int(random, -3000, 3000)) / 10; };
   for (const int direction : {-1, 1}) {
     for (const int count : {1, 5, 16, 17, 64, 75}) {
-      for (const int least_disparity : {-40, -3, 0, 30}) {
+      for (const int min_disparity : {-40, -3, 0, 30}) {
         for (const int width : {1, 13, 50}) {
-          const CandidateGeometry geometry{width, least_disparity, count, direction};
+          const CandidateGeometry geometry{width, min_disparity, count, direction};
           const int first = random_int(random, 0, width - 1);
           const EvidenceRow row{geometry, first, width - first};
           const auto lanes = static_cast<std::size_t>(geometry.lanes());
@@ -119,15 +119,15 @@ TEST_P(Evidence, Likelihood) {
           for (int j = 0; j < row.columns; ++j) {
             const float* cost = costs.data() + static_cast<std::size_t>(j) * lanes;
             const auto inside = [&](int i) {
-              const int partner = first + j + direction * (least_disparity + i);
+              const int partner = first + j + direction * (min_disparity + i);
               return i < count && partner >= 0 && partner < width;
             };
-            double most = -std::numeric_limits<double>::infinity();
+            double max = -std::numeric_limits<double>::infinity();
             for (int i = 0; i < count; ++i) {
-              most = inside(i) ? std::max<double>(most, -cost[i]) : most;
+              max = inside(i) ? std::max<double>(max, -cost[i]) : max;
             }
             for (int i = 0; i < geometry.lanes(); ++i) {
-              const double expected = inside(i)   ? .9 * std::exp((-cost[i] - most) / sigma) + .1
+              const double expected = inside(i)   ? .9 * std::exp((-cost[i] - max) / sigma) + .1
                                       : i < count ? .1
                                                   : 0;
               ASSERT_NEAR(cells[static_cast<std::size_t>(j) * lanes + static_cast<std::size_t>(i)],

@@ -182,7 +182,7 @@ TEST_P(FilledMedian, EqualsPlainTranscription) {
 
 TEST_P(FilledMedian, TakesAnyValues) {
   // Where the middle of two is neither between them nor a number, or zeros differ in sign.
-  constexpr float kMost = std::numeric_limits<float>::max();
+  constexpr float kMax = std::numeric_limits<float>::max();
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const float above_one = std::nextafter(1.0F, 2.0F);
   const std::vector<std::vector<float>> kinds = {
@@ -195,8 +195,8 @@ TEST_P(FilledMedian, TakesAnyValues) {
       {-0.0F, 1, kUnknown},
       {1, above_one, std::nextafter(above_one, 2.0F)},
       {kInfinity, -kInfinity, kUnknown},
-      {kInfinity, -kInfinity, 3, -0.0F, 0.0F, kMost, -kMost, 1e-30F},
-      {kMost, std::nextafter(kMost, 0.0F), -kMost},
+      {kInfinity, -kInfinity, 3, -0.0F, 0.0F, kMax, -kMax, 1e-30F},
+      {kMax, std::nextafter(kMax, 0.0F), -kMax},
       {0, 1, 2, 4, 8, 16, 1e3F, 1e6F, 1e9F, 1e12F, 1e15F, 1e18F, 1e21F, 1e24F, 1e27F, 1e30F}};
   std::mt19937 random(8);
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {

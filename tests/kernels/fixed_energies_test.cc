@@ -43,9 +43,9 @@ TEST(FixedEnergy, WeightsAreRoundedAndBelowOne) {
   EXPECT_EQ(fixed_weight(1), 32767);
   EXPECT_EQ(weighted(1, 0x4000), 1);  // ½, rounded up
   EXPECT_EQ(weighted(3, 0x2000), 1);
-  EXPECT_EQ(weighted(kMostEnergy, 32767), 32766);
+  EXPECT_EQ(weighted(kMaxEnergy, 32767), 32766);
   EXPECT_EQ(saturated_sum(30000, 2000), 32000);
-  EXPECT_EQ(saturated_sum(30000, 3000), kMostEnergy);
+  EXPECT_EQ(saturated_sum(30000, 3000), kMaxEnergy);
 }
 
 class FixedEnergies : public EveryTarget {};
@@ -67,7 +67,7 @@ TEST_P(FixedEnergies, OfBytesEqualReference) {
       ASSERT_EQ(actual.values(), reference) << shape.columns << " columns of " << shape.count;
       for (std::size_t k = 0; k < cells.size(); ++k) {
         if (static_cast<int>(k) % lanes >= shape.count) {
-          ASSERT_EQ(reference[k], kMostEnergy) << k;
+          ASSERT_EQ(reference[k], kMaxEnergy) << k;
         }
       }
     }
@@ -115,10 +115,10 @@ TEST_P(FixedEnergies, BytesSurvive) {
 
 TEST_P(FixedEnergies, ToBytesAreTheRoundedProductCut) {
   std::mt19937 random(3);
-  std::vector<FixedEnergy> energies = {0, 1, 2, 254, 255, 256, 257, kMostEnergy - 1, kMostEnergy};
+  std::vector<FixedEnergy> energies = {0, 1, 2, 254, 255, 256, 257, kMaxEnergy - 1, kMaxEnergy};
   while (energies.size() < 320) {
-    energies.push_back(static_cast<FixedEnergy>(
-        random_int(random, 0, random() % 2 == 0 ? 600 : int{kMostEnergy})));
+    energies.push_back(
+        static_cast<FixedEnergy>(random_int(random, 0, random() % 2 == 0 ? 600 : int{kMaxEnergy})));
   }
   for (const int weight : {0, 1, 255, 1024, 0x4000, 20000, 32767}) {
     const auto bytes_per_step = static_cast<FixedWeight>(weight);
@@ -161,11 +161,11 @@ TEST_P(FixedEnergies, OfLikelihoodsAreTheirNegativeLogarithms) {
       ASSERT_EQ(actual.values(), reference) << shape.columns << " columns of " << shape.count;
       for (std::size_t k = 0; k < cells.size(); ++k) {
         if (static_cast<int>(k) % lanes >= shape.count) {
-          ASSERT_EQ(reference[k], kMostEnergy);
+          ASSERT_EQ(reference[k], kMaxEnergy);
           continue;
         }
-        const double least = kLeastFixedLikelihood;
-        const double energy = -std::log(std::max<double>(cells[k], least)) * steps_per_nat;
+        const double min = kMinFixedLikelihood;
+        const double energy = -std::log(std::max<double>(cells[k], min)) * steps_per_nat;
         ASSERT_NEAR(reference[k], energy, 0.5 + 1e-3 + 1e-6 * energy) << cells[k];
       }
     }
@@ -175,10 +175,10 @@ TEST_P(FixedEnergies, OfLikelihoodsAreTheirNegativeLogarithms) {
 TEST_P(FixedEnergies, OfVanishingLikelihoodsAreThatOfTheLeast) {
   std::vector<float> cells(16, 1.0F);
   cells[1] = 1.0000001F;  // rounded up somewhere
-  cells[2] = kLeastFixedLikelihood;
+  cells[2] = kMinFixedLikelihood;
   cells[3] = 0;
   cells[4] = std::numeric_limits<float>::denorm_min();
-  cells[5] = std::nextafter(kLeastFixedLikelihood, 0.0F);
+  cells[5] = std::nextafter(kMinFixedLikelihood, 0.0F);
   cells[6] = 1e-30F;
   cells[7] = 0.5F;
   std::vector<FixedEnergy> energies(16);
@@ -191,7 +191,7 @@ TEST_P(FixedEnergies, OfVanishingLikelihoodsAreThatOfTheLeast) {
   for (const std::size_t k : {3U, 4U, 5U}) {
     EXPECT_EQ(energies[k], energies[2]) << k;
   }
-  EXPECT_LT(energies[2], kMostEnergy);
+  EXPECT_LT(energies[2], kMaxEnergy);
 }
 
 VANTAGE_ON_EVERY_TARGET(FixedEnergies);

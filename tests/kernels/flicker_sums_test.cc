@@ -62,12 +62,12 @@ TEST_P(FlickerSumsKernel, DisparityChange) {
       std::int64_t compared = 0;
       std::int64_t jumped = 0;
       double change = 0;
-      double least = std::numeric_limits<double>::infinity();
-      double most = -least;
+      double min = std::numeric_limits<double>::infinity();
+      double max = -min;
       for (std::size_t x = 0; x < now.size(); ++x) {
         for (const float d : {now[x], before[x]}) {
-          least = std::isnan(d) ? least : std::min<double>(least, d);
-          most = std::isnan(d) ? most : std::max<double>(most, d);
+          min = std::isnan(d) ? min : std::min<double>(min, d);
+          max = std::isnan(d) ? max : std::max<double>(max, d);
         }
         if (mask[x] != 0 && !std::isnan(now[x]) && !std::isnan(before[x])) {
           ++compared;
@@ -80,15 +80,15 @@ TEST_P(FlickerSumsKernel, DisparityChange) {
         ASSERT_EQ(sums.jumped, jumped);
         ASSERT_NEAR(static_cast<double>(sums.change), change * 1024,
                     static_cast<double>(compared) / 2);
-        ASSERT_EQ(sums.least_px, static_cast<float>(least));
-        ASSERT_EQ(sums.most_px, static_cast<float>(most));
+        ASSERT_EQ(sums.min_px, static_cast<float>(min));
+        ASSERT_EQ(sums.max_px, static_cast<float>(max));
       }
       ASSERT_EQ(actual.change, reference.change);
     }
   }
 }
 
-TEST_P(FlickerSumsKernel, LevelChangeAndSum) {
+TEST_P(FlickerSumsKernel, IntensityChangeAndSum) {
   std::mt19937 random(77);
   for (const int width : kWidths) {
     for (const bool extreme : {false, true}) {
@@ -100,7 +100,7 @@ TEST_P(FlickerSumsKernel, LevelChangeAndSum) {
         std::fill(before.begin(), before.end(), std::uint8_t{0});
         std::fill(mask.begin(), mask.end(), std::uint8_t{255});
       }
-      LevelChange expected;
+      IntensityChange expected;
       std::int64_t sum = 0;
       for (std::size_t x = 0; x < now.size(); ++x) {
         sum += now[x];
@@ -109,13 +109,13 @@ TEST_P(FlickerSumsKernel, LevelChangeAndSum) {
           expected.change += std::abs(now[x] - before[x]);
         }
       }
-      for (const auto row : {level_change_row, level_change_row_ref}) {
-        const LevelChange actual = row(now.data(), before.data(), mask.data(), width);
+      for (const auto row : {intensity_change_row, intensity_change_row_ref}) {
+        const IntensityChange actual = row(now.data(), before.data(), mask.data(), width);
         ASSERT_EQ(actual.compared, expected.compared);
         ASSERT_EQ(actual.change, expected.change);
       }
-      ASSERT_EQ(level_sum_row(now.data(), width), sum);
-      ASSERT_EQ(level_sum_row_ref(now.data(), width), sum);
+      ASSERT_EQ(intensity_sum_row(now.data(), width), sum);
+      ASSERT_EQ(intensity_sum_row_ref(now.data(), width), sum);
     }
   }
 }

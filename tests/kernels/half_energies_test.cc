@@ -44,8 +44,8 @@ TEST(HalfFloat, EveryOneComesBack) {
 }
 
 TEST(HalfFloat, IsTheNearestTheEvenOneOfTwo) {
-  constexpr int kLeastNormal = 1 << 10;
-  for (int bits = kLeastNormal; bits + 1 < 0x7C00; bits += 7) {
+  constexpr int kMinNormal = 1 << 10;
+  for (int bits = kMinNormal; bits + 1 < 0x7C00; bits += 7) {
     const auto below = static_cast<std::uint16_t>(bits);
     const auto above = static_cast<std::uint16_t>(bits + 1);
     const auto middle = static_cast<float>((plain_value(below) + plain_value(above)) / 2);

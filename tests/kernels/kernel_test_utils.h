@@ -99,8 +99,8 @@ inline std::int32_t modulo_32_bits(std::int64_t value) {
 }
 
 /// An integer in [least, most]. Unlike the standard distributions, the same with every library.
-inline int random_int(std::mt19937& random, int least, int most) {
-  return least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1));
+inline int random_int(std::mt19937& random, int min, int max) {
+  return min + static_cast<int>(random() % static_cast<unsigned>(max - min + 1));
 }
 
 }  // namespace vantage::kernels

@@ -27,16 +27,16 @@ TEST(KnownRange, LeastAndMostOfWhatIsKnown) {
         KnownRange plain = given;
         for (const float d : row) {
           if (d > -1e30F && d < 1e30F) {
-            plain.least = d < plain.least ? d : plain.least;
-            plain.most = d > plain.most ? d : plain.most;
+            plain.min = d < plain.min ? d : plain.min;
+            plain.max = d > plain.max ? d : plain.max;
           }
         }
-        ASSERT_EQ(expected.least, plain.least);
-        ASSERT_EQ(expected.most, plain.most);
+        ASSERT_EQ(expected.min, plain.min);
+        ASSERT_EQ(expected.max, plain.max);
         for_each_target([&] {
           const KnownRange range = known_range_row(row.data(), width, given);
-          ASSERT_EQ(range.least, expected.least);
-          ASSERT_EQ(range.most, expected.most);
+          ASSERT_EQ(range.min, expected.min);
+          ASSERT_EQ(range.max, expected.max);
         });
       }
     }
@@ -45,7 +45,7 @@ TEST(KnownRange, LeastAndMostOfWhatIsKnown) {
 
 TEST(KnownRange, NothingIsKnown) {
   const KnownRange range = known_range_row(nullptr, 0, {});
-  EXPECT_GT(range.least, range.most);
+  EXPECT_GT(range.min, range.max);
 }
 
 }  // namespace known_range_test

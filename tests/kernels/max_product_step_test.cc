@@ -173,8 +173,8 @@ class MadeUpRow {
       FixedEnergy* const column = source_.row(0) + x * source_pitch_;
       for (int i = 0; i < c.lanes(); ++i) {
         const int energy = one_of(random, {random_int(random, 0, ceiling_),
-                                           random_int(random, 0, 2000), 30000, kMostEnergy});
-        column[i] = i < c.shape.count ? static_cast<FixedEnergy>(energy) : kMostEnergy;
+                                           random_int(random, 0, 2000), 30000, kMaxEnergy});
+        column[i] = i < c.shape.count ? static_cast<FixedEnergy>(energy) : kMaxEnergy;
       }
       column[random() % static_cast<unsigned>(c.shape.count)] = 0;
     }
@@ -212,11 +212,11 @@ std::vector<double> plain_energies(const MaxProductRow& row, int count, int x, b
     for (const Part& part : parts) {
       energy += starts ? 0 : part.weight / kWeightSteps * part.cells[i];
     }
-    energies.push_back(row.smooths ? energy : std::min<double>(energy, kMostEnergy));
+    energies.push_back(row.smooths ? energy : std::min<double>(energy, kMaxEnergy));
   }
-  const double least = *std::min_element(energies.begin(), energies.end());
+  const double min = *std::min_element(energies.begin(), energies.end());
   for (double& energy : energies) {
-    energy -= least;
+    energy -= min;
   }
   return energies;
 }
@@ -229,7 +229,7 @@ std::vector<double> plain_smoothed(const std::vector<double>& energies, const Ma
   const auto count = static_cast<int>(energies.size());
   std::vector<double> smoothed;
   for (int i = 0; i < count; ++i) {
-    double least = row.prior.ceiling;
+    double min = row.prior.ceiling;
     const int reach = row.prior.radius;
     const int in_row = row.plane.row_candidates;
     for (int j = 0; row.plane.is_given() && j < count; ++j) {
@@ -239,20 +239,20 @@ std::vector<double> plain_smoothed(const std::vector<double>& energies, const Ma
       const int across = i % in_row - j % in_row;
       const int down = i / in_row - j / in_row;
       if (std::abs(across) <= reach && std::abs(down) <= reach) {
-        least = std::min(least, energies[static_cast<std::size_t>(j)] + rise(across) + rise(down));
+        min = std::min(min, energies[static_cast<std::size_t>(j)] + rise(across) + rise(down));
       }
     }
     if (row.plane.is_given()) {
-      smoothed.push_back(least);
+      smoothed.push_back(min);
       continue;
     }
     for (int j = std::max(0, i - reach); j < std::min(count, i + reach + 1); ++j) {
       if (segment_of(i) == segment_of(j)) {
         const double rise = i == j ? 0 : row.prior.rises[std::abs(i - j) - 1];
-        least = std::min(least, energies[static_cast<std::size_t>(j)] + rise);
+        min = std::min(min, energies[static_cast<std::size_t>(j)] + rise);
       }
     }
-    smoothed.push_back(least);
+    smoothed.push_back(min);
   }
   return smoothed;
 }
@@ -350,7 +350,7 @@ struct OneColumn {
   explicit OneColumn(const std::vector<int>& energies) {
     neighbours.fill(0);
     centre.fill(0);
-    source.fill(kMostEnergy);
+    source.fill(kMaxEnergy);
     for (std::size_t i = 0; i < energies.size(); ++i) {
       source.row(0)[i] = static_cast<FixedEnergy>(energies[i]);
     }

@@ -75,8 +75,8 @@ void sweep(SumKernel kernel) {
     if (testing::Test::HasFatalFailure()) {
       return;
     }
-    const std::int32_t most[] = {3, 20, 100000};
-    const WinnerCells cells(random, c, std::min(most[random() % std::size(most)], largest_sum(c)));
+    const std::int32_t max[] = {3, 20, 100000};
+    const WinnerCells cells(random, c, std::min(max[random() % std::size(max)], largest_sum(c)));
     WinnerRow row = c.row();
     row.cells = cells.cells.data();
     const std::vector<std::int32_t> winners = draw_winners(random, c, cells, row);
@@ -229,11 +229,11 @@ TEST_P(Parabola, StaysWhereTheCurvatureIsNotPositive) {
 }
 
 TEST_P(Parabola, MovesHalfAPixelAtMostAtAMinimum) {
-  constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max() - 1;
+  constexpr std::int32_t max = std::numeric_limits<std::int32_t>::max() - 1;
   EXPECT_EQ(refine(0, 0, 1), 2.5F);
   EXPECT_EQ(refine(7, 0, 0), 3.5F);
-  EXPECT_EQ(refine(0, 0, most), 2.5F);
-  EXPECT_EQ(refine(most, 0, most), 3.0F);
+  EXPECT_EQ(refine(0, 0, max), 2.5F);
+  EXPECT_EQ(refine(max, 0, max), 3.0F);
 }
 
 }  // namespace parabola_test

@@ -138,24 +138,24 @@ TEST_P(PixelCost, SamplingBounds) {
       grey[k] = draw_grey(random);
     }
     const auto padded_size = static_cast<std::size_t>(padded);
-    GuardedRow<float> least(padded_size, 1, -1);
-    GuardedRow<float> most(padded_size, 2, -1);
-    sampling_bounds_row(grey.data() + 1, width, least.data(), most.data());
-    std::vector<float> expected_least(padded_size);
-    std::vector<float> expected_most(padded_size);
-    sampling_bounds_row_ref(grey.data() + 1, width, expected_least.data(), expected_most.data());
+    GuardedRow<float> min(padded_size, 1, -1);
+    GuardedRow<float> max(padded_size, 2, -1);
+    sampling_bounds_row(grey.data() + 1, width, min.data(), max.data());
+    std::vector<float> expected_min(padded_size);
+    std::vector<float> expected_max(padded_size);
+    sampling_bounds_row_ref(grey.data() + 1, width, expected_min.data(), expected_max.data());
     for (int x = 0; x < width; ++x) {
       const float* at = grey.data() + 1 + x;
       const auto k = static_cast<std::size_t>(x);
-      ASSERT_EQ(least.values()[k], expected_least[k]);
-      ASSERT_EQ(most.values()[k], expected_most[k]);
-      ASSERT_FLOAT_EQ(expected_least[k],
+      ASSERT_EQ(min.values()[k], expected_min[k]);
+      ASSERT_EQ(max.values()[k], expected_max[k]);
+      ASSERT_FLOAT_EQ(expected_min[k],
                       std::min({at[0], (at[0] + at[-1]) / 2, (at[0] + at[1]) / 2}));
-      ASSERT_FLOAT_EQ(expected_most[k],
+      ASSERT_FLOAT_EQ(expected_max[k],
                       std::max({at[0], (at[0] + at[-1]) / 2, (at[0] + at[1]) / 2}));
     }
-    EXPECT_TRUE(least.intact());
-    EXPECT_TRUE(most.intact());
+    EXPECT_TRUE(min.intact());
+    EXPECT_TRUE(max.intact());
   }
 }
 
@@ -267,10 +267,10 @@ TEST(ExpLog, Exponential) {
     const double expected = std::exp2(double{exponent});
     ASSERT_NEAR(exp2_of_negative(exponent), expected, 3e-7 * expected) << exponent;
   }
-  const double least = std::exp2(-125.0);
-  EXPECT_EQ(exp2_of_negative(-125), least);
-  EXPECT_EQ(exp2_of_negative(-1e30F), least);
-  EXPECT_EQ(exp2_of_negative(-std::numeric_limits<float>::infinity()), least);
+  const double min = std::exp2(-125.0);
+  EXPECT_EQ(exp2_of_negative(-125), min);
+  EXPECT_EQ(exp2_of_negative(-1e30F), min);
+  EXPECT_EQ(exp2_of_negative(-std::numeric_limits<float>::infinity()), min);
 }
 
 TEST(ExpLog, Logarithm) {

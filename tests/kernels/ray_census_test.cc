@@ -53,11 +53,11 @@ int distance(const RayCensusPairs& row, int column, int lane) {
 /// Calls check(row, column, lane, the cell) for rows of every shape, with one threshold and three.
 template <typename Run, typename Check>
 void for_each_cell(const Run& run, const Check& check) {
-  for_each_feature_rows<std::uint8_t, kMostRayCensusBytes>(draw, [&](const auto& pairs) {
+  for_each_feature_rows<std::uint8_t, kMaxRayCensusBytes>(draw, [&](const auto& pairs) {
     for (const int thresholds : {1, 3}) {
       RayCensusPairs row{pairs, thresholds};
       for (auto& channel : row.channel) {  // bytes that are not there are not read
-        for (std::size_t p = thresholds == 1 ? 3 : 6; p < kMostRayCensusBytes; ++p) {
+        for (std::size_t p = thresholds == 1 ? 3 : 6; p < kMaxRayCensusBytes; ++p) {
           channel.reference[p] = nullptr;
           channel.partner[p] = nullptr;
         }
@@ -73,8 +73,8 @@ void for_each_cell(const Run& run, const Check& check) {
 }
 
 /// Every byte of a float differs from entry to entry.
-std::array<float, kMostRayCensusDistances> likelihoods() {
-  std::array<float, kMostRayCensusDistances> values{};
+std::array<float, kMaxRayCensusDistances> likelihoods() {
+  std::array<float, kMaxRayCensusDistances> values{};
   for (std::size_t k = 0; k < values.size(); ++k) {
     values[k] = std::exp(-0.37F * static_cast<float>(k)) / 3;
   }
@@ -97,7 +97,7 @@ TEST_P(RayCensus, HammingDistance) {
 TEST_P(RayCensus, LikelihoodsAreTheTables) {
   const auto values = likelihoods();
   const LikelihoodByDistance table(values);
-  for (int k = 0; k < kMostRayCensusDistances; ++k) {
+  for (int k = 0; k < kMaxRayCensusDistances; ++k) {
     ASSERT_EQ(table.at(k), values[static_cast<std::size_t>(k)]);
   }
   for_each_cell(
@@ -116,7 +116,7 @@ TEST_P(RayCensus, LikelihoodsAreTheTables) {
 
 TEST_P(RayCensus, EnergiesAreTheTables) {
   EnergyByDistance table;
-  for (std::size_t k = 0; k < kMostRayCensusDistances; ++k) {
+  for (std::size_t k = 0; k < kMaxRayCensusDistances; ++k) {
     table.steps[k] = static_cast<std::uint8_t>(251 - 3 * k);
   }
   for_each_cell(

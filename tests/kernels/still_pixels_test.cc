@@ -87,12 +87,12 @@ TEST_P(StillPixelsKernel, StillMeansNoLargerChangeAround) {
     still_row(changes, width, 27, still.data());
     still_row_ref(changes, width, 27, reference.data());
     for (int x = 0; x < width; ++x) {
-      int most = 0;
+      int max = 0;
       for (const std::int16_t* row : changes) {
-        most = std::max({most, int{row[x - 1]}, int{row[x]}, int{row[x + 1]}});
+        max = std::max({max, int{row[x - 1]}, int{row[x]}, int{row[x + 1]}});
       }
-      ASSERT_EQ(still[static_cast<std::size_t>(x)], most <= 27 ? 255 : 0) << x << " of " << width;
-      ASSERT_EQ(reference[static_cast<std::size_t>(x)], most <= 27 ? 255 : 0);
+      ASSERT_EQ(still[static_cast<std::size_t>(x)], max <= 27 ? 255 : 0) << x << " of " << width;
+      ASSERT_EQ(reference[static_cast<std::size_t>(x)], max <= 27 ? 255 : 0);
     }
   }
 }
@@ -105,21 +105,21 @@ TEST(StillView, NeedsAllThePixelsItCanComeFrom) {
       for (std::uint8_t& value : still) {
         value = random() % 6 == 0 ? 0 : 255;
       }
-      const int least = random_int(random, -width - 3, width + 3);
-      const int most = random_int(random, least, width + 6);
+      const int min = random_int(random, -width - 3, width + 3);
+      const int max = random_int(random, min, width + 6);
       std::vector<std::uint8_t> view(still.size(), 7);
-      still_view_row(still.data(), width, least, most, view.data());
+      still_view_row(still.data(), width, min, max, view.data());
       for (int x = 0; x < width; ++x) {
         int inside = 0;
         bool all = true;
-        for (int source = x + least; source <= x + most; ++source) {
+        for (int source = x + min; source <= x + max; ++source) {
           if (source >= 0 && source < width) {
             ++inside;
             all = all && still[static_cast<std::size_t>(source)] != 0;
           }
         }
         ASSERT_EQ(view[static_cast<std::size_t>(x)], inside > 0 && all ? 255 : 0)
-            << x << " of " << width << ", shifts " << least << " to " << most;
+            << x << " of " << width << ", shifts " << min << " to " << max;
       }
     }
   }

@@ -168,21 +168,21 @@ TYPED_TEST(SurfaceFetch, InsideASurfaceIsKeysConvolution) {
         const double y = scene.line[n] + double{scene.fraction_y[n]};
         for (int c = 0; c < lanes; ++c) {
           double sum = 0;
-          double least = 0;
-          double most = kLargestValue<T>;
+          double min = 0;
+          double max = kLargestValue<T>;
           for (int j = -3; c < channels && j <= height + 2; ++j) {
             for (int i = -3; i <= width + 2; ++i) {
               const double value = static_cast<double>(
                   scene.pixel(std::clamp(i, 0, width - 1), std::clamp(j, 0, height - 1), c));
               sum += keys(x - i) * keys(y - j) * value;
               if (std::abs(i - std::floor(x) - 0.5) < 2 && std::abs(j - std::floor(y) - 0.5) < 2) {
-                least = std::min(least, value);
-                most = std::max(most, value);
+                min = std::min(min, value);
+                max = std::max(max, value);
               }
             }
           }
           ASSERT_NEAR(result[n * static_cast<std::size_t>(lanes) + static_cast<std::size_t>(c)],
-                      std::clamp(sum, least, most), kLargestValue<T> * 2e-6)
+                      std::clamp(sum, min, max), kLargestValue<T> * 2e-6)
               << width << "x" << height << " at " << x << ", " << y;
         }
       }

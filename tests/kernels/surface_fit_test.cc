@@ -62,15 +62,15 @@ std::vector<float> fitted(MarginMap& map, int y, decltype(fit_surface_row)* fit)
   return row.values();
 }
 
-constexpr float kLeastPx = -0.75F;
-constexpr float kMostPx = 2.0F;
+constexpr float kMinPx = -0.75F;
+constexpr float kMaxPx = 2.0F;
 
 /// Fits a row within limits.
 template <decltype(fit_surface_row)* kFit>
 void limited_row(const SurfaceRow& row, float* fitted_px) {
   SurfaceRow limited = row;
-  limited.least_px = kLeastPx;
-  limited.most_px = kMostPx;
+  limited.min_px = kMinPx;
+  limited.max_px = kMaxPx;
   kFit(limited, fitted_px);
 }
 
@@ -81,7 +81,7 @@ bool is_limited(MarginMap& map, int y, const std::vector<float>& row,
   for (int x = 0; x < map.width; ++x) {
     const auto i = static_cast<std::size_t>(x);
     const bool may_be_kept = !map.is_matched(x, y) || row[i] == map.at(x, y);
-    if (limited[i] != std::clamp(row[i], kLeastPx, kMostPx) &&
+    if (limited[i] != std::clamp(row[i], kMinPx, kMaxPx) &&
         !(may_be_kept && limited[i] == row[i])) {
       return false;
     }

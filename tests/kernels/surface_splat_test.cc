@@ -120,10 +120,10 @@ class PlainZBuffer {
         for (std::size_t k = 0; k < 4; ++k) {
           const std::size_t before = around[(k + 3) % 4];
           const std::size_t centre = around[k];
-          const std::size_t behind = around[(k + 1) % 4];
-          if (joined(before, centre) && joined(centre, behind)) {
-            add_triangle({quad[before], quad[centre], quad[behind]},
-                         {quad[before], quad[centre], quad[behind], quad[centre]});
+          const std::size_t after = around[(k + 1) % 4];
+          if (joined(before, centre) && joined(centre, after)) {
+            add_triangle({quad[before], quad[centre], quad[after]},
+                         {quad[before], quad[centre], quad[after], quad[centre]});
           }
         }
       }

@@ -31,10 +31,10 @@ void for_each_target(const Body& body) {
 }
 
 /// Piecewise smooth disparities in quarter pixels with jumps and unknown stretches, as maps have.
-inline std::vector<float> random_disparities(std::mt19937& random, int width, float least,
-                                             float most) {
+inline std::vector<float> random_disparities(std::mt19937& random, int width, float min,
+                                             float max) {
   std::vector<float> row(static_cast<std::size_t>(width));
-  std::uniform_real_distribution<float> level(least, most);
+  std::uniform_real_distribution<float> level(min, max);
   std::uniform_real_distribution<float> slope(-1.2F, 1.2F);
   float value = level(random);
   float step = slope(random);

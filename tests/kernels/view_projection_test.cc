@@ -34,7 +34,7 @@ bool near_half(double value) { return std::abs(value - std::floor(value) - 0.5) 
 
 TEST(ViewProjection, IsTheDefinition) {
   std::mt19937 random(1);
-  int behind = 0;
+  int after = 0;
   for (const ViewProjection& view : projection_cases()) {
     for (const int width : kAwkwardWidths) {
       const std::vector<float> d = random_disparities(random, width, -3, 20);
@@ -45,7 +45,7 @@ TEST(ViewProjection, IsTheDefinition) {
       for (std::size_t i = 0; i < d.size(); ++i) {
         const Point point = plain_point(view, first_column + static_cast<int>(i), line, d[i]);
         if (std::isnan(d[i]) || point.depth_ratio <= 0) {
-          behind += std::isnan(d[i]) ? 0 : 1;
+          after += std::isnan(d[i]) ? 0 : 1;
           ASSERT_TRUE(std::isnan(values.disparity_px[i]));
           ASSERT_EQ(values.nearness[i], -kInfinity);
           continue;
@@ -59,7 +59,7 @@ TEST(ViewProjection, IsTheDefinition) {
       }
     }
   }
-  EXPECT_GT(behind, 100);
+  EXPECT_GT(after, 100);
 }
 
 TEST(ViewProjection, EqualOnEveryInstructionSetAndToReference) {

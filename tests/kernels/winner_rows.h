@@ -133,14 +133,14 @@ struct WinnerCells {
   UnalignedRow<std::int32_t> cells;
 
   /// Sums in [0, most]: the smaller, the more ties.
-  WinnerCells(std::mt19937& random, const WinnerCase& c, std::int32_t most)
+  WinnerCells(std::mt19937& random, const WinnerCase& c, std::int32_t max)
       : lanes(c.lanes()),
         sums(static_cast<std::size_t>(c.width) * static_cast<std::size_t>(lanes)),
         cells(sums.size(), random() % 5) {
     for (int x = 0; x < c.width; ++x) {
       for (int i = 0; i < lanes; ++i) {
         const std::size_t cell = index(x, i);
-        sums[cell] = static_cast<std::int32_t>(random() % (static_cast<std::uint32_t>(most) + 1U));
+        sums[cell] = static_cast<std::int32_t>(random() % (static_cast<std::uint32_t>(max) + 1U));
         cells[cell] = sums[cell] * (1 << c.index_bits) + (c.index_bits > 0 ? i : 0);
         if (!c.counts(x, i)) {
           cells[cell] = std::numeric_limits<std::int32_t>::min();

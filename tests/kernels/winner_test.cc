@@ -61,8 +61,8 @@ void sweep(Kernel kernel) {
     if (testing::Test::HasFatalFailure()) {
       return;
     }
-    const std::int32_t most[] = {0, 1, 3, 20, largest_sum(c)};
-    expect_winners(kernel, random, c, WinnerCells(random, c, most[random() % std::size(most)]));
+    const std::int32_t max[] = {0, 1, 3, 20, largest_sum(c)};
+    expect_winners(kernel, random, c, WinnerCells(random, c, max[random() % std::size(max)]));
   });
 }
 

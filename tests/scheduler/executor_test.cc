@@ -89,15 +89,15 @@ TEST_P(ExecutorTest, NestsLoops) {
 
 TEST_P(ExecutorTest, UsesNoMoreThreadsThanItHas) {
   std::atomic<int> running{0};
-  std::atomic<int> most{0};
+  std::atomic<int> max{0};
   executor().parallel_for(200, [&](int) {
     const int now = ++running;
-    for (int seen = most; seen < now && !most.compare_exchange_weak(seen, now);) {
+    for (int seen = max; seen < now && !max.compare_exchange_weak(seen, now);) {
     }
     std::this_thread::yield();
     --running;
   });
-  EXPECT_LE(most, GetParam().threads);
+  EXPECT_LE(max, GetParam().threads);
 }
 
 TEST_P(ExecutorTest, CallersOnSeveralThreadsDoNotDisturbEachOther) {

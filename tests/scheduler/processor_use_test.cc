@@ -44,8 +44,8 @@ TEST(ProcessorUse, IsThatOfOtherProcesses) {
 
 TEST(ProcessorUse, IsNotThatOfThisProcess) {
   // Once idle and once at work: own work adds nothing, whatever others do meanwhile.
-  double least_excess = 1e9;
-  for (int attempt = 0; attempt < 3 && least_excess > 0.5; ++attempt) {
+  double min_excess = 1e9;
+  for (int attempt = 0; attempt < 3 && min_excess > 0.5; ++attempt) {
     const ProcessorUse idle;
     std::this_thread::sleep_for(std::chrono::milliseconds(150));
     const auto while_idle = idle.of_others();
@@ -54,9 +54,9 @@ TEST(ProcessorUse, IsNotThatOfThisProcess) {
     }
     const ProcessorUse busy;
     work_for(std::chrono::milliseconds(150));
-    least_excess = std::min(least_excess, busy.of_others().value() - *while_idle);
+    min_excess = std::min(min_excess, busy.of_others().value() - *while_idle);
   }
-  EXPECT_LE(least_excess, 0.5);
+  EXPECT_LE(min_excess, 0.5);
 }
 
 }  // namespace processor_use_test

@@ -128,9 +128,9 @@ TEST(ScratchPool, KnowsTheMostThatWasLeasedForAUse) {
     const ScratchPool::Lease stored = pool.lease(64, ScratchUse::kStored);
   }
   const ScratchPool::Lease again = pool.lease(1000, ScratchUse::kRings);
-  EXPECT_EQ(pool.most_leased_bytes(ScratchUse::kRings), 3000U);
-  EXPECT_EQ(pool.most_leased_bytes(ScratchUse::kStored), 64U);
-  EXPECT_EQ(pool.most_leased_bytes(ScratchUse::kOther), 0U);
+  EXPECT_EQ(pool.max_leased_bytes(ScratchUse::kRings), 3000U);
+  EXPECT_EQ(pool.max_leased_bytes(ScratchUse::kStored), 64U);
+  EXPECT_EQ(pool.max_leased_bytes(ScratchUse::kOther), 0U);
 }
 
 }  // namespace scratch_pool_test

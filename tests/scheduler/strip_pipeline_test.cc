@@ -133,7 +133,7 @@ class CutSample {
   }
   /// Many cells (halo cells counted) are left to smaller images.
   bool is_cheap(const SampleRow& row) {
-    constexpr double kMostCells = 1e5;
+    constexpr double kMaxCells = 1e5;
     const Extent extent = kExtents[row[2]];
     auto [known, is_new] = known_.try_emplace({row[0], row[1], row[2], row[3]}, false);
     if (is_new) {
@@ -145,7 +145,7 @@ class CutSample {
         cells +=
             pass.work_ratio * (pass.end_stage - pass.first_stage) * extent.columns * extent.rows;
       }
-      known->second = cells <= kMostCells;
+      known->second = cells <= kMaxCells;
     }
     return known->second;
   }

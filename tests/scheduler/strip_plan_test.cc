@@ -281,22 +281,22 @@ TEST(StripPlan, StripsFillLevelThreeOnlyWhereItIsNear) {
   machine.l2_bytes = std::size_t{2} << 20U;
   PlanRequest request;
   const GeometryChain chain = iterations({1282, 1110}, 10, 1024);
-  const auto most_scratch = [&](std::size_t l3_megabytes) {
+  const auto max_scratch = [&](std::size_t l3_megabytes) {
     machine.l3_bytes = l3_megabytes << 20U;
     const ChainPlan plan = plan_chain(chain.stages(), machine, request);
     expect_sound(plan, chain.stages());
-    std::size_t most = 0;
+    std::size_t max = 0;
     for (const PassPlan& pass : plan.passes) {
-      most = std::max(most, pass.scratch_bytes);
+      max = std::max(max, pass.scratch_bytes);
     }
-    return most;
+    return max;
   };
   for (const int threads : {1, 2}) {
     request.threads = threads;
-    EXPECT_GT(most_scratch(64), machine.l2_bytes) << threads;
+    EXPECT_GT(max_scratch(64), machine.l2_bytes) << threads;
     // Shared with cores that are out of sight.
-    EXPECT_LT(most_scratch(480), machine.l2_bytes) << threads;
-    EXPECT_LT(most_scratch(0), machine.l2_bytes) << threads;
+    EXPECT_LT(max_scratch(480), machine.l2_bytes) << threads;
+    EXPECT_LT(max_scratch(0), machine.l2_bytes) << threads;
   }
 }
 

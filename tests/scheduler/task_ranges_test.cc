@@ -14,9 +14,9 @@ namespace task_ranges_test {
 using testing::ElementsAre;
 
 /// What a thread of `node` gets, alone, one after the other.
-std::vector<int> taken_by(TaskRanges& tasks, int node, int most = 1000) {
+std::vector<int> taken_by(TaskRanges& tasks, int node, int max = 1000) {
   std::vector<int> taken;
-  while (static_cast<int>(taken.size()) < most) {
+  while (static_cast<int>(taken.size()) < max) {
     const std::optional<int> task = tasks.take(node);
     if (!task) {
       break;

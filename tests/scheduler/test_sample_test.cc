@@ -52,14 +52,14 @@ std::set<Pair> pairs_of(const std::vector<SampleRow>& rows) {
 TEST(TestSample, EveryPairOfValuesOccursInFewRows) {
   struct Case {
     std::vector<int> sizes;
-    std::size_t most_rows;
+    std::size_t max_rows;
   };
   for (const Case& c :
        {Case{{3, 3}, 9}, Case{{1, 1, 1}, 1}, Case{{2, 2, 2, 2}, 8}, Case{{8, 8, 6}, 80},
         Case{{27, 2, 3, 3, 5, 5, 4, 4}, 200}, Case{{11, 6, 4, 6, 4, 22}, 300}}) {
     for (const std::uint32_t seed : {1U, 2U, 77U}) {
       const std::vector<SampleRow> rows = covering_rows(c.sizes, seed);
-      EXPECT_LE(rows.size(), c.most_rows) << c.sizes.size() << " dimensions, seed " << seed;
+      EXPECT_LE(rows.size(), c.max_rows) << c.sizes.size() << " dimensions, seed " << seed;
       std::size_t pairs = 0;
       for (std::size_t j = 0; j < c.sizes.size(); ++j) {
         for (std::size_t k = j + 1; k < c.sizes.size(); ++k) {

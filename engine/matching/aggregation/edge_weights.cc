@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/image/grey_levels.h"
+#include "engine/image/intensity_rows.h"
 #include "engine/image/memory_use.h"
 #include "engine/matching/levels/energy_format.h"
 #include "engine/matching/levels/level_extents.h"
@@ -31,7 +31,7 @@ void halve(ImageView<const float> finer, ImageView<float> coarser, Execution& ex
 template <typename Weight, typename Store>
 void EdgeWeights::make(ImageView<const float> grey, const MethodParameters& parameters,
                        Execution& execution, const Store& store, Planes<Weight>& planes) {
-  const kernels::EdgeModel model{.least = static_cast<float>(parameters.edge_weight),
+  const kernels::EdgeModel model{.min = static_cast<float>(parameters.edge_weight),
                                  .contrast = static_cast<float>(parameters.edge_contrast)};
   const int width = grey.width();
   const int height = grey.height();
@@ -99,7 +99,7 @@ std::span<const EdgeWeights> EdgeWeightLevels::prepare(const Photograph& referen
     if (level == 0) {
       execution.for_each_band(grey.height(), [&](int first_row, int end_row) {
         for (int y = first_row; y < end_row; ++y) {
-          grey_levels_row(reference, y, grey.row(y));
+          intensity_row(reference, y, grey.row(y));
         }
       });
     } else {

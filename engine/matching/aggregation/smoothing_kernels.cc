@@ -37,17 +37,17 @@ std::array<int, 4> box_cascade_widths_px(double sigma_px) {
   // With w = 2r + 1 the variance is r(r + 1)/3 and the fourth cumulant −(w⁴ − 1)/120. No box needs
   // to be wider than the first whose own variance exceeds σ².
   const double wanted = 3 * sigma_px * sigma_px;
-  const int most = static_cast<int>(std::sqrt(wanted)) + 1;
+  const int max = static_cast<int>(std::sqrt(wanted)) + 1;
   const auto fourth_power = [](int radius) {
     const double width_squared = (2.0 * radius + 1) * (2.0 * radius + 1);
     return width_squared * width_squared;
   };
   std::array<int, 4> best = {};
   std::pair<double, double> best_distance = {std::numeric_limits<double>::max(), 0};
-  for (int a = 0; a <= most; ++a) {
-    for (int b = a; b <= most; ++b) {
-      for (int c = b; c <= most; ++c) {
-        for (int d = c; d <= most; ++d) {
+  for (int a = 0; a <= max; ++a) {
+    for (int b = a; b <= max; ++b) {
+      for (int c = b; c <= max; ++c) {
+        for (int d = c; d <= max; ++d) {
           const int variances = a * (a + 1) + b * (b + 1) + c * (c + 1) + d * (d + 1);
           const std::pair<double, double> distance = {
               std::abs(variances - wanted),

@@ -17,7 +17,7 @@ namespace {
 using kernels::BayesState;
 
 // Below this the product of five floors of the prior is not a normal float.
-constexpr double kLeastEpsilonOfProductForm = 1e-7;
+constexpr double kMinEpsilonOfProductForm = 1e-7;
 // Taps of the prior this much smaller than its floor are left out: σP = 0.1 needs none besides the
 // centre, 0.4 one on each side.
 constexpr double kNegligibleTap = 1e-3;
@@ -194,7 +194,7 @@ std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
     const LevelVolume* coarser, const EdgeWeights* edges, const kernels::CandidatePlane& plane) {
   const bool half = parameters.mu == 0.5 && edges == nullptr &&
-                    parameters.epsilon_prior >= kLeastEpsilonOfProductForm;
+                    parameters.epsilon_prior >= kMinEpsilonOfProductForm;
   const BayesState between = half ? BayesState::kSmoothed : BayesState::kLogSmoothed;
   std::vector<std::unique_ptr<scheduler::RowStage>> stages;
   for (int i = 0; i <= parameters.iterations; ++i) {

@@ -105,7 +105,7 @@ class MaxProductStage final : public BayesStepStage<FixedEnergy> {
   /// Working cells of the kernel.
   [[nodiscard]] std::size_t work_cells() const {
     return static_cast<std::size_t>(kernels::max_product_work_cells(
-        lanes(), rises_.radius(), most_segments(lanes(), blocks_), rises_.plane()));
+        lanes(), rises_.radius(), max_segments(lanes(), blocks_), rises_.plane()));
   }
 
   void make_columns(const Columns& columns) const {
@@ -161,7 +161,7 @@ class MaxProductFromCoarserStage final : public FromCoarserStage<FixedEnergy> {
   [[nodiscard]] std::size_t work_cells() const override {
     return energy_cells() +
            static_cast<std::size_t>(kernels::max_product_work_cells(
-               lanes(), rises_.radius(), most_segments(lanes(), blocks()), rises_.plane()));
+               lanes(), rises_.radius(), max_segments(lanes(), blocks()), rises_.plane()));
   }
 
   void make_states(const kernels::CompactRow& coarser, std::span<const int> segment_ends,

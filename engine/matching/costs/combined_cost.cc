@@ -26,7 +26,7 @@ class CombinedPlanes final : public CostPlanes {
     prepare_filter_levels(source, filter_levels_);
     prepare_levels(source);
     if (source.channels > 1 && (has_census(parameters) || has_gradient(parameters))) {
-      luma_.resize(source.width(), source.height(), kFilterMarginBefore, kFilterMarginBehind);
+      luma_.resize(source.width(), source.height(), kFilterMarginBefore, kFilterMarginAfter);
       source.for_each_row([&](int y) {
         source.luma_row(y, luma_.row(y));
         luma_.fill_margins(y);
@@ -58,8 +58,8 @@ class CombinedPlanes final : public CostPlanes {
     });
     source.for_each_channel_row([&](std::size_t c, int y) {
       auto& [level, min, max] = levels[c];
-      kernels::fixed_levels_row(filter_levels_[c].row(y), source.width(),
-                                {level.plain.row(y), min.plain.row(y), max.plain.row(y)});
+      kernels::fixed_intensities_row(filter_levels_[c].row(y), source.width(),
+                                     {level.plain.row(y), min.plain.row(y), max.plain.row(y)});
       for (FeaturePlane<std::uint16_t>& plane : levels[c]) {
         plane.finish_row(source, y);
       }
@@ -130,7 +130,7 @@ class CombinedModel final : public CostModel {
   [[nodiscard]] double largest_energy() const {
     const int terms = 1 + (has_census(parameters()) ? 1 : 0) + (has_gradient(parameters()) ? 1 : 0);
     return -terms *
-           std::log(std::max(kernels::kLeastCombinedEpsilon, parameters().epsilon_measurement));
+           std::log(std::max(kernels::kMinCombinedEpsilon, parameters().epsilon_measurement));
   }
 
   void combine(const CostRow& row, const Models& models, kernels::CombinedCells meaning,

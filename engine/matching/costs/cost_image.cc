@@ -19,7 +19,7 @@ void CostImage::prepare(const Photograph& photograph, const MethodParameters& pa
   }
   height_ = photograph.height();
   channels_ = parameters.colour == ColourUse::kChannels && photograph.channels() >= 3 ? 3 : 1;
-  planes_->prepare({photograph, use.level_changes, channels_, margins_of(geometry),
+  planes_->prepare({photograph, use.intensity_changes, channels_, margins_of(geometry),
                     use.as_partner_of_left, execution},
                    parameters);
 }

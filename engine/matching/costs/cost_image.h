@@ -6,7 +6,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/costs/level_change.h"
+#include "engine/matching/costs/intensity_change.h"
 #include "engine/matching/parameters/method_parameters.h"
 #include "kernels/candidates.h"
 
@@ -22,7 +22,7 @@ struct CostImageUse {
   bool as_partner_of_left = true;
   bool as_partner_of_right = true;
   /// Made to the grey levels before anything is made of them.
-  LevelChanges level_changes = {};
+  IntensityChanges intensity_changes = {};
 };
 
 /// Everything that a cost looks up in one photograph: grey levels or channels, gradients, census

@@ -1,11 +1,11 @@
 #include "engine/matching/costs/cost_planes.h"
 
-#include "engine/image/grey_levels.h"
+#include "engine/image/intensity_rows.h"
 
 namespace vantage {
 namespace {
 
-void change_levels(const LevelChange& change, int width, float* levels) {
+void changes_intensities(const IntensityChange& change, int width, float* levels) {
   if (change.is_none()) {
     return;
   }
@@ -21,13 +21,13 @@ PlaneMargins margins_of(const kernels::CandidateGeometry& geometry) {
   // Lane i of column x is read at x + disparity_min + i, in the mirrored plane as in the plain one.
   // Kernels write whole vectors: up to a lane multiple past the last pixel that matters.
   return {std::max(kFilterMarginBefore, -geometry.disparity_min),
-          std::max(kFilterMarginBehind,
+          std::max(kFilterMarginAfter,
                    geometry.disparity_min + geometry.lanes() + kernels::kLaneMultiple)};
 }
 
 void PlaneSource::luma_row(int y, float* levels) const {
-  grey_levels_row(photograph, y, levels);
-  change_levels(level_changes.luma, width(), levels);
+  intensity_row(photograph, y, levels);
+  changes_intensities(intensity_changes.luma, width(), levels);
 }
 
 void PlaneSource::level_row(std::size_t channel, int y, float* levels) const {
@@ -35,13 +35,13 @@ void PlaneSource::level_row(std::size_t channel, int y, float* levels) const {
     luma_row(y, levels);
     return;
   }
-  channel_levels_row(photograph, static_cast<int>(channel), y, levels);
-  change_levels(level_changes.channels[channel], width(), levels);
+  channel_intensity_row(photograph, static_cast<int>(channel), y, levels);
+  changes_intensities(intensity_changes.channels[channel], width(), levels);
 }
 
 void prepare_filter_levels(const PlaneSource& source, FilterLevels& levels) {
   source.for_each_channel([&](std::size_t c) {
-    levels[c].resize(source.width(), source.height(), kFilterMarginBefore, kFilterMarginBehind);
+    levels[c].resize(source.width(), source.height(), kFilterMarginBefore, kFilterMarginAfter);
   });
   source.for_each_channel_row([&](std::size_t c, int y) {
     source.level_row(c, y, levels[c].row(y));

@@ -7,8 +7,8 @@
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
 #include "engine/matching/costs/image_gradient.h"
+#include "engine/matching/costs/intensity_change.h"
 #include "engine/matching/costs/intensity_planes.h"
-#include "engine/matching/costs/level_change.h"
 #include "engine/matching/parameters/method_parameters.h"
 #include "kernels/candidates.h"
 
@@ -26,7 +26,7 @@ PlaneMargins margins_of(const kernels::CandidateGeometry& geometry);
 /// A photograph as costs read it, and the shape of the planes that are made of it.
 struct PlaneSource {
   const Photograph& photograph;
-  const LevelChanges& level_changes;
+  const IntensityChanges& intensity_changes;
   int channels;  ///< 1 (luma) or 3
   PlaneMargins margins;
   bool has_mirrored;

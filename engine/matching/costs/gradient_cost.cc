@@ -26,7 +26,7 @@ class GradientModel final : public CostModel {
     energies(row, cells);
     kernels::likelihood_of_evidence(
         {row.partner.geometry(), row.columns.begin, row.columns.size()},
-        static_cast<float>(std::max(kernels::kLeastEvidenceSigma, parameters().sigma_measurement)),
+        static_cast<float>(std::max(kernels::kMinEvidenceSigma, parameters().sigma_measurement)),
         measurement().epsilon, cells);
   }
   [[nodiscard]] std::optional<float> energy_without_partner() const override { return 0.0F; }
@@ -70,8 +70,8 @@ void GradientPlanes::prepare(const PlaneSource& source, const MethodParameters& 
       plane.resize(source);
     }
     if (parameters.prefilter) {
-      smooth_levels_[c].resize(width, height, kFilterMarginBefore, kFilterMarginBehind);
-      smooth_levels(levels_[c], width, height, source.execution, smooth_levels_[c]);
+      smooth_levels_[c].resize(width, height, kFilterMarginBefore, kFilterMarginAfter);
+      smooth_intensities(levels_[c], width, height, source.execution, smooth_levels_[c]);
     }
   });
   const auto alpha = static_cast<float>(parameters.alpha);

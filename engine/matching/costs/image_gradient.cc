@@ -69,8 +69,8 @@ std::size_t filter_work_floats(int width) {
   return static_cast<std::size_t>(width) + 3 * kernels::kLaneMultiple;
 }
 
-void smooth_levels(const IntensityPlane<float>& levels, int width, int height, Execution& execution,
-                   IntensityPlane<float>& smooth) {
+void smooth_intensities(const IntensityPlane<float>& levels, int width, int height,
+                        Execution& execution, IntensityPlane<float>& smooth) {
   const FilterTaps taps = gaussian_taps();
   execution.for_each_band(height, [&](int first_row, int end_row) {
     const auto work = execution.scratch().lease(sizeof(float) * filter_work_floats(width));

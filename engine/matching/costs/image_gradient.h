@@ -11,7 +11,7 @@ namespace vantage {
 /// Columns before and behind the image that a plane needs to be filtered; behind it, as many more
 /// as kernels read in whole vectors.
 inline constexpr int kFilterMarginBefore = 4;
-inline constexpr int kFilterMarginBehind = 4 + kernels::kLaneMultiple;
+inline constexpr int kFilterMarginAfter = 4 + kernels::kLaneMultiple;
 
 /// Floats of working memory for filtering one row.
 std::size_t filter_work_floats(int width);
@@ -19,8 +19,8 @@ std::size_t filter_work_floats(int width);
 /// Gaussian prefilter of chapter 5: σ = ½, radius 2. All planes have the size width × height and
 /// margins of at least those above; those of `levels` must be filled, and those of `smooth` will
 /// be. Beyond the border the border is replicated. Identical for any `execution`.
-void smooth_levels(const IntensityPlane<float>& levels, int width, int height, Execution& execution,
-                   IntensityPlane<float>& smooth);
+void smooth_intensities(const IntensityPlane<float>& levels, int width, int height,
+                        Execution& execution, IntensityPlane<float>& smooth);
 
 /// Components of the gradient (5.9) of row y: correlations with the derivative filters of EQUATIONS
 /// §2, borders replicated. `levels`, its size and margins as above; gx and gy may be written up to

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/image/grey_levels.h"
+#include "engine/image/intensity_rows.h"
 #include "kernels/column_ssd/column_ssd.h"
 
 namespace vantage {
@@ -27,7 +27,7 @@ Bounds fill_grey(const Photograph& photograph, Execution& execution, IntensityPl
   execution.for_each_band(photograph.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
       float* grey = plane.row(y);
-      grey_levels_row(photograph, y, grey);
+      intensity_row(photograph, y, grey);
       const auto [low, high] = std::minmax_element(grey, grey + photograph.width());
       of_row[static_cast<std::size_t>(y)] = {*low, *high};
     }
@@ -48,11 +48,11 @@ float cost_scale(const Bounds& bounds, int window_samples) {
   }
   // Each cost may round up by ½; the margin covers rounding of the float products
   // and still lets the span of 255 grey levels have the scale 8.
-  const double most_cost = 0.995 * std::min<double>(kernels::kFloatSquareLimit,
-                                                    std::numeric_limits<std::int32_t>::max() /
-                                                            static_cast<double>(window_samples) -
-                                                        1);
-  return static_cast<float>(std::exp2(std::floor(std::log2(std::sqrt(most_cost) / span))));
+  const double max_cost = 0.995 * std::min<double>(kernels::kFloatSquareLimit,
+                                                   std::numeric_limits<std::int32_t>::max() /
+                                                           static_cast<double>(window_samples) -
+                                                       1);
+  return static_cast<float>(std::exp2(std::floor(std::log2(std::sqrt(max_cost) / span))));
 }
 
 /// Fills the margins of one row of the left plane and mirrors the pixels of the right image, once

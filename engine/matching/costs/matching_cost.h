@@ -20,7 +20,7 @@ namespace vantage {
 
 /// Between which values energies lie.
 struct CostBounds {
-  float least = 0;
+  float min = 0;
   float largest = 0;
 };
 

@@ -40,12 +40,12 @@ PartnerRows::PartnerRows(const CostImage& reference, const CostPartner& partner,
       geometry_(geometry),
       rows_down_(geometry.direction * partner.disparity_y_px) {
   const double ratio = partner.baseline_ratio;
-  constexpr double kMostRatio = 1000;
-  if (!(ratio != 0 && std::abs(ratio) <= kMostRatio)) {
+  constexpr double kMaxRatio = 1000;
+  if (!(ratio != 0 && std::abs(ratio) <= kMaxRatio)) {
     throw UsageError(
         fmt::format("baseline is {} times the first one, expected a number from {} "
                     "to {}, not 0",
-                    ratio, -kMostRatio, kMostRatio));
+                    ratio, -kMaxRatio, kMaxRatio));
   }
   if (ratio < 0) {
     geometry_.direction = -geometry_.direction;

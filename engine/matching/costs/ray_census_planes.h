@@ -12,7 +12,7 @@ namespace vantage {
 /// Bytes of ray census codes: ray_census_bytes(thresholds) of the planes are in use.
 class RayCensusPlanes final : public CostPlanes {
  public:
-  ChannelPlanes<std::uint8_t, kernels::kMostRayCensusBytes> codes;
+  ChannelPlanes<std::uint8_t, kernels::kMaxRayCensusBytes> codes;
 
   void prepare(const PlaneSource& source, const MethodParameters& parameters) override;
   [[nodiscard]] std::size_t held_bytes() const override {

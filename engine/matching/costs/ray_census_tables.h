@@ -24,7 +24,7 @@ inline kernels::LikelihoodByDistance ray_census_likelihoods(
   constexpr auto kLanes = static_cast<int>(cells.size());
   kernels::likelihood_of_costs({.columns = 1, .lanes = kLanes, .count = kLanes}, model,
                                cells.data());
-  std::array<float, kernels::kMostRayCensusDistances> likelihoods{};
+  std::array<float, kernels::kMaxRayCensusDistances> likelihoods{};
   std::copy_n(cells.begin(), likelihoods.size(), likelihoods.begin());
   return kernels::LikelihoodByDistance(likelihoods);
 }
@@ -39,17 +39,17 @@ struct RayCensusEnergies {
 /// Steps are as small as bytes have room for, powers of two from 1/8, those of compact energies, to
 /// 1/128: sums of four are then as good as those of floats. Energies from 31.9 on count as that.
 inline RayCensusEnergies ray_census_energies(const MethodParameters& parameters) {
-  constexpr float kLeastStep = 1.0F / 128;
+  constexpr float kMinStep = 1.0F / 128;
   const double sigma = parameters.sigma_measurement;
   const double epsilon = parameters.epsilon_measurement;
   RayCensusEnergies energies;
-  while (energies.step > kLeastStep &&
-         -std::log(epsilon) <= kernels::kMostCompact * (energies.step / 2)) {
+  while (energies.step > kMinStep &&
+         -std::log(epsilon) <= kernels::kMaxCompact * (energies.step / 2)) {
     energies.step /= 2;
   }
   const auto in_steps = [&energies](double likelihood) {
     return static_cast<std::uint8_t>(std::min<double>(
-        kernels::kMostCompact, std::nearbyint(-std::log(likelihood) / energies.step)));
+        kernels::kMaxCompact, std::nearbyint(-std::log(likelihood) / energies.step)));
   };
   const int distances = kernels::ray_census_distances(parameters.census_thresholds);
   for (int distance = 0; distance < distances; ++distance) {

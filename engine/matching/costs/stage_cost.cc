@@ -39,7 +39,7 @@ class CostStage final : public scheduler::RowStage {
   [[nodiscard]] std::size_t bytes_per_column() const override { return sizeof(float) * lanes(); }
   /// The cells of one block for the partners after the first, and what interpolation needs.
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
-    return in_one_go() ? 0 : sizeof(float) * (kBlockColumns * lanes() + most_work_floats());
+    return in_one_go() ? 0 : sizeof(float) * (kBlockColumns * lanes() + max_work_floats());
   }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     kernels::KernelWork work;
@@ -87,7 +87,7 @@ class CostStage final : public scheduler::RowStage {
   [[nodiscard]] bool in_one_go() const {
     return partners_.size() == 1 && !partners_.front().is_interpolated();
   }
-  [[nodiscard]] std::size_t most_work_floats() const {
+  [[nodiscard]] std::size_t max_work_floats() const {
     std::size_t floats = 0;
     for (const PartnerRows& partner : partners_) {
       floats = std::max(floats, partner.work_floats(kBlockColumns));

@@ -12,7 +12,7 @@ class DisparityPriorStage final : public scheduler::RowStage {
  public:
   DisparityPriorStage(std::unique_ptr<scheduler::RowStage> costs,
                       const kernels::CandidateGeometry& geometry, CellMeaning meaning,
-                      ImageView<const float> prior_px, float weight, float most_contrast,
+                      ImageView<const float> prior_px, float weight, float max_contrast,
                       int first_candidate)
       : RowStage(costs->extent()),
         costs_(std::move(costs)),
@@ -20,7 +20,7 @@ class DisparityPriorStage final : public scheduler::RowStage {
         meaning_(meaning),
         prior_px_(prior_px),
         weight_(weight),
-        most_contrast_(most_contrast),
+        max_contrast_(max_contrast),
         first_candidate_(first_candidate) {}
 
   [[nodiscard]] std::string_view name() const override { return "cost with prior"; }
@@ -51,7 +51,7 @@ class DisparityPriorStage final : public scheduler::RowStage {
         .disparity_min = geometry_.disparity_min,
         .first_candidate = first_candidate_,
         .weight = weight_,
-        .most_contrast = most_contrast_,
+        .max_contrast = max_contrast_,
     };
     auto* cells = reinterpret_cast<float*>(task.output);
     if (meaning_ == CellMeaning::kEnergy) {
@@ -67,7 +67,7 @@ class DisparityPriorStage final : public scheduler::RowStage {
   CellMeaning meaning_;
   ImageView<const float> prior_px_;
   float weight_;
-  float most_contrast_;
+  float max_contrast_;
   int first_candidate_;
 };
 
@@ -75,10 +75,10 @@ class DisparityPriorStage final : public scheduler::RowStage {
 
 std::unique_ptr<scheduler::RowStage> make_disparity_prior_stage(
     std::unique_ptr<scheduler::RowStage> costs, const kernels::CandidateGeometry& geometry,
-    CellMeaning meaning, ImageView<const float> prior_px, float weight, float most_contrast,
+    CellMeaning meaning, ImageView<const float> prior_px, float weight, float max_contrast,
     int first_candidate) {
   return std::make_unique<DisparityPriorStage>(std::move(costs), geometry, meaning, prior_px,
-                                               weight, most_contrast, first_candidate);
+                                               weight, max_contrast, first_candidate);
 }
 
 }  // namespace vantage

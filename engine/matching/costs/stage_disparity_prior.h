@@ -13,11 +13,11 @@ namespace vantage {
 /// disparity has been drawn towards it (kernels/disparity_prior). `prior_px`: NaN, or a value
 /// outside the range, where a pixel has none; of the size of `costs`; must outlive the stage.
 /// `geometry`: of all candidates; `costs` may hold those from `first_candidate` on only where cells
-/// are likelihoods. weight ≥ 0; most_contrast: see kernels/disparity_prior, for energies only. All
+/// are likelihoods. weight ≥ 0; max_contrast: see kernels/disparity_prior, for energies only. All
 /// later stages that look at the source again see the same cells.
 std::unique_ptr<scheduler::RowStage> make_disparity_prior_stage(
     std::unique_ptr<scheduler::RowStage> costs, const kernels::CandidateGeometry& geometry,
-    CellMeaning meaning, ImageView<const float> prior_px, float weight, float most_contrast,
+    CellMeaning meaning, ImageView<const float> prior_px, float weight, float max_contrast,
     int first_candidate = 0);
 
 }  // namespace vantage

@@ -93,8 +93,8 @@ class DisplacementEvidenceStage final : public scheduler::RowStage {
         evidence_(std::move(evidence)),
         grid_(grid),
         lanes_(grid.columns().lanes()),
-        sigma_(static_cast<float>(
-            std::max(kernels::kLeastEvidenceSigma, parameters.sigma_measurement))),
+        sigma_(
+            static_cast<float>(std::max(kernels::kMinEvidenceSigma, parameters.sigma_measurement))),
         epsilon_(kernels::ContaminatedGaussian::of(parameters.sigma_measurement,
                                                    parameters.epsilon_measurement)
                      .epsilon) {}

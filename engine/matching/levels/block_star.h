@@ -20,7 +20,7 @@ class BlockStars {
 
   /// Working memory for one star at a time.
   [[nodiscard]] std::size_t work_cells() const {
-    return static_cast<std::size_t>(2 * CandidateBlocks::kMostRunColumns + 2) *
+    return static_cast<std::size_t>(2 * CandidateBlocks::kMaxRunColumns + 2) *
            static_cast<std::size_t>(blocks_.lanes());
   }
   /// The star of `run` in row task.y, with its source if the task has one. `neutral`: the column

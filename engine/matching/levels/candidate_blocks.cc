@@ -28,15 +28,15 @@ Range blocks_with_partners(const kernels::CandidateGeometry& geometry, Range col
 
 }  // namespace
 
-void CandidateBlocks::resize(scheduler::Extent extent, int candidates, int most) {
+void CandidateBlocks::resize(scheduler::Extent extent, int candidates, int max) {
   extent_ = extent;
   candidates_ = candidates;
-  most_ = std::min(most, block_count());
+  max_ = std::min(max, block_count());
   tile_columns_ = (extent.columns + kTilePx - 1) / kTilePx;
   tile_rows_ = (extent.rows + kTilePx - 1) / kTilePx;
   const std::size_t tiles =
       static_cast<std::size_t>(tile_columns_) * static_cast<std::size_t>(tile_rows_);
-  blocks_.resize(tiles * static_cast<std::size_t>(most_));
+  blocks_.resize(tiles * static_cast<std::size_t>(max_));
   counts_.resize(tiles);
   run_ends_.resize(tiles);
   is_as_above_.resize(tiles);
@@ -112,9 +112,9 @@ void CandidateBlocks::choose_tile(ImageView<const std::int32_t> winners, Range a
     }
   }
   const std::size_t tile = tile_at(tile_x, tile_y);
-  std::uint16_t* const chosen = blocks_.data() + tile * static_cast<std::size_t>(most_);
+  std::uint16_t* const chosen = blocks_.data() + tile * static_cast<std::size_t>(max_);
   int count = 0;
-  for (; count < most_; ++count) {
+  for (; count < max_; ++count) {
     // The first of the largest.
     const auto best = std::max_element(votes.begin(), votes.end());
     if (*best == 0) {
@@ -130,8 +130,8 @@ void CandidateBlocks::choose_tile(ImageView<const std::int32_t> winners, Range a
 int CandidateBlocks::count(BlockList blocks) const {
   const int lanes = static_cast<int>(blocks.size()) * kLaneMultiple;
   // Only the last block of all can be incomplete.
-  const int behind = (blocks.back() + 1) * kLaneMultiple - candidates_;
-  return lanes - std::max(0, behind);
+  const int after = (blocks.back() + 1) * kLaneMultiple - candidates_;
+  return lanes - std::max(0, after);
 }
 
 double CandidateBlocks::cells() const {

@@ -28,7 +28,7 @@ class CandidateBlocks {
  public:
   static constexpr int kTilePx = 8;
   /// Maximum columns of a run, which stages process at a time.
-  static constexpr int kMostRunColumns = 32;
+  static constexpr int kMaxRunColumns = 32;
 
   /// Consecutive columns of a row whose tiles have the same blocks.
   struct Run {
@@ -36,12 +36,12 @@ class CandidateBlocks {
     BlockList blocks;
   };
 
-  /// `most`: maximum number of blocks per tile, 1..kMaxCandidateBlocks. Memory is reused.
-  void resize(scheduler::Extent extent, int candidates, int most);
+  /// `max`: maximum number of blocks per tile, 1..kMaxCandidateBlocks. Memory is reused.
+  void resize(scheduler::Extent extent, int candidates, int max);
 
   /// Chooses the blocks of all tiles from the winning candidates of the next coarser level. Each of
   /// its pixels in or next to a tile votes for the blocks that contain its winner or a candidate
-  /// within two of it; the `most` blocks with the most votes are kept, ties going to the smaller
+  /// within two of it; the `max` blocks with the most votes are kept, ties going to the smaller
   /// one. `selected`: the level's candidates if disparities will be selected on it: votes then go
   /// to the nearest block with partners, so that every pixel that has candidates with partners has
   /// one in a block of its tile. Identical for any `execution`.
@@ -50,7 +50,7 @@ class CandidateBlocks {
 
   [[nodiscard]] scheduler::Extent extent() const { return extent_; }
   /// Lanes of a column, for any tile.
-  [[nodiscard]] int lanes() const { return most_ * kernels::kLaneMultiple; }
+  [[nodiscard]] int lanes() const { return max_ * kernels::kLaneMultiple; }
   [[nodiscard]] BlockList at(int x, int y) const {
     return of_tile(tile_at(x / kTilePx, y / kTilePx));
   }
@@ -58,7 +58,7 @@ class CandidateBlocks {
   [[nodiscard]] Run run_at(int x, int y, int end) const {
     const std::size_t tile = tile_at(x / kTilePx, y / kTilePx);
     const int run_end = run_ends_[tile] * kTilePx;
-    return {{x, std::min({run_end, end, x + kMostRunColumns})}, of_tile(tile)};
+    return {{x, std::min({run_end, end, x + kMaxRunColumns})}, of_tile(tile)};
   }
   /// Whether row y, adjacent to the row run_y of `run`, has the same blocks along the run.
   [[nodiscard]] bool has_blocks_of(const Run& run, int run_y, int y) const;
@@ -77,7 +77,7 @@ class CandidateBlocks {
            static_cast<std::size_t>(tile_x);
   }
   [[nodiscard]] BlockList of_tile(std::size_t tile) const {
-    return {blocks_.data() + tile * static_cast<std::size_t>(most_), counts_[tile]};
+    return {blocks_.data() + tile * static_cast<std::size_t>(max_), counts_[tile]};
   }
   void compare_tiles(int tile_y);
   void choose_tile(ImageView<const std::int32_t> winners, scheduler::Range allowed, int tile_x,
@@ -88,10 +88,10 @@ class CandidateBlocks {
 
   scheduler::Extent extent_;
   int candidates_ = 0;
-  int most_ = 1;
+  int max_ = 1;
   int tile_columns_ = 0;
   int tile_rows_ = 0;
-  std::vector<std::uint16_t> blocks_;  ///< most_ per tile
+  std::vector<std::uint16_t> blocks_;  ///< max_ per tile
   std::vector<std::uint8_t> counts_;
   std::vector<int> run_ends_;              ///< first tile to the right with other blocks
   std::vector<std::uint8_t> is_as_above_;  ///< whether a tile has the blocks of the tile above

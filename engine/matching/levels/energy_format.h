@@ -19,7 +19,7 @@ inline bool uses_fixed_energies(const MethodParameters& parameters) {
 }
 
 /// Fixed-point format of energies on all levels of a map: the smallest steps that leave room for
-/// the largest sums, but at least 1/kMostStepsPerNat.
+/// the largest sums, but at least 1/kMaxStepsPerNat.
 class EnergyFormat {
  public:
   explicit EnergyFormat(const MethodParameters& parameters) {
@@ -29,17 +29,17 @@ class EnergyFormat {
     const double ceiling_nats = std::max(std::log1p(-epsilon) - std::log(epsilon), 0.0);
     // Worst case: five neighbours at the ceiling plus the source, with one ceiling of headroom
     // against overflow.
-    const double most_nats = (5 * parameters.mu + 1) * ceiling_nats + kMostSourceNats;
+    const double max_nats = (5 * parameters.mu + 1) * ceiling_nats + kMaxSourceNats;
     constexpr double kRounding = 0.99;
     const double steps =
-        std::min<double>(kMostStepsPerNat, kRounding * kernels::kMostEnergy / most_nats);
+        std::min<double>(kMaxStepsPerNat, kRounding * kernels::kMaxEnergy / max_nats);
     steps_per_nat_ = static_cast<float>(steps);
     ceiling_ = static_cast<kernels::FixedEnergy>(std::lround(steps * ceiling_nats));
     // Without final iterations the coarse result is the final map, which must not be cut at the
     // ceiling.
-    const double most_nats_of_result = parameters.final_iterations == 0 ? kUnseenNats : 0;
+    const double max_nats_of_result = parameters.final_iterations == 0 ? kUnseenNats : 0;
     result_range_ = static_cast<kernels::FixedEnergy>(std::max<long>(
-        {ceiling_, kernels::kMostCompact + 1, std::lround(steps * most_nats_of_result)}));
+        {ceiling_, kernels::kMaxCompact + 1, std::lround(steps * max_nats_of_result)}));
   }
 
   [[nodiscard]] float steps_per_nat() const { return steps_per_nat_; }
@@ -56,10 +56,10 @@ class EnergyFormat {
   [[nodiscard]] kernels::ByteSteps of_result() const {
     constexpr float kHalfStep = 0.5F;
     return kernels::ByteSteps((static_cast<float>(result_range_) + kHalfStep) /
-                              kernels::kMostCompact);
+                              kernels::kMaxCompact);
   }
   [[nodiscard]] kernels::FixedWeight result_bytes_per_step() const {
-    return kernels::fixed_weight(static_cast<float>(kernels::kMostCompact) /
+    return kernels::fixed_weight(static_cast<float>(kernels::kMaxCompact) /
                                  static_cast<float>(result_range_));
   }
 
@@ -78,9 +78,9 @@ class EnergyFormat {
   }
 
  private:
-  static constexpr double kMostStepsPerNat = 256;
+  static constexpr double kMaxStepsPerNat = 256;
   /// Largest energy of a float likelihood; that of bytes is smaller.
-  static constexpr double kMostSourceNats = 87.4;
+  static constexpr double kMaxSourceNats = 87.4;
   /// Also the range of probabilities stored in bytes.
   static constexpr double kUnseenNats = 22;
 

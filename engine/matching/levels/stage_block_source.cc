@@ -56,7 +56,7 @@ class BlockSourceStage final : public scheduler::RowStage {
 
  private:
   [[nodiscard]] std::size_t cell_bytes() const {
-    return block_bytes_ * CandidateBlocks::kMostRunColumns;
+    return block_bytes_ * CandidateBlocks::kMaxRunColumns;
   }
 
   std::vector<std::unique_ptr<scheduler::RowStage>> of_blocks_;

@@ -65,9 +65,9 @@ class FixedEnergyStage final : public scheduler::RowStage {
   /// Columns that are still in the level-1 cache when they are read again.
   [[nodiscard]] int part_columns() const {
     constexpr std::size_t kPartBytes = 16384;
-    constexpr std::size_t kMostColumns = 32;
+    constexpr std::size_t kMaxColumns = 32;
     return static_cast<int>(
-        std::clamp<std::size_t>(kPartBytes / costs_->bytes_per_column(), 1, kMostColumns));
+        std::clamp<std::size_t>(kPartBytes / costs_->bytes_per_column(), 1, kMaxColumns));
   }
   [[nodiscard]] std::size_t cost_bytes() const {
     constexpr std::size_t kAlignment = 64;
@@ -192,11 +192,11 @@ class LevelEnergyResultStage final : public LevelStoreStage {
     row.first_column = count;
     row.pitch = volume().lanes();
     std::int32_t* const winners = winners_->row(task.y) + columns.begin;
-    std::array<FixedEnergy, CandidateBlocks::kMostRunColumns> least;
+    std::array<FixedEnergy, CandidateBlocks::kMaxRunColumns> min;
     for (int x = columns.begin; x < columns.end; x += row.columns) {
       row.cells = cells<FixedEnergy>(task, x);
-      row.columns = std::min(CandidateBlocks::kMostRunColumns, columns.end - x);
-      kernels::select_energy_winners_row(row, winners + (x - columns.begin), least.data());
+      row.columns = std::min(CandidateBlocks::kMaxRunColumns, columns.end - x);
+      kernels::select_energy_winners_row(row, winners + (x - columns.begin), min.data());
     }
     return winners;
   }

@@ -12,7 +12,7 @@
 namespace vantage {
 
 // First and last stages of max-product diffusion. Cells are kernels::FixedEnergy; those of padding
-// lanes are kMostEnergy. Volumes hold one byte per cell and must outlive the stages, as must
+// lanes are kMaxEnergy. Volumes hold one byte per cell and must outlive the stages, as must
 // `blocks`: the candidates processed, whose lanes the cells occupy; null: all.
 
 /// Input cells from which energies are made.

@@ -34,7 +34,7 @@ inline kernels::CandidateGeometry cell_geometry(const kernels::CandidateGeometry
 }
 
 /// Maximum number of runs of consecutive candidates in columns of `lanes` lanes.
-inline int most_segments(int lanes, const CandidateBlocks* blocks) {
+inline int max_segments(int lanes, const CandidateBlocks* blocks) {
   return blocks == nullptr ? 1 : lanes / kernels::kLaneMultiple;
 }
 
@@ -136,7 +136,7 @@ class FromCoarserStage : public scheduler::RowStage {
       const BlockList own =
           coarser_.blocks == nullptr ? all_blocks_ : coarser_.blocks->at(x, coarser_y);
       copy_blocks<std::uint8_t>(coarser_.volume->column<std::uint8_t>(x, coarser_y), own, blocks,
-                                kernels::kMostCompact, bytes);
+                                kernels::kMaxCompact, bytes);
       bytes += blocks.size() * kernels::kLaneMultiple;
     }
   }

@@ -122,7 +122,7 @@ class CoarserEnergyStage final : public scheduler::RowStage {
 
 float half_scale(const CostBounds& bounds) {
   constexpr float kLargest = 32768;
-  const float largest = std::max({1.0F, std::abs(bounds.least), std::abs(bounds.largest)});
+  const float largest = std::max({1.0F, std::abs(bounds.min), std::abs(bounds.largest)});
   float scale = 1;
   while (largest * scale > kLargest) {
     scale /= 2;

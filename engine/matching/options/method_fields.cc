@@ -9,7 +9,7 @@
 namespace vantage {
 
 static_assert(visits_every_field<MethodParameters>(), "visit_fields() lacks a field");
-static_assert(kernels::kMostRayCensusThresholds == 3, "so say the limits of census-thresholds");
+static_assert(kernels::kMaxRayCensusThresholds == 3, "so say the limits of census-thresholds");
 
 void require_read(const MethodOverrides& overrides, const MethodParameters& in_force,
                   std::string_view chosen) {

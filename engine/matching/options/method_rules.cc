@@ -42,11 +42,11 @@ void validate_pruning(const MethodParameters& parameters) {
 
 void validate_step(const MethodParameters& parameters) {
   if (parameters.aggregation == Aggregation::kMembrane) {
-    const double most = 1 / (4 + parameters.beta);
-    require(parameters.lambda > 0 && parameters.lambda <= most, "lambda", parameters.lambda,
+    const double max = 1 / (4 + parameters.beta);
+    require(parameters.lambda > 0 && parameters.lambda <= max, "lambda", parameters.lambda,
             fmt::format("a number above 0 and at most 1/(4 + beta) = {:.4g}: larger steps of the "
                         "membrane are unstable",
-                        most));
+                        max));
   } else if (parameters.aggregation != Aggregation::kBayes) {
     require(parameters.lambda > 0 && parameters.lambda < 0.25, "lambda", parameters.lambda,
             "a number above 0 and below 0.25: larger steps of diffusion are unstable");
@@ -143,7 +143,7 @@ bool uses_sigma_measurement(const MethodParameters& parameters) {
          (aggregation_of(parameters).reads(kOption) && !is_idle);
 }
 
-bool uses_pair_levels(const MethodParameters& parameters) {
+bool uses_pair_exposure(const MethodParameters& parameters) {
   return (parameters.match_exposure && cost_of(parameters).reads("match-exposure")) ||
          (parameters.estimate_sigma_measurement && uses_sigma_measurement(parameters));
 }

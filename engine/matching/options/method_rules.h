@@ -28,6 +28,6 @@ bool can_prune(const MethodParameters& parameters);
 bool uses_sigma_measurement(const MethodParameters& parameters);
 
 /// Whether something is to be estimated from each pair's grey levels.
-bool uses_pair_levels(const MethodParameters& parameters);
+bool uses_pair_exposure(const MethodParameters& parameters);
 
 }  // namespace vantage

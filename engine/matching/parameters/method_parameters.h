@@ -70,11 +70,11 @@ struct MethodParametersOf {
   Field<double> sigma_measurement = by_default<Field>(5.0);
   /// εM, inside (0, 1): contaminated and combined cost, Bayes.
   Field<double> epsilon_measurement = by_default<Field>(0.1);
-  /// σM follows from each pair (pair_levels); where it does not, it is sigma_measurement. Of the
+  /// σM follows from each pair (pair_exposure); where it does not, it is sigma_measurement. Of the
   /// combined cost unless either is set.
   Field<bool> estimate_sigma_measurement = by_default<Field>(false);
   /// The right image's grey levels are changed to the left's before they are compared, gain and
-  /// offset estimated from each pair (pair_levels).
+  /// offset estimated from each pair (pair_exposure).
   Field<bool> match_exposure = by_default<Field>(false);
   /// Ray census: grey levels a neighbour is compared with, 1 or 3.
   Field<int> census_thresholds = by_default<Field>(1);

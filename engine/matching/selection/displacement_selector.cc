@@ -16,7 +16,7 @@ class NeighbourCells {
  public:
   explicit NeighbourCells(bool probabilities) {
     row_.cells = cells_.data();
-    row_.geometry = all_partnered(kCount, DisplacementSelector::kMostColumns);
+    row_.geometry = all_partnered(kCount, DisplacementSelector::kMaxColumns);
     row_.geometry.disparity_min = -kWinner;
     row_.first_column = first_partnered_column(kCount);
     row_.probabilities = probabilities;
@@ -34,7 +34,7 @@ class NeighbourCells {
 
   /// Offsets of the parabolas' minima from the winners.
   void offsets(float* offset_px) const {
-    std::array<std::int32_t, DisplacementSelector::kMostColumns> winners;
+    std::array<std::int32_t, DisplacementSelector::kMaxColumns> winners;
     winners.fill(kWinner);
     kernels::parabola_disparity_row(row_, winners.data(), offset_px);
   }
@@ -44,7 +44,7 @@ class NeighbourCells {
   static constexpr int kWinner = 1;
 
   alignas(
-      64) std::array<float, DisplacementSelector::kMostColumns* kernels::kLaneMultiple> cells_ = {};
+      64) std::array<float, DisplacementSelector::kMaxColumns* kernels::kLaneMultiple> cells_ = {};
   kernels::CellRow row_;
 };
 

@@ -14,15 +14,15 @@ namespace vantage {
 /// rule: immutable.
 class DisplacementSelector {
  public:
-  static constexpr int kMostColumns = 32;
-  using Values = std::array<float, kMostColumns>;
+  static constexpr int kMaxColumns = 32;
+  using Values = std::array<float, kMaxColumns>;
 
   /// Some columns of row y, grid.columns().lanes() cells each.
   struct Cells {
     const float* cells = nullptr;
     int y = 0;
     int first_column = 0;
-    int columns = 0;  ///< at most kMostColumns
+    int columns = 0;  ///< at most kMaxColumns
   };
 
   /// window_radius: only candidates whose windows lie in both images count; 0: all with a partner.
@@ -40,7 +40,7 @@ class DisplacementSelector {
   Values select(const Cells& columns, const MapOutputs& outputs, float* work) const;
 
  private:
-  using Winners = std::array<std::int32_t, kMostColumns>;
+  using Winners = std::array<std::int32_t, kMaxColumns>;
 
   [[nodiscard]] PartneredCandidates candidates(int x, int y) const;
   void choose(const float* cells, int count, int columns, std::int32_t* winners, float* best,

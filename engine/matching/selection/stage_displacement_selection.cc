@@ -54,7 +54,7 @@ class DisplacementSelectionStage : public scheduler::RowStage {
   }
 
  protected:
-  static constexpr int kColumns = DisplacementSelector::kMostColumns;
+  static constexpr int kColumns = DisplacementSelector::kMaxColumns;
 
   [[nodiscard]] const DisplacementGrid& grid() const { return grid_; }
   [[nodiscard]] const DisplacementSelector& selector() const { return selector_; }
@@ -129,15 +129,15 @@ class EnergyDisplacementStage final : public DisplacementSelectionStage {
     if (confidence_.empty()) {
       return;
     }
-    std::array<FixedEnergy, kColumns> least;
-    std::transform(best.begin(), best.begin() + columns.size(), least.begin(), [](float energy) {
-      return std::isnan(energy) ? kernels::kMostEnergy : static_cast<FixedEnergy>(energy);
+    std::array<FixedEnergy, kColumns> min;
+    std::transform(best.begin(), best.begin() + columns.size(), min.begin(), [](float energy) {
+      return std::isnan(energy) ? kernels::kMaxEnergy : static_cast<FixedEnergy>(energy);
     });
     kernels::energy_probability_row({.cells = energies,
                                      .pitch = static_cast<std::ptrdiff_t>(lanes()),
                                      .columns = columns.size(),
                                      .lanes = static_cast<int>(lanes())},
-                                    least.data(), steps_per_nat_,
+                                    min.data(), steps_per_nat_,
                                     confidence_.row(task.y) + columns.begin);
   }
 

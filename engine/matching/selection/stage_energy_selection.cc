@@ -28,7 +28,7 @@ class EnergySelectionStage final : public scheduler::RowStage {
         blocks_(blocks),
         lanes_(blocks == nullptr ? geometry.lanes() : blocks->lanes()) {}
 
-  [[nodiscard]] std::string_view name() const override { return "cell selection"; }
+  [[nodiscard]] std::string_view name() const override { return "energy selection"; }
   [[nodiscard]] std::size_t bytes_per_column() const override { return 0; }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     kernels::KernelWork work = kernels::energy_winner_work() + kernels::kEnergyDisparityWork;
@@ -44,7 +44,7 @@ class EnergySelectionStage final : public scheduler::RowStage {
   void make_row(const scheduler::RowTask& task) const override {
     for (int x = task.columns.begin; x < task.columns.end;) {
       if (blocks_ == nullptr) {
-        const Range columns{x, std::min(x + kMostColumns, task.columns.end)};
+        const Range columns{x, std::min(x + kMaxColumns, task.columns.end)};
         Part part{.columns = columns, .lanes = lanes_};
         select(task, part, {0, lanes_}, 0);
         write(task, part);
@@ -66,14 +66,14 @@ class EnergySelectionStage final : public scheduler::RowStage {
   }
 
  private:
-  static constexpr int kMostColumns = CandidateBlocks::kMostRunColumns;
+  static constexpr int kMaxColumns = CandidateBlocks::kMaxRunColumns;
 
   /// Some columns of a row, and their selection so far.
   struct Part {
     Range columns;
     int lanes = 0;  ///< number of lanes in use
-    std::array<float, kMostColumns> disparity_px = {};
-    std::array<FixedEnergy, kMostColumns> least = {};
+    std::array<float, kMaxColumns> disparity_px = {};
+    std::array<FixedEnergy, kMaxColumns> min = {};
   };
 
   [[nodiscard]] bool wants_probability() const {
@@ -95,20 +95,20 @@ class EnergySelectionStage final : public scheduler::RowStage {
     row.geometry.count = std::min(lanes.size(), geometry_.count - first_candidate);
     row.first_column = part.columns.begin;
     row.columns = part.columns.size();
-    std::array<std::int32_t, kMostColumns> winners;
+    std::array<std::int32_t, kMaxColumns> winners;
     const bool is_first = lanes.begin == 0;
     if (is_first) {
-      kernels::select_energy_winners_row(row, winners.data(), part.least.data());
+      kernels::select_energy_winners_row(row, winners.data(), part.min.data());
       kernels::energy_disparity_row(row, winners.data(), is_refined_, part.disparity_px.data());
       return;
     }
-    std::array<FixedEnergy, kMostColumns> least;
-    std::array<float, kMostColumns> disparity_px;
-    kernels::select_energy_winners_row(row, winners.data(), least.data());
+    std::array<FixedEnergy, kMaxColumns> min;
+    std::array<float, kMaxColumns> disparity_px;
+    kernels::select_energy_winners_row(row, winners.data(), min.data());
     kernels::energy_disparity_row(row, winners.data(), is_refined_, disparity_px.data());
     for (std::size_t j = 0; j < static_cast<std::size_t>(row.columns); ++j) {
-      if (least[j] < part.least[j]) {
-        part.least[j] = least[j];
+      if (min[j] < part.min[j]) {
+        part.min[j] = min[j];
         part.disparity_px[j] = disparity_px[j];
       }
     }
@@ -121,10 +121,10 @@ class EnergySelectionStage final : public scheduler::RowStage {
     if (!wants_probability()) {
       return;
     }
-    std::array<float, kMostColumns> probability;
+    std::array<float, kMaxColumns> probability;
     kernels::energy_probability_row(
         {.cells = cells(task, x, 0), .pitch = lanes_, .columns = columns, .lanes = part.lanes},
-        part.least.data(), steps_per_nat_, probability.data());
+        part.min.data(), steps_per_nat_, probability.data());
     if (!outputs_.confidence.empty()) {
       std::copy_n(probability.data(), columns, outputs_.confidence.row(task.y) + x);
     }

@@ -1,4 +1,4 @@
-#include "kernels/luma_levels/luma_levels.h"
+#include "kernels/luma_intensity/luma_intensity.h"
 
 #include <gtest/gtest.h>
 
@@ -13,12 +13,12 @@
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
-namespace luma_levels_test {
+namespace luma_intensity_test {
 
-class LumaLevels : public EveryTarget {};
-VANTAGE_ON_EVERY_TARGET(LumaLevels);
+class LumaIntensity : public EveryTarget {};
+VANTAGE_ON_EVERY_TARGET(LumaIntensity);
 
-TEST_P(LumaLevels, AreTheRoundedLuma) {
+TEST_P(LumaIntensity, AreTheRoundedLuma) {
   std::mt19937 random(72);
   for (const int channels : {1, 3, 4}) {
     for (const int width : {1, 2, 15, 16, 17, 31, 64, 65, 301}) {
@@ -27,10 +27,10 @@ TEST_P(LumaLevels, AreTheRoundedLuma) {
         pixels[k] = random() % 4 == 0 ? 255 : static_cast<std::uint8_t>(random());
       }
       GuardedRow<std::uint8_t> levels(static_cast<std::size_t>(width), random() % 5, 0xA5);
-      luma_levels_row(pixels.data(), width, channels, levels.data());
+      luma_intensity_row(pixels.data(), width, channels, levels.data());
       ASSERT_TRUE(levels.intact());
       std::vector<std::uint8_t> reference(static_cast<std::size_t>(width));
-      luma_levels_row_ref(pixels.data(), width, channels, reference.data());
+      luma_intensity_row_ref(pixels.data(), width, channels, reference.data());
       ASSERT_EQ(levels.values(), reference);
       for (int x = 0; x < width; ++x) {
         const std::uint8_t* pixel = pixels.data() + static_cast<std::ptrdiff_t>(x) * channels;
@@ -42,7 +42,7 @@ TEST_P(LumaLevels, AreTheRoundedLuma) {
   }
 }
 
-TEST_P(LumaLevels, LumaIsNotRounded) {
+TEST_P(LumaIntensity, LumaIsNotRounded) {
   std::mt19937 random(73);
   for (const int channels : {3, 4}) {
     for (const int width : {1, 2, 15, 16, 17, 31, 64, 65, 301}) {
@@ -65,16 +65,16 @@ TEST_P(LumaLevels, LumaIsNotRounded) {
   }
 }
 
-TEST_P(LumaLevels, BlackAndWhiteStayThemselves) {
+TEST_P(LumaIntensity, BlackAndWhiteStayThemselves) {
   const std::uint8_t black[4 * 64] = {};
   std::uint8_t pixels[4 * 64];
   std::fill(std::begin(pixels), std::end(pixels), std::uint8_t{255});
   std::uint8_t levels[64];
-  luma_levels_row(pixels, 64, 4, levels);
+  luma_intensity_row(pixels, 64, 4, levels);
   EXPECT_EQ(std::count(std::begin(levels), std::end(levels), 255), 64);
-  luma_levels_row(black, 64, 4, levels);
+  luma_intensity_row(black, 64, 4, levels);
   EXPECT_EQ(std::count(std::begin(levels), std::end(levels), 0), 64);
 }
 
-}  // namespace luma_levels_test
+}  // namespace luma_intensity_test
 }  // namespace vantage::kernels

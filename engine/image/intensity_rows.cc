@@ -1,9 +1,9 @@
-#include "engine/image/grey_levels.h"
+#include "engine/image/intensity_rows.h"
 
 #include <cstdint>
 #include <type_traits>
 
-#include "kernels/luma_levels/luma_levels.h"
+#include "kernels/luma_intensity/luma_intensity.h"
 
 namespace vantage {
 namespace {
@@ -32,13 +32,13 @@ void grey_levels(const T* pixels, int channels, int width, float* grey) {
 
 }  // namespace
 
-void grey_levels_row(const Photograph& photograph, int y, float* grey) {
+void intensity_row(const Photograph& photograph, int y, float* grey) {
   std::visit(
       [&](const auto& image) { grey_levels(image.row(y), image.channels(), image.width(), grey); },
       photograph.pixels);
 }
 
-void channel_levels_row(const Photograph& photograph, int channel, int y, float* levels) {
+void channel_intensity_row(const Photograph& photograph, int channel, int y, float* levels) {
   std::visit(
       [&]<typename T>(const Image<T>& image) {
         const T* pixel = image.row(y) + channel;

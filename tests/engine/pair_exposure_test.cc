@@ -1,4 +1,4 @@
-#include "engine/matching/pair_levels.h"
+#include "engine/matching/pair_exposure.h"
 
 #include <gtest/gtest.h>
 
@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "engine/io/photograph_io.h"
-#include "engine/matching/estimation/level_fit.h"
+#include "engine/matching/estimation/intensity_change_fit.h"
 #include "engine/matching/stereo_matcher.h"
 #include "tests/test_paths.h"
 
 namespace vantage {
-namespace pair_levels_test {
+namespace pair_exposure_test {
 
 constexpr int kWidth = 240;
 constexpr DisparityRange kRange{0, 31};
@@ -31,8 +31,8 @@ struct Scene {
 };
 
 struct Camera {
-  LevelChange change;  ///< of true levels, to what the right camera makes of them
-  double noise = 0;    ///< of the left camera; of the right one as its gain makes it
+  IntensityChange change;  ///< of true levels, to what the right camera makes of them
+  double noise = 0;        ///< of the left camera; of the right one as its gain makes it
   int channels = 1;
 };
 
@@ -89,27 +89,27 @@ Scene make_scene(int height, const Camera& camera) {
 }
 
 /// What turns the right camera's levels back.
-LevelChange inverse(const LevelChange& change) {
+IntensityChange inverse(const IntensityChange& change) {
   return {.gain = 1 / change.gain, .offset = -change.offset / change.gain};
 }
 
-void expect_near(const LevelChange& actual, const LevelChange& expected) {
+void expect_near(const IntensityChange& actual, const IntensityChange& expected) {
   EXPECT_NEAR(actual.gain, expected.gain, 0.01 * expected.gain);
   constexpr double kMiddle = 100;
   EXPECT_NEAR(actual.gain * kMiddle + actual.offset, expected.gain * kMiddle + expected.offset, 1);
 }
 
-TEST(PairLevels, RecoversExposureDespiteOcclusions) {
+TEST(PairExposure, RecoversExposureDespiteOcclusions) {
   Execution execution({.threads = 2});
-  const PairLevelsEstimator estimator(kRange, execution);
+  const PairExposureEstimator estimator(kRange, execution);
   for (const int height : {60, 400}) {
-    for (const LevelChange change :
-         {LevelChange{}, LevelChange{.7, 0}, LevelChange{1.25, -11}, LevelChange{.5, 30}}) {
+    for (const IntensityChange change : {IntensityChange{}, IntensityChange{.7, 0},
+                                         IntensityChange{1.25, -11}, IntensityChange{.5, 30}}) {
       for (const double noise : {0., 3.}) {
         const Scene scene = make_scene(height, {change, noise, 1});
-        const PairLevels levels =
+        const PairExposure levels =
             estimator.estimate(scene.left, scene.right, ColourUse::kLuma, true);
-        ASSERT_TRUE(levels.has_levels) << change.gain;
+        ASSERT_TRUE(levels.has_intensity_change) << change.gain;
         EXPECT_GT(levels.matches, 2000);
         expect_near(levels.of_right.luma, inverse(change));
       }
@@ -117,11 +117,11 @@ TEST(PairLevels, RecoversExposureDespiteOcclusions) {
   }
 }
 
-TEST(PairLevels, ChannelsHaveTheirOwn) {
+TEST(PairExposure, ChannelsHaveTheirOwn) {
   Execution execution({.threads = 2});
   Scene scene = make_scene(200, {{}, 1, 3});
   auto& right = std::get<Image<float>>(scene.right.pixels);
-  const LevelChange changes[] = {{.7, 10}, {1, 0}, {1.2, -5}};
+  const IntensityChange changes[] = {{.7, 10}, {1, 0}, {1.2, -5}};
   for (int y = 0; y < right.height(); ++y) {
     for (int x = 0; x < right.width(); ++x) {
       for (int c = 0; c < 3; ++c) {
@@ -130,27 +130,27 @@ TEST(PairLevels, ChannelsHaveTheirOwn) {
       }
     }
   }
-  const PairLevels levels = PairLevelsEstimator(kRange, execution)
-                                .estimate(scene.left, scene.right, ColourUse::kChannels, true);
-  ASSERT_TRUE(levels.has_levels);
+  const PairExposure levels = PairExposureEstimator(kRange, execution)
+                                  .estimate(scene.left, scene.right, ColourUse::kChannels, true);
+  ASSERT_TRUE(levels.has_intensity_change);
   for (std::size_t c = 0; c < 3; ++c) {
     expect_near(levels.of_right.channels[c], inverse(changes[c]));
   }
 }
 
-TEST(PairLevels, NoMatchesLeaveLevelsAsTheyAre) {
+TEST(PairExposure, NoMatchesLeaveLevelsAsTheyAre) {
   Execution execution({.threads = 2});
-  const PairLevelsEstimator estimator(kRange, execution);
+  const PairExposureEstimator estimator(kRange, execution);
   Image<std::uint8_t> grey(50, 40);
   grey.fill(90);
   const Photograph uniform{std::move(grey)};
-  const PairLevels of_uniform = estimator.estimate(uniform, uniform, ColourUse::kLuma, true);
-  EXPECT_FALSE(of_uniform.has_levels);
-  EXPECT_EQ(of_uniform.of_right, LevelChanges{});
+  const PairExposure of_uniform = estimator.estimate(uniform, uniform, ColourUse::kLuma, true);
+  EXPECT_FALSE(of_uniform.has_intensity_change);
+  EXPECT_EQ(of_uniform.of_right, IntensityChanges{});
   for (const auto& [width, height] : {std::pair{1, 1}, std::pair{40, 1}, std::pair{1, 300}}) {
     const Photograph tiny{Image<std::uint8_t>(width, height)};
-    const PairLevels levels = estimator.estimate(tiny, tiny, ColourUse::kLuma, true);
-    EXPECT_FALSE(levels.has_levels);
+    const PairExposure levels = estimator.estimate(tiny, tiny, ColourUse::kLuma, true);
+    EXPECT_FALSE(levels.has_intensity_change);
   }
 }
 
@@ -183,16 +183,16 @@ double true_sigma(const Scene& scene) {
   return residuals[residuals.size() * 9 / 10] / 1.6449;
 }
 
-TEST(PairLevels, NoiseIsThatOfTrueMatches) {
+TEST(PairExposure, NoiseIsThatOfTrueMatches) {
   Execution execution({.threads = 2});
-  const PairLevelsEstimator estimator(kRange, execution);
+  const PairExposureEstimator estimator(kRange, execution);
   for (const double noise : {14., 18., 22.}) {
     const Scene scene = make_scene(300, {{}, noise, 1});
     const double expected = true_sigma(scene);
     ASSERT_GT(expected, 4);
-    for (const bool change_levels : {false, true}) {
-      const PairLevels levels =
-          estimator.estimate(scene.left, scene.right, ColourUse::kLuma, change_levels);
+    for (const bool changes_intensities : {false, true}) {
+      const PairExposure levels =
+          estimator.estimate(scene.left, scene.right, ColourUse::kLuma, changes_intensities);
       ASSERT_TRUE(levels.sigma_measurement.has_value());
       EXPECT_NEAR(*levels.sigma_measurement, expected, 0.15 * expected) << noise;
     }
@@ -202,12 +202,12 @@ TEST(PairLevels, NoiseIsThatOfTrueMatches) {
             4.0);
 }
 
-TEST(PairLevels, ThreadsChangeNothing) {
+TEST(PairExposure, ThreadsChangeNothing) {
   const Scene scene = make_scene(260, {{.8, 5}, 3, 3});
   Execution serial({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   Execution threads({.threads = 3});
   const auto estimate = [&](Execution& execution) {
-    return PairLevelsEstimator(kRange, execution)
+    return PairExposureEstimator(kRange, execution)
         .estimate(scene.left, scene.right, ColourUse::kChannels, true);
   };
   EXPECT_EQ(estimate(serial), estimate(threads));
@@ -238,7 +238,7 @@ double share_of_right(const DisparityMap& map, const Scene& scene) {
   return static_cast<double>(right) / all;
 }
 
-TEST(PairLevels, MatchersSeeThroughExposure) {
+TEST(PairExposure, MatchersSeeThroughExposure) {
   Execution execution({.threads = 2});
   const Scene scene = make_scene(200, {{.6, 12}, 2, 1});
   for (const MatchCost cost : {MatchCost::kSquared, MatchCost::kAbsolute, MatchCost::kCombined}) {
@@ -250,22 +250,22 @@ TEST(PairLevels, MatchersSeeThroughExposure) {
     DisparityMaps maps;
     MatchReport report;
     StereoMatcher(options, execution).match(scene.left, scene.right, {}, maps, &report);
-    EXPECT_FALSE(report.levels);
+    EXPECT_FALSE(report.exposure);
     const double without = share_of_right(maps.left.disparity_px, scene);
     options.parameters.match_exposure = true;
     if (cost == MatchCost::kCombined) {
       options.parameters.estimate_sigma_measurement = true;
     }
     StereoMatcher(options, execution).match(scene.left, scene.right, {}, maps, &report);
-    ASSERT_TRUE(report.levels);
-    EXPECT_TRUE(report.levels->has_levels);
+    ASSERT_TRUE(report.exposure);
+    EXPECT_TRUE(report.exposure->has_intensity_change);
     const double with = share_of_right(maps.left.disparity_px, scene);
     EXPECT_GT(with, 0.9) << static_cast<int>(cost);
     EXPECT_GT(with, without) << static_cast<int>(cost);
   }
 }
 
-TEST(PairLevels, SeveralImagesAreChangedEachByItsOwn) {
+TEST(PairExposure, SeveralImagesAreChangedEachByItsOwn) {
   Execution execution({.threads = 2});
   const Scene dark = make_scene(200, {{.6, 12}, 1, 1});
   const Scene bright = make_scene(200, {{1.2, -8}, 1, 1});
@@ -276,12 +276,12 @@ TEST(PairLevels, SeveralImagesAreChangedEachByItsOwn) {
   const StereoMatcher matcher(options, execution);
   const OtherView others[] = {{&dark.right, 1}, {&bright.right, 1.0000001}};
   matcher.match_several(dark.left, others, {}, maps, &report);
-  ASSERT_TRUE(report.levels);
-  expect_near(report.levels->of_right.luma, inverse({.6, 12}));
+  ASSERT_TRUE(report.exposure);
+  expect_near(report.exposure->of_right.luma, inverse({.6, 12}));
   EXPECT_GT(share_of_right(maps.left.disparity_px, dark), 0.9);
 }
 
-TEST(PairLevels, OfAPhotographTakenWithAnotherExposure) {
+TEST(PairExposure, OfAPhotographTakenWithAnotherExposure) {
   const std::filesystem::path data = test_paths::shared_data() / "motorcycle";
   if (!std::filesystem::exists(data)) {
     GTEST_SKIP() << "no photographs at " << data;
@@ -289,13 +289,13 @@ TEST(PairLevels, OfAPhotographTakenWithAnotherExposure) {
   Execution execution({.threads = 2});
   const Photograph left = read_photograph(data / "im0.png");
   const Photograph dark = read_photograph(data / "im1E.png");
-  const PairLevels levels =
-      PairLevelsEstimator({0, 69}, execution).estimate(left, dark, ColourUse::kLuma, true);
-  ASSERT_TRUE(levels.has_levels);
+  const PairExposure levels =
+      PairExposureEstimator({0, 69}, execution).estimate(left, dark, ColourUse::kLuma, true);
+  ASSERT_TRUE(levels.has_intensity_change);
   // The mean levels differ by 41.
   EXPECT_GT(levels.of_right.luma.gain * 100 + levels.of_right.luma.offset, 120);
   EXPECT_LT(*levels.sigma_measurement, 9);
 }
 
-}  // namespace pair_levels_test
+}  // namespace pair_exposure_test
 }  // namespace vantage

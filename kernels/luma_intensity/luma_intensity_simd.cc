@@ -1,5 +1,5 @@
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/luma_levels/luma_levels_simd.cc"
+#define HWY_TARGET_INCLUDE "kernels/luma_intensity/luma_intensity_simd.cc"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, so that it is compiled once per target.
 #include <hwy/highway.h>
@@ -7,14 +7,14 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "kernels/luma_levels/luma_levels.h"
+#include "kernels/luma_intensity/luma_intensity.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-void luma_levels(const std::uint8_t* HWY_RESTRICT pixels, int width, int channels,
-                 std::uint8_t* HWY_RESTRICT levels) {
+void luma_intensity(const std::uint8_t* HWY_RESTRICT pixels, int width, int channels,
+                    std::uint8_t* HWY_RESTRICT levels) {
   if (channels == 1) {
     std::copy_n(pixels, width, levels);
     return;
@@ -43,8 +43,8 @@ void luma_levels(const std::uint8_t* HWY_RESTRICT pixels, int width, int channel
     const hn::RebindToSigned<decltype(d16)> di16;
     hn::StoreU(hn::DemoteTo(d8, hn::BitCast(di16, hn::ShiftRight<8>(sum))), d8, levels + x);
   }
-  luma_levels_row_ref(pixels + static_cast<std::ptrdiff_t>(x) * channels, width - x, channels,
-                      levels + x);
+  luma_intensity_row_ref(pixels + static_cast<std::ptrdiff_t>(x) * channels, width - x, channels,
+                         levels + x);
 }
 
 void luma(const std::uint8_t* HWY_RESTRICT pixels, int width, int channels,
@@ -90,11 +90,11 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace vantage::kernels {
-HWY_EXPORT(luma_levels);
+HWY_EXPORT(luma_intensity);
 HWY_EXPORT(luma);
 
-void luma_levels_row(const std::uint8_t* pixels, int width, int channels, std::uint8_t* levels) {
-  HWY_DYNAMIC_DISPATCH(luma_levels)(pixels, width, channels, levels);
+void luma_intensity_row(const std::uint8_t* pixels, int width, int channels, std::uint8_t* levels) {
+  HWY_DYNAMIC_DISPATCH(luma_intensity)(pixels, width, channels, levels);
 }
 void luma_row(const std::uint8_t* pixels, int width, int channels, float* output) {
   HWY_DYNAMIC_DISPATCH(luma)(pixels, width, channels, output);

@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "engine/matching/costs/level_change.h"
+#include "engine/matching/costs/intensity_change.h"
 
 namespace vantage {
 
 /// Grey levels of a pixel and its match in the other image.
-struct LevelPair {
+struct IntensityPair {
   float reference = 0;
   float other = 0;
 };
@@ -20,10 +20,10 @@ struct LevelPair {
 /// matches are down-weighted iteratively (Tukey's biweight). The order of summation is that of the
 /// pairs.
 ///
-/// Empty if the pairs do not determine it: fewer than kLeastLevelPairs, less than half of them on
+/// Empty if the pairs do not determine it: fewer than kMinIntensityPairs, less than half of them on
 /// one line, hardly any contrast, or a gain outside 1/4..4.
-std::optional<LevelChange> fit_levels(std::span<const LevelPair> pairs);
-inline constexpr std::size_t kLeastLevelPairs = 200;
+std::optional<IntensityChange> fit_intensity_change(std::span<const IntensityPair> pairs);
+inline constexpr std::size_t kMinIntensityPairs = 200;
 
 /// 1.4826 · the median of `residuals`: σ of a Gaussian with these magnitudes, with few outliers.
 /// Residuals ≥ 0, at least one; they are reordered.

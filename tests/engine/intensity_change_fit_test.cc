@@ -1,4 +1,4 @@
-#include "engine/matching/estimation/level_fit.h"
+#include "engine/matching/estimation/intensity_change_fit.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace vantage {
-namespace level_fit_test {
+namespace intensity_change_fit_test {
 
 struct Line {
   double gain;
@@ -15,11 +15,11 @@ struct Line {
 };
 
 /// Levels of a line with Gaussian noise of equal share in both images; some pairs are wrong.
-std::vector<LevelPair> pairs_of(const Line& line, double noise, double wrong_share, int count) {
+std::vector<IntensityPair> pairs_of(const Line& line, double noise, double wrong_share, int count) {
   std::mt19937 random(5);
   std::normal_distribution<double> gaussian(0, 1);
   std::uniform_real_distribution<double> level(20, 150);
-  std::vector<LevelPair> pairs;
+  std::vector<IntensityPair> pairs;
   for (int k = 0; k < count; ++k) {
     const double other = level(random);
     const bool is_wrong = level(random) < 20 + 130 * wrong_share;
@@ -30,11 +30,11 @@ std::vector<LevelPair> pairs_of(const Line& line, double noise, double wrong_sha
   return pairs;
 }
 
-TEST(LevelFit, RecoversLinesDespiteNoiseAndWrongMatches) {
+TEST(IntensityChangeFit, RecoversLinesDespiteNoiseAndWrongMatches) {
   for (const Line line : {Line{1, 0}, Line{1.4, -12}, Line{.6, 30}, Line{2.5, 4}}) {
     for (const double noise : {0., 4.}) {
       for (const double wrong_share : {0., .2}) {
-        const auto fit = fit_levels(pairs_of(line, noise, wrong_share, 20000));
+        const auto fit = fit_intensity_change(pairs_of(line, noise, wrong_share, 20000));
         ASSERT_TRUE(fit.has_value());
         EXPECT_NEAR(fit->gain, line.gain, 0.01 * line.gain) << noise << ", " << wrong_share;
         // At the middle of the levels.
@@ -44,16 +44,18 @@ TEST(LevelFit, RecoversLinesDespiteNoiseAndWrongMatches) {
   }
 }
 
-TEST(LevelFit, SaysWhenPairsDoNotTell) {
-  EXPECT_FALSE(fit_levels({}));
-  EXPECT_FALSE(fit_levels(pairs_of({1, 0}, 1, 0, static_cast<int>(kLeastLevelPairs) - 1)));
-  EXPECT_TRUE(fit_levels(pairs_of({1, 0}, 1, 0, static_cast<int>(kLeastLevelPairs))));
-  EXPECT_FALSE(fit_levels(pairs_of({1, 0}, 1, 1, 5000))) << "unrelated levels";
-  EXPECT_FALSE(fit_levels(pairs_of({6, 0}, 1, 0, 5000))) << "a gain that no two cameras have";
-  EXPECT_FALSE(fit_levels(std::vector<LevelPair>(5000, {100, 90}))) << "no contrast";
+TEST(IntensityChangeFit, SaysWhenPairsDoNotTell) {
+  EXPECT_FALSE(fit_intensity_change({}));
+  EXPECT_FALSE(
+      fit_intensity_change(pairs_of({1, 0}, 1, 0, static_cast<int>(kMinIntensityPairs) - 1)));
+  EXPECT_TRUE(fit_intensity_change(pairs_of({1, 0}, 1, 0, static_cast<int>(kMinIntensityPairs))));
+  EXPECT_FALSE(fit_intensity_change(pairs_of({1, 0}, 1, 1, 5000))) << "unrelated levels";
+  EXPECT_FALSE(fit_intensity_change(pairs_of({6, 0}, 1, 0, 5000)))
+      << "a gain that no two cameras have";
+  EXPECT_FALSE(fit_intensity_change(std::vector<IntensityPair>(5000, {100, 90}))) << "no contrast";
 }
 
-TEST(LevelFit, NoiseIsSeenWhereMostResidualsAreZero) {
+TEST(IntensityChangeFit, NoiseIsSeenWhereMostResidualsAreZero) {
   std::mt19937 random(7);
   std::normal_distribution<double> gaussian(0, 5);
   std::vector<float> residuals;
@@ -77,5 +79,5 @@ TEST(RobustSigma, IsThatOfTheGaussianWhateverTheOutliers) {
   EXPECT_FLOAT_EQ(static_cast<float>(robust_sigma(one)), 3 * 1.4826F);
 }
 
-}  // namespace level_fit_test
+}  // namespace intensity_change_fit_test
 }  // namespace vantage

@@ -1,4 +1,4 @@
-#include "engine/matching/pair_levels.h"
+#include "engine/matching/pair_exposure.h"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/image/grey_levels.h"
-#include "engine/matching/estimation/level_fit.h"
+#include "engine/image/intensity_rows.h"
+#include "engine/matching/estimation/intensity_change_fit.h"
 #include "engine/matching/stereo_matcher.h"
 
 namespace vantage {
@@ -18,16 +18,16 @@ namespace {
 /// Rows of a band, and the rows at its ends whose windows and codes reach outside it.
 constexpr int kBandRows = 24;
 constexpr int kBandMarginRows = 6;
-constexpr int kLeastBands = 4;
+constexpr int kMinBands = 4;
 /// One of this many image rows is matched, except in small images.
 constexpr int kRowsPerMatchedRow = 8;
-constexpr std::size_t kMostMatches = 65536;
+constexpr std::size_t kMaxMatches = 65536;
 /// Levels nearer to black or white than this may be clipped.
 constexpr float kUnclippedMargin = 2;
 constexpr float kWhite = 255;
 /// Lower bound of σ even for noise-free photographs: reflections, edges and slanted surfaces are
 /// not represented among the sure matches.
-constexpr double kLeastNoiseSigma = 4;
+constexpr double kMinNoiseSigma = 4;
 
 /// The rows to match, as one image.
 struct Bands {
@@ -37,7 +37,7 @@ struct Bands {
 
 Bands bands_of(int height) {
   Bands bands;
-  const int count = std::max(kLeastBands, height / (kRowsPerMatchedRow * kBandRows));
+  const int count = std::max(kMinBands, height / (kRowsPerMatchedRow * kBandRows));
   if (count * kBandRows >= height) {
     for (int y = 0; y < height; ++y) {
       bands.rows.push_back(y);
@@ -56,9 +56,9 @@ Bands bands_of(int height) {
 }
 
 /// Grey levels of the bands' rows: luma, then the channels if they are compared.
-class BandLevels {
+class BandIntensities {
  public:
-  BandLevels(const Photograph& photograph, const Bands& bands, int planes)
+  BandIntensities(const Photograph& photograph, const Bands& bands, int planes)
       : width_(photograph.width()) {
     const int height = static_cast<int>(bands.rows.size());
     for (int plane = 0; plane < planes; ++plane) {
@@ -66,9 +66,9 @@ class BandLevels {
       for (int row = 0; row < height; ++row) {
         const int y = bands.rows[static_cast<std::size_t>(row)];
         if (plane == 0) {
-          grey_levels_row(photograph, y, levels.row(row));
+          intensity_row(photograph, y, levels.row(row));
         } else {
-          channel_levels_row(photograph, plane - 1, y, levels.row(row));
+          channel_intensity_row(photograph, plane - 1, y, levels.row(row));
         }
       }
     }
@@ -112,7 +112,7 @@ std::vector<Match> matches_of(const DisparityMap& left_map, const Bands& bands) 
       }
     }
   }
-  const std::size_t step = matches.size() / kMostMatches + 1;
+  const std::size_t step = matches.size() / kMaxMatches + 1;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < matches.size(); k += step) {
     matches[kept++] = matches[k];
@@ -125,32 +125,32 @@ bool is_unclipped(float level) {
   return level > kUnclippedMargin && level < kWhite - kUnclippedMargin;
 }
 
-std::optional<LevelChange> change_of(const BandLevels& left, const BandLevels& right,
-                                     std::span<const Match> matches, std::size_t plane) {
-  std::vector<LevelPair> pairs;
+std::optional<IntensityChange> change_of(const BandIntensities& left, const BandIntensities& right,
+                                         std::span<const Match> matches, std::size_t plane) {
+  std::vector<IntensityPair> pairs;
   for (const Match& match : matches) {
-    const LevelPair pair{left.at(plane, match.left_x, match.row),
-                         right.at(plane, match.right_x, match.row)};
+    const IntensityPair pair{left.at(plane, match.left_x, match.row),
+                             right.at(plane, match.right_x, match.row)};
     if (is_unclipped(pair.reference) && is_unclipped(pair.other)) {
       pairs.push_back(pair);
     }
   }
-  return fit_levels(pairs);
+  return fit_intensity_change(pairs);
 }
 
 /// Distance of `value` from the range of the (changed) levels within half a pixel of x.
 template <typename Level>
-float outside(float value, const Level& level_at, int x) {
-  const float here = level_at(x);
-  const float before = (level_at(x - 1) + here) / 2;
-  const float after = (level_at(x + 1) + here) / 2;
+float outside(float value, const Level& intensity_at, int x) {
+  const float here = intensity_at(x);
+  const float before = (intensity_at(x - 1) + here) / 2;
+  const float after = (intensity_at(x + 1) + here) / 2;
   return std::max(
       {0.0F, value - std::max({before, here, after}), std::min({before, here, after}) - value});
 }
 
 /// Birchfield and Tomasi's difference, averaged over the planes from `first_plane` on.
-float residual(const BandLevels& left, const BandLevels& right, const Match& match,
-               std::size_t first_plane, std::span<const LevelChange> changes) {
+float residual(const BandIntensities& left, const BandIntensities& right, const Match& match,
+               std::size_t first_plane, std::span<const IntensityChange> changes) {
   float sum = 0;
   for (std::size_t plane = first_plane; plane < left.planes(); ++plane) {
     const auto gain = static_cast<float>(changes[plane].gain);
@@ -178,48 +178,48 @@ MatchOptions band_options(DisparityRange range) {
 
 }  // namespace
 
-PairLevelsEstimator::PairLevelsEstimator(DisparityRange range, Execution& execution)
+PairExposureEstimator::PairExposureEstimator(DisparityRange range, Execution& execution)
     : execution_(execution),
       matcher_(std::make_unique<StereoMatcher>(band_options(range), execution)) {}
 
-PairLevelsEstimator::~PairLevelsEstimator() = default;
+PairExposureEstimator::~PairExposureEstimator() = default;
 
-void PairLevelsEstimator::add_memory_use(MemoryUse& use) const { matcher_->add_memory_use(use); }
+void PairExposureEstimator::add_memory_use(MemoryUse& use) const { matcher_->add_memory_use(use); }
 
-PairLevels PairLevelsEstimator::estimate(const Photograph& left, const Photograph& right,
-                                         ColourUse colour, bool change_levels) const {
+PairExposure PairExposureEstimator::estimate(const Photograph& left, const Photograph& right,
+                                             ColourUse colour, bool changes_intensities) const {
   const Bands bands = bands_of(left.height());
   const bool has_channels =
       colour == ColourUse::kChannels && left.channels() >= 3 && right.channels() >= 3;
   const int planes = has_channels ? 4 : 1;
-  const BandLevels of_left(left, bands, planes);
-  const BandLevels of_right(right, bands, planes);
+  const BandIntensities of_left(left, bands, planes);
+  const BandIntensities of_right(right, bands, planes);
   DisparityMaps maps;
   matcher_->match(of_left.photograph(), of_right.photograph(),
                   {.left = true, .right = false, .unmatched = false}, maps);
   const std::vector<Match> matches = matches_of(maps.left.disparity_px, bands);
 
-  PairLevels result;
+  PairExposure result;
   result.matches = static_cast<int>(matches.size());
-  std::array<LevelChange, 4> changes;
-  if (change_levels) {
-    std::vector<std::optional<LevelChange>> found;
+  std::array<IntensityChange, 4> changes;
+  if (changes_intensities) {
+    std::vector<std::optional<IntensityChange>> found;
     for (std::size_t plane = 0; plane < of_left.planes(); ++plane) {
       found.push_back(change_of(of_left, of_right, matches, plane));
     }
-    result.has_levels =
+    result.has_intensity_change =
         std::ranges::all_of(found, [](const auto& change) { return change.has_value(); });
-    for (std::size_t plane = 0; result.has_levels && plane < found.size(); ++plane) {
+    for (std::size_t plane = 0; result.has_intensity_change && plane < found.size(); ++plane) {
       changes[plane] = *found[plane];
     }
     result.of_right = {changes[0], {changes[1], changes[2], changes[3]}};
   }
-  if (matches.size() >= kLeastLevelPairs) {
+  if (matches.size() >= kMinIntensityPairs) {
     std::vector<float> residuals;
     for (const Match& match : matches) {
       residuals.push_back(residual(of_left, of_right, match, has_channels ? 1 : 0, changes));
     }
-    result.sigma_measurement = std::max(kLeastNoiseSigma, noise_sigma(residuals));
+    result.sigma_measurement = std::max(kMinNoiseSigma, noise_sigma(residuals));
   }
   return result;
 }

@@ -1,4 +1,4 @@
-#include "engine/matching/estimation/level_fit.h"
+#include "engine/matching/estimation/intensity_change_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,11 @@ namespace {
 constexpr int kRounds = 20;
 /// Residuals beyond this many σ have zero weight (95 % efficiency for Gaussian noise).
 constexpr double kBiweightReach = 4.685;
-constexpr double kLeastResidualSigma = 1;
-constexpr double kLeastContrast = 2;  ///< standard deviation, grey levels
+constexpr double kMinResidualSigma = 1;
+constexpr double kMinContrast = 2;  ///< standard deviation, grey levels
 constexpr double kLargestGain = 4;
-constexpr double kLeastShare = 0.5;  ///< of the pairs: total weight on the line
-constexpr double kLeastCorrelation = 0.7;
+constexpr double kMinShare = 0.5;  ///< of the pairs: total weight on the line
+constexpr double kMinCorrelation = 0.7;
 
 /// Weighted moments.
 struct Moments {
@@ -27,9 +27,9 @@ struct Moments {
 
 /// weight_of(pair) ≥ 0.
 template <typename Weight>
-Moments moments_of(std::span<const LevelPair> pairs, const Weight& weight_of) {
+Moments moments_of(std::span<const IntensityPair> pairs, const Weight& weight_of) {
   Moments sums;
-  for (const LevelPair& pair : pairs) {
+  for (const IntensityPair& pair : pairs) {
     const double weight = weight_of(pair);
     const double a = pair.reference;
     const double b = pair.other;
@@ -52,16 +52,17 @@ Moments moments_of(std::span<const LevelPair> pairs, const Weight& weight_of) {
   return sums;
 }
 
-std::optional<LevelChange> line_of(const Moments& moments) {
-  const double contrast = kLeastContrast * kLeastContrast;
+std::optional<IntensityChange> line_of(const Moments& moments) {
+  const double contrast = kMinContrast * kMinContrast;
   if (!(moments.reference_reference >= contrast && moments.other_other >= contrast)) {
     return std::nullopt;
   }
   const double gain = std::sqrt(moments.reference_reference / moments.other_other);
-  return LevelChange{.gain = gain, .offset = moments.mean_reference - gain * moments.mean_other};
+  return IntensityChange{.gain = gain,
+                         .offset = moments.mean_reference - gain * moments.mean_other};
 }
 
-double residual(const LevelPair& pair, const LevelChange& line) {
+double residual(const IntensityPair& pair, const IntensityChange& line) {
   return pair.reference - (line.gain * pair.other + line.offset);
 }
 
@@ -85,20 +86,20 @@ double noise_sigma(std::span<float> residuals) {
   return quantile<9>(residuals) / kSigmas;
 }
 
-std::optional<LevelChange> fit_levels(std::span<const LevelPair> pairs) {
-  if (pairs.size() < kLeastLevelPairs) {
+std::optional<IntensityChange> fit_intensity_change(std::span<const IntensityPair> pairs) {
+  if (pairs.size() < kMinIntensityPairs) {
     return std::nullopt;
   }
-  std::optional<LevelChange> line =
-      line_of(moments_of(pairs, [](const LevelPair& /*pair*/) { return 1.0; }));
+  std::optional<IntensityChange> line =
+      line_of(moments_of(pairs, [](const IntensityPair& /*pair*/) { return 1.0; }));
   std::vector<float> residuals(pairs.size());
   Moments moments;
   for (int round = 0; round < kRounds && line; ++round) {
-    std::ranges::transform(pairs, residuals.begin(), [&](const LevelPair& pair) {
+    std::ranges::transform(pairs, residuals.begin(), [&](const IntensityPair& pair) {
       return static_cast<float>(std::abs(residual(pair, *line)));
     });
-    const double reach = kBiweightReach * std::max(kLeastResidualSigma, robust_sigma(residuals));
-    moments = moments_of(pairs, [&](const LevelPair& pair) {
+    const double reach = kBiweightReach * std::max(kMinResidualSigma, robust_sigma(residuals));
+    moments = moments_of(pairs, [&](const IntensityPair& pair) {
       const double share = residual(pair, *line) / reach;
       const double left = std::max(0.0, 1 - share * share);
       return left * left;
@@ -106,9 +107,9 @@ std::optional<LevelChange> fit_levels(std::span<const LevelPair> pairs) {
     line = line_of(moments);
   }
   if (!line || !(line->gain >= 1 / kLargestGain && line->gain <= kLargestGain) ||
-      moments.weight < kLeastShare * static_cast<double>(pairs.size()) ||
+      moments.weight < kMinShare * static_cast<double>(pairs.size()) ||
       moments.reference_other <
-          kLeastCorrelation * std::sqrt(moments.reference_reference * moments.other_other)) {
+          kMinCorrelation * std::sqrt(moments.reference_reference * moments.other_other)) {
     return std::nullopt;
   }
   return line;

@@ -1,9 +1,9 @@
-#include "kernels/luma_levels/luma_levels.h"
+#include "kernels/luma_intensity/luma_intensity.h"
 
 namespace vantage::kernels {
 
-void luma_levels_row_ref(const std::uint8_t* pixels, int width, int channels,
-                         std::uint8_t* levels) {
+void luma_intensity_row_ref(const std::uint8_t* pixels, int width, int channels,
+                            std::uint8_t* levels) {
   for (int x = 0; x < width; ++x, pixels += channels) {
     levels[x] = channels == 1
                     ? pixels[0]
