@@ -8,15 +8,15 @@
 
 namespace vantage::apps {
 
-/// What the command line says of the option of a field of MethodParameters or RefinementOptions.
+/// Help text of the option of a field of MethodParameters or RefinementOptions.
 struct OptionText {
   std::string_view option;
-  /// Of a number "PX", or "PX|on" with a word that stands for a value; of a bool the words for true
-  /// and false. Enumerations have their names.
+  /// Number: "PX", or "PX|on" with a word that stands for a value; bool: the words for true and
+  /// false. Enumerations use their own names.
   std::string_view value_name;
   std::string_view help;
   std::string_view automatic = "{}";  ///< what `auto` stands for; {}: the default of the struct
-  double word_value = 0;              ///< what the word of a number stands for
+  double word_value = 0;              ///< value of a number's word
 };
 
 inline constexpr std::array kOptionTexts = {
@@ -132,7 +132,7 @@ inline constexpr std::array kOptionTexts = {
                "of similar pixels around; none: unknown"},
 };
 
-/// The first option of each group of a method's options, and the title of the group.
+/// First option and title of each group of a method's options.
 inline constexpr std::array<std::pair<std::string_view, const char*>, 3> kOptionGroups = {
     {{"cost", "Matching: cost"},
      {"aggregate", "Matching: aggregation"},

@@ -84,7 +84,7 @@ Image<float> interleaved(const DisplacementView& displacements, Side side, float
     float* target = result.row(y);
     for (int x = 0; x < width; ++x) {
       const bool known = std::isfinite(along_x[x]) && std::isfinite(along_y[x]);
-      // Plus zero: the partner of disparity 0 is not at −0.
+      // Adding zero turns −0 into 0 for disparity 0.
       target[2 * x] = known ? sign * along_x[x] + 0.0F : unknown;
       target[2 * x + 1] = known ? sign * along_y[x] + 0.0F : unknown;
     }

@@ -22,11 +22,11 @@ constexpr int kMinBands = 4;
 /// One of this many image rows is matched, except in small images.
 constexpr int kRowsPerMatchedRow = 8;
 constexpr std::size_t kMaxMatches = 65536;
-/// Levels nearer to black or white than this may be clipped.
+/// Intensities nearer to black or white than this may be clipped.
 constexpr float kUnclippedMargin = 2;
 constexpr float kWhite = 255;
 /// Lower bound of σ even for noise-free photographs: reflections, edges and slanted surfaces are
-/// not represented among the sure matches.
+/// not represented among the reliable matches.
 constexpr double kMinNoiseSigma = 4;
 
 /// The rows to match, as one image.
@@ -55,7 +55,7 @@ Bands bands_of(int height) {
   return bands;
 }
 
-/// Grey levels of the bands' rows: luma, then the channels if they are compared.
+/// Intensities of the bands' rows: luma, then the channels if they are compared.
 class BandIntensities {
  public:
   BandIntensities(const Photograph& photograph, const Bands& bands, int planes)
@@ -138,7 +138,7 @@ std::optional<IntensityChange> change_of(const BandIntensities& left, const Band
   return fit_intensity_change(pairs);
 }
 
-/// Distance of `value` from the range of the (changed) levels within half a pixel of x.
+/// Distance of `value` from the range of the (changed) intensities within half a pixel of x.
 template <typename Level>
 float outside(float value, const Level& intensity_at, int x) {
   const float here = intensity_at(x);

@@ -15,7 +15,7 @@ class StereoMatcher;
 
 /// Intensity statistics of a pair.
 struct PairExposure {
-  /// Maps the right image's levels to the left's; empty if the pair does not determine it.
+  /// Maps the right image's intensities to the left's; empty if the pair does not determine it.
   IntensityChanges of_right;
   bool has_intensity_change = false;
   /// σM in grey levels, at least 4: σ of Birchfield and Tomasi's difference at matches after the
@@ -39,9 +39,8 @@ class PairExposureEstimator {
   ~PairExposureEstimator();
 
   /// Images of equal size. `colour`: compare luma, or also the channels where both images have
-  /// them. `changes_intensities`: false: no change, and σ refers to unchanged
-  /// intensities. Throws Error
-  /// when no pixel has a candidate in the range.
+  /// them. `changes_intensities`: false: no change, and σ refers to unchanged intensities. Throws
+  /// Error when no pixel has a candidate in the range.
   [[nodiscard]] PairExposure estimate(const Photograph& left, const Photograph& right,
                                       ColourUse colour, bool changes_intensities) const;
 

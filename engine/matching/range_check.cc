@@ -12,13 +12,14 @@
 namespace vantage {
 namespace {
 
-// Of 18 scenes with truth and the preset balanced, no range that was found has 0.1 % of the matches
-// at an end other than 0; all that leave out the tenth of the truth above have 4 % and more.
+// Measured on 18 scenes with ground truth and the preset balanced: estimated ranges have less than
+// 0.1 % of the matches at an end other than 0; ranges without the top tenth of the ground truth
+// have at least 4 %.
 constexpr double kPileShare = 0.01;
-/// Of those scenes one has 32 %, one 26 % and the others have less, whatever the range.
+/// One of those scenes has 32 %, one 26 % and the others have less, for any range.
 constexpr double kUnmatchedShare = 0.2;
 constexpr double kBeyondShare = 0.02;
-/// Of a surface that lies at an end itself, this part may seem to lie beyond.
+/// If a surface lies at an end, this share of it may seem to lie beyond.
 constexpr double kScatterShare = 0.1;
 
 bool piles_up_at_min(const MatchesAtEnds& matches, const MatchOptions& options, bool is_found) {

@@ -10,39 +10,39 @@
 
 namespace vantage {
 
-/// Shares of the matched pixels of a map that are within a pixel of the ends of the range which was
-/// searched. Where a range is too narrow, surfaces beyond an end, and what is near them, win at it.
+/// Shares of a map's matched pixels within a pixel of the ends of the search range. If a range is
+/// too narrow, surfaces beyond an end and their surroundings win at that end.
 struct MatchesAtEnds {
   double at_min = 0;
   double at_max = 0;
-  double unmatched = 0;  ///< of all pixels, those without a match
+  double unmatched = 0;  ///< share of all pixels without a match
 };
 
-/// Of the map of the reference, as StereoMatcher::match() makes it, with its mask (without one all
-/// known pixels are matched). Thread rule: pure.
+/// Examines the map of the reference as returned by StereoMatcher::match(), with its mask (without
+/// one, all known pixels count as matched). Thread rule: pure.
 MatchesAtEnds matches_at_ends(const DisparityMaps& maps, const MatchOptions& options);
 
-/// What seems to be missing from a range.
+/// Ends at which a range seems to be cut off.
 struct CutRange {
   bool below = false;  ///< at its minimum
   bool above = false;
   MatchesAtEnds at_ends;
-  /// Of what both images show in a search of reduced images the shares beyond the ends.
+  /// Shares beyond the ends, of the disparities both images agree on in a search of reduced images.
   double share_below = 0;
   double share_above = 0;
 
   [[nodiscard]] bool any() const { return below || above; }
 };
 
-/// Whether the range may be too narrow: more than a hundredth of the matches are at an end, or more
-/// than a fifth of the pixels have none. A range that was found (`is_found`) may end at 0, where
-/// infinity is, and has been looked at already.
+/// Whether the range may be too narrow: more than 1 % of the matches are at an end, or more than
+/// 20 % of the pixels have none. An estimated range (`is_found`) may end at 0, which is infinity,
+/// and has been checked already.
 bool may_be_cut(const MatchesAtEnds& matches, const MatchOptions& options, bool is_found);
 
-/// Looks whether a range that may_be_cut() is too narrow. A scene may end where it does, so the
-/// pair is searched once more, as find_disparity_range() does, and more than a fiftieth of what
-/// that sees must lie beyond, and more than a tenth of what is at the end. Where it cannot see so
-/// far, the matches at the end decide. Thread rule: may be called concurrently.
+/// Checks whether a range that may_be_cut() is too narrow. The scene may end at that disparity, so
+/// the pair is searched again as by find_disparity_range(): more than 2 % of the disparities found
+/// must lie beyond, and more than a tenth of the share at the end. If that search does not reach
+/// beyond, the matches at the end decide. Thread rule: may be called concurrently.
 CutRange look_beyond(const MatchesAtEnds& matches, const Photograph& left, const Photograph& right,
                      const MatchOptions& options, Execution& execution);
 

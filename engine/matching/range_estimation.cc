@@ -38,8 +38,7 @@ constexpr float kExactnessPx = 0.4F;
 /// This share at either end may be wrong.
 constexpr double kStrayShare = 0.0002;
 /// Separate groups count from this share on: repeated texture causes wrong matches in small areas.
-/// A group far behind everything else, but not behind infinity, is a background with little of it
-/// visible.
+/// A group far behind everything else, but not behind infinity, is a mostly hidden background.
 constexpr double kApartShare = 0.0025;
 constexpr double kBehindShare = 0.0003;
 /// A small part of an untextured sky may match at any disparity.
@@ -60,7 +59,7 @@ int reduction_of(int width) {
   return std::max({1, std::min(kUsualFactor, parts(kMinWidthPx)), parts(kMaxWidthPx)});
 }
 
-/// Grey levels averaged over blocks of `factor` × `factor` pixels; the remainder at the right and
+/// Intensities averaged over blocks of `factor` × `factor` pixels; the remainder at the right and
 /// lower sides is dropped.
 Photograph reduced(const Photograph& photograph, int factor, Execution& execution) {
   const int width = photograph.width() / factor;
@@ -154,11 +153,11 @@ Span span_of(const std::vector<float>& values) {
   return span.value_or(Span{values.front(), values.back()});
 }
 
-/// What a search of the reduced images sees.
+/// Result of a search of the reduced images.
 struct Agreement {
   int factor = 1;
   DisparityRange search;      ///< in reduced pixels
-  std::vector<float> values;  ///< disparities that both agree on, in reduced pixels, sorted
+  std::vector<float> values;  ///< disparities that both images agree on, in reduced pixels, sorted
   bool says_something = false;
 };
 

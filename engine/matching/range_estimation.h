@@ -29,15 +29,15 @@ std::optional<DisparityRange> find_disparity_range(const Photograph& left, const
 DisparityRange estimate_disparity_range(const Photograph& left, const Photograph& right,
                                         Execution& execution);
 
-/// Of what both images show, as find_disparity_range() sees it, the parts outside a range.
+/// Shares outside a range, of the disparities both images agree on in find_disparity_range().
 struct DisparitiesBeyond {
-  double below = 0;  ///< share below the range by more than the search of reduced images is exact
+  double below = 0;  ///< share below the range by more than the accuracy of that search
   double above = 0;
-  bool reaches_below = true;  ///< whether that search can see any
+  bool reaches_below = true;  ///< whether the search can find any
   bool reaches_above = true;
 };
 
-/// Nothing beyond where the images agree on next to nothing. Errors, `vertical` and thread rule as
+/// Shares are 0 if the images agree on almost nothing. Errors, `vertical` and thread rule as
 /// find_disparity_range().
 DisparitiesBeyond disparities_beyond(const Photograph& left, const Photograph& right,
                                      DisparityRange range, Execution& execution,

@@ -26,7 +26,7 @@ constexpr double kApartMatches = 0.02;
 // Pixels of the images in which features are detected.
 constexpr double kMatchGap_px = 1;
 constexpr double kMargin_px = 0.5;
-/// Row offsets that spread by no more do not determine the camera positions.
+/// Row offsets with at most this spread do not determine the camera positions.
 constexpr double kOffsetsSpread_px = 4;
 
 struct MatchSpan {

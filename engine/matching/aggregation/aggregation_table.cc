@@ -18,7 +18,7 @@ AggregationReach gaussian_reach(const MethodParameters& parameters) {
   return {4 * parameters.aggregation_sigma_px, "px"};
 }
 
-/// As far as iterations go on the image's own level.
+/// Reach of the iterations on the finest level.
 AggregationReach iterations_reach(const MethodParameters& parameters) {
   return {static_cast<double>(at_level(parameters, 0).iterations), "iterations"};
 }

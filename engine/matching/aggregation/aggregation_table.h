@@ -18,42 +18,42 @@
 
 namespace vantage {
 
-/// Where cells are aggregated: a level of one map.
+/// The context of an aggregation: one level of one map.
 struct AggregationPlace {
   const kernels::CandidateGeometry& geometry;
   int height = 0;
-  kernels::CandidatePlane plane = {};    ///< of a search in two dimensions
-  const EdgeWeights* edges = nullptr;    ///< null: neighbours count alike
-  const LevelVolume* coarser = nullptr;  ///< result of the next coarser level; null: there is none
+  kernels::CandidatePlane plane = {};    ///< of a two-dimensional search
+  const EdgeWeights* edges = nullptr;    ///< null: neighbours have equal weights
+  const LevelVolume* coarser = nullptr;  ///< result of the next coarser level; null: none
   const CandidateBlocks* coarser_blocks = nullptr;
-  const CandidateBlocks* blocks = nullptr;  ///< null: all candidates are looked at
+  const CandidateBlocks* blocks = nullptr;  ///< null: all candidates are searched
 };
 
-/// How far an aggregation reaches, in its own unit.
+/// Reach of an aggregation, in its own unit.
 struct AggregationReach {
   double amount = 0;
   std::string_view unit;
 };
 
-/// An aggregation: all that is known of it outside of its stages.
+/// An aggregation: everything known about it outside its stages.
 struct CellAggregation {
   Aggregation key = Aggregation::kNone;
-  std::string_view name;         ///< of options, messages and tuning keys
+  std::string_view name;         ///< in options, messages and tuning keys
   std::string_view description;  ///< one line of help
-  /// Options that it reads, with levels or other options in some cases (parameter_readers.h).
+  /// Options that it reads; some only with levels or other options (parameter_readers.h).
   std::vector<std::string_view> options;
 
-  /// What it starts from unless a cost is chosen, and what the cells of that cost mean.
+  /// Default cost, and what the cells of that cost mean.
   MatchCost natural_cost = MatchCost::kSquared;
   CellMeaning cells = CellMeaning::kEnergy;
-  bool is_iterative = false;  ///< `iterations` stages, and what comes before them
-  /// Windows: on the image's own level, selection sums them up in integers.
+  bool is_iterative = false;  ///< `iterations` stages, preceded by initial ones
+  /// Has windows: on the finest level, selection sums them in integers.
   bool has_windows = false;
-  CoarserUse coarser_use = CoarserUse::kSupport;  ///< of energies of a coarser level
+  CoarserUse coarser_use = CoarserUse::kSupport;  ///< use of the energies of a coarser level
 
-  /// Null: it does not reach beyond the pixel.
+  /// Null: no reach beyond the pixel.
   AggregationReach (*reach)(const MethodParameters& parameters) = nullptr;
-  /// Null: the margin of energies, the evidence of a cost that is evidence.
+  /// Null: the margin of energies; for costs that are evidence, the evidence.
   ConfidenceMeasure (*confidence)(const MethodParameters& parameters) = nullptr;
   /// `parameters`: of the level. Null: no stages.
   std::vector<std::unique_ptr<scheduler::RowStage>> (*make_stages)(
@@ -74,7 +74,7 @@ inline const CellAggregation& aggregation_of(const MethodParameters& parameters)
   return aggregation_of(parameters.aggregation);
 }
 
-/// Whether cells are likelihoods and probabilities, else energies.
+/// Whether cells are likelihoods and probabilities rather than energies.
 inline bool has_likelihoods(const MethodParameters& parameters) {
   return aggregation_of(parameters).cells == CellMeaning::kLikelihood;
 }

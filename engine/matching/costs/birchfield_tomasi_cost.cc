@@ -3,7 +3,7 @@
 namespace vantage {
 namespace {
 
-/// Grey levels, and their smallest and largest values within half a pixel.
+/// Intensities, and their minimum and maximum within half a pixel.
 class SamplingPlanes final : public CostPlanes {
  public:
   ChannelPlanes<float, 3> levels;

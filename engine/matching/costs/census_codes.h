@@ -18,7 +18,7 @@ inline void resize_codes(const PlaneSource& source, CensusCodes& codes) {
   }
 }
 
-/// Row y of the codes of `levels`, which have the margins of filters.
+/// Computes row y of the codes of `levels`, which must have filter margins.
 inline void census_code_row(const PlaneSource& source, const IntensityPlane<float>& levels, int y,
                             CensusCodes& codes) {
   kernels::CensusRows rows{};

@@ -15,7 +15,7 @@ namespace {
 bool has_census(const MethodParameters& parameters) { return parameters.sigma_census > 0; }
 bool has_gradient(const MethodParameters& parameters) { return parameters.sigma_gradient > 0; }
 
-/// Grey levels of the channels; codes and gradients of luma.
+/// Intensities of the channels; codes and gradients of luma.
 class CombinedPlanes final : public CostPlanes {
  public:
   ChannelPlanes<std::uint16_t, 3> levels;  ///< and their bounds within half a pixel
@@ -76,7 +76,7 @@ class CombinedPlanes final : public CostPlanes {
   }
 
   FilterLevels filter_levels_;
-  IntensityPlane<float> luma_;  ///< beside colour channels
+  IntensityPlane<float> luma_;  ///< used with colour channels
 };
 
 class CombinedModel final : public CostModel {
@@ -92,8 +92,8 @@ class CombinedModel final : public CostModel {
   void likelihoods(const CostRow& row, float* cells) const override {
     combine(row, likelihoods_, kernels::CombinedCells::kLikelihood, cells);
   }
-  /// Half of the largest: as bad as the worst match, such cells would draw the border of the image,
-  /// where every true partner is outside, to whatever else is near.
+  /// Half of the maximum. With the maximum itself, the image border, where every true partner is
+  /// outside, would be pulled to whatever else is near.
   [[nodiscard]] std::optional<float> energy_without_partner() const override {
     return static_cast<float>(largest_energy() / 2);
   }
@@ -101,7 +101,7 @@ class CombinedModel final : public CostModel {
     return static_cast<float>(std::exp(-largest_energy() / 2));
   }
   [[nodiscard]] CostBounds energy_bounds() const override {
-    // Each of three terms is rounded to whole units.
+    // Each of the three terms is rounded to whole units.
     return {0, static_cast<float>(largest_energy() + 3.0 / kernels::kEnergyUnitsPerNat)};
   }
   [[nodiscard]] kernels::KernelWork energy_work(int channels) const override {
@@ -126,7 +126,7 @@ class CombinedModel final : public CostModel {
             kernels::combined_model(sigmas, epsilon, 3, meaning)};
   }
 
-  /// Σ −log ε of the terms.
+  /// Sum of −log ε over the terms.
   [[nodiscard]] double largest_energy() const {
     const int terms = 1 + (has_census(parameters()) ? 1 : 0) + (has_gradient(parameters()) ? 1 : 0);
     return -terms *
@@ -160,7 +160,7 @@ MatchingCost combined_cost() {
           .description = "sum for grey levels, census codes and gradients",
           .options = {"match-exposure", "sigma-measurement", "epsilon-measurement", "sigma-census",
                       "sigma-gradient"},
-          // It is made for photographs, whose noise differs from pair to pair.
+          // This cost is meant for photographs, whose noise differs from pair to pair.
           .estimates_sigma = true,
           .make_planes = make_planes_as<CombinedPlanes>,
           .make_model = make_model_as<CombinedModel>};

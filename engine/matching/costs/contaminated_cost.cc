@@ -14,7 +14,7 @@ class ContaminatedModel final : public CostModel {
   void energies(const CostRow& row, float* cells) const override {
     kernels::contaminated_energy_row(row.grey_levels(), measurement(), cells);
   }
-  /// Of channels: the exponential of the mean energy.
+  /// With several channels: the exponential of the mean energy.
   void likelihoods(const CostRow& row, float* cells) const override {
     const kernels::GreyPairs levels = row.grey_levels();
     if (levels.channels == 1) {

@@ -18,8 +18,8 @@ void changes_intensities(const IntensityChange& change, int width, float* levels
 }  // namespace
 
 PlaneMargins margins_of(const kernels::CandidateGeometry& geometry) {
-  // Lane i of column x is read at x + disparity_min + i, in the mirrored plane as in the plain one.
-  // Kernels write whole vectors: up to a lane multiple past the last pixel that matters.
+  // Lane i of column x is read at x + disparity_min + i in both the plain and the mirrored plane.
+  // Kernels write whole vectors: up to a lane multiple past the last pixel used.
   return {std::max(kFilterMarginBefore, -geometry.disparity_min),
           std::max(kFilterMarginAfter,
                    geometry.disparity_min + geometry.lanes() + kernels::kLaneMultiple)};

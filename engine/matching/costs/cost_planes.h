@@ -20,10 +20,10 @@ struct PlaneMargins {
   int after = 0;
 };
 
-/// Room for every lane of every candidate of `geometry`, which is a left-reference map's.
+/// Margins for every lane of every candidate of `geometry`, that of a left-reference map.
 PlaneMargins margins_of(const kernels::CandidateGeometry& geometry);
 
-/// A photograph as costs read it, and the shape of the planes that are made of it.
+/// A photograph as costs read it, and the shape of the planes computed from it.
 struct PlaneSource {
   const Photograph& photograph;
   const IntensityChanges& intensity_changes;
@@ -34,9 +34,9 @@ struct PlaneSource {
 
   [[nodiscard]] int width() const { return photograph.width(); }
   [[nodiscard]] int height() const { return photograph.height(); }
-  /// Writes the grey levels of luma.
+  /// Writes the intensities of luma.
   void luma_row(int y, float* levels) const;
-  /// Writes those of one channel, or of luma if that is all.
+  /// Writes the intensities of one channel, or of luma if there are no channels.
   void level_row(std::size_t channel, int y, float* levels) const;
 
   /// Calls body(channel).
@@ -68,8 +68,8 @@ struct PlaneSource {
   }
 };
 
-/// One quantity of every pixel, and the same with mirrored rows where the image is the partner of a
-/// left reference.
+/// One quantity per pixel. If the image is the partner of a left reference, also a copy with
+/// mirrored rows.
 template <typename T>
 struct FeaturePlane {
   IntensityPlane<T> plain;
@@ -82,8 +82,8 @@ struct FeaturePlane {
       mirrored.resize(source.width(), source.height(), before, after);
     }
   }
-  /// Writes the margins of plain row y, whose pixels are in place, and, if wanted, the mirrored
-  /// row.
+  /// Writes the margins of plain row y, whose pixels must be filled, and the mirrored row if
+  /// needed.
   void finish_row(const PlaneSource& source, int y) {
     plain.fill_margins(y);
     if (source.has_mirrored) {
@@ -96,13 +96,13 @@ struct FeaturePlane {
   }
 };
 
-/// `kPlanes` quantities of one channel, and of each channel.
+/// `kPlanes` quantities of one channel, and of every channel.
 template <typename T, std::size_t kPlanes>
 using PlaneSet = std::array<FeaturePlane<T>, kPlanes>;
 template <typename T, std::size_t kPlanes>
 using ChannelPlanes = std::array<PlaneSet<T, kPlanes>, 3>;
 
-/// Of images, or of arrays of them.
+/// Accepts images or arrays of them.
 template <typename Images>
 [[nodiscard]] std::size_t held_bytes_of(const Images& images) {
   if constexpr (requires { images.held_bytes(); }) {
@@ -116,11 +116,11 @@ template <typename Images>
   }
 }
 
-/// Grey levels that features are made of, with margins for filters; they are not compared.
+/// Intensities that features are computed from, with filter margins; they are not compared.
 using FilterLevels = std::array<IntensityPlane<float>, 3>;
 void prepare_filter_levels(const PlaneSource& source, FilterLevels& levels);
 
-/// What a cost looks up in one image: planes of its own. Working memory.
+/// The planes that a cost reads of one image. Working memory.
 class CostPlanes {
  public:
   CostPlanes() = default;
@@ -128,7 +128,7 @@ class CostPlanes {
   CostPlanes& operator=(const CostPlanes&) = delete;
   virtual ~CostPlanes() = default;
 
-  /// Fills them. Identical for any source.execution.
+  /// Fills the planes. Identical for any source.execution.
   virtual void prepare(const PlaneSource& source, const MethodParameters& parameters) = 0;
   [[nodiscard]] virtual std::size_t held_bytes() const = 0;
 };

@@ -19,7 +19,7 @@ const MatchingCost& cost_of(MatchCost cost) {
 }
 
 CostBounds cost_bounds(const MethodParameters& parameters, int partners) {
-  // Costs are floats: a little more than the exact bounds is possible.
+  // Costs are floats and may exceed the exact bounds slightly.
   constexpr float room = 1.0001F;
   const CostBounds one = cost_of(parameters).make_model(parameters)->energy_bounds();
   const float count = room * static_cast<float>(partners);

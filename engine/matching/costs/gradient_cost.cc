@@ -21,7 +21,7 @@ class GradientModel final : public CostModel {
     kernels::negated_evidence_row(row.pairs(&GradientPlanes::gradients), is_octagon(parameters()),
                                   cells);
   }
-  /// (1−ε) exp((E − max over the column)/σ) + ε, E of the cells with a partner.
+  /// (1−ε) exp((E − max over the column)/σ) + ε, for cells with a partner.
   void likelihoods(const CostRow& row, float* cells) const override {
     energies(row, cells);
     kernels::likelihood_of_evidence(
@@ -43,7 +43,7 @@ class GradientModel final : public CostModel {
   }
 
  private:
-  /// Largest response of the filter along one axis (EQUATIONS §2), with room for rounding.
+  /// Maximum response of the filter along one axis (EQUATIONS §2), with margin for rounding.
   [[nodiscard]] double largest_gradient() const {
     switch (parameters().gradient) {
       case GradientFilter::kCentral:

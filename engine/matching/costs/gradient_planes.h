@@ -7,7 +7,7 @@
 
 namespace vantage {
 
-/// Gradients as evidence (5.5) is made of them.
+/// Gradients in the form that the evidence (5.5) uses.
 class GradientPlanes final : public CostPlanes {
  public:
   ChannelPlanes<float, 3> gradients;  ///< α·gx, α·gy, |g|/2

@@ -6,7 +6,7 @@
 
 namespace vantage {
 
-/// Grey levels of each channel: all that costs of differences of grey levels look up.
+/// Intensities of each channel, for costs that compare only intensities.
 class GreyPlanes final : public CostPlanes {
  public:
   ChannelPlanes<float, 1> grey;

@@ -10,7 +10,7 @@ namespace {
 
 using kernels::FilterTaps;
 
-/// A derivative along one axis and what smooths it across.
+/// A derivative along one axis and the smoothing across it.
 struct DerivativeFilter {
   FilterTaps derivative{};
   FilterTaps across{};

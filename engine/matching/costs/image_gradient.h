@@ -8,8 +8,8 @@
 
 namespace vantage {
 
-/// Columns before and behind the image that a plane needs to be filtered; behind it, as many more
-/// as kernels read in whole vectors.
+/// Margins before and after the image that filtering needs; the one after includes what kernels
+/// read in whole vectors.
 inline constexpr int kFilterMarginBefore = 4;
 inline constexpr int kFilterMarginAfter = 4 + kernels::kLaneMultiple;
 
@@ -17,14 +17,14 @@ inline constexpr int kFilterMarginAfter = 4 + kernels::kLaneMultiple;
 std::size_t filter_work_floats(int width);
 
 /// Gaussian prefilter of chapter 5: σ = ½, radius 2. All planes have the size width × height and
-/// margins of at least those above; those of `levels` must be filled, and those of `smooth` will
-/// be. Beyond the border the border is replicated. Identical for any `execution`.
+/// at least the margins above. The margins of `levels` must be filled; those of `smooth` are
+/// written. The border is replicated. Identical for any `execution`.
 void smooth_intensities(const IntensityPlane<float>& levels, int width, int height,
                         Execution& execution, IntensityPlane<float>& smooth);
 
 /// Components of the gradient (5.9) of row y: correlations with the derivative filters of EQUATIONS
-/// §2, borders replicated. `levels`, its size and margins as above; gx and gy may be written up to
-/// a lane multiple behind the width. `work`: filter_work_floats().
+/// §2, borders replicated. `levels`: size and margins as above. gx and gy may be written up to a
+/// lane multiple past the width. `work`: filter_work_floats().
 void gradient_row(const IntensityPlane<float>& levels, int width, int height, int y,
                   GradientFilter filter, float* work, float* gx, float* gy);
 

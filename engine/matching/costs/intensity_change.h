@@ -4,7 +4,7 @@
 
 namespace vantage {
 
-/// What another camera would have made of a grey level: gain · level + offset, in grey levels
+/// Maps intensities of one camera to those of another: gain · intensity + offset, in grey levels
 /// 0..255.
 struct IntensityChange {
   double gain = 1;
@@ -14,7 +14,7 @@ struct IntensityChange {
   friend bool operator==(const IntensityChange&, const IntensityChange&) = default;
 };
 
-/// Of a photograph's luma and of its colour channels.
+/// Intensity changes of a photograph's luma and of its colour channels.
 struct IntensityChanges {
   IntensityChange luma;
   std::array<IntensityChange, 3> channels;

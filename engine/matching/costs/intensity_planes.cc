@@ -21,7 +21,7 @@ struct Bounds {
   float high = std::numeric_limits<float>::lowest();
 };
 
-/// Grey levels of the whole photograph into `plane`; returns their bounds.
+/// Writes the intensities of the whole photograph to `plane`; returns their bounds.
 Bounds fill_grey(const Photograph& photograph, Execution& execution, IntensityPlane<float>& plane) {
   std::vector<Bounds> of_row(static_cast<std::size_t>(photograph.height()));
   execution.for_each_band(photograph.height(), [&](int first_row, int end_row) {
@@ -40,14 +40,14 @@ Bounds fill_grey(const Photograph& photograph, Execution& execution, IntensityPl
   return bounds;
 }
 
-/// The power of two that intensities with these bounds are multiplied with.
+/// The power of two by which intensities with these bounds are multiplied.
 float cost_scale(const Bounds& bounds, int window_samples) {
   const double span = static_cast<double>(bounds.high) - bounds.low;
   if (!(span > 0)) {
     return 1;
   }
-  // Each cost may round up by ½; the margin covers rounding of the float products
-  // and still lets the span of 255 grey levels have the scale 8.
+  // Each cost may round up by ½. The margin covers rounding of the float products and still allows
+  // the scale 8 for a span of 255 grey levels.
   const double max_cost = 0.995 * std::min<double>(kernels::kFloatSquareLimit,
                                                    std::numeric_limits<std::int32_t>::max() /
                                                            static_cast<double>(window_samples) -
@@ -55,8 +55,8 @@ float cost_scale(const Bounds& bounds, int window_samples) {
   return static_cast<float>(std::exp2(std::floor(std::log2(std::sqrt(max_cost) / span))));
 }
 
-/// Fills the margins of one row of the left plane and mirrors the pixels of the right image, once
-/// they are in place.
+/// Fills the margins of one row of the left plane and mirrors the row of the right image. The
+/// pixels must be filled.
 template <typename Pixel>
 void finish_row(IntensityPlanes<Pixel>& planes, const Pixel* right, int width, int y,
                 PlanesNeeded needed) {
@@ -70,9 +70,9 @@ void finish_row(IntensityPlanes<Pixel>& planes, const Pixel* right, int width, i
 template <typename Pixel>
 void resize_planes(IntensityPlanes<Pixel>& planes, int height,
                    const kernels::CandidateGeometry& geometry, PlanesNeeded needed) {
-  // Lane i of column x is read at x + disparity_min + i, in the mirrored plane as in the plain one.
+  // Lane i of column x is read at x + disparity_min + i in both the plain and the mirrored plane.
   const int before = std::max(0, -geometry.disparity_min);
-  // Kernels read whole vectors: up to a lane multiple past the last pixel that matters.
+  // Kernels read whole vectors: up to a lane multiple past the last pixel used.
   const int after = std::max(0, geometry.disparity_min + geometry.lanes()) + kernels::kLaneMultiple;
   planes.left.resize(geometry.width, height, before, after);
   planes.right.resize(geometry.width, height, 0, kernels::kLaneMultiple);

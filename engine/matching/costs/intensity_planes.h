@@ -13,16 +13,16 @@
 namespace vantage {
 
 /// One image's intensities as matching costs read them: rows with margins, so that every lane of
-/// every candidate can be loaded, and optionally mirrored, so that the partners of growing
-/// disparities lie at growing addresses. Pixel is uint8_t or float, or an
-/// unsigned integer of what costs are made of.
+/// every candidate can be loaded, and optionally mirrored, so that partners of increasing
+/// disparities lie at increasing addresses. Pixel is uint8_t or float, or an unsigned integer type
+/// of a feature.
 template <typename Pixel>
 class IntensityPlane {
  public:
   /// `margin_begin`, `margin_end`: columns before and after the image, filled with the border
   /// pixel.
   void resize(int width, int height, int margin_begin, int margin_end);
-  /// Writes the margins of one row whose pixels are in place.
+  /// Writes the margins of one row whose pixels are filled.
   void fill_margins(int y);
   /// The first pixel of row y (of a mirrored plane: the image's last column).
   [[nodiscard]] Pixel* row(int y) { return pixels_.row(y) + margin_begin_; }
@@ -58,15 +58,15 @@ struct PlanesNeeded {
 /// others become float grey levels (luma of colour, Rec. 601; EQUATIONS §0).
 struct PreparedPair {
   bool is_8_bit = true;
-  float cost_unit = 1;  ///< grey levels² of a unit of squared differences of the float planes
+  float cost_unit = 1;  ///< grey levels² per unit of squared difference of the float planes
   IntensityPlanes<std::uint8_t> grey_8;
   IntensityPlanes<float> grey_float;
 };
 
-/// Fills `pair` from two photographs of equal size. Float planes hold grey levels times a power of
+/// Fills `pair` from two photographs of equal size. Float planes hold intensities times a power of
 /// two, the largest for which squared differences stay below kernels::kFloatSquareLimit and the sum
-/// of `window_samples` of them below 2³¹: costs then become integers with as fine a step as there
-/// is room for, and sums of them are exact.
+/// of `window_samples` of them below 2³¹. Costs then are integers with the finest possible step,
+/// and their sums are exact.
 /// Identical for any `execution`.
 void prepare_pair(const Photograph& left, const Photograph& right,
                   const kernels::CandidateGeometry& geometry, int window_samples,

@@ -18,13 +18,13 @@
 
 namespace vantage {
 
-/// Between which values energies lie.
+/// Bounds of energies.
 struct CostBounds {
   float min = 0;
   float largest = 0;
 };
 
-/// Columns of one row, whose pixels are compared with those of a partner.
+/// Columns of one row to compare with a partner.
 struct CostRow {
   const PartnerRows& partner;
   int y = 0;
@@ -34,16 +34,16 @@ struct CostRow {
   [[nodiscard]] kernels::GreyPairs grey_levels() const {
     return partner.grey_levels(y, columns, work);
   }
-  /// The planes of the cost's own type that `planes` is a member of.
+  /// `planes`: a member of the cost's own type of planes.
   template <typename Planes>
   [[nodiscard]] auto pairs(Planes planes) const {
     return partner.pairs(y, columns, planes);
   }
 };
 
-/// A cost with its parameters: what the cost stage asks, once for each row or block of columns.
-/// Energies are small where pixels are alike, in the cost's own unit; of colour channels the mean.
-/// Likelihoods are p0 up to a factor per column, in (0, 1] (6.25). Thread rule: immutable.
+/// A cost with its parameters. The cost stage calls it once per row or block of columns. Energies
+/// are small for similar pixels, in the cost's own unit, averaged over colour channels. Likelihoods
+/// are p0 up to a factor per column, in (0, 1] (6.25). Thread rule: immutable.
 class CostModel {
  public:
   explicit CostModel(const MethodParameters& parameters);
@@ -51,25 +51,25 @@ class CostModel {
   CostModel& operator=(const CostModel&) = delete;
   virtual ~CostModel() = default;
 
-  /// Writes lanes of floats for each column. Lanes that are no candidates: finite.
+  /// Writes lanes of floats for each column. Lanes beyond the candidates are finite.
   virtual void energies(const CostRow& row, float* cells) const = 0;
-  /// Lanes that are no candidates: 0. Unless overridden, the measurement model (6.26 ff.) with the
-  /// energy as residual.
+  /// Lanes beyond the candidates are 0. Unless overridden: the measurement model (6.26 ff.) with
+  /// the energy as residual.
   virtual void likelihoods(const CostRow& row, float* cells) const;
 
-  /// Of cells whose partner is outside; empty: they keep the cost of the border.
+  /// Energy of cells whose partner is outside; empty: the cost of the border.
   [[nodiscard]] virtual std::optional<float> energy_without_partner() const { return {}; }
   [[nodiscard]] virtual float likelihood_without_partner() const;
 
-  /// For grey levels of 0..255 and one partner.
+  /// For intensities of 0..255 and one partner.
   [[nodiscard]] virtual CostBounds energy_bounds() const = 0;
 
-  /// Work of energies() and likelihoods() on a column.
+  /// Work of energies() and likelihoods() per column.
   [[nodiscard]] virtual kernels::KernelWork energy_work(int channels) const = 0;
   [[nodiscard]] virtual kernels::KernelWork likelihood_work(int channels) const;
 
  protected:
-  static constexpr double kWhite = 255;  ///< largest grey level
+  static constexpr double kWhite = 255;  ///< maximum intensity
 
   [[nodiscard]] const MethodParameters& parameters() const { return parameters_; }
   [[nodiscard]] const kernels::ContaminatedGaussian& measurement() const { return measurement_; }
@@ -79,10 +79,10 @@ class CostModel {
   kernels::ContaminatedGaussian measurement_;
 };
 
-/// What residuals, and therefore σM, are measured in.
+/// Unit of residuals and therefore of σM.
 enum class ResidualUnit { kGreyLevels, kGradient, kCensusBits };
 
-/// Energies −ln p0 in bytes, for costs of few values: of luma, one partner, the map's own baseline.
+/// Energies −ln p0 in bytes, for costs with few values: luma, one partner, the map's own baseline.
 struct ByteEnergies {
   float (*nats_per_step)(const MethodParameters& parameters) = nullptr;
   std::unique_ptr<scheduler::RowStage> (*make_stage)(const MethodParameters& parameters,
@@ -92,31 +92,31 @@ struct ByteEnergies {
                                                      int height) = nullptr;
 };
 
-/// A matching cost: all that is known of it outside of its own file.
+/// A matching cost: everything known about it outside its own file.
 struct MatchingCost {
   MatchCost key = MatchCost::kSquared;
-  std::string_view name;         ///< of options, messages and tuning keys
+  std::string_view name;         ///< in options, messages and tuning keys
   std::string_view description;  ///< one line of help
-  /// Options that make a difference to its energies, match-exposure among them.
+  /// Options that affect its energies, including match-exposure.
   std::vector<std::string_view> options;
 
   ResidualUnit unit = ResidualUnit::kGreyLevels;
   /// Whether features of partners between pixels can be interpolated (PartnerRows::grey_levels).
   bool can_be_interpolated = false;
-  /// Energies are −evidence: of both signs, compared with 0, without a scale of their own;
-  /// likelihoods compare a candidate with the best of all.
+  /// Energies are −evidence: of either sign, compared with 0, without a scale of their own;
+  /// likelihoods compare each candidate with the best one.
   bool is_evidence = false;
-  /// σM is estimated from each pair unless it is set.
+  /// σM is estimated from each pair unless set.
   bool estimates_sigma = false;
-  /// Box sums of luma have a stage of their own (stage_column_ssd).
+  /// Box sums of luma have their own stage (stage_column_ssd).
   bool has_column_sums = false;
-  /// Largest contrast of a column of energies that a disparity prior takes for its scale.
+  /// Maximum contrast of a column of energies that a disparity prior uses as scale.
   float max_contrast = std::numeric_limits<float>::infinity();
 
   std::unique_ptr<CostPlanes> (*make_planes)() = nullptr;
   std::unique_ptr<CostModel> (*make_model)(const MethodParameters& parameters) = nullptr;
   std::optional<ByteEnergies> byte_energies = {};
-  /// For tuning keys: what makes it another amount of work, ", 3 thresholds"; null: nothing.
+  /// For tuning keys: what changes its amount of work, as ", 3 thresholds"; null: nothing.
   std::string (*work_class)(const MethodParameters& parameters) = nullptr;
 
   [[nodiscard]] bool reads(std::string_view option) const {

@@ -16,7 +16,7 @@ using kernels::CandidateShift;
 using kernels::FeaturePairs;
 using scheduler::Range;
 
-/// Shifts of all lanes. A product that misses a whole number only by rounding is that number.
+/// Shifts of all lanes. Products that differ from an integer only by rounding become that integer.
 std::vector<CandidateShift> shifts_of(const kernels::CandidateGeometry& geometry, double ratio) {
   constexpr double kRounding = 1e-9;
   std::vector<CandidateShift> shifts;

@@ -13,34 +13,33 @@
 
 namespace vantage {
 
-/// Rows of a reference image beside rows of one partner, as kernels compare them. Thread rule:
-/// immutable.
+/// Rows of a reference image and of one partner, as kernels compare them. Thread rule: immutable.
 class PartnerRows {
  public:
   /// `geometry`: of the map. Throws UsageError for a baseline ratio that is 0 or not finite.
   PartnerRows(const CostImage& reference, const CostPartner& partner,
               const kernels::CandidateGeometry& geometry);
 
-  /// Whether partners lie between pixels, or farther apart than disparities do: only grey levels
-  /// can be compared then.
+  /// Whether partners lie between pixels or farther apart than the disparities: then only
+  /// intensities can be compared.
   [[nodiscard]] bool is_interpolated() const { return !shifts_.empty(); }
-  /// Floats of working memory that grey_levels() needs for so many columns.
+  /// Floats of working memory that grey_levels() needs for this number of columns.
   [[nodiscard]] std::size_t work_floats(int columns) const;
-  /// Of images that are compared: 1 or 3.
+  /// Number of compared channels: 1 or 3.
   [[nodiscard]] int channels() const;
 
   /// Whether the partners of row y lie inside the other image.
   [[nodiscard]] bool has_row(int y) const;
-  /// Candidates of column x whose partners lie inside, as far as columns go.
+  /// Candidates of column x whose partner's column lies inside.
   [[nodiscard]] kernels::CandidateRange with_partner(int x) const;
-  /// Columns where all do; begin may exceed end.
+  /// Columns where those of all candidates do; begin may exceed end.
   [[nodiscard]] kernels::CandidateRange columns_with_all_partners() const;
-  /// The candidates as they are counted in this partner: its direction may be the other one. Not
-  /// for interpolated partners.
+  /// Candidates as counted in this partner, whose direction may be opposite. Not for interpolated
+  /// partners.
   [[nodiscard]] const kernels::CandidateGeometry& geometry() const { return geometry_; }
 
-  /// The first `used` of the cost's `planes` of every channel, of the columns of row y and of their
-  /// partners; of rows outside, the nearest one's. Not for interpolated partners.
+  /// The first `used` of the cost's `planes` for every channel, at the columns of row y and at
+  /// their partners. Rows outside are replaced by the nearest one. Not for interpolated partners.
   template <typename Planes, typename T, std::size_t kPlanes>
   [[nodiscard]] kernels::FeaturePairs<T, static_cast<int>(kPlanes)> pairs(
       int y, scheduler::Range columns,
@@ -50,13 +49,13 @@ class PartnerRows {
     const auto& of_partner = static_cast<const Planes&>(partner_.planes()).*planes;
     auto row = empty_pairs<T, kPlanes>(columns, channels());
     for (int c = 0; c < row.channels; ++c) {
-      // A grey image beside a colour image has the same level in all channels.
+      // With a colour image, a grey image has the same intensity in all channels.
       set_channel(of_reference[channel_of(reference_, c)], of_partner[channel_of(partner_, c)], y,
                   columns, used, row.channel[static_cast<std::size_t>(c)]);
     }
     return row;
   }
-  /// The same of planes of luma.
+  /// As above, for planes of luma.
   template <typename Planes, typename T, std::size_t kPlanes>
   [[nodiscard]] kernels::FeaturePairs<T, static_cast<int>(kPlanes)> pairs(
       int y, scheduler::Range columns, std::array<FeaturePlane<T>, kPlanes> Planes::*planes) const {
@@ -66,7 +65,7 @@ class PartnerRows {
                 row.channel[0]);
     return row;
   }
-  /// Of costs that look up GreyPlanes; interpolated in `work` where necessary.
+  /// For costs that use GreyPlanes; interpolated in `work` if necessary.
   [[nodiscard]] kernels::FeaturePairs<float, 1> grey_levels(int y, scheduler::Range columns,
                                                             float* work) const;
 
@@ -95,7 +94,7 @@ class PartnerRows {
     return static_cast<std::size_t>(std::min(channel, image.channels() - 1));
   }
   [[nodiscard]] int partner_row(int y) const;
-  /// Where a shift of 0 leads from column x in a row of the partner, mirrored or not.
+  /// Position of column x at shift 0 in a row of the partner, mirrored or not.
   [[nodiscard]] int position(int x) const;
   [[nodiscard]] int step() const { return mirrored() ? -1 : 1; }
   [[nodiscard]] bool mirrored() const { return geometry_.direction < 0; }
@@ -108,7 +107,7 @@ class PartnerRows {
   const CostImage& partner_;
   kernels::CandidateGeometry geometry_;
   int rows_down_;
-  /// Of every lane; empty where disparity_min + lane is the shift.
+  /// Per lane; empty if the shift is disparity_min + lane.
   std::vector<kernels::CandidateShift> shifts_;
 };
 

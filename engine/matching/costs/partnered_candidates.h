@@ -19,13 +19,13 @@ struct PartneredCandidates {
     return empty() ? 0 : (columns.end - columns.begin) * (rows.end - rows.begin);
   }
   [[nodiscard]] bool are_all(const DisplacementGrid& grid) const { return count() == grid.count(); }
-  /// The number among all candidates of the index-th of these.
+  /// Index among all candidates of candidate `index` of these.
   [[nodiscard]] int candidate(const DisplacementGrid& grid, int index) const {
     const int in_row = columns.end - columns.begin;
     return (rows.begin + index / in_row) * grid.along_rows.count + columns.begin + index % in_row;
   }
-  /// Calls visit(cells, packed, count) for each run of these candidates in a column of cells and
-  /// where it lies if only they are stored.
+  /// Calls visit(cells, packed, count) for each run of these candidates: its position in a column
+  /// of cells, and in a packed column that stores only these candidates.
   template <typename Cell, typename Packed, typename Visit>
   void each_run(const DisplacementGrid& grid, Cell* cells, Packed* packed, Visit visit) const {
     const int in_row = columns.end - columns.begin;
@@ -36,8 +36,8 @@ struct PartneredCandidates {
   }
 };
 
-/// A geometry under which all of `count` candidates of some columns, which begin at column
-/// first_column(count), have partners: kernels then look at all of them.
+/// A geometry in which all `count` candidates of the columns from first_column(count) on have
+/// partners, so that kernels process all of them.
 inline kernels::CandidateGeometry all_partnered(int count, int columns) {
   return {.width = columns + 2 * count, .disparity_min = 0, .count = count};
 }

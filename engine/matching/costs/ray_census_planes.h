@@ -9,7 +9,7 @@
 
 namespace vantage {
 
-/// Bytes of ray census codes: ray_census_bytes(thresholds) of the planes are in use.
+/// Bytes of ray census codes; ray_census_bytes(thresholds) planes are used.
 class RayCensusPlanes final : public CostPlanes {
  public:
   ChannelPlanes<std::uint8_t, kernels::kMaxRayCensusBytes> codes;

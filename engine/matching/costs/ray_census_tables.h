@@ -12,8 +12,8 @@
 
 namespace vantage {
 
-/// The measurement model (6.26 ff.) at each distance of ray census codes, bit for bit what
-/// likelihood_of_costs() makes of it. thresholds: 1 or 3.
+/// The measurement model (6.26 ff.) at each distance of ray census codes, bit-identical to
+/// likelihood_of_costs(). thresholds: 1 or 3.
 inline kernels::LikelihoodByDistance ray_census_likelihoods(
     const kernels::ContaminatedGaussian& model, int thresholds) {
   std::array<float, kernels::kRayCensusTableBytes> cells{};
@@ -36,8 +36,8 @@ struct RayCensusEnergies {
   float step = kernels::kEnergyStep;
 };
 
-/// Steps are as small as bytes have room for, powers of two from 1/8, those of compact energies, to
-/// 1/128: sums of four are then as good as those of floats. Energies from 31.9 on count as that.
+/// Steps are the smallest that bytes can hold: powers of two from 1/8 (that of compact energies) to
+/// 1/128. Sums of four are then as good as sums of floats. Energies are capped at 31.9.
 inline RayCensusEnergies ray_census_energies(const MethodParameters& parameters) {
   constexpr float kMinStep = 1.0F / 128;
   const double sigma = parameters.sigma_measurement;

@@ -29,7 +29,7 @@ class SquaredModel final : public CostModel {
 }  // namespace
 
 MatchingCost squared_cost() {
-  // Squares of large differences would make single pixels decide for all around them.
+  // Squares of large differences would let single pixels dominate all around them.
   constexpr float kContrastLevels = 20;
   return {.key = MatchCost::kSquared,
           .name = "squared",

@@ -37,7 +37,7 @@ class CostStage final : public scheduler::RowStage {
 
   [[nodiscard]] std::string_view name() const override { return "cost"; }
   [[nodiscard]] std::size_t bytes_per_column() const override { return sizeof(float) * lanes(); }
-  /// The cells of one block for the partners after the first, and what interpolation needs.
+  /// Cells of one block for the partners after the first, and work space for interpolation.
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
     return in_one_go() ? 0 : sizeof(float) * (kBlockColumns * lanes() + max_work_floats());
   }
@@ -100,7 +100,7 @@ class CostStage final : public scheduler::RowStage {
                                             : model_->likelihood_without_partner();
   }
 
-  /// The cells of one partner.
+  /// Writes the cells of one partner.
   void compare(const PartnerRows& partner, int y, Range columns, float* work, float* cells) const {
     if (without_partner_ && !partner.has_row(y)) {
       for (int j = 0; j < columns.size(); ++j, cells += lanes_) {
@@ -144,7 +144,7 @@ class CostStage final : public scheduler::RowStage {
   int count_;
   std::vector<PartnerRows> partners_;
   CellMeaning meaning_;
-  /// Of cells whose partner is outside, unless they have the cost of the border.
+  /// Value of cells whose partner is outside; empty: the cost of the border.
   std::optional<float> without_partner_;
 };
 

@@ -12,21 +12,21 @@ namespace vantage {
 
 /// What the cells of a cost stage hold.
 enum class CellMeaning {
-  kEnergy,      ///< the cost, small = alike
-  kLikelihood,  ///< p0 up to a factor per column, in (0, 1], large = alike (6.25)
+  kEnergy,      ///< the cost, small = similar
+  kLikelihood,  ///< p0 up to a factor per column, in (0, 1], large = similar (6.25)
 };
 
 /// Source stage: the disparity space E0 of (6.1), or the likelihood that Bayesian diffusion starts
-/// from. Output cells are float, geometry.lanes() a column; the lanes beyond geometry.count are
+/// from. Output cells are float, geometry.lanes() per column; lanes beyond geometry.count are
 /// finite (energies) or 0 (likelihoods).
 ///
 /// Energies and likelihoods are those of the cost (CostModel). A cell whose partner is outside has
-/// the cost of the clamped coordinate or what the cost says of such cells. With several partners:
-/// the sum of their energies, the product of their likelihoods.
+/// the cost at the clamped coordinate, or the value that the cost defines for such cells. Several
+/// partners: energies are added, likelihoods multiplied.
 ///
 /// `reference`, prepared as a reference, `partners` (at least one), prepared as partners of this
 /// direction, and their planes must outlive the stage; all prepared with `parameters`, this range
-/// and equal sizes. A grey image beside a colour one has the same level in all channels. Throws
+/// and equal sizes. With a colour image, a grey one has the same intensity in all channels. Throws
 /// UsageError for a baseline ratio out of range, and for one not ±1 with a cost that cannot be
 /// interpolated.
 std::unique_ptr<scheduler::RowStage> make_cost_stage(const MethodParameters& parameters,

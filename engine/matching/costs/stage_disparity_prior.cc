@@ -29,7 +29,7 @@ class DisparityPriorStage final : public scheduler::RowStage {
                                         scheduler::Extent input) const override {
     return costs_->state_bytes(columns, input);
   }
-  /// As if every pixel had a prior.
+  /// Assumes that every pixel has a prior.
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     const scheduler::ColumnWork prior =
         vantage::column_work(meaning_ == CellMeaning::kEnergy ? kernels::kEnergiesWithPriorWork

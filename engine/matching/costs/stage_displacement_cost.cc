@@ -13,7 +13,7 @@
 namespace vantage {
 namespace {
 
-/// What lies behind so many bytes of state begins at a cache line.
+/// Rounds up, so that the state that follows starts at a cache line.
 std::size_t whole_cache_lines(std::size_t bytes) {
   constexpr std::size_t kLineBytes = 64;
   return (bytes + kLineBytes - 1) / kLineBytes * kLineBytes;
@@ -34,7 +34,7 @@ class DisplacementCostStage final : public scheduler::RowStage {
 
   [[nodiscard]] std::string_view name() const override { return of_rows_.front()->name(); }
   [[nodiscard]] std::size_t bytes_per_column() const override { return lanes_ * cell_bytes_; }
-  /// The cells of a few columns at one vertical disparity, and what their stage needs.
+  /// Cells of a few columns at one vertical disparity, and the state of their stage.
   [[nodiscard]] std::size_t state_bytes(scheduler::Range columns,
                                         scheduler::Extent input) const override {
     return part_bytes() + of_rows_.front()->state_bytes(columns, input);
@@ -69,7 +69,7 @@ class DisplacementCostStage final : public scheduler::RowStage {
   }
 
  private:
-  /// Columns made at a time: few enough for the level-1 cache.
+  /// Columns computed at a time: few enough for the L1 cache.
   static constexpr int kBlockColumns = 32;
 
   [[nodiscard]] std::size_t part_bytes() const {
@@ -77,7 +77,7 @@ class DisplacementCostStage final : public scheduler::RowStage {
   }
 
   std::vector<std::unique_ptr<scheduler::RowStage>> of_rows_;
-  std::size_t row_bytes_;  ///< of a column at one vertical disparity
+  std::size_t row_bytes_;  ///< per column at one vertical disparity
   std::size_t cell_bytes_;
   std::size_t row_candidates_;
   std::size_t count_;
@@ -103,7 +103,7 @@ class DisplacementEvidenceStage final : public scheduler::RowStage {
   [[nodiscard]] std::size_t bytes_per_column() const override {
     return evidence_->bytes_per_column();
   }
-  /// One column, and what making the evidence needs.
+  /// One column, and the state of the evidence stage.
   [[nodiscard]] std::size_t state_bytes(scheduler::Range columns,
                                         scheduler::Extent input) const override {
     return packed_bytes() + evidence_->state_bytes(columns, input);

@@ -9,9 +9,9 @@
 
 namespace vantage {
 
-/// Source stage: the cells of all displacements of a grid. `of_rows` holds, for each vertical
-/// disparity, a source stage with cells of one size for the horizontal ones, none of which depends
-/// on other rows. Lanes behind the candidates are filled with bytes of `padding`.
+/// Source stage: the cells of all displacements of a grid. `of_rows` holds, per vertical disparity,
+/// a source stage for the horizontal ones. All have the same cell size and none depends on other
+/// rows. Lanes after the candidates are filled with bytes of `padding`.
 std::unique_ptr<scheduler::RowStage> make_displacement_cost_stage(
     std::vector<std::unique_ptr<scheduler::RowStage>> of_rows, const DisplacementGrid& grid,
     unsigned char padding);

@@ -9,10 +9,10 @@
 
 namespace vantage {
 
-/// Source stage: energies −ln p0 of ray census codes in bytes, geometry.lanes() a column, in the
-/// steps of ray_census_energies(): what coarse levels are made of, in a tenth of the time that
-/// likelihoods and their logarithms take. Lanes that are no candidates hold 255. Of one channel and
-/// one partner at the map's own baseline; otherwise as make_cost_stage().
+/// Source stage: energies −ln p0 of ray census codes in bytes, geometry.lanes() per column, in the
+/// steps of ray_census_energies(). Coarse levels are computed from them, in a tenth of the time of
+/// likelihoods and their logarithms. Lanes beyond the candidates hold 255. For one channel and one
+/// partner at the map's own baseline; otherwise as make_cost_stage().
 std::unique_ptr<scheduler::RowStage> make_ray_census_energy_stage(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
     const CostImage& reference, const CostPartner& partner, int height);

@@ -9,7 +9,7 @@
 
 namespace vantage {
 
-/// Grey levels of a pixel and its match in the other image.
+/// Intensities of a pixel and its match in the other image.
 struct IntensityPair {
   float reference = 0;
   float other = 0;

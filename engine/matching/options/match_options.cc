@@ -65,7 +65,7 @@ void validate_refinement(const RefinementOptions& refinement, bool is_two_dimens
   }
 }
 
-/// Throws UsageError for the first field that is set although refinement does not look at it.
+/// Throws UsageError for the first field that is set but not read by refinement.
 void require_read(const RefinementOverrides& set, const RefinementOptions& in_force, bool raw) {
   const auto refuse_if = [](bool is_unread, std::string_view field, std::string_view why) {
     if (is_unread) {
@@ -151,7 +151,7 @@ MethodParameters MatchOptions::resolved() const {
   }
   MethodParameters result =
       resolve(method.value_or(settings.method), merge(settings.parameters, parameters));
-  // A preset's pruning holds where it can: what else the user chose goes before it.
+  // A preset's pruning applies only where it is possible: the user's choices take precedence.
   if (!parameters.candidate_blocks && (disparities_y || !can_prune(result))) {
     result.candidate_blocks = 0;
   }
@@ -166,7 +166,7 @@ RefinementOptions MatchOptions::resolved_refinement() const {
   }
   take_over(settings_of(preset_in_force()).refinement, result);
   take_over(refinement, result);
-  // As with pruning: a preset's level holds where there can be one.
+  // As with pruning: a preset's cross-check level applies only where it is possible.
   if (!refinement.cross_check_level && (disparities_y || !can_check_levels(resolved()))) {
     result.cross_check_level = 0;
   }

@@ -10,34 +10,34 @@
 
 namespace vantage {
 
-/// Of a pixel; of a two-dimensional search the pairs of both components count.
+/// Maximum number of candidates per pixel; a two-dimensional search counts pairs of components.
 inline constexpr int kMaxCandidates = 4096;
 
-/// Whether maps of these parameters have levels whose winners a cross-check can look at.
+/// Whether maps of these parameters have levels whose winners can be cross-checked.
 bool can_check_levels(const MethodParameters& parameters);
 
-/// What is in force after method, preset and defaults have had their say: what matching works by.
+/// The options that matching uses, after method, preset and defaults are applied.
 struct ResolvedMatchOptions {
   DisparityRange disparities;
   std::optional<DisparityRange> disparities_y;
   MethodParameters parameters;
-  std::optional<RefinementOptions> refinement;  ///< none: maps stay as the winners are
+  std::optional<RefinementOptions> refinement;  ///< empty: maps keep the winners
 };
 
-/// Everything that decides what a pair's disparity maps are. Defaults are the command line's.
+/// Everything that determines a pair's disparity maps. Defaults are those of the command line.
 struct MatchOptions {
-  /// Empty: that of the preset in force. Not both.
+  /// Empty: that of the preset in force. Cannot be combined with `preset`.
   std::optional<MatchMethod> method;
-  /// Chooses the method and the defaults of everything that is not set.
+  /// Sets the method and the defaults of everything not set.
   std::optional<MatchPreset> preset;
   /// At most kMaxCandidates.
   DisparityRange disparities;
-  /// `disparities` is still to be replaced by what estimate_disparity_range() says: whoever reads
-  /// the images does that. Matchers refuse it.
+  /// `disparities` must still be replaced by the result of estimate_disparity_range(), by the code
+  /// that reads the images. Matchers refuse it.
   bool disparities_auto = false;
   /// Vertical component of a two-dimensional search, y_left − y_right (5.5.3); empty: 0 only.
   std::optional<DisparityRange> disparities_y;
-  /// The same of `disparities_y`, which is set, and find_vertical_range().
+  /// As disparities_auto, for `disparities_y` (set) and find_vertical_range().
   bool disparities_y_auto = false;
   MethodOverrides parameters;
   Side reference = Side::kLeft;
@@ -45,28 +45,27 @@ struct MatchOptions {
   bool raw = false;
   RefinementOverrides refinement;
 
-  /// Without method and preset it is `balanced`, whatever the cost. None with an aggregation, which
-  /// starts from SSD: most of a preset is about its own. None with `disparities_y`, whose columns
-  /// are long.
+  /// `balanced` if neither method nor preset is set, for any cost. None if an aggregation is set:
+  /// it starts from SSD, since a preset mostly tunes its own aggregation. None with
+  /// `disparities_y`, whose columns are long.
   [[nodiscard]] std::optional<MatchPreset> preset_in_force() const;
-  /// What maps are made by, in words: "preset balanced", "method ssd with aggregation gaussian",
-  /// "preset balanced with cost census".
+  /// The choice in words: "preset balanced", "method ssd with aggregation gaussian", "preset
+  /// balanced with cost census".
   [[nodiscard]] std::string chosen() const;
-  /// What is in force: the fields of `parameters`, else the preset's, else the method's.
+  /// The parameters in force: fields of `parameters`, else the preset's, else the method's.
   [[nodiscard]] MethodParameters resolved() const;
-  /// What is in force unless `raw`: the fields of `refinement`, else the preset's, else: no
+  /// The refinement in force unless `raw`: fields of `refinement`, else the preset's, else: no
   /// snapping, a cross-check of whole maps within max(1, D/15) px, a confidence above 0 for
-  /// gradient evidence and any for the others, speckles kept, no surface fit, fill at constant
-  /// depth.
+  /// gradient evidence and any confidence for other costs, speckles kept, no surface fit, fill at
+  /// constant depth.
   [[nodiscard]] RefinementOptions resolved_refinement() const;
-  /// All of it.
+  /// All options in force.
   [[nodiscard]] ResolvedMatchOptions in_force() const;
-  /// The same options with every field set to what is in force, without the preset. To be shown:
-  /// validate() refuses them, as a method reads some of the fields only.
+  /// These options with every field set to the value in force, without the preset. For display
+  /// only: validate() refuses them, because a method reads only some of the fields.
   [[nodiscard]] MatchOptions fully_resolved() const;
-  /// Throws UsageError naming the field, its value and its limit, or why options do not go
-  /// together, or which field of `parameters` or `refinement` is set although nothing reads it
-  /// (method_fields).
+  /// Throws UsageError naming the field, its value and its limit, or why options cannot be
+  /// combined, or which field of `parameters` or `refinement` is set but not read (method_fields).
   void validate() const;
 };
 

@@ -4,7 +4,7 @@ namespace vantage {
 namespace {
 
 /// Bayesian diffusion from coarse to fine (perf/log/2026-11-23-coarse-to-fine.md): census codes,
-/// weights from intensity edges, candidates around what coarser levels found.
+/// weights from intensity edges, candidates around the results of coarser levels.
 MethodOverrides coarse_to_fine() {
   MethodOverrides parameters;
   parameters.cost = MatchCost::kRayCensus;

@@ -4,7 +4,7 @@
 
 namespace vantage {
 
-/// What a preset stands for: a method and what differs from its defaults.
+/// Settings of a preset: a method and the differences from its defaults.
 struct PresetSettings {
   MatchMethod method = MatchMethod::kSsd;
   MethodOverrides parameters;

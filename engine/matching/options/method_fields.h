@@ -11,13 +11,13 @@
 
 namespace vantage {
 
-/// What is known of a field of MethodParameters.
+/// Description of a field of MethodParameters.
 struct MethodField {
   std::string_view option;  ///< its name on the command line, in files and in messages
   ParameterReaders readers;
   Limits limits = {};  ///< those that do not depend on other fields
 
-  /// Whether results of these parameters can depend on it.
+  /// Whether results of these parameters can depend on this field.
   [[nodiscard]] bool is_read(const MethodParameters& in_force) const {
     return readers.are_in_force(in_force, option);
   }
@@ -45,7 +45,7 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
   visit(Field{"colour", readers::kAll}, options.colour...);
   visit(Field{"truncation", readers::kCosts, kGreyLevels}, options.truncation...);
   visit(Field{"match-exposure", readers::kExposure}, options.match_exposure...);
-  // Two fields of one option: a number, or that it is estimated.
+  // One option sets two fields: a number, or that it is estimated.
   visit(Field{"sigma-measurement", readers::kSigmaMeasurement, kGreyLevels},
         options.sigma_measurement...);
   visit(Field{"sigma-measurement", readers::kSigmaMeasurement},
@@ -116,8 +116,8 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
   visit(Field{"subpixel", readers::kAll}, options.subpixel...);
 }
 
-/// Throws UsageError for the first parameter that `overrides` sets and nothing reads where
-/// `in_force` is. `chosen`: what is in force, in words.
+/// Throws UsageError for the first parameter that `overrides` sets but nothing reads under
+/// `in_force`. `chosen`: describes `in_force` in words.
 void require_read(const MethodOverrides& overrides, const MethodParameters& in_force,
                   std::string_view chosen);
 

@@ -9,7 +9,7 @@
 
 namespace vantage {
 
-/// Names of the values of an enumeration, as options and messages have them, in the order of help
+/// Names of the values of an enumeration, as used in options and messages, in the order of help
 /// texts.
 template <typename Enum>
 using EnumNames = std::vector<std::pair<std::string_view, Enum>>;
@@ -24,7 +24,7 @@ std::string_view name_of(MatchPreset preset);
 std::string_view name_of(MatchCost cost);
 std::string_view name_of(Aggregation aggregation);
 
-/// What a method does in short: "cost census-rays, aggregation bayes, 7 levels".
+/// Short description of a method: "cost census-rays, aggregation bayes, 7 levels".
 std::string summary_of(const MethodParameters& parameters);
 
 }  // namespace vantage

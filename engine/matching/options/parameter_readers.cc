@@ -11,7 +11,7 @@
 namespace vantage {
 namespace {
 
-/// Names of the entries that read an option, or of those that do not.
+/// Names of the entries that read an option, or of the others.
 template <typename Table>
 std::vector<std::string_view> names_in(const Table& table, std::string_view option, bool reads) {
   std::vector<std::string_view> names;

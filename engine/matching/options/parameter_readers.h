@@ -7,17 +7,17 @@
 
 namespace vantage {
 
-/// What reads a parameter of a method. Which costs and aggregations do is said in their tables
-/// (cost_table, aggregation_table); what else it takes is said here and nowhere else.
+/// What reads a parameter of a method. The tables of costs and aggregations (cost_table,
+/// aggregation_table) list the options that these read; all further conditions are only here.
 struct ParameterReaders {
-  /// For messages. {costs}, {other_costs}: those that read the option, those that do not; {names}:
-  /// of the aggregations that do; {aggregations}: the same after "aggregation" or "aggregations".
+  /// For messages. {costs}, {other_costs}: costs that do and do not read the option; {names}: the
+  /// aggregations that do; {aggregations}: the same after "aggregation" or "aggregations".
   std::string_view text;
   /// Whether results of these parameters can depend on the option.
   bool (*are_in_force)(const MethodParameters& in_force, std::string_view option);
 };
 
-/// `readers.text` of an option with the names in place.
+/// `readers.text` of an option with the names filled in.
 std::string names_of(const ParameterReaders& readers, std::string_view option);
 
 /// Whether the cost or the aggregation reads an option.
@@ -54,7 +54,7 @@ inline constexpr ParameterReaders kBayes = {"the {aggregations} (method bayes, t
                                             reads};
 inline constexpr ParameterReaders kBayesWithLevels = {
     "the {aggregations} (method bayes, the presets) with levels above 1", reads_with_levels};
-/// That candidate_blocks is 0 where it can only be 0 counts as read.
+/// A candidate_blocks of 0 counts as read where only 0 is possible.
 inline constexpr ParameterReaders kCandidateBlocks = {
     kBayesWithLevels.text, [](const MethodParameters& p, std::string_view) {
       return p.candidate_blocks == 0 || can_prune(p);
