@@ -10,8 +10,8 @@ namespace vantage {
 
 /// Disparity range to search in a rectified pair: the disparities found in both reduced images by a
 /// search from −width/8 to width/3, without small areas far from all others, plus a margin. It
-/// starts at 0 or above unless at least a fiftieth of the matches is negative. Empty if the images
-/// agree on almost nothing: constant or unrelated images.
+/// starts at 0 or above unless at least 2 % of the matches are negative. Empty if the images agree
+/// on almost nothing: constant or unrelated images.
 ///
 /// Images of 512 to 1280 pixels width are reduced to a quarter, larger ones to a width of 320, so
 /// that the time is a few per cent of the matching time; surfaces of fewer than about 10 reduced

@@ -102,7 +102,7 @@ using PlaneSet = std::array<FeaturePlane<T>, kPlanes>;
 template <typename T, std::size_t kPlanes>
 using ChannelPlanes = std::array<PlaneSet<T, kPlanes>, 3>;
 
-/// Accepts images or arrays of them.
+/// Total held bytes of an image or of an array of images, also nested.
 template <typename Images>
 [[nodiscard]] std::size_t held_bytes_of(const Images& images) {
   if constexpr (requires { images.held_bytes(); }) {

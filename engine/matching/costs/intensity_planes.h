@@ -55,7 +55,7 @@ struct PlanesNeeded {
 };
 
 /// Working memory of a pair: 8-bit grey pairs stay 8-bit and are matched in exact integers; all
-/// others become float grey levels (luma of colour, Rec. 601; EQUATIONS §0).
+/// others become float intensities (luma of colour, Rec. 601; EQUATIONS §0).
 struct PreparedPair {
   bool is_8_bit = true;
   float cost_unit = 1;  ///< grey levels² per unit of squared difference of the float planes
@@ -65,9 +65,8 @@ struct PreparedPair {
 
 /// Fills `pair` from two photographs of equal size. Float planes hold intensities times a power of
 /// two, the largest for which squared differences stay below kernels::kFloatSquareLimit and the sum
-/// of `window_samples` of them below 2³¹. Costs then are integers with the finest possible step,
-/// and their sums are exact.
-/// Identical for any `execution`.
+/// of `window_samples` of them below 2³¹. Costs are then integers with the finest possible step,
+/// and their sums are exact. Identical for any `execution`.
 void prepare_pair(const Photograph& left, const Photograph& right,
                   const kernels::CandidateGeometry& geometry, int window_samples,
                   PlanesNeeded needed, Execution& execution, PreparedPair& pair);

@@ -32,7 +32,7 @@ class PartnerRows {
   [[nodiscard]] bool has_row(int y) const;
   /// Candidates of column x whose partner's column lies inside.
   [[nodiscard]] kernels::CandidateRange with_partner(int x) const;
-  /// Columns where those of all candidates do; begin may exceed end.
+  /// Columns where the partners of all candidates lie inside; begin may exceed end.
   [[nodiscard]] kernels::CandidateRange columns_with_all_partners() const;
   /// Candidates as counted in this partner, whose direction may be opposite. Not for interpolated
   /// partners.

@@ -32,7 +32,7 @@ inline kernels::LikelihoodByDistance ray_census_likelihoods(
 /// −ln of the measurement model by distance, in steps of a byte.
 struct RayCensusEnergies {
   kernels::EnergyByDistance by_distance;
-  std::uint8_t without_partner = 0;  ///< −ln ε, which no distance exceeds
+  std::uint8_t without_partner = 0;  ///< −ln ε, the maximum
   float step = kernels::kEnergyStep;
 };
 

@@ -30,7 +30,7 @@ struct MatchOptions {
   std::optional<MatchMethod> method;
   /// Sets the method and the defaults of everything not set.
   std::optional<MatchPreset> preset;
-  /// At most kMaxCandidates.
+  /// At most kMaxCandidates values.
   DisparityRange disparities;
   /// `disparities` must still be replaced by the result of estimate_disparity_range(), by the code
   /// that reads the images. Matchers refuse it.
