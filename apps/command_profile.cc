@@ -66,7 +66,7 @@ void add_profile_settings(Settings& settings, ProfileJob& job) {
     return job.threads.empty() ? SettingValue("auto") : SettingValue(job.threads);
   };
   settings.number("budget", job.rounds.budget_s, "SECONDS",
-                  "No round begins that would end later; one is always made", "none");
+                  "Do not start a round that would end later; the first round always runs", "none");
   settings.path("against", job.against, "PROGRAM",
                 "Another build of vantage, run in turn with this one and compared with it");
   settings.path("html", job.html, "FILE", "Write the profile as a page that stands on its own");
@@ -84,7 +84,7 @@ void add_profile_settings(Settings& settings, ProfileJob& job) {
   settings.flag("quiet", job.quiet, "Print the profile and errors only");
 }
 
-/// Where the profiled command begins among the arguments: the first that is neither an option nor
+/// Where the profiled command starts among the arguments: the first that is neither an option nor
 /// its value. All of them with --compare.
 std::size_t command_start(const Arguments& arguments) {
   const Arguments flags = {"--compare", "--quiet", "--help", "-h", "--help-all", "--print-config"};

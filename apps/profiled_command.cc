@@ -110,7 +110,7 @@ void ProfiledCommand::check() {
       {{&run.resume, "resume"}, {&run.overwrite, "overwrite"}, {&run.force, "force"}}};
   for (const auto& [given, option] : openings) {
     if (std::exchange(*given, false)) {
-      remarks_.push_back(fmt::format("--{} is left out: every run begins anew", option));
+      remarks_.push_back(fmt::format("--{} is left out: each run starts again", option));
     }
   }
 }

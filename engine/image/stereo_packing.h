@@ -29,7 +29,6 @@ void unpack_stereo(const Photograph& packed, StereoPacking packing, Photograph& 
                    Photograph& right);
 /// unpack_stereo() for the left image alone.
 void unpack_left(const Photograph& packed, StereoPacking packing, Photograph& left);
-void unpack_left(const Photograph& packed, StereoPacking packing, Photograph& left);
 
 /// Throws Error unless both have the same size, depth and number of channels.
 void require_equal_shapes(const Photograph& left, const Photograph& right);

@@ -8,7 +8,7 @@
 
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/levels/level_stages.h"
-#include "engine/matching/levels/stage_level_energies.h"
+#include "engine/matching/levels/stage_half_energies.h"
 #include "engine/matching/levels/stage_level_likelihoods.h"
 #include "scheduler/trace.h"
 
@@ -39,7 +39,7 @@ void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
     std::vector<std::uint16_t> work(is_bayes ? static_cast<std::size_t>(finer.lanes()) : 0);
     for (int y = first_row; y < end_row; ++y) {
       if (is_bayes) {
-        reduce_energy_row(finer, y, weight, work.data(), coarser);
+        reduce_float_energy_row(finer, y, weight, work.data(), coarser);
       } else {
         reduce_half_energy_row(finer, y, coarser);
       }

@@ -20,11 +20,11 @@
 #include "engine/matching/levels/energy_format.h"
 #include "engine/matching/levels/stage_block_source.h"
 #include "engine/matching/levels/stage_fixed_energies.h"
-#include "engine/matching/levels/stage_level_energies.h"
+#include "engine/matching/levels/stage_half_energies.h"
 #include "engine/matching/levels/stage_level_likelihoods.h"
 #include "engine/matching/selection/stage_cell_selection.h"
 #include "engine/matching/selection/stage_displacement_selection.h"
-#include "engine/matching/selection/stage_energy_selection.h"
+#include "engine/matching/selection/stage_fixed_energy_selection.h"
 #include "engine/matching/selection/stage_window_selection.h"
 
 namespace vantage {
@@ -64,7 +64,7 @@ ConfidenceMeasure confidence_measure(const MethodParameters& parameters) {
 CostBounds bounds_of(const MethodParameters& parameters, const ChainInput& input) {
   CostBounds bounds = cost_bounds(parameters, static_cast<int>(input.partners.size()));
   if (!input.prior_px.empty()) {
-    bounds.largest += static_cast<float>(input.prior_weight) * (bounds.largest - bounds.min);
+    bounds.max += static_cast<float>(input.prior_weight) * (bounds.max - bounds.min);
   }
   return bounds;
 }
@@ -118,8 +118,8 @@ MatchChain::MatchChain(const MethodParameters& parameters,
   }
   add_costs(parameters, input, level);
   if (level.coarser != nullptr && !has_likelihoods(parameters)) {
-    add(make_coarser_energy_stage(geometry_, height_, aggregation_of(parameters).coarser_use,
-                                  half_scale_, *level.coarser));
+    add(make_coarser_half_energy_stage(geometry_, height_, aggregation_of(parameters).coarser_use,
+                                       half_scale_, *level.coarser));
   }
   if (aggregation_of(parameters).has_windows && level.result == nullptr) {
     add_box(parameters, input);
@@ -166,7 +166,7 @@ void MatchChain::add_reduction(const MethodParameters& parameters, const ChainIn
   add(plain_costs(parameters, input, 0, geometry_.count));
   add(has_likelihoods(parameters)
           ? make_likelihood_reduction_stage(geometry_, weight, *level.reduced)
-          : make_energy_reduction_stage(geometry_, half_scale_, *level.reduced));
+          : make_half_energy_reduction_stage(geometry_, half_scale_, *level.reduced));
 }
 
 /// First stage of the level: costs of the images, or stored costs of the level.
@@ -191,7 +191,7 @@ void MatchChain::add_costs(const MethodParameters& parameters, const ChainInput&
 std::unique_ptr<scheduler::RowStage> MatchChain::level_costs(const MethodParameters& parameters,
                                                              const ChainLevel& level) const {
   if (!has_likelihoods(parameters)) {
-    return make_level_energy_stage(geometry_, half_scale_, *level.costs);
+    return make_level_half_energy_stage(geometry_, half_scale_, *level.costs);
   }
   if (uses_fixed_energies(parameters)) {
     return make_level_fixed_energy_stage(geometry_, *level.costs, EnergyFormat(parameters),
@@ -286,8 +286,7 @@ void MatchChain::add_column_ssd(const MethodParameters& parameters, const Prepar
 
 void MatchChain::add_box(const MethodParameters& parameters, const ChainInput& input) {
   const CostBounds bounds = bounds_of(parameters, input);
-  const ColumnSumScale quantised =
-      column_sum_scale(bounds.min, bounds.largest, parameters.window_px);
+  const ColumnSumScale quantised = column_sum_scale(bounds.min, bounds.max, parameters.window_px);
   WindowSelectionSettings settings = window_selection(parameters);
   settings.energy_scale = 1.0F / quantised.scale;
   settings.energy_offset = quantised.offset;
@@ -330,9 +329,10 @@ void MatchChain::add_aggregation(const MethodParameters& parameters, const Chain
 void MatchChain::add_result(const MethodParameters& parameters, const ChainLevel& level) {
   const LevelResult result{.cells = level.result, .winners = level.winners};
   if (!has_likelihoods(parameters)) {
-    add(make_energy_store_stage(geometry_, half_scale_, *level.result));
+    add(make_half_energy_store_stage(geometry_, half_scale_, *level.result));
   } else if (uses_fixed_energies(parameters)) {
-    add(make_level_energy_result_stage(geometry_, result, EnergyFormat(parameters), level.blocks));
+    add(make_level_fixed_energy_result_stage(geometry_, result, EnergyFormat(parameters),
+                                             level.blocks));
   } else {
     add(make_level_probability_stage(geometry_, result));
   }
@@ -342,13 +342,13 @@ void MatchChain::add_selection(const MethodParameters& parameters, const ChainIn
                                const ChainLevel& level) {
   if (uses_fixed_energies(parameters)) {
     if (input.grid != nullptr) {
-      add(make_displacement_energy_selection_stage(
+      add(make_displacement_fixed_energy_selection_stage(
           *input.grid, parameters.subpixel, EnergyFormat(parameters).steps_per_nat(), outputs_));
       return;
     }
-    add(make_energy_selection_stage(geometry_, parameters.subpixel,
-                                    EnergyFormat(parameters).steps_per_nat(), outputs_,
-                                    level.blocks));
+    add(make_fixed_energy_selection_stage(geometry_, parameters.subpixel,
+                                          EnergyFormat(parameters).steps_per_nat(), outputs_,
+                                          level.blocks));
     return;
   }
   CellSelectionSettings settings;

@@ -42,7 +42,7 @@ struct ChainInput {
 
 /// Position of a chain in coarse-to-fine matching. Volumes have the format of the method
 /// (stage_level_likelihoods for Bayesian diffusion, whose results with the prior's largest term are
-/// those of stage_fixed_energies; stage_level_energies for others) and the size of their level, and
+/// those of stage_fixed_energies; stage_half_energies for others) and the size of their level, and
 /// outlive the chain. Default: the only level.
 struct ChainLevel {
   int number = 0;  ///< 0: the image's own
@@ -59,6 +59,39 @@ struct ChainLevel {
   /// Output for the most probable candidates, in addition to `result`; null: not requested.
   Image<std::int32_t>* winners = nullptr;
 };
+
+// Cells of a row are [x][candidate]: floats (energies or likelihoods), bytes (energies in steps),
+// fixed point of 16 bits (EnergyFormat), window sums of 32 bits. Stored levels hold bytes or half
+// floats. Source: the first stage of the chain, read again. Halo: rows and columns read beyond
+// those made; r: radius of the window or kernel.
+//
+// clang-format off
+//  stage                          reads                   halo       outside the image      makes
+//  -----------------------------  ----------------------  ---------  ---------------------  --------
+//  cost                           images                             value without partner  float
+//  ray census energy              images                             largest byte           byte
+//  disparity prior                a cost stage                       as the cost            float
+//  displacement cost              a stage per row shift              padding value          as read
+//  fixed energy                   bytes or floats                    as read                fixed
+//  block source                   a stage per block                  as read                as read
+//  column SSD                     images                  r rows     left out of sums       32 bits
+//  column and displacement sum    float                   r rows     left out of sums       32 bits
+//  box mean                       float                   r, both    left out of means      float
+//  convolution, box cascade       float                   r          0                      float
+//  diffusion, local stopping      float                   1, both    left out               float
+//  membrane                       float, source           1, both    left out               float
+//  Bayes start, iteration         float, source           1, both    neutral column         float
+//  max product start, iteration   fixed, source           1, both    neutral column         fixed
+//  level half energy, likelihood  stored level                                              float
+//  level fixed energy             stored level                                              fixed
+//  coarser half energy            float, coarser row y/2                                    float
+//  start from coarser             coarser row y/2                                           as level
+//  reduction                      rows 2y and 2y + 1                 last row repeated      stored
+//  store, result                  cells of the level                                        stored
+//  window selection               32 bits                 r columns  border: valid or clip  map
+//  cell, displacement selection   float                              NaN if no candidate    map
+//  fixed energy selection         fixed                              NaN if no candidate    map
+// clang-format on
 
 /// The stages that compute one disparity map, or one level of it: cost → aggregation → selection.
 class MatchChain {

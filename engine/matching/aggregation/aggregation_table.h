@@ -10,7 +10,7 @@
 #include "engine/matching/costs/stage_cost.h"
 #include "engine/matching/levels/candidate_blocks.h"
 #include "engine/matching/levels/level_volume.h"
-#include "engine/matching/levels/stage_level_energies.h"
+#include "engine/matching/levels/stage_half_energies.h"
 #include "engine/matching/parameters/method_parameters.h"
 #include "engine/matching/selection/stage_cell_selection.h"
 #include "kernels/candidates.h"

@@ -139,9 +139,9 @@ class DisplacementSumStage final : public ColumnSumStage {
 
 }  // namespace
 
-ColumnSumScale column_sum_scale(float min, float largest, int window_px) {
+ColumnSumScale column_sum_scale(float min, float max, int window_px) {
   const float offset = -min;
-  const double cost_range = largest + offset;  // as rounded by the kernel
+  const double cost_range = max + offset;  // as rounded by the kernel
   if (!(cost_range > 0)) {
     return {offset, 1};
   }

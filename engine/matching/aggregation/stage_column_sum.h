@@ -14,10 +14,10 @@ struct ColumnSumScale {
   float scale = 1;  ///< a power of two
 };
 
-/// For costs in [least, largest] and windows of window_px × window_px: the offset makes the
+/// For costs in [min, max] and windows of window_px × window_px: the offset makes the
 /// smallest cost 0; the scale is the largest that keeps costs below 2²² and window sums below 2³¹ −
 /// 1.
-ColumnSumScale column_sum_scale(float min, float largest, int window_px);
+ColumnSumScale column_sum_scale(float min, float max, int window_px);
 
 /// Converts float costs to int32_t cells, (cost + offset) · scale rounded to nearest (ties to
 /// even), and sums them over the 2·radius + 1 rows of a window, cut to the image: the input of

@@ -18,9 +18,9 @@ namespace vantage {
 /// EnergyFormat(parameters), geometry.lanes() per column; the last stage's are energies −ln p above
 /// the minimum of their column.
 ///
-/// `coarser`: the final energies of the next coarser level (make_level_energy_result_stage); must
-/// outlive the stages. The start is then made from it instead of the first stage's energies, which
-/// only the iterations read.
+/// `coarser`: the final energies of the next coarser level (make_level_fixed_energy_result_stage);
+/// must outlive the stages. The start is then made from it instead of the first stage's energies,
+/// which only the iterations read.
 ///
 /// `blocks`: the candidates processed; cells of all stages lie in their lanes, and all other
 /// candidates have the energy of the ceiling. Null: all; required without a coarser level and with

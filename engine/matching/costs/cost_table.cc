@@ -23,7 +23,7 @@ CostBounds cost_bounds(const MethodParameters& parameters, int partners) {
   constexpr float room = 1.0001F;
   const CostBounds one = cost_of(parameters).make_model(parameters)->energy_bounds();
   const float count = room * static_cast<float>(partners);
-  return {one.min * count, one.largest * count};
+  return {one.min * count, one.max * count};
 }
 
 }  // namespace vantage

@@ -21,7 +21,7 @@ namespace vantage {
 /// Bounds of energies.
 struct CostBounds {
   float min = 0;
-  float largest = 0;
+  float max = 0;
 };
 
 /// Columns of one row to compare with a partner.

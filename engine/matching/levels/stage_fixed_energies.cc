@@ -145,10 +145,10 @@ class LevelFixedEnergyStage final : public LevelSourceStage {
   const CandidateBlocks* blocks_;
 };
 
-class LevelEnergyResultStage final : public LevelStoreStage {
+class LevelFixedEnergyResultStage final : public LevelStoreStage {
  public:
-  LevelEnergyResultStage(const kernels::CandidateGeometry& geometry, const LevelResult& result,
-                         const EnergyFormat& format, const CandidateBlocks* blocks)
+  LevelFixedEnergyResultStage(const kernels::CandidateGeometry& geometry, const LevelResult& result,
+                              const EnergyFormat& format, const CandidateBlocks* blocks)
       : LevelStoreStage(geometry, *result.cells),
         bytes_per_step_(format.result_bytes_per_step()),
         winners_(result.winners),
@@ -220,10 +220,10 @@ std::unique_ptr<scheduler::RowStage> make_level_fixed_energy_stage(
   return std::make_unique<LevelFixedEnergyStage>(geometry, energies, format, blocks);
 }
 
-std::unique_ptr<scheduler::RowStage> make_level_energy_result_stage(
+std::unique_ptr<scheduler::RowStage> make_level_fixed_energy_result_stage(
     const kernels::CandidateGeometry& geometry, const LevelResult& result,
     const EnergyFormat& format, const CandidateBlocks* blocks) {
-  return std::make_unique<LevelEnergyResultStage>(geometry, result, format, blocks);
+  return std::make_unique<LevelFixedEnergyResultStage>(geometry, result, format, blocks);
 }
 
 }  // namespace vantage

@@ -33,7 +33,7 @@ std::unique_ptr<scheduler::RowStage> make_level_fixed_energy_stage(
 
 /// Last stage: stores a level's final energies, relative to the minimum of each column, in the
 /// bytes of the format's results.
-std::unique_ptr<scheduler::RowStage> make_level_energy_result_stage(
+std::unique_ptr<scheduler::RowStage> make_level_fixed_energy_result_stage(
     const kernels::CandidateGeometry& geometry, const LevelResult& result,
     const EnergyFormat& format, const CandidateBlocks* blocks = nullptr);
 

@@ -130,8 +130,8 @@ std::unique_ptr<scheduler::RowStage> make_byte_energy_reduction_stage(
   return std::make_unique<ByteEnergyReductionStage>(geometry, step, weight, coarser);
 }
 
-void reduce_energy_row(const LevelVolume& finer, int y, float weight, std::uint16_t* work,
-                       LevelVolume& coarser) {
+void reduce_float_energy_row(const LevelVolume& finer, int y, float weight, std::uint16_t* work,
+                             LevelVolume& coarser) {
   kernels::reduce_compact_energies_row(block_row<std::uint8_t>(finer, y), weight, work,
                                        coarser.column<std::uint8_t>(0, y));
 }

@@ -24,8 +24,8 @@ std::unique_ptr<scheduler::RowStage> make_likelihood_reduction_stage(
 std::unique_ptr<scheduler::RowStage> make_byte_energy_reduction_stage(
     const kernels::CandidateGeometry& geometry, float step, float weight, LevelVolume& coarser);
 /// Row y of `coarser` from the energies of a coarse level. `work`: one number per lane.
-void reduce_energy_row(const LevelVolume& finer, int y, float weight, std::uint16_t* work,
-                       LevelVolume& coarser);
+void reduce_float_energy_row(const LevelVolume& finer, int y, float weight, std::uint16_t* work,
+                             LevelVolume& coarser);
 
 /// Source stage: the likelihoods of a coarse level, computed from its energies.
 std::unique_ptr<scheduler::RowStage> make_level_likelihood_stage(

@@ -265,7 +265,7 @@ std::unique_ptr<scheduler::RowStage> make_displacement_selection_stage(
   return std::make_unique<FloatDisplacementStage>(grid, settings, outputs);
 }
 
-std::unique_ptr<scheduler::RowStage> make_displacement_energy_selection_stage(
+std::unique_ptr<scheduler::RowStage> make_displacement_fixed_energy_selection_stage(
     const DisplacementGrid& grid, Subpixel subpixel, float steps_per_nat,
     const MapOutputs& outputs) {
   return std::make_unique<EnergyDisplacementStage>(grid, subpixel, steps_per_nat, outputs);

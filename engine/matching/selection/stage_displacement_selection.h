@@ -18,8 +18,8 @@ namespace vantage {
 std::unique_ptr<scheduler::RowStage> make_displacement_selection_stage(
     const DisplacementGrid& grid, const CellSelectionSettings& settings, const MapOutputs& outputs);
 
-/// From fixed-point energies, as make_energy_selection_stage().
-std::unique_ptr<scheduler::RowStage> make_displacement_energy_selection_stage(
+/// From fixed-point energies, as make_fixed_energy_selection_stage().
+std::unique_ptr<scheduler::RowStage> make_displacement_fixed_energy_selection_stage(
     const DisplacementGrid& grid, Subpixel subpixel, float steps_per_nat,
     const MapOutputs& outputs);
 

@@ -15,7 +15,7 @@ namespace vantage {
 /// probability, p ∝ exp(−E); the energy output is its −ln p. `blocks`: the candidates processed,
 /// whose lanes the cells occupy; a winner is refined if both of its neighbours are among them.
 /// Null: all. Must outlive the stage.
-std::unique_ptr<scheduler::RowStage> make_energy_selection_stage(
+std::unique_ptr<scheduler::RowStage> make_fixed_energy_selection_stage(
     const kernels::CandidateGeometry& geometry, Subpixel subpixel, float steps_per_nat,
     const MapOutputs& outputs, const CandidateBlocks* blocks = nullptr);
 

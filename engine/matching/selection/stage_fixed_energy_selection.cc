@@ -1,4 +1,4 @@
-#include "engine/matching/selection/stage_energy_selection.h"
+#include "engine/matching/selection/stage_fixed_energy_selection.h"
 
 #include <algorithm>
 #include <array>
@@ -143,7 +143,7 @@ class EnergySelectionStage final : public scheduler::RowStage {
 
 }  // namespace
 
-std::unique_ptr<scheduler::RowStage> make_energy_selection_stage(
+std::unique_ptr<scheduler::RowStage> make_fixed_energy_selection_stage(
     const kernels::CandidateGeometry& geometry, Subpixel subpixel, float steps_per_nat,
     const MapOutputs& outputs, const CandidateBlocks* blocks) {
   return std::make_unique<EnergySelectionStage>(geometry, subpixel, steps_per_nat, outputs, blocks);

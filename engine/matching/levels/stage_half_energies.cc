@@ -1,4 +1,4 @@
-#include "engine/matching/levels/stage_level_energies.h"
+#include "engine/matching/levels/stage_half_energies.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,10 +31,10 @@ class EnergyReductionStage final : public LevelReductionStage {
   float scale_;
 };
 
-class LevelEnergyStage final : public LevelSourceStage {
+class LevelHalfEnergyStage final : public LevelSourceStage {
  public:
-  LevelEnergyStage(const kernels::CandidateGeometry& geometry, float scale,
-                   const LevelVolume& energies)
+  LevelHalfEnergyStage(const kernels::CandidateGeometry& geometry, float scale,
+                       const LevelVolume& energies)
       : LevelSourceStage(geometry, energies), unit_(1 / scale) {}
 
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
@@ -122,7 +122,7 @@ class CoarserEnergyStage final : public scheduler::RowStage {
 
 float half_scale(const CostBounds& bounds) {
   constexpr float kLargest = 32768;
-  const float largest = std::max({1.0F, std::abs(bounds.min), std::abs(bounds.largest)});
+  const float largest = std::max({1.0F, std::abs(bounds.min), std::abs(bounds.max)});
   float scale = 1;
   while (largest * scale > kLargest) {
     scale /= 2;
@@ -130,7 +130,7 @@ float half_scale(const CostBounds& bounds) {
   return scale;
 }
 
-std::unique_ptr<scheduler::RowStage> make_energy_reduction_stage(
+std::unique_ptr<scheduler::RowStage> make_half_energy_reduction_stage(
     const kernels::CandidateGeometry& geometry, float scale, LevelVolume& coarser) {
   return std::make_unique<EnergyReductionStage>(geometry, scale, coarser);
 }
@@ -140,18 +140,18 @@ void reduce_half_energy_row(const LevelVolume& finer, int y, LevelVolume& coarse
                                     coarser.column<std::uint16_t>(0, y));
 }
 
-std::unique_ptr<scheduler::RowStage> make_level_energy_stage(
+std::unique_ptr<scheduler::RowStage> make_level_half_energy_stage(
     const kernels::CandidateGeometry& geometry, float scale, const LevelVolume& energies) {
-  return std::make_unique<LevelEnergyStage>(geometry, scale, energies);
+  return std::make_unique<LevelHalfEnergyStage>(geometry, scale, energies);
 }
 
-std::unique_ptr<scheduler::RowStage> make_coarser_energy_stage(
+std::unique_ptr<scheduler::RowStage> make_coarser_half_energy_stage(
     const kernels::CandidateGeometry& geometry, int height, CoarserUse use, float scale,
     const LevelVolume& coarser) {
   return std::make_unique<CoarserEnergyStage>(geometry, height, use, scale, coarser);
 }
 
-std::unique_ptr<scheduler::RowStage> make_energy_store_stage(
+std::unique_ptr<scheduler::RowStage> make_half_energy_store_stage(
     const kernels::CandidateGeometry& geometry, float scale, LevelVolume& energies) {
   return std::make_unique<EnergyStoreStage>(geometry, scale, energies);
 }
