@@ -223,7 +223,7 @@ class SlurmTest(unittest.TestCase):
         again = ["submit", "--config", run.slurm_folder / "submit.toml"]
         result = vantage(*again, environment=self.cluster.environment)
         self.assertEqual(result.returncode, 1)
-        self.assertIn("differs", result.stderr)
+        self.assertIn("different run", result.stderr)
         must_succeed(vantage(*again, "--force", environment=self.cluster.environment))
         self.assertNotEqual(run.jobs(), jobs)
         run.wait_for_end()
