@@ -9,7 +9,7 @@ namespace vantage {
 namespace {
 
 template <typename T>
-void grey_levels(const T* pixels, int channels, int width, float* grey) {
+void intensities(const T* pixels, int channels, int width, float* grey) {
   constexpr float unit = kGreyLevelsPerUnit<T>;
   if (channels < 3) {
     for (int x = 0; x < width; ++x) {
@@ -34,16 +34,16 @@ void grey_levels(const T* pixels, int channels, int width, float* grey) {
 
 void intensity_row(const Photograph& photograph, int y, float* grey) {
   std::visit(
-      [&](const auto& image) { grey_levels(image.row(y), image.channels(), image.width(), grey); },
+      [&](const auto& image) { intensities(image.row(y), image.channels(), image.width(), grey); },
       photograph.pixels);
 }
 
-void channel_intensity_row(const Photograph& photograph, int channel, int y, float* levels) {
+void channel_intensity_row(const Photograph& photograph, int channel, int y, float* intensities) {
   std::visit(
       [&]<typename T>(const Image<T>& image) {
         const T* pixel = image.row(y) + channel;
         for (int x = 0; x < image.width(); ++x) {
-          levels[x] = static_cast<float>(pixel[x * image.channels()]) * kGreyLevelsPerUnit<T>;
+          intensities[x] = static_cast<float>(pixel[x * image.channels()]) * kGreyLevelsPerUnit<T>;
         }
       },
       photograph.pixels);

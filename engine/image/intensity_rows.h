@@ -10,6 +10,6 @@ namespace vantage {
 void intensity_row(const Photograph& photograph, int y, float* grey);
 
 /// As intensity_row(), for one colour channel, 0..2, of a photograph of at least 3 channels.
-void channel_intensity_row(const Photograph& photograph, int channel, int y, float* levels);
+void channel_intensity_row(const Photograph& photograph, int channel, int y, float* intensities);
 
 }  // namespace vantage

@@ -62,13 +62,13 @@ class BandIntensities {
       : width_(photograph.width()) {
     const int height = static_cast<int>(bands.rows.size());
     for (int plane = 0; plane < planes; ++plane) {
-      Image<float>& levels = planes_.emplace_back(width_, height);
+      Image<float>& intensities = planes_.emplace_back(width_, height);
       for (int row = 0; row < height; ++row) {
         const int y = bands.rows[static_cast<std::size_t>(row)];
         if (plane == 0) {
-          intensity_row(photograph, y, levels.row(row));
+          intensity_row(photograph, y, intensities.row(row));
         } else {
-          channel_intensity_row(photograph, plane - 1, y, levels.row(row));
+          channel_intensity_row(photograph, plane - 1, y, intensities.row(row));
         }
       }
     }

@@ -22,10 +22,10 @@ constexpr double kWhite = 255;
 constexpr int kBoxPixels = 9;
 
 void luma_rows(const Photograph& photograph, int first_row, int end_row, float* grey,
-               Image<std::uint8_t>& levels) {
+               Image<std::uint8_t>& intensities) {
   for (int y = first_row; y < end_row; ++y) {
     intensity_row(photograph, y, grey);
-    std::transform(grey, grey + levels.width(), levels.row(y), [](float level) {
+    std::transform(grey, grey + intensities.width(), intensities.row(y), [](float level) {
       return static_cast<std::uint8_t>(std::clamp(level, 0.0F, 255.0F) + 0.5F);
     });
   }
@@ -71,18 +71,18 @@ class ChangeRows {
 }  // namespace
 
 void luma_intensity(const Photograph& photograph, Execution& execution,
-                    Image<std::uint8_t>& levels) {
+                    Image<std::uint8_t>& intensities) {
   const int width = photograph.width();
-  levels.resize(width, photograph.height());
+  intensities.resize(width, photograph.height());
   const auto* bytes = std::get_if<Image<std::uint8_t>>(&photograph.pixels);
   execution.for_each_band(photograph.height(), [&](int first_row, int end_row) {
     if (bytes == nullptr) {
       const auto grey = execution.scratch().lease(sizeof(float) * static_cast<std::size_t>(width));
-      luma_rows(photograph, first_row, end_row, reinterpret_cast<float*>(grey.data()), levels);
+      luma_rows(photograph, first_row, end_row, reinterpret_cast<float*>(grey.data()), intensities);
       return;
     }
     for (int y = first_row; y < end_row; ++y) {
-      kernels::luma_intensity_row(bytes->row(y), width, bytes->channels(), levels.row(y));
+      kernels::luma_intensity_row(bytes->row(y), width, bytes->channels(), intensities.row(y));
     }
   });
 }

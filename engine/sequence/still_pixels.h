@@ -9,9 +9,9 @@
 namespace vantage {
 
 /// The luma (Rec. 601) of a photograph in integer grey levels 0..255, for comparing frames. Memory
-/// of `levels` is reused. Identical for any `execution`.
+/// of `intensities` is reused. Identical for any `execution`.
 void luma_intensity(const Photograph& photograph, Execution& execution,
-                    Image<std::uint8_t>& levels);
+                    Image<std::uint8_t>& intensities);
 
 /// Finds the pixels whose image did not change from one frame to the next: the mean difference over
 /// 3×3 pixels is at most `threshold` grey levels, at the pixel and its eight neighbours. (Means

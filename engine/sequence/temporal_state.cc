@@ -44,11 +44,11 @@ ImageView<const float> TemporalState::prior_for(const Photograph& image, Side& s
                                                 Execution& execution) {
   luma_intensity(image, execution, side.next_intensity);
   side.intensity_is_next = true;
-  if (side.matched_px.empty() || !same_size(image, side.levels)) {
+  if (side.matched_px.empty() || !same_size(image, side.intensities)) {
     return {};
   }
   const std::int64_t still_pixels =
-      still_pixels_.find(side.levels, side.next_intensity, execution, side.still);
+      still_pixels_.find(side.intensities, side.next_intensity, execution, side.still);
   const int width = image.width();
   const int height = image.height();
   if (still_pixels * kMinStillShare < static_cast<std::int64_t>(width) * height) {
@@ -79,7 +79,7 @@ void TemporalState::remember_side(const Photograph& image, const DisparityMap& m
   if (!std::exchange(side.intensity_is_next, false)) {
     luma_intensity(image, execution, side.next_intensity);
   }
-  std::swap(side.levels, side.next_intensity);
+  std::swap(side.intensities, side.next_intensity);
   side.matched_px.resize(map.width(), map.height());
   execution.for_each_band(map.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {

@@ -36,8 +36,8 @@ class TemporalState {
 
  private:
   struct Side {
-    Image<std::uint8_t> levels;  ///< of the previous frame
-    DisparityMap matched_px;     ///< of the previous frame, NaN where filled; empty: none
+    Image<std::uint8_t> intensities;  ///< of the previous frame
+    DisparityMap matched_px;          ///< of the previous frame, NaN where filled; empty: none
     DisparityMap prior_px;
     Image<std::uint8_t> next_intensity;
     bool intensity_is_next = false;  ///< next_intensity are those of the current frame

@@ -7,9 +7,10 @@ namespace vantage::kernels {
 /// levels[x] = grey level of an 8-bit pixel, x in [0, width). One channel: the value itself. Three
 /// or four: the luma (77 R + 150 G + 29 B) / 256, rounded; alpha is ignored. For comparing frames.
 /// channels is 1, 3 or 4. Equal to the reference on every instruction set.
-void luma_intensity_row(const std::uint8_t* pixels, int width, int channels, std::uint8_t* levels);
+void luma_intensity_row(const std::uint8_t* pixels, int width, int channels,
+                        std::uint8_t* intensities);
 void luma_intensity_row_ref(const std::uint8_t* pixels, int width, int channels,
-                            std::uint8_t* levels);
+                            std::uint8_t* intensities);
 
 /// Luma weights (Rec. 601).
 inline constexpr float kLumaRed = 0.299F;

@@ -3,12 +3,12 @@
 namespace vantage::kernels {
 
 void luma_intensity_row_ref(const std::uint8_t* pixels, int width, int channels,
-                            std::uint8_t* levels) {
+                            std::uint8_t* intensities) {
   for (int x = 0; x < width; ++x, pixels += channels) {
-    levels[x] = channels == 1
-                    ? pixels[0]
-                    : static_cast<std::uint8_t>(
-                          (77 * pixels[0] + 150 * pixels[1] + 29 * pixels[2] + 128) / 256);
+    intensities[x] = channels == 1
+                         ? pixels[0]
+                         : static_cast<std::uint8_t>(
+                               (77 * pixels[0] + 150 * pixels[1] + 29 * pixels[2] + 128) / 256);
   }
 }
 

@@ -14,9 +14,9 @@ namespace vantage::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 void luma_intensity(const std::uint8_t* HWY_RESTRICT pixels, int width, int channels,
-                    std::uint8_t* HWY_RESTRICT levels) {
+                    std::uint8_t* HWY_RESTRICT intensities) {
   if (channels == 1) {
-    std::copy_n(pixels, width, levels);
+    std::copy_n(pixels, width, intensities);
     return;
   }
   const hn::ScalableTag<std::uint16_t> d16;
@@ -41,10 +41,10 @@ void luma_intensity(const std::uint8_t* HWY_RESTRICT pixels, int width, int chan
     const auto sum = hn::Add(hn::Add(weighted(red, 77), weighted(green, 150)),
                              hn::Add(weighted(blue, 29), hn::Set(d16, 128)));
     const hn::RebindToSigned<decltype(d16)> di16;
-    hn::StoreU(hn::DemoteTo(d8, hn::BitCast(di16, hn::ShiftRight<8>(sum))), d8, levels + x);
+    hn::StoreU(hn::DemoteTo(d8, hn::BitCast(di16, hn::ShiftRight<8>(sum))), d8, intensities + x);
   }
   luma_intensity_row_ref(pixels + static_cast<std::ptrdiff_t>(x) * channels, width - x, channels,
-                         levels + x);
+                         intensities + x);
 }
 
 void luma(const std::uint8_t* HWY_RESTRICT pixels, int width, int channels,
@@ -93,8 +93,9 @@ namespace vantage::kernels {
 HWY_EXPORT(luma_intensity);
 HWY_EXPORT(luma);
 
-void luma_intensity_row(const std::uint8_t* pixels, int width, int channels, std::uint8_t* levels) {
-  HWY_DYNAMIC_DISPATCH(luma_intensity)(pixels, width, channels, levels);
+void luma_intensity_row(const std::uint8_t* pixels, int width, int channels,
+                        std::uint8_t* intensities) {
+  HWY_DYNAMIC_DISPATCH(luma_intensity)(pixels, width, channels, intensities);
 }
 void luma_row(const std::uint8_t* pixels, int width, int channels, float* output) {
   HWY_DYNAMIC_DISPATCH(luma)(pixels, width, channels, output);

@@ -12,7 +12,7 @@ class AbsoluteModel : public CostModel {
   using CostModel::CostModel;
 
   void energies(const CostRow& row, float* cells) const override {
-    kernels::absolute_row(row.grey_levels(), std::numeric_limits<float>::infinity(), cells);
+    kernels::absolute_row(row.intensities(), std::numeric_limits<float>::infinity(), cells);
   }
   [[nodiscard]] CostBounds energy_bounds() const override { return {0, kWhite}; }
   [[nodiscard]] kernels::KernelWork energy_work(int channels) const override {
@@ -25,7 +25,7 @@ class TruncatedModel final : public AbsoluteModel {
   using AbsoluteModel::AbsoluteModel;
 
   void energies(const CostRow& row, float* cells) const override {
-    kernels::absolute_row(row.grey_levels(), static_cast<float>(parameters().truncation), cells);
+    kernels::absolute_row(row.intensities(), static_cast<float>(parameters().truncation), cells);
   }
   [[nodiscard]] CostBounds energy_bounds() const override {
     return {0, static_cast<float>(std::min(kWhite, parameters().truncation))};

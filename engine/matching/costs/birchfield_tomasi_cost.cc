@@ -6,17 +6,17 @@ namespace {
 /// Intensities, and their minimum and maximum within half a pixel.
 class SamplingPlanes final : public CostPlanes {
  public:
-  ChannelPlanes<float, 3> levels;
+  ChannelPlanes<float, 3> intensities;
 
   void prepare(const PlaneSource& source, const MethodParameters& /*parameters*/) override {
     source.for_each_channel([&](std::size_t c) {
-      for (FeaturePlane<float>& plane : levels[c]) {
+      for (FeaturePlane<float>& plane : intensities[c]) {
         plane.resize(source);
       }
     });
     source.for_each_channel_row([&](std::size_t c, int y) {
-      auto& [grey, min, max] = levels[c];
-      source.level_row(c, y, grey.plain.row(y));
+      auto& [grey, min, max] = intensities[c];
+      source.channel_row(c, y, grey.plain.row(y));
       grey.finish_row(source, y);
       kernels::sampling_bounds_row(grey.plain.row(y), source.width(), min.plain.row(y),
                                    max.plain.row(y));
@@ -24,7 +24,7 @@ class SamplingPlanes final : public CostPlanes {
       max.finish_row(source, y);
     });
   }
-  [[nodiscard]] std::size_t held_bytes() const override { return held_bytes_of(levels); }
+  [[nodiscard]] std::size_t held_bytes() const override { return held_bytes_of(intensities); }
 };
 
 class BirchfieldTomasiModel final : public CostModel {
@@ -32,7 +32,7 @@ class BirchfieldTomasiModel final : public CostModel {
   using CostModel::CostModel;
 
   void energies(const CostRow& row, float* cells) const override {
-    kernels::sampling_insensitive_row(row.pairs(&SamplingPlanes::levels), cells);
+    kernels::sampling_insensitive_row(row.pairs(&SamplingPlanes::intensities), cells);
   }
   [[nodiscard]] CostBounds energy_bounds() const override { return {0, kWhite}; }
   [[nodiscard]] kernels::KernelWork energy_work(int channels) const override {

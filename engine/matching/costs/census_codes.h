@@ -18,13 +18,13 @@ inline void resize_codes(const PlaneSource& source, CensusCodes& codes) {
   }
 }
 
-/// Computes row y of the codes of `levels`, which must have filter margins.
-inline void census_code_row(const PlaneSource& source, const IntensityPlane<float>& levels, int y,
-                            CensusCodes& codes) {
+/// Computes row y of the codes of `intensities`, which must have filter margins.
+inline void census_code_row(const PlaneSource& source, const IntensityPlane<float>& intensities,
+                            int y, CensusCodes& codes) {
   kernels::CensusRows rows{};
   for (int v = -kernels::kCensusRadiusY; v <= kernels::kCensusRadiusY; ++v) {
     rows[static_cast<std::size_t>(v + kernels::kCensusRadiusY)] =
-        levels.row(std::clamp(y + v, 0, source.height() - 1));
+        intensities.row(std::clamp(y + v, 0, source.height() - 1));
   }
   auto& [first_half, second_half] = codes;
   kernels::census_code_row(rows, source.width(), first_half.plain.row(y), second_half.plain.row(y));

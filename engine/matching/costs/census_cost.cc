@@ -11,17 +11,17 @@ class CensusPlanes final : public CostPlanes {
   ChannelPlanes<std::uint32_t, 2> codes;
 
   void prepare(const PlaneSource& source, const MethodParameters& /*parameters*/) override {
-    prepare_filter_levels(source, levels_);
+    prepare_filter_intensities(source, intensities_);
     source.for_each_channel([&](std::size_t c) { resize_codes(source, codes[c]); });
     source.for_each_channel_row(
-        [&](std::size_t c, int y) { census_code_row(source, levels_[c], y, codes[c]); });
+        [&](std::size_t c, int y) { census_code_row(source, intensities_[c], y, codes[c]); });
   }
   [[nodiscard]] std::size_t held_bytes() const override {
-    return held_bytes_of(codes) + held_bytes_of(levels_);
+    return held_bytes_of(codes) + held_bytes_of(intensities_);
   }
 
  private:
-  FilterLevels levels_;
+  FilterIntensities intensities_;
 };
 
 class CensusModel final : public CostModel {

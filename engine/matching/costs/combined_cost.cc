@@ -18,12 +18,12 @@ bool has_gradient(const MethodParameters& parameters) { return parameters.sigma_
 /// Intensities of the channels; codes and gradients of luma.
 class CombinedPlanes final : public CostPlanes {
  public:
-  ChannelPlanes<std::uint16_t, 3> levels;  ///< and their bounds within half a pixel
+  ChannelPlanes<std::uint16_t, 3> intensities;  ///< and their bounds within half a pixel
   CensusCodes codes;
   PlaneSet<std::uint16_t, 2> gradients;
 
   void prepare(const PlaneSource& source, const MethodParameters& parameters) override {
-    prepare_filter_levels(source, filter_levels_);
+    prepare_filter_intensities(source, filter_intensities_);
     prepare_levels(source);
     if (source.channels > 1 && (has_census(parameters) || has_gradient(parameters))) {
       luma_.resize(source.width(), source.height(), kFilterMarginBefore, kFilterMarginAfter);
@@ -32,7 +32,7 @@ class CombinedPlanes final : public CostPlanes {
         luma_.fill_margins(y);
       });
     }
-    const IntensityPlane<float>& luma = source.channels > 1 ? luma_ : filter_levels_[0];
+    const IntensityPlane<float>& luma = source.channels > 1 ? luma_ : filter_intensities_[0];
     if (has_census(parameters)) {
       resize_codes(source, codes);
       source.for_each_row([&](int y) { census_code_row(source, luma, y, codes); });
@@ -45,22 +45,22 @@ class CombinedPlanes final : public CostPlanes {
     }
   }
   [[nodiscard]] std::size_t held_bytes() const override {
-    return held_bytes_of(levels) + held_bytes_of(codes) + held_bytes_of(gradients) +
-           held_bytes_of(filter_levels_) + held_bytes_of(luma_);
+    return held_bytes_of(intensities) + held_bytes_of(codes) + held_bytes_of(gradients) +
+           held_bytes_of(filter_intensities_) + held_bytes_of(luma_);
   }
 
  private:
   void prepare_levels(const PlaneSource& source) {
     source.for_each_channel([&](std::size_t c) {
-      for (FeaturePlane<std::uint16_t>& plane : levels[c]) {
+      for (FeaturePlane<std::uint16_t>& plane : intensities[c]) {
         plane.resize(source);
       }
     });
     source.for_each_channel_row([&](std::size_t c, int y) {
-      auto& [level, min, max] = levels[c];
-      kernels::fixed_intensities_row(filter_levels_[c].row(y), source.width(),
+      auto& [level, min, max] = intensities[c];
+      kernels::fixed_intensities_row(filter_intensities_[c].row(y), source.width(),
                                      {level.plain.row(y), min.plain.row(y), max.plain.row(y)});
-      for (FeaturePlane<std::uint16_t>& plane : levels[c]) {
+      for (FeaturePlane<std::uint16_t>& plane : intensities[c]) {
         plane.finish_row(source, y);
       }
     });
@@ -75,7 +75,7 @@ class CombinedPlanes final : public CostPlanes {
     gy.finish_row(source, y);
   }
 
-  FilterLevels filter_levels_;
+  FilterIntensities filter_intensities_;
   IntensityPlane<float> luma_;  ///< used with colour channels
 };
 
@@ -138,7 +138,7 @@ class CombinedModel final : public CostModel {
     const kernels::CombinedModel& model =
         row.partner.channels() == 1 ? models.of_luma : models.of_channels;
     kernels::CombinedRow pairs;
-    pairs.levels = row.pairs(&CombinedPlanes::levels);
+    pairs.levels = row.pairs(&CombinedPlanes::intensities);
     if (model.has_census) {
       pairs.codes = row.pairs(&CombinedPlanes::codes);
     }

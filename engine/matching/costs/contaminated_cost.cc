@@ -12,16 +12,17 @@ class ContaminatedModel final : public CostModel {
   using CostModel::CostModel;
 
   void energies(const CostRow& row, float* cells) const override {
-    kernels::contaminated_energy_row(row.grey_levels(), measurement(), cells);
+    kernels::contaminated_energy_row(row.intensities(), measurement(), cells);
   }
   /// With several channels: the exponential of the mean energy.
   void likelihoods(const CostRow& row, float* cells) const override {
-    const kernels::GreyPairs levels = row.grey_levels();
-    if (levels.channels == 1) {
-      kernels::contaminated_likelihood_row(levels, measurement(), cells);
+    const kernels::GreyPairs intensities = row.intensities();
+    if (intensities.channels == 1) {
+      kernels::contaminated_likelihood_row(intensities, measurement(), cells);
     } else {
-      kernels::contaminated_energy_row(levels, measurement(), cells);
-      kernels::likelihood_of_energies({levels.columns, levels.lanes, levels.count}, cells);
+      kernels::contaminated_energy_row(intensities, measurement(), cells);
+      kernels::likelihood_of_energies({intensities.columns, intensities.lanes, intensities.count},
+                                      cells);
     }
   }
   [[nodiscard]] std::optional<float> energy_without_partner() const override {

@@ -5,13 +5,13 @@
 namespace vantage {
 namespace {
 
-void changes_intensities(const IntensityChange& change, int width, float* levels) {
+void change_intensities(const IntensityChange& change, int width, float* intensities) {
   if (change.is_none()) {
     return;
   }
   const auto gain = static_cast<float>(change.gain);
   const auto offset = static_cast<float>(change.offset);
-  std::transform(levels, levels + width, levels,
+  std::transform(intensities, intensities + width, intensities,
                  [&](float level) { return gain * level + offset; });
 }
 
@@ -25,27 +25,27 @@ PlaneMargins margins_of(const kernels::CandidateGeometry& geometry) {
                    geometry.disparity_min + geometry.lanes() + kernels::kLaneMultiple)};
 }
 
-void PlaneSource::luma_row(int y, float* levels) const {
-  intensity_row(photograph, y, levels);
-  changes_intensities(intensity_changes.luma, width(), levels);
+void PlaneSource::luma_row(int y, float* intensities) const {
+  intensity_row(photograph, y, intensities);
+  change_intensities(intensity_changes.luma, width(), intensities);
 }
 
-void PlaneSource::level_row(std::size_t channel, int y, float* levels) const {
+void PlaneSource::channel_row(std::size_t channel, int y, float* intensities) const {
   if (channels == 1) {
-    luma_row(y, levels);
+    luma_row(y, intensities);
     return;
   }
-  channel_intensity_row(photograph, static_cast<int>(channel), y, levels);
-  changes_intensities(intensity_changes.channels[channel], width(), levels);
+  channel_intensity_row(photograph, static_cast<int>(channel), y, intensities);
+  change_intensities(intensity_changes.channels[channel], width(), intensities);
 }
 
-void prepare_filter_levels(const PlaneSource& source, FilterLevels& levels) {
+void prepare_filter_intensities(const PlaneSource& source, FilterIntensities& intensities) {
   source.for_each_channel([&](std::size_t c) {
-    levels[c].resize(source.width(), source.height(), kFilterMarginBefore, kFilterMarginAfter);
+    intensities[c].resize(source.width(), source.height(), kFilterMarginBefore, kFilterMarginAfter);
   });
   source.for_each_channel_row([&](std::size_t c, int y) {
-    source.level_row(c, y, levels[c].row(y));
-    levels[c].fill_margins(y);
+    source.channel_row(c, y, intensities[c].row(y));
+    intensities[c].fill_margins(y);
   });
 }
 

@@ -35,9 +35,9 @@ struct PlaneSource {
   [[nodiscard]] int width() const { return photograph.width(); }
   [[nodiscard]] int height() const { return photograph.height(); }
   /// Writes the intensities of luma.
-  void luma_row(int y, float* levels) const;
+  void luma_row(int y, float* intensities) const;
   /// Writes the intensities of one channel, or of luma if there are no channels.
-  void level_row(std::size_t channel, int y, float* levels) const;
+  void channel_row(std::size_t channel, int y, float* intensities) const;
 
   /// Calls body(channel).
   template <typename Body>
@@ -117,8 +117,8 @@ template <typename Images>
 }
 
 /// Intensities that features are computed from, with filter margins; they are not compared.
-using FilterLevels = std::array<IntensityPlane<float>, 3>;
-void prepare_filter_levels(const PlaneSource& source, FilterLevels& levels);
+using FilterIntensities = std::array<IntensityPlane<float>, 3>;
+void prepare_filter_intensities(const PlaneSource& source, FilterIntensities& intensities);
 
 /// The planes that a cost reads of one image. Working memory.
 class CostPlanes {

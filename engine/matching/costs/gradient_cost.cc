@@ -64,22 +64,22 @@ class GradientModel final : public CostModel {
 void GradientPlanes::prepare(const PlaneSource& source, const MethodParameters& parameters) {
   const int width = source.width();
   const int height = source.height();
-  prepare_filter_levels(source, levels_);
+  prepare_filter_intensities(source, intensities_);
   source.for_each_channel([&](std::size_t c) {
     for (FeaturePlane<float>& plane : gradients[c]) {
       plane.resize(source);
     }
     if (parameters.prefilter) {
-      smooth_levels_[c].resize(width, height, kFilterMarginBefore, kFilterMarginAfter);
-      smooth_intensities(levels_[c], width, height, source.execution, smooth_levels_[c]);
+      smooth_intensities_[c].resize(width, height, kFilterMarginBefore, kFilterMarginAfter);
+      smooth_intensities(intensities_[c], width, height, source.execution, smooth_intensities_[c]);
     }
   });
   const auto alpha = static_cast<float>(parameters.alpha);
-  const FilterLevels& levels = parameters.prefilter ? smooth_levels_ : levels_;
+  const FilterIntensities& intensities = parameters.prefilter ? smooth_intensities_ : intensities_;
   source.for_each_channel_row([&](std::size_t c, int y) {
     const auto work = source.execution.scratch().lease(sizeof(float) * filter_work_floats(width));
     auto& [gx, gy, half_norm] = gradients[c];
-    gradient_row(levels[c], width, height, y, parameters.gradient,
+    gradient_row(intensities[c], width, height, y, parameters.gradient,
                  reinterpret_cast<float*>(work.data()), gx.plain.row(y), gy.plain.row(y));
     kernels::evidence_planes_row({gx.plain.row(y), gy.plain.row(y), half_norm.plain.row(y), width},
                                  alpha, is_octagon(parameters));

@@ -14,12 +14,13 @@ class GradientPlanes final : public CostPlanes {
 
   void prepare(const PlaneSource& source, const MethodParameters& parameters) override;
   [[nodiscard]] std::size_t held_bytes() const override {
-    return held_bytes_of(gradients) + held_bytes_of(levels_) + held_bytes_of(smooth_levels_);
+    return held_bytes_of(gradients) + held_bytes_of(intensities_) +
+           held_bytes_of(smooth_intensities_);
   }
 
  private:
-  FilterLevels levels_;
-  FilterLevels smooth_levels_;
+  FilterIntensities intensities_;
+  FilterIntensities smooth_intensities_;
 };
 
 }  // namespace vantage

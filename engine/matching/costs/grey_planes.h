@@ -14,7 +14,7 @@ class GreyPlanes final : public CostPlanes {
   void prepare(const PlaneSource& source, const MethodParameters& /*parameters*/) override {
     source.for_each_channel([&](std::size_t c) { grey[c][0].resize(source); });
     source.for_each_channel_row([&](std::size_t c, int y) {
-      source.level_row(c, y, grey[c][0].plain.row(y));
+      source.channel_row(c, y, grey[c][0].plain.row(y));
       grey[c][0].finish_row(source, y);
     });
   }

@@ -69,13 +69,13 @@ std::size_t filter_work_floats(int width) {
   return static_cast<std::size_t>(width) + 3 * kernels::kLaneMultiple;
 }
 
-void smooth_intensities(const IntensityPlane<float>& levels, int width, int height,
+void smooth_intensities(const IntensityPlane<float>& intensities, int width, int height,
                         Execution& execution, IntensityPlane<float>& smooth) {
   const FilterTaps taps = gaussian_taps();
   execution.for_each_band(height, [&](int first_row, int end_row) {
     const auto work = execution.scratch().lease(sizeof(float) * filter_work_floats(width));
     for (int y = first_row; y < end_row; ++y) {
-      kernels::SeparableFilter filter = rows_around(levels, width, height, y);
+      kernels::SeparableFilter filter = rows_around(intensities, width, height, y);
       filter.down = taps;
       filter.along = taps;
       kernels::separable_filter_row(filter, reinterpret_cast<float*>(work.data()), smooth.row(y));
@@ -84,10 +84,10 @@ void smooth_intensities(const IntensityPlane<float>& levels, int width, int heig
   });
 }
 
-void gradient_row(const IntensityPlane<float>& levels, int width, int height, int y,
+void gradient_row(const IntensityPlane<float>& intensities, int width, int height, int y,
                   GradientFilter filter, float* work, float* gx, float* gy) {
   const auto& [derivative, across] = filter_of(filter);
-  kernels::SeparableFilter row = rows_around(levels, width, height, y);
+  kernels::SeparableFilter row = rows_around(intensities, width, height, y);
   row.down = across;
   row.along = derivative;
   kernels::separable_filter_row(row, work, gx);

@@ -17,15 +17,15 @@ inline constexpr int kFilterMarginAfter = 4 + kernels::kLaneMultiple;
 std::size_t filter_work_floats(int width);
 
 /// Gaussian prefilter of chapter 5: σ = ½, radius 2. All planes have the size width × height and
-/// at least the margins above. The margins of `levels` must be filled; those of `smooth` are
+/// at least the margins above. The margins of `intensities` must be filled; those of `smooth` are
 /// written. The border is replicated. Identical for any `execution`.
-void smooth_intensities(const IntensityPlane<float>& levels, int width, int height,
+void smooth_intensities(const IntensityPlane<float>& intensities, int width, int height,
                         Execution& execution, IntensityPlane<float>& smooth);
 
 /// Components of the gradient (5.9) of row y: correlations with the derivative filters of EQUATIONS
-/// §2, borders replicated. `levels`: size and margins as above. gx and gy may be written up to a
-/// lane multiple past the width. `work`: filter_work_floats().
-void gradient_row(const IntensityPlane<float>& levels, int width, int height, int y,
+/// §2, borders replicated. `intensities`: size and margins as above. gx and gy may be written up to
+/// a lane multiple past the width. `work`: filter_work_floats().
+void gradient_row(const IntensityPlane<float>& intensities, int width, int height, int y,
                   GradientFilter filter, float* work, float* gx, float* gy);
 
 }  // namespace vantage

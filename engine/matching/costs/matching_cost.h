@@ -31,8 +31,8 @@ struct CostRow {
   scheduler::Range columns;
   float* work = nullptr;  ///< partner.work_floats(columns) floats
 
-  [[nodiscard]] kernels::GreyPairs grey_levels() const {
-    return partner.grey_levels(y, columns, work);
+  [[nodiscard]] kernels::GreyPairs intensities() const {
+    return partner.intensities(y, columns, work);
   }
   /// `planes`: a member of the cost's own type of planes.
   template <typename Planes>

@@ -82,7 +82,7 @@ CandidateRange PartnerRows::columns_with_all_partners() const {
   return is_interpolated() ? CandidateRange{} : geometry_.columns_with_all_partners();
 }
 
-FeaturePairs<float, 1> PartnerRows::grey_levels(int y, Range columns, float* work) const {
+FeaturePairs<float, 1> PartnerRows::intensities(int y, Range columns, float* work) const {
   FeaturePairs<float, 1> row = pairs(y, columns, &GreyPlanes::grey);
   if (!is_interpolated()) {
     return row;

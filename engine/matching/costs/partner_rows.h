@@ -66,7 +66,7 @@ class PartnerRows {
     return row;
   }
   /// For costs that use GreyPlanes; interpolated in `work` if necessary.
-  [[nodiscard]] kernels::FeaturePairs<float, 1> grey_levels(int y, scheduler::Range columns,
+  [[nodiscard]] kernels::FeaturePairs<float, 1> intensities(int y, scheduler::Range columns,
                                                             float* work) const;
 
  private:

@@ -52,7 +52,7 @@ class RayCensusModel final : public CostModel {
 void RayCensusPlanes::prepare(const PlaneSource& source, const MethodParameters& parameters) {
   const int thresholds = parameters.census_thresholds;
   const auto bytes = static_cast<std::size_t>(kernels::ray_census_bytes(thresholds));
-  prepare_filter_levels(source, levels_);
+  prepare_filter_intensities(source, intensities_);
   source.for_each_channel([&](std::size_t c) {
     for (std::size_t k = 0; k < bytes; ++k) {
       codes[c][k].resize(source);
@@ -62,7 +62,7 @@ void RayCensusPlanes::prepare(const PlaneSource& source, const MethodParameters&
     kernels::RayCensusRows rows{};
     for (int v = -kernels::kRayCensusRadius; v <= kernels::kRayCensusRadius; ++v) {
       rows[static_cast<std::size_t>(v + kernels::kRayCensusRadius)] =
-          levels_[c].row(std::clamp(y + v, 0, source.height() - 1));
+          intensities_[c].row(std::clamp(y + v, 0, source.height() - 1));
     }
     kernels::RayCensusCodes code_rows{};
     for (std::size_t k = 0; k < bytes; ++k) {

@@ -16,11 +16,11 @@ class RayCensusPlanes final : public CostPlanes {
 
   void prepare(const PlaneSource& source, const MethodParameters& parameters) override;
   [[nodiscard]] std::size_t held_bytes() const override {
-    return held_bytes_of(codes) + held_bytes_of(levels_);
+    return held_bytes_of(codes) + held_bytes_of(intensities_);
   }
 
  private:
-  FilterLevels levels_;
+  FilterIntensities intensities_;
 };
 
 /// thresholds: those the images were prepared with.

@@ -9,11 +9,11 @@ class SquaredModel final : public CostModel {
   using CostModel::CostModel;
 
   void energies(const CostRow& row, float* cells) const override {
-    kernels::squared_row(row.grey_levels(), cells);
+    kernels::squared_row(row.intensities(), cells);
   }
   /// The mean of the channels' squares is the squared residual.
   void likelihoods(const CostRow& row, float* cells) const override {
-    kernels::contaminated_likelihood_row(row.grey_levels(), measurement(), cells);
+    kernels::contaminated_likelihood_row(row.intensities(), measurement(), cells);
   }
   [[nodiscard]] CostBounds energy_bounds() const override {
     return {0, static_cast<float>(kWhite * kWhite)};
@@ -30,14 +30,14 @@ class SquaredModel final : public CostModel {
 
 MatchingCost squared_cost() {
   // Squares of large differences would let single pixels dominate all around them.
-  constexpr float kContrastLevels = 20;
+  constexpr float kContrastIntensity = 20;
   return {.key = MatchCost::kSquared,
           .name = "squared",
           .description = "squared difference of grey levels",
           .options = {"match-exposure"},
           .can_be_interpolated = true,
           .has_column_sums = true,
-          .max_contrast = kContrastLevels * kContrastLevels,
+          .max_contrast = kContrastIntensity * kContrastIntensity,
           .make_planes = make_planes_as<GreyPlanes>,
           .make_model = make_model_as<SquaredModel>};
 }
