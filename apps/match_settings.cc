@@ -10,10 +10,6 @@
 namespace vantage::apps {
 namespace {
 
-bool is_word(const SettingValue& value, std::string_view word) {
-  return value.is_string() && value.get_ref<const std::string&>() == word;
-}
-
 void add_parameter_settings(Settings& settings, MatchOptions& options) {
   add_method_parameters(settings, options.parameters);
   settings.start_group("Refinement");

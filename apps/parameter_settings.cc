@@ -102,10 +102,6 @@ EnumNames<bool> names_of_bool(const OptionText& text) {
   return {{text.value_name.substr(0, text.value_name.find('|')), true}, {word_of(text), false}};
 }
 
-bool is_word(const SettingValue& value, std::string_view word) {
-  return value.is_string() && value.get_ref<const std::string&>() == word;
-}
-
 template <typename T>
 std::string default_text(const OptionText& text, T value) {
   if constexpr (std::is_same_v<T, bool>) {

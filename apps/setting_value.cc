@@ -77,6 +77,10 @@ std::string to_text(const SettingValue& value) {
   return value.get<std::string>();
 }
 
+bool is_word(const SettingValue& value, std::string_view word) {
+  return value.is_string() && value.get_ref<const std::string&>() == word;
+}
+
 std::vector<SettingValue> to_list(const SettingValue& value) {
   return value.is_array() ? std::vector<SettingValue>(value.begin(), value.end())
                           : std::vector<SettingValue>{value};

@@ -20,6 +20,8 @@ int to_integer(const SettingValue& value);
 double to_number(const SettingValue& value);
 bool to_truth(const SettingValue& value);
 std::string to_text(const SettingValue& value);
+/// Whether the value is this text.
+bool is_word(const SettingValue& value, std::string_view word);
 /// The members of an array, or the value itself.
 std::vector<SettingValue> to_list(const SettingValue& value);
 
