@@ -1,12 +1,8 @@
 """Plants one violation at a time in a small tree and expects check_documents to name it."""
 
-import subprocess
-import sys
-import tempfile
 import unittest
-from pathlib import Path
 
-CHECK_DOCUMENTS = Path(__file__).parent / "check_documents"
+from planted_tree import PlantedTreeTest
 
 EQUATIONS = "# The equations\n\n## 0. Conventions\n\n## 1. SSD\n\n### 1.2 Borders\n\nSee §0.\n"
 CLEAN_TREE = {
@@ -19,29 +15,15 @@ CLEAN_TREE = {
 }
 
 
-def run(tree):
-    with tempfile.TemporaryDirectory() as root:
-        for name, text in tree.items():
-            file = Path(root) / name
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(text, encoding="utf-8")
-        return subprocess.run([sys.executable, "-B", str(CHECK_DOCUMENTS), root],
-                              capture_output=True, text=True, check=False)
-
-
-class CheckDocumentsTest(unittest.TestCase):
-    def expect_violation(self, name, text, expected_line):
-        result = run({**CLEAN_TREE, name: text})
-        self.assertEqual(result.returncode, 1, result.stdout)
-        self.assertEqual(len(result.stdout.splitlines()), 2, result.stdout)
-        self.assertIn(expected_line, result.stdout)
+class CheckDocumentsTest(PlantedTreeTest):
+    script = "check_documents"
+    clean_tree = CLEAN_TREE
 
     def test_accepts_a_clean_tree(self):
-        result = run(CLEAN_TREE)
-        self.assertEqual(result.returncode, 0, result.stdout)
+        self.expect_clean()
 
     def test_rejects_a_tree_without_equations(self):
-        self.assertNotEqual(run({"README.md": "# Name\n"}).returncode, 0)
+        self.assertNotEqual(self.check({"README.md": "# Name\n"}).returncode, 0)
 
     def test_sections_that_do_not_exist(self):
         for name, text, section in [
@@ -53,8 +35,8 @@ class CheckDocumentsTest(unittest.TestCase):
                 self.expect_violation(name, text, f"{section}, expected a section")
 
     def test_a_section_that_is_removed(self):
-        result = run({**CLEAN_TREE,
-                      "docs/EQUATIONS.md": EQUATIONS.replace("### 1.2 Borders", "Borders")})
+        result = self.check({**CLEAN_TREE,
+                             "docs/EQUATIONS.md": EQUATIONS.replace("### 1.2 Borders", "Borders")})
         self.assertEqual(result.returncode, 1)
         self.assertIn("kernels/box.h:1: §1.2", result.stdout)
 
@@ -71,8 +53,8 @@ class CheckDocumentsTest(unittest.TestCase):
     def test_places_that_do_not_exist(self):
         table = "| step | engine |\n|---|---|\n| a `word` | `io/box`, `box_x`, `--option` |\n"
         tree = {**CLEAN_TREE, "engine/io/box.h": "", "kernels/box_x/box_x_simd.cc": ""}
-        self.assertEqual(run({**tree, "docs/ARCHITECTURE.md": table}).returncode, 0)
-        result = run({**tree, "docs/ARCHITECTURE.md": table.replace("io/box", "image/box")})
+        self.assertEqual(self.check({**tree, "docs/ARCHITECTURE.md": table}).returncode, 0)
+        result = self.check({**tree, "docs/ARCHITECTURE.md": table.replace("io/box", "image/box")})
         self.assertEqual(result.returncode, 1)
         self.assertIn("docs/ARCHITECTURE.md:3: there is no file or folder 'image/box'", result.stdout)
 

@@ -1,12 +1,8 @@
 """Plants one violation at a time in a small tree and expects check_layers to name it."""
 
-import subprocess
-import sys
-import tempfile
 import unittest
-from pathlib import Path
 
-CHECK_LAYERS = Path(__file__).parent / "check_layers"
+from planted_tree import PlantedTreeTest
 
 CLEAN_TREE = {
     "kernels/box.h": "#pragma once\n#include <cstddef>\n",
@@ -21,29 +17,15 @@ CLEAN_TREE = {
 }
 
 
-def run(tree):
-    with tempfile.TemporaryDirectory() as root:
-        for name, text in tree.items():
-            file = Path(root) / name
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(text, encoding="utf-8")
-        return subprocess.run([sys.executable, "-B", str(CHECK_LAYERS), root],
-                              capture_output=True, text=True, check=False)
-
-
-class CheckLayersTest(unittest.TestCase):
-    def expect_violation(self, name, text, expected_line):
-        result = run({**CLEAN_TREE, name: text})
-        self.assertEqual(result.returncode, 1, result.stdout)
-        self.assertEqual(len(result.stdout.splitlines()), 2, result.stdout)
-        self.assertIn(expected_line, result.stdout)
+class CheckLayersTest(PlantedTreeTest):
+    script = "check_layers"
+    clean_tree = CLEAN_TREE
 
     def test_accepts_a_clean_tree(self):
-        result = run(CLEAN_TREE)
-        self.assertEqual(result.returncode, 0, result.stdout)
+        self.expect_clean()
 
     def test_rejects_a_tree_that_is_not_there(self):
-        self.assertNotEqual(run({"other/file": ""}).returncode, 0)
+        self.assertNotEqual(self.check({"other/file": ""}).returncode, 0)
 
     def test_includes_that_cross_layers(self):
         for name, include in [
@@ -80,9 +62,9 @@ class CheckLayersTest(unittest.TestCase):
                 "engine/b/deep/x.h": '#pragma once\n#include "engine/c/x.h"\n',
                 "engine/b/deep/y.cc": '#include "engine/b/deep/x.h"\n',
                 "engine/c/x.h": '#pragma once\n#include "kernels/box.h"\n'}
-        self.assertEqual(run(tree).returncode, 0)
+        self.assertEqual(self.check(tree).returncode, 0)
         for name in ["engine/c/y.cc", "engine/b/deep/z.cc"]:
-            result = run({**tree, name: '#include "engine/a/x.h"\n'})
+            result = self.check({**tree, name: '#include "engine/a/x.h"\n'})
             self.assertEqual(result.returncode, 1, result.stdout)
             self.assertIn("engine/a/x.cc:1: folders include each other: engine/a -> engine/b/deep",
                           result.stdout)
@@ -99,7 +81,7 @@ class CheckLayersTest(unittest.TestCase):
         self.expect_violation("tests/engine/a.h", "int a();\n", "tests/engine/a.h:1: ")
 
     def test_length(self):
-        self.assertEqual(run({**CLEAN_TREE, "apps/a.cc": "\n" * 600}).returncode, 0)
+        self.assertEqual(self.check({**CLEAN_TREE, "apps/a.cc": "\n" * 600}).returncode, 0)
         self.expect_violation("apps/a.cc", "\n" * 601, "apps/a.cc:601: ")
 
     def test_native_instructions(self):
