@@ -117,6 +117,7 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
                           result.right, report);
   }
   if (!pair.has_maps()) {
+    const bool is_found = pair.match.disparities_auto;
     choose_disparities(settings, common, result.left, result.right, pair.match, execution, report);
     const StereoMatcher matcher(pair.match, execution);
     report.add_match(report.timed_compute([&] {
@@ -124,6 +125,8 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
       matcher.match(result.left, result.right, {}, result.maps, &match);
       return match;
     }));
+    warn_of_cut_range(settings, common, result.left, result.right, result.maps, pair.match,
+                      is_found, execution, report);
   }
   return result;
 }

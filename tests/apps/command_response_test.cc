@@ -320,7 +320,10 @@ TEST_F(AutomaticDisparities, ACutRangeIsToldOf) {
   const std::vector<std::string> run = {
       "run",      "--left",           folder_ / "l", "--right",       folder_ / "r",
       "--report", folder_ / "r.json", "-o",          folder_ / "run", "--overwrite"};
-  for (std::vector<std::string> command : {match, run}) {
+  const std::vector<std::string> synth = {
+      "synth", folder_ / "l/0.png", folder_ / "r/0.png", "--view",          "0.5",
+      "-o",    folder_ / "v.png",   "--report",          folder_ / "r.json"};
+  for (std::vector<std::string> command : {match, run, synth}) {
     const ProcessResult whole = run_vantage(command);
     EXPECT_EQ(whole.exit_code, 0) << whole.err;
     EXPECT_THAT(whole.err, testing::Not(HasSubstr("left out")));
