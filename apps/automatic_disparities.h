@@ -25,17 +25,17 @@ void choose_disparities(const Settings& settings, const CommonOptions& common,
                         const Photograph& left, const Photograph& right, MatchOptions& options,
                         Execution& execution, RunReport& report);
 
-/// Looks whether matches pile up at the ends of the range, and warns on stderr of disparities that
-/// seem to be left out (look_beyond); the report gets `results.cut_range`. Results and exit codes
-/// do not depend on it. `is_found`: choose_disparities() chose the range;
-/// it may then end at 0, where infinity is.
+/// Checks whether matches pile up at the ends of the range. Warns on stderr of disparities that
+/// seem to be left out (look_beyond()) and reports `results.cut_range`. Results and exit codes do
+/// not depend on it. `is_found`: choose_disparities() estimated the range, so it may end at 0,
+/// which is infinity.
 void warn_of_cut_range(const Settings& settings, const CommonOptions& common,
                        const Photograph& left, const Photograph& right, const DisparityMaps& maps,
                        const MatchOptions& options, bool is_found, Execution& execution,
                        RunReport& report);
-/// What a report says of it.
+/// The check as values of a report.
 SettingValue cut_range_values(const CutRange& cut);
-/// The rest of such a warning: what to do.
+/// Advice at the end of the warning.
 inline constexpr std::string_view kCutRangeAdvice =
     "give a wider --disparities, or leave it out for auto";
 

@@ -7,9 +7,9 @@ namespace vantage::apps {
 
 /// An option for each field of MethodParameters, in groups.
 void add_method_parameters(Settings& settings, MethodOverrides& parameters);
-/// Those of them that only the cost gradient reads, in the present group.
+/// An option for each field that only the cost gradient reads, in the current group.
 void add_gradient_settings(Settings& settings, MethodOverrides& parameters);
-/// An option for each field of RefinementOptions, in the present group.
+/// An option for each field of RefinementOptions, in the current group.
 void add_refinement_options(Settings& settings, RefinementOverrides& refinement);
 
 }  // namespace vantage::apps

@@ -19,8 +19,8 @@ std::string sources_of(const RunJob& job, const Settings& settings);
 /// was begun, that is the part. Throws Error when there is no run.
 void take_up_run(const Arguments& arguments, Settings& settings, RunJob& job);
 
-/// The range of disparities of the run in the folder of `job`, which is to go on: what was found at
-/// its start, from the same input. None where it does not go on or there is no such run.
+/// The search range of the run that `job` resumes, as estimated at its start from the same input.
+/// Empty if `job` does not resume a run.
 std::optional<DisparityRange> range_of_run_to_resume(const RunJob& job);
 
 }  // namespace vantage::apps

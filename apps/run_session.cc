@@ -201,7 +201,7 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   }
   const auto rectify = [&](FramePair& pair) { session.rectify(pair, execution); };
   const auto find_range = [&] {
-    // Of a video without an index, finding it decodes all once more.
+    // Estimating the range of a video without an index decodes the whole video.
     const std::optional<DisparityRange> known = range_of_run_to_resume(job);
     return known ? known : find_sequence_range(*session.pairs, rectify, execution);
   };

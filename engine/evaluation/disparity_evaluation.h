@@ -9,7 +9,7 @@ namespace vantage {
 
 /// Selection of the pixels to evaluate.
 struct DisparityEvaluationOptions {
-  /// Of the maps' size; only pixels of value 255 count. Empty: all pixels.
+  /// Has the size of the maps. Only pixels of value 255 count. Empty: all pixels.
   std::optional<ImageView<const std::uint8_t>> mask = std::nullopt;
   /// Rows and columns excluded at each side of the image, ≥ 0.
   int ignore_border_px = 0;

@@ -30,9 +30,9 @@ struct BookPairOptions {
   int width_px = 100;                    ///< 1..16384; shapes take fixed fractions of the image
   int height_px = 100;                   ///< 1..16384
   int background_disparity_px = 2;       ///< −4096..4096
-  /// Relative to the background's; default 6 (square) or 7 (bars).
+  /// Disparity of the front relative to the background; default 6 (square) or 7 (bars).
   std::optional<int> front_disparity_px = std::nullopt;
-  /// Of the narrow bar, relative to the front's; default 16.
+  /// Disparity of the narrow bar relative to the front; default 16.
   std::optional<int> narrow_disparity_px = std::nullopt;
   double noise_sigma = 0;     ///< grey levels, Gaussian, independent in both images; 0..255
   bool float_pixels = false;  ///< float pixels even without noise (noise always gives them)

@@ -47,8 +47,9 @@ struct SequenceReport {
   std::optional<int> videos_from;
   std::vector<FrameRemark> skipped;
   std::vector<FrameRemark> remarks;  ///< frames that repeat the previous one, gaps in time, …
-  int frames_maybe_cut = 0;          ///< for which the range may be too narrow
-  /// Of the first few of these, the one with the largest share beyond the range.
+  int frames_maybe_cut = 0;          ///< frames whose search range may be too narrow
+  /// The worst check of such a frame: the largest share beyond the range. Only the first few frames
+  /// that are matched are checked, so it may depend on timing.
   std::optional<CutRange> cut;
   int cut_frame = 0;
   bool interrupted = false;  ///< `stop` was set before all was done

@@ -94,7 +94,7 @@ void ray_census_codes(const RayCensusRows& rows, int width, int thresholds,
     for (const PixelOffset& offset : kRayCensusOffsets) {
       const Vec level = hn::LoadU(d, neighbours(rows, x, offset));
       const auto is_upper = hn::Lt(level, centre);
-      // Of the two other thresholds, uses the one on the neighbour's side of the centre.
+      // Uses the outer threshold on the neighbour's side of the centre.
       const auto is_lower = hn::Lt(level, hn::IfThenElse(is_upper, less, more));
       upper = hn::Sub(hn::Add(upper, upper), hn::BitCast(d32, hn::VecFromMask(d, is_upper)));
       lower = hn::Sub(hn::Add(lower, lower), hn::BitCast(d32, hn::VecFromMask(d, is_lower)));

@@ -25,7 +25,7 @@ inline std::vector<MatchCost> all_costs() {
 inline std::vector<MatchCost> all_costs_but(MatchCost left_out) {
   return keys_in(cost_table(), [=](const MatchingCost& cost) { return cost.key != left_out; });
 }
-/// Those that partners between pixels can have.
+/// Costs that can be interpolated for partners between pixels.
 inline std::vector<MatchCost> interpolated_costs() {
   return keys_in(cost_table(), [](const MatchingCost& cost) { return cost.can_be_interpolated; });
 }
