@@ -101,7 +101,7 @@ struct MatchingCost {
   std::vector<std::string_view> options;
 
   ResidualUnit unit = ResidualUnit::kGreyLevels;
-  /// Whether features of partners between pixels can be interpolated (PartnerRows::grey_levels).
+  /// Whether features of partners between pixels can be interpolated (PartnerRows::intensities).
   bool can_be_interpolated = false;
   /// Energies are −evidence: of either sign, compared with 0, without a scale of their own;
   /// likelihoods compare each candidate with the best one.
