@@ -1,0 +1,149 @@
+// Speed of the presets, both refined maps and the left one alone, against one map of StereoSGBM in
+// three-way mode, block 5, grey and colour, on all threads. All contenders of a size are
+// interleaved in one run. Prints tables; --json FILE writes the numbers.
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/matching/options/method_names.h"
+#include "engine/matching/stereo_matcher.h"
+#include "engine/simd.h"
+#include "perf/bench_pair.h"
+#include "perf/command_line.h"
+#include "perf/figures.h"
+#include "perf/peers.h"
+
+namespace vantage::perf {
+namespace {
+
+/// One contender and its times, in order of measurement.
+struct Timed {
+  std::string name;
+  std::function<void()> run;
+  std::vector<FrameTime> rounds = {};
+};
+
+/// A preset on one pair of photographs.
+class PresetRunner {
+ public:
+  PresetRunner(MatchPreset preset, int disparities, const MatchRequest& request,
+               Execution& execution)
+      : matcher_(options(preset, disparities), execution), request_(request) {}
+  void run(const Photograph& left, const Photograph& right) {
+    matcher_.match(left, right, request_, maps_, &report_);
+  }
+  [[nodiscard]] const MatchReport& report() const { return report_; }
+
+ private:
+  static MatchOptions options(MatchPreset preset, int disparities) {
+    MatchOptions options;
+    options.preset = preset;
+    options.disparities = {0, disparities - 1};
+    return options;
+  }
+
+  StereoMatcher matcher_;
+  MatchRequest request_;
+  DisparityMaps maps_;
+  MatchReport report_;
+};
+
+nlohmann::json measure(int width, int height, int disparities, const std::string& only, int rounds,
+                       Execution& execution) {
+  const Pair pair = make_pair(width, height, disparities);
+  const auto sgbm_of = [&](const Photograph& left, const Photograph& right, int channels) {
+    return [left = to_opencv(left), right = to_opencv(right), result = cv::Mat(),
+            sgbm = make_sgbm({0, disparities - 1}, 5, channels, cv::StereoSGBM::MODE_SGBM_3WAY),
+            &execution]() mutable {
+      cv::setNumThreads(execution.executor().thread_count());
+      sgbm->compute(left, right, result);
+      cv::setNumThreads(1);
+    };
+  };
+  std::vector<Timed> contenders = {
+      {"three-way, grey, one map", sgbm_of(pair.left_grey, pair.right_grey, 1)},
+      {"three-way, colour, one map", sgbm_of(pair.left, pair.right, 3)}};
+  std::vector<std::unique_ptr<PresetRunner>> runners;
+  for (const auto& [name, preset] : preset_names()) {
+    if (std::string(name).find(only) == std::string::npos) {
+      continue;
+    }
+    for (const bool both : {true, false}) {
+      runners.push_back(std::make_unique<PresetRunner>(
+          preset, disparities, MatchRequest{.left = true, .right = both}, execution));
+      contenders.push_back(
+          {fmt::format("{}, {}", name, both ? "both maps" : "left map"),
+           [&pair, runner = runners.back().get()] { runner->run(pair.left, pair.right); }});
+    }
+  }
+  for (int round = 0; round <= rounds; ++round) {
+    for (Timed& one : contenders) {
+      const Stopwatch watch;
+      one.run();
+      if (round > 0) {
+        one.rounds.push_back(watch.per_frame(1));
+      }
+    }
+  }
+  const double megapixels = width * height * 1e-6;
+  fmt::print("\n{}x{}, {} candidates, {} threads, colour\n{:<30} {:>9} {:>12} {:>22} {:>22}\n",
+             width, height, disparities, execution.executor().thread_count(), "", "wall ms",
+             "core s/Mpx", "to grey three-way", "to colour");
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Timed& one : contenders) {
+    const double wall = median(of(one.rounds, &FrameTime::wall));
+    const double core = median(of(one.rounds, &FrameTime::processor)) / megapixels;
+    const auto to_grey = ratios(one.rounds, contenders[0].rounds);
+    const auto to_colour = ratios(one.rounds, contenders[1].rounds);
+    fmt::print("{:<30} {:>9.2f} {:>12.4f} {:>22} {:>22}\n", one.name, wall * 1e3, core,
+               with_range(to_grey), with_range(to_colour));
+    rows.push_back({{"name", one.name},
+                    {"median_seconds", wall},
+                    {"core_seconds_per_megapixel", core},
+                    {"ratio_to_grey_three_way", figures(to_grey)},
+                    {"ratio_to_colour_three_way", figures(to_colour)}});
+  }
+  for (std::size_t i = 0; i < runners.size(); ++i) {
+    std::string stages;
+    for (const StageTime& stage : runners[i]->report().stages) {
+      stages += fmt::format("  {} {:.2f}", stage.name, stage.seconds * 1e3);
+    }
+    fmt::print("{}, ms by stage:{}\n", contenders[i + 2].name, stages);
+  }
+  return {{"width", width}, {"height", height}, {"candidates", disparities}, {"rows", rows}};
+}
+
+}  // namespace
+}  // namespace vantage::perf
+
+int main(int argc, char** argv) {
+  using namespace vantage::perf;
+  CommandLine line(argc, argv,
+                   "preset_speed [--size WxH] [--disparities N] [--only PRESET] [--threads N] "
+                   "[--rounds N] [--json FILE]");
+  int width = 0;
+  int height = 0;
+  line.size("--size", width, height);
+  const int disparities = line.number("--disparities", 128);
+  const std::string only = line.text("--only").value_or("");
+  const int threads =
+      line.number("--threads", vantage::scheduler::detect_machine().hardware_threads);
+  const int rounds = line.number("--rounds", 9);
+  const auto json_path = line.text("--json");
+  line.finish();
+  fmt::print("instruction set {}\n", vantage::instruction_set_in_use());
+  vantage::Execution execution({.threads = threads});
+  nlohmann::json tables = nlohmann::json::array();
+  if (width > 0) {
+    tables.push_back(measure(width, height, disparities, only, rounds, execution));
+  } else {
+    tables.push_back(measure(450, 375, 64, only, rounds, execution));
+    tables.push_back(measure(1920, 1080, 128, only, rounds, execution));
+  }
+  write_json(json_path, tables);
+  return 0;
+}
