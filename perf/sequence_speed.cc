@@ -12,15 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "engine/build_info.h"
 #include "engine/matching/stereo_matcher.h"
-#include "engine/sequence/sequence_runner.h"
 #include "engine/simd.h"
 #include "engine/synthesis/view_synthesizer.h"
 #include "perf/default_paths.h"
 #include "perf/figures.h"
-#include "perf/opencv_loop.h"
 #include "perf/sequence_inputs.h"
+#include "perf/sequence_timing.h"
 #include "perf/stopwatch.h"
 
 namespace vantage::perf {
@@ -30,9 +28,6 @@ namespace fs = std::filesystem;
 
 constexpr DisparityRange kRange = {0, 79};
 constexpr double kViewX = 0.5;
-/// Frames fetched before a run's clock starts: by then memory is allocated, and the queue of frames
-/// waiting for the disk has its final length.
-constexpr int kWarmUpFrames = 24;
 /// Videos are delivered in chunks.
 constexpr int kChunkFrames = 50;
 constexpr int kVideoFrames = 2 * kChunkFrames + kWarmUpFrames;
@@ -115,82 +110,6 @@ class Computation {
   ViewSynthesizer synthesizer_;
   ObjectPool<Results> results_;
 };
-
-/// From files to files, between fetching the first frame after the warm-up and the last one: the
-/// rate at which frames enter, and therefore leave.
-FrameTime time_run(const PairSourceOptions& input, const SequenceOptions& options, int frames,
-                   int threads, int in_flight, const fs::path& folder) {
-  fs::remove_all(folder);
-  std::optional<Stopwatch> watch;
-  FrameTime time;
-  RepeatedPairs pairs(input, frames, [&](int index) {
-    if (index == kWarmUpFrames) {
-      watch.emplace();
-    } else if (index == frames - 1) {
-      time = watch->per_frame(index - kWarmUpFrames);
-    }
-  });
-  Execution execution({.threads = threads});
-  FramePair first;
-  pairs.fetch(first);
-  pairs.decode(first);
-  const ImageExtent size{first.left.width(), first.left.height()};
-  pairs.skip_to(0);
-  const SequenceLayout layout(folder, options);
-  RunIdentity identity;
-  identity.frame_count = frames;
-  RunJournal journal(layout.journal_folder(), identity, JournalOpening::kNew, "all");
-  const SequenceRun run{.pairs = pairs,
-                        .selection = {.frame_count = frames,
-                                      .chunk_frames = kChunkFrames,
-                                      .frames = std::nullopt,
-                                      .shard = std::nullopt},
-                        .frame_size = size,
-                        .in_flight = in_flight,
-                        .on_progress = {}};
-  SequenceRunner(options, execution).run(run, layout, journal);
-  return time;
-}
-
-/// The loop over PNG files or over a packed video, which OpenCV's own reader would decode with the
-/// same library.
-FrameTime time_opencv(const SequenceInputs& inputs, bool from_video, int frames, int threads,
-                      const fs::path& folder) {
-  for (const char* name : {"disparity", "right-disparity", "views"}) {
-    fs::create_directories(folder / name);
-  }
-  cv::setNumThreads(threads);
-  OpenCvLoop loop(kRange);
-  std::optional<Stopwatch> watch;
-  std::optional<VideoReader> reader;
-  Photograph packed;
-  cv::Mat left;
-  cv::Mat right;
-  for (int frame = 0; frame < frames; ++frame) {
-    if (frame == 1) {
-      watch.emplace();
-    }
-    if (from_video) {
-      if (!reader || !reader->read(packed)) {
-        reader.emplace(inputs.video_file);
-        reader->read(packed);
-      }
-      const auto& image = std::get<Image<std::uint8_t>>(packed.pixels);
-      const cv::Mat both(image.height(), image.width(), CV_8UC(image.channels()),
-                         const_cast<std::uint8_t*>(image.row(0)), image.view().stride());
-      left = both.colRange(0, both.cols / 2);
-      right = both.colRange(both.cols / 2, both.cols);
-    } else {
-      const auto& files =
-          inputs.image_pairs[static_cast<std::size_t>(frame) % inputs.image_pairs.size()];
-      left = cv::imread(files[0].string(), cv::IMREAD_UNCHANGED);
-      right = cv::imread(files[1].string(), cv::IMREAD_UNCHANGED);
-    }
-    loop.work(left, right, folder, fmt::format("{:06}", frame));
-  }
-  cv::setNumThreads(1);
-  return watch->per_frame(frames - 1);
-}
 
 std::vector<FramePair> decode_pairs(const PairSourceOptions& input, int count) {
   const auto source = open_pair_source(input);
@@ -286,18 +205,20 @@ nlohmann::json time_input(const SequenceInputs& inputs, bool from_video, const S
     }
     contenders.push_back({form + " to PFM and PNG", [&, method] {
                             return time_run(input, run_options(method, false), method.frames,
-                                            settings.threads, in_flight, folder / "run");
+                                            settings.threads, in_flight, folder / "run")
+                                .frame;
                           }});
     if (method.with_video) {
       contenders.push_back({form + " to PFM and MP4", [&, method] {
                               return time_run(input, run_options(method, true), kVideoFrames,
-                                              settings.threads, in_flight, folder / "run");
+                                              settings.threads, in_flight, folder / "run")
+                                  .frame;
                             }});
     }
     groups.push_back({method.name, begin, contenders.size()});
   }
   contenders.push_back({"OpenCV StereoSGBM loop", [&, from_video] {
-                          return time_opencv(inputs, from_video, 13, settings.threads,
+                          return time_opencv(inputs, kRange, from_video, 13, settings.threads,
                                              folder / "opencv");
                         }});
   run_interleaved(contenders, settings.rounds);
