@@ -126,6 +126,10 @@ inline constexpr std::array kOptionTexts = {
                "Smooth matched pixels by planes fitted to the matched pixels up to PX away, 0 "
                "(off) to 16; on: 10",
                "{}", 10},
+    OptionText{
+        "surface-fit-step", "PX",
+        "With surface fit: 1: a plane for each pixel; 2: for each block of 2x2 pixels, which "
+        "is faster"},
     OptionText{"fill", "",
                "Value of unmatched pixels. constant: disparity of the background beside them; "
                "linear: interpolated where both sides nearly agree, else constant; median: median "

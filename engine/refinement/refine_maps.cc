@@ -84,11 +84,11 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
     start_step("surface fit");
     for (const MapToRefine* one : maps) {
       MatchedMap& matched = *one->map;
-      fit_surface(matched.unmatched, options.surface_fit_px, one->search, execution,
-                  work.surface_fit, matched.disparity_px);
+      fit_surface(matched.unmatched, options.surface_fit_px, options.surface_fit_step_px,
+                  one->search, execution, work.surface_fit, matched.disparity_px);
       if (!matched.disparity_y_px.empty()) {
-        fit_surface(matched.unmatched, options.surface_fit_px, one->search_y, execution,
-                    work.surface_fit, matched.disparity_y_px);
+        fit_surface(matched.unmatched, options.surface_fit_px, options.surface_fit_step_px,
+                    one->search_y, execution, work.surface_fit, matched.disparity_y_px);
       }
     }
   }

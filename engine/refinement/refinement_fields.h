@@ -40,6 +40,7 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
   visit(Field{"confidence-threshold", kThreshold}, options.confidence_threshold...);
   visit(Field{"speckle-size", kSize}, options.speckle_size_px...);
   visit(Field{"surface-fit", kRadius}, options.surface_fit_px...);
+  visit(Field{"surface-fit-step", {is_within<1, 2>, "1 or 2"}}, options.surface_fit_step_px...);
   visit(Field{"fill"}, options.fill...);
 }
 

@@ -40,6 +40,8 @@ struct RefinementOptionsOf {
   /// Matched pixels get the values of planes fitted to matched pixels within this radius
   /// (surface_fit); 0: off; 0..16.
   Field<int> surface_fit_px = by_default<Field>(0);
+  /// 1: a plane for each pixel; 2: for each block of 2×2 pixels, which is faster.
+  Field<int> surface_fit_step_px = by_default<Field>(1);
   Field<Fill> fill = by_default<Field>(Fill::kConstant);
 
   friend bool operator==(const RefinementOptionsOf&, const RefinementOptionsOf&) = default;

@@ -1,44 +1,99 @@
 #include "engine/refinement/surface_fit.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "kernels/surface_fit/surface_blocks.h"
 #include "kernels/surface_fit/surface_fit.h"
 
 namespace vantage {
+namespace {
 
-void fit_surface(const Mask& unmatched, int radius_px, DisparityRange search, Execution& execution,
-                 SurfaceFitWork& work, DisparityMap& map_px) {
-  const int width = map_px.width();
-  const int height = map_px.height();
-  work.matched_px.resize(radius_px + width + radius_px + kernels::kSurfaceRowSlack,
-                         radius_px + height + radius_px);
-  execution.for_each_band(work.matched_px.height(), [&](int first_row, int end_row) {
+/// Resizes `map_px` to a map of this size with margins, and calls fill(y, row) for each row inside;
+/// what lies beyond has no surface.
+template <typename Fill>
+void fill_with_margins(int width, int height, int margin, Execution& execution,
+                       Image<float>& map_px, const Fill& fill) {
+  const int after = margin + kernels::kSurfaceRowSlack;
+  map_px.resize(margin + width + after, margin + height + margin);
+  execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
     for (int row = first_row; row < end_row; ++row) {
-      float* values = work.matched_px.row(row);
-      std::fill_n(values, work.matched_px.width(), kernels::kNoSurfacePx);
-      const int y = row - radius_px;
+      float* values = map_px.row(row);
+      const int y = row - margin;
       if (y < 0 || y >= height) {
+        std::fill_n(values, map_px.width(), kernels::kNoSurfacePx);
         continue;
       }
-      const std::uint8_t* is_unmatched = unmatched.row(y);
-      const float* map = map_px.row(y);
-      for (int x = 0; x < width; ++x) {
-        values[radius_px + x] = is_unmatched[x] != 0 ? kernels::kNoSurfacePx : map[x];
-      }
+      std::fill_n(values, margin, kernels::kNoSurfacePx);
+      fill(y, values + margin);
+      std::fill_n(values + margin + width, after, kernels::kNoSurfacePx);
     }
   });
-  execution.for_each_band(height, [&](int first_row, int end_row) {
+}
+
+/// The row of samples for a kernel, as fill_with_margins() has laid them out.
+kernels::SurfaceRow surface_row(const Image<float>& samples_px, int margin, int y, int radius_px,
+                                int width, DisparityRange search) {
+  return {.disparity_px = samples_px.row(y + margin) + margin,
+          .pitch = static_cast<std::ptrdiff_t>(samples_px.view().stride()),
+          .radius_px = radius_px,
+          .width = width,
+          .min_px = static_cast<float>(search.min),
+          .max_px = static_cast<float>(search.max)};
+}
+
+void fit_each_pixel(const Mask& unmatched, int radius_px, DisparityRange search,
+                    Execution& execution, SurfaceFitWork& work, DisparityMap& map_px) {
+  const int width = map_px.width();
+  fill_with_margins(width, map_px.height(), radius_px, execution, work.samples_px,
+                    [&](int y, float* values) {
+                      const std::uint8_t* is_unmatched = unmatched.row(y);
+                      const float* map = map_px.row(y);
+                      for (int x = 0; x < width; ++x) {
+                        values[x] = is_unmatched[x] != 0 ? kernels::kNoSurfacePx : map[x];
+                      }
+                    });
+  execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
-      kernels::fit_surface_row(
-          {.disparity_px = work.matched_px.row(y + radius_px) + radius_px,
-           .pitch = static_cast<std::ptrdiff_t>(work.matched_px.view().stride()),
-           .radius_px = radius_px,
-           .width = width,
-           .min_px = static_cast<float>(search.min),
-           .max_px = static_cast<float>(search.max)},
-          map_px.row(y));
+      kernels::fit_surface_row(surface_row(work.samples_px, radius_px, y, radius_px, width, search),
+                               map_px.row(y));
     }
   });
+}
+
+void fit_each_block(const Mask& unmatched, int radius_px, DisparityRange search,
+                    Execution& execution, SurfaceFitWork& work, DisparityMap& map_px) {
+  const int height = map_px.height();
+  const int columns = kernels::surface_blocks(map_px.width());
+  const int rows = kernels::surface_blocks(height);
+  const int margin = kernels::surface_block_margin(radius_px);
+  const auto pixels = [&](int row) {
+    const int upper = 2 * row;
+    const int lower = upper + 1;
+    const bool has_lower = lower < height;
+    return kernels::SurfaceBlockRow{.upper_px = map_px.row(upper),
+                                    .lower_px = has_lower ? map_px.row(lower) : nullptr,
+                                    .upper_unmatched = unmatched.row(upper),
+                                    .lower_unmatched = has_lower ? unmatched.row(lower) : nullptr,
+                                    .width = map_px.width()};
+  };
+  fill_with_margins(columns, rows, margin, execution, work.samples_px, [&](int row, float* values) {
+    kernels::surface_block_row(pixels(row), values);
+  });
+  execution.for_each_band(rows, [&](int first_row, int end_row) {
+    for (int row = first_row; row < end_row; ++row) {
+      kernels::fit_surface_block_row(
+          surface_row(work.samples_px, margin, row, radius_px, columns, search), pixels(row));
+    }
+  });
+}
+
+}  // namespace
+
+void fit_surface(const Mask& unmatched, int radius_px, int step_px, DisparityRange search,
+                 Execution& execution, SurfaceFitWork& work, DisparityMap& map_px) {
+  const auto fit = step_px == 1 ? fit_each_pixel : fit_each_block;
+  fit(unmatched, radius_px, search, execution, work, map_px);
 }
 
 }  // namespace vantage

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 namespace vantage::kernels {
@@ -27,9 +28,11 @@ constexpr int kSurfaceRowSlack = 15;
 
 /// Maximum number of steps to samples on a square lattice, on either side of the pixel.
 constexpr int kMaxSurfaceSteps = 2;
-/// A sample has weight 1 − (e/this)², where e is its distance from the plane in pixels, and 0
-/// beyond.
+/// A sample's weight is proportional to 1 − (e/this)², where e is its distance from the plane in
+/// pixels, and 0 beyond.
 constexpr float kSurfaceReachPx = 1.5F;
+/// Of fits to blocks: samples n steps from the centre weigh exp(−n²/this).
+constexpr double kSurfaceFalloffSteps2 = 6;
 /// Number of fits; the first is relative to a horizontal plane through the pixel.
 constexpr int kSurfacePasses = 2;
 /// Weight of squared slopes per sample, in pixels over the length of the lattice's arms: enough to
@@ -46,6 +49,11 @@ struct SurfaceLattice {
   int steps = 1;   ///< 1 or kMaxSurfaceSteps on either side, in both directions
   int step_x = 1;  ///< columns
   int step_y = 0;  ///< rows
+  /// A sample on the plane has the weight falloff[i² + j²].
+  std::array<float, 9> falloff = {1, 1, 1, 1, 1, 1, 1, 1, 1};
+  [[nodiscard]] float falloff_at(int i, int j) const {
+    return falloff[static_cast<std::size_t>(i * i + j * j)];
+  }
   /// Column and row offsets of the position i, j steps along the arms.
   [[nodiscard]] int column(int i, int j) const { return i * step_x - j * step_y; }
   [[nodiscard]] int row(int i, int j) const { return i * step_y + j * step_x; }

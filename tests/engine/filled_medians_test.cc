@@ -158,6 +158,7 @@ TEST(FilledMedians, RefinementTakesThemOfBothComponents) {
                  .confidence_threshold = -std::numeric_limits<double>::infinity(),
                  .speckle_size_px = 0,
                  .surface_fit_px = 0,
+                 .surface_fit_step_px = 1,
                  .fill = fill},
                 map, nullptr, execution, work, [](std::string_view) {});
     EXPECT_TRUE(test::identical(matched.disparity_px, matched.disparity_y_px));

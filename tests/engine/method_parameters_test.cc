@@ -419,6 +419,7 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
        "finite"},
       {"speckle-size", refinement(&R::speckle_size_px), {0, 1000}, {-1}, "at least 0"},
       {"surface-fit", refinement(&R::surface_fit_px), {0, 1, 16}, {-1, 17}, "from 0 to 16"},
+      {"surface-fit-step", refinement(&R::surface_fit_step_px), {1}, {0, 3}, "1 or 2"},
   };
   for (const Bound& bound : bounds) {
     const auto complaint_about = [&](double value) {

@@ -411,6 +411,10 @@ TEST(Refinement, WhatNothingReadsIsRefused) {
   options.refinement.cross_check_px.reset();
   options.preset = MatchPreset::kFast;
   EXPECT_EQ(complaint(options), "");
+  options.refinement.surface_fit_px = 0;
+  EXPECT_EQ(complaint(options), "");
+  options.refinement.surface_fit_step_px = 2;
+  EXPECT_EQ(complaint(options), "surface-fit-step is set but has no effect with surface-fit 0");
 }
 
 }  // namespace parameter_readers_test

@@ -47,10 +47,10 @@ TEST(FitSurface, OnlyMatchedPixelsCountAndChange) {
   Execution execution({.threads = 2});
   SurfaceFitWork work;
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 23}, {31, 1}, {53, 41}}) {
-    for (const int radius : {1, 7, 16}) {
+    for (const auto& [radius, step] : {std::pair{1, 1}, {7, 1}, {16, 1}, {1, 2}, {10, 2}}) {
       SteppedMap stepped = stepped_map(width, height);
       const DisparityMap before = stepped.map.copy();
-      fit_surface(stepped.unmatched, radius, kAnyDisparity, execution, work, stepped.map);
+      fit_surface(stepped.unmatched, radius, step, kAnyDisparity, execution, work, stepped.map);
       // The same with all unmatched pixels unknown: their values have no say.
       SteppedMap unknown{before.copy(), std::move(stepped.unmatched)};
       for (int y = 0; y < height; ++y) {
@@ -60,7 +60,7 @@ TEST(FitSurface, OnlyMatchedPixelsCountAndChange) {
           }
         }
       }
-      fit_surface(unknown.unmatched, radius, kAnyDisparity, execution, work, unknown.map);
+      fit_surface(unknown.unmatched, radius, step, kAnyDisparity, execution, work, unknown.map);
       for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
           if (unknown.unmatched.at(x, y) == 0) {
@@ -91,8 +91,8 @@ TEST(FitSurface, ValuesStayWithinTheSearch) {
     }
   }
   DisparityMap free = stepped.map.copy();
-  fit_surface(stepped.unmatched, 10, kAnyDisparity, execution, work, free);
-  fit_surface(stepped.unmatched, 10, search, execution, work, stepped.map);
+  fit_surface(stepped.unmatched, 10, 1, kAnyDisparity, execution, work, free);
+  fit_surface(stepped.unmatched, 10, 1, search, execution, work, stepped.map);
   int outside = 0;
   for (int y = 0; y < 43; ++y) {
     for (int x = 0; x < 61; ++x) {
@@ -106,15 +106,17 @@ TEST(FitSurface, ValuesStayWithinTheSearch) {
 }
 
 TEST(FitSurface, ExecutionsAgree) {
-  SteppedMap stepped = stepped_map(97, 151);
-  DisparityMap serial = stepped.map.copy();
   SurfaceFitWork work;
-  Execution one({.executor = scheduler::ExecutorKind::kSerial});
-  fit_surface(stepped.unmatched, 10, kAnyDisparity, one, work, serial);
-  EXPECT_FALSE(test::identical(serial, stepped.map));
-  Execution three({.threads = 3, .executor = scheduler::ExecutorKind::kOpenMp});
-  fit_surface(stepped.unmatched, 10, kAnyDisparity, three, work, stepped.map);
-  EXPECT_TRUE(test::identical(serial, stepped.map));
+  for (const int step : {1, 2}) {
+    SteppedMap stepped = stepped_map(97, 151);
+    DisparityMap serial = stepped.map.copy();
+    Execution one({.executor = scheduler::ExecutorKind::kSerial});
+    fit_surface(stepped.unmatched, 10, step, kAnyDisparity, one, work, serial);
+    EXPECT_FALSE(test::identical(serial, stepped.map));
+    Execution three({.threads = 3, .executor = scheduler::ExecutorKind::kOpenMp});
+    fit_surface(stepped.unmatched, 10, step, kAnyDisparity, three, work, stepped.map);
+    EXPECT_TRUE(test::identical(serial, stepped.map)) << step;
+  }
 }
 
 TEST(FitSurface, RefinementFitsBothComponentsBeforeItFills) {
@@ -136,12 +138,13 @@ TEST(FitSurface, RefinementFitsBothComponentsBeforeItFills) {
                .confidence_threshold = -std::numeric_limits<double>::infinity(),
                .speckle_size_px = 0,
                .surface_fit_px = 6,
+               .surface_fit_step_px = 1,
                .fill = Fill::kConstant},
               map, nullptr, execution, work,
               [&](std::string_view step) { steps.emplace_back(step); });
   EXPECT_THAT(steps, ::testing::ElementsAre("surface fit", "fill"));
   SurfaceFitWork alone;
-  fit_surface(stepped.unmatched, 6, kAnyDisparity, execution, alone, stepped.map);
+  fit_surface(stepped.unmatched, 6, 1, kAnyDisparity, execution, alone, stepped.map);
   fill_unmatched(stepped.unmatched, Side::kLeft, Fill::kConstant, execution, stepped.map);
   EXPECT_TRUE(test::identical(matched.disparity_px, stepped.map));
   EXPECT_TRUE(test::identical(matched.disparity_y_px, stepped.map));

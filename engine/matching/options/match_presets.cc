@@ -35,6 +35,7 @@ PresetSettings preset_settings(MatchPreset preset) {
       settings.parameters.iterations = 2;
       settings.parameters.final_iterations = 0;
       settings.refinement.cross_check_level = 1;
+      settings.refinement.surface_fit_step_px = 2;
       break;
     case MatchPreset::kBalanced:
       settings.method = MatchMethod::kBayes;
@@ -43,6 +44,7 @@ PresetSettings preset_settings(MatchPreset preset) {
       settings.parameters.mu = 0.28;
       settings.parameters.iterations = 3;
       settings.parameters.final_iterations = 1;
+      settings.refinement.surface_fit_step_px = 2;
       settings.refinement.fill = Fill::kMedian;
       break;
     case MatchPreset::kQuality:
