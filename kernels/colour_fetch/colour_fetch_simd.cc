@@ -23,10 +23,15 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Positions whose columns and weights are computed at a time; a multiple of every vector length.
 constexpr int kBlock = 64;
 
+// Vectors of several colour pixels.
+using Pixels = hn::CappedTag<float, 16>;
+constexpr int kPixelLanes = 4;
+constexpr int kPixelsAtOnce = static_cast<int>(hn::MaxLanes(Pixels())) / kPixelLanes;
+
 struct BlockWeights {
   std::int32_t whole[kBlock];  // floor of the column
   float fraction[kBlock];
-  float weight[4][kBlock];
+  float weight[4][kBlock + hn::MaxLanes(Pixels())];  // read in whole vectors
 };
 
 // Source columns n + s·d and tap weights of `count` positions starting at `begin`; meaningless at
@@ -164,6 +169,80 @@ HWY_INLINE void fetch_grey_group(const BicubicFetchRow& row, const BlockWeights&
   hn::StoreU(hn::IfThenElseZero(hn::Eq(disparity_px, disparity_px), colour), d, colours);
 }
 
+// The pixels at these addresses, one after another in a vector.
+template <class D>
+HWY_INLINE hn::VFromD<D> load_pixels(D d, const float* const* pixels) {
+  constexpr int kPixels = static_cast<int>(hn::MaxLanes(d)) / kPixelLanes;
+  if constexpr (kPixels == 1) {
+    return hn::LoadU(d, pixels[0]);
+  } else {
+    const hn::Half<D> half;
+    return hn::Combine(d, load_pixels(half, pixels + kPixels / 2), load_pixels(half, pixels));
+  }
+}
+
+// The weight of each pixel of a vector in all its lanes.
+HWY_INLINE hn::VFromD<Pixels> spread_weights(const float* weights) {
+  const Pixels d;
+  const hn::RebindToSigned<Pixels> di;
+  const auto pixel_of_lane = hn::ShiftRight<2>(hn::Iota(di, 0));
+  return hn::TableLookupLanes(hn::LoadU(d, weights), hn::IndicesFromVec(d, pixel_of_lane));
+}
+
+// Interpolates the pixels of a vector; load_tap(k) returns their taps k.
+template <bool kInRange, class LoadTap>
+HWY_INLINE void fetch_inside(const BicubicFetchRow& row, const BlockWeights& block, int i,
+                             const LoadTap& load_tap, float* HWY_RESTRICT colours) {
+  const Pixels d;
+  const hn::VFromD<Pixels> value[4] = {load_tap(0), load_tap(1), load_tap(2), load_tap(3)};
+  const hn::VFromD<Pixels> weight[4] = {
+      spread_weights(block.weight[0] + i), spread_weights(block.weight[1] + i),
+      spread_weights(block.weight[2] + i), spread_weights(block.weight[3] + i)};
+  hn::StoreU(interpolate<kInRange>(d, value, weight, hn::Set(d, row.largest_value)), d, colours);
+}
+
+constexpr int kRun = 16;  // positions
+
+// Whether positions i to i + kRun of a block show adjacent columns of one surface: all taps count,
+// and each tap of the run is a stretch of the source row.
+HWY_INLINE bool is_run_on_surface(const BicubicFetchRow& row, const BlockWeights& block, int begin,
+                                  int i) {
+  const hn::CappedTag<float, kRun> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  constexpr int kLanes = static_cast<int>(hn::MaxLanes(d));
+  const std::int32_t first = block.whole[i];
+  if (block.whole[i + kRun - 1] != first + kRun - 1) {
+    return false;
+  }
+  const auto limit = hn::Set(d, row.gradient_limit_px);
+  for (int k = 0; k < kRun; k += kLanes) {
+    const auto expected = hn::Add(hn::Iota(di, 0), hn::Set(di, first + k));
+    const auto own = hn::LoadU(d, row.warped_disparity_px + begin + i + k);
+    auto good = hn::RebindMask(d, hn::Eq(hn::LoadU(di, block.whole + i + k), expected));
+    const float* taps = row.source_disparity_px + first + k;
+    for (int tap = -1; tap <= 2; ++tap) {
+      good = hn::And(good, hn::Le(hn::Abs(hn::Sub(hn::LoadU(d, taps + tap), own)), limit));
+    }
+    if (!hn::AllTrue(d, good)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Colours of such a run.
+template <bool kInRange>
+HWY_INLINE void fetch_run(const BicubicFetchRow& row, const BlockWeights& block, int i,
+                          float* HWY_RESTRICT colours) {
+  const float* pixels = row.pixels + (block.whole[i] - 1) * kPixelLanes;
+  for (int k = 0; k < kRun; k += kPixelsAtOnce) {
+    const auto load_tap = [&](int tap) HWY_ATTR {
+      return hn::LoadU(Pixels(), pixels + (k + tap) * kPixelLanes);
+    };
+    fetch_inside<kInRange>(row, block, i + k, load_tap, colours + k * kPixelLanes);
+  }
+}
+
 // Four values per position: a vector is one pixel; its taps are adjacent in memory.
 template <bool kInRange>
 HWY_INLINE void fetch_colour_group(const BicubicFetchRow& row, const BlockWeights& block, int i,
@@ -180,11 +259,15 @@ HWY_INLINE void fetch_colour_group(const BicubicFetchRow& row, const BlockWeight
   const TapChoice choice = choose_taps(row, block, i, disparity_px);
   if (hn::AllTrue(d, hn::And(choice.own0, choice.own3))) {
     // Inside a surface, so no position is a hole.
-    for (int p = 0; p < kGroup; ++p) {
-      const float* first = row.pixels + (block.whole[i + p] - 1) * 4;
-      const GroupVec value[4] = {hn::LoadU(d, first), hn::LoadU(d, first + 4),
-                                 hn::LoadU(d, first + 8), hn::LoadU(d, first + 12)};
-      hn::StoreU(fetch_pixel(p, value), d, colours + p * 4);
+    for (int p = 0; p < kGroup; p += kPixelsAtOnce) {
+      const auto load_tap = [&](int tap) HWY_ATTR {
+        const float* pixels[kGroup];
+        for (int q = 0; q < kGroup; ++q) {
+          pixels[q] = row.pixels + (block.whole[i + q] - 1 + tap) * kPixelLanes;
+        }
+        return load_pixels(Pixels(), pixels + p);
+      };
+      fetch_inside<kInRange>(row, block, i + p, load_tap, colours + p * kPixelLanes);
     }
     return;
   }
@@ -233,8 +316,16 @@ HWY_INLINE void fetch_any(const BicubicFetchRow& given, float* HWY_RESTRICT colo
       }
     };
     int i = 0;
-    for (; i + kGroup <= count; i += kGroup) {
+    while (i + kGroup <= count) {
+      if constexpr (kLanes == kPixelLanes) {
+        if (i + kRun <= count && is_run_on_surface(row, block, begin, i)) {
+          fetch_run<kInRange>(row, block, i, colours + (begin + i) * kLanes);
+          i += kRun;
+          continue;
+        }
+      }
       fetch(i, hn::LoadU(d, row.warped_disparity_px + begin + i), colours + (begin + i) * kLanes);
+      i += kGroup;
     }
     if (i < count) {
       // Partial group: the positions after its end are holes.

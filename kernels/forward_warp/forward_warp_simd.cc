@@ -80,6 +80,10 @@ HWY_INLINE std::uint64_t find_gaps(float gradient_limit_px, const Block& block) 
   return block.count < kBlock ? gaps & ((std::uint64_t{1} << block.count) - 1) : gaps;
 }
 
+// Columns that are written at once where they land side by side.
+using Run = hn::CappedTag<float, 16>;
+constexpr int kRun = static_cast<int>(hn::MaxLanes(Run()));
+
 // Output of a pass; kColumns: whether source columns are requested.
 template <bool kColumns>
 struct Output {
@@ -115,17 +119,44 @@ HWY_NOINLINE void fill_sampling_gap(const ForwardWarpRow& row, const Block& bloc
   }
 }
 
+// Writes the columns of one vector if they land side by side, as on a smooth surface; else does
+// nothing and returns false.
+template <bool kColumns>
+HWY_INLINE bool write_run(const Block& block, int first, int width, Output<kColumns> output) {
+  const Run d;
+  const hn::RebindToSigned<Run> di;
+  const std::int32_t target = block.target[1 + first];
+  const auto targets = hn::LoadU(di, block.target + 1 + first);
+  if (target < 0 || target + kRun > width ||
+      !hn::AllTrue(di, hn::Eq(targets, hn::Add(hn::Iota(di, 0), hn::Set(di, target))))) {
+    return false;
+  }
+  hn::StoreU(hn::LoadU(d, block.disparity_px + 1 + first), d, output.disparity_px + target);
+  if (kColumns) {
+    const auto columns = hn::Add(hn::Iota(di, 0), hn::Set(di, block.begin + first));
+    hn::StoreU(hn::ConvertTo(d, columns), d, output.source_column + target);
+  }
+  return true;
+}
+
 // Writes columns [first, end) of a block, in direction kStep.
 template <int kStep, bool kColumns>
 HWY_INLINE void write_columns(const Block& block, int first, int end, int width,
                               Output<kColumns> output) {
   const float* disparity_px = block.disparity_px + 1;
   const std::int32_t* target = block.target + 1;
-  for (int k = 0; k < end - first; ++k) {
-    const int i = kStep > 0 ? first + k : end - 1 - k;
-    if (HWY_LIKELY(static_cast<unsigned>(target[i]) < static_cast<unsigned>(width))) {
-      output.write(target[i], disparity_px[i], static_cast<float>(block.begin + i));
+  while (first < end) {
+    const int count = std::min(kRun, end - first);
+    const int run = kStep > 0 ? first : end - count;
+    if (count < kRun || !write_run(block, run, width, output)) {
+      for (int k = 0; k < count; ++k) {
+        const int i = kStep > 0 ? run + k : run + count - 1 - k;
+        if (HWY_LIKELY(static_cast<unsigned>(target[i]) < static_cast<unsigned>(width))) {
+          output.write(target[i], disparity_px[i], static_cast<float>(block.begin + i));
+        }
+      }
     }
+    (kStep > 0 ? first : end) += kStep > 0 ? count : -count;
   }
 }
 

@@ -28,7 +28,8 @@ struct IntensitySums {
 };
 
 /// Sums over the positions of one scanline where both images show the same surface, from left to
-/// right.
+/// right. Identical on every instruction set and to the reference.
 IntensitySums intensity_sums_row(const WarpedPairRow& row);
+IntensitySums intensity_sums_row_ref(const WarpedPairRow& row);
 
 }  // namespace vantage::kernels

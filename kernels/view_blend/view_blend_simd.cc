@@ -140,6 +140,55 @@ HWY_INLINE void blend_grey(D d, const WarpedPairRow& pair, const BlendWeights& w
   store_pixel<1>(d, true, hn::Add(left_part, right_part), left, right, pixels + x);
 }
 
+// Bytes of several pixels, of kChannels each in place of four lanes.
+template <int kChannels, class D>
+HWY_INLINE hn::VFromD<D> without_unused_lanes(D d, hn::VFromD<D> bytes) {
+  if constexpr (kChannels == 4) {
+    return bytes;
+  }
+  HWY_ALIGN constexpr std::uint8_t kPlaces[16] = {0,  1,  2,  4,  5,  6,  8,  9,
+                                                  10, 12, 13, 14, 14, 14, 14, 14};
+  HWY_ALIGN constexpr std::uint8_t kPlacesOfTwo[8] = {0, 1, 2, 4, 5, 6, 6, 6};
+  return hn::TableLookupBytes(bytes, hn::Load(d, hn::MaxLanes(d) == 16 ? kPlaces : kPlacesOfTwo));
+}
+
+// Colours of as many positions from x of `count` as whole vectors of several byte pixels hold;
+// returns their number. Stores reach up to kRoomPx positions beyond, where later ones follow.
+template <int kChannels>
+HWY_INLINE int blend_byte_pixels(const WarpedPairRow& pair, const BlendWeights& weights, int x,
+                                 int count, const float* HWY_RESTRICT left_weights,
+                                 std::uint8_t* pixels) {
+  const hn::CappedTag<float, 16> d;
+  const hn::Rebind<std::int32_t, decltype(d)> d32;
+  const hn::Rebind<std::uint8_t, decltype(d)> d8;
+  constexpr int kAtOnce = static_cast<int>(hn::MaxLanes(d)) / 4;
+  constexpr int kRoomPx = kChannels == 3 ? 2 : 0;
+  if constexpr (kAtOnce == 1) {
+    return 0;
+  }
+  const auto pixel_of_lane = hn::IndicesFromVec(d, hn::ShiftRight<2>(hn::Iota(d32, 0)));
+  const auto left_scale = hn::LoadDup128(d, weights.left_scale);
+  const auto left_offset = hn::LoadDup128(d, weights.left_offset);
+  const auto right_scale = hn::LoadDup128(d, weights.right_scale);
+  const auto right_offset = hn::LoadDup128(d, weights.right_offset);
+  const auto one = hn::Set(d, 1.0F);
+  int i = 0;
+  for (; i + kAtOnce <= count && x + i + kAtOnce + kRoomPx <= pair.width; i += kAtOnce) {
+    const auto left = hn::LoadU(d, pair.left_colours + (x + i) * 4);
+    const auto right = hn::LoadU(d, pair.right_colours + (x + i) * 4);
+    const auto weight = hn::TableLookupLanes(hn::LoadU(d, left_weights + i), pixel_of_lane);
+    // Mul and Add, never MulAdd: results must not depend on the instruction set.
+    const auto left_part = hn::Mul(weight, hn::Add(hn::Mul(left_scale, left), left_offset));
+    const auto right_part =
+        hn::Mul(hn::Sub(one, weight), hn::Add(hn::Mul(right_scale, right), right_offset));
+    const auto value = hn::Min(hn::Max(hn::Add(left_part, right_part), hn::Zero(d)),
+                               hn::Set(d, kLargestValue<std::uint8_t>));
+    const auto bytes = hn::DemoteTo(d8, hn::ConvertTo(d32, hn::Add(value, hn::Set(d, 0.5F))));
+    hn::StoreU(without_unused_lanes<kChannels>(d8, bytes), d8, pixels + (x + i) * kChannels);
+  }
+  return i;
+}
+
 // Colours of positions [x, x + count); one vector is one pixel.
 template <int kChannels, typename T>
 HWY_INLINE void blend_pixels(const WarpedPairRow& pair, const BlendWeights& weights, int x,
@@ -152,7 +201,11 @@ HWY_INLINE void blend_pixels(const WarpedPairRow& pair, const BlendWeights& weig
   const auto right_offset = hn::LoadU(d, weights.right_offset);
   const float* left_colours = pair.left_colours + x * kLanes;
   const float* right_colours = pair.right_colours + x * kLanes;
-  for (int i = 0; i < count; ++i) {
+  int i = 0;
+  if constexpr (std::is_same_v<T, std::uint8_t>) {
+    i = blend_byte_pixels<kChannels>(pair, weights, x, count, left_weights, pixels);
+  }
+  for (; i < count; ++i) {
     const auto left = hn::LoadU(d, left_colours + i * kLanes);
     const auto right = hn::LoadU(d, right_colours + i * kLanes);
     // Mul and Add, never MulAdd: results must not depend on the instruction set.
@@ -171,7 +224,8 @@ HWY_INLINE int blend_any(const WarpedPairRow& pair, const BlendWeights& weights,
   const hn::ScalableTag<float> d;
   const hn::FixedTag<float, 1> d_one;
   const int step = static_cast<int>(hn::Lanes(d));
-  HWY_ALIGN float left_weights[hn::MaxLanes(hn::ScalableTag<float>())];
+  // Read in whole vectors from any of them.
+  HWY_ALIGN float left_weights[2 * hn::MaxLanes(hn::ScalableTag<float>())] = {};
   int holes = 0;
   const auto block = [&](auto tag, int x) HWY_ATTR {
     const int count = static_cast<int>(hn::Lanes(tag));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -41,6 +42,30 @@ TEST(IntensitySums, CountOnlyWhatBothShow) {
         EXPECT_DOUBLE_EQ(sums.left_left[c], left_left);
       }
       EXPECT_EQ(sums.pixels, pixels);
+    }
+  }
+}
+
+TEST(IntensitySums, EqualOnEveryInstructionSetAndToReference) {
+  std::mt19937 random(11);
+  for (const int channels : {1, 3, 4}) {
+    for (const int width : {1, 63, 64, 65, 1500}) {
+      RandomPair pair(random, width, channels, 1);
+      if (width >= 64) {
+        std::fill_n(pair.left_d.begin(), 64, 5.0F);  // whole words of pixels that count
+        std::fill_n(pair.right_d.begin(), 64, 5.5F);
+      }
+      const IntensitySums expected = intensity_sums_row_ref(pair.row);
+      for_each_target([&] {
+        const IntensitySums sums = intensity_sums_row(pair.row);
+        ASSERT_EQ(sums.pixels, expected.pixels);
+        for (int c = 0; c < channels; ++c) {
+          ASSERT_EQ(sums.left[c], expected.left[c]);
+          ASSERT_EQ(sums.right[c], expected.right[c]);
+          ASSERT_EQ(sums.left_right[c], expected.left_right[c]);
+          ASSERT_EQ(sums.left_left[c], expected.left_left[c]);
+        }
+      });
     }
   }
 }

@@ -37,7 +37,7 @@ void IntensitySums::add(const IntensitySums& other) {
   }
 }
 
-IntensitySums intensity_sums_row(const WarpedPairRow& row) {
+IntensitySums intensity_sums_row_ref(const WarpedPairRow& row) {
   return row.lanes == 1 ? sums_of<1>(row) : sums_of<4>(row);
 }
 
