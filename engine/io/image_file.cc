@@ -119,7 +119,7 @@ void encode_with_opencv(const std::string& extension, const Photograph& photogra
 }
 
 /// Leaves `bytes` empty when the image does not fit the format; floats never do.
-void encode_with_libpng(const Photograph& photograph, std::vector<std::uint8_t>& bytes) {
+void encode_as_png(const Photograph& photograph, std::vector<std::uint8_t>& bytes) {
   bytes.clear();
   std::visit(
       [&]<typename T>(const Image<T>& image) {
@@ -231,7 +231,7 @@ void encode_image(const std::filesystem::path& path, const Photograph& photograp
   }
   try {
     if (extension == ".png") {
-      encode_with_libpng(photograph, bytes);
+      encode_as_png(photograph, bytes);
     } else {
       encode_with_opencv(extension, photograph, bytes);
     }

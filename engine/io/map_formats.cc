@@ -16,6 +16,7 @@
 #include "engine/io/image_file.h"
 #include "engine/io/npy.h"
 #include "engine/io/pfm.h"
+#include "kernels/integer_disparity/integer_disparity.h"
 
 namespace vantage {
 namespace {
@@ -51,23 +52,15 @@ void disparity_as_floats(const fs::path& path, Disparity disparity, Bytes& bytes
 }
 
 void disparity_as_png(const fs::path& path, Disparity disparity, Bytes& bytes) {
+  static_assert(kernels::kIntegerUnitsPerPx == kIntegerDisparityScale);
   Image<std::uint16_t> image(disparity.width(), disparity.height());
   for (int y = 0; y < disparity.height(); ++y) {
-    for (int x = 0; x < disparity.width(); ++x) {
-      const float d = disparity.at(x, y);
-      if (!std::isfinite(d)) {
-        image.at(x, y) = 0;
-        continue;
-      }
-      const double stored = std::round(d * kIntegerDisparityScale);
-      if (stored < 0 || stored > kLargestIntegerDisparity) {
-        throw Error(fmt::format(
-            "cannot write {}: disparity {} at pixel ({}, {}) does not fit a 16-bit PNG, expected "
-            "0..255.99, or a file in {}, which have no limits",
-            path.string(), d, x, y, listed_map_formats(MapContent::kConfidence)));
-      }
-      // 0 means unknown, so a known 0 is stored as the nearest value.
-      image.at(x, y) = static_cast<std::uint16_t>(std::max(stored, 1.0));
+    const int x = kernels::integer_disparity_row(disparity.row(y), disparity.width(), image.row(y));
+    if (x < disparity.width()) {
+      throw Error(fmt::format(
+          "cannot write {}: disparity {} at pixel ({}, {}) does not fit a 16-bit PNG, expected "
+          "0..255.99, or a file in {}, which have no limits",
+          path.string(), disparity.at(x, y), x, y, listed_map_formats(MapContent::kConfidence)));
     }
   }
   encode_image(path, Photograph{std::move(image)}, bytes);

@@ -1,97 +1,135 @@
 #include "engine/io/png_encoder.h"
 
-#include <png.h>
+#include <libdeflate.h>
 
-#include <bit>
-#include <csetjmp>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <memory>
 #include <new>
+#include <span>
+#include <string_view>
+
+#include "engine/io/checksum.h"
 
 namespace vantage {
 namespace {
 
-/// Output of libpng.
-struct Sink {
-  std::vector<std::uint8_t>& bytes;
-  bool out_of_memory = false;
-};
+constexpr int kMaxSide = 1'000'000;
+constexpr std::uint8_t kFilterSub = 1;
+/// Of what a chunk may hold, 2³¹ − 1 bytes.
+constexpr std::size_t kMaxChunkBytes = std::size_t{1} << 30;
 
-void append(png_structp png, png_bytep data, png_size_t size) {
-  auto& sink = *static_cast<Sink*>(png_get_io_ptr(png));
-  try {
-    sink.bytes.insert(sink.bytes.end(), data, data + size);
-  } catch (const std::bad_alloc&) {
-    sink.out_of_memory = true;
-  }
-  if (sink.out_of_memory) {
-    png_error(png, "out of memory");  // does not return
+std::array<std::uint8_t, 4> big_endian(std::size_t value) {
+  return {static_cast<std::uint8_t>(value >> 24), static_cast<std::uint8_t>(value >> 16),
+          static_cast<std::uint8_t>(value >> 8), static_cast<std::uint8_t>(value)};
+}
+
+void append(std::span<const std::uint8_t> part, std::vector<std::uint8_t>& bytes) {
+  bytes.insert(bytes.end(), part.begin(), part.end());
+}
+
+void append_chunk(std::string_view name, std::span<const std::uint8_t> content,
+                  std::vector<std::uint8_t>& bytes) {
+  append(big_endian(content.size()), bytes);
+  const std::size_t checked = bytes.size();
+  bytes.insert(bytes.end(), name.begin(), name.end());
+  append(content, bytes);
+  append(big_endian(crc32_of(std::span(bytes).subspan(checked))), bytes);
+}
+
+/// The bytes of a row in the order of the file.
+void put_row(const std::uint8_t* values, std::size_t count, std::uint8_t* bytes) {
+  std::copy_n(values, count, bytes);
+}
+void put_row(const std::uint16_t* values, std::size_t count, std::uint8_t* bytes) {
+  for (std::size_t i = 0; i < count; ++i) {
+    bytes[2 * i] = static_cast<std::uint8_t>(values[i] >> 8);
+    bytes[2 * i + 1] = static_cast<std::uint8_t>(values[i]);
   }
 }
 
-void keep_in_memory(png_structp) {}
-void keep_quiet(png_structp, png_const_charp) {}
-void jump_back(png_structp png, png_const_charp) { png_longjmp(png, 1); }
+/// Each byte minus that of the pixel before: the fastest filter for photographs and maps, with
+/// nearly the best compression.
+void subtract_previous(const std::uint8_t* row, std::size_t count, std::size_t pixel_bytes,
+                       std::uint8_t* __restrict filtered) {
+  std::copy_n(row, pixel_bytes, filtered);
+  for (std::size_t i = pixel_bytes; i < count; ++i) {
+    filtered[i] = static_cast<std::uint8_t>(row[i] - row[i - pixel_bytes]);
+  }
+}
 
-/// Objects that libpng allocates for a file.
-class PngWriter {
- public:
-  PngWriter()
-      : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, jump_back, keep_quiet)),
-        info_(png_ == nullptr ? nullptr : png_create_info_struct(png_)) {
-    if (info_ == nullptr) {
-      png_destroy_write_struct(&png_, nullptr);
+/// All rows, each preceded by the number of its filter.
+template <typename T>
+void filter_rows(const Image<T>& image, std::span<std::uint8_t> filtered) {
+  const std::size_t values =
+      static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.channels());
+  const std::size_t pixel_bytes = static_cast<std::size_t>(image.channels()) * sizeof(T);
+  std::vector<std::uint8_t> row(values * sizeof(T));
+  std::uint8_t* next = filtered.data();
+  for (int y = 0; y < image.height(); ++y) {
+    put_row(image.row(y), values, row.data());
+    *next++ = kFilterSub;
+    subtract_previous(row.data(), row.size(), pixel_bytes, next);
+    next += row.size();
+  }
+}
+
+struct FreeCompressor {
+  void operator()(libdeflate_compressor* compressor) const {
+    libdeflate_free_compressor(compressor);
+  }
+};
+
+/// The zlib stream of all rows.
+template <typename T>
+struct CompressedRows {
+  std::unique_ptr<std::uint8_t[]> memory;
+  std::size_t size = 0;
+
+  explicit CompressedRows(const Image<T>& image) {
+    constexpr int kFastest = 1;
+    const std::unique_ptr<libdeflate_compressor, FreeCompressor> compressor(
+        libdeflate_alloc_compressor(kFastest));
+    if (!compressor) {
       throw std::bad_alloc();
     }
+    const std::size_t row_bytes = 1 + static_cast<std::size_t>(image.width()) *
+                                          static_cast<std::size_t>(image.channels()) * sizeof(T);
+    const std::size_t count = row_bytes * static_cast<std::size_t>(image.height());
+    const auto filtered = std::make_unique_for_overwrite<std::uint8_t[]>(count);
+    filter_rows(image, {filtered.get(), count});
+    const std::size_t bound = libdeflate_zlib_compress_bound(compressor.get(), count);
+    memory = std::make_unique_for_overwrite<std::uint8_t[]>(bound);
+    size = libdeflate_zlib_compress(compressor.get(), filtered.get(), count, memory.get(), bound);
   }
-  PngWriter(const PngWriter&) = delete;
-  PngWriter& operator=(const PngWriter&) = delete;
-  ~PngWriter() { png_destroy_write_struct(&png_, &info_); }
-
-  /// False when libpng reports an error, which it does by longjmp: no object in between may have a
-  /// destructor.
-  template <typename T>
-  bool write(const Image<T>& image, Sink& sink) {
-    if (setjmp(png_jmpbuf(png_)) != 0) {
-      return false;
-    }
-    png_set_write_fn(png_, &sink, append, keep_in_memory);
-    // The fastest filter for photographs, with nearly the best compression.
-    png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
-    png_set_compression_level(png_, 1);
-    constexpr int kRunLengths = 3;  // zlib's Z_RLE
-    png_set_compression_strategy(png_, kRunLengths);
-    const int colour = image.channels() == 1   ? PNG_COLOR_TYPE_GRAY
-                       : image.channels() == 3 ? PNG_COLOR_TYPE_RGB
-                                               : PNG_COLOR_TYPE_RGBA;
-    png_set_IHDR(png_, info_, static_cast<png_uint_32>(image.width()),
-                 static_cast<png_uint_32>(image.height()), 8 * sizeof(T), colour,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_write_info(png_, info_);
-    if (sizeof(T) == 2 && std::endian::native == std::endian::little) {
-      png_set_swap(png_);
-    }
-    for (int y = 0; y < image.height(); ++y) {
-      png_write_row(png_, reinterpret_cast<png_const_bytep>(image.row(y)));
-    }
-    png_write_end(png_, info_);
-    return true;
-  }
-
- private:
-  png_structp png_;
-  png_infop info_;
+  [[nodiscard]] std::span<const std::uint8_t> bytes() const { return {memory.get(), size}; }
 };
 
 template <typename T>
 void encode(const Image<T>& image, std::vector<std::uint8_t>& bytes) {
   bytes.clear();
-  Sink sink{bytes};
-  PngWriter writer;
-  if (!writer.write(image, sink)) {
-    bytes.clear();
+  if (std::max(image.width(), image.height()) > kMaxSide) {
+    return;
   }
-  if (sink.out_of_memory) {
-    throw std::bad_alloc();
+  constexpr std::uint8_t kSignature[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+  constexpr int kGrey = 0;
+  constexpr int kRgb = 2;
+  constexpr int kRgba = 6;
+  std::array<std::uint8_t, 13> header = {};  // no interlacing
+  std::ranges::copy(big_endian(static_cast<std::size_t>(image.width())), header.begin());
+  std::ranges::copy(big_endian(static_cast<std::size_t>(image.height())), header.begin() + 4);
+  header[8] = 8 * sizeof(T);
+  header[9] = image.channels() == 1 ? kGrey : image.channels() == 3 ? kRgb : kRgba;
+  const CompressedRows<T> rows(image);
+  append(kSignature, bytes);
+  append_chunk("IHDR", header, bytes);
+  for (std::span<const std::uint8_t> rest = rows.bytes(); !rest.empty();) {
+    const std::size_t size = std::min(rest.size(), kMaxChunkBytes);
+    append_chunk("IDAT", rest.first(size), bytes);
+    rest = rest.subspan(size);
   }
+  append_chunk("IEND", {}, bytes);
 }
 
 }  // namespace
