@@ -69,14 +69,11 @@ class StarEnergies {
   EnergyVec down_;
 };
 
-// Minimum of the energies kOffset lanes before and after those of vector v.
-template <int kOffset, int kVectors>
-HWY_INLINE EnergyVec min_beside(const EnergyVec (&energies)[kVectors], int v) {
+// Minimum of the energies kOffset lanes before and after those of a vector, from the adjacent
+// vectors.
+template <int kOffset>
+HWY_INLINE EnergyVec min_beside(EnergyVec before, EnergyVec here, EnergyVec after) {
   const EnergyTag d;
-  const EnergyVec max = hn::Set(d, kMaxEnergy);
-  const EnergyVec here = energies[v];
-  EnergyVec before = v > 0 ? energies[v - 1] : max;
-  EnergyVec after = v + 1 < kVectors ? energies[v + 1] : max;
   if constexpr (kEnergyLanes > 8) {
     // Byte shifts work within 16-byte blocks: first fetches the adjacent block.
     before = hn::ConcatLowerUpper(d, here, before);
@@ -87,20 +84,31 @@ HWY_INLINE EnergyVec min_beside(const EnergyVec (&energies)[kVectors], int v) {
                  hn::CombineShiftRightBytes<kBytes>(d, after, here));
 }
 
-// ES of columns of kVectors vectors and a single segment, entirely in registers: takes three
-// quarters of the time in memory. kRadius: radius of the prior, 1 or 2.
-template <class Energies, int kVectors, int kRadius>
+constexpr int kBlockVectors = kLaneMultiple / kEnergyLanes;
+
+// Results of columns of kBlocks blocks, entirely in registers: takes three quarters of the time in
+// memory. kRadius: radius of the prior, 1 or 2; 0: no smoothing. kBroken: there are segments.
+template <class Energies, int kBlocks, int kRadius, bool kBroken>
 HWY_INLINE void run_in_registers(const MaxProductRow& given) {
+  constexpr int kVectors = kBlocks * kBlockVectors;
   const EnergyTag d;
   const MaxProductRow row = given;  // a copy: stores cannot alias it
+  const EnergyVec max = hn::Set(d, kMaxEnergy);
   const EnergyVec ceiling = hn::Set(d, row.prior.ceiling);
-  const EnergyVec first_rise = hn::Set(d, row.prior.rises[0]);
+  const EnergyVec first_rise = kRadius >= 1 ? hn::Set(d, row.prior.rises[0]) : ceiling;
   const EnergyVec second_rise = kRadius >= 2 ? hn::Set(d, row.prior.rises[1]) : ceiling;
+  // kMaxEnergy where a segment starts at the block, which hides the energies across its start.
+  EnergyVec hidden[kBlocks];
+  for (int block = 0; kBroken && block < kBlocks; ++block) {
+    const bool starts = std::find(row.segment_ends.begin(), row.segment_ends.end(),
+                                  block * kLaneMultiple) != row.segment_ends.end();
+    hidden[block] = starts ? max : hn::Zero(d);
+  }
   const auto column = [&](const EnergyColumns& at, FixedEnergy* output) HWY_ATTR
       __attribute__((always_inline)) {
     const Energies of_lanes(row, at);
     EnergyVec energies[kVectors];
-    EnergyVec min = hn::Set(d, kMaxEnergy);
+    EnergyVec min = max;
 #pragma GCC unroll 16
     for (int v = 0; v < kVectors; ++v) {
       energies[v] = of_lanes.of(v * kEnergyLanes);
@@ -109,13 +117,27 @@ HWY_INLINE void run_in_registers(const MaxProductRow& given) {
     min = min_of_lanes(min);
 #pragma GCC unroll 16
     for (int v = 0; v < kVectors; ++v) {
-      EnergyVec smoothed =
-          hn::Min(energies[v], hn::SaturatedAdd(min_beside<1>(energies, v), first_rise));
-      if constexpr (kRadius >= 2) {
-        smoothed = hn::Min(smoothed, hn::SaturatedAdd(min_beside<2>(energies, v), second_rise));
+      const EnergyVec here = energies[v];
+      if constexpr (kRadius == 0) {
+        hn::Store(hn::Sub(here, min), d, output + v * kEnergyLanes);
+      } else {
+        EnergyVec before = v > 0 ? energies[v - 1] : max;
+        EnergyVec after = v + 1 < kVectors ? energies[v + 1] : max;
+        if (kBroken && v > 0 && v % kBlockVectors == 0) {
+          before = hn::Max(before, hidden[v / kBlockVectors]);
+        }
+        if (kBroken && v + 1 < kVectors && (v + 1) % kBlockVectors == 0) {
+          after = hn::Max(after, hidden[(v + 1) / kBlockVectors]);
+        }
+        EnergyVec smoothed =
+            hn::Min(here, hn::SaturatedAdd(min_beside<1>(before, here, after), first_rise));
+        if constexpr (kRadius >= 2) {
+          smoothed =
+              hn::Min(smoothed, hn::SaturatedAdd(min_beside<2>(before, here, after), second_rise));
+        }
+        // Saturated sums do not matter: the lane's own energy is not above them.
+        hn::Store(hn::Min(hn::Sub(smoothed, min), ceiling), d, output + v * kEnergyLanes);
       }
-      // Saturated sums do not matter: the lane's own energy is not above them.
-      hn::Store(hn::Min(hn::Sub(smoothed, min), ceiling), d, output + v * kEnergyLanes);
     }
   };
   each_column(row, column);
@@ -298,22 +320,39 @@ class EnergyWork {
 // Returns false for columns that are too long.
 template <class Energies, int kRadius>
 HWY_INLINE bool run_if_short(const MaxProductRow& row) {
-  constexpr int kVectorsOfBlock = kLaneMultiple / kEnergyLanes;
+  if (kRadius > 0 && row.segment_ends.size() > 1) {
+    switch (row.star.lanes / kLaneMultiple) {
+      case 2:
+        run_in_registers<Energies, 2, kRadius, true>(row);
+        return true;
+      case 3:
+        run_in_registers<Energies, 3, kRadius, true>(row);
+        return true;
+      default:
+        return false;
+    }
+  }
   switch (row.star.lanes / kLaneMultiple) {
     case 1:
-      run_in_registers<Energies, kVectorsOfBlock, kRadius>(row);
+      run_in_registers<Energies, 1, kRadius, false>(row);
       return true;
     case 2:
-      run_in_registers<Energies, 2 * kVectorsOfBlock, kRadius>(row);
+      run_in_registers<Energies, 2, kRadius, false>(row);
       return true;
     case 3:
-      run_in_registers<Energies, 3 * kVectorsOfBlock, kRadius>(row);
+      run_in_registers<Energies, 3, kRadius, false>(row);
       return true;
     case 4:
-      run_in_registers<Energies, 4 * kVectorsOfBlock, kRadius>(row);
+      run_in_registers<Energies, 4, kRadius, false>(row);
+      return true;
+    case 5:
+      run_in_registers<Energies, 5, kRadius, false>(row);
+      return true;
+    case 6:
+      run_in_registers<Energies, 6, kRadius, false>(row);
       return true;
     case 8:
-      run_in_registers<Energies, 8 * kVectorsOfBlock, kRadius>(row);
+      run_in_registers<Energies, 8, kRadius, false>(row);
       return true;
     default:
       return false;
@@ -322,13 +361,14 @@ HWY_INLINE bool run_if_short(const MaxProductRow& row) {
 
 template <class Energies>
 HWY_INLINE void run_columns(const MaxProductRow& row) {
-  const int radius =
-      row.smooths && row.segment_ends.size() <= 1 && !row.plane.is_given() ? row.prior.radius : 0;
-  if ((radius == 1 && run_if_short<Energies, 1>(row)) ||
-      (radius == 2 && run_if_short<Energies, 2>(row))) {
-    return;
+  const bool is_short = !row.smooths            ? run_if_short<Energies, 0>(row)
+                        : row.plane.is_given()  ? false
+                        : row.prior.radius == 1 ? run_if_short<Energies, 1>(row)
+                        : row.prior.radius == 2 ? run_if_short<Energies, 2>(row)
+                                                : false;
+  if (!is_short) {
+    EnergyWork(row).run<Energies>();
   }
-  EnergyWork(row).run<Energies>();
 }
 
 void start(const MaxProductRow& row) { run_columns<SourceEnergies>(row); }
