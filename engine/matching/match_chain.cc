@@ -89,6 +89,14 @@ std::unique_ptr<scheduler::RowStage> of_all_rows(const ChainInput& input, unsign
   return make_displacement_cost_stage(std::move(of_rows), *input.grid, padding);
 }
 
+EnergyConversion energy_conversion(const MethodParameters& parameters, const ChainInput& input) {
+  const EnergyFormat format(parameters);
+  return has_byte_energies(parameters, input)
+             ? EnergyConversion(EnergySource::kBytes, format,
+                                cost_of(parameters).byte_energies->nats_per_step(parameters))
+             : EnergyConversion(EnergySource::kLikelihoods, format);
+}
+
 WindowSelectionSettings window_selection(const MethodParameters& parameters) {
   WindowSelectionSettings settings;
   settings.radius = parameters.window_px / 2;
@@ -177,15 +185,16 @@ void MatchChain::add_costs(const MethodParameters& parameters, const ChainInput&
     return;
   }
   if (level.blocks == nullptr) {
-    add(costs_of(parameters, input, 0, geometry_.count));
+    add(costs_of(parameters, input));
     return;
   }
   std::vector<std::unique_ptr<scheduler::RowStage>> of_blocks;
   for (int first = 0; first < geometry_.count; first += kernels::kLaneMultiple) {
-    of_blocks.push_back(costs_of(parameters, input, first,
-                                 std::min(kernels::kLaneMultiple, geometry_.count - first)));
+    of_blocks.push_back(energy_costs(parameters, input, first,
+                                     std::min(kernels::kLaneMultiple, geometry_.count - first)));
   }
-  add(make_block_source_stage(std::move(of_blocks), *level.blocks));
+  add(make_block_source_stage(std::move(of_blocks), energy_conversion(parameters, input),
+                              geometry_.count, *level.blocks));
 }
 
 std::unique_ptr<scheduler::RowStage> MatchChain::level_costs(const MethodParameters& parameters,
@@ -226,20 +235,24 @@ std::unique_ptr<scheduler::RowStage> MatchChain::plain_costs(const MethodParamet
   return costs;
 }
 
-/// plain_costs() as the cell type that the method aggregates.
+/// Costs of all candidates as the cell type that the method aggregates.
 std::unique_ptr<scheduler::RowStage> MatchChain::costs_of(const MethodParameters& parameters,
-                                                          const ChainInput& input,
-                                                          int first_candidate, int count) const {
+                                                          const ChainInput& input) const {
   if (!uses_fixed_energies(parameters)) {
-    return plain_costs(parameters, input, first_candidate, count);
+    return plain_costs(parameters, input, 0, geometry_.count);
   }
-  if (has_byte_energies(parameters, input)) {
-    return make_fixed_energy_stage(byte_energies(parameters, input, first_candidate, count),
-                                   EnergySource::kBytes, count, EnergyFormat(parameters),
-                                   cost_of(parameters).byte_energies->nats_per_step(parameters));
-  }
-  return make_fixed_energy_stage(plain_costs(parameters, input, first_candidate, count),
-                                 EnergySource::kLikelihoods, count, EnergyFormat(parameters));
+  return make_fixed_energy_stage(energy_costs(parameters, input, 0, geometry_.count),
+                                 energy_conversion(parameters, input), geometry_.count);
+}
+
+/// Costs from which energy_conversion() makes fixed-point energies.
+std::unique_ptr<scheduler::RowStage> MatchChain::energy_costs(const MethodParameters& parameters,
+                                                              const ChainInput& input,
+                                                              int first_candidate,
+                                                              int count) const {
+  return has_byte_energies(parameters, input)
+             ? byte_energies(parameters, input, first_candidate, count)
+             : plain_costs(parameters, input, first_candidate, count);
 }
 
 /// Only if has_byte_energies().

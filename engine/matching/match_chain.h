@@ -121,8 +121,10 @@ class MatchChain {
                                                                  int first_candidate,
                                                                  int count) const;
   [[nodiscard]] std::unique_ptr<scheduler::RowStage> costs_of(const MethodParameters& parameters,
-                                                              const ChainInput& input,
-                                                              int first_candidate, int count) const;
+                                                              const ChainInput& input) const;
+  [[nodiscard]] std::unique_ptr<scheduler::RowStage> energy_costs(
+      const MethodParameters& parameters, const ChainInput& input, int first_candidate,
+      int count) const;
   [[nodiscard]] std::unique_ptr<scheduler::RowStage> byte_energies(
       const MethodParameters& parameters, const ChainInput& input, int first_candidate,
       int count) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -34,9 +35,17 @@ class ByteSteps {
   std::int16_t units_;
 };
 
+/// Cells between columns, at least row.lanes, multiples of kLaneMultiple; 0: row.lanes.
+struct EnergyPitches {
+  std::ptrdiff_t cells = 0;     ///< of the row's own cells
+  std::ptrdiff_t energies = 0;  ///< of the result
+};
+
 /// Fixed-point energies of byte energies; kMaxEnergy in lanes that are not candidates.
-void fixed_energies_of_bytes_row(const CompactRow& row, ByteSteps steps, FixedEnergy* energies);
-void fixed_energies_of_bytes_row_ref(const CompactRow& row, ByteSteps steps, FixedEnergy* energies);
+void fixed_energies_of_bytes_row(const CompactRow& row, ByteSteps steps, FixedEnergy* energies,
+                                 EnergyPitches pitches = {});
+void fixed_energies_of_bytes_row_ref(const CompactRow& row, ByteSteps steps, FixedEnergy* energies,
+                                     EnergyPitches pitches = {});
 
 /// Likelihoods in [0, 1], `lanes` per column.
 struct LikelihoodRow {
@@ -49,9 +58,9 @@ struct LikelihoodRow {
 /// −ln p · steps_per_nat, rounded, for candidates; kMaxEnergy in the other lanes. steps_per_nat:
 /// above 0, at most 374.
 void fixed_energies_of_likelihoods_row(const LikelihoodRow& row, float steps_per_nat,
-                                       FixedEnergy* energies);
+                                       FixedEnergy* energies, EnergyPitches pitches = {});
 void fixed_energies_of_likelihoods_row_ref(const LikelihoodRow& row, float steps_per_nat,
-                                           FixedEnergy* energies);
+                                           FixedEnergy* energies, EnergyPitches pitches = {});
 
 /// energy · bytes_per_step; halves round up, at most 255. cells: a multiple of kLaneMultiple.
 void bytes_of_fixed_energies_row(const FixedEnergy* energies, int cells, FixedWeight bytes_per_step,

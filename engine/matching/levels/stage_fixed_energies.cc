@@ -18,15 +18,13 @@ using kernels::FixedEnergy;
 
 class FixedEnergyStage final : public scheduler::RowStage {
  public:
-  FixedEnergyStage(std::unique_ptr<scheduler::RowStage> costs, EnergySource source, int count,
-                   const EnergyFormat& format, float byte_nats)
+  FixedEnergyStage(std::unique_ptr<scheduler::RowStage> costs, const EnergyConversion& conversion,
+                   int count)
       : RowStage(costs->extent()),
         costs_(std::move(costs)),
-        source_(source),
+        conversion_(conversion),
         lanes_(kernels::CandidateGeometry{.count = count}.lanes()),
-        count_(count),
-        steps_per_nat_(format.steps_per_nat()),
-        byte_steps_(format.of_bytes(byte_nats)) {}
+        count_(count) {}
 
   [[nodiscard]] std::string_view name() const override { return costs_->name(); }
   [[nodiscard]] std::size_t bytes_per_column() const override {
@@ -39,10 +37,7 @@ class FixedEnergyStage final : public scheduler::RowStage {
   }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     scheduler::ColumnWork work = costs_->column_work();
-    const scheduler::ColumnWork own = vantage::column_work(
-        source_ == EnergySource::kBytes ? kernels::kFixedEnergiesOfBytesWork
-                                        : kernels::kFixedEnergiesOfLikelihoodsWork,
-        count_);
+    const scheduler::ColumnWork own = vantage::column_work(conversion_.work(), count_);
     work.operations += own.operations;
     work.bytes += own.bytes;
     return work;
@@ -56,7 +51,7 @@ class FixedEnergyStage final : public scheduler::RowStage {
     for (int x = task.columns.begin; x < task.columns.end; x = part.columns.end) {
       part.columns = {x, std::min(x + part_columns(), task.columns.end)};
       costs_->make_row(part);
-      convert(part, energies);
+      conversion_.convert(part.output, part.columns.size(), lanes_, count_, energies, lanes_);
       energies += static_cast<std::ptrdiff_t>(part.columns.size()) * lanes_;
     }
   }
@@ -74,28 +69,11 @@ class FixedEnergyStage final : public scheduler::RowStage {
     const std::size_t bytes = costs_->bytes_per_column() * static_cast<std::size_t>(part_columns());
     return (bytes + kAlignment - 1) / kAlignment * kAlignment;
   }
-  void convert(const scheduler::RowTask& part, FixedEnergy* energies) const {
-    if (source_ == EnergySource::kBytes) {
-      kernels::fixed_energies_of_bytes_row({.cells = reinterpret_cast<std::uint8_t*>(part.output),
-                                            .columns = part.columns.size(),
-                                            .lanes = lanes_,
-                                            .count = count_},
-                                           byte_steps_, energies);
-    } else {
-      kernels::fixed_energies_of_likelihoods_row({.cells = reinterpret_cast<float*>(part.output),
-                                                  .columns = part.columns.size(),
-                                                  .lanes = lanes_,
-                                                  .count = count_},
-                                                 steps_per_nat_, energies);
-    }
-  }
 
   std::unique_ptr<scheduler::RowStage> costs_;
-  EnergySource source_;
+  EnergyConversion conversion_;
   int lanes_;
   int count_;
-  float steps_per_nat_;
-  kernels::ByteSteps byte_steps_;
 };
 
 class LevelFixedEnergyStage final : public LevelSourceStage {
@@ -118,29 +96,34 @@ class LevelFixedEnergyStage final : public LevelSourceStage {
   void make_row(const scheduler::RowTask& task) const override {
     auto* energies = reinterpret_cast<FixedEnergy*>(task.output);
     if (blocks_ == nullptr) {
-      convert(volume().column<std::uint8_t>(task.columns.begin, task.y), task.columns.size(),
-              lanes(), count(), energies);
+      kernels::fixed_energies_of_bytes_row(
+          {.cells = volume().column<std::uint8_t>(task.columns.begin, task.y),
+           .columns = task.columns.size(),
+           .lanes = lanes(),
+           .count = count()},
+          steps_, energies);
       return;
     }
-    for (int x = task.columns.begin; x < task.columns.end; ++x, energies += blocks_->lanes()) {
+    for (int x = task.columns.begin; x < task.columns.end;) {
+      const CandidateBlocks::Run run = blocks_->run_at(x, task.y, task.columns.end);
       const std::uint8_t* const bytes = volume().column<std::uint8_t>(x, task.y);
       FixedEnergy* target = energies;
-      for (const std::uint16_t block : blocks_->at(x, task.y)) {
+      for (const std::uint16_t block : run.blocks) {
         const int first = block * kernels::kLaneMultiple;
-        convert(bytes + first, 1, kernels::kLaneMultiple,
-                std::min(kernels::kLaneMultiple, count() - first), target);
+        kernels::fixed_energies_of_bytes_row(
+            {.cells = bytes + first,
+             .columns = run.columns.size(),
+             .lanes = kernels::kLaneMultiple,
+             .count = std::min(kernels::kLaneMultiple, count() - first)},
+            steps_, target, {.cells = lanes(), .energies = blocks_->lanes()});
         target += kernels::kLaneMultiple;
       }
+      energies += static_cast<std::ptrdiff_t>(run.columns.size()) * blocks_->lanes();
+      x = run.columns.end;
     }
   }
 
  private:
-  void convert(const std::uint8_t* bytes, int columns, int lanes, int count,
-               FixedEnergy* energies) const {
-    kernels::fixed_energies_of_bytes_row(
-        {.cells = bytes, .columns = columns, .lanes = lanes, .count = count}, steps_, energies);
-  }
-
   kernels::ByteSteps steps_;
   const CandidateBlocks* blocks_;
 };
@@ -208,10 +191,32 @@ class LevelFixedEnergyResultStage final : public LevelStoreStage {
 
 }  // namespace
 
+void EnergyConversion::convert(const std::byte* cells, int columns, int lanes, int count,
+                               FixedEnergy* energies, std::ptrdiff_t pitch) const {
+  const kernels::EnergyPitches pitches{.energies = pitch};
+  if (source_ == EnergySource::kBytes) {
+    kernels::fixed_energies_of_bytes_row({.cells = reinterpret_cast<const std::uint8_t*>(cells),
+                                          .columns = columns,
+                                          .lanes = lanes,
+                                          .count = count},
+                                         byte_steps_, energies, pitches);
+  } else {
+    kernels::fixed_energies_of_likelihoods_row({.cells = reinterpret_cast<const float*>(cells),
+                                                .columns = columns,
+                                                .lanes = lanes,
+                                                .count = count},
+                                               steps_per_nat_, energies, pitches);
+  }
+}
+
+kernels::KernelWork EnergyConversion::work() const {
+  return source_ == EnergySource::kBytes ? kernels::kFixedEnergiesOfBytesWork
+                                         : kernels::kFixedEnergiesOfLikelihoodsWork;
+}
+
 std::unique_ptr<scheduler::RowStage> make_fixed_energy_stage(
-    std::unique_ptr<scheduler::RowStage> costs, EnergySource source, int count,
-    const EnergyFormat& format, float byte_nats) {
-  return std::make_unique<FixedEnergyStage>(std::move(costs), source, count, format, byte_nats);
+    std::unique_ptr<scheduler::RowStage> costs, const EnergyConversion& conversion, int count) {
+  return std::make_unique<FixedEnergyStage>(std::move(costs), conversion, count);
 }
 
 std::unique_ptr<scheduler::RowStage> make_level_fixed_energy_stage(

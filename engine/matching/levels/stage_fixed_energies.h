@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "engine/matching/levels/candidate_blocks.h"
@@ -7,6 +8,9 @@
 #include "engine/matching/levels/level_volume.h"
 #include "engine/matching/levels/stage_level_likelihoods.h"
 #include "kernels/candidates.h"
+#include "kernels/cells/fixed_energy.h"
+#include "kernels/fixed_energies/fixed_energies.h"
+#include "kernels/kernel_work.h"
 #include "scheduler/row_stage.h"
 
 namespace vantage {
@@ -21,10 +25,30 @@ enum class EnergySource {
   kLikelihoods,  ///< float, in [0, 1]
 };
 
+/// How energies are made from the cells of cost stages.
+class EnergyConversion {
+ public:
+  EnergyConversion(EnergySource source, const EnergyFormat& format, float byte_nats = 0)
+      : source_(source),
+        steps_per_nat_(format.steps_per_nat()),
+        byte_steps_(format.of_bytes(byte_nats)) {}
+
+  /// Of `columns` columns of `lanes` cells each, `count` of them candidates, with `pitch` energies
+  /// between columns.
+  void convert(const std::byte* cells, int columns, int lanes, int count,
+               kernels::FixedEnergy* energies, std::ptrdiff_t pitch) const;
+  /// Per candidate.
+  [[nodiscard]] kernels::KernelWork work() const;
+
+ private:
+  EnergySource source_;
+  float steps_per_nat_;
+  kernels::ByteSteps byte_steps_;
+};
+
 /// Source stage: −ln p0 from the cells of `costs`, a source stage with `count` candidates.
 std::unique_ptr<scheduler::RowStage> make_fixed_energy_stage(
-    std::unique_ptr<scheduler::RowStage> costs, EnergySource source, int count,
-    const EnergyFormat& format, float byte_nats = 0);
+    std::unique_ptr<scheduler::RowStage> costs, const EnergyConversion& conversion, int count);
 
 /// Source stage: the energies of a coarse level in compact form (stage_level_likelihoods).
 std::unique_ptr<scheduler::RowStage> make_level_fixed_energy_stage(
