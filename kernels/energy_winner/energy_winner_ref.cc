@@ -43,9 +43,9 @@ void energy_disparity_row(const EnergyRow& row, const std::int32_t* winners, boo
     }
     const FixedEnergy* const at = row.cells + j * row.pitch + winner;
     const int curvature = at[-1] - 2 * at[0] + at[1];
-    if (curvature > 0) {
-      disparity_px[j] += static_cast<float>(at[-1] - at[1]) / static_cast<float>(2 * curvature);
-    }
+    // No branch: whether the curvature is positive is hard to predict.
+    const auto slope = static_cast<float>(curvature > 0 ? at[-1] - at[1] : 0);
+    disparity_px[j] += slope / static_cast<float>(curvature > 0 ? 2 * curvature : 1);
   }
 }
 

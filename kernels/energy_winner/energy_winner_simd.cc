@@ -5,7 +5,9 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "kernels/cells/energy_vectors-inl.h"
@@ -55,6 +57,20 @@ HWY_INLINE void select(const FixedEnergy* cells, int lanes, CandidateRange candi
     lowest = hn::Min(lowest, load(lane));
   }
   lowest = min_of_lanes(lowest);
+  min = hn::GetLane(lowest);
+  constexpr int kMaskLanes = 64;
+  if (lanes <= kMaskLanes) {
+    std::uint64_t places = 0;
+    for (int lane = 0; lane < lanes; lane += kEnergyLanes) {
+      std::uint8_t bits[8] = {};
+      hn::StoreMaskBits(d, hn::Eq(load(lane), lowest), bits);
+      std::uint64_t of_vector = 0;
+      std::memcpy(&of_vector, bits, kEnergyLanes / 8);
+      places |= of_vector << lane;
+    }
+    winner = std::max<std::int32_t>(std::countr_zero(places), candidates.begin);
+    return;
+  }
   // Reads all lanes: the winner's position is as good as random, and a mispredicted branch costs
   // more than the vectors.
   EnergyVec place = max;
@@ -65,7 +81,6 @@ HWY_INLINE void select(const FixedEnergy* cells, int lanes, CandidateRange candi
   }
   // If the minimum is kMaxEnergy, lanes that do not count hold it too.
   winner = std::max<std::int32_t>(hn::GetLane(min_of_lanes(place)), candidates.begin);
-  min = hn::GetLane(lowest);
 }
 
 void winners(const EnergyRow& row, std::int32_t* indices, FixedEnergy* min) {

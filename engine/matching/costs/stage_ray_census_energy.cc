@@ -48,18 +48,23 @@ class RayCensusEnergyStage final : public scheduler::RowStage {
     kernels::ray_census_energy_row(ray_codes(partner_, task.y, task.columns, thresholds_),
                                    energies_.by_distance, cells);
     const kernels::CandidateRange inner = partner_.columns_with_all_partners();
-    for (int x = task.columns.begin; x < task.columns.end; ++x) {
-      if (x < inner.begin || x >= inner.end) {
-        const kernels::CandidateRange inside = partner_.with_partner(x);
-        std::uint8_t* const column = column_at(x, task, cells);
-        std::fill(column, column + inside.begin, energies_.without_partner);
-        std::fill(column + std::max(inside.begin, inside.end), column + count_,
-                  energies_.without_partner);
-      }
-    }
+    close_columns({task.columns.begin, std::min(inner.begin, task.columns.end)}, task, cells);
+    close_columns({std::max({inner.begin, inner.end, task.columns.begin}), task.columns.end}, task,
+                  cells);
   }
 
  private:
+  /// Energies of candidates without a partner.
+  void close_columns(scheduler::Range columns, const scheduler::RowTask& task,
+                     std::uint8_t* cells) const {
+    for (int x = columns.begin; x < columns.end; ++x) {
+      const kernels::CandidateRange inside = partner_.with_partner(x);
+      std::uint8_t* const column = column_at(x, task, cells);
+      std::fill(column, column + inside.begin, energies_.without_partner);
+      std::fill(column + std::max(inside.begin, inside.end), column + count_,
+                energies_.without_partner);
+    }
+  }
   [[nodiscard]] std::uint8_t* column_at(int x, const scheduler::RowTask& task,
                                         std::uint8_t* cells) const {
     return cells + static_cast<std::ptrdiff_t>(x - task.columns.begin) * lanes_;
