@@ -49,7 +49,10 @@ void ray_census_likelihood_row_ref(const RayCensusPairs& row,
 
 /// Bytes indexed by distance, padded to whole vectors.
 struct EnergyByDistance {
-  alignas(16) std::array<std::uint8_t, kRayCensusTableBytes> steps{};
+  alignas(64) std::array<std::uint8_t, kRayCensusTableBytes> steps{};
+  /// The last entry that differs from the one before: all after it are equal to it, and need not be
+  /// looked up.
+  int last = kMaxRayCensusDistances - 1;
 };
 
 /// energies.steps[distance]. One channel. Lanes ≥ row.count become 255.

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "kernels/candidates.h"
 #include "kernels/cells/byte_cells-inl.h"
@@ -123,20 +125,37 @@ HWY_INLINE void store_floats(D8 d, const VecOf<D8> (&bytes)[4], float* cells) {
         cells + 2 * n);
 }
 
-// table[index], for tables with entries for all distances.
-template <int kThresholds, class D8>
+// table[index] for index < kEntries.
+template <int kEntries, class D8>
 HWY_INLINE VecOf<D8> looked_up(D8 d, const std::uint8_t* table, VecOf<D8> index) {
   // Distances are below 128, and comparing signed bytes is cheaper.
   const hn::RebindToSigned<D8> d8s;
   const auto within = hn::And(index, hn::Set(d, 15));
   auto value = hn::TableLookupBytes(hn::LoadDup128(d, table), within);
 #pragma GCC unroll 4
-  for (int first = 16; first < ray_census_distances(kThresholds); first += 16) {
+  for (int first = 16; first < kEntries; first += 16) {
     const auto last_before = hn::Set(d8s, static_cast<std::int8_t>(first - 1));
     value = hn::IfThenElse(hn::RebindMask(d, hn::Gt(hn::BitCast(d8s, index), last_before)),
                            hn::TableLookupBytes(hn::LoadDup128(d, table + first), within), value);
   }
   return value;
+}
+
+// table.steps[index]; kEntries: multiple of 16, above table.last.
+template <int kEntries, class D8>
+HWY_INLINE VecOf<D8> looked_up_energies(D8 d, const EnergyByDistance& table, VecOf<D8> index) {
+  const std::uint8_t* const steps = table.steps.data();
+  const auto within = hn::Min(index, hn::Set(d, static_cast<std::uint8_t>(table.last)));
+#if HWY_TARGET == HWY_AVX3_DL
+  // Highway has no lookup of bytes across blocks yet.
+  if constexpr (kEntries <= 64 && hn::MaxLanes(D8()) == 64) {
+    return VecOf<D8>{_mm512_permutexvar_epi8(within.raw, hn::Load(d, steps).raw)};
+  } else if constexpr (kEntries <= 64 && hn::MaxLanes(D8()) == 32) {
+    return VecOf<D8>{
+        _mm256_permutex2var_epi8(hn::Load(d, steps).raw, within.raw, hn::Load(d, steps + 32).raw)};
+  }
+#endif
+  return looked_up<kEntries>(d, steps, within);
 }
 
 template <int kChannels, int kThresholds>
@@ -180,14 +199,15 @@ void hamming(const RayCensusPairs& row, float* cells) {
 template <int kThresholds>
 HWY_INLINE void likelihood_columns(const RayCensusPairs& row, const LikelihoodByDistance& table,
                                    float* cells) {
+  constexpr int kEntries = ray_census_distances(kThresholds);
   for (int j = 0; j < row.columns; ++j, cells += row.lanes) {
     each_lane<1, kThresholds>(row, j, [&](auto d, auto distance, int lane) HWY_ATTR {
       const auto index = grouped(d, distance);
       store_floats(d,
-                   {looked_up<kThresholds>(d, table.bytes(0), index),
-                    looked_up<kThresholds>(d, table.bytes(1), index),
-                    looked_up<kThresholds>(d, table.bytes(2), index),
-                    looked_up<kThresholds>(d, table.bytes(3), index)},
+                   {looked_up<kEntries>(d, table.bytes(0), index),
+                    looked_up<kEntries>(d, table.bytes(1), index),
+                    looked_up<kEntries>(d, table.bytes(2), index),
+                    looked_up<kEntries>(d, table.bytes(3), index)},
                    cells + lane);
     });
     std::fill(cells + row.count, cells + row.lanes, 0.0F);
@@ -202,47 +222,76 @@ void likelihoods(const RayCensusPairs& row, const LikelihoodByDistance& table, f
   }
 }
 
-// Energies of two columns of kLaneMultiple lanes, one in each half of a vector, which a single
-// column would not fill. Returns the first remaining column.
-template <int kThresholds>
-HWY_INLINE int energies_of_pairs(const RayCensusPairs& row, const EnergyByDistance& table,
-                                 std::uint8_t* cells) {
-  if constexpr (hn::MaxLanes(hn::ScalableTag<std::uint8_t>()) < 2 * kLaneMultiple) {
-    return 0;
+// The bytes of consecutive columns, kLaneMultiple lanes each.
+template <class D8>
+HWY_INLINE VecOf<D8> partners_of_columns(D8 d, const std::uint8_t* partner, std::ptrdiff_t step) {
+  constexpr std::ptrdiff_t kColumns = hn::MaxLanes(D8()) / kLaneMultiple;
+  if constexpr (kColumns == 1) {
+    return hn::LoadU(d, partner);
   } else {
-    using D8 = hn::CappedTag<std::uint8_t, 2 * kLaneMultiple>;
-    const D8 d;
     const hn::Half<D8> half;
-    const auto& [reference, partner] = row.channel[0];
-    const int end = row.columns - row.columns % 2;
-    for (int j = 0; j < end; j += 2) {
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(j) * row.partner_step;
-      ReferenceCodes<1, kThresholds, D8> own;
-#pragma GCC unroll 6
-      for (std::size_t p = 0; p < ray_census_bytes(kThresholds); ++p) {
-        own.byte[0][p] =
-            hn::Combine(d, hn::Set(half, reference[p][j + 1]), hn::Set(half, reference[p][j]));
-      }
-      const auto distance = distances(d, own, [&](std::size_t /*channel*/, std::size_t p) HWY_ATTR {
-        return hn::Combine(d, hn::LoadU(half, partner[p] + at + row.partner_step),
-                           hn::LoadU(half, partner[p] + at));
-      });
-      hn::StoreU(looked_up<kThresholds>(d, table.steps.data(), distance), d,
-                 cells + static_cast<std::ptrdiff_t>(j) * kLaneMultiple);
-    }
-    return end;
+    return hn::Combine(d, partners_of_columns(half, partner + kColumns / 2 * step, step),
+                       partners_of_columns(half, partner, step));
   }
 }
 
-template <int kThresholds>
-HWY_INLINE void energy_columns(const RayCensusPairs& row, const EnergyByDistance& table,
+// Each of consecutive bytes in all kLaneMultiple lanes of its column.
+template <class D8>
+HWY_INLINE VecOf<D8> references_of_columns(D8 d, const std::uint8_t* reference) {
+  constexpr std::size_t kColumns = hn::MaxLanes(D8()) / kLaneMultiple;
+  using Bytes = std::conditional_t<kColumns == 4, std::uint32_t, std::uint16_t>;
+  const hn::Repartition<Bytes, D8> of_bytes;
+  alignas(64) static constexpr std::uint8_t kColumn[64] = {
+      0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1,
+      1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2,
+      2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3};
+  Bytes bytes;
+  std::memcpy(&bytes, reference, kColumns);
+  return hn::TableLookupBytes(hn::BitCast(d, hn::Set(of_bytes, bytes)), hn::Load(d, kColumn));
+}
+
+// Energies of columns of kLaneMultiple lanes, as many as fit into a vector, which a single column
+// would not fill. Starts at a column and returns the first remaining one.
+template <int kThresholds, int kEntries, class D8>
+HWY_INLINE int energies_of_several(D8 d, const RayCensusPairs& row, const EnergyByDistance& table,
+                                   int column, std::uint8_t* cells) {
+  constexpr int kColumns = hn::MaxLanes(D8()) / kLaneMultiple;
+  if constexpr (kColumns > 1) {
+    const auto& [reference, partner] = row.channel[0];
+    const std::ptrdiff_t step = row.partner_step;
+    for (; column + kColumns <= row.columns; column += kColumns) {
+      const std::ptrdiff_t at = column * step;
+      ReferenceCodes<1, kThresholds, D8> own;
+#pragma GCC unroll 6
+      for (std::size_t p = 0; p < ray_census_bytes(kThresholds); ++p) {
+        own.byte[0][p] = references_of_columns(d, reference[p] + column);
+      }
+      const auto distance = distances(d, own, [&](std::size_t /*channel*/, std::size_t p) HWY_ATTR {
+        return partners_of_columns(d, partner[p] + at, step);
+      });
+      hn::StoreU(looked_up_energies<kEntries>(d, table, distance), d,
+                 cells + static_cast<std::ptrdiff_t>(column) * kLaneMultiple);
+    }
+  }
+  return column;
+}
+
+template <int kThresholds, int kEntries>
+HWY_INLINE void energy_columns(const RayCensusPairs& given, const EnergyByDistance& of_distances,
                                std::uint8_t* cells) {
-  const int first =
-      row.lanes == kLaneMultiple ? energies_of_pairs<kThresholds>(row, table, cells) : 0;
+  const RayCensusPairs row = given;  // copies: stores cannot alias them
+  const EnergyByDistance table = of_distances;
+  int first = 0;
+  if (row.lanes == kLaneMultiple) {
+    first = energies_of_several<kThresholds, kEntries>(hn::ScalableTag<std::uint8_t>(), row, table,
+                                                       first, cells);
+    first = energies_of_several<kThresholds, kEntries>(
+        hn::CappedTag<std::uint8_t, 2 * kLaneMultiple>(), row, table, first, cells);
+  }
   for (int j = first; j < row.columns; ++j) {
     std::uint8_t* const column = cells + static_cast<std::ptrdiff_t>(j) * row.lanes;
     each_lane<1, kThresholds>(row, j, [&](auto d, auto distance, int lane) HWY_ATTR {
-      hn::StoreU(looked_up<kThresholds>(d, table.steps.data(), distance), d, column + lane);
+      hn::StoreU(looked_up_energies<kEntries>(d, table, distance), d, column + lane);
     });
   }
   for (int j = 0; row.count < row.lanes && j < row.columns; ++j, cells += row.lanes) {
@@ -252,9 +301,15 @@ HWY_INLINE void energy_columns(const RayCensusPairs& row, const EnergyByDistance
 
 void energies(const RayCensusPairs& row, const EnergyByDistance& table, std::uint8_t* cells) {
   if (row.thresholds == 1) {
-    energy_columns<1>(row, table, cells);
+    if (table.last < 16) {
+      energy_columns<1, 16>(row, table, cells);
+    } else {
+      energy_columns<1, 32>(row, table, cells);
+    }
+  } else if (table.last < 48) {
+    energy_columns<3, 48>(row, table, cells);
   } else {
-    energy_columns<3>(row, table, cells);
+    energy_columns<3, kRayCensusTableBytes>(row, table, cells);
   }
 }
 #endif

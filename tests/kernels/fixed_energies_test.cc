@@ -74,6 +74,36 @@ TEST_P(FixedEnergies, OfBytesEqualReference) {
   }
 }
 
+TEST_P(FixedEnergies, ColumnsMayBeApart) {
+  for (const Shape& shape : kShapes) {
+    const int lanes = lanes_of(shape);
+    const EnergyPitches pitches{.cells = lanes + 16, .energies = lanes + 48};
+    std::vector<std::uint8_t> bytes;
+    std::vector<float> likelihoods;
+    for (int k = 0; k < shape.columns * (lanes + 16); ++k) {
+      bytes.push_back(static_cast<std::uint8_t>(k * 37 % 256));
+      likelihoods.push_back(1 / (1 + static_cast<float>(k % 29)));
+    }
+    const std::vector<FixedEnergy> untouched(static_cast<std::size_t>(shape.columns * (lanes + 48)),
+                                             kSentinel);
+    const CompactRow of_bytes{bytes.data(), shape.columns, lanes, shape.count};
+    std::vector<FixedEnergy> actual = untouched;
+    std::vector<FixedEnergy> reference = untouched;
+    fixed_energies_of_bytes_row(of_bytes, ByteSteps(3), actual.data(), pitches);
+    fixed_energies_of_bytes_row_ref(of_bytes, ByteSteps(3), reference.data(), pitches);
+    ASSERT_EQ(actual, reference);
+    const auto last = static_cast<std::size_t>((shape.columns - 1) * (lanes + 48));
+    EXPECT_EQ(actual[last],
+              ByteSteps(3).of(bytes[static_cast<std::size_t>((shape.columns - 1) * (lanes + 16))]));
+    EXPECT_EQ(actual[last + static_cast<std::size_t>(lanes)], kSentinel);
+    const LikelihoodRow of_likelihoods{likelihoods.data(), shape.columns, lanes, shape.count};
+    actual = reference = untouched;
+    fixed_energies_of_likelihoods_row(of_likelihoods, 256, actual.data(), pitches);
+    fixed_energies_of_likelihoods_row_ref(of_likelihoods, 256, reference.data(), pitches);
+    ASSERT_EQ(actual, reference);
+  }
+}
+
 TEST_P(FixedEnergies, OfEachByteAreTheRoundedProduct) {
   const std::vector<std::uint8_t> bytes = each_byte();
   for (int units = 1; units < 32768; units += units < 300 ? 1 : 97) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -114,11 +115,18 @@ TEST_P(RayCensus, LikelihoodsAreTheTables) {
       });
 }
 
-TEST_P(RayCensus, EnergiesAreTheTables) {
+/// Entries that differ up to the last one, which the rest repeats.
+EnergyByDistance energies_up_to(int last) {
   EnergyByDistance table;
-  for (std::size_t k = 0; k < kMaxRayCensusDistances; ++k) {
-    table.steps[k] = static_cast<std::uint8_t>(251 - 3 * k);
+  table.last = last;
+  for (int k = 0; k < kMaxRayCensusDistances; ++k) {
+    table.steps[static_cast<std::size_t>(k)] =
+        static_cast<std::uint8_t>(251 - 3 * std::min(k, last));
   }
+  return table;
+}
+
+void expect_energies_of(const EnergyByDistance& table) {
   for_each_cell(
       [&](RayCensusPairs row) {
         row.channels = 1;
@@ -135,6 +143,14 @@ TEST_P(RayCensus, EnergiesAreTheTables) {
         ASSERT_EQ(int{cell},
                   i < row.count ? table.steps[static_cast<std::size_t>(distance(row, j, i))] : 255);
       });
+}
+
+TEST_P(RayCensus, EnergiesAreTheTables) {
+  // Shorter tables are looked up in fewer parts.
+  for (const int last : {0, 15, 16, 47, 48, kMaxRayCensusDistances - 1}) {
+    SCOPED_TRACE(last);
+    expect_energies_of(energies_up_to(last));
+  }
 }
 
 }  // namespace ray_census_test

@@ -57,6 +57,13 @@ inline RayCensusEnergies ray_census_energies(const MethodParameters& parameters)
     energies.by_distance.steps[static_cast<std::size_t>(distance)] =
         in_steps((1 - epsilon) * std::exp(-deviations * deviations / 2) + epsilon);
   }
+  const auto& steps = energies.by_distance.steps;
+  int& last = energies.by_distance.last;
+  last = distances - 1;
+  while (last > 0 &&
+         steps[static_cast<std::size_t>(last)] == steps[static_cast<std::size_t>(last) - 1]) {
+    --last;
+  }
   energies.without_partner = in_steps(epsilon);
   return energies;
 }

@@ -103,12 +103,14 @@ void CandidateBlocks::choose_tile(ImageView<const std::int32_t> winners, Range a
     const int block = std::clamp(candidate, 0, candidates_ - 1) / kLaneMultiple;
     return std::clamp(block, allowed.begin, allowed.end - 1);
   };
+  static_assert(2 * kReach < kLaneMultiple);  // so at most two blocks
   for (int y = rows.begin; y < rows.end; ++y) {
+    const std::int32_t* const of_row = winners.row(y);
     for (int x = columns.begin; x < columns.end; ++x) {
-      const int winner = winners.at(x, y);
-      for (int b = block_of(winner - kReach); b <= block_of(winner + kReach); ++b) {
-        ++votes[static_cast<std::size_t>(b)];
-      }
+      const int first = block_of(of_row[x] - kReach);
+      const int last = block_of(of_row[x] + kReach);
+      ++votes[static_cast<std::size_t>(first)];
+      votes[static_cast<std::size_t>(last)] += last != first ? 1 : 0;
     }
   }
   const std::size_t tile = tile_at(tile_x, tile_y);

@@ -70,8 +70,7 @@ class FromCoarserStage : public scheduler::RowStage {
     if (task.y % 2 == 1 && task.previous != nullptr) {
       // Both rows come from the same coarser row.
       if (task.previous != task.output) {
-        std::memcpy(task.output, task.previous,
-                    bytes_per_column() * static_cast<std::size_t>(task.columns.size()));
+        copy_row(task);
       }
       return;
     }
@@ -122,22 +121,49 @@ class FromCoarserStage : public scheduler::RowStage {
                   segments.ends(), states, work);
       for (int x = std::max(2 * first, run.columns.begin);
            x < std::min(2 * (first + columns), run.columns.end); ++x) {
-        std::copy_n(states + run_lanes * static_cast<std::size_t>(x / 2 - first), run_lanes,
-                    output + static_cast<std::size_t>(lanes_) *
-                                 static_cast<std::size_t>(x - task.columns.begin));
+        copy_lanes(states + run_lanes * static_cast<std::size_t>(x / 2 - first), run_lanes,
+                   output + static_cast<std::size_t>(lanes_) *
+                                static_cast<std::size_t>(x - task.columns.begin));
       }
+    }
+  }
+
+  /// The row made before, of each column the lanes in use.
+  void copy_row(const scheduler::RowTask& task) const {
+    if (blocks_ == nullptr) {
+      std::memcpy(task.output, task.previous,
+                  bytes_per_column() * static_cast<std::size_t>(task.columns.size()));
+      return;
+    }
+    const auto* from = reinterpret_cast<const Cell*>(task.previous);
+    auto* to = reinterpret_cast<Cell*>(task.output);
+    for (int x = task.columns.begin; x < task.columns.end;) {
+      const CandidateBlocks::Run run = blocks_->run_at(x, task.y, task.columns.end);
+      for (; x < run.columns.end; ++x, from += lanes_, to += lanes_) {
+        copy_lanes(from, run.blocks.size() * kernels::kLaneMultiple, to);
+      }
+    }
+  }
+
+  /// In parts whose size the compiler knows: columns are short.
+  static void copy_lanes(const Cell* from, std::size_t lanes, Cell* to) {
+    for (std::size_t lane = 0; lane < lanes; lane += kernels::kLaneMultiple) {
+      std::copy_n(from + lane, kernels::kLaneMultiple, to + lane);
     }
   }
 
   /// Columns of the coarser level, rearranged to the lanes of `blocks`.
   void fetch(int coarser_y, BlockList blocks, scheduler::Range coarser_columns,
              std::uint8_t* bytes) const {
-    for (int x = coarser_columns.begin; x < coarser_columns.end; ++x) {
-      const BlockList own =
-          coarser_.blocks == nullptr ? all_blocks_ : coarser_.blocks->at(x, coarser_y);
-      copy_blocks<std::uint8_t>(coarser_.volume->column<std::uint8_t>(x, coarser_y), own, blocks,
-                                kernels::kMaxCompact, bytes);
-      bytes += blocks.size() * kernels::kLaneMultiple;
+    for (int x = coarser_columns.begin; x < coarser_columns.end;) {
+      const CandidateBlocks::Run own =
+          coarser_.blocks == nullptr ? CandidateBlocks::Run{{x, coarser_columns.end}, all_blocks_}
+                                     : coarser_.blocks->run_at(x, coarser_y, coarser_columns.end);
+      for (; x < own.columns.end; ++x) {
+        copy_blocks<std::uint8_t>(coarser_.volume->column<std::uint8_t>(x, coarser_y), own.blocks,
+                                  blocks, kernels::kMaxCompact, bytes);
+        bytes += blocks.size() * kernels::kLaneMultiple;
+      }
     }
   }
 
