@@ -33,6 +33,34 @@ void print_remarks(const char* kind, const std::vector<FrameRemark>& remarks) {
   }
 }
 
+/// Per frame delivered or pictured by this run.
+double per_frame(const SequenceReport& sequence, double seconds) {
+  return seconds / (sequence.frames + sequence.pictures_again);
+}
+
+SettingValue processor_values(const SequenceReport& sequence) {
+  SettingValue values = SettingValue::object();
+  for (const SequenceStage& step : sequence.processor) {
+    values[step.name] = per_frame(sequence, step.seconds);
+  }
+  return values;
+}
+
+/// Steps that take no time are left out.
+void print_processor_time(const SequenceReport& sequence) {
+  std::string line;
+  double total = 0;
+  for (const SequenceStage& step : sequence.processor) {
+    const double milliseconds = 1e3 * per_frame(sequence, step.seconds);
+    total += milliseconds;
+    if (milliseconds >= 0.05) {
+      line += fmt::format(", {} {:.1f}", step.name, milliseconds);
+    }
+  }
+  tell("run: processor ms per frame: {:.1f}{}; processors busy {:.0f} % of the time\n", total, line,
+       100 * sequence.share_busy);
+}
+
 void warn_of_cut_range(const RunJob& job, const SequenceReport& sequence) {
   if (sequence.cut) {
     tell("run: warning: frame {}: {}; the range looks as narrow for {} of {} frames; {}\n",
@@ -85,6 +113,10 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
                           {"width_px", session.shape.source.width_px},
                           {"height_px", session.shape.source.height_px},
                           {"frames_per_second_of_video", to_string(job.sequence.frame_rate)}};
+  if (sequence.frames + sequence.pictures_again > 0) {
+    results["processor_seconds_per_frame"] = processor_values(sequence);
+    results["share_busy"] = sequence.share_busy;
+  }
   if (job.sequence.measure_flicker) {
     results["flicker"] = flicker_values(total_flicker(delivered));
   }
@@ -126,6 +158,9 @@ void print_summary(const RunJob& job, const RunSession& session, const SequenceR
     line += " (interrupted, --resume continues)";
   }
   tell("{}\n", line);
+  if (sequence.frames + sequence.pictures_again > 0) {
+    print_processor_time(sequence);
+  }
   if (sequence.interrupted && sequence.videos_from) {
     tell("run: all files of frames are kept, the videos continue at frame {}\n",
          *sequence.videos_from);

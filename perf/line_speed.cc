@@ -137,7 +137,15 @@ nlohmann::json measure(const Settings& settings, MatchPreset preset, const fs::p
   rows.push_back(
       print_row(fmt::format("run, {}", settings.preset), ours, opencv, settings.threads));
   rows.push_back(print_row("OpenCV loop", opencv, opencv, settings.threads));
-  return {{"title", title}, {"threads", settings.threads}, {"rows", rows}};
+  nlohmann::json steps = nlohmann::json::object();
+  fmt::print("processor ms per frame, last round with its warm-up:");
+  for (const SequenceStage& step : report.processor) {
+    const double seconds = step.seconds / report.frames;
+    fmt::print("  {} {:.1f}", step.name, seconds * 1e3);
+    steps[step.name] = seconds;
+  }
+  fmt::print("\n");
+  return {{"title", title}, {"threads", settings.threads}, {"rows", rows}, {"steps", steps}};
 }
 
 int run_benchmark(int argc, char** argv) {

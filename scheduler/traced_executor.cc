@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "scheduler/processor_account.h"
 #include "scheduler/trace.h"
 
 namespace vantage::scheduler {
@@ -16,17 +17,13 @@ class TracedExecutor final : public Executor {
   [[nodiscard]] int thread_count() const override { return inner_->thread_count(); }
 
   void parallel_for(int task_count, const std::function<void(int)>& body) override {
-    if (!Trace::is_active()) {
-      inner_->parallel_for(task_count, body);
+    ProcessorAccount* account = ProcessorCharge::account_in_use();
+    if (account == nullptr) {
+      run_traced(task_count, body);
       return;
     }
-    const Span* around = Span::innermost();
-    const std::string_view task_name = around == nullptr ? "task" : around->record().name;
-    const int frame = around == nullptr ? -1 : around->record().place.frame;
-    const Span join("parallel for", SpanKind::kJoin);
-    inner_->parallel_for(task_count, [&](int task) {
-      Span::note_pool_thread();
-      const Span span(task_name, SpanKind::kWork, {.frame = frame, .task = task});
+    run_traced(task_count, [&](int task) {
+      const ProcessorCharge charge(account);
       body(task);
     });
   }
@@ -63,6 +60,22 @@ class TracedExecutor final : public Executor {
   }
 
  private:
+  void run_traced(int task_count, const std::function<void(int)>& body) {
+    if (!Trace::is_active()) {
+      inner_->parallel_for(task_count, body);
+      return;
+    }
+    const Span* around = Span::innermost();
+    const std::string_view task_name = around == nullptr ? "task" : around->record().name;
+    const int frame = around == nullptr ? -1 : around->record().place.frame;
+    const Span join("parallel for", SpanKind::kJoin);
+    inner_->parallel_for(task_count, [&](int task) {
+      Span::note_pool_thread();
+      const Span span(task_name, SpanKind::kWork, {.frame = frame, .task = task});
+      body(task);
+    });
+  }
+
   std::unique_ptr<Executor> inner_;
 };
 

@@ -26,7 +26,9 @@ constexpr std::size_t kFlushThreads = 4;
 template <typename Flush>
 void flush_together(std::size_t count, const Flush& flush) {
   std::atomic<std::size_t> next{0};
+  scheduler::ProcessorAccount* account = scheduler::ProcessorCharge::account_in_use();
   const auto take_turns = [&] {
+    const scheduler::ProcessorCharge charge(account);
     for (std::size_t i = next++; i < count; i = next++) {
       flush(i);
     }
@@ -58,8 +60,12 @@ void finish_videos(const std::vector<std::unique_ptr<VideoWriter>>& videos) {
 }  // namespace
 
 CommitQueue::CommitQueue(RunJournal& journal,
-                         std::function<void(int frames, double cells)> on_delivered)
-    : journal_(journal), on_delivered_(std::move(on_delivered)), thread_([this] { work(); }) {}
+                         std::function<void(int frames, double cells)> on_delivered,
+                         scheduler::ProcessorAccount* account)
+    : journal_(journal),
+      on_delivered_(std::move(on_delivered)),
+      account_(account),
+      thread_([this] { work(); }) {}
 
 CommitQueue::~CommitQueue() {
   {
@@ -92,6 +98,7 @@ void CommitQueue::finish() {
 
 void CommitQueue::work() {
   scheduler::name_traced_thread("deliveries");
+  const scheduler::ProcessorCharge charge(account_);
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [&] { return !waiting_.empty() || closed_; });

@@ -14,6 +14,7 @@
 #include "engine/io/video_io.h"
 #include "engine/sequence/pending_files.h"
 #include "engine/sequence/run_journal.h"
+#include "scheduler/processor_account.h"
 
 namespace vantage {
 
@@ -44,8 +45,10 @@ struct Delivery {
 /// Thread rule: push() from one thread at a time; `on_delivered` is called on the queue's thread.
 class CommitQueue {
  public:
-  /// `journal` must outlive the queue.
-  CommitQueue(RunJournal& journal, std::function<void(int frames, double cells)> on_delivered);
+  /// `journal` and `account`, which is charged for the work unless it is null, must outlive the
+  /// queue.
+  CommitQueue(RunJournal& journal, std::function<void(int frames, double cells)> on_delivered,
+              scheduler::ProcessorAccount* account = nullptr);
   CommitQueue(const CommitQueue&) = delete;
   CommitQueue& operator=(const CommitQueue&) = delete;
   /// Finishes the pushed deliveries.
@@ -63,6 +66,7 @@ class CommitQueue {
 
   RunJournal& journal_;
   std::function<void(int frames, double cells)> on_delivered_;
+  scheduler::ProcessorAccount* account_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Delivery> waiting_;

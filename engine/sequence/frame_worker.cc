@@ -30,10 +30,12 @@ constexpr int kMaxLooksBeyond = 4;
 
 using Clock = std::chrono::steady_clock;
 
-/// Adds the time until its destruction to the times of a slot, and to traces.
+/// Adds the time until its destruction to the times of a slot and to traces, its processor time to
+/// an account.
 class TimedStep {
  public:
-  TimedStep(FrameSlot& slot, std::string_view name) : slot_(slot), name_(name), span_(name) {}
+  TimedStep(FrameSlot& slot, std::string_view name, scheduler::ProcessorAccount* account)
+      : slot_(slot), name_(name), span_(name), charge_(account) {}
   TimedStep(const TimedStep&) = delete;
   TimedStep& operator=(const TimedStep&) = delete;
   ~TimedStep() {
@@ -45,6 +47,7 @@ class TimedStep {
   std::string_view name_;
   Clock::time_point start_ = Clock::now();
   scheduler::Span span_;
+  scheduler::ProcessorCharge charge_;
 };
 
 void require_size(const Photograph& photograph, std::string_view side, ImageExtent expected) {
@@ -89,6 +92,7 @@ FrameWorker::FrameWorker(const FrameTools& tools)
       cameras_(tools.cameras),
       shots_(tools.shots),
       execution_(tools.execution),
+      accounts_(tools.accounts),
       matcher_(tools.options.match, tools.execution),
       renderer_(tools.options.synthesis, tools.cameras, tools.execution),
       videos_show_views_(videos_show_views(tools.options)),
@@ -105,7 +109,7 @@ void FrameWorker::prepare(FrameSlot& slot) const {
     return;
   }
   {
-    const TimedStep step(slot, "decode");
+    const TimedStep step(slot, "decode", accounts_.of(RunStep::kDecode));
     pairs_.decode(slot.pair);
     slot.content = {content_hash(slot.pair.left), content_hash(slot.pair.right)};
   }
@@ -117,7 +121,7 @@ void FrameWorker::prepare(FrameSlot& slot) const {
   slot.right = &slot.pair.right;
   if (rectifier_ != nullptr) {
     const BusyClock::Activity activity(compute_clock_);
-    const TimedStep step(slot, "rectify");
+    const TimedStep step(slot, "rectify", accounts_.of(RunStep::kRectify));
     rectifier_->apply(slot.pair.left, Side::kLeft, slot.rectified[0], execution_);
     rectifier_->apply(slot.pair.right, Side::kRight, slot.rectified[1], execution_);
     slot.left = &slot.rectified[0];
@@ -134,6 +138,7 @@ void FrameWorker::compute(FrameSlot& slot) {
     read_maps(slot);
   }
   if (slot.stored == nullptr || !maps_are_stored_) {
+    const scheduler::ProcessorCharge charge(accounts_.of(RunStep::kMatch));
     match(slot);
     check_range(slot);
   }
@@ -149,7 +154,7 @@ void FrameWorker::compute(FrameSlot& slot) {
 }
 
 void FrameWorker::read_maps(FrameSlot& slot) const {
-  const TimedStep step(slot, "read maps");
+  const TimedStep step(slot, "read maps", accounts_.of(RunStep::kRead));
   slot.match = {};
   if (!read_stored_maps(layout_, *slot.stored, options_.match.reference, needs_views(slot),
                         slot.maps)) {
@@ -194,7 +199,7 @@ void FrameWorker::check_range(FrameSlot& slot) {
   slot.may_be_cut = may_be_cut(matches, options_.match, false);
   slot.cut.reset();
   if (slot.may_be_cut && looks_beyond_++ < kMaxLooksBeyond) {
-    const TimedStep step(slot, "range check");
+    const TimedStep step(slot, "range check", accounts_.of(RunStep::kMatch));
     slot.cut = look_beyond(matches, *slot.left, *slot.right, options_.match, execution_);
   }
 }
@@ -223,7 +228,7 @@ void FrameWorker::synthesize(FrameSlot& slot) const {
   if (slot.view_poses.empty()) {
     return;
   }
-  const TimedStep step(slot, "views");
+  const TimedStep step(slot, "views", accounts_.of(RunStep::kViews));
   slot.views.resize(slot.view_poses.size());
   ViewSource source{*slot.left,
                     *slot.right,
@@ -246,7 +251,7 @@ void FrameWorker::paint_preview(FrameSlot& slot) const {
   if (!wants(slot, SequenceOutput::kPreview)) {
     return;
   }
-  const TimedStep step(slot, "preview");
+  const TimedStep step(slot, "preview", accounts_.of(RunStep::kPictures));
   const PreviewRange range = options_.preview_range_per_shot
                                  ? shots_->shot_of(slot.frame).preview_range
                                  : preview_range_of(options_.match.disparities);
@@ -257,7 +262,7 @@ void FrameWorker::pack_stereo_picture(FrameSlot& slot) const {
   if (!wants(slot, SequenceOutput::kStereo)) {
     return;
   }
-  const TimedStep step(slot, "stereo");
+  const TimedStep step(slot, "stereo", accounts_.of(RunStep::kPictures));
   std::size_t next_view = options_.views.size();
   const auto picture_at = [&](double view_x) {
     const Photograph* photograph = photograph_at(slot, view_x);
@@ -353,7 +358,7 @@ void FrameWorker::encode(FrameSlot& slot) const {
   if (slot.is_lead_in || slot.is_absent || slot.stored != nullptr) {
     return;
   }
-  const TimedStep step(slot, "encode");
+  const TimedStep step(slot, "encode", accounts_.of(RunStep::kEncode));
   for (const OutputStream& stream : layout_.streams()) {
     if (stream.as_video) {
       continue;

@@ -16,6 +16,7 @@
 #include "engine/sequence/sequence_layout.h"
 #include "engine/sequence/sequence_options.h"
 #include "engine/sequence/shots.h"
+#include "engine/sequence/step_accounts.h"
 #include "engine/sequence/temporal_state.h"
 #include "engine/synthesis/photograph_grid.h"
 #include "engine/synthesis/pose_renderer.h"
@@ -39,6 +40,7 @@ struct FrameTools {
   const RectifiedPair* cameras;           ///< of the pairs; null if no view needs them
   const ShotTable* shots;                 ///< null if the options need no shots
   Execution& execution;
+  StepAccounts& accounts;
 };
 
 /// The steps of a frame between reading and writing. They depend on the frame and, with a temporal
@@ -101,6 +103,7 @@ class FrameWorker {
   const RectifiedPair* cameras_;
   const ShotTable* shots_;
   Execution& execution_;
+  StepAccounts& accounts_;
   StereoMatcher matcher_;
   PoseRenderer renderer_;
   std::optional<PhotographGrid> photograph_grid_;  ///< if views_show_photographs()

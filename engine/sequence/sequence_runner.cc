@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <exception>
 #include <iterator>
 #include <map>
@@ -28,6 +29,13 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Of this process, all threads.
+double processor_seconds() {
+  timespec time{};
+  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 FrameDependence dependence_of(const SequenceOptions& options, const SequenceLayout& layout) {
@@ -60,17 +68,21 @@ class Run {
         layout_(layout),
         execution_(execution),
         worker_({options, layout, run.pairs, run.frame_size, run.rectifier, run.cameras, run.shots,
-                 execution}),
+                 execution, accounts_}),
         feed_(std::move(work)),
         stored_(std::move(stored)),
         segments_(options, layout, worker_, run.frame_size.value_or(ImageExtent()), execution),
         flicker_(options.temporal.threshold),
         slots_(static_cast<std::size_t>(run.in_flight)),
-        queue_(journal, [this](int frames, double cells) { tell_progress(frames, cells); }) {
+        queue_(
+            journal, [this](int frames, double cells) { tell_progress(frames, cells); },
+            accounts_.of(RunStep::kDeliver)) {
     report_.in_flight = run.in_flight;
   }
 
   SequenceReport work() {
+    const Clock::time_point start = Clock::now();
+    const double processor_at_start = processor_seconds();
     const auto slot_of = [this](int slot) -> FrameSlot& {
       return slots_[static_cast<std::size_t>(slot)];
     };
@@ -96,12 +108,14 @@ class Run {
       report_.memory.add("frames in flight", held_bytes(slot));
     }
     worker_.add_memory_use(report_.memory);
+    add_processor_time(processor_seconds() - processor_at_start, seconds_since(start));
     return std::move(report_);
   }
 
  private:
   bool read(FrameSlot& slot) {
     const Clock::time_point start = Clock::now();
+    const scheduler::ProcessorCharge charge(accounts_.of(RunStep::kRead));
     slot.times.clear();
     if (!feed_.next(slot.frame, slot.is_lead_in)) {
       return false;
@@ -124,6 +138,7 @@ class Run {
       return;
     }
     const Clock::time_point start = Clock::now();
+    const scheduler::ProcessorCharge charge(accounts_.of(RunStep::kWrite));
     FrameRecord record{.frame = slot.frame, .files = std::move(slot.file_records)};
     measure_flicker(slot, record);
     if (slot.is_lead_in) {
@@ -296,6 +311,16 @@ class Run {
     }
   }
 
+  void add_processor_time(double all_seconds, double wall_seconds) {
+    double other = all_seconds;
+    for (std::size_t step = 0; step < kRunStepNames.size(); ++step) {
+      report_.processor.push_back({std::string(kRunStepNames[step]), accounts_.seconds(step)});
+      other -= accounts_.seconds(step);
+    }
+    report_.processor.push_back({"other", std::max(0.0, other)});
+    report_.share_busy = all_seconds / (wall_seconds * execution_.executor().thread_count());
+  }
+
   void add_range_check(const FrameSlot& slot) {
     report_.frames_maybe_cut += slot.may_be_cut ? 1 : 0;
     const auto share = [](const CutRange& cut) {
@@ -320,6 +345,7 @@ class Run {
   const SequenceRun& run_;
   const SequenceLayout& layout_;
   Execution& execution_;
+  StepAccounts accounts_;
   FrameWorker worker_;
   FrameFeed feed_;  // used only by the reading step while frames are in flight
   std::map<int, const FrameRecord*> stored_;

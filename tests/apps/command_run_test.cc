@@ -110,6 +110,19 @@ TEST_F(RunCommand, EveryFrameEqualsTheSingleCommands) {
   EXPECT_GE(of_pair["cells"], 47.0 * 29 * 10 * 2);
   EXPECT_EQ(report["cells"], of_pair["cells"].get<double>() * kFrames);
   EXPECT_LE(report["seconds"]["compute"], report["seconds"]["wall"]);
+  const auto& costs = report["results"]["processor_seconds_per_frame"];
+  for (const char* step : {"read", "decode", "match", "views", "pictures", "encode", "deliver"}) {
+    EXPECT_GT(costs[step], 0) << step;
+  }
+  EXPECT_EQ(costs["rectify"], 0);
+  double processor_seconds = 0;
+  for (const auto& cost : costs) {
+    processor_seconds += cost.get<double>() * kFrames;
+  }
+  const double wall_and_threads =
+      report["seconds"]["wall"].get<double>() * report["threads"].get<double>();
+  EXPECT_GT(report["results"]["share_busy"], 0);
+  EXPECT_LE(processor_seconds, 1.1 * wall_and_threads);
 }
 
 TEST_F(RunCommand, QuietIsQuietInTheSurveyToo) {
