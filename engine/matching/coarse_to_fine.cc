@@ -47,20 +47,6 @@ void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
   });
 }
 
-/// Disparities of a level's winners, each repeated over the image pixels that it covers.
-void expand_winners(ImageView<const std::int32_t> winners, int level, int disparity_min,
-                    ImageView<float> disparity_px, Execution& execution) {
-  execution.for_each_band(disparity_px.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      const std::int32_t* const of_row = winners.row(y >> level);
-      float* const row = disparity_px.row(y);
-      for (int x = 0; x < disparity_px.width(); ++x) {
-        row[x] = static_cast<float>(of_row[x >> level] + disparity_min);
-      }
-    }
-  });
-}
-
 }  // namespace
 
 void CoarseLevels::resize(const MethodParameters& parameters,
@@ -89,13 +75,15 @@ void CoarseLevels::choose_blocks(int level, const kernels::CandidateGeometry& ge
                                  Execution& execution) {
   // Only the finest level selects disparities, which must have partners.
   blocks_[static_cast<std::size_t>(level)].choose(
-      winners_.view(), level == 0 ? std::optional(geometry) : std::nullopt, execution);
+      std::as_const(*coarser_winners_).view(), level == 0 ? std::optional(geometry) : std::nullopt,
+      execution);
 }
 
-Image<std::int32_t>& CoarseLevels::start_winners(int level) {
+Image<std::int32_t>& CoarseLevels::start_winners(int level, Image<std::int32_t>* kept) {
   const scheduler::Extent extent = costs(level).extent();
-  winners_.resize(extent.columns, extent.rows);
-  return winners_;
+  coarser_winners_ = kept != nullptr ? kept : &winners_;
+  coarser_winners_->resize(extent.columns, extent.rows);
+  return *coarser_winners_;
 }
 
 std::size_t CoarseLevels::held_bytes() const {
@@ -110,7 +98,7 @@ std::size_t CoarseLevels::held_bytes() const {
 }
 
 std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
-                               int candidates, bool has_coarse_map) {
+                               int candidates) {
   const auto extents = level_extents(extent, parameters.levels);
   const int lanes = kernels::CandidateGeometry{.count = candidates}.lanes();
   std::size_t bytes = 0;
@@ -120,8 +108,7 @@ std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Ex
                                  static_cast<std::size_t>(lanes * cell_bytes(parameters));
     bytes += (level <= 2 ? 2 : 1) * of_level;
   }
-  const bool has_winners = has_coarse_map || pruned_level_count(parameters, extents.size()) > 0;
-  if (has_winners && extents.size() > 1) {
+  if (pruned_level_count(parameters, extents.size()) > 0) {
     bytes += static_cast<std::size_t>(extents[1].columns) *
              static_cast<std::size_t>(extents[1].rows) * sizeof(std::int32_t);
   }
@@ -161,7 +148,7 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
     }
     const bool is_mapped = level > 0 && level == coarse_map.level;
     if (is_mapped || levels.needs_winners(level)) {
-      place.winners = &levels.start_winners(level);
+      place.winners = &levels.start_winners(level, is_mapped ? coarse_map.winners : nullptr);
     }
     if (level > 0) {
       place.costs = &levels.costs(level);
@@ -172,10 +159,6 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
                              ? place.blocks->cells()
                              : static_cast<double>(extent.columns) * extent.rows * geometry.count;
     cells.all_levels += cells.finest_level;
-    if (is_mapped) {
-      expand_winners(std::as_const(*place.winners).view(), level, geometry.disparity_min,
-                     coarse_map.disparity_px, execution);
-    }
   }
   return cells;
 }

@@ -47,8 +47,9 @@ class CoarseLevels {
   [[nodiscard]] bool needs_winners(int level) const {
     return level > 0 && level <= pruned_levels();
   }
-  /// Image for the winners of `level` ≥ 1, resized to the level.
-  Image<std::int32_t>& start_winners(int level);
+  /// Image for the winners of `level` ≥ 1, resized to the level. `kept`: an image that outlives the
+  /// levels; null: working memory.
+  Image<std::int32_t>& start_winners(int level, Image<std::int32_t>* kept);
 
   [[nodiscard]] std::size_t held_bytes() const;
 
@@ -58,7 +59,8 @@ class CoarseLevels {
   std::vector<LevelVolume> costs_;
   std::array<LevelVolume, 2> results_;
   std::vector<CandidateBlocks> blocks_;  ///< of pruned levels
-  Image<std::int32_t> winners_;          ///< of the previous (coarser) level
+  Image<std::int32_t> winners_;          ///< of the previous (coarser) level, unless kept elsewhere
+  Image<std::int32_t>* coarser_winners_ = nullptr;  ///< of the previous level
 };
 
 /// Number of aggregated cells.
@@ -69,14 +71,13 @@ struct LevelCells {
 
 /// Bytes of CoarseLevels for images of `extent` and `candidates` disparities; 0 for one level.
 std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
-                               int candidates, bool has_coarse_map);
+                               int candidates);
 
 /// The map of a coarse level, in addition to the image's own or instead of it.
 struct CoarseMap {
   int level = 0;  ///< 1 to the coarsest level; 0: not requested
-  /// Image-sized: each winner is repeated over all the pixels that it covers, in whole disparities;
-  /// pixels without a partner are included.
-  ImageView<float> disparity_px = {};
+  /// Resized to the level: numbers of candidates; pixels without a partner have one, too.
+  Image<std::int32_t>* winners = nullptr;
   /// No finer level is computed; of the outputs, only the size is used.
   bool is_all = false;
 };

@@ -179,12 +179,9 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
     image.resize(is_wanted ? task.image->width() : 0, is_wanted ? task.image->height() : 0);
   };
   MatchedMap& map = *task.map;
-  DisparityMap& coarse_px = prepared.coarse_px[index_of(task.side)];
   resize(map.disparity_px, task.need.whole);
   resize(map.confidence, task.need.whole && wants_confidence);
   resize(map.disparity_y_px, task.need.whole && in_force_.disparities_y);
-  resize(coarse_px, task.need.coarse);
-  task.check_px = std::as_const(coarse_px).view();
   if (!task.need.any()) {
     return;
   }
@@ -192,21 +189,32 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
   task.input.edges = prepared.edges.prepare(*task.image, in_force_.parameters, execution_);
   CoarseMap coarse;
   if (task.need.coarse) {
-    coarse = {.level = check_level, .disparity_px = coarse_px.view(), .is_all = !task.need.whole};
+    coarse = {.level = check_level,
+              .winners = &prepared.coarse_winners[index_of(task.side)],
+              .is_all = !task.need.whole};
   }
+  // Without a map of its own only the size is used.
+  const ImageView<float> size_alone(nullptr, task.image->width(), task.image->height(), 1, 0);
   MapSearch(in_force_, prepared.parameters, execution_, prepared.search, report)
       .compute(task.side, task.input,
-               {.disparity_px = (task.need.whole ? map.disparity_px : coarse_px).view(),
+               {.disparity_px = task.need.whole ? map.disparity_px.view() : size_alone,
                 .confidence = map.confidence.view(),
                 .disparity_y_px = map.disparity_y_px.view()},
                coarse);
+  if (coarse.winners != nullptr) {
+    task.coarse = {.winners = std::as_const(*coarse.winners).view(),
+                   .level = check_level,
+                   .disparity_min = candidate_geometry(in_force_, task.side, task.image->width(),
+                                                       task.image->height())
+                                        .disparity_min};
+  }
 }
 
 MapToRefine StereoMatcher::to_refine(const MapTask& task, bool is_result) const {
   return {.side = task.side,
           .image = task.image,
           .map = task.map,
-          .check_px = task.check_px,
+          .coarse = task.coarse,
           .is_result = is_result,
           .search = in_force_.disparities,
           .search_y = in_force_.disparities_y.value_or(kAnyDisparity)};
@@ -323,7 +331,7 @@ void StereoMatcher::add_memory_use(MemoryUse& use) const {
     for (const CostImage& image : prepared.images) {
       bytes += image.held_bytes();
     }
-    bytes += held_bytes(prepared.coarse_px[0]) + held_bytes(prepared.coarse_px[1]);
+    bytes += held_bytes(prepared.coarse_winners[0]) + held_bytes(prepared.coarse_winners[1]);
     use.add("prepared images", bytes);
     use.add("coarse levels", prepared.search.levels.held_bytes());
   });

@@ -84,9 +84,8 @@ class StereoMatcher {
     IntensityChanges of_right;
     EdgeWeightLevels edges;  ///< of the map being computed
     MapSearchWork search;
-    /// Coarse maps of the left and the right image for the cross-check; empty: the maps themselves
-    /// are checked.
-    std::array<DisparityMap, 2> coarse_px;
+    /// Coarse maps of the left and the right image for the cross-check.
+    std::array<Image<std::int32_t>, 2> coarse_winners;
   };
   /// What is computed of an image's map: the whole map and/or the level used to check the other
   /// map.
@@ -102,7 +101,7 @@ class StereoMatcher {
     MatchedMap* map;
     MapNeed need = {};
     ChainInput input = {};
-    ImageView<const float> check_px = {};  ///< coarse level; empty: not needed
+    CoarseWinners coarse = {};  ///< empty: not needed
   };
 
   /// Level that maps are checked against; 0: the maps themselves.

@@ -29,8 +29,8 @@ struct MapToRefine {
   /// refine, only the other one to check. `disparity_y_px`: of a two-dimensional search, else
   /// empty. `confidence`: read if uses_confidence(). `unmatched` is output only.
   MatchedMap* map = nullptr;
-  /// Checks the other map in place of this one; same size as the map. Empty: the map itself.
-  ImageView<const float> check_px = {};
+  /// Checks the other map in place of this one. Empty: the map itself.
+  CoarseWinners coarse = {};
   /// false: the map is only needed to cross-check the other; it and its `unmatched` are then
   /// undefined.
   bool is_result = true;

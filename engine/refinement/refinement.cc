@@ -14,6 +14,15 @@ namespace {
 // Neighbours whose disparities differ by at most this are one surface (EQUATIONS §6).
 constexpr float kFillSurfaceStepPx = 1;
 
+kernels::CrossCheckRow row_to_check(ImageView<const float> map_px, int y, Side side,
+                                    double tolerance_px, Mask& unmatched) {
+  return {.own_px = map_px.row(y),
+          .direction = direction_of(side),
+          .tolerance_px = tolerance_px,
+          .width = map_px.width(),
+          .unmatched = unmatched.row(y)};
+}
+
 /// Whether the partner of (x, y) lies inside `other` and has nearly the same displacement.
 /// `direction` is −1 from the left map to the right one, +1 from right to left.
 bool agrees(const DisplacementView& own, const DisplacementView& other, int direction,
@@ -52,8 +61,21 @@ void cross_check(ImageView<const float> map_px, ImageView<const float> other_px,
   unmatched.resize(map_px.width(), map_px.height());
   execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
-      kernels::cross_check_row(map_px.row(y), other_px.row(y), direction_of(side), tolerance_px,
-                               map_px.width(), unmatched.row(y));
+      kernels::cross_check_row(row_to_check(map_px, y, side, tolerance_px, unmatched),
+                               other_px.row(y));
+    }
+  });
+}
+
+void cross_check(ImageView<const float> map_px, const CoarseWinners& other, Side side,
+                 double tolerance_px, Execution& execution, Mask& unmatched) {
+  unmatched.resize(map_px.width(), map_px.height());
+  execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      kernels::cross_check_winners_row(row_to_check(map_px, y, side, tolerance_px, unmatched),
+                                       {.winners = other.winners.row(y >> other.level),
+                                        .level = other.level,
+                                        .disparity_min = other.disparity_min});
     }
   });
 }

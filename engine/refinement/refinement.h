@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "engine/execution.h"
 #include "engine/image/displacement_view.h"
 #include "engine/image/image.h"
@@ -12,6 +14,17 @@ namespace vantage {
 /// of equal size, NaN = unknown; tolerance_px ≥ 1. Resizes the mask to the map. Identical for any
 /// `execution`.
 void cross_check(ImageView<const float> map_px, ImageView<const float> other_px, Side side,
+                 double tolerance_px, Execution& execution, Mask& unmatched);
+
+/// Winners of a coarse level of a map: numbers of candidates.
+struct CoarseWinners {
+  ImageView<const std::int32_t> winners = {};
+  int level = 0;          ///< a winner is valid for 2^level × 2^level pixels
+  int disparity_min = 0;  ///< disparity of candidate 0
+};
+
+/// The same against the winners of a coarse level of the other image's map.
+void cross_check(ImageView<const float> map_px, const CoarseWinners& other, Side side,
                  double tolerance_px, Execution& execution, Mask& unmatched);
 
 /// Cross-check of both components: a pixel is matched if its (rounded) partner is inside the image

@@ -94,13 +94,13 @@ std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) 
   // Levels with lower and upper bounds or gradients, of both images, and mirrored copies.
   constexpr std::size_t kPlanes = 4 * 2;
   constexpr std::size_t kCheckedMaps = 2;  // of coarse levels
-  const bool checks_coarse_maps = options.match.resolved_refinement().cross_check_level > 0;
+  const int check_level = options.match.resolved_refinement().cross_check_level;
   return pixels * channels * kPlanes * sizeof(float) +
-         (checks_coarse_maps ? kCheckedMaps : 0) * pixels * sizeof(float) +
+         (check_level > 0 ? kCheckedMaps : 0) * (pixels >> 2 * check_level) * sizeof(std::int32_t) +
          edge_weight_bytes(options.match.resolved(), pixels) +
          coarse_level_bytes(options.match.resolved(),
                             {shape.source.width_px, shape.source.height_px},
-                            options.match.disparities.count(), checks_coarse_maps);
+                            options.match.disparities.count());
 }
 
 bool is_on_baseline(const SequenceOptions& options, const ViewPath& view) {

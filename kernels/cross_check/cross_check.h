@@ -4,14 +4,32 @@
 
 namespace vantage::kernels {
 
+/// One row of a disparity map to check.
+struct CrossCheckRow {
+  const float* own_px = nullptr;      ///< `width` values; NaN: unknown
+  int direction = -1;                 ///< −1: the left map, +1: the right one
+  double tolerance_px = 1;            ///< > 0
+  int width = 0;                      ///< below 2²¹
+  std::uint8_t* unmatched = nullptr;  ///< `width` marks; output
+};
+
+/// A row of winners on a coarse level, each of which is valid for 2^level columns.
+struct CoarseWinnerRow {
+  const std::int32_t* winners = nullptr;  ///< ⌈width / 2^level⌉ numbers of candidates
+  int level = 0;
+  int disparity_min = 0;  ///< disparity of candidate 0
+};
+
 /// Marks the pixels of one row of a disparity map that the other image's map contradicts (5.13).
 /// unmatched[x] = 255 if own_px[x] is unknown (NaN), if the partner column floor(x + direction · d
 /// + ½) is outside the row, if the other map is unknown there, or if |own − other| ≥ tolerance_px;
-/// otherwise 0. direction is −1 for the left map, +1 for the right one. `width` values each.
-/// Identical on every instruction set and to the reference.
-void cross_check_row(const float* own_px, const float* other_px, int direction, double tolerance_px,
-                     int width, std::uint8_t* unmatched);
-void cross_check_row_ref(const float* own_px, const float* other_px, int direction,
-                         double tolerance_px, int width, std::uint8_t* unmatched);
+/// otherwise 0. other_px: `width` values. Exact, so identical on every instruction set and to the
+/// reference.
+void cross_check_row(const CrossCheckRow& row, const float* other_px);
+void cross_check_row_ref(const CrossCheckRow& row, const float* other_px);
+
+/// The same against winners of a coarse level.
+void cross_check_winners_row(const CrossCheckRow& row, const CoarseWinnerRow& other);
+void cross_check_winners_row_ref(const CrossCheckRow& row, const CoarseWinnerRow& other);
 
 }  // namespace vantage::kernels

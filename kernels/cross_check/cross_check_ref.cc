@@ -3,19 +3,33 @@
 #include <cmath>
 
 namespace vantage::kernels {
+namespace {
 
-void cross_check_row_ref(const float* own_px, const float* other_px, int direction,
-                         double tolerance_px, int width, std::uint8_t* unmatched) {
-  for (int x = 0; x < width; ++x) {
-    const double own = own_px[x];
-    const double partner = std::floor(x + direction * own + 0.5);
+/// other_px(column): the other map.
+template <typename Other>
+void check_each_column(const CrossCheckRow& row, const Other& other_px) {
+  for (int x = 0; x < row.width; ++x) {
+    const double own = row.own_px[x];
+    const double partner = std::floor(x + row.direction * own + 0.5);
     bool agrees = false;
-    if (partner >= 0 && partner < width) {  // false for NaN
+    if (partner >= 0 && partner < row.width) {  // false for NaN
       // False when the other map is unknown there.
-      agrees = std::abs(own - other_px[static_cast<int>(partner)]) < tolerance_px;
+      agrees = std::abs(own - other_px(static_cast<int>(partner))) < row.tolerance_px;
     }
-    unmatched[x] = agrees ? 0 : 255;
+    row.unmatched[x] = agrees ? 0 : 255;
   }
+}
+
+}  // namespace
+
+void cross_check_row_ref(const CrossCheckRow& row, const float* other_px) {
+  check_each_column(row, [&](int column) { return static_cast<double>(other_px[column]); });
+}
+
+void cross_check_winners_row_ref(const CrossCheckRow& row, const CoarseWinnerRow& other) {
+  check_each_column(row, [&](int column) {
+    return static_cast<double>(other.winners[column >> other.level] + other.disparity_min);
+  });
 }
 
 }  // namespace vantage::kernels

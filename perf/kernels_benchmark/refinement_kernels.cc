@@ -30,7 +30,8 @@ struct Rows {
     return kernels::random_disparities(random, kWidth, 0, 40);
   }
   void cross_check() {
-    kernels::cross_check_row(own.data(), other.data(), -1, 1.0, kWidth, contradicted.data());
+    kernels::cross_check_row(
+        {.own_px = own.data(), .width = kWidth, .unmatched = contradicted.data()}, other.data());
   }
   void snap() {
     snapped = own;

@@ -67,10 +67,17 @@ BothMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options, 
                          {},
                          0,
                          edges.prepare(own, parameters, execution)};
+  Image<std::int32_t> winners;
   match_coarse_to_fine(parameters, geometry, input, {.disparity_px = maps.whole.view()}, levels,
                        execution,
                        [](const MatchChain& chain) { scheduler::run_whole_image(chain.stages()); },
-                       {.level = level, .disparity_px = maps.coarse.view(), .is_all = is_all});
+                       {.level = level, .winners = &winners, .is_all = is_all});
+  for (int y = 0; level > 0 && y < own.height(); ++y) {
+    for (int x = 0; x < own.width(); ++x) {
+      maps.coarse.at(x, y) =
+          static_cast<float>(winners.at(x >> level, y >> level) + geometry.disparity_min);
+    }
+  }
   return maps;
 }
 
@@ -107,12 +114,6 @@ TEST_P(CrossCheckLevel, CoarseMapsDoNotDependOnFinerLevels) {
       const BothMaps alone = maps_of(pair, options(), reference, level, true);
       EXPECT_TRUE(identical(alone.coarse, both.coarse)) << level;
       EXPECT_EQ(alone.whole.at(60, 46), -99) << level << ": finer levels were made";
-      for (int y = 0; y < 47; ++y) {
-        for (int x = 0; x < 61; ++x) {
-          const float of_block = both.coarse.at(x >> level << level, y >> level << level);
-          ASSERT_EQ(both.coarse.at(x, y), of_block) << x << ", " << y << ", level " << level;
-        }
-      }
     }
   }
 }

@@ -44,9 +44,14 @@ std::vector<std::uint8_t> checked(const std::vector<float>& own, const std::vect
                                   int direction, double tolerance_px) {
   GuardedRow<std::uint8_t> unmatched(own.size(), 3, kSentinel);
   GuardedRow<std::uint8_t> reference(own.size(), 3, kSentinel);
-  const int width = static_cast<int>(own.size());
-  cross_check_row(own.data(), other.data(), direction, tolerance_px, width, unmatched.data());
-  cross_check_row_ref(own.data(), other.data(), direction, tolerance_px, width, reference.data());
+  CrossCheckRow row{.own_px = own.data(),
+                    .direction = direction,
+                    .tolerance_px = tolerance_px,
+                    .width = static_cast<int>(own.size()),
+                    .unmatched = unmatched.data()};
+  cross_check_row(row, other.data());
+  row.unmatched = reference.data();
+  cross_check_row_ref(row, other.data());
   EXPECT_TRUE(unmatched.intact());
   EXPECT_EQ(unmatched.values(), reference.values());
   return unmatched.values();
@@ -103,6 +108,65 @@ TEST_P(CrossCheck, ToleranceItselfIsTooMuch) {
   using Mask = std::vector<std::uint8_t>;
   EXPECT_EQ(checked({0, 0}, {1.0F, 0.9375F}, -1, 1), (Mask{255, 0}));
   EXPECT_EQ(checked({0, 0}, {-1.0F, -0.9375F}, 1, 1), (Mask{255, 0}));
+}
+
+TEST_P(CrossCheck, NothingIsRounded) {
+  // Differences and partners whose float sums would round to the tolerance and to halves.
+  std::mt19937 random(52);
+  const auto draw = [&] {
+    const float whole = static_cast<float>(random_int(random, -9, 9)) / 2;
+    const float scale = std::exp2(static_cast<float>(random_int(random, -30, -20)));
+    return whole + scale * static_cast<float>(random_int(random, -3, 3));
+  };
+  for (int round = 0; round < 200; ++round) {
+    std::vector<float> own(70);
+    std::vector<float> other(own.size());
+    for (std::size_t x = 0; x < own.size(); ++x) {
+      own[x] = draw();
+      other[x] = draw();
+    }
+    const double tolerance_px = round % 3 == 0 ? 1.0 : 1 + random_int(random, 0, 40) / 15.0;
+    // The tolerance rounded to a float is more or less than it.
+    own[69] = 0;
+    other[69] = static_cast<float>(tolerance_px);
+    checked(own, other, round % 2 == 0 ? -1 : 1, tolerance_px);
+  }
+}
+
+TEST_P(CrossCheck, WinnersOfACoarseLevelAreRepeated) {
+  std::mt19937 random(53);
+  constexpr int kMin = -7;
+  for (const int width : {1, 2, 15, 16, 17, 40, 63, 130}) {
+    for (int round = 0; round < 40; ++round) {
+      const int level = round % 4;
+      const int max_step = round % 3 == 0 ? 0 : 1;  // 0: all pixels have neighbouring partners
+      std::vector<std::int32_t> winners(static_cast<std::size_t>(((width - 1) >> level) + 1));
+      for (std::int32_t& winner : winners) {
+        winner = random_int(random, 0, 14);
+      }
+      std::vector<float> own(static_cast<std::size_t>(width));
+      std::vector<float> other(own.size());
+      for (std::size_t x = 0; x < own.size(); ++x) {
+        own[x] = x == 0 ? static_cast<float>(random_int(random, -40, 40)) / 4
+                        : own[x - 1] + static_cast<float>(random_int(random, -1, 1) * max_step) / 4;
+        other[x] = static_cast<float>(winners[x >> level] + kMin);
+      }
+      GuardedRow<std::uint8_t> unmatched(own.size(), 3, kSentinel);
+      GuardedRow<std::uint8_t> reference(own.size(), 3, kSentinel);
+      CrossCheckRow row{.own_px = own.data(),
+                        .direction = 1,
+                        .tolerance_px = 3,
+                        .width = width,
+                        .unmatched = unmatched.data()};
+      const CoarseWinnerRow of_level{winners.data(), level, kMin};
+      cross_check_winners_row(row, of_level);
+      row.unmatched = reference.data();
+      cross_check_winners_row_ref(row, of_level);
+      EXPECT_TRUE(unmatched.intact() && reference.intact());
+      ASSERT_EQ(unmatched.values(), checked(own, other, 1, 3)) << width << ", level " << level;
+      ASSERT_EQ(reference.values(), unmatched.values());
+    }
+  }
 }
 
 }  // namespace cross_check_test
