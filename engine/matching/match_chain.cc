@@ -23,6 +23,7 @@
 #include "engine/matching/levels/stage_half_energies.h"
 #include "engine/matching/levels/stage_level_likelihoods.h"
 #include "engine/matching/selection/stage_cell_selection.h"
+#include "engine/matching/selection/stage_coarser_selection.h"
 #include "engine/matching/selection/stage_displacement_selection.h"
 #include "engine/matching/selection/stage_fixed_energy_selection.h"
 #include "engine/matching/selection/stage_window_selection.h"
@@ -97,6 +98,13 @@ EnergyConversion energy_conversion(const MethodParameters& parameters, const Cha
              : EnergyConversion(EnergySource::kLikelihoods, format);
 }
 
+/// Whether the level selects from the energies of the coarser one as they are.
+bool repeats_coarser(const MethodParameters& parameters, const ChainInput& input,
+                     const ChainLevel& level) {
+  return uses_fixed_energies(parameters) && input.grid == nullptr && level.coarser != nullptr &&
+         level.result == nullptr && at_level(parameters, level.number).iterations == 0;
+}
+
 WindowSelectionSettings window_selection(const MethodParameters& parameters) {
   WindowSelectionSettings settings;
   settings.radius = parameters.window_px / 2;
@@ -124,6 +132,12 @@ MatchChain::MatchChain(const MethodParameters& parameters,
     add_reduction(parameters, input, level);
     return;
   }
+  if (repeats_coarser(parameters, input, level)) {
+    add(make_coarser_selection_stage(
+        geometry_, height_, energy_selector(parameters), EnergyFormat(parameters),
+        {.volume = level.coarser, .blocks = level.coarser_blocks}, level.blocks));
+    return;
+  }
   add_costs(parameters, input, level);
   if (level.coarser != nullptr && !has_likelihoods(parameters)) {
     add(make_coarser_half_energy_stage(geometry_, height_, aggregation_of(parameters).coarser_use,
@@ -139,6 +153,10 @@ MatchChain::MatchChain(const MethodParameters& parameters,
   } else {
     add_selection(parameters, input, level);
   }
+}
+
+EnergySelector MatchChain::energy_selector(const MethodParameters& parameters) const {
+  return {parameters.subpixel, EnergyFormat(parameters).steps_per_nat(), outputs_};
 }
 
 std::vector<int> MatchChain::pass_ends(int iterations) const {
@@ -359,8 +377,7 @@ void MatchChain::add_selection(const MethodParameters& parameters, const ChainIn
           *input.grid, parameters.subpixel, EnergyFormat(parameters).steps_per_nat(), outputs_));
       return;
     }
-    add(make_fixed_energy_selection_stage(geometry_, parameters.subpixel,
-                                          EnergyFormat(parameters).steps_per_nat(), outputs_,
+    add(make_fixed_energy_selection_stage(geometry_, height_, energy_selector(parameters),
                                           level.blocks));
     return;
   }

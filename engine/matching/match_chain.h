@@ -14,6 +14,7 @@
 #include "engine/matching/levels/candidate_blocks.h"
 #include "engine/matching/levels/level_volume.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/matching/selection/energy_selector.h"
 #include "engine/matching/selection/stage_cell_selection.h"
 #include "scheduler/strip_plan.h"
 
@@ -135,6 +136,8 @@ class MatchChain {
   void add_result(const MethodParameters& parameters, const ChainLevel& level);
   void add_selection(const MethodParameters& parameters, const ChainInput& input,
                      const ChainLevel& level);
+
+  [[nodiscard]] EnergySelector energy_selector(const MethodParameters& parameters) const;
 
   kernels::CandidateGeometry geometry_;
   MapOutputs outputs_;

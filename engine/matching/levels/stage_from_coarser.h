@@ -23,6 +23,36 @@ struct CoarserResult {
   const CandidateBlocks* blocks = nullptr;
 };
 
+/// Reads columns of the next coarser level.
+class CoarserColumns {
+ public:
+  /// `lanes`: of all candidates.
+  CoarserColumns(const CoarserResult& coarser, int lanes)
+      : coarser_(coarser), all_blocks_(static_cast<std::size_t>(lanes / kernels::kLaneMultiple)) {
+    std::iota(all_blocks_.begin(), all_blocks_.end(), std::uint16_t{0});
+  }
+
+  [[nodiscard]] BlockList all_blocks() const { return all_blocks_; }
+  /// The bytes of `columns` of row y, rearranged to the lanes of `blocks`; candidates that were not
+  /// processed there are kMaxCompact.
+  void fetch(int y, BlockList blocks, scheduler::Range columns, std::uint8_t* bytes) const {
+    for (int x = columns.begin; x < columns.end;) {
+      const CandidateBlocks::Run own = coarser_.blocks == nullptr
+                                           ? CandidateBlocks::Run{{x, columns.end}, all_blocks_}
+                                           : coarser_.blocks->run_at(x, y, columns.end);
+      for (; x < own.columns.end; ++x) {
+        copy_blocks<std::uint8_t>(coarser_.volume->column<std::uint8_t>(x, y), own.blocks, blocks,
+                                  kernels::kMaxCompact, bytes);
+        bytes += blocks.size() * kernels::kLaneMultiple;
+      }
+    }
+  }
+
+ private:
+  CoarserResult coarser_;
+  std::vector<std::uint16_t> all_blocks_;
+};
+
 /// A geometry whose candidates are the cells of a column.
 inline kernels::CandidateGeometry cell_geometry(const kernels::CandidateGeometry& geometry,
                                                 const CandidateBlocks* blocks) {
@@ -50,11 +80,8 @@ class FromCoarserStage : public scheduler::RowStage {
       : RowStage({geometry.width, height}),
         lanes_(cell_geometry(geometry, blocks).lanes()),
         count_(geometry.count),
-        coarser_(coarser),
-        blocks_(blocks),
-        all_blocks_(static_cast<std::size_t>(geometry.lanes() / kernels::kLaneMultiple)) {
-    std::iota(all_blocks_.begin(), all_blocks_.end(), std::uint16_t{0});
-  }
+        coarser_(coarser, geometry.lanes()),
+        blocks_(blocks) {}
 
   [[nodiscard]] std::size_t bytes_per_column() const override {
     return sizeof(Cell) * static_cast<std::size_t>(lanes_);
@@ -75,7 +102,7 @@ class FromCoarserStage : public scheduler::RowStage {
       return;
     }
     if (blocks_ == nullptr) {
-      make_columns(task, {task.columns, all_blocks_}, count_);
+      make_columns(task, {task.columns, coarser_.all_blocks()}, count_);
       return;
     }
     for (int x = task.columns.begin; x < task.columns.end;) {
@@ -113,7 +140,7 @@ class FromCoarserStage : public scheduler::RowStage {
     const int end = (run.columns.end + 1) / 2;
     for (int first = run.columns.begin / 2; first < end; first += kCoarserColumns) {
       const int columns = std::min(kCoarserColumns, end - first);
-      fetch(task.y / 2, run.blocks, {first, first + columns}, bytes);
+      coarser_.fetch(task.y / 2, run.blocks, {first, first + columns}, bytes);
       make_states({.cells = bytes,
                    .columns = columns,
                    .lanes = static_cast<int>(run_lanes),
@@ -152,26 +179,10 @@ class FromCoarserStage : public scheduler::RowStage {
     }
   }
 
-  /// Columns of the coarser level, rearranged to the lanes of `blocks`.
-  void fetch(int coarser_y, BlockList blocks, scheduler::Range coarser_columns,
-             std::uint8_t* bytes) const {
-    for (int x = coarser_columns.begin; x < coarser_columns.end;) {
-      const CandidateBlocks::Run own =
-          coarser_.blocks == nullptr ? CandidateBlocks::Run{{x, coarser_columns.end}, all_blocks_}
-                                     : coarser_.blocks->run_at(x, coarser_y, coarser_columns.end);
-      for (; x < own.columns.end; ++x) {
-        copy_blocks<std::uint8_t>(coarser_.volume->column<std::uint8_t>(x, coarser_y), own.blocks,
-                                  blocks, kernels::kMaxCompact, bytes);
-        bytes += blocks.size() * kernels::kLaneMultiple;
-      }
-    }
-  }
-
   int lanes_;
   int count_;
-  CoarserResult coarser_;
+  CoarserColumns coarser_;
   const CandidateBlocks* blocks_;
-  std::vector<std::uint16_t> all_blocks_;
 };
 
 }  // namespace vantage

@@ -3,8 +3,7 @@
 #include <memory>
 
 #include "engine/matching/levels/candidate_blocks.h"
-#include "engine/matching/parameters/method_parameters.h"
-#include "engine/matching/selection/stage_cell_selection.h"
+#include "engine/matching/selection/energy_selector.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
 
@@ -16,7 +15,7 @@ namespace vantage {
 /// whose lanes the cells occupy; a winner is refined if both of its neighbours are among them.
 /// Null: all. Must outlive the stage.
 std::unique_ptr<scheduler::RowStage> make_fixed_energy_selection_stage(
-    const kernels::CandidateGeometry& geometry, Subpixel subpixel, float steps_per_nat,
-    const MapOutputs& outputs, const CandidateBlocks* blocks = nullptr);
+    const kernels::CandidateGeometry& geometry, int height, const EnergySelector& selector,
+    const CandidateBlocks* blocks = nullptr);
 
 }  // namespace vantage
