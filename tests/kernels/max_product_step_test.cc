@@ -268,6 +268,19 @@ TEST_P(MaxProductStep, EqualsReference) {
   });
 }
 
+// Pruned levels have such columns, which stay in registers.
+TEST_P(MaxProductStep, EqualsReferenceForShortColumnsInSegments) {
+  for (const int count : {32, 48, 64}) {
+    for (const int radius : {1, 2}) {
+      for (unsigned seed = 1; seed <= 4; ++seed) {
+        const Case c{{5, count}, radius, true, seed % 2 == 1, true, false, seed};
+        const MadeUpRow made_up(c);
+        ASSERT_EQ(made_up.result(max_product_row), made_up.result(max_product_row_ref)) << c;
+      }
+    }
+  }
+}
+
 // The other kernels make the same bits.
 TEST(MaxProductStepReference, IsTheDefinitionToRounding) {
   double error_sum = 0;
