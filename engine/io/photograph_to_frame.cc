@@ -1,6 +1,7 @@
 #include "engine/io/photograph_to_frame.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <new>
@@ -68,6 +69,14 @@ PhotographToFrame::PhotographToFrame(int width, int height)
 AVFrame& PhotographToFrame::convert(const Photograph& photograph) {
   if (av_frame_make_writable(yuv_.get()) < 0) {
     throw std::bad_alloc();
+  }
+  const auto* bytes = std::get_if<Image<std::uint8_t>>(&photograph.pixels);
+  if (bytes != nullptr && bytes->channels() == 3 && bytes->width() == width_ &&
+      bytes->height() == height_) {
+    const std::array<const std::uint8_t*, 4> rgb = {bytes->row(0)};
+    const std::array<int, 4> pitch = {static_cast<int>(bytes->view().stride())};
+    sws_scale(scaler_.get(), rgb.data(), pitch.data(), 0, height_, yuv_->data, yuv_->linesize);
+    return *yuv_;
   }
   std::visit([&](const auto& image) { fill_rgb(image, *rgb_); }, photograph.pixels);
   sws_scale(scaler_.get(), rgb_->data, rgb_->linesize, 0, height_, yuv_->data, yuv_->linesize);
