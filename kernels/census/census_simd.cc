@@ -73,34 +73,45 @@ HWY_INLINE const float* neighbours(const RayCensusRows& rows, int x, const Pixel
   return rows[static_cast<std::size_t>(kRayCensusRadius + offset.rows)] + x + offset.columns;
 }
 
-void ray_census_codes(const RayCensusRows& rows, int width, int thresholds,
-                      const RayCensusCodes& codes) {
+// kThresholds: 1 or 3. Unrolled, so that offsets and bits are constants.
+template <int kThresholds>
+HWY_INLINE void ray_census_codes(const RayCensusRows& rows, int width,
+                                 const RayCensusCodes& codes) {
   const Tag d;
   const TagCode d32;
   const Vec margin = hn::Set(d, kRayCensusMargin);
   for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(d))) {
     const Vec centre = hn::LoadU(d, rows[kRayCensusRadius] + x);
-    VecCode upper = hn::Zero(d32);
-    if (thresholds == 1) {
-      for (const PixelOffset& offset : kRayCensusOffsets) {
-        append(neighbours(rows, x, offset), centre, upper);
-      }
-      store_code(upper, x, codes.data());
-      continue;
-    }
     const Vec less = hn::Sub(centre, margin);
     const Vec more = hn::Add(centre, margin);
+    VecCode upper = hn::Zero(d32);
     VecCode lower = hn::Zero(d32);
-    for (const PixelOffset& offset : kRayCensusOffsets) {
-      const Vec level = hn::LoadU(d, neighbours(rows, x, offset));
+#pragma GCC unroll 24
+    for (std::size_t k = 0; k < kRayCensusOffsets.size(); ++k) {
+      const VecCode bit = hn::Set(d32, std::uint32_t{1} << (kRayCensusOffsets.size() - 1 - k));
+      const auto append = [&](auto is_set, VecCode& code) HWY_ATTR {
+        code = hn::Or(code, hn::IfThenElseZero(hn::RebindMask(d32, is_set), bit));
+      };
+      const Vec level = hn::LoadU(d, neighbours(rows, x, kRayCensusOffsets[k]));
       const auto is_upper = hn::Lt(level, centre);
-      // Uses the outer threshold on the neighbour's side of the centre.
-      const auto is_lower = hn::Lt(level, hn::IfThenElse(is_upper, less, more));
-      upper = hn::Sub(hn::Add(upper, upper), hn::BitCast(d32, hn::VecFromMask(d, is_upper)));
-      lower = hn::Sub(hn::Add(lower, lower), hn::BitCast(d32, hn::VecFromMask(d, is_lower)));
+      append(is_upper, upper);
+      if constexpr (kThresholds > 1) {
+        // Uses the outer threshold on the neighbour's side of the centre.
+        append(hn::Lt(level, hn::IfThenElse(is_upper, less, more)), lower);
+      }
     }
     store_code(upper, x, codes.data());
-    store_code(lower, x, codes.data() + kRayCensusBytes);
+    if constexpr (kThresholds > 1) {
+      store_code(lower, x, codes.data() + kRayCensusBytes);
+    }
+  }
+}
+
+void ray_census(const RayCensusRows& rows, int width, int thresholds, const RayCensusCodes& codes) {
+  if (thresholds == 1) {
+    ray_census_codes<1>(rows, width, codes);
+  } else {
+    ray_census_codes<kMaxRayCensusThresholds>(rows, width, codes);
   }
 }
 
@@ -143,7 +154,7 @@ HWY_AFTER_NAMESPACE();
 namespace vantage::kernels {
 HWY_EXPORT(census_codes);
 HWY_EXPORT(hamming);
-HWY_EXPORT(ray_census_codes);
+HWY_EXPORT(ray_census);
 
 void census_code_row(const CensusRows& rows, int width, std::uint32_t* first_half,
                      std::uint32_t* second_half) {
@@ -154,7 +165,7 @@ void hamming_row(const CensusPairs& row, float* cells) {
 }
 void ray_census_code_row(const RayCensusRows& rows, int width, int thresholds,
                          const RayCensusCodes& codes) {
-  HWY_DYNAMIC_DISPATCH(ray_census_codes)(rows, width, thresholds, codes);
+  HWY_DYNAMIC_DISPATCH(ray_census)(rows, width, thresholds, codes);
 }
 
 }  // namespace vantage::kernels

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
@@ -68,6 +70,21 @@ struct PlaneSource {
   }
 };
 
+/// mirrored[x] = row[width − 1 − x]; rows do not overlap.
+template <typename T>
+void mirror_row(const T* row, int width, T* mirrored) {
+  int x = 0;
+  if constexpr (sizeof(T) == 1) {  // eight at a time, in an eighth of the time
+    for (; x + 8 <= width; x += 8) {
+      std::uint64_t bytes = 0;
+      std::memcpy(&bytes, row + width - x - 8, sizeof bytes);
+      bytes = __builtin_bswap64(bytes);
+      std::memcpy(mirrored + x, &bytes, sizeof bytes);
+    }
+  }
+  std::reverse_copy(row, row + width - x, mirrored + x);
+}
+
 /// One quantity per pixel. If the image is the partner of a left reference, also a copy with
 /// mirrored rows.
 template <typename T>
@@ -87,7 +104,7 @@ struct FeaturePlane {
   void finish_row(const PlaneSource& source, int y) {
     plain.fill_margins(y);
     if (source.has_mirrored) {
-      std::reverse_copy(plain.row(y), plain.row(y) + source.width(), mirrored.row(y));
+      mirror_row(plain.row(y), source.width(), mirrored.row(y));
       mirrored.fill_margins(y);
     }
   }
