@@ -347,7 +347,7 @@ void MatchChain::add_aggregation(const MethodParameters& parameters, const Chain
   if (input.grid != nullptr) {
     place.plane = input.grid->plane();
   }
-  if (!input.edges.empty()) {
+  if (!input.edges.empty() && parameters.iterations > 0) {
     place.edges = &input.edges[static_cast<std::size_t>(level.number)];
   }
   add_all(aggregation.make_stages(parameters, place));

@@ -105,7 +105,9 @@ std::span<const EdgeWeights> EdgeWeightLevels::prepare(const Photograph& referen
     } else {
       halve(std::as_const(grey_[level - 1]).view(), grey.view(), execution);
     }
-    levels_[level].prepare(grey.view(), parameters, execution);
+    if (at_level(parameters, static_cast<int>(level)).iterations > 0) {
+      levels_[level].prepare(grey.view(), parameters, execution);
+    }
   }
   return levels_;
 }

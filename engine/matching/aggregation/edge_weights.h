@@ -53,7 +53,7 @@ class EdgeWeights {
 class EdgeWeightLevels {
  public:
   /// The weights of each level of the map's image, its own first; empty if parameters do not ask
-  /// for them. Valid until the next call.
+  /// for them; undefined for levels without iterations. Valid until the next call.
   std::span<const EdgeWeights> prepare(const Photograph& reference,
                                        const MethodParameters& parameters, Execution& execution);
 
