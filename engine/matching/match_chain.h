@@ -74,7 +74,7 @@ struct ChainLevel {
 //  disparity prior                a cost stage                       as the cost            float
 //  displacement cost              a stage per row shift              padding value          as read
 //  fixed energy                   bytes or floats                    as read                fixed
-//  block source                   a stage per block                  as read                as read
+//  block source                   a stage per block                  as read                fixed
 //  column SSD                     images                  r rows     left out of sums       32 bits
 //  column and displacement sum    float                   r rows     left out of sums       32 bits
 //  box mean                       float                   r, both    left out of means      float
@@ -92,6 +92,7 @@ struct ChainLevel {
 //  window selection               32 bits                 r columns  border: valid or clip  map
 //  cell, displacement selection   float                              NaN if no candidate    map
 //  fixed energy selection         fixed                              NaN if no candidate    map
+//  coarser selection              coarser row                      NaN if no candidate    map
 // clang-format on
 
 /// The stages that compute one disparity map, or one level of it: cost → aggregation → selection.

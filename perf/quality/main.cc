@@ -32,7 +32,7 @@ namespace {
 constexpr const char* kUsage =
     "quality [--data FOLDER] [--experiments FILE.toml] [--only NAME,…|none] [--peers NAME,…|none] "
     "[--scenes NAME|GROUP,…] [--tuning] [--held-out] [--no-time] [--left-only] [--rounds N] "
-    "[--threads N] [--csv FILE] [--sub-pixel] [--views] [--search-peers]";
+    "[--threads N] [--grey peers|all] [--csv FILE] [--sub-pixel] [--views] [--search-peers]";
 
 /// Elements of `all` that a list names, in the order of `all`; all without a list. `names_of`
 /// returns the names of an element.
@@ -130,9 +130,10 @@ std::vector<std::optional<FrameTime>> time_in_turn(
 }
 
 /// Adds the outcome of every contender. Without rounds nothing is timed.
-void judge(const TrueScene& scene, const std::filesystem::path& data, int rounds, TimedMaps timed,
-           Execution& execution, Results& results) {
-  const LoadedScene loaded = load_scene(scene, data);
+void judge(const TrueScene& scene, const std::filesystem::path& data, GreyImages grey, int rounds,
+           TimedMaps timed, Execution& execution, Results& results) {
+  LoadedScene loaded = load_scene(scene, data);
+  make_grey(loaded.pair, grey);
   std::vector<std::unique_ptr<MapMaker>> makers;
   for (const MapContender& contender : results.contenders) {
     makers.push_back(contender.prepare(loaded.pair, execution));
@@ -148,6 +149,13 @@ void judge(const TrueScene& scene, const std::filesystem::path& data, int rounds
                                                         : SubPixelFigures());
 }
 
+GreyImages grey_images(const std::optional<std::string>& text) {
+  if (text && *text != "peers" && *text != "all") {
+    throw UsageError(fmt::format("--grey is '{}', expected peers or all", *text));
+  }
+  return !text ? GreyImages::kNobody : *text == "all" ? GreyImages::kAll : GreyImages::kPeers;
+}
+
 void run(CommandLine& line) {
   constexpr int kUsualRounds = 3;
   const std::filesystem::path data = line.text("--data").value_or(kDefaultData);
@@ -159,11 +167,15 @@ void run(CommandLine& line) {
   const int wanted_rounds = line.number("--rounds", kUsualRounds);
   const int rounds = line.flag("--no-time") ? 0 : wanted_rounds;
   const TimedMaps timed = line.flag("--left-only") ? TimedMaps::kLeft : TimedMaps::kBoth;
+  const GreyImages grey = grey_images(line.text("--grey"));
   const std::optional<std::string> csv = line.text("--csv");
   const bool wants_sub_pixel = line.flag("--sub-pixel");
   const bool wants_views = line.flag("--views");
   const bool searches_peers = line.flag("--search-peers");
   line.finish();
+  if (grey != GreyImages::kNobody && (wants_views || searches_peers)) {
+    throw UsageError("--grey does not go with --views and --search-peers");
+  }
   if ((wants_views && (csv || wants_sub_pixel)) || (searches_peers && wants_sub_pixel)) {
     throw UsageError("--csv does not go with --views, --sub-pixel with neither that nor a search");
   }
@@ -179,7 +191,7 @@ void run(CommandLine& line) {
   results.outcomes.resize(results.contenders.size());
   for (const TrueScene* scene : results.scenes) {
     fmt::print(stderr, "{}\n", scene->name);
-    judge(*scene, data, rounds, timed, execution, results);
+    judge(*scene, data, grey, rounds, timed, execution, results);
   }
   print_tables(results);
   if (wants_sub_pixel) {

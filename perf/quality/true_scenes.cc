@@ -207,6 +207,20 @@ ScenePair make_scene_pair(Photograph left, Photograph right, DisparityRange rang
   return pair;
 }
 
+void make_grey(ScenePair& pair, GreyImages grey) {
+  if (grey == GreyImages::kNobody || pair.left.channels() == 1) {
+    return;
+  }
+  Photograph left = to_grey(pair.left);
+  Photograph right = to_grey(pair.right);
+  pair.left_opencv = to_opencv(left);
+  pair.right_opencv = to_opencv(right);
+  if (grey == GreyImages::kAll) {
+    pair.left = std::move(left);
+    pair.right = std::move(right);
+  }
+}
+
 LoadedScene load_scene(const TrueScene& scene, const std::filesystem::path& data) {
   const std::filesystem::path folder = data / scene.folder;
   LoadedScene loaded{make_scene_pair(read_photograph(folder / scene.left),

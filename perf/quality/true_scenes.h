@@ -49,6 +49,10 @@ struct LoadedScene {
 /// Removes the alpha channel. Throws std::bad_variant_access unless the images have 8 bits.
 ScenePair make_scene_pair(Photograph left, Photograph right, DisparityRange range);
 
+/// Who matches grey images, of 8 bits, instead of colour images.
+enum class GreyImages { kNobody, kPeers, kAll };
+void make_grey(ScenePair& pair, GreyImages grey);
+
 /// Throws Error if a file is missing or invalid.
 LoadedScene load_scene(const TrueScene& scene, const std::filesystem::path& data);
 

@@ -93,7 +93,8 @@ bool CandidateBlocks::has_blocks_of(const Run& run, int run_y, int y) const {
 
 void CandidateBlocks::choose_tile(ImageView<const std::int32_t> winners, Range allowed, int tile_x,
                                   int tile_y, std::vector<int>& votes) {
-  std::fill(votes.begin(), votes.end(), 0);
+  const std::size_t tile = tile_at(tile_x, tile_y);
+  std::uint16_t* const chosen = blocks_.data() + tile * static_cast<std::size_t>(max_);
   constexpr int kCoarsePx = kTilePx / 2;
   const Range columns =
       Range{tile_x * kCoarsePx, (tile_x + 1) * kCoarsePx}.widened(1, {0, winners.width()});
@@ -103,6 +104,22 @@ void CandidateBlocks::choose_tile(ImageView<const std::int32_t> winners, Range a
     const int block = std::clamp(candidate, 0, candidates_ - 1) / kLaneMultiple;
     return std::clamp(block, allowed.begin, allowed.end - 1);
   };
+  std::int32_t min = candidates_;
+  std::int32_t max = 0;
+  for (int y = rows.begin; y < rows.end; ++y) {
+    const std::int32_t* const of_row = winners.row(y);
+    for (int x = columns.begin; x < columns.end; ++x) {
+      min = std::min(min, of_row[x]);
+      max = std::max(max, of_row[x]);
+    }
+  }
+  const int only = block_of(min - kReach);
+  if (only == block_of(max + kReach)) {  // most tiles: there is nothing to vote on
+    chosen[0] = static_cast<std::uint16_t>(only);
+    counts_[tile] = 1;
+    return;
+  }
+  std::fill(votes.begin(), votes.end(), 0);
   static_assert(2 * kReach < kLaneMultiple);  // so at most two blocks
   for (int y = rows.begin; y < rows.end; ++y) {
     const std::int32_t* const of_row = winners.row(y);
@@ -113,8 +130,6 @@ void CandidateBlocks::choose_tile(ImageView<const std::int32_t> winners, Range a
       votes[static_cast<std::size_t>(last)] += last != first ? 1 : 0;
     }
   }
-  const std::size_t tile = tile_at(tile_x, tile_y);
-  std::uint16_t* const chosen = blocks_.data() + tile * static_cast<std::size_t>(max_);
   int count = 0;
   for (; count < max_; ++count) {
     // The first of the largest.
