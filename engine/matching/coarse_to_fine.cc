@@ -47,6 +47,33 @@ void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
   });
 }
 
+CandidateBlocks::SmoothTiles smooth_tiles(const CheckMap& check_map) {
+  using enum CandidateBlocks::SmoothTiles;
+  return check_map.disparity_px.empty() ? kIgnored : check_map.is_all ? kLeftOut : kMarked;
+}
+
+/// `map_px` may be `check_px`.
+void make_check_map(const CandidateBlocks& blocks, ImageView<const std::int32_t> winners,
+                    int disparity_min, ImageView<const float> map_px, ImageView<float> check_px,
+                    Execution& execution) {
+  execution.for_each_band(check_px.height(), [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      const std::int32_t* const of_row = winners.row(y / 2);
+      float* const row = check_px.row(y);
+      for (int first = 0; first < check_px.width(); first += CandidateBlocks::kTilePx) {
+        const int end = std::min(first + CandidateBlocks::kTilePx, check_px.width());
+        if (!blocks.is_smooth(first, y)) {
+          std::copy(map_px.row(y) + first, map_px.row(y) + end, row + first);
+          continue;
+        }
+        for (int x = first; x < end; ++x) {
+          row[x] = static_cast<float>(of_row[x / 2] + disparity_min);
+        }
+      }
+    }
+  });
+}
+
 }  // namespace
 
 void CoarseLevels::resize(const MethodParameters& parameters,
@@ -72,11 +99,11 @@ LevelVolume& CoarseLevels::start_result(int level) {
 }
 
 void CoarseLevels::choose_blocks(int level, const kernels::CandidateGeometry& geometry,
-                                 Execution& execution) {
+                                 CandidateBlocks::SmoothTiles smooth, Execution& execution) {
   // Only the finest level selects disparities, which must have partners.
   blocks_[static_cast<std::size_t>(level)].choose(
       std::as_const(*coarser_winners_).view(), level == 0 ? std::optional(geometry) : std::nullopt,
-      execution);
+      execution, smooth);
 }
 
 Image<std::int32_t>& CoarseLevels::start_winners(int level, Image<std::int32_t>* kept) {
@@ -115,12 +142,17 @@ std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Ex
   return bytes;
 }
 
+bool has_check_map(const MethodParameters& parameters, scheduler::Extent extent) {
+  return pruned_level_count(parameters, level_extents(extent, parameters.levels).size()) > 0 &&
+         at_level(parameters, 0).iterations <= 1;
+}
+
 LevelCells match_coarse_to_fine(const MethodParameters& parameters,
                                 const kernels::CandidateGeometry& geometry, const ChainInput& input,
                                 const MapOutputs& outputs, CoarseLevels& levels,
                                 Execution& execution,
                                 const std::function<void(const MatchChain&)>& run,
-                                const CoarseMap& coarse_map) {
+                                const CoarseMap& coarse_map, const CheckMap& check_map) {
   const auto extents =
       level_extents({geometry.width, outputs.disparity_px.height()}, parameters.levels);
   const int coarsest = static_cast<int>(extents.size()) - 1;
@@ -142,7 +174,9 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
     ChainLevel place{.number = level,
                      .coarser = level < coarsest ? &levels.result(level + 1) : nullptr};
     if (levels.blocks(level) != nullptr) {
-      levels.choose_blocks(level, geometry, execution);
+      levels.choose_blocks(
+          level, geometry,
+          level == 0 ? smooth_tiles(check_map) : CandidateBlocks::SmoothTiles::kIgnored, execution);
       place.blocks = levels.blocks(level);
       place.coarser_blocks = levels.blocks(level + 1);
     }
@@ -159,6 +193,10 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
                              ? place.blocks->cells()
                              : static_cast<double>(extent.columns) * extent.rows * geometry.count;
     cells.all_levels += cells.finest_level;
+  }
+  if (!check_map.disparity_px.empty()) {
+    make_check_map(*levels.blocks(0), std::as_const(levels.coarser_winners()).view(),
+                   geometry.disparity_min, outputs.disparity_px, check_map.disparity_px, execution);
   }
   return cells;
 }

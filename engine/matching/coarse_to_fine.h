@@ -42,7 +42,10 @@ class CoarseLevels {
   }
   /// Chooses the blocks of a pruned level from the winners of the next coarser one. `geometry`: of
   /// the image.
-  void choose_blocks(int level, const kernels::CandidateGeometry& geometry, Execution& execution);
+  void choose_blocks(int level, const kernels::CandidateGeometry& geometry,
+                     CandidateBlocks::SmoothTiles smooth, Execution& execution);
+  /// Of the level before.
+  [[nodiscard]] const Image<std::int32_t>& coarser_winners() const { return *coarser_winners_; }
   /// Whether the next finer level chooses its candidates from the winners of `level`.
   [[nodiscard]] bool needs_winners(int level) const {
     return level > 0 && level <= pruned_levels();
@@ -82,6 +85,20 @@ struct CoarseMap {
   bool is_all = false;
 };
 
+/// What the other image's map is checked against, beside the map: the disparities of the map, but
+/// in smooth tiles of the finest level the winners of level 1, each repeated over its pixels. Only
+/// if has_check_map().
+struct CheckMap {
+  ImageView<float> disparity_px = {};  ///< image-sized; empty: not requested
+  /// Only the check map is needed. It may then be the map itself, whose smooth tiles are not
+  /// computed.
+  bool is_all = false;
+};
+
+/// Whether the finest level of images of `extent` is pruned and has at most one iteration: there
+/// are smooth tiles (CandidateBlocks::is_smooth), and others can do without them.
+bool has_check_map(const MethodParameters& parameters, scheduler::Extent extent);
+
 /// Computes one map coarse to fine (6.7). Costs are reduced level by level: energies −ln p0 are
 /// summed over blocks of 2×2 columns for Bayesian diffusion (times level_weight) and averaged for
 /// other methods. Then the levels are aggregated, coarsest first, each starting from the coarser
@@ -99,12 +116,13 @@ struct CoarseMap {
 /// process only a few candidate blocks per tile (CandidateBlocks), near the winners of the next
 /// coarser level. Costs are still reduced from all candidates.
 ///
-/// `coarse_map` (Bayesian diffusion only) does not depend on whether finer levels are computed.
+/// `coarse_map` (Bayesian diffusion only) does not depend on whether finer levels are computed, nor
+/// `check_map` on whether the map is.
 LevelCells match_coarse_to_fine(const MethodParameters& parameters,
                                 const kernels::CandidateGeometry& geometry, const ChainInput& input,
                                 const MapOutputs& outputs, CoarseLevels& levels,
                                 Execution& execution,
                                 const std::function<void(const MatchChain&)>& run,
-                                const CoarseMap& coarse_map = {});
+                                const CoarseMap& coarse_map = {}, const CheckMap& check_map = {});
 
 }  // namespace vantage

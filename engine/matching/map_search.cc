@@ -22,7 +22,7 @@ scheduler::ChainPlan chain_plan(const MatchChain& chain, const ExecutionOptions&
 }
 
 void MapSearch::compute(Side reference, const ChainInput& input, const MapOutputs& outputs,
-                        const CoarseMap& coarse) {
+                        const CoarseMap& coarse, const CheckMap& check) {
   const int width = outputs.disparity_px.width();
   const int height = outputs.disparity_px.height();
   const auto grid = displacement_grid(options_, reference, width, height);
@@ -45,7 +45,7 @@ void MapSearch::compute(Side reference, const ChainInput& input, const MapOutput
   scheduler::ChainPlan plan_before = report_.plan;
   const LevelCells cells = match_coarse_to_fine(
       parameters_, geometry, searched, outputs, work_.levels, execution_,
-      [this](const MatchChain& chain) { run_chain(chain); }, coarse);
+      [this](const MatchChain& chain) { run_chain(chain); }, coarse, check);
   report_.cells += cells.all_levels;
   if (coarse.is_all) {
     report_.plan = std::move(plan_before);

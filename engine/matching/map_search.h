@@ -35,7 +35,7 @@ class MapSearch {
   /// `outputs` have the image's size; with coarse.is_all only that size is used. Throws Error when
   /// no pixel has a candidate.
   void compute(Side reference, const ChainInput& input, const MapOutputs& outputs,
-               const CoarseMap& coarse);
+               const CoarseMap& coarse, const CheckMap& check = {});
 
  private:
   void run_chain(const MatchChain& chain);

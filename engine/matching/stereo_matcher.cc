@@ -159,14 +159,23 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
   return plans;
 }
 
-/// What is computed of each image's map: the whole map if it is requested or needed whole to check
-/// the other one; the coarse level if the other is checked against it.
+bool StereoMatcher::uses_check_maps(scheduler::Extent image) const {
+  return has_check_map(in_force_.parameters, image) && !in_force_.disparities_y &&
+         in_force_.refinement->edge_snapping_px == 0;
+}
+
+/// What is computed of each image's map: the map if it is requested or needed to check the other
+/// one; what the other one is checked against.
 std::pair<StereoMatcher::MapNeed, StereoMatcher::MapNeed> StereoMatcher::needs(
-    const MatchRequest& request, int check_level) const {
+    const MatchRequest& request, scheduler::Extent image) const {
   const bool is_checked = in_force_.refinement && in_force_.refinement->cross_check;
+  const bool has_level = is_checked && check_level(image) > 0;
+  const bool has_check_maps = is_checked && !has_level && uses_check_maps(image);
   const auto need = [&](bool is_wanted, bool is_other_wanted) -> MapNeed {
-    return {.whole = is_wanted || (is_checked && check_level == 0),
-            .coarse = is_checked && check_level > 0 && is_other_wanted};
+    return {.whole = is_wanted || (is_checked && !has_level),
+            .coarse = has_level && is_other_wanted,
+            .check = has_check_maps && is_other_wanted,
+            .check_is_all = has_check_maps && !is_wanted};
   };
   return {need(request.left, request.right), need(request.right, request.left)};
 }
@@ -182,6 +191,8 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
   resize(map.disparity_px, task.need.whole);
   resize(map.confidence, task.need.whole && wants_confidence);
   resize(map.disparity_y_px, task.need.whole && in_force_.disparities_y);
+  DisparityMap& check_px = prepared.check_px[index_of(task.side)];
+  resize(check_px, task.need.check && !task.need.check_is_all);
   if (!task.need.any()) {
     return;
   }
@@ -193,6 +204,12 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
               .winners = &prepared.coarse_winners[index_of(task.side)],
               .is_all = !task.need.whole};
   }
+  CheckMap check;
+  if (task.need.check) {
+    check = {.disparity_px = (task.need.check_is_all ? map.disparity_px : check_px).view(),
+             .is_all = task.need.check_is_all};
+    task.check_px = check.disparity_px;
+  }
   // Without a map of its own only the size is used.
   const ImageView<float> size_alone(nullptr, task.image->width(), task.image->height(), 1, 0);
   MapSearch(in_force_, prepared.parameters, execution_, prepared.search, report)
@@ -200,7 +217,7 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
                {.disparity_px = task.need.whole ? map.disparity_px.view() : size_alone,
                 .confidence = map.confidence.view(),
                 .disparity_y_px = map.disparity_y_px.view()},
-               coarse);
+               coarse, check);
   if (coarse.winners != nullptr) {
     task.coarse = {.winners = std::as_const(*coarse.winners).view(),
                    .level = check_level,
@@ -215,6 +232,7 @@ MapToRefine StereoMatcher::to_refine(const MapTask& task, bool is_result) const 
           .image = task.image,
           .map = task.map,
           .coarse = task.coarse,
+          .check_px = task.check_px,
           .is_result = is_result,
           .search = in_force_.disparities,
           .search_y = in_force_.disparities_y.value_or(kAnyDisparity)};
@@ -237,7 +255,7 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   const int check_level = this->check_level({left.width(), left.height()});
   MapTask of_left{.side = Side::kLeft, .image = &left, .map = &maps.left};
   MapTask of_right{.side = Side::kRight, .image = &right, .map = &maps.right};
-  std::tie(of_left.need, of_right.need) = needs(request, check_level);
+  std::tie(of_left.need, of_right.need) = needs(request, {left.width(), left.height()});
   const auto prepared = prepared_.borrow();
   prepared->parameters = in_force_.parameters;
   prepared->of_right = {};
@@ -331,7 +349,8 @@ void StereoMatcher::add_memory_use(MemoryUse& use) const {
     for (const CostImage& image : prepared.images) {
       bytes += image.held_bytes();
     }
-    bytes += held_bytes(prepared.coarse_winners[0]) + held_bytes(prepared.coarse_winners[1]);
+    bytes += held_bytes(prepared.coarse_winners[0]) + held_bytes(prepared.coarse_winners[1]) +
+             held_bytes(prepared.check_px[0]) + held_bytes(prepared.check_px[1]);
     use.add("prepared images", bytes);
     use.add("coarse levels", prepared.search.levels.held_bytes());
   });

@@ -86,12 +86,15 @@ class StereoMatcher {
     MapSearchWork search;
     /// Coarse maps of the left and the right image for the cross-check.
     std::array<Image<std::int32_t>, 2> coarse_winners;
+    /// Check maps beside whole maps.
+    std::array<DisparityMap, 2> check_px;
   };
-  /// What is computed of an image's map: the whole map and/or the level used to check the other
-  /// map.
+  /// What is computed of an image's map: the map, and what is used to check the other one.
   struct MapNeed {
-    bool whole = false;
-    bool coarse = false;
+    bool whole = false;   ///< the map, unless check_is_all
+    bool coarse = false;  ///< a coarse level
+    bool check = false;   ///< a check map
+    bool check_is_all = false;
     [[nodiscard]] bool any() const { return whole || coarse; }
   };
   /// One image and the map to compute for it.
@@ -101,13 +104,16 @@ class StereoMatcher {
     MatchedMap* map;
     MapNeed need = {};
     ChainInput input = {};
-    CoarseWinners coarse = {};  ///< empty: not needed
+    CoarseWinners coarse = {};             ///< empty: not needed
+    ImageView<const float> check_px = {};  ///< empty: not needed
   };
 
   /// Level that maps are checked against; 0: the maps themselves.
   [[nodiscard]] int check_level(scheduler::Extent image) const;
+  /// Whether maps are checked against check maps, if not against a coarse level.
+  [[nodiscard]] bool uses_check_maps(scheduler::Extent image) const;
   [[nodiscard]] std::pair<MapNeed, MapNeed> needs(const MatchRequest& request,
-                                                  int check_level) const;
+                                                  scheduler::Extent image) const;
   [[nodiscard]] bool wants_confidence(const MatchRequest& request) const;
   void prepare_inputs(MapTask& left, MapTask& right, bool uses_prior, Prepared& prepared) const;
   void estimate_exposure(const Photograph& left, const Photograph& right, Prepared& prepared,

@@ -15,8 +15,9 @@ void check_against(const MapToRefine& to_refine, const MapToRefine& other, doubl
     return;
   }
   if (map.disparity_y_px.empty()) {
-    cross_check(map.disparity_px.view(), partner.disparity_px.view(), to_refine.side, tolerance_px,
-                execution, map.unmatched);
+    cross_check(map.disparity_px.view(),
+                other.check_px.empty() ? partner.disparity_px.view() : other.check_px,
+                to_refine.side, tolerance_px, execution, map.unmatched);
     return;
   }
   cross_check({map.disparity_px.view(), map.disparity_y_px.view()},

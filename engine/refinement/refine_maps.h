@@ -31,6 +31,8 @@ struct MapToRefine {
   MatchedMap* map = nullptr;
   /// Checks the other map in place of this one. Empty: the map itself.
   CoarseWinners coarse = {};
+  /// The same, image-sized.
+  ImageView<const float> check_px = {};
   /// false: the map is only needed to cross-check the other; it and its `unmatched` are then
   /// undefined.
   bool is_result = true;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <map>
 #include <random>
 #include <vector>
@@ -94,6 +95,40 @@ TEST(CandidateBlocks, AreThoseWithTheMostVotes) {
           }
         }
         EXPECT_EQ(blocks.cells(), cells);
+      }
+    }
+  }
+}
+
+TEST(CandidateBlocks, SmoothTilesHaveSmallSteps) {
+  using enum CandidateBlocks::SmoothTiles;
+  Execution execution({.threads = 2});
+  const Extent extent{96, 48};
+  for (const int step : {2, 3}) {
+    for (const bool is_down : {false, true}) {
+      Image<std::int32_t> winners(extent.columns / 2, extent.rows / 2);
+      for (int y = 0; y < winners.height(); ++y) {
+        for (int x = 0; x < winners.width(); ++x) {
+          // A slope of 2, and one step in the third of 12 columns or 6 rows of tiles.
+          const int at = is_down ? y : x;
+          winners.at(x, y) = 2 * at + (at > 9 ? step - 2 : 0);
+        }
+      }
+      CandidateBlocks blocks;
+      blocks.resize(extent, 130, 2);
+      blocks.choose(winners.view(), std::nullopt, execution, kLeftOut);
+      for (int tile_y = 0; tile_y < 6; ++tile_y) {
+        for (int tile_x = 0; tile_x < 12; ++tile_x) {
+          SCOPED_TRACE(testing::Message() << step << ": " << tile_x << ", " << tile_y);
+          const int tile = is_down ? tile_y : tile_x;
+          const bool is_rough = step == 3 && tile == 2;
+          EXPECT_EQ(blocks.is_smooth(8 * tile_x, 8 * tile_y + 7), !is_rough);
+          // Tiles beside rough ones along the row are made, and all around them have blocks.
+          const int made = is_down ? 0 : 1;
+          const auto run = blocks.run_at(8 * tile_x, 8 * tile_y, extent.columns);
+          EXPECT_EQ(run.is_wanted, step == 3 && std::abs(tile - 2) <= made);
+          EXPECT_EQ(run.blocks.empty(), step == 2 || std::abs(tile - 2) > made + 1);
+        }
       }
     }
   }

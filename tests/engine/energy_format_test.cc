@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "engine/matching/options/method_rules.h"
+
 namespace vantage {
 namespace energy_format_test {
 

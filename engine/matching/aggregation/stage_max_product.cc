@@ -82,10 +82,12 @@ class MaxProductStage final : public BayesStepStage<FixedEnergy> {
     FixedEnergy* const star_work = columns.work + work_cells();
     while (columns.x < task.columns.end) {
       const CandidateBlocks::Run run = blocks_->run_at(columns.x, task.y, task.columns.end);
-      const BlockSegments segments(run.blocks);
-      columns.star = stars_->star(task, run, neutral(), star_work);
-      columns.segment_ends = segments.ends();
-      make_columns(columns);
+      if (run.is_wanted) {
+        const BlockSegments segments(run.blocks);
+        columns.star = stars_->star(task, run, neutral(), star_work);
+        columns.segment_ends = segments.ends();
+        make_columns(columns);
+      }
       columns.output += static_cast<std::ptrdiff_t>(run.columns.size()) * lanes();
       columns.x = run.columns.end;
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace vantage {
 namespace {
@@ -12,6 +13,15 @@ using scheduler::Range;
 /// Candidates on both sides of a coarse winner to include: the finer level finds the best one among
 /// them.
 constexpr int kReach = 2;
+/// Maximum difference of adjacent coarse winners in and around a smooth tile.
+constexpr int kSmoothStep = 2;
+/// Coarse pixels of a tile along one direction.
+constexpr int kCoarsePx = CandidateBlocks::kTilePx / 2;
+
+/// The coarse pixels in a tile or next to it, along one direction.
+Range coarse_pixels_around(int tile, int end) {
+  return Range{tile * kCoarsePx, (tile + 1) * kCoarsePx}.widened(1, {0, end});
+}
 
 /// Range of blocks in which each of `columns` that has candidates with partners has one.
 Range blocks_with_partners(const kernels::CandidateGeometry& geometry, Range columns, int blocks) {
@@ -40,11 +50,14 @@ void CandidateBlocks::resize(scheduler::Extent extent, int candidates, int max) 
   counts_.resize(tiles);
   run_ends_.resize(tiles);
   is_as_above_.resize(tiles);
+  is_smooth_.resize(tiles);
+  is_wanted_.resize(tiles);
 }
 
 void CandidateBlocks::choose(ImageView<const std::int32_t> winners,
                              const std::optional<kernels::CandidateGeometry>& selected,
-                             Execution& execution) {
+                             Execution& execution, SmoothTiles smooth) {
+  std::fill(is_wanted_.begin(), is_wanted_.end(), std::uint8_t{1});
   std::vector<Range> allowed(static_cast<std::size_t>(tile_columns_), Range{0, block_count()});
   for (int tile = 0; selected && tile < tile_columns_; ++tile) {
     const Range columns = Range{tile * kTilePx, (tile + 1) * kTilePx};
@@ -59,6 +72,16 @@ void CandidateBlocks::choose(ImageView<const std::int32_t> winners,
       }
     }
   });
+  if (smooth != SmoothTiles::kIgnored) {
+    execution.for_each_band(tile_rows_, [&](int first_row, int end_row) {
+      for (int tile_y = first_row; tile_y < end_row; ++tile_y) {
+        find_smooth_tiles(winners, tile_y);
+      }
+    });
+  }
+  if (smooth == SmoothTiles::kLeftOut) {
+    leave_out_smooth_tiles();
+  }
   execution.for_each_band(tile_rows_, [&](int first_row, int end_row) {
     for (int tile_y = first_row; tile_y < end_row; ++tile_y) {
       compare_tiles(tile_y);
@@ -66,12 +89,68 @@ void CandidateBlocks::choose(ImageView<const std::int32_t> winners,
   });
 }
 
+void CandidateBlocks::find_smooth_tiles(ImageView<const std::int32_t> winners, int tile_y) {
+  const Range rows = coarse_pixels_around(tile_y, winners.height());
+  // Per column: the largest difference to the right and below, over the rows.
+  const auto width = static_cast<std::size_t>(winners.width());
+  std::vector<std::int32_t> right(width);
+  std::vector<std::int32_t> below(width);
+  for (int y = rows.begin; y < rows.end; ++y) {
+    const std::int32_t* const row = winners.row(y);
+    const std::int32_t* const next = winners.row(std::min(y + 1, rows.end - 1));
+    for (std::size_t x = 0; x + 1 < width; ++x) {
+      right[x] = std::max(right[x], std::abs(row[x] - row[x + 1]));
+    }
+    for (std::size_t x = 0; x < width; ++x) {
+      below[x] = std::max(below[x], std::abs(row[x] - next[x]));
+    }
+  }
+  for (int tile_x = 0; tile_x < tile_columns_; ++tile_x) {
+    const Range columns = coarse_pixels_around(tile_x, winners.width());
+    const auto first = right.begin() + columns.begin;
+    std::int32_t step =
+        *std::max_element(below.begin() + columns.begin, below.begin() + columns.end);
+    step = std::max(step, *std::max_element(first, first + std::max(1, columns.size() - 1)));
+    is_smooth_[tile_at(tile_x, tile_y)] = step <= kSmoothStep ? 1 : 0;
+  }
+}
+
+void CandidateBlocks::leave_out_smooth_tiles() {
+  const auto all_around = [this](int tile_x, int tile_y, int reach_rows, const auto& is_so) {
+    const Range rows = Range{tile_y, tile_y + 1}.widened(reach_rows, {0, tile_rows_});
+    const Range columns = Range{tile_x, tile_x + 1}.widened(1, {0, tile_columns_});
+    for (int y = rows.begin; y < rows.end; ++y) {
+      for (int x = columns.begin; x < columns.end; ++x) {
+        if (!is_so(tile_at(x, y))) {
+          return false;
+        }
+      }
+    }
+    return true;
+  };
+  for (int tile_y = 0; tile_y < tile_rows_; ++tile_y) {
+    for (int tile_x = 0; tile_x < tile_columns_; ++tile_x) {
+      // Single tiles are made: shorter runs would cost more than they save.
+      const auto is_smooth = [this](std::size_t tile) { return is_smooth_[tile] != 0; };
+      is_wanted_[tile_at(tile_x, tile_y)] = all_around(tile_x, tile_y, 0, is_smooth) ? 0 : 1;
+    }
+  }
+  for (int tile_y = 0; tile_y < tile_rows_; ++tile_y) {
+    for (int tile_x = 0; tile_x < tile_columns_; ++tile_x) {
+      if (all_around(tile_x, tile_y, 1,
+                     [this](std::size_t tile) { return is_wanted_[tile] == 0; })) {
+        counts_[tile_at(tile_x, tile_y)] = 0;
+      }
+    }
+  }
+}
+
 void CandidateBlocks::compare_tiles(int tile_y) {
   for (int tile_x = tile_columns_ - 1; tile_x >= 0; --tile_x) {
     const std::size_t tile = tile_at(tile_x, tile_y);
     const BlockList blocks = of_tile(tile);
-    const bool goes_on =
-        tile_x + 1 < tile_columns_ && std::ranges::equal(of_tile(tile + 1), blocks);
+    const bool goes_on = tile_x + 1 < tile_columns_ && is_wanted_[tile + 1] == is_wanted_[tile] &&
+                         std::ranges::equal(of_tile(tile + 1), blocks);
     run_ends_[tile] = goes_on ? run_ends_[tile + 1] : tile_x + 1;
     const bool is_as_above =
         tile_y > 0 && std::ranges::equal(of_tile(tile_at(tile_x, tile_y - 1)), blocks);
@@ -95,11 +174,8 @@ void CandidateBlocks::choose_tile(ImageView<const std::int32_t> winners, Range a
                                   int tile_y, std::vector<int>& votes) {
   const std::size_t tile = tile_at(tile_x, tile_y);
   std::uint16_t* const chosen = blocks_.data() + tile * static_cast<std::size_t>(max_);
-  constexpr int kCoarsePx = kTilePx / 2;
-  const Range columns =
-      Range{tile_x * kCoarsePx, (tile_x + 1) * kCoarsePx}.widened(1, {0, winners.width()});
-  const Range rows =
-      Range{tile_y * kCoarsePx, (tile_y + 1) * kCoarsePx}.widened(1, {0, winners.height()});
+  const Range columns = coarse_pixels_around(tile_x, winners.width());
+  const Range rows = coarse_pixels_around(tile_y, winners.height());
   const auto block_of = [&](int candidate) {
     const int block = std::clamp(candidate, 0, candidates_ - 1) / kLaneMultiple;
     return std::clamp(block, allowed.begin, allowed.end - 1);
@@ -145,6 +221,9 @@ void CandidateBlocks::choose_tile(ImageView<const std::int32_t> winners, Range a
 }
 
 int CandidateBlocks::count(BlockList blocks) const {
+  if (blocks.empty()) {
+    return 0;
+  }
   const int lanes = static_cast<int>(blocks.size()) * kLaneMultiple;
   // Only the last block of all can be incomplete.
   const int after = (blocks.back() + 1) * kLaneMultiple - candidates_;
@@ -165,7 +244,8 @@ double CandidateBlocks::cells() const {
 
 std::size_t CandidateBlocks::held_bytes() const {
   return blocks_.capacity() * sizeof(std::uint16_t) + counts_.capacity() +
-         run_ends_.capacity() * sizeof(int) + is_as_above_.capacity();
+         run_ends_.capacity() * sizeof(int) + is_as_above_.capacity() + is_smooth_.capacity() +
+         is_wanted_.capacity();
 }
 
 int candidates_in(const CandidateBlocks* blocks, int count) {

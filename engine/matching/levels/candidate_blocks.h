@@ -22,8 +22,9 @@ namespace vantage {
 using BlockList = std::span<const std::uint16_t>;
 
 /// The candidates processed on a level of coarse-to-fine matching: a few blocks for each tile of
-/// 8×8 pixels, aligned to the image. All columns of cells have the same number of lanes; lanes
-/// after the blocks of their tile are undefined. Thread rule: as for a plain array.
+/// 8×8 pixels, aligned to the image, or none where nothing is wanted. All columns of cells have the
+/// same number of lanes; lanes after the blocks of their tile are undefined. Thread rule: as for a
+/// plain array.
 class CandidateBlocks {
  public:
   static constexpr int kTilePx = 8;
@@ -34,6 +35,17 @@ class CandidateBlocks {
   struct Run {
     scheduler::Range columns;
     BlockList blocks;
+    /// false: only the first state is wanted, which pixels beside a wanted tile read.
+    bool is_wanted = true;
+  };
+
+  /// Tiles where coarse winners in and next to them differ by at most 2 from one to the next.
+  enum class SmoothTiles {
+    kIgnored,
+    kMarked,
+    /// Marked and not wanted, on a level of at most one iteration, so most of them are left out.
+    /// Those next to a tile that is made keep their blocks: its iteration reads their first states.
+    kLeftOut,
   };
 
   /// `max`: maximum number of blocks per tile, 1..kMaxCandidateBlocks. Memory is reused.
@@ -46,7 +58,8 @@ class CandidateBlocks {
   /// to the nearest block with partners, so that every pixel that has candidates with partners has
   /// one in a block of its tile. Identical for any `execution`.
   void choose(ImageView<const std::int32_t> winners,
-              const std::optional<kernels::CandidateGeometry>& selected, Execution& execution);
+              const std::optional<kernels::CandidateGeometry>& selected, Execution& execution,
+              SmoothTiles smooth = SmoothTiles::kIgnored);
 
   [[nodiscard]] scheduler::Extent extent() const { return extent_; }
   /// Lanes of a column, for any tile.
@@ -58,7 +71,12 @@ class CandidateBlocks {
   [[nodiscard]] Run run_at(int x, int y, int end) const {
     const std::size_t tile = tile_at(x / kTilePx, y / kTilePx);
     const int run_end = run_ends_[tile] * kTilePx;
-    return {{x, std::min({run_end, end, x + kMaxRunColumns})}, of_tile(tile)};
+    return {
+        {x, std::min({run_end, end, x + kMaxRunColumns})}, of_tile(tile), is_wanted_[tile] != 0};
+  }
+  /// Whether the tile of a pixel is smooth; not with SmoothTiles::kIgnored.
+  [[nodiscard]] bool is_smooth(int x, int y) const {
+    return is_smooth_[tile_at(x / kTilePx, y / kTilePx)] != 0;
   }
   /// Whether row y, adjacent to the row run_y of `run`, has the same blocks along the run.
   [[nodiscard]] bool has_blocks_of(const Run& run, int run_y, int y) const;
@@ -80,6 +98,8 @@ class CandidateBlocks {
     return {blocks_.data() + tile * static_cast<std::size_t>(max_), counts_[tile]};
   }
   void compare_tiles(int tile_y);
+  void find_smooth_tiles(ImageView<const std::int32_t> winners, int tile_y);
+  void leave_out_smooth_tiles();
   void choose_tile(ImageView<const std::int32_t> winners, scheduler::Range allowed, int tile_x,
                    int tile_y, std::vector<int>& votes);
   [[nodiscard]] int block_count() const {
@@ -95,6 +115,8 @@ class CandidateBlocks {
   std::vector<std::uint8_t> counts_;
   std::vector<int> run_ends_;              ///< first tile to the right with other blocks
   std::vector<std::uint8_t> is_as_above_;  ///< whether a tile has the blocks of the tile above
+  std::vector<std::uint8_t> is_smooth_;
+  std::vector<std::uint8_t> is_wanted_;
 };
 
 /// The candidate in `lane` of columns with these blocks.

@@ -52,7 +52,7 @@ class BlockSourceStage final : public scheduler::RowStage {
       const CandidateBlocks::Run run = blocks_.run_at(x, task.y, task.columns.end);
       part.columns = run.columns;
       FixedEnergy* target = energies;
-      for (const std::uint16_t block : run.blocks) {
+      for (const std::uint16_t block : run.is_wanted ? run.blocks : BlockList()) {
         of_blocks_[block]->make_row(part);
         conversion_.convert(part.output, run.columns.size(), kLaneMultiple,
                             std::min(kLaneMultiple, count_ - block * kLaneMultiple), target,

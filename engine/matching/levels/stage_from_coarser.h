@@ -107,7 +107,9 @@ class FromCoarserStage : public scheduler::RowStage {
     }
     for (int x = task.columns.begin; x < task.columns.end;) {
       const CandidateBlocks::Run run = blocks_->run_at(x, task.y, task.columns.end);
-      make_columns(task, run, blocks_->count(run.blocks));
+      if (!run.blocks.empty()) {
+        make_columns(task, run, blocks_->count(run.blocks));
+      }
       x = run.columns.end;
     }
   }

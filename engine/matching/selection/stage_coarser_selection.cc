@@ -53,7 +53,9 @@ class CoarserSelectionStage final : public scheduler::RowStage {
       if (blocks_ != nullptr) {
         run = blocks_->run_at(x, 2 * task.y, fine.end);
       }
-      make_columns(task, run);
+      if (run.is_wanted) {
+        make_columns(task, run);
+      }
       x = run.columns.end;
     }
   }

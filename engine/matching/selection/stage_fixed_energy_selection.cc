@@ -35,6 +35,10 @@ class EnergySelectionStage final : public scheduler::RowStage {
       if (blocks_ != nullptr) {
         run = blocks_->run_at(x, task.y, task.columns.end);
       }
+      if (!run.is_wanted) {
+        x = run.columns.end;
+        continue;
+      }
       selector_.select(
           geometry_,
           {.cells = cells + static_cast<std::ptrdiff_t>(x - task.input.columns().begin) * lanes_,

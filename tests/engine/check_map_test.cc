@@ -1,0 +1,169 @@
+// What maps are checked against where the finest level is pruned: smooth tiles have coarse winners.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <utility>
+
+#include "engine/matching/candidate_geometry.h"
+#include "engine/matching/coarse_to_fine.h"
+#include "engine/matching/stereo_matcher.h"
+#include "engine/refinement/refinement.h"
+#include "scheduler/whole_image_pipeline.h"
+#include "tests/engine/identical_maps.h"
+#include "tests/engine/oracle_comparison.h"
+
+namespace vantage {
+namespace check_map_test {
+
+using test::identical;
+
+constexpr int kWidth = 197;
+constexpr int kHeight = 93;
+constexpr DisparityRange kRange{0, 45};
+
+/// A surface before another one, both without slopes: most tiles are smooth.
+test::PhotographPair two_surfaces() {
+  const auto world = test::textured_pair(kWidth + 64, kHeight, {0, 1}, test::PixelKind::kGrey8, 5);
+  const auto& texture = std::get<Image<std::uint8_t>>(world.left.pixels);
+  Image<std::uint8_t> left(kWidth, kHeight);
+  Image<std::uint8_t> right(kWidth, kHeight);
+  const auto copy = [&](int disparity, int first, int end, int rows) {
+    for (int y = 0; y < rows; ++y) {
+      for (int x = std::max(first, 0); x < std::min(end, kWidth); ++x) {
+        left.at(x, y) = texture.at(x, y);
+        if (x - disparity >= 0) {
+          right.at(x - disparity, y) = texture.at(x, y);
+        }
+      }
+    }
+  };
+  for (int y = 0; y < kHeight; ++y) {
+    std::copy_n(texture.row(y) + 6, kWidth, right.row(y));
+  }
+  copy(6, 0, kWidth, kHeight);
+  copy(31, 70, 130, 60);
+  return {Photograph{std::move(left)}, Photograph{std::move(right)}};
+}
+
+MatchOptions options_of(int final_iterations) {
+  MatchOptions options;
+  options.method = MatchMethod::kBayes;
+  options.disparities = kRange;
+  options.parameters.cost = MatchCost::kRayCensus;
+  options.parameters.sigma_measurement = 4;
+  options.parameters.levels = 4;
+  options.parameters.iterations = 2;
+  options.parameters.final_iterations = final_iterations;
+  options.parameters.prior_smoothing = PriorSmoothing::kMaximum;
+  options.parameters.candidate_blocks = 2;
+  options.refinement.cross_check_px = 1;
+  options.refinement.fill = Fill::kNone;
+  return options;
+}
+
+DisparityMaps matched(const test::PhotographPair& pair, const MatchOptions& options,
+                      const MatchRequest& request = {},
+                      const ExecutionOptions& how = {.threads = 2}, MatchReport* report = nullptr) {
+  Execution execution(how);
+  DisparityMaps maps;
+  StereoMatcher(options, execution).match(pair.left, pair.right, request, maps, report);
+  return maps;
+}
+
+/// The winners of level 1.
+Image<std::int32_t> coarse_winners(const test::PhotographPair& pair, const MatchOptions& options,
+                                   Side reference) {
+  const MethodParameters parameters = options.resolved();
+  Execution execution({.threads = 1});
+  const bool is_left = reference == Side::kLeft;
+  const auto geometry = candidate_geometry(options.in_force(), reference, kWidth, kHeight);
+  CostImage left;
+  CostImage right;
+  left.prepare(pair.left, parameters, geometry, {is_left, false, !is_left}, execution);
+  right.prepare(pair.right, parameters, geometry, {!is_left, is_left, false}, execution);
+  DisparityMap size_alone(kWidth, kHeight);
+  EdgeWeightLevels edges;
+  CoarseLevels levels;
+  const ChainInput input{nullptr,
+                         is_left ? &left : &right,
+                         {CostPartner{is_left ? &right : &left}},
+                         {},
+                         0,
+                         edges.prepare(is_left ? pair.left : pair.right, parameters, execution)};
+  Image<std::int32_t> winners;
+  match_coarse_to_fine(parameters, geometry, input, {.disparity_px = size_alone.view()}, levels,
+                       execution,
+                       [](const MatchChain& chain) { scheduler::run_whole_image(chain.stages()); },
+                       {.level = 1, .winners = &winners, .is_all = true});
+  return winners;
+}
+
+bool is_smooth(const Image<std::int32_t>& winners, int tile_x, int tile_y) {
+  const int end_x = std::min(4 * tile_x + 5, winners.width());
+  const int end_y = std::min(4 * tile_y + 5, winners.height());
+  for (int y = std::max(4 * tile_y - 1, 0); y < end_y; ++y) {
+    for (int x = std::max(4 * tile_x - 1, 0); x < end_x; ++x) {
+      const int here = winners.at(x, y);
+      if ((x + 1 < end_x && std::abs(winners.at(x + 1, y) - here) > 2) ||
+          (y + 1 < end_y && std::abs(winners.at(x, y + 1) - here) > 2)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+TEST(CheckMap, IsTheMapButInSmoothTilesCoarseWinners) {
+  const auto pair = two_surfaces();
+  for (const int final_iterations : {0, 1, 2}) {
+    const MatchOptions options = options_of(final_iterations);
+    MatchOptions raw = options;
+    raw.raw = true;
+    raw.refinement = {};
+    const DisparityMaps winners = matched(pair, raw);
+    DisparityMap check_px(kWidth, kHeight);
+    const Image<std::int32_t> coarse = coarse_winners(pair, raw, Side::kRight);
+    int smooth = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        // More iterations read too far into smooth tiles.
+        const bool is_coarse = final_iterations <= 1 && is_smooth(coarse, x / 8, y / 8);
+        check_px.at(x, y) = is_coarse ? static_cast<float>(coarse.at(x / 2, y / 2))
+                                      : winners.right.disparity_px.at(x, y);
+        smooth += is_coarse ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(smooth > kWidth * kHeight / 3, final_iterations <= 1) << smooth;
+    Execution execution({.threads = 1});
+    Mask expected;
+    cross_check(winners.left.disparity_px.view(), std::as_const(check_px).view(), Side::kLeft, 1,
+                execution, expected);
+    EXPECT_TRUE(identical(matched(pair, options).left.unmatched, expected)) << final_iterations;
+  }
+}
+
+TEST(CheckMap, LeavesTilesOutAndChangesNoMap) {
+  const auto pair = two_surfaces();
+  for (const int final_iterations : {0, 1}) {
+    const MatchOptions options = options_of(final_iterations);
+    MatchReport of_both;
+    const DisparityMaps both = matched(pair, options, {}, {.threads = 1}, &of_both);
+    for (const int strip_px : {23, 1000}) {
+      const ExecutionOptions how{.threads = 2, .strip_width_px = strip_px, .band_height_px = 11};
+      MatchReport of_left;
+      const DisparityMaps left =
+          matched(pair, options, {.left = true, .right = false}, how, &of_left);
+      EXPECT_TRUE(identical(left.left.disparity_px, both.left.disparity_px));
+      EXPECT_TRUE(identical(left.left.unmatched, both.left.unmatched));
+      const DisparityMaps right = matched(pair, options, {.left = false, .right = true}, how);
+      EXPECT_TRUE(identical(right.right.disparity_px, both.right.disparity_px));
+      EXPECT_TRUE(identical(right.right.unmatched, both.right.unmatched));
+      EXPECT_LT(of_left.finest_cells, 0.9 * of_both.finest_cells);
+    }
+  }
+}
+
+}  // namespace check_map_test
+}  // namespace vantage
