@@ -3,6 +3,9 @@
 #include <hwloc.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <mutex>
 #include <stdexcept>
 
 namespace vantage::scheduler {
@@ -36,6 +39,29 @@ Handle loaded() {
     handle = loaded(0);
   }
   return handle;
+}
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? std::string() : name + ('=' + std::string(value));
+}
+
+/// A copy of the topology, which is loaded once per process and environment: hwloc takes 5 to 10
+/// ms, mostly to open its plugins, and a command asks several times.
+Handle copy_of_loaded() {
+  static std::mutex mutex;
+  static std::map<std::string, Handle> known;
+  const std::lock_guard lock(mutex);
+  const auto [place, is_new] =
+      known.try_emplace(environment("HWLOC_SYNTHETIC") + environment("HWLOC_XMLFILE"));
+  if (is_new) {
+    place->second = loaded();
+  }
+  hwloc_topology_t copy = nullptr;
+  if (place->second == nullptr || hwloc_topology_dup(&copy, place->second.get()) != 0) {
+    return nullptr;
+  }
+  return {copy, hwloc_topology_destroy};
 }
 
 /// Leaves what the threads of this process may run on. cgroups hwloc knows itself.
@@ -128,7 +154,7 @@ int NumaNode::hardware_threads() const {
 }
 
 Topology detect_topology() {
-  const Handle handle = loaded();
+  const Handle handle = copy_of_loaded();
   if (handle == nullptr) {
     Topology unknown;
     unknown.nodes = {{.number = 0, .cores = {{0}}, .memory_bytes = 0}};

@@ -61,10 +61,14 @@ cv::Mat stretched(const cv::Mat& grey) {
     sample.push_back(grey.at<float>(static_cast<int>(i / static_cast<std::size_t>(grey.cols)),
                                     static_cast<int>(i % static_cast<std::size_t>(grey.cols))));
   }
-  std::sort(sample.begin(), sample.end());
   const auto tail = static_cast<std::size_t>(kTail * static_cast<double>(sample.size()));
-  const double min = sample[tail];
-  const double range = std::max<double>(sample[sample.size() - 1 - tail] - min, 1e-3);
+  const auto sorted_at = [&](std::size_t place) {
+    const auto at = sample.begin() + static_cast<std::ptrdiff_t>(place);
+    std::nth_element(sample.begin(), at, sample.end());
+    return *at;
+  };
+  const double min = sorted_at(tail);
+  const double range = std::max<double>(sorted_at(sample.size() - 1 - tail) - min, 1e-3);
   cv::Mat levels;
   grey.convertTo(levels, CV_8U, 255 / range, -min * 255 / range);
   return levels;

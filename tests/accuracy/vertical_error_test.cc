@@ -129,6 +129,23 @@ TEST(VerticalError, IsFoundWhereItChangesOverTheImage) {
   EXPECT_NEAR(found->systematic_px, kTurn * 320 / std::sqrt(12), 0.1);
 }
 
+TEST(VerticalError, PairsThatClearlyAgreeTakeAQuickLook) {
+  const auto& [left, right] = scene_images();
+  const auto sure = [&](const Photograph& shifted) {
+    return vertical_error(match_features(
+        left, shifted, {.kind = FeatureKind::kOrb, .max_features = 1000, .largest_side_px = 640}));
+  };
+  const auto found = check_rectification(left, right);
+  ASSERT_TRUE(found && sure(right));
+  EXPECT_LT(found->matches, sure(right)->matches / 2);
+  Eigen::Matrix3d down = Eigen::Matrix3d::Identity();
+  down(1, 2) = 0.4;
+  const Photograph shifted = test::warped(right, down);
+  const auto unsure = check_rectification(left, shifted);
+  ASSERT_TRUE(unsure && sure(shifted));
+  EXPECT_EQ(unsure->matches, sure(shifted)->matches);
+}
+
 TEST(VerticalError, TellsExchangedImages) {
   const auto& [left, right] = scene_images();
   const auto in_order = check_rectification(left, right);
