@@ -17,6 +17,7 @@
 
 #include "apps/setting_value.h"
 #include "engine/error.h"
+#include "engine/simd.h"
 #include "perf/command_line.h"
 #include "perf/default_paths.h"
 #include "perf/quality/map_contender.h"
@@ -32,7 +33,8 @@ namespace {
 constexpr const char* kUsage =
     "quality [--data FOLDER] [--experiments FILE.toml] [--only NAME,…|none] [--peers NAME,…|none] "
     "[--scenes NAME|GROUP,…] [--tuning] [--held-out] [--no-time] [--left-only] [--rounds N] "
-    "[--threads N] [--grey peers|all] [--csv FILE] [--sub-pixel] [--views] [--search-peers]";
+    "[--threads N] [--isa NAME] [--grey peers|all] [--csv FILE] [--sub-pixel] [--views] "
+    "[--search-peers]";
 
 /// Elements of `all` that a list names, in the order of `all`; all without a list. `names_of`
 /// returns the names of an element.
@@ -167,6 +169,9 @@ void run(CommandLine& line) {
   const int wanted_rounds = line.number("--rounds", kUsualRounds);
   const int rounds = line.flag("--no-time") ? 0 : wanted_rounds;
   const TimedMaps timed = line.flag("--left-only") ? TimedMaps::kLeft : TimedMaps::kBoth;
+  if (const auto isa = line.text("--isa")) {
+    force_instruction_set(*isa);
+  }
   const GreyImages grey = grey_images(line.text("--grey"));
   const std::optional<std::string> csv = line.text("--csv");
   const bool wants_sub_pixel = line.flag("--sub-pixel");
