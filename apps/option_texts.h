@@ -65,6 +65,12 @@ inline constexpr std::array kOptionTexts = {
     OptionText{"levels", "N",
                "Number of pyramid levels of the coarse-to-fine search, 1 (full size only) to 10; "
                "each level halves width and height and has its own iterations"},
+    OptionText{
+        "search-size", "",
+        "With bayes, several levels, prior-smoothing maximum and cost census-rays with one "
+        "threshold: search all disparities in images of half or a quarter of the size, then "
+        "8 to 16 around what was found; auto: full size for up to 16 disparities, half for up to "
+        "128, else quarter"},
     OptionText{"candidate-blocks", "K",
                "With bayes, several levels and prior-smoothing maximum: search only K blocks of 16 "
                "disparities, 1 to 8, around what the coarser level found; 0: search all"},

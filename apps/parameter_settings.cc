@@ -59,6 +59,12 @@ EnumNames<Certainty> names_of(Certainty /*type*/) {
 EnumNames<PriorSmoothing> names_of(PriorSmoothing /*type*/) {
   return {{"sum", PriorSmoothing::kSum}, {"maximum", PriorSmoothing::kMaximum}};
 }
+EnumNames<SearchSize> names_of(SearchSize /*type*/) {
+  return {{"full", SearchSize::kFull},
+          {"half", SearchSize::kHalf},
+          {"quarter", SearchSize::kQuarter},
+          {"auto", SearchSize::kAuto}};
+}
 EnumNames<Subpixel> names_of(Subpixel /*type*/) {
   return {{"parabola", Subpixel::kParabola}, {"none", Subpixel::kNone}};
 }

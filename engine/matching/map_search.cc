@@ -48,7 +48,9 @@ void MapSearch::compute(Side reference, const ChainInput& input, const MapOutput
       [this](const MatchChain& chain) { run_chain(chain); }, coarse, check);
   report_.cells += cells.all_levels;
   if (coarse.is_all) {
-    report_.plan = std::move(plan_before);
+    if (!plan_before.passes.empty()) {
+      report_.plan = std::move(plan_before);
+    }
     return;
   }
   report_.finest_cells += cells.finest_level;

@@ -28,7 +28,7 @@ ResolvedMatchOptions checked(const MatchOptions& options) {
 }  // namespace
 
 StereoMatcher::StereoMatcher(const MatchOptions& options, Execution& execution)
-    : in_force_(checked(options)), execution_(execution) {
+    : in_force_(checked(options)), execution_(execution), reduced_(in_force_, execution) {
   if (uses_pair_exposure(in_force_.parameters)) {
     exposure_ = std::make_unique<PairExposureEstimator>(in_force_.disparities, execution_);
   }
@@ -252,6 +252,18 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   times = {};
   StageClock clock(times);
   clock.start("prepare");
+  if (search_reductions(in_force_, {left.width(), left.height()}) > 0) {
+    if (uses_prior) {
+      throw UsageError("there is a prior, expected none with a reduced search-size");
+    }
+    reduced_.match(left, right,
+                   {.left = request.left,
+                    .right = request.right,
+                    .unmatched = request.unmatched,
+                    .confidence = request.confidence},
+                   maps, clock, times);
+    return;
+  }
   const int check_level = this->check_level({left.width(), left.height()});
   MapTask of_left{.side = Side::kLeft, .image = &left, .map = &maps.left};
   MapTask of_right{.side = Side::kRight, .image = &right, .map = &maps.right};
@@ -340,6 +352,7 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
 }
 
 void StereoMatcher::add_memory_use(MemoryUse& use) const {
+  reduced_.add_memory_use(use);
   if (exposure_) {
     exposure_->add_memory_use(use);
   }

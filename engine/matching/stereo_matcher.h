@@ -17,6 +17,7 @@
 #include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/pair_exposure.h"
+#include "engine/matching/reduced_matcher.h"
 #include "engine/object_pool.h"
 #include "engine/refinement/refine_maps.h"
 #include "scheduler/strip_plan.h"
@@ -129,6 +130,7 @@ class StereoMatcher {
   const ResolvedMatchOptions in_force_;
   Execution& execution_;
   std::unique_ptr<PairExposureEstimator> exposure_;  ///< null: nothing is estimated
+  ReducedMatcher reduced_;  ///< for pairs that are searched in reduced images
   mutable ObjectPool<Prepared> prepared_;
   mutable ObjectPool<RefinementWork> refinement_works_;
 };

@@ -9,9 +9,24 @@
 namespace vantage {
 namespace {
 
-/// Time of `fast` relative to that of the preset (docs/QUALITY.md).
-constexpr double kFastOfBalanced = 0.5;
-constexpr double kFastOfQuality = 0.35;
+/// Time of `realtime` relative to that of the preset (docs/QUALITY.md).
+constexpr double kRealtimeOfFast = 0.5;
+constexpr double kRealtimeOfBalanced = 0.3;
+constexpr double kRealtimeOfQuality = 0.2;
+
+double realtime_of(MatchPreset preset) {
+  switch (preset) {
+    case MatchPreset::kRealtime:
+      return 1;
+    case MatchPreset::kFast:
+      return kRealtimeOfFast;
+    case MatchPreset::kBalanced:
+      return kRealtimeOfBalanced;
+    case MatchPreset::kQuality:
+      return kRealtimeOfQuality;
+  }
+  return 1;
+}
 /// Time of a map at half size, with all coarser levels, relative to that of a whole map.
 constexpr double kHalfSizeMap = 0.5;
 constexpr double kMinShare = 0.05;
@@ -52,21 +67,20 @@ class Steps {
 };
 
 Advice about_preset(const Steps& steps, double maps_s, const ProfiledChoices& choices) {
-  if (choices.preset == MatchPreset::kFast) {
+  if (choices.preset == MatchPreset::kRealtime) {
     return {0, ""};
   }
   if (!choices.preset) {
-    return {steps.share(maps_s) * (1 - kFastOfBalanced),
-            fmt::format("--preset fast instead of a method of the book: maps take {}.",
+    return {steps.share(maps_s) * (1 - kRealtimeOfBalanced),
+            fmt::format("--preset realtime instead of a method of the book: maps take {}.",
                         steps.text(maps_s))};
   }
-  const double of_this =
-      choices.preset == MatchPreset::kBalanced ? kFastOfBalanced : kFastOfQuality;
-  return {
-      steps.share(maps_s) * (1 - of_this),
-      fmt::format("--preset fast: maps take {}; it needs about {} times that, for somewhat more "
-                  "bad pixels.",
-                  steps.text(maps_s), of_this)};
+  const double of_this = realtime_of(*choices.preset);
+  return {steps.share(maps_s) * (1 - of_this),
+          fmt::format(
+              "--preset realtime: maps take {}; it needs about {} times that, for somewhat more "
+              "bad pixels.",
+              steps.text(maps_s), of_this)};
 }
 
 Advice about_range(const Steps& steps, double maps_s, const ProfiledChoices& choices) {

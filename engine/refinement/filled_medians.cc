@@ -64,7 +64,8 @@ T* inside(Image<T>& framed, int y) {
 
 }  // namespace
 
-void take_filled_medians(const Mask& unmatched, const Photograph& photograph, Execution& execution,
+void take_filled_medians(const Mask& unmatched, const Photograph& photograph,
+                         const kernels::FilledMedianGrid& grid, Execution& execution,
                          FilledMediansWork& work, DisparityMap& map_px) {
   const int width = map_px.width();
   const int height = map_px.height();
@@ -90,7 +91,8 @@ void take_filled_medians(const Mask& unmatched, const Photograph& photograph, Ex
            .pixels = inside(work.pixels, y),
            .pixel_pitch = static_cast<std::ptrdiff_t>(work.pixels.view().stride()),
            .unmatched = unmatched.row(y),
-           .width = width},
+           .width = width,
+           .grid = grid},
           map_px.row(y));
     }
   });

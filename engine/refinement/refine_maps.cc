@@ -2,6 +2,8 @@
 
 #include <span>
 
+#include "kernels/filled_median/filled_median.h"
+
 namespace vantage {
 namespace {
 
@@ -17,12 +19,19 @@ void check_against(const MapToRefine& to_refine, const MapToRefine& other, doubl
   if (map.disparity_y_px.empty()) {
     cross_check(map.disparity_px.view(),
                 other.check_px.empty() ? partner.disparity_px.view() : other.check_px,
-                to_refine.side, tolerance_px, execution, map.unmatched);
+                to_refine.side, tolerance_px, execution, map.unmatched,
+                to_refine.pixels_per_column);
     return;
   }
   cross_check({map.disparity_px.view(), map.disparity_y_px.view()},
               {partner.disparity_px.view(), partner.disparity_y_px.view()}, to_refine.side,
               tolerance_px, execution, map.unmatched);
+}
+
+/// Samples of medians, in columns of the map.
+kernels::FilledMedianGrid median_grid(const MapToRefine& map) {
+  return map.pixels_per_column == 1 ? kernels::FilledMedianGrid{}
+                                    : kernels::FilledMedianGrid{.count = 5, .step_px = 2};
 }
 
 }  // namespace
@@ -106,8 +115,8 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
       }
       fill_unmatched(matched.unmatched, one->side, options.fill, execution, *component_px);
       if (options.fill == Fill::kMedian) {
-        take_filled_medians(matched.unmatched, *one->image, execution, work.filled_medians,
-                            *component_px);
+        take_filled_medians(matched.unmatched, *one->image, median_grid(*one), execution,
+                            work.filled_medians, *component_px);
       }
     }
   }

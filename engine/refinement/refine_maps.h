@@ -39,6 +39,8 @@ struct MapToRefine {
   /// Search range of the disparities (and of disparity_y_px); refined values stay within it.
   DisparityRange search = kAnyDisparity;
   DisparityRange search_y = kAnyDisparity;
+  /// Columns and rows of a map of half the size are 2 pixels apart; its disparities are in pixels.
+  int pixels_per_column = 1;
 };
 
 /// Working memory of refine_maps(), reused from call to call.

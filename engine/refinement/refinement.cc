@@ -15,12 +15,13 @@ namespace {
 constexpr float kFillSurfaceStepPx = 1;
 
 kernels::CrossCheckRow row_to_check(ImageView<const float> map_px, int y, Side side,
-                                    double tolerance_px, Mask& unmatched) {
+                                    double tolerance_px, float columns_per_px, Mask& unmatched) {
   return {.own_px = map_px.row(y),
           .direction = direction_of(side),
           .tolerance_px = tolerance_px,
           .width = map_px.width(),
-          .unmatched = unmatched.row(y)};
+          .unmatched = unmatched.row(y),
+          .columns_per_px = columns_per_px};
 }
 
 /// Whether the partner of (x, y) lies inside `other` and has nearly the same displacement.
@@ -57,12 +58,14 @@ void erase_unmatched(const Mask& unmatched, Execution& execution, DisparityMap& 
 }  // namespace
 
 void cross_check(ImageView<const float> map_px, ImageView<const float> other_px, Side side,
-                 double tolerance_px, Execution& execution, Mask& unmatched) {
+                 double tolerance_px, Execution& execution, Mask& unmatched,
+                 int pixels_per_column) {
+  const float columns_per_px = 1.0F / static_cast<float>(pixels_per_column);
   unmatched.resize(map_px.width(), map_px.height());
   execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
-      kernels::cross_check_row(row_to_check(map_px, y, side, tolerance_px, unmatched),
-                               other_px.row(y));
+      kernels::cross_check_row(
+          row_to_check(map_px, y, side, tolerance_px, columns_per_px, unmatched), other_px.row(y));
     }
   });
 }
@@ -72,7 +75,7 @@ void cross_check(ImageView<const float> map_px, const CoarseWinners& other, Side
   unmatched.resize(map_px.width(), map_px.height());
   execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
-      kernels::cross_check_winners_row(row_to_check(map_px, y, side, tolerance_px, unmatched),
+      kernels::cross_check_winners_row(row_to_check(map_px, y, side, tolerance_px, 1, unmatched),
                                        {.winners = other.winners.row(y >> other.level),
                                         .level = other.level,
                                         .disparity_min = other.disparity_min});

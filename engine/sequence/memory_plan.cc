@@ -8,6 +8,7 @@
 
 #include "engine/error.h"
 #include "engine/matching/coarse_to_fine.h"
+#include "engine/matching/reduced_matcher.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/synthesis/photograph_grid.h"
 #include "engine/synthesis/three_step_synthesizer.h"
@@ -87,6 +88,10 @@ std::size_t rectification_bytes(const SequenceOptions& options, const PairShape&
 
 /// Matching one frame, except its strips: images for the costs, coarse levels.
 std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) {
+  const scheduler::Extent extent{shape.source.width_px, shape.source.height_px};
+  if (search_reductions(options.match.in_force(), extent) > 0) {
+    return ReducedMatcher::working_bytes(options.match.in_force(), extent);
+  }
   const std::size_t pixels = pixels_of(shape.source);
   const std::size_t channels = options.match.resolved().colour == ColourUse::kChannels
                                    ? static_cast<std::size_t>(shape.channels)
@@ -98,9 +103,7 @@ std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) 
   return pixels * channels * kPlanes * sizeof(float) +
          (check_level > 0 ? kCheckedMaps : 0) * (pixels >> 2 * check_level) * sizeof(std::int32_t) +
          edge_weight_bytes(options.match.resolved(), pixels) +
-         coarse_level_bytes(options.match.resolved(),
-                            {shape.source.width_px, shape.source.height_px},
-                            options.match.disparities.count());
+         coarse_level_bytes(options.match.resolved(), extent, options.match.disparities.count());
 }
 
 bool is_on_baseline(const SequenceOptions& options, const ViewPath& view) {

@@ -152,6 +152,11 @@ void SequenceOptions::validate() const {
   match.validate();
   synthesis.validate();
   temporal.validate();
+  if (temporal.weight > 0 && match.resolved().search_size != SearchSize::kFull) {
+    throw UsageError(fmt::format(
+        "temporal-prior is {}, expected 0 with a reduced search-size (preset realtime)",
+        temporal.weight));
+  }
   if (match.disparities_y) {
     throw UsageError("disparities-y is set, expected none: sequences consist of rectified pairs");
   }

@@ -61,6 +61,9 @@ std::string method_text(const MatchOptions& match, const TunedImages& images) {
           fmt::format(", {} blocks on {}", parameters.candidate_blocks, parameters.pruned_levels);
     }
   }
+  if (parameters.search_size != SearchSize::kFull) {
+    text += ", reduced search";
+  }
   if (uses_column_ssd(parameters) && !match.disparities_y) {
     text += images.is_8_bit_grey ? ", 8-bit grey" : ", any images";
   } else if (parameters.colour == ColourUse::kChannels) {

@@ -70,6 +70,13 @@ void ray_census_code_row(const RayCensusRows& rows, int width, int thresholds,
 void ray_census_code_row_ref(const RayCensusRows& rows, int width, int thresholds,
                              const RayCensusCodes& codes);
 
+/// As ray_census_code_row() with one threshold, of bytes.
+using ByteRayCensusRows = std::array<const std::uint8_t*, 2 * kRayCensusRadius + 1>;
+void byte_ray_census_code_row(const ByteRayCensusRows& rows, int width,
+                              const RayCensusCodes& codes);
+void byte_ray_census_code_row_ref(const ByteRayCensusRows& rows, int width,
+                                  const RayCensusCodes& codes);
+
 /// Planes: the two halves of census codes.
 using CensusPairs = FeaturePairs<std::uint32_t, 2>;
 /// Planes: the bytes of ray census codes, as many as `thresholds` requires.

@@ -46,6 +46,21 @@ void ray_census_code_row_ref(const RayCensusRows& rows, int width, int threshold
   }
 }
 
+void byte_ray_census_code_row_ref(const ByteRayCensusRows& rows, int width,
+                                  const RayCensusCodes& codes) {
+  for (int x = 0; x < width; ++x) {
+    for (std::size_t p = 0; p < kRayCensusBytes; ++p) {
+      unsigned code = 0;
+      for (std::size_t bit = 0; bit < 8; ++bit) {
+        const auto [columns, down] = kRayCensusOffsets[8 * p + bit];
+        const std::uint8_t* const row = rows[static_cast<std::size_t>(kRayCensusRadius + down)];
+        code = 2 * code + (row[x + columns] < rows[kRayCensusRadius][x] ? 1U : 0U);
+      }
+      codes[p][x] = static_cast<std::uint8_t>(code);
+    }
+  }
+}
+
 void hamming_row_ref(const CensusPairs& row, float* cells) {
   for (int j = 0; j < row.columns; ++j) {
     for (int i = 0; i < row.lanes; ++i) {

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 
+#include "kernels/candidates.h"
 #include "kernels/census/census.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -115,6 +116,41 @@ void ray_census(const RayCensusRows& rows, int width, int thresholds, const RayC
   }
 }
 
+#if HWY_TARGET == HWY_SCALAR
+void byte_ray_census_codes(const ByteRayCensusRows& rows, int width, const RayCensusCodes& codes) {
+  byte_ray_census_code_row_ref(rows, width, codes);
+}
+#else
+// Processes whole vectors from column x on, the last one ending at or after `end`. Returns the next
+// column.
+template <class D>
+HWY_INLINE int byte_codes(D d, const ByteRayCensusRows& rows, int x, int end,
+                          const RayCensusCodes& codes) {
+  for (; x < end; x += static_cast<int>(hn::Lanes(d))) {
+    const auto centre = hn::LoadU(d, rows[kRayCensusRadius] + x);
+    for (std::size_t byte = 0; byte < kRayCensusBytes; ++byte) {
+      auto code = hn::Zero(d);
+      for (std::size_t bit = 0; bit < 8; ++bit) {
+        const auto [columns, down] = kRayCensusOffsets[8 * byte + bit];
+        const auto neighbour =
+            hn::LoadU(d, rows[static_cast<std::size_t>(kRayCensusRadius + down)] + x + columns);
+        // True is −1.
+        code = hn::Sub(hn::Add(code, code), hn::VecFromMask(d, hn::Lt(neighbour, centre)));
+      }
+      hn::StoreU(code, d, codes[byte] + x);
+    }
+  }
+  return x;
+}
+
+void byte_ray_census_codes(const ByteRayCensusRows& rows, int width, const RayCensusCodes& codes) {
+  const hn::ScalableTag<std::uint8_t> d;
+  const int whole = width - width % static_cast<int>(hn::Lanes(d));
+  const int x = byte_codes(d, rows, 0, whole, codes);
+  byte_codes(hn::CappedTag<std::uint8_t, kLaneMultiple>(), rows, x, width, codes);
+}
+#endif
+
 #if HWY_TARGET != HWY_SCALAR
 // Sums the four bytes of each lane; no sum exceeds 255.
 HWY_INLINE VecCode add_bytes(hn::VFromD<hn::Repartition<std::uint8_t, TagCode>> counts) {
@@ -155,6 +191,7 @@ namespace vantage::kernels {
 HWY_EXPORT(census_codes);
 HWY_EXPORT(hamming);
 HWY_EXPORT(ray_census);
+HWY_EXPORT(byte_ray_census_codes);
 
 void census_code_row(const CensusRows& rows, int width, std::uint32_t* first_half,
                      std::uint32_t* second_half) {
@@ -166,6 +203,10 @@ void hamming_row(const CensusPairs& row, float* cells) {
 void ray_census_code_row(const RayCensusRows& rows, int width, int thresholds,
                          const RayCensusCodes& codes) {
   HWY_DYNAMIC_DISPATCH(ray_census)(rows, width, thresholds, codes);
+}
+void byte_ray_census_code_row(const ByteRayCensusRows& rows, int width,
+                              const RayCensusCodes& codes) {
+  HWY_DYNAMIC_DISPATCH(byte_ray_census_codes)(rows, width, codes);
 }
 
 }  // namespace vantage::kernels

@@ -98,7 +98,7 @@ HWY_INLINE int check_columns(D d, const CrossCheckRow& row, const Tolerance& tol
   const hn::RebindToSigned<D> d_int;
   const hn::Rebind<std::uint8_t, D> d_byte;
   const int step = static_cast<int>(hn::Lanes(d));
-  const auto direction = hn::Set(d, static_cast<float>(row.direction));
+  const auto direction = hn::Set(d, static_cast<float>(row.direction) * row.columns_per_px);
   const auto zero = hn::Zero(d_int);
   const auto before = hn::Set(d_int, -1);
   const auto width = hn::Set(d_int, row.width);

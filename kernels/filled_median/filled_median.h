@@ -6,8 +6,7 @@
 
 namespace vantage::kernels {
 
-/// The samples of a filled pixel are kFilledMedianSamples² positions on a grid centred on the
-/// pixel, with spacing kFilledMedianStepPx in both directions.
+/// Largest FilledMedianGrid.
 constexpr int kFilledMedianSamples = 7;
 constexpr int kFilledMedianStepPx = 3;
 constexpr int kFilledMedianReachPx = kFilledMedianSamples / 2 * kFilledMedianStepPx;
@@ -15,6 +14,13 @@ constexpr int kFilledMedianReachPx = kFilledMedianSamples / 2 * kFilledMedianSte
 constexpr int kFilledRowSlack = 15;
 /// Three channels and a 0.
 constexpr int kFilledPixelBytes = 4;
+
+/// The samples of a filled pixel: count² positions on a grid centred on the pixel, step_px apart in
+/// both directions.
+struct FilledMedianGrid {
+  int count = kFilledMedianSamples;  ///< odd
+  int step_px = kFilledMedianStepPx;
+};
 
 /// One row of a filled disparity map and its neighbourhood.
 struct FilledRow {
@@ -29,6 +35,7 @@ struct FilledRow {
   std::ptrdiff_t pixel_pitch = 0;           ///< values between rows
   const std::uint8_t* unmatched = nullptr;  ///< for this row; ≠ 0: filled, not matched
   int width = 0;
+  FilledMedianGrid grid = {};
 };
 
 /// Indexed by the sum of absolute differences of three channels.

@@ -81,10 +81,12 @@ void take_filled_medians_row_ref(const FilledRow& row, float* filled_px) {
     const std::uint8_t* own = row.pixels + x * kFilledPixelBytes;
     int count = 0;
     int total = 0;
-    for (int dy = -kFilledMedianReachPx; dy <= kFilledMedianReachPx; dy += kFilledMedianStepPx) {
+    for (int j = -row.grid.count / 2; j <= row.grid.count / 2; ++j) {
+      const std::ptrdiff_t dy = j * row.grid.step_px;
       const float* disparity_px = row.disparity_px + dy * row.disparity_pitch + x;
       const std::uint8_t* pixels = own + dy * row.pixel_pitch;
-      for (int dx = -kFilledMedianReachPx; dx <= kFilledMedianReachPx; dx += kFilledMedianStepPx) {
+      for (int i = -row.grid.count / 2; i <= row.grid.count / 2; ++i) {
+        const std::ptrdiff_t dx = i * row.grid.step_px;
         const int unlike = difference(pixels + dx * kFilledPixelBytes, own);
         const int weight = weights[static_cast<std::size_t>(unlike)];
         samples[static_cast<std::size_t>(count)] = {disparity_px[dx], weight};

@@ -68,11 +68,12 @@ HWY_INLINE Brackets take_samples(const FilledRow& row, int x, const std::int32_t
   Brackets brackets{infinity, hn::Neg(infinity), hn::Zero(di)};
   float* sample_px = samples.disparity_px;
   std::int32_t* sample_weight = samples.weight;
-  for (int dy = -kFilledMedianReachPx; dy <= kFilledMedianReachPx; dy += kFilledMedianStepPx) {
+  for (int j = -row.grid.count / 2; j <= row.grid.count / 2; ++j) {
+    const std::ptrdiff_t dy = j * row.grid.step_px;
     const float* row_px = row.disparity_px + dy * row.disparity_pitch + x;
     const std::uint8_t* row_pixels = own + dy * row.pixel_pitch;
-    HWY_UNROLL(kFilledMedianSamples)
-    for (int dx = -kFilledMedianReachPx; dx <= kFilledMedianReachPx; dx += kFilledMedianStepPx) {
+    for (int i = -row.grid.count / 2; i <= row.grid.count / 2; ++i) {
+      const std::ptrdiff_t dx = i * row.grid.step_px;
       const Vec disparity_px = hn::LoadU(d, row_px + dx);
       const auto is_known = hn::RebindMask(di, hn::Eq(disparity_px, disparity_px));
       const VecI unlike = differences(row_pixels + dx * kFilledPixelBytes, own);
@@ -93,15 +94,14 @@ HWY_INLINE Brackets take_samples(const FilledRow& row, int x, const std::int32_t
 
 // Removes the samples on the wrong side of `pivots`. Pivots in [`min`, `max`) remove at least
 // one.
-HWY_INLINE void narrow(const Samples& samples, Vec pivots, Brackets& brackets) {
+HWY_INLINE void narrow(const Samples& samples, int count, Vec pivots, Brackets& brackets) {
   const TagF d;
   const TagI di;
   const Vec infinity = hn::Set(d, kInfinity);
   VecI weight = hn::Zero(di);
   Vec max_below = hn::Neg(infinity);
   Vec min_above = infinity;
-  HWY_UNROLL(kFilledMedianSamples)
-  for (int i = 0; i < kSamples * kStep; i += kStep) {
+  for (int i = 0; i < count * kStep; i += kStep) {
     const Vec disparity_px = hn::Load(d, samples.disparity_px + i);
     const auto is_below = hn::Le(disparity_px, pivots);
     weight = hn::Add(
@@ -119,6 +119,7 @@ void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
   const TagI di;
   const std::int32_t* weights = filled_median_weights().data();
   const Vec half = hn::Set(d, 0.5F);
+  const int count = row.grid.count * row.grid.count;
   Samples samples;
   HWY_ALIGN std::int32_t taken[kStep] = {};
   HWY_ALIGN float medians_px[kStep];
@@ -141,7 +142,7 @@ void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
       // If there is no float in between, the pivot is the smallest sample: that removes it or all
       // others.
       const auto is_between = hn::And(hn::Ge(middle, brackets.min), hn::Lt(middle, brackets.max));
-      narrow(samples, hn::IfThenElse(is_between, middle, brackets.min), brackets);
+      narrow(samples, count, hn::IfThenElse(is_between, middle, brackets.min), brackets);
     }
     hn::Store(hn::VecFromMask(di, is_taken), di, taken);
     // The addition turns −0 into 0.

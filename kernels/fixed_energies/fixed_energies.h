@@ -25,6 +25,10 @@ class ByteSteps {
       : units_(static_cast<std::int16_t>(std::min(32767L, std::lround(steps * kUnits)))) {}
 
   [[nodiscard]] std::int16_t units() const { return units_; }
+  /// Nats per step of a byte.
+  [[nodiscard]] double nats(float steps_per_nat) const {
+    return static_cast<double>(units_) / kUnits / static_cast<double>(steps_per_nat);
+  }
   /// byte · steps; halves round up.
   [[nodiscard]] FixedEnergy of(std::uint8_t byte) const {
     return static_cast<FixedEnergy>((byte * units_ + kUnits / 2) / kUnits);

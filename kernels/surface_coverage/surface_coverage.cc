@@ -11,7 +11,7 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // Shift between a surface and its background, in pixels, from which nothing of the image's own
 // transition between them remains.
-constexpr double kSyntheticShiftPx = 2;
+constexpr double kShiftOfSyntheticPx = 2;
 
 // Upper limit of each image's certainty: outlines of round objects differ between images.
 constexpr double kMaxCertainty = 0.98;
@@ -44,7 +44,7 @@ double surface_coverage(const CoverageSource& source, double u, double v, double
   const double shift_y = background.y - surface.y;
   const double spline_share =
       background.is_visible
-          ? std::min(1.0, std::sqrt(shift_x * shift_x + shift_y * shift_y) / kSyntheticShiftPx)
+          ? std::min(1.0, std::sqrt(shift_x * shift_x + shift_y * shift_y) / kShiftOfSyntheticPx)
           : 1.0;
   // Farther outside, all pixels equal those at the border.
   const double x = std::clamp(surface.x, -2.0, source.width + 1.0);

@@ -38,6 +38,13 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
        "candidate-blocks is 2, expected 0 with disparities-y"},
       {{"--preset", "fast", "--cross-check-level", "1", "--disparities-y=-1:1"},
        "cross-check-level is 1, expected 0 with disparities-y"},
+      {{"--search-size", "half"}, "search-size is not full, expected full but for"},
+      {{"--preset", "fast", "--search-size", "half"},
+       "final-iterations is 0, expected at least 1 with a reduced search-size"},
+      {{"--preset", "realtime", "--cross-check-level", "1"},
+       "cross-check-level is 1, expected 0 with a reduced search-size"},
+      {{"--preset", "realtime", "--edge-snapping", "4"},
+       "edge-snapping is 4, expected 0 with a reduced search-size"},
       {{"--method", "diffusion", "--lambda", "0.25"}, "lambda is 0.25, expected a number above 0"},
       {{"--method", "membrane", "--lambda", "0.23"}, "at most 1/(4 + beta) = 0.2222"},
       {{"--method", "membrane", "--beta", "-1"}, "beta is -1, expected a number of at least 0"},
@@ -274,7 +281,7 @@ TEST_F(MatchCommandOptions, ReportShowsWhatWasEstimated) {
 
 TEST_F(MatchCommandOptions, ThePresetIsWhatPrintConfigSays) {
   const std::regex meaning("\n([a-z-]+) = 'auto'  # '?([^\n']+)");
-  for (const std::string preset : {"fast", "balanced", "quality"}) {
+  for (const std::string preset : {"realtime", "fast", "balanced", "quality"}) {
     const std::string config = run_vantage({"match", "--preset", preset, "--print-config"}).out;
     std::vector<std::string> options = {"--method", "bayes"};
     for (std::sregex_iterator it(config.begin(), config.end(), meaning), end; it != end; ++it) {

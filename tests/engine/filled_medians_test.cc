@@ -76,7 +76,7 @@ TEST(FilledMedians, RowsThatWereFilledAloneFollowTheOutlines) {
   fill_unmatched(disc.unmatched, Side::kLeft, Fill::kMedian, execution, disc.map);
   const int before = wrong(disc.map);
   FilledMediansWork work;
-  take_filled_medians(disc.unmatched, photograph, execution, work, disc.map);
+  take_filled_medians(disc.unmatched, photograph, {}, execution, work, disc.map);
   EXPECT_GT(before, 100);
   EXPECT_LT(wrong(disc.map), before / 4);
 }
@@ -94,7 +94,7 @@ TEST(FilledMedians, MatchedPixelsStayAndExecutionsAgree) {
   DisparityMap serial = noisy.copy();
   FilledMediansWork work;
   Execution one({.executor = scheduler::ExecutorKind::kSerial});
-  take_filled_medians(disc.unmatched, photograph, one, work, serial);
+  take_filled_medians(disc.unmatched, photograph, {}, one, work, serial);
   int changed = 0;
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
@@ -106,7 +106,7 @@ TEST(FilledMedians, MatchedPixelsStayAndExecutionsAgree) {
   }
   EXPECT_GT(changed, 100);
   Execution three({.threads = 3, .executor = scheduler::ExecutorKind::kOpenMp});
-  take_filled_medians(disc.unmatched, photograph, three, work, noisy);
+  take_filled_medians(disc.unmatched, photograph, {}, three, work, noisy);
   EXPECT_TRUE(test::identical(serial, noisy));
 }
 
@@ -127,7 +127,7 @@ TEST(FilledMedians, DepthsOfPhotographsAgree) {
     const auto filled = [&](const Photograph& photograph) {
       DisparityMap map = disc.map.copy();
       FilledMediansWork work;
-      take_filled_medians(disc.unmatched, photograph, execution, work, map);
+      take_filled_medians(disc.unmatched, photograph, {}, execution, work, map);
       return map;
     };
     const DisparityMap expected = filled({bytes.copy()});

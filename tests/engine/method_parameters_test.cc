@@ -152,7 +152,8 @@ TEST(MethodParameters, WithoutAnyChoiceTheyAreThoseOfBalanced) {
 
 TEST(MethodParameters, PresetsAreValidAndNotCombinedWithMethods) {
   for (const MatchPreset preset :
-       {MatchPreset::kFast, MatchPreset::kBalanced, MatchPreset::kQuality}) {
+       {MatchPreset::kRealtime, MatchPreset::kFast, MatchPreset::kBalanced,
+        MatchPreset::kQuality}) {
     MatchOptions options;
     options.preset = preset;
     EXPECT_EQ(complaint(options), "");

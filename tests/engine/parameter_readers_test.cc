@@ -161,6 +161,7 @@ const std::map<std::string_view, Changes>& changes() {
       {"aggregation-sigma", values_of<double>(&P::aggregation_sigma_px, {0.9, 3.5})},
       {"iterations", values_of<int>(&P::iterations, {1, 5})},
       {"levels", values_of<int>(&P::levels, {2, 4})},
+      {"search-size", values_of<SearchSize>(&P::search_size, {SearchSize::kHalf})},
       {"candidate-blocks", values_of<int>(&P::candidate_blocks, {2})},
       {"pruned-levels", values_of<int>(&P::pruned_levels, {1})},
       {"final-iterations", values_of<int>(&P::final_iterations, {0, 5})},
@@ -232,6 +233,9 @@ bool is_valid(const MethodParameters& parameters) {
 bool is_without_difference(std::string_view name, const MethodParameters& parameters) {
   if (name == "candidate-blocks") {
     return !can_prune(parameters);  // it is 0, and only that is accepted
+  }
+  if (name == "search-size") {
+    return true;  // more than one search: see reduced_matcher_test
   }
   if (name == "certainty") {
     return parameters.cost == MatchCost::kGradient;  // which has entropy only

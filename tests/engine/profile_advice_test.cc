@@ -41,7 +41,7 @@ TEST(ProfileAdvice, WhatSavesMostComesFirst) {
                                 .can_check_coarse_map = true};
   EXPECT_THAT(
       profile_advice(profile, kSteps, choices),
-      ElementsAre(HasSubstr("--preset fast: maps take 650 ms, 65 % of the time of all steps"),
+      ElementsAre(HasSubstr("--preset realtime: maps take 650 ms, 65 % of the time of all steps"),
                   HasSubstr("--disparities MIN:MAX, the range that 'auto' prints: looking for it "
                             "takes 200 ms, 20 %"),
                   HasSubstr("--cross-check-level 1 (a map of half the size will do) or "
@@ -54,20 +54,20 @@ TEST(ProfileAdvice, WhatSavesMostComesFirst) {
 TEST(ProfileAdvice, OnlyWhatTheCommandCouldDoIsSaid) {
   const Profile profile = on_threads({{4, 1}}, 4);
   // The fastest preset, a known range, no look at rows, both maps wanted.
-  EXPECT_THAT(profile_advice(profile, kSteps, {.preset = MatchPreset::kFast, .candidates = 32}),
+  EXPECT_THAT(profile_advice(profile, kSteps, {.preset = MatchPreset::kRealtime, .candidates = 32}),
               IsEmpty());
-  EXPECT_THAT(profile_advice(profile, kSteps, {.preset = MatchPreset::kFast, .candidates = 256}),
+  EXPECT_THAT(profile_advice(profile, kSteps, {.preset = MatchPreset::kRealtime, .candidates = 256}),
               ElementsAre(HasSubstr("256 candidates are searched in 650 ms")));
   EXPECT_THAT(profile_advice(profile, kSteps, {.preset = {}, .candidates = 32}),
-              ElementsAre(HasSubstr("--preset fast instead of a method of the book")));
+              ElementsAre(HasSubstr("--preset realtime instead of a method of the book")));
   // What takes less than a twentieth is not worth a word.
   EXPECT_THAT(profile_advice(profile, {{"check", 0.04}, {"write", 0.96}},
-                             {.preset = MatchPreset::kFast, .checks_rows = true}),
+                             {.preset = MatchPreset::kRealtime, .checks_rows = true}),
               IsEmpty());
 }
 
 TEST(ProfileAdvice, ThreadsThatGainNothingAreNamed) {
-  const ProfiledChoices choices{.preset = MatchPreset::kFast};
+  const ProfiledChoices choices{.preset = MatchPreset::kRealtime};
   EXPECT_THAT(profile_advice(on_threads({{1, 2}, {2, 1}, {4, 1.02}, {8, 1.2}}, 8), {}, choices),
               ElementsAre(HasSubstr("--threads 2: 1 s, with 8 threads 1.2 s")));
   EXPECT_THAT(profile_advice(on_threads({{1, 2}, {2, 1}}, 8), {}, choices),

@@ -105,7 +105,8 @@ TEST(SearchLimits, PresetsKeepThem) {
   Execution execution({.threads = 2});
   DisparityMaps maps;
   for (const MatchPreset preset :
-       {MatchPreset::kFast, MatchPreset::kBalanced, MatchPreset::kQuality}) {
+       {MatchPreset::kRealtime, MatchPreset::kFast, MatchPreset::kBalanced,
+        MatchPreset::kQuality}) {
     MatchOptions options;
     options.preset = preset;
     options.disparities = kSearch;

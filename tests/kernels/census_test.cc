@@ -163,5 +163,47 @@ TEST_P(Census, HammingDistance) {
   });
 }
 
+TEST_P(Census, RayCodesOfBytesEqualThoseOfFloats) {
+  std::mt19937 random(12);
+  constexpr std::size_t kMargin = 4;
+  for (const int width : {1, 5, 16, 17, 63, 64, 65, 130}) {
+    const auto size = static_cast<std::size_t>(width);
+    const std::size_t read =
+        kMargin + (size + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple + kMargin;
+    std::vector<std::vector<std::uint8_t>> bytes(9, std::vector<std::uint8_t>(read));
+    std::vector<std::vector<float>> floats(9, std::vector<float>(read));
+    ByteRayCensusRows byte_rows{};
+    RayCensusRows rows{};
+    for (std::size_t r = 0; r < 9; ++r) {
+      for (std::size_t x = 0; x < read; ++x) {
+        bytes[r][x] = static_cast<std::uint8_t>(random_int(random, 0, 3) * 85);
+        floats[r][x] = bytes[r][x];
+      }
+      byte_rows[r] = bytes[r].data() + kMargin;
+      rows[r] = floats[r].data() + kMargin;
+    }
+    std::vector<std::vector<std::uint8_t>> codes(6, std::vector<std::uint8_t>(read));
+    std::vector<std::vector<std::uint8_t>> expected = codes;
+    std::vector<std::vector<std::uint8_t>> of_reference = codes;
+    const auto pointers = [](auto& planes) {
+      RayCensusCodes pointers{};
+      for (std::size_t p = 0; p < planes.size(); ++p) {
+        pointers[p] = planes[p].data();
+      }
+      return pointers;
+    };
+    byte_ray_census_code_row(byte_rows, width, pointers(codes));
+    byte_ray_census_code_row_ref(byte_rows, width, pointers(of_reference));
+    ray_census_code_row_ref(rows, width, 1, pointers(expected));
+    for (std::size_t p = 0; p < kRayCensusBytes; ++p) {
+      codes[p].resize(size);
+      of_reference[p].resize(size);
+      expected[p].resize(size);
+      EXPECT_EQ(codes[p], expected[p]);
+      EXPECT_EQ(of_reference[p], expected[p]);
+    }
+  }
+}
+
 }  // namespace census_test
 }  // namespace vantage::kernels

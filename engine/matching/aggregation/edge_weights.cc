@@ -7,6 +7,7 @@
 #include "engine/image/memory_use.h"
 #include "engine/matching/levels/energy_format.h"
 #include "engine/matching/levels/level_extents.h"
+#include "kernels/candidate_windows.h"
 #include "kernels/edge_weights/edge_weights.h"
 
 namespace vantage {
@@ -35,8 +36,9 @@ void EdgeWeights::make(ImageView<const float> grey, const MethodParameters& para
                                  .contrast = static_cast<float>(parameters.edge_contrast)};
   const int width = grey.width();
   const int height = grey.height();
-  planes.beside.resize(width + 1, height);
-  planes.above.resize(width, height + 1);
+  // Kernels of windows read whole vectors.
+  planes.beside.resize(width + 1 + kernels::kWindowMargin, height);
+  planes.above.resize(width + kernels::kWindowMargin, height + 1);
   execution.for_each_band(height, [&](int first_row, int end_row) {
     const auto work =
         execution.scratch().lease(sizeof(float) * (static_cast<std::size_t>(width) + 1));

@@ -1,6 +1,7 @@
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <variant>
 
 #include "engine/matching/costs/cost_table.h"
 #include "engine/matching/costs/ray_census_planes.h"
@@ -51,13 +52,23 @@ class RayCensusModel final : public CostModel {
 
 void RayCensusPlanes::prepare(const PlaneSource& source, const MethodParameters& parameters) {
   const int thresholds = parameters.census_thresholds;
-  const auto bytes = static_cast<std::size_t>(kernels::ray_census_bytes(thresholds));
-  prepare_filter_intensities(source, intensities_);
   source.for_each_channel([&](std::size_t c) {
-    for (std::size_t k = 0; k < bytes; ++k) {
-      codes[c][k].resize(source);
+    for (int k = 0; k < kernels::ray_census_bytes(thresholds); ++k) {
+      codes[c][static_cast<std::size_t>(k)].resize(source);
     }
   });
+  const auto* const image = std::get_if<Image<std::uint8_t>>(&source.photograph.pixels);
+  if (image != nullptr && image->channels() == 1 && source.channels == 1 && thresholds == 1 &&
+      source.intensity_changes.luma.is_none()) {
+    prepare_byte_codes(source, *image);
+  } else {
+    prepare_codes(source, thresholds);
+  }
+}
+
+void RayCensusPlanes::prepare_codes(const PlaneSource& source, int thresholds) {
+  const auto bytes = static_cast<std::size_t>(kernels::ray_census_bytes(thresholds));
+  prepare_filter_intensities(source, intensities_);
   source.for_each_channel_row([&](std::size_t c, int y) {
     kernels::RayCensusRows rows{};
     for (int v = -kernels::kRayCensusRadius; v <= kernels::kRayCensusRadius; ++v) {
@@ -71,6 +82,31 @@ void RayCensusPlanes::prepare(const PlaneSource& source, const MethodParameters&
     kernels::ray_census_code_row(rows, source.width(), thresholds, code_rows);
     for (std::size_t k = 0; k < bytes; ++k) {
       codes[c][k].finish_row(source, y);
+    }
+  });
+}
+
+/// The same codes as from floats.
+void RayCensusPlanes::prepare_byte_codes(const PlaneSource& source,
+                                         const Image<std::uint8_t>& image) {
+  bytes_.resize(source.width(), source.height(), kFilterMarginBefore, kFilterMarginAfter);
+  source.for_each_row([&](int y) {
+    std::copy_n(image.row(y), source.width(), bytes_.row(y));
+    bytes_.fill_margins(y);
+  });
+  source.for_each_row([&](int y) {
+    kernels::ByteRayCensusRows rows{};
+    for (int v = -kernels::kRayCensusRadius; v <= kernels::kRayCensusRadius; ++v) {
+      rows[static_cast<std::size_t>(v + kernels::kRayCensusRadius)] =
+          bytes_.row(std::clamp(y + v, 0, source.height() - 1));
+    }
+    kernels::RayCensusCodes code_rows{};
+    for (std::size_t k = 0; k < kernels::kRayCensusBytes; ++k) {
+      code_rows[k] = codes[0][k].plain.row(y);
+    }
+    kernels::byte_ray_census_code_row(rows, source.width(), code_rows);
+    for (std::size_t k = 0; k < kernels::kRayCensusBytes; ++k) {
+      codes[0][k].finish_row(source, y);
     }
   });
 }

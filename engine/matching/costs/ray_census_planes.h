@@ -16,11 +16,15 @@ class RayCensusPlanes final : public CostPlanes {
 
   void prepare(const PlaneSource& source, const MethodParameters& parameters) override;
   [[nodiscard]] std::size_t held_bytes() const override {
-    return held_bytes_of(codes) + held_bytes_of(intensities_);
+    return held_bytes_of(codes) + held_bytes_of(intensities_) + bytes_.held_bytes();
   }
 
  private:
+  void prepare_codes(const PlaneSource& source, int thresholds);
+  void prepare_byte_codes(const PlaneSource& source, const Image<std::uint8_t>& image);
+
   FilterIntensities intensities_;
+  IntensityPlane<std::uint8_t> bytes_;  ///< intensities of 8-bit grey images
 };
 
 /// thresholds: those the images were prepared with.

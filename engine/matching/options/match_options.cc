@@ -65,6 +65,28 @@ void validate_refinement(const RefinementOptions& refinement, bool is_two_dimens
   }
 }
 
+/// With a search in reduced images.
+void validate_reduced_search(const MethodParameters& parameters,
+                             const RefinementOptions& refinement, bool is_two_dimensional) {
+  const auto refuse = [](std::string_view field, int value, std::string_view why) {
+    throw UsageError(
+        fmt::format("{} is {}, expected 0 with a reduced search-size: {}", field, value, why));
+  };
+  if (is_two_dimensional || !can_reduce_search(parameters)) {
+    throw UsageError(
+        "search-size is not full, expected full but for a search along rows by aggregation bayes "
+        "with levels above 1, prior-smoothing maximum, and cost census-rays with one threshold and "
+        "colour luma");
+  }
+  if (refinement.edge_snapping_px > 0) {
+    refuse("edge-snapping", refinement.edge_snapping_px,
+           "maps are enlarged along the image's edges instead");
+  }
+  if (refinement.cross_check_level > 0) {
+    refuse("cross-check-level", refinement.cross_check_level, "both maps have half the size");
+  }
+}
+
 /// Throws UsageError for the first field that is set but not read by refinement.
 void require_read(const RefinementOverrides& set, const RefinementOptions& in_force, bool raw) {
   const auto refuse_if = [](bool is_unread, std::string_view field, std::string_view why) {
@@ -113,6 +135,9 @@ void MatchOptions::validate() const {
         "of searches along rows only",
         of_maps.cross_check_level));
   }
+  if (in_force.search_size != SearchSize::kFull) {
+    validate_reduced_search(in_force, of_maps, disparities_y.has_value());
+  }
   if (of_maps.cross_check_level > 0 && !can_check_levels(in_force)) {
     throw UsageError(fmt::format(
         "cross-check-level is {}, expected 0: only aggregation bayes with levels above 1 has maps "
@@ -153,7 +178,11 @@ MethodParameters MatchOptions::resolved() const {
   }
   MethodParameters result =
       resolve(method.value_or(settings.method), merge(settings.parameters, parameters));
-  // A preset's pruning applies only where it is possible: the user's choices take precedence.
+  // A preset's search size and pruning apply only where they are possible: the user's choices take
+  // precedence.
+  if (!parameters.search_size && (disparities_y || !can_reduce_search(result))) {
+    result.search_size = SearchSize::kFull;
+  }
   if (!parameters.candidate_blocks && (disparities_y || !can_prune(result))) {
     result.candidate_blocks = 0;
   }

@@ -28,6 +28,19 @@ PresetSettings preset_settings(MatchPreset preset) {
   settings.refinement.speckle_size_px = 100;
   settings.refinement.surface_fit_px = 10;
   switch (preset) {
+    case MatchPreset::kRealtime:
+      settings.method = MatchMethod::kBayes;
+      settings.parameters = coarse_to_fine();
+      settings.parameters.search_size = SearchSize::kAuto;
+      settings.parameters.mu = 0.24;
+      settings.parameters.iterations = 2;
+      settings.parameters.final_iterations = 3;
+      settings.parameters.pruned_levels = 4;
+      settings.refinement.cross_check_px = 1.5;
+      settings.refinement.speckle_size_px = 90;
+      settings.refinement.surface_fit_px = 14;
+      settings.refinement.fill = Fill::kMedian;
+      break;
     case MatchPreset::kFast:
       settings.method = MatchMethod::kBayes;
       settings.parameters = coarse_to_fine();

@@ -84,6 +84,7 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
         options.aggregation_sigma_px...);
   visit(Field{"iterations", readers::kNamed, kIterations}, options.iterations...);
   visit(Field{"levels", readers::kAll, kLevels}, options.levels...);
+  visit(Field{"search-size", readers::kSearchSize}, options.search_size...);
   visit(Field{"candidate-blocks",
               readers::kCandidateBlocks,
               {is_within<0, kMaxCandidateBlocks>, "a number from 0 (all candidates) to 8"}},

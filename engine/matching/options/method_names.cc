@@ -38,7 +38,8 @@ const EnumNames<MatchMethod>& method_names() {
 }
 
 const EnumNames<MatchPreset>& preset_names() {
-  static const EnumNames<MatchPreset> names = {{"fast", MatchPreset::kFast},
+  static const EnumNames<MatchPreset> names = {{"realtime", MatchPreset::kRealtime},
+                                               {"fast", MatchPreset::kFast},
                                                {"balanced", MatchPreset::kBalanced},
                                                {"quality", MatchPreset::kQuality}};
   return names;

@@ -40,6 +40,13 @@ void validate_pruning(const MethodParameters& parameters) {
           "0 with prior-smoothing sum: pruning needs prior-smoothing maximum");
 }
 
+void validate_search_size(const MethodParameters& parameters) {
+  if (parameters.search_size != SearchSize::kFull) {
+    require(parameters.final_iterations > 0, "final-iterations", parameters.final_iterations,
+            "at least 1 with a reduced search-size, whose full-size candidates need them");
+  }
+}
+
 void validate_step(const MethodParameters& parameters) {
   if (parameters.aggregation == Aggregation::kMembrane) {
     const double max = 1 / (4 + parameters.beta);
@@ -135,6 +142,13 @@ bool can_prune(const MethodParameters& parameters) {
          parameters.prior_smoothing == PriorSmoothing::kMaximum;
 }
 
+bool can_reduce_search(const MethodParameters& parameters) {
+  return parameters.levels > 1 && parameters.aggregation == Aggregation::kBayes &&
+         parameters.prior_smoothing == PriorSmoothing::kMaximum &&
+         parameters.cost == MatchCost::kRayCensus && parameters.census_thresholds == 1 &&
+         parameters.colour == ColourUse::kLuma;
+}
+
 bool uses_sigma_measurement(const MethodParameters& parameters) {
   constexpr std::string_view kOption = "sigma-measurement";
   const bool is_idle = parameters.aggregation == Aggregation::kLocalStopping &&
@@ -151,6 +165,7 @@ bool uses_pair_exposure(const MethodParameters& parameters) {
 void validate(const MethodParameters& parameters) {
   require_within_limits(parameters);
   validate_pruning(parameters);
+  validate_search_size(parameters);
   validate_step(parameters);
   validate_combination(parameters);
 }

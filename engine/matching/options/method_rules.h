@@ -24,6 +24,10 @@ void validate(const MethodParameters& parameters);
 /// the maximum prior and any cost but evidence.
 bool can_prune(const MethodParameters& parameters);
 
+/// Whether candidates can be searched in reduced images (search_size): Bayes with several levels,
+/// the maximum prior and ray census codes of luma with one threshold.
+bool can_reduce_search(const MethodParameters& parameters);
+
 /// Whether σM is used.
 bool uses_sigma_measurement(const MethodParameters& parameters);
 

@@ -54,6 +54,13 @@ inline constexpr ParameterReaders kBayes = {"the {aggregations} (method bayes, t
                                             reads};
 inline constexpr ParameterReaders kBayesWithLevels = {
     "the {aggregations} (method bayes, the presets) with levels above 1", reads_with_levels};
+/// The default counts as read where only it is possible.
+inline constexpr ParameterReaders kSearchSize = {
+    "the aggregation bayes with levels above 1, prior-smoothing maximum and cost census-rays with "
+    "one threshold (the presets realtime and fast)",
+    [](const MethodParameters& p, std::string_view) {
+      return p.search_size == SearchSize::kFull || can_reduce_search(p);
+    }};
 /// A candidate_blocks of 0 counts as read where only 0 is possible.
 inline constexpr ParameterReaders kCandidateBlocks = {
     kBayesWithLevels.text, [](const MethodParameters& p, std::string_view) {

@@ -9,7 +9,7 @@ namespace vantage {
 /// Named combinations of cost, aggregation and parameters, as the book uses them.
 enum class MatchMethod { kSsd, kGradient, kDiffusion, kMembrane, kLocalStopping, kBayes };
 /// Combinations for real photographs, chosen by measurement (docs/QUALITY.md).
-enum class MatchPreset { kFast, kBalanced, kQuality };
+enum class MatchPreset { kRealtime, kFast, kBalanced, kQuality };
 
 /// Initial value of a cell of the disparity space: the dissimilarity of a pixel and its partner.
 enum class MatchCost {
@@ -50,6 +50,13 @@ enum class PriorSmoothing {
   kSum,      ///< weighted sum of probabilities
   kMaximum,  ///< largest weighted probability: energies are added and compared, in a third of the
              ///< time
+};
+/// Size of the images in which all candidates are searched (EQUATIONS §3.13).
+enum class SearchSize {
+  kFull,
+  kHalf,
+  kQuarter,
+  kAuto,  ///< full for up to 16 candidates, half for up to 128, quarter for more
 };
 enum class GradientFilter { kCentral, kSobel, kSimoncelli3, kSimoncelli5 };
 enum class GradientNorm { kL2, kOctagon };
@@ -101,6 +108,10 @@ struct MethodParametersOf {
   /// Coarse to fine, 1..10: `iterations` at each level, from an image of 1/2^(levels − 1) of the
   /// size to the image itself; levels of a single pixel are omitted. 1: flat.
   Field<int> levels = by_default<Field>(1);
+  /// Size of the images in which `levels` search all candidates. If it is not full, finer levels
+  /// search windows of candidates around their result, with final_iterations each; the map has half
+  /// the size and is enlarged. Bayes with the prior's maximum, cost kRayCensus with one threshold.
+  Field<SearchSize> search_size = by_default<Field>(SearchSize::kFull);
   /// Bayes with levels: blocks of 16 candidates searched in each tile of 8×8 pixels of the finest
   /// `pruned_levels` levels, 1..8; 0: all candidates.
   Field<int> candidate_blocks = by_default<Field>(0);

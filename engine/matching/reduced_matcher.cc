@@ -1,0 +1,276 @@
+#include "engine/matching/reduced_matcher.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "engine/matching/candidate_geometry.h"
+#include "engine/matching/levels/energy_format.h"
+#include "engine/matching/levels/level_extents.h"
+#include "engine/matching/stage_clock.h"
+#include "engine/matching/windows/window_level.h"
+#include "engine/refinement/enlarged_map.h"
+#include "kernels/census/census.h"
+#include "scheduler/trace.h"
+
+namespace vantage {
+namespace {
+
+/// Level of the reduced images at which the search of all candidates ends.
+constexpr int kSearchLevel = 1;
+/// SearchSize::kAuto halves the images until at most so many candidates are left per pixel of the
+/// whole image: each reduction leaves an eighth. About equal times for all ranges.
+constexpr int kMaxCandidatesPerPixel = 16;
+constexpr int kMinReducedPx = 16;
+
+ResolvedMatchOptions at_reduction(const ResolvedMatchOptions& options, DisparityRange whole_range,
+                                  int reductions) {
+  ResolvedMatchOptions result = options;
+  const double unit = 1 << reductions;
+  result.disparities = {static_cast<int>(std::floor(whole_range.min / unit)),
+                        static_cast<int>(std::ceil(whole_range.max / unit))};
+  return result;
+}
+
+/// The range without disparities that no pixel can have.
+DisparityRange possible_range(const ResolvedMatchOptions& options, const Photograph& image) {
+  const auto geometry = candidate_geometry(options, Side::kLeft, image.width(), image.height());
+  return {geometry.disparity_min, geometry.disparity_min + geometry.count - 1};
+}
+
+/// Refinement of maps of half the size, whose columns are two pixels wide.
+RefinementOptions at_half_size(const RefinementOptions& options) {
+  RefinementOptions result = options;
+  result.speckle_size_px = (options.speckle_size_px + 3) / 4;
+  result.surface_fit_px = (options.surface_fit_px + 1) / 2;
+  result.surface_fit_step_px = 1;
+  return result;
+}
+
+}  // namespace
+
+int search_reductions(const ResolvedMatchOptions& options, scheduler::Extent image) {
+  int reductions = 0;
+  switch (options.parameters.search_size) {
+    case SearchSize::kFull:
+      break;
+    case SearchSize::kHalf:
+      reductions = 1;
+      break;
+    case SearchSize::kQuarter:
+      reductions = 2;
+      break;
+    case SearchSize::kAuto:
+      for (int candidates = options.disparities.count();
+           candidates > kMaxCandidatesPerPixel && reductions < 2;
+           candidates = (candidates + 7) / 8) {
+        ++reductions;
+      }
+      break;
+  }
+  while (reductions > 0 && std::min(image.columns, image.rows) >> reductions < kMinReducedPx) {
+    --reductions;
+  }
+  return reductions;
+}
+
+ResolvedMatchOptions reduced_options(const ResolvedMatchOptions& options,
+                                     DisparityRange whole_range, int reductions) {
+  ResolvedMatchOptions result = at_reduction(options, whole_range, reductions);
+  result.parameters.search_size = SearchSize::kFull;
+  return result;
+}
+
+void ReducedMatcher::prepare(const Photograph& left, const Photograph& right, int reductions,
+                             Work& work) const {
+  work.images[0].prepare(left, reductions, execution_);
+  work.images[1].prepare(right, reductions, execution_);
+  work.costs.resize(static_cast<std::size_t>(reductions) + 1);
+  const DisparityRange range = possible_range(options_, left);
+  for (int r = 0; r <= reductions; ++r) {
+    const ResolvedMatchOptions options = at_reduction(options_, range, r);
+    const Photograph& left_image = work.images[0].reduced(r);
+    const auto geometry =
+        candidate_geometry(options, Side::kLeft, left_image.width(), left_image.height());
+    const bool is_searched = r == reductions;
+    const auto margins = is_searched ? geometry : window_margins(geometry);
+    auto& costs = work.costs[static_cast<std::size_t>(r)];
+    costs[0].prepare(left_image, options_.parameters, margins, {true, false, true}, execution_);
+    costs[1].prepare(work.images[1].reduced(r), options_.parameters, margins,
+                     {true, is_searched, !is_searched}, execution_);
+  }
+}
+
+void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence, Work& work,
+                             MatchReport& report) const {
+  const std::size_t own = index_of(side);
+  const std::size_t other = index_of(other_side(side));
+  const DisparityRange range = possible_range(options_, work.images[own].reduced(0));
+  const ResolvedMatchOptions search = reduced_options(options_, range, reductions);
+  const Photograph& searched = work.images[own].reduced(reductions);
+  const auto& costs = work.costs[static_cast<std::size_t>(reductions)];
+  ChainInput input{nullptr, &costs[own], {CostPartner{&costs[other]}}};
+  input.edges = work.search_edges.prepare(searched, search.parameters, execution_);
+  // Only the size counts.
+  const ImageView<float> size(nullptr, searched.width(), searched.height(), 1, 0);
+  MapSearch(search, search.parameters, execution_, work.search, report)
+      .compute(side, input, {.disparity_px = size},
+               {.level = kSearchLevel, .winners = &work.winners, .is_all = true});
+
+  const auto searched_geometry =
+      candidate_geometry(search, side, searched.width(), searched.height());
+  const EnergyFormat format(search.parameters);
+  const LevelBeliefs of_search(work.search.levels.result(kSearchLevel),
+                               work.search.levels.blocks(kSearchLevel),
+                               std::as_const(work.winners).view(), searched_geometry,
+                               format.of_result().nats(format.steps_per_nat()));
+  std::unique_ptr<WindowBeliefs> of_windows;
+  const CoarseBeliefs* coarse = &of_search;
+  MatchedMap& half = work.halves.of(side);
+  for (int r = reductions - 1; r >= 0; --r) {
+    const Photograph& compared = work.images[own].reduced(r);
+    const Photograph& level = work.images[own].reduced(r + 1);
+    const ResolvedMatchOptions options = at_reduction(options_, range, r);
+    auto geometry = candidate_geometry(options, side, compared.width(), compared.height());
+    // Not before the coarser level's range, which the width of its image may have cut.
+    const int before = std::max(0, 2 * coarse->disparity_min() - geometry.disparity_min);
+    geometry.disparity_min += before;
+    geometry.count -= before;
+    const EdgeWeights* edges = nullptr;
+    if (uses_edge_weights(options_.parameters)) {
+      // Those of the search include the level's own.
+      MethodParameters one_level = options_.parameters;
+      one_level.levels = 1;
+      edges = r + 1 == reductions ? &input.edges[0]
+                                  : &work.window_edges.prepare(level, one_level, execution_)[0];
+    }
+    const bool is_last = r == 0;
+    half.disparity_px.resize(level.width(), level.height());
+    half.confidence.resize(is_last && wants_confidence ? level.width() : 0,
+                           is_last && wants_confidence ? level.height() : 0);
+    const MethodParameters parameters = at_level(options_.parameters, 1);
+    WindowState& state = work.states[static_cast<std::size_t>(r % 2)];
+    const auto& compared_costs = work.costs[static_cast<std::size_t>(r)];
+    const scheduler::Span span("windows");
+    search_windows({.parameters = parameters,
+                    .geometry = geometry,
+                    .reference = compared_costs[own],
+                    .partner = compared_costs[other],
+                    .edges = edges,
+                    .coarse = *coarse},
+                   options_.parameters.subpixel,
+                   {.disparity_px = half.disparity_px.view(),
+                    .confidence = half.confidence.view(),
+                    .state = is_last ? nullptr : &state},
+                   execution_);
+    const double pixels = static_cast<double>(level.width()) * level.height();
+    report.cells += pixels * kernels::kWindowCandidates;
+    if (is_last) {
+      report.finest_cells += pixels * kernels::kWindowCandidates;
+      report.finest_pixels += pixels;
+    } else {
+      of_windows = std::make_unique<WindowBeliefs>(state);
+      coarse = of_windows.get();
+    }
+  }
+}
+
+void ReducedMatcher::refine(const Outputs& outputs, Work& work, StageClock& clock) const {
+  if (!options_.refinement) {
+    mark_unknown(work.halves.left.disparity_px.view(), execution_, work.halves.left.unmatched);
+    mark_unknown(work.halves.right.disparity_px.view(), execution_, work.halves.right.unmatched);
+    return;
+  }
+  const auto to_refine = [&](Side side, bool is_result) {
+    return MapToRefine{.side = side,
+                       .image = &work.images[index_of(side)].reduced(1),
+                       .map = &work.halves.of(side),
+                       .is_result = is_result,
+                       .search = options_.disparities,
+                       .pixels_per_column = 2};
+  };
+  const MapToRefine left = to_refine(Side::kLeft, outputs.left);
+  const MapToRefine right = to_refine(Side::kRight, outputs.right);
+  refine_maps(at_half_size(*options_.refinement), left, &right, execution_, work.refinement,
+              [&](std::string_view step) { clock.start(step); });
+}
+
+void ReducedMatcher::match(const Photograph& left, const Photograph& right, const Outputs& outputs,
+                           DisparityMaps& maps, StageClock& clock, MatchReport& report) const {
+  const int reductions = search_reductions(options_, {left.width(), left.height()});
+  const auto work = works_.borrow();
+  prepare(left, right, reductions, *work);
+  const bool is_checked = options_.refinement && options_.refinement->cross_check;
+  const bool wants_confidence =
+      outputs.confidence || (options_.refinement && uses_confidence(*options_.refinement));
+  work->halves.left.disparity_px.resize(0, 0);
+  work->halves.right.disparity_px.resize(0, 0);
+  if (outputs.left || is_checked) {
+    clock.start("match left");
+    compute(Side::kLeft, reductions, wants_confidence, *work, report);
+  }
+  if (outputs.right || is_checked) {
+    clock.start("match right");
+    compute(Side::kRight, reductions, wants_confidence, *work, report);
+  }
+  refine(outputs, *work, clock);
+  clock.start("enlarge");
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    MatchedMap& map = maps.of(side);
+    if (!(side == Side::kLeft ? outputs.left : outputs.right)) {
+      map = {};
+      continue;
+    }
+    const ReducedImages& images = work->images[index_of(side)];
+    enlarge_map(work->halves.of(side), images.reduced(0), images.reduced(1), execution_, map);
+    if (!outputs.confidence) {
+      map.confidence.resize(0, 0);
+    }
+  }
+}
+
+std::size_t ReducedMatcher::working_bytes(const ResolvedMatchOptions& options,
+                                          scheduler::Extent image) {
+  // Of both images at all sizes: intensities with and without margins, codes and, at most, mirrored
+  // ones. Of both maps at half size: disparities, masks, what refinement keeps.
+  constexpr std::size_t kBytesPerPixel = 2 * (2 + 2 * kernels::kRayCensusBytes);
+  constexpr std::size_t kBytesPerHalfSizePixel = 2 * (sizeof(float) + 1) + 4 * sizeof(float);
+  const int reductions = search_reductions(options, image);
+  std::size_t bytes = 0;
+  scheduler::Extent extent = image;
+  for (int r = 0; r <= reductions; ++r) {
+    const std::size_t pixels =
+        static_cast<std::size_t>(extent.columns) * static_cast<std::size_t>(extent.rows);
+    bytes += kBytesPerPixel * pixels + (r == 1 ? kBytesPerHalfSizePixel * pixels : 0);
+    if (r > 0) {
+      bytes += edge_weight_bytes(options.parameters, pixels);
+    }
+    if (r == reductions) {
+      bytes += coarse_level_bytes(options.parameters, extent,
+                                  (options.disparities.count() >> reductions) + 2);
+    }
+    extent = coarser_extent(extent);
+  }
+  return bytes;
+}
+
+void ReducedMatcher::add_memory_use(MemoryUse& use) const {
+  works_.for_each_idle([&use](const Work& work) {
+    std::size_t images = work.search_edges.held_bytes() + work.window_edges.held_bytes();
+    for (const ReducedImages& of_side : work.images) {
+      images += of_side.held_bytes();
+    }
+    for (const auto& costs : work.costs) {
+      images += costs[0].held_bytes() + costs[1].held_bytes();
+    }
+    use.add("prepared images", images);
+    use.add("coarse levels", work.search.levels.held_bytes() + work.states[0].held_bytes() +
+                                 work.states[1].held_bytes() + held_bytes(work.halves));
+    use.add("refinement", held_bytes(work.refinement));
+  });
+}
+
+}  // namespace vantage

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/execution.h"
+#include "engine/image/disparity_maps.h"
+#include "engine/image/memory_use.h"
+#include "engine/image/photograph.h"
+#include "engine/matching/aggregation/edge_weights.h"
+#include "engine/matching/costs/cost_image.h"
+#include "engine/matching/map_search.h"
+#include "engine/matching/match_report.h"
+#include "engine/matching/options/match_options.h"
+#include "engine/matching/windows/coarse_beliefs.h"
+#include "engine/matching/windows/reduced_images.h"
+#include "engine/object_pool.h"
+#include "engine/refinement/refine_maps.h"
+#include "scheduler/range.h"
+
+namespace vantage {
+
+class StageClock;
+
+/// How many times images of this size are halved for the search of these options (search_size); 0:
+/// it is done at full size, as in all images of less than 32 rows or columns.
+int search_reductions(const ResolvedMatchOptions& options, scheduler::Extent image);
+
+/// The options of the search of all candidates in images halved so many times. `whole_range`: of
+/// the images.
+ResolvedMatchOptions reduced_options(const ResolvedMatchOptions& options,
+                                     DisparityRange whole_range, int reductions);
+
+/// Computes the maps of a pair from reduced images (EQUATIONS §3.13): a coarse-to-fine search of
+/// all candidates in halved images, down to half of their size; then levels of windows, each at
+/// half the size of the images that it compares; refinement at half size; the maps, enlarged.
+///
+/// Thread rule: as StereoMatcher.
+class ReducedMatcher {
+ public:
+  /// `options`: valid, with a search size. Both must outlive the object.
+  ReducedMatcher(const ResolvedMatchOptions& options, Execution& execution)
+      : options_(options), execution_(execution) {}
+
+  /// What of the maps is wanted.
+  struct Outputs {
+    bool left = true;
+    bool right = true;
+    bool unmatched = true;
+    bool confidence = false;
+  };
+  /// Photographs of equal size, for which there are reductions. Throws Error when no pixel has a
+  /// candidate.
+  void match(const Photograph& left, const Photograph& right, const Outputs& outputs,
+             DisparityMaps& maps, StageClock& clock, MatchReport& report) const;
+
+  void add_memory_use(MemoryUse& use) const;
+  /// Memory of match() but for strips and the outputs: about.
+  static std::size_t working_bytes(const ResolvedMatchOptions& options, scheduler::Extent image);
+
+ private:
+  struct Work {
+    std::array<ReducedImages, 2> images;
+    std::vector<std::array<CostImage, 2>> costs;  ///< [reductions][side]
+    EdgeWeightLevels search_edges;
+    EdgeWeightLevels window_edges;
+    MapSearchWork search;
+    Image<std::int32_t> winners;  ///< of the search
+    std::array<WindowState, 2> states;
+    DisparityMaps halves;  ///< maps at half size
+    RefinementWork refinement;
+  };
+
+  void prepare(const Photograph& left, const Photograph& right, int reductions, Work& work) const;
+  void compute(Side side, int reductions, bool wants_confidence, Work& work,
+               MatchReport& report) const;
+  void refine(const Outputs& outputs, Work& work, StageClock& clock) const;
+
+  const ResolvedMatchOptions& options_;
+  Execution& execution_;
+  mutable ObjectPool<Work> works_;
+};
+
+}  // namespace vantage

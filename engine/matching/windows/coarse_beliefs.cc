@@ -1,0 +1,121 @@
+#include "engine/matching/windows/coarse_beliefs.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <vector>
+
+#include "engine/image/memory_use.h"
+#include "kernels/candidates.h"
+
+namespace vantage {
+namespace {
+
+using kernels::kLaneMultiple;
+using kernels::WindowCells;
+
+/// Bytes of energies_row() that are valid.
+constexpr int kValidBytes = 6;
+constexpr WindowCells kUnknown = ~WindowCells{0};
+
+/// Lanes of the blocks of a column: −1 for blocks that it does not hold.
+class BlockLanes {
+ public:
+  explicit BlockLanes(int blocks) : lanes_(static_cast<std::size_t>(blocks) + 1, -1) {}
+  void set(BlockList blocks) {
+    std::ranges::fill(lanes_, -1);
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      lanes_[blocks[k]] = static_cast<int>(k) * kLaneMultiple;
+    }
+  }
+  /// The cells of consecutive candidates from `first` on.
+  [[nodiscard]] WindowCells fetch(const std::uint8_t* column, int first) const {
+    const auto block = static_cast<std::size_t>(first / kLaneMultiple);
+    const int place = first % kLaneMultiple;
+    const int here = lanes_[block];
+    WindowCells cells = kUnknown;
+    if (here >= 0 &&
+        (place + kValidBytes <= kLaneMultiple || lanes_[block + 1] == here + kLaneMultiple)) {
+      std::memcpy(&cells, column + here + place, kValidBytes);
+      return cells;
+    }
+    for (int i = 0; i < kValidBytes; ++i) {
+      const int lane = lanes_[block + static_cast<std::size_t>((place + i) / kLaneMultiple)];
+      if (lane >= 0) {
+        cells &= ~(WindowCells{255} << (8 * i));
+        cells |= WindowCells{column[lane + (place + i) % kLaneMultiple]} << (8 * i);
+      }
+    }
+    return cells;
+  }
+
+ private:
+  std::vector<int> lanes_;  ///< of all blocks, and one that no column holds
+};
+
+}  // namespace
+
+LevelBeliefs::LevelBeliefs(const LevelVolume& energies, const CandidateBlocks* blocks,
+                           ImageView<const std::int32_t> winners,
+                           const kernels::CandidateGeometry& geometry, double nats_per_step)
+    : energies_(energies),
+      blocks_(blocks),
+      winners_(winners),
+      disparity_min_(geometry.disparity_min),
+      blocks_count_(geometry.lanes() / kLaneMultiple),
+      nats_per_step_(nats_per_step) {}
+
+void LevelBeliefs::winners_row(int y, std::int16_t* winners) const {
+  const std::int32_t* const row = winners_.row(y);
+  std::transform(row, row + winners_.width(), winners,
+                 [](std::int32_t winner) { return static_cast<std::int16_t>(winner); });
+}
+
+void LevelBeliefs::energies_row(int y, const std::int16_t* first, WindowCells* energies) const {
+  const int columns = energies_.extent().columns;
+  BlockLanes lanes(blocks_count_);
+  if (blocks_ == nullptr) {
+    std::vector<std::uint16_t> all(static_cast<std::size_t>(blocks_count_));
+    std::iota(all.begin(), all.end(), std::uint16_t{0});
+    lanes.set(all);
+  }
+  for (int x = 0; x < columns;) {
+    int end = columns;
+    if (blocks_ != nullptr) {
+      const CandidateBlocks::Run run = blocks_->run_at(x, y, columns);
+      lanes.set(run.blocks);
+      end = run.columns.end;
+    }
+    for (; x < end; ++x) {
+      if (first[x] >= 0) {
+        energies[x] = lanes.fetch(energies_.column<std::uint8_t>(x, y), first[x]);
+      }
+    }
+  }
+}
+
+std::size_t WindowState::held_bytes() const {
+  return vantage::held_bytes(support) + vantage::held_bytes(start) + vantage::held_bytes(winner);
+}
+
+void WindowBeliefs::winners_row(int y, std::int16_t* winners) const {
+  std::copy_n(state_.winner.row(y), state_.winner.width(), winners);
+}
+
+void WindowBeliefs::energies_row(int y, const std::int16_t* first, WindowCells* energies) const {
+  for (int x = 0; x < state_.winner.width(); ++x) {
+    const WindowCells support = state_.support.at(x, y);
+    energies[x] = kUnknown;
+    for (int i = 0; i < kValidBytes; ++i) {
+      const int lane = first[x] + i - state_.start.at(x, y);
+      if (lane >= 0 && lane < kernels::kWindowCandidates) {
+        const auto energy =
+            static_cast<WindowCells>(state_.ceiling - kernels::window_cell(support, lane));
+        energies[x] &= ~(WindowCells{255} << (8 * i));
+        energies[x] |= energy << (8 * i);
+      }
+    }
+  }
+}
+
+}  // namespace vantage

@@ -1,0 +1,383 @@
+#include "engine/matching/windows/window_level.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "engine/matching/costs/ray_census_planes.h"
+#include "engine/matching/windows/window_format.h"
+#include "engine/matching/windows/window_rows.h"
+#include "engine/matching/windows/window_starter.h"
+#include "kernels/window_evidence/window_evidence.h"
+#include "kernels/window_step/window_step.h"
+#include "scheduler/range.h"
+
+namespace vantage {
+namespace {
+
+using kernels::kWindowCandidates;
+using kernels::kWindows;
+using kernels::WindowCells;
+using scheduler::Range;
+
+/// Rows per task: few enough to balance, enough that the rows made twice, around bands, are few.
+constexpr int kBandRows = 32;
+
+/// Planes of the codes of one channel.
+using Codes = PlaneSet<std::uint8_t, kernels::kMaxRayCensusBytes>;
+
+const Codes& codes_of(const CostImage& image) {
+  return static_cast<const RayCensusPlanes&>(image.planes()).codes[0];
+}
+
+/// What all tasks of a level share.
+struct Level {
+  const WindowLevelInput& input;
+  Subpixel subpixel;
+  const WindowLevelOutput& output;
+  WindowFormat format;
+  kernels::WindowPrior prior;
+  const Codes& reference;
+  const Codes& partner;
+  int columns;
+  int rows;
+  int iterations;
+  Range inner;  ///< columns where all candidates have partners
+};
+
+/// One band of rows, swept by all iterations as a wavefront.
+class Band {
+ public:
+  explicit Band(const Level& level)
+      : level_(level),
+        starter_(level.input.coarse, level.input.geometry.disparity_min, level.input.geometry.count,
+                 level.columns, level.prior, level.format.nats_per_step()),
+        starts_(level.iterations + 4, level.columns),
+        evidence_(level.iterations, level.columns),
+        absent_(level.columns),
+        selectable_(level.columns),
+        window_(level.columns),
+        lane_(level.columns),
+        total_(level.columns),
+        total_before_(level.columns),
+        total_after_(level.columns),
+        support_(level.columns),
+        uniform_(level.columns) {
+    for (int i = 1; i < level.iterations; ++i) {
+      states_.emplace_back(3, level.columns);
+    }
+    mu_ = kernels::fixed_weight(static_cast<float>(level.input.parameters.mu));
+    std::fill_n(uniform_.data(), level.columns + 1, mu_);
+    for (auto& selectable : selectable_.cells) {
+      std::fill_n(selectable.data(), level.columns, ~WindowCells{0});
+    }
+  }
+
+  void run(Range rows) {
+    const int halo = level_.iterations - 1;
+    const Range all{0, level_.rows};
+    coarse_end_ = std::max(0, (rows.begin - halo - 1) / 2 - 1);
+    for (int y = rows.begin - halo; y < rows.end + halo; ++y) {
+      if (y >= 0 && y < level_.rows) {
+        prepare_starts(y);
+        make_evidence(y);
+      }
+      for (int i = 1; i < level_.iterations; ++i) {
+        const int of_iteration = y - (i - 1);
+        // Rows that later iterations of the band read.
+        if (rows.widened(level_.iterations - i, all).contains({of_iteration, of_iteration + 1})) {
+          kernels::window_step_row(
+              step_row(of_iteration, i),
+              states_[static_cast<std::size_t>(i - 1)].at(of_iteration).data());
+        }
+      }
+      const int finished = y - halo;
+      if (finished >= rows.begin && finished < rows.end) {
+        select(finished);
+      }
+    }
+  }
+
+ private:
+  /// Coarse rows up to the one below that of row y.
+  void prepare_starts(int y) {
+    const int coarse_rows = level_.input.coarse.extent().rows;
+    const int end = std::min(y / 2 + 2, coarse_rows);
+    for (; coarse_end_ < end; ++coarse_end_) {
+      starter_.make_row(coarse_end_, starts_.at(coarse_end_));
+    }
+    const int own = y / 2;
+    WindowStarter::mark_near(own > 0 ? &starts_.at(own - 1) : nullptr,
+                             own + 1 < coarse_rows ? &starts_.at(own + 1) : nullptr, level_.columns,
+                             starts_.at(own));
+  }
+
+  void make_evidence(int y) {
+    const WindowStartRow& starts = starts_.at(y / 2);
+    kernels::WindowEvidenceRow row;
+    row.start = starts.starts();
+    row.has_second = starts.has_second.data();
+    row.columns = level_.columns;
+    row.direction = level_.input.geometry.direction;
+    const std::ptrdiff_t first_partner = level_.input.geometry.partner(0, 0);
+    for (std::size_t r = 0; r < 2; ++r) {
+      const int of_image =
+          std::min(2 * y + static_cast<int>(r), level_.input.reference.height() - 1);
+      for (std::size_t p = 0; p < kernels::kRayCensusBytes; ++p) {
+        row.reference[r][p] = level_.reference[p].plain.row(of_image);
+        row.partner[r][p] = level_.partner[p].plain.row(of_image) + first_partner;
+      }
+    }
+    const auto evidence = evidence_.at(y).data();
+    kernels::window_evidence_row(row, level_.format.evidence(), evidence);
+    if (level_.prior.lanes != ~WindowCells{0}) {
+      for (WindowCells* const of_window : evidence) {
+        std::transform(of_window, of_window + level_.columns, of_window,
+                       [this](WindowCells cells) { return cells & level_.prior.lanes; });
+      }
+    }
+    for_each_outer_column([&](int x) {
+      for (std::size_t q = 0; q < kWindows; ++q) {
+        evidence[q][x] &= with_partner(x, starts.start[q].data()[x]);
+      }
+    });
+  }
+
+  /// Columns where some candidates lack partners.
+  template <typename Body>
+  void for_each_outer_column(const Body& body) const {
+    for (int x = 0; x < level_.inner.begin; ++x) {
+      body(x);
+    }
+    for (int x = std::max(level_.inner.end, level_.inner.begin); x < level_.columns; ++x) {
+      body(x);
+    }
+  }
+
+  /// 255 for the candidates of a window that have partners for both pixels of the column.
+  [[nodiscard]] WindowCells with_partner(int x, int start) const {
+    const kernels::CandidateGeometry& geometry = level_.input.geometry;
+    const kernels::CandidateRange inside =
+        geometry.with_partners(2 * x, std::min(2 * x + 1, geometry.width - 1));
+    return lanes_before(inside.end - start) & ~lanes_before(inside.begin - start);
+  }
+  /// 255 for the first `count` lanes.
+  static WindowCells lanes_before(int count) {
+    const int lanes = std::clamp(count, 0, kWindowCandidates);
+    return lanes == kWindowCandidates ? ~WindowCells{0} : (WindowCells{1} << (8 * lanes)) - 1;
+  }
+
+  /// Row y as iteration `iteration`, 1 being the first, reads it.
+  kernels::WindowRow windows(int y, int iteration) {
+    if (y < 0 || y >= level_.rows) {
+      const auto absent = absent_.data();
+      return {.support = {absent[0], absent[1]}, .start = starts_.at(std::max(y, 0) / 2).starts()};
+    }
+    WindowStartRow& starts = starts_.at(y / 2);
+    const auto support = iteration == 1
+                             ? starts.support.data()
+                             : states_[static_cast<std::size_t>(iteration - 2)].at(y).data();
+    return {.support = {support[0], support[1]}, .start = starts.starts()};
+  }
+
+  kernels::WindowStepRow step_row(int y, int iteration) {
+    kernels::WindowStepRow row;
+    row.up = windows(y - 1, iteration);
+    row.centre = windows(y, iteration);
+    row.down = windows(y + 1, iteration);
+    const auto evidence = evidence_.at(y).data();
+    row.evidence = {evidence[0], evidence[1]};
+    const WindowStartRow& starts = starts_.at(y / 2);
+    row.has_second = starts.has_second.data();
+    row.near_second = starts.near_second.data();
+    row.mu = mu_;
+    row.beside = row.above = row.below = uniform_.data();
+    if (const EdgeWeights* const edges = level_.input.edges; edges != nullptr) {
+      row.beside = edges->fixed_beside(y);
+      row.above = edges->fixed_above(y);
+      row.below = edges->fixed_above(y + 1);
+    }
+    row.prior = level_.prior;
+    row.columns = level_.columns;
+    return row;
+  }
+
+  /// The last iteration of row y, and its winners.
+  void select(int y) {
+    const kernels::WindowStepRow row = step_row(y, level_.iterations);
+    const WindowStartRow& starts = starts_.at(y / 2);
+    const bool needs_support = level_.output.state != nullptr || !level_.output.confidence.empty();
+    kernels::WindowWinners winners{.window = window_.data(),
+                                   .lane = lane_.data(),
+                                   .total = total_.data(),
+                                   .total_before = total_before_.data(),
+                                   .total_after = total_after_.data(),
+                                   .support = needs_support ? support_.data() : nullptr};
+    const auto selectable = selectable_.data();
+    if (level_.inner != Range{0, level_.columns}) {
+      // Set to all at first; only outer columns change.
+      for_each_outer_column([&](int x) {
+        for (std::size_t q = 0; q < kWindows; ++q) {
+          selectable[q][x] = with_partner(x, starts.start[q].data()[x]);
+        }
+      });
+      winners.selectable = {selectable[0], selectable[1]};
+    }
+    kernels::window_winners_row(row, winners);
+    float* const disparity_px = level_.output.disparity_px.row(y);
+    kernels::window_disparity_row(
+        {.winners = &winners,
+         .start = starts.starts(),
+         .disparity_min = level_.input.geometry.disparity_min,
+         .candidates = std::min(kWindowCandidates, level_.input.geometry.count),
+         .is_refined = level_.subpixel == Subpixel::kParabola,
+         .columns = level_.columns},
+        disparity_px);
+    for_each_outer_column([&](int x) {
+      if (window_.data()[x] != kernels::kNoWindow && !has_partners_beside(x)) {
+        disparity_px[x] =
+            static_cast<float>(level_.input.geometry.disparity_min + winner(x, starts));
+      }
+    });
+    if (!level_.output.confidence.empty()) {
+      write_confidence(level_.output.confidence.row(y));
+    }
+    if (level_.output.state != nullptr) {
+      write_state(y, starts, *level_.output.state);
+    }
+  }
+
+  /// Candidate that wins in column x.
+  [[nodiscard]] int winner(int x, const WindowStartRow& starts) const {
+    const std::size_t window = window_.data()[x] == 1 ? 1 : 0;
+    return starts.start[window].data()[x] + lane_.data()[x];
+  }
+
+  /// Whether the candidates before and after the winner have partners, too.
+  [[nodiscard]] bool has_partners_beside(int x) {
+    const WindowCells selectable = selectable_.cells[window_.data()[x]].data()[x];
+    const int lane = lane_.data()[x];
+    return lane > 0 && lane + 1 < kWindowCandidates &&
+           kernels::window_cell(selectable, lane - 1) != 0 &&
+           kernels::window_cell(selectable, lane + 1) != 0;
+  }
+
+  void write_confidence(float* confidence) const {
+    for (int x = 0; x < level_.columns; ++x) {
+      if (window_.data()[x] == kernels::kNoWindow) {
+        confidence[x] = std::numeric_limits<float>::quiet_NaN();
+        continue;
+      }
+      const auto cell = [&](int lane) { return kernels::window_cell(support_.data()[x], lane); };
+      double sum = 0;
+      for (int k = 0; k < kWindowCandidates; ++k) {
+        if (kernels::window_cell(level_.prior.lanes, k) != 0) {
+          sum += std::exp((cell(k) - cell(lane_.data()[x])) * level_.format.nats_per_step());
+        }
+      }
+      confidence[x] = static_cast<float>(1 / sum);
+    }
+  }
+
+  void write_state(int y, const WindowStartRow& starts, WindowState& state) const {
+    std::copy_n(support_.data(), level_.columns, state.support.row(y));
+    for (int x = 0; x < level_.columns; ++x) {
+      const int candidate = winner(x, starts);
+      state.start.at(x, y) = static_cast<std::int16_t>(candidate - lane_.data()[x]);
+      state.winner.at(x, y) = static_cast<std::int16_t>(candidate);
+    }
+  }
+
+  const Level& level_;
+  WindowStarter starter_;
+  RowRing<WindowStartRow> starts_;  ///< of coarse rows
+  int coarse_end_ = 0;              ///< coarse rows before this one are made
+  RowRing<WindowCellsRow> evidence_;
+  std::vector<RowRing<WindowCellsRow>> states_;  ///< after each iteration but the last
+  WindowCellsRow absent_;                        ///< of rows outside the image
+  WindowCellsRow selectable_;
+  WindowValues<std::uint8_t> window_;
+  WindowValues<std::uint8_t> lane_;
+  WindowValues<std::uint16_t> total_;
+  WindowValues<std::uint16_t> total_before_;
+  WindowValues<std::uint16_t> total_after_;
+  WindowValues<WindowCells> support_;
+  kernels::FixedWeight mu_ = 0;
+  WindowValues<kernels::FixedWeight> uniform_;
+};
+
+/// Bands whose working memory is lent to one task after the other.
+class BandPool {
+ public:
+  explicit BandPool(const Level& level) : level_(level) {}
+  void run(Range rows) {
+    std::unique_ptr<Band> band = take();
+    band->run(rows);
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(band));
+  }
+
+ private:
+  std::unique_ptr<Band> take() {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty()) {
+      return std::make_unique<Band>(level_);
+    }
+    std::unique_ptr<Band> band = std::move(idle_.back());
+    idle_.pop_back();
+    return band;
+  }
+
+  const Level& level_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Band>> idle_;
+};
+
+}  // namespace
+
+kernels::CandidateGeometry window_margins(kernels::CandidateGeometry geometry) {
+  const int reach = std::max(std::abs(geometry.disparity_min),
+                             std::abs(geometry.disparity_min + geometry.count)) +
+                    2 * kWindowCandidates;
+  geometry.disparity_min = -reach;
+  geometry.count = 2 * reach + 1;
+  return geometry;
+}
+
+void search_windows(const WindowLevelInput& input, Subpixel subpixel,
+                    const WindowLevelOutput& output, Execution& execution) {
+  const WindowFormat format(input.parameters);
+  const kernels::CandidateRange with_all = input.geometry.columns_with_all_partners();
+  const int columns = output.disparity_px.width();
+  const Level level{.input = input,
+                    .subpixel = subpixel,
+                    .output = output,
+                    .format = format,
+                    .prior = format.prior(input.geometry.count),
+                    .reference = codes_of(input.reference),
+                    .partner = codes_of(input.partner),
+                    .columns = columns,
+                    .rows = output.disparity_px.height(),
+                    .iterations = input.parameters.final_iterations,
+                    .inner = {std::clamp((with_all.begin + 1) / 2, 0, columns),
+                              std::clamp(with_all.end / 2, 0, columns)}};
+  if (output.state != nullptr) {
+    output.state->resize({level.columns, level.rows});
+    output.state->disparity_min = input.geometry.disparity_min;
+    output.state->ceiling = format.ceiling();
+    output.state->nats_per_step = format.nats_per_step();
+  }
+  const int count = (level.rows + kBandRows - 1) / kBandRows;
+  BandPool bands(level);
+  execution.executor().parallel_for(count, [&](int band) {
+    bands.run({band * kBandRows, std::min((band + 1) * kBandRows, level.rows)});
+  });
+}
+
+}  // namespace vantage

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "engine/execution.h"
+#include "engine/image/image.h"
+#include "engine/matching/aggregation/edge_weights.h"
+#include "engine/matching/costs/cost_image.h"
+#include "engine/matching/parameters/method_parameters.h"
+#include "engine/matching/windows/coarse_beliefs.h"
+#include "kernels/candidates.h"
+
+namespace vantage {
+
+/// Input of a level of windows. All must outlive the call.
+struct WindowLevelInput {
+  /// Iterations (final_iterations, at least 1), prior and measurement of the level.
+  const MethodParameters& parameters;
+  /// Candidates of the pixels whose codes are compared, twice as wide and high as the level. Both
+  /// images are prepared with one census threshold for window_margins() of it.
+  kernels::CandidateGeometry geometry;
+  const CostImage& reference;
+  const CostImage& partner;
+  const EdgeWeights* edges;  ///< of the level; null: all weights are 1
+  const CoarseBeliefs& coarse;
+};
+
+/// The geometry for which the images of a level are prepared: with enough columns on both sides.
+kernels::CandidateGeometry window_margins(kernels::CandidateGeometry geometry);
+
+/// Output of a level of windows; images have the level's size.
+struct WindowLevelOutput {
+  /// Disparities of the winners in pixels of `geometry`, NaN where no candidate has a partner.
+  ImageView<float> disparity_px;
+  /// Probability of the winner among the candidates of its window; empty: not requested.
+  ImageView<float> confidence = {};
+  WindowState* state = nullptr;  ///< for a finer level; null: not requested
+};
+
+/// Bayesian diffusion over windows of candidates (EQUATIONS §3.13): each pixel of the level, which
+/// stands for 2×2 pixels of the images, searches 8 candidates around the winner of the coarser
+/// level's pixel that covers it, and where winners around that differ, 8 around another of them.
+/// The start is the coarser level's result. Rows are swept in bands; nothing but the result is
+/// stored. Identical for any `execution`.
+void search_windows(const WindowLevelInput& input, Subpixel subpixel,
+                    const WindowLevelOutput& output, Execution& execution);
+
+}  // namespace vantage

@@ -1,0 +1,146 @@
+#include "engine/matching/windows/window_starter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "kernels/window_start/window_start.h"
+
+namespace vantage {
+namespace {
+
+using kernels::kNoSecondWinner;
+using kernels::kWindowCandidates;
+using kernels::WindowCells;
+
+/// Candidates of a window before the guess.
+constexpr int kBeforeGuess = kWindowCandidates / 2 - 1;
+
+/// Repeats each value for two columns.
+template <typename T>
+void repeat(const T* coarse, int columns, T* values) {
+  for (int x = 0; x + 1 < columns; x += 2) {
+    values[x] = values[x + 1] = coarse[x / 2];
+  }
+  if (columns % 2 == 1) {
+    values[columns - 1] = coarse[columns / 2];
+  }
+}
+
+}  // namespace
+
+WindowStarter::WindowStarter(const CoarseBeliefs& coarse, int disparity_min, int count, int columns,
+                             const kernels::WindowPrior& prior, double nats_per_step)
+    : coarse_(coarse),
+      count_(count),
+      columns_(columns),
+      coarse_columns_(coarse.extent().columns),
+      first_(2 * coarse.disparity_min() - disparity_min),
+      lanes_(prior.lanes),
+      steps_(static_cast<std::uint16_t>(
+          std::min(65535.0, std::ceil(256 * coarse.nats_per_step() / nats_per_step)))),
+      ceiling_(static_cast<std::uint8_t>(prior.ceiling / kernels::kWindowTotalUnits)),
+      winners_{WindowValues<std::int16_t>(coarse_columns_),
+               WindowValues<std::int16_t>(coarse_columns_),
+               WindowValues<std::int16_t>(coarse_columns_)},
+      second_(coarse_columns_),
+      first_coarse_(coarse_columns_),
+      starts_(coarse_columns_),
+      offset_bits_(coarse_columns_),
+      energies_(coarse_columns_),
+      support_(coarse_columns_) {}
+
+void WindowStarter::load_winners(int y, WindowValues<std::int16_t>& row) const {
+  std::int16_t* const winners = row.data();
+  coarse_.winners_row(std::clamp(y, 0, coarse_.extent().rows - 1), winners);
+  winners[-1] = winners[0];
+  winners[coarse_columns_] = winners[coarse_columns_ - 1];
+}
+
+void WindowStarter::make_row(int y, WindowStartRow& row) {
+  if (winners_y_ == y - 1) {
+    std::rotate(winners_.begin(), winners_.begin() + 1, winners_.end());
+    load_winners(y + 1, winners_[2]);
+  } else {
+    for (int i = 0; i < 3; ++i) {
+      load_winners(y - 1 + i, winners_[static_cast<std::size_t>(i)]);
+    }
+  }
+  winners_y_ = y;
+  kernels::second_winners_row({winners_[0].data(), winners_[1].data(), winners_[2].data()},
+                              coarse_columns_, second_.data());
+  make_windows(y, winners_[1].data(), 0, row);
+  make_windows(y, second_.data(), 1, row);
+}
+
+void WindowStarter::make_windows(int y, const std::int16_t* winners, std::size_t window,
+                                 WindowStartRow& row) {
+  const auto last_start = static_cast<std::int16_t>(std::max(0, count_ - kWindowCandidates));
+  const auto first = static_cast<std::int16_t>(first_);
+  std::uint8_t* const has_second = row.has_second.data();
+  std::int16_t* const starts = starts_.data();
+  std::int16_t* const first_coarse = first_coarse_.data();
+  std::uint8_t* const offset_bits = offset_bits_.data();
+  // In 16 bits, which compilers find vectors for. Without a second winner the window is unused.
+  for (int x = 0; x < coarse_columns_; ++x) {
+    const auto guess = static_cast<std::int16_t>(2 * winners[x] + first - kBeforeGuess);
+    const std::int16_t start = std::min(std::max(guess, std::int16_t{0}), last_start);
+    // first ≤ 0: the coarser level begins at or before this one.
+    const auto from_first = static_cast<std::int16_t>(start - first);
+    starts[x] = start;
+    const auto at_start = static_cast<std::int16_t>(from_first >> 1);
+    first_coarse[x] = winners[x] == kNoSecondWinner ? kNoSecondWinner : at_start;
+    offset_bits[x] = static_cast<std::uint8_t>((from_first & 1) << 3);
+  }
+  const bool exists =
+      window == 0 || std::any_of(winners, winners + coarse_columns_,
+                                 [](std::int16_t winner) { return winner != kNoSecondWinner; });
+  WindowCells* const support = row.support.cells[window].data();
+  if (window == 1) {
+    for (int x = 0; x < columns_; ++x) {
+      has_second[x] = winners[x / 2] == kNoSecondWinner ? 0 : 255;
+    }
+    if (!exists) {
+      std::fill_n(support, columns_, WindowCells{0});
+      std::fill_n(row.start[1].data(), columns_, std::int16_t{0});
+      return;
+    }
+  }
+  coarse_.energies_row(y, first_coarse_.data(), energies_.data());
+  kernels::window_start_row({.energies = energies_.data(),
+                             .offset_bits = offset_bits_.data(),
+                             .steps = steps_,
+                             .ceiling = ceiling_,
+                             .lanes = lanes_,
+                             .columns = coarse_columns_},
+                            support_.data());
+  if (window == 1) {
+    for (int x = 0; x < coarse_columns_; ++x) {
+      if (winners[x] == kNoSecondWinner) {
+        support_.data()[x] = 0;
+      }
+    }
+  }
+  repeat(support_.data(), columns_, support);
+  repeat(starts_.data(), columns_, row.start[window].data());
+}
+
+void WindowStarter::mark_near(const WindowStartRow* above, const WindowStartRow* below, int columns,
+                              WindowStartRow& row) {
+  const std::uint8_t* const own = row.has_second.data();
+  std::uint8_t* const near = row.near_second.data();
+  for (int x = 0; x < columns; ++x) {
+    near[x] = own[x - 1] | own[x] | own[x + 1];
+  }
+  for (const WindowStartRow* const beside : {above, below}) {
+    if (beside != nullptr) {
+      const std::uint8_t* const of_beside = beside->has_second.data();
+      for (int x = 0; x < columns; ++x) {
+        near[x] |= of_beside[x];
+      }
+    }
+  }
+}
+
+}  // namespace vantage

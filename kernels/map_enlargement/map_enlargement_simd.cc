@@ -1,0 +1,122 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/map_enlargement/map_enlargement_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+
+#include "kernels/map_enlargement/map_enlargement.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using TagF = hn::ScalableTag<float>;
+using TagI = hn::RebindToSigned<TagF>;
+using VecF = hn::VFromD<TagF>;
+using VecI = hn::VFromD<TagI>;
+using MaskF = decltype(hn::Gt(VecF(), VecF()));
+constexpr int kColumns = static_cast<int>(hn::MaxLanes(TagF()));
+
+HWY_INLINE VecI integers(const std::uint8_t* bytes) {
+  const hn::Rebind<std::uint8_t, TagF> d8;
+  return hn::PromoteTo(TagI(), hn::LoadU(d8, bytes));
+}
+
+// Disparities of one column for each lane, their differences to the pixels' own, and where they are
+// of another surface.
+struct Neighbour {
+  VecF px;
+  VecF step;
+  MaskF is_other;
+};
+
+HWY_INLINE Neighbour neighbour_of(const float* px, VecF own) {
+  const TagF d;
+  const VecF value = hn::LoadU(d, px);
+  const VecF step = hn::Sub(value, own);
+  return {value, step, hn::Gt(hn::Abs(step), hn::Set(d, kEnlargedSurfaceStepPx))};
+}
+
+// A quarter of the way to a neighbour of the same surface; 0 for unknown ones.
+HWY_INLINE VecF quarter(const Neighbour& neighbour) {
+  const TagF d;
+  const auto is_same = hn::Le(hn::Abs(neighbour.step), hn::Set(d, kEnlargedSurfaceStepPx));
+  return hn::IfThenElseZero(is_same, hn::Mul(neighbour.step, hn::Set(d, 0.25F)));
+}
+
+// The disparity of the neighbour that looks most like the pixels, or `smooth`.
+struct Choice {
+  VecF px;
+  VecI nearest;
+  VecI intensity;
+
+  Choice(VecF smooth, VecI of_pixel, VecI of_own)
+      : px(smooth),
+        nearest(hn::Sub(hn::Abs(hn::Sub(of_pixel, of_own)), hn::Set(TagI(), kEnlargedPreference))),
+        intensity(of_pixel) {}
+  HWY_INLINE void consider(const Neighbour& neighbour, VecI of_neighbour) {
+    const TagF d;
+    const TagI di;
+    const VecI difference = hn::Abs(hn::Sub(intensity, of_neighbour));
+    const auto wins = hn::And(neighbour.is_other, hn::RebindMask(d, hn::Lt(difference, nearest)));
+    nearest = hn::IfThenElse(hn::RebindMask(di, wins), difference, nearest);
+    px = hn::IfThenElse(wins, neighbour.px, px);
+  }
+};
+
+// The pixels on one side of `column`, of which `beside` is −1 or 1 columns away.
+HWY_INLINE VecF enlarged(const EnlargedRow& row, int column, int beside, VecF own,
+                         const Neighbour& other_row, VecI intensity) {
+  const Neighbour in_row = neighbour_of(row.own_px + column + beside, own);
+  const Neighbour diagonal = neighbour_of(row.beside_px + column + beside, own);
+  const VecF smooth = hn::Add(own, hn::Add(quarter(in_row), quarter(other_row)));
+  if (hn::AllFalse(TagF(),
+                   hn::Or(hn::Or(in_row.is_other, other_row.is_other), diagonal.is_other))) {
+    return smooth;
+  }
+  Choice choice(smooth, intensity, integers(row.own_intensities + column));
+  choice.consider(in_row, integers(row.own_intensities + column + beside));
+  choice.consider(other_row, integers(row.beside_intensities + column));
+  choice.consider(diagonal, integers(row.beside_intensities + column + beside));
+  return choice.px;
+}
+
+void enlarge(const EnlargedRow& row, float* disparity_px) {
+  const TagF d;
+  const int columns = (row.width + 1) / 2;
+  // Whole columns with neighbours on both sides.
+  int column = 1;
+  enlarge_map_row_ref(row, 0, std::min(2, row.width), disparity_px);
+  for (; column + kColumns < columns && 2 * (column + kColumns) <= row.width; column += kColumns) {
+    const VecF own = hn::LoadU(d, row.own_px + column);
+    const Neighbour other_row = neighbour_of(row.beside_px + column, own);
+    // Pairs of pixels, the left one in the low byte.
+    HWY_ALIGN std::uint16_t pairs[kColumns];
+    std::memcpy(pairs, row.intensities + 2 * column, sizeof(pairs));
+    const VecI pair = hn::PromoteTo(TagI(), hn::Load(hn::Rebind<std::uint16_t, TagF>(), pairs));
+    const VecI left_intensity = hn::And(pair, hn::Set(TagI(), 0xFF));
+    const VecI right_intensity = hn::ShiftRight<8>(pair);
+    const VecF left = enlarged(row, column, -1, own, other_row, left_intensity);
+    const VecF right = enlarged(row, column, 1, own, other_row, right_intensity);
+    hn::StoreInterleaved2(left, right, d, disparity_px + 2 * column);
+  }
+  enlarge_map_row_ref(row, std::min(2 * column, row.width), row.width, disparity_px);
+}
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(enlarge);
+
+void enlarge_map_row(const EnlargedRow& row, float* disparity_px) {
+  HWY_DYNAMIC_DISPATCH(enlarge)(row, disparity_px);
+}
+
+}  // namespace vantage::kernels
+#endif

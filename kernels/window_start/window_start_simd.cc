@@ -1,0 +1,103 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/window_start/window_start_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "kernels/window_start/window_start.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SCALAR
+void second_winners(const std::array<const std::int16_t*, 3>& winners, int columns,
+                    std::int16_t* second) {
+  second_winners_row_ref(winners, columns, second);
+}
+void start(const CoarseEnergies& coarse, WindowCells* support) {
+  window_start_row_ref(coarse, support);
+}
+#else
+
+void second_winners(const std::array<const std::int16_t*, 3>& winners, int columns,
+                    std::int16_t* second) {
+  const hn::CappedTag<std::int16_t, kWindowMargin> d;
+  const auto [above, here, below] = winners;
+  const auto other = hn::Set(d, kOtherSurface);
+  const auto none = hn::Set(d, kNoSecondWinner);
+  for (int x = 0; x < columns; x += static_cast<int>(hn::Lanes(d))) {
+    const auto own = hn::LoadU(d, here + x);
+    auto min = own;
+    auto max = own;
+    for (int at = x - 1; at <= x + 1; ++at) {
+      const auto up = hn::LoadU(d, above + at);
+      const auto middle = hn::LoadU(d, here + at);
+      const auto down = hn::LoadU(d, below + at);
+      min = hn::Min(min, hn::Min(hn::Min(up, middle), down));
+      max = hn::Max(max, hn::Max(hn::Max(up, middle), down));
+    }
+    const auto above_or_none = hn::IfThenElse(hn::Lt(hn::Sub(max, own), other), none, max);
+    hn::StoreU(hn::IfThenElse(hn::Lt(hn::Sub(own, min), other), above_or_none, min), d, second + x);
+  }
+}
+
+void start(const CoarseEnergies& given, WindowCells* support) {
+  const CoarseEnergies coarse = given;  // a copy: stores cannot alias it
+  const hn::ScalableTag<std::uint64_t> d64;
+  const hn::Repartition<std::uint8_t, decltype(d64)> d8;
+  const hn::Repartition<std::uint16_t, decltype(d64)> d16;
+  constexpr int kColumns = static_cast<int>(hn::MaxLanes(d64));
+  const auto steps = hn::Set(d16, coarse.steps);
+  const auto ceiling = hn::Set(d16, coarse.ceiling);
+  const auto lanes = hn::Set(d64, coarse.lanes);
+  const auto all_bits = hn::Set(d64, 64);
+  const auto upper = hn::Set(d16, 0xFF00);
+  for (int x = 0; x < coarse.columns; x += kColumns) {
+    const auto coarse_cells = hn::LoadU(d64, coarse.energies + x);
+    const auto even = hn::BitCast(d8, coarse_cells);
+    const auto odd = hn::AverageRound(even, hn::BitCast(d8, hn::ShiftRight<8>(coarse_cells)));
+    // All sixteen energies of the columns of a block, then the lower and upper halves of each.
+    const auto first = hn::BitCast(d64, hn::InterleaveLower(d8, even, odd));
+    const auto second = hn::BitCast(d64, hn::InterleaveUpper(d8, even, odd));
+    const auto low = hn::InterleaveLower(d64, first, second);
+    const auto high = hn::InterleaveUpper(d64, first, second);
+    HWY_ALIGN std::uint64_t bits[kColumns];
+    for (int j = 0; j < kColumns; ++j) {
+      bits[j] = coarse.offset_bits[x + j];
+    }
+    const auto down = hn::Load(d64, bits);
+    const auto energies =
+        hn::BitCast(d16, hn::Or(hn::Shr(low, down), hn::Shl(high, hn::Sub(all_bits, down))));
+    const auto cells = [&](auto energy) HWY_ATTR {
+      return hn::SaturatedSub(ceiling, hn::MulHigh(energy, steps));
+    };
+    const auto even_cells = cells(hn::ShiftLeft<8>(energies));
+    const auto odd_cells = cells(hn::And(energies, upper));
+    const auto result = hn::BitCast(d64, hn::Or(even_cells, hn::ShiftLeft<8>(odd_cells)));
+    hn::StoreU(hn::And(result, lanes), d64, support + x);
+  }
+}
+#endif
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(second_winners);
+HWY_EXPORT(start);
+
+void second_winners_row(const std::array<const std::int16_t*, 3>& winners, int columns,
+                        std::int16_t* second) {
+  HWY_DYNAMIC_DISPATCH(second_winners)(winners, columns, second);
+}
+void window_start_row(const CoarseEnergies& coarse, WindowCells* support) {
+  HWY_DYNAMIC_DISPATCH(start)(coarse, support);
+}
+
+}  // namespace vantage::kernels
+#endif

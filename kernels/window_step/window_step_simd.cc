@@ -1,0 +1,465 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/window_step/window_step_simd.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, so that it is compiled once per target.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+#include "kernels/window_step/window_step.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vantage::kernels::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SCALAR
+void step(const WindowStepRow& row, const std::array<WindowCells*, kWindows>& support) {
+  window_step_row_ref(row, support);
+}
+void winners(const WindowStepRow& row, const WindowWinners& winners) {
+  window_winners_row_ref(row, winners);
+}
+#else
+
+// One window per 64-bit lane. Its bytes become two vectors of words, those of even and of odd
+// candidates, which need no widening.
+using Tag64 = hn::ScalableTag<std::uint64_t>;
+using Tag32 = hn::Repartition<std::uint32_t, Tag64>;
+using Tag16 = hn::Repartition<std::uint16_t, Tag64>;
+using TagS16 = hn::Repartition<std::int16_t, Tag64>;
+using Tag8 = hn::Repartition<std::uint8_t, Tag64>;
+using Vec64 = hn::VFromD<Tag64>;
+using Vec16 = hn::VFromD<Tag16>;
+using VecS16 = hn::VFromD<TagS16>;
+using Vec8 = hn::VFromD<Tag8>;
+constexpr int kColumns = static_cast<int>(hn::MaxLanes(Tag64()));
+static_assert(kColumns <= 8 && kColumns <= kWindowMargin);
+
+// Table lookups that distribute the first kColumns of eight words (the same in every block) to
+// 64-bit lanes.
+struct Distribution {
+  alignas(64) std::uint8_t to_all_words[64];  // to each of a lane's four words
+  alignas(64) std::uint8_t to_low_byte[64];   // their low bytes, to the low byte of a lane
+  alignas(64) std::uint8_t bytes[64];         // of eight bytes: to all bytes of a lane
+};
+constexpr Distribution distribution() {
+  Distribution to{};
+  for (int column = 0; column < 8; ++column) {
+    for (int byte = 0; byte < 8; ++byte) {
+      const auto at = static_cast<std::size_t>(8 * column + byte);
+      to.to_all_words[at] = static_cast<std::uint8_t>(2 * column + byte % 2);
+      to.to_low_byte[at] = static_cast<std::uint8_t>(byte == 0 ? 2 * column : 0x80);
+      to.bytes[at] = static_cast<std::uint8_t>(column);
+    }
+  }
+  return to;
+}
+constexpr Distribution kTo = distribution();
+
+HWY_INLINE Vec16 words_of(const FixedWeight* values) {
+  const Tag8 d8;
+  const Vec8 words = hn::BitCast(d8, hn::LoadDup128(TagS16(), values));
+  return hn::BitCast(Tag16(), hn::TableLookupBytes(words, hn::Load(d8, kTo.to_all_words)));
+}
+
+HWY_INLINE Vec64 mask_of(const std::uint8_t* bytes) {
+  const Tag8 d8;
+  return hn::BitCast(Tag64(),
+                     hn::TableLookupBytes(hn::LoadDup128(d8, bytes), hn::Load(d8, kTo.bytes)));
+}
+
+// Cells of windows that begin at `start`, moved to the lanes of windows that begin at `own`.
+HWY_INLINE Vec64 moved(Vec64 cells, const std::int16_t* start, VecS16 own) {
+  const Tag64 d64;
+  const Tag8 d8;
+  const TagS16 ds16;
+  // By whole windows and more: everything is shifted out.
+  const VecS16 limit = hn::Set(ds16, kWindowCandidates);
+  const VecS16 later = hn::Sub(own, hn::LoadDup128(ds16, start));
+  if (hn::AllTrue(ds16, hn::Eq(later, hn::Zero(ds16)))) {
+    return cells;  // most columns of smooth surfaces
+  }
+  const VecS16 down = hn::Min(hn::Max(later, hn::Zero(ds16)), limit);
+  const VecS16 up = hn::Min(hn::Max(hn::Neg(later), hn::Zero(ds16)), limit);
+  const Vec8 places = hn::Load(d8, kTo.to_low_byte);
+  const auto bits = [&](VecS16 candidates) HWY_ATTR {
+    return hn::BitCast(
+        d64, hn::TableLookupBytesOr0(hn::BitCast(d8, hn::ShiftLeft<3>(candidates)), places));
+  };
+  return hn::Shl(hn::Shr(cells, bits(down)), bits(up));
+}
+
+struct Totals {
+  Vec16 even, odd;
+};
+
+HWY_INLINE Totals evidence_of(const WindowCells* evidence) {
+  static_assert(kWindowTotalUnits == 4);
+  const Tag16 d16;
+  const Vec16 cells = hn::BitCast(d16, hn::LoadU(Tag64(), evidence));
+  const Vec16 within = hn::Set(d16, 0x3FC);
+  return {hn::And(hn::ShiftLeft<2>(cells), within), hn::And(hn::ShiftRight<6>(cells), within)};
+}
+
+HWY_INLINE void add(Vec64 support, Vec16 weight, Totals& totals) {
+  const Tag16 d16;
+  const Vec16 cells = hn::BitCast(d16, support);
+  const Vec16 within = hn::Set(d16, 0x7F8);  // eight times a cell
+  totals.even = hn::Add(totals.even, hn::MulHigh(hn::And(hn::ShiftLeft<3>(cells), within), weight));
+  totals.odd = hn::Add(totals.odd, hn::MulHigh(hn::And(hn::ShiftRight<5>(cells), within), weight));
+}
+
+// The largest word of each 64-bit lane, in all its words.
+HWY_INLINE Vec16 max_of_lane(Vec16 words) {
+  const Tag16 d16;
+  const Vec16 halves =
+      hn::Max(words, hn::BitCast(d16, hn::RotateRight<32>(hn::BitCast(Tag64(), words))));
+  return hn::Max(halves, hn::BitCast(d16, hn::RotateRight<16>(hn::BitCast(Tag32(), halves))));
+}
+
+// T of kColumns columns. kBoth: neighbours may have second windows.
+template <bool kBoth>
+class ColumnTotals {
+ public:
+  ColumnTotals(const WindowStepRow& row, int x)
+      : row_(row),
+        x_(x),
+        mu_(hn::Set(Tag16(), static_cast<std::uint16_t>(row.mu))),
+        left_(words_of(row.beside + x)),
+        right_(words_of(row.beside + x + 1)),
+        up_(words_of(row.above + x)),
+        down_(words_of(row.below + x)) {}
+
+  [[nodiscard]] HWY_INLINE Totals of(std::size_t window) const {
+    Totals totals = evidence_of(row_.evidence[window] + x_);
+    const VecS16 own = hn::LoadDup128(TagS16(), row_.centre.start[window] + x_);
+    if constexpr (kBoth) {
+      add(support(row_.centre, x_, own), mu_, totals);
+    } else {
+      add(hn::LoadU(Tag64(), row_.centre.support[0] + x_), mu_, totals);
+    }
+    add(support(row_.centre, x_ - 1, own), left_, totals);
+    add(support(row_.centre, x_ + 1, own), right_, totals);
+    add(support(row_.up, x_, own), up_, totals);
+    add(support(row_.down, x_, own), down_, totals);
+    return totals;
+  }
+
+ private:
+  [[nodiscard]] static HWY_INLINE Vec64 support(const WindowRow& row, int x, VecS16 own) {
+    const Tag64 d64;
+    const Vec64 first = moved(hn::LoadU(d64, row.support[0] + x), row.start[0] + x, own);
+    if constexpr (!kBoth) {
+      return first;
+    } else {
+      const Tag8 d8;
+      const Vec64 cells = hn::LoadU(d64, row.support[1] + x);
+      if (hn::AllTrue(d64, hn::Eq(cells, hn::Zero(d64)))) {
+        return first;
+      }
+      const Vec64 second = moved(cells, row.start[1] + x, own);
+      return hn::BitCast(d64, hn::Max(hn::BitCast(d8, first), hn::BitCast(d8, second)));
+    }
+  }
+
+  const WindowStepRow& row_;
+  int x_;
+  Vec16 mu_;
+  Vec16 left_;
+  Vec16 right_;
+  Vec16 up_;
+  Vec16 down_;
+};
+
+// Cells from quarters of a step, at most 255 after rounding.
+HWY_INLINE Vec64 packed(const Totals& quarters, WindowCells lanes) {
+  const Tag16 d16;
+  const Vec16 half = hn::Set(d16, 2);
+  const Vec16 max = hn::Set(d16, 255);
+  const Vec16 even = hn::Min(hn::ShiftRight<2>(hn::Add(quarters.even, half)), max);
+  const Vec16 odd = hn::Min(hn::ShiftRight<2>(hn::Add(quarters.odd, half)), max);
+  return hn::And(hn::BitCast(Tag64(), hn::Or(even, hn::ShiftLeft<8>(odd))),
+                 hn::Set(Tag64(), lanes));
+}
+
+// max(0, T − max + ceiling).
+HWY_INLINE Totals above_floor(const Totals& totals, Vec16 max, Vec16 ceiling) {
+  return {hn::SaturatedSub(hn::Add(totals.even, ceiling), max),
+          hn::SaturatedSub(hn::Add(totals.odd, ceiling), max)};
+}
+
+// Words of candidates `kLanes` even or odd places before, or after (−kLanes), in their window.
+template <int kLanes>
+HWY_INLINE Vec16 from_beside(Vec16 words) {
+  const Tag16 d16;
+  const Vec64 lanes = hn::BitCast(Tag64(), words);
+  if constexpr (kLanes == 0) {
+    return words;
+  } else if constexpr (kLanes > 0) {
+    return hn::BitCast(d16, hn::ShiftLeft<16 * kLanes>(lanes));
+  } else {
+    return hn::BitCast(d16, hn::ShiftRight<-16 * kLanes>(lanes));
+  }
+}
+
+template <int kOffset>
+HWY_INLINE void smooth(const Totals& totals, const WindowPrior& prior, Totals& smoothed) {
+  if (prior.radius < kOffset) {
+    return;
+  }
+  const Vec16 rise = hn::Set(Tag16(), prior.rises[kOffset - 1]);
+  constexpr int kHalf = kOffset / 2;
+  Vec16 even;
+  Vec16 odd;
+  if constexpr (kOffset % 2 == 0) {
+    even = hn::Max(from_beside<kHalf>(totals.even), from_beside<-kHalf>(totals.even));
+    odd = hn::Max(from_beside<kHalf>(totals.odd), from_beside<-kHalf>(totals.odd));
+  } else {
+    // Candidate 2i lies beside 2i − 1 and 2i + 1, odd ones of places i − 1 and i.
+    even = hn::Max(from_beside<kHalf + 1>(totals.odd), from_beside<-kHalf>(totals.odd));
+    odd = hn::Max(from_beside<kHalf>(totals.even), from_beside<-kHalf - 1>(totals.even));
+  }
+  smoothed.even = hn::Max(smoothed.even, hn::SaturatedSub(even, rise));
+  smoothed.odd = hn::Max(smoothed.odd, hn::SaturatedSub(odd, rise));
+}
+
+HWY_INLINE Totals smoothed(const Totals& totals, const WindowPrior& prior) {
+  Totals result = totals;
+  smooth<1>(totals, prior, result);
+  if (prior.radius > 1) {
+    smooth<2>(totals, prior, result);
+    smooth<3>(totals, prior, result);
+    smooth<4>(totals, prior, result);
+    smooth<5>(totals, prior, result);
+    smooth<6>(totals, prior, result);
+    smooth<7>(totals, prior, result);
+  }
+  return result;
+}
+
+// Whether one of the columns of a vector is marked.
+HWY_INLINE bool any_of(const std::uint8_t* marks) {
+  std::uint64_t any = 0;
+  std::memcpy(&any, marks, kColumns);
+  return any != 0;
+}
+
+HWY_INLINE Totals masked(const Totals& totals, Vec64 mask) {
+  const Vec16 words = hn::BitCast(Tag16(), mask);
+  return {hn::And(totals.even, words), hn::And(totals.odd, words)};
+}
+
+void step(const WindowStepRow& given, const std::array<WindowCells*, kWindows>& support) {
+  const Tag64 d64;
+  const Tag16 d16;
+  const WindowStepRow row = given;  // a copy: stores cannot alias it
+  const auto [first_support, second_support] = support;
+  const Vec16 ceiling = hn::Set(d16, row.prior.ceiling);
+  for (int x = 0; x < row.columns; x += kColumns) {
+    const auto store_first = [&](const Totals& first) HWY_ATTR {
+      const Vec16 max = max_of_lane(hn::Max(first.even, first.odd));
+      hn::StoreU(packed(above_floor(smoothed(first, row.prior), max, ceiling), row.prior.lanes),
+                 d64, first_support + x);
+      hn::StoreU(hn::Zero(d64), d64, second_support + x);
+    };
+    if (!any_of(row.near_second + x)) {
+      store_first(ColumnTotals<false>(row, x).of(0));
+      continue;
+    }
+    const ColumnTotals<true> totals(row, x);
+    const Vec64 exists = hn::And(mask_of(row.has_second + x), mask_of(row.near_second + x));
+    const Totals first = totals.of(0);
+    const Totals second = masked(totals.of(1), exists);
+    const Vec16 max =
+        max_of_lane(hn::Max(hn::Max(first.even, first.odd), hn::Max(second.even, second.odd)));
+    hn::StoreU(packed(above_floor(smoothed(first, row.prior), max, ceiling), row.prior.lanes), d64,
+               first_support + x);
+    hn::StoreU(hn::And(exists, packed(above_floor(smoothed(second, row.prior), max, ceiling),
+                                      row.prior.lanes)),
+               d64, second_support + x);
+  }
+  for (WindowCells* const cells : {first_support, second_support}) {
+    std::fill_n(cells + row.columns, kWindowMargin, WindowCells{0});
+  }
+}
+
+// Words with a code for each candidate of a window: T + 1, and the lane, larger for smaller
+// candidates. 0 for candidates that may not win.
+struct Codes {
+  Vec16 even, odd;
+};
+
+HWY_INLINE Codes codes_of(const Totals& totals, Vec64 selectable) {
+  const Tag16 d16;
+  alignas(16) static constexpr std::uint16_t kEven[8] = {7, 5, 3, 1, 7, 5, 3, 1};
+  alignas(16) static constexpr std::uint16_t kOdd[8] = {6, 4, 2, 0, 6, 4, 2, 0};
+  const Vec16 one = hn::Set(d16, 1);
+  const auto code = [&](Vec16 total, const std::uint16_t* lanes) HWY_ATTR {
+    return hn::Or(hn::ShiftLeft<3>(hn::Add(total, one)), hn::LoadDup128(d16, lanes));
+  };
+  // Bytes of 255 or 0, widened to words.
+  const TagS16 ds16;
+  const auto bytes = hn::BitCast(ds16, selectable);
+  const Vec16 is_even = hn::BitCast(d16, hn::ShiftRight<8>(hn::ShiftLeft<8>(bytes)));
+  const Vec16 is_odd = hn::BitCast(d16, hn::ShiftRight<8>(bytes));
+  return {hn::And(code(totals.even, kEven), is_even), hn::And(code(totals.odd, kOdd), is_odd)};
+}
+
+// T of the winners' neighbours in the window, in all words of a lane.
+struct Beside {
+  Vec16 before, after;
+};
+
+HWY_INLINE Beside beside_winner(const Totals& totals, const Codes& codes, Vec16 best) {
+  const Vec16 none = hn::Zero(Tag16());
+  // Without a winner all codes are 0.
+  const auto where = [&](Vec16 code, Vec16 value) HWY_ATTR {
+    return hn::IfThenElse(hn::Eq(code, none), none, hn::IfThenElseZero(hn::Eq(code, best), value));
+  };
+  const Vec16 before =
+      hn::Max(where(codes.even, from_beside<1>(totals.odd)), where(codes.odd, totals.even));
+  const Vec16 after =
+      hn::Max(where(codes.even, totals.odd), where(codes.odd, from_beside<-1>(totals.even)));
+  return {max_of_lane(before), max_of_lane(after)};
+}
+
+HWY_INLINE Vec64 selectable_of(const WindowCells* selectable, int x, WindowCells lanes) {
+  const Tag64 d64;
+  const Vec64 all = hn::Set(d64, lanes);
+  return selectable == nullptr ? all : hn::And(hn::LoadU(d64, selectable + x), all);
+}
+
+// The low words of lanes.
+HWY_INLINE void store_words(Vec16 words, std::uint16_t* values) {
+  HWY_ALIGN std::uint64_t lanes[kColumns];
+  hn::Store(hn::BitCast(Tag64(), words), Tag64(), lanes);
+  for (int j = 0; j < kColumns; ++j) {
+    values[j] = static_cast<std::uint16_t>(lanes[j]);
+  }
+}
+
+void winners(const WindowStepRow& given, const WindowWinners& given_winners) {
+  const Tag64 d64;
+  const Tag16 d16;
+  const WindowStepRow row = given;  // copies: stores cannot alias them
+  const WindowWinners winners = given_winners;
+  const Vec16 ceiling = hn::Set(d16, row.prior.ceiling);
+  for (int x = 0; x < row.columns; x += kColumns) {
+    const bool is_near = any_of(row.near_second + x);
+    const bool both = is_near && any_of(row.has_second + x);
+    Totals first;
+    Totals second{hn::Zero(d16), hn::Zero(d16)};
+    Vec64 second_selectable = hn::Zero(d64);
+    if (both) {
+      const ColumnTotals<true> totals(row, x);
+      const Vec64 exists = hn::And(mask_of(row.has_second + x), mask_of(row.near_second + x));
+      first = totals.of(0);
+      second = masked(totals.of(1), exists);
+      second_selectable = hn::And(exists, selectable_of(winners.selectable[1], x, row.prior.lanes));
+    } else {
+      first = is_near ? ColumnTotals<true>(row, x).of(0) : ColumnTotals<false>(row, x).of(0);
+    }
+    const Codes first_codes =
+        codes_of(first, selectable_of(winners.selectable[0], x, row.prior.lanes));
+    Vec16 best = max_of_lane(hn::Max(first_codes.even, first_codes.odd));
+    Beside beside = beside_winner(first, first_codes, best);
+    Totals chosen = first;
+    HWY_ALIGN std::uint64_t is_second[kColumns] = {};
+    if (both) {
+      const Codes codes = codes_of(second, second_selectable);
+      const Vec16 second_best = max_of_lane(hn::Max(codes.even, codes.odd));
+      const Beside of_second = beside_winner(second, codes, second_best);
+      const auto wins = hn::Gt(hn::ShiftRight<3>(second_best), hn::ShiftRight<3>(best));
+      best = hn::IfThenElse(wins, second_best, best);
+      beside = {hn::IfThenElse(wins, of_second.before, beside.before),
+                hn::IfThenElse(wins, of_second.after, beside.after)};
+      chosen = {hn::IfThenElse(wins, second.even, first.even),
+                hn::IfThenElse(wins, second.odd, first.odd)};
+      hn::Store(hn::BitCast(d64, hn::VecFromMask(d16, wins)), d64, is_second);
+    }
+    HWY_ALIGN std::uint64_t codes[kColumns];
+    hn::Store(hn::BitCast(d64, best), d64, codes);
+    for (int j = 0; j < kColumns; ++j) {
+      const auto code = static_cast<std::uint16_t>(codes[j]);
+      const bool wins = code != 0;
+      winners.window[x + j] =
+          wins ? static_cast<std::uint8_t>(is_second[j] & 1U) : std::uint8_t{kNoWindow};
+      winners.lane[x + j] = wins ? static_cast<std::uint8_t>(7 - (code & 7)) : std::uint8_t{0};
+      winners.total[x + j] = wins ? static_cast<std::uint16_t>((code >> 3) - 1) : std::uint16_t{0};
+    }
+    store_words(beside.before, winners.total_before + x);
+    store_words(beside.after, winners.total_after + x);
+    if (winners.support != nullptr) {
+      const Vec16 max =
+          max_of_lane(hn::Max(hn::Max(first.even, first.odd), hn::Max(second.even, second.odd)));
+      hn::StoreU(packed(above_floor(chosen, max, ceiling), row.prior.lanes), d64,
+                 winners.support + x);
+    }
+  }
+}
+#endif
+
+void disparities(const WindowDisparities& row, float* disparity_px) {
+  const hn::ScalableTag<float> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  const hn::Rebind<std::uint8_t, decltype(d)> d8;
+  const hn::Rebind<std::uint16_t, decltype(d)> d16;
+  const hn::Rebind<std::int16_t, decltype(d)> ds16;
+  const WindowWinners winners = *row.winners;
+  const auto [first_start, second_start] = row.start;
+  const int step = static_cast<int>(hn::Lanes(d));
+  const auto zero = hn::Zero(di);
+  const auto min = hn::Set(di, row.disparity_min);
+  const auto last_lane = hn::Set(di, row.candidates - 1);
+  const auto is_refined = hn::Set(di, row.is_refined ? 1 : 0);
+  const auto unknown = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
+  int x = 0;
+  for (; x + step <= row.columns; x += step) {
+    const auto window = hn::PromoteTo(di, hn::LoadU(d8, winners.window + x));
+    const auto lane = hn::PromoteTo(di, hn::LoadU(d8, winners.lane + x));
+    const auto total = hn::PromoteTo(di, hn::LoadU(d16, winners.total + x));
+    const auto before = hn::PromoteTo(di, hn::LoadU(d16, winners.total_before + x));
+    const auto after = hn::PromoteTo(di, hn::LoadU(d16, winners.total_after + x));
+    const auto first = hn::PromoteTo(di, hn::LoadU(ds16, first_start + x));
+    const auto second = hn::PromoteTo(di, hn::LoadU(ds16, second_start + x));
+    const auto start = hn::IfThenElse(hn::Eq(window, hn::Set(di, 1)), second, first);
+    const auto whole = hn::ConvertTo(d, hn::Add(min, hn::Add(start, lane)));
+    const auto curvature = hn::Sub(hn::Add(total, total), hn::Add(before, after));
+    const auto moves = hn::And(hn::And(hn::Gt(lane, zero), hn::Lt(lane, last_lane)),
+                               hn::And(hn::Gt(curvature, zero), hn::Gt(is_refined, zero)));
+    const auto offset = hn::Div(
+        hn::ConvertTo(d, hn::Sub(after, before)),
+        hn::ConvertTo(d, hn::IfThenElse(moves, hn::Add(curvature, curvature), hn::Set(di, 1))));
+    const auto moved = hn::IfThenElse(hn::RebindMask(d, moves), hn::Add(whole, offset), whole);
+    const auto is_none = hn::RebindMask(d, hn::Eq(window, hn::Set(di, kNoWindow)));
+    hn::StoreU(hn::IfThenElse(is_none, unknown, moved), d, disparity_px + x);
+  }
+  window_disparity_row_ref(row, x, row.columns, disparity_px);
+}
+
+}  // namespace vantage::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vantage::kernels {
+HWY_EXPORT(step);
+HWY_EXPORT(winners);
+HWY_EXPORT(disparities);
+
+void window_step_row(const WindowStepRow& row, const std::array<WindowCells*, kWindows>& support) {
+  HWY_DYNAMIC_DISPATCH(step)(row, support);
+}
+void window_winners_row(const WindowStepRow& row, const WindowWinners& winners) {
+  HWY_DYNAMIC_DISPATCH(winners)(row, winners);
+}
+void window_disparity_row(const WindowDisparities& row, float* disparity_px) {
+  HWY_DYNAMIC_DISPATCH(disparities)(row, disparity_px);
+}
+
+}  // namespace vantage::kernels
+#endif

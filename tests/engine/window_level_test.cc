@@ -1,0 +1,421 @@
+#include "engine/matching/windows/window_level.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "engine/matching/aggregation/edge_weights.h"
+#include "kernels/candidate_windows.h"
+#include "kernels/census/census.h"
+#include "tests/engine/identical_maps.h"
+
+namespace vantage {
+namespace window_level_test {
+
+using Bytes = Image<std::uint8_t>;
+constexpr int kAbsent = std::numeric_limits<std::int16_t>::min();
+
+/// Given energies and winners of all candidates.
+class GivenBeliefs final : public CoarseBeliefs {
+ public:
+  GivenBeliefs(scheduler::Extent extent, int disparity_min, int count, std::mt19937& random)
+      : extent_(extent), disparity_min_(disparity_min), count_(count) {
+    const auto pixels = static_cast<std::size_t>(extent.columns * extent.rows);
+    winners_.resize(pixels);
+    energies_.resize(pixels * static_cast<std::size_t>(count));
+    for (int& winner : winners_) {
+      // Mostly one surface, so that some pixels have one window and some two.
+      winner = static_cast<int>(random() % (random() % 5 == 0 ? static_cast<unsigned>(count) : 2U));
+      winner = std::min(winner, count - 1);
+    }
+    for (std::uint8_t& energy : energies_) {
+      energy = static_cast<std::uint8_t>(random());
+    }
+  }
+  [[nodiscard]] scheduler::Extent extent() const override { return extent_; }
+  [[nodiscard]] int disparity_min() const override { return disparity_min_; }
+  [[nodiscard]] double nats_per_step() const override { return 0.05; }
+  void winners_row(int y, std::int16_t* winners) const override {
+    for (int x = 0; x < extent_.columns; ++x) {
+      winners[x] = static_cast<std::int16_t>(winner(x, y));
+    }
+  }
+  void energies_row(int y, const std::int16_t* first,
+                    kernels::WindowCells* energies) const override {
+    for (int x = 0; x < extent_.columns; ++x) {
+      energies[x] = 0;
+      for (int i = 0; i < 6; ++i) {
+        energies[x] |= static_cast<kernels::WindowCells>(energy(x, y, first[x] + i)) << (8 * i);
+      }
+    }
+  }
+  [[nodiscard]] int winner(int x, int y) const {
+    x = std::clamp(x, 0, extent_.columns - 1);
+    y = std::clamp(y, 0, extent_.rows - 1);
+    return winners_[static_cast<std::size_t>(y * extent_.columns + x)];
+  }
+  [[nodiscard]] int energy(int x, int y, int candidate) const {
+    return candidate < 0 || candidate >= count_
+               ? 255
+               : energies_[static_cast<std::size_t>((y * extent_.columns + x) * count_ +
+                                                    candidate)];
+  }
+
+ private:
+  scheduler::Extent extent_;
+  int disparity_min_;
+  int count_;
+  std::vector<int> winners_;
+  std::vector<std::uint8_t> energies_;
+};
+
+Photograph random_photograph(int width, int height, std::mt19937& random) {
+  Bytes pixels(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      pixels.at(x, y) = static_cast<std::uint8_t>(random() % 8 * 30);
+    }
+  }
+  return {std::move(pixels)};
+}
+
+/// A level, transcribed from EQUATIONS §3.13 pixel by pixel.
+class PlainLevel {
+ public:
+  PlainLevel(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
+             const Photograph& reference, const Photograph& partner, const Image<float>& grey,
+             const GivenBeliefs& coarse)
+      : parameters_(parameters),
+        geometry_(geometry),
+        reference_(std::get<Bytes>(reference.pixels)),
+        partner_(std::get<Bytes>(partner.pixels)),
+        grey_(grey),
+        coarse_(coarse),
+        columns_(grey.width()),
+        rows_(grey.height()) {
+    const double ceiling_nats =
+        std::log1p(-parameters.epsilon_prior) - std::log(parameters.epsilon_prior);
+    outlier_nats_ = -std::log(parameters.epsilon_measurement);
+    steps_ = std::min({16.0, 255 / ceiling_nats, 63 / outlier_nats_});
+    ceiling_ = static_cast<int>(std::lround(steps_ * ceiling_nats));
+    start();
+  }
+
+  DisparityMap map() {
+    for (int i = 1; i < parameters_.final_iterations; ++i) {
+      iterate();
+    }
+    DisparityMap result(columns_, rows_);
+    for (int y = 0; y < rows_; ++y) {
+      for (int x = 0; x < columns_; ++x) {
+        result.at(x, y) = winner(x, y);
+      }
+    }
+    return result;
+  }
+
+ private:
+  /// Cells of a window by candidate.
+  using Window = std::map<int, int>;
+  using Pixel = std::vector<Window>;
+
+  [[nodiscard]] const Pixel& at(int x, int y) const {
+    return pixels_[static_cast<std::size_t>(y * columns_ + x)];
+  }
+
+  void start() {
+    pixels_.resize(static_cast<std::size_t>(columns_ * rows_));
+    const int first = 2 * coarse_.disparity_min() - geometry_.disparity_min;
+    const int steps = static_cast<int>(std::ceil(256 * coarse_.nats_per_step() * steps_));
+    for (int y = 0; y < rows_; ++y) {
+      for (int x = 0; x < columns_; ++x) {
+        Pixel& pixel = pixels_[static_cast<std::size_t>(y * columns_ + x)];
+        for (const int winner : guesses(x / 2, y / 2)) {
+          const int window_start =
+              std::clamp(2 * winner + first - 3, 0, std::max(0, geometry_.count - 8));
+          Window window;
+          for (int d = window_start; d < std::min(window_start + 8, geometry_.count); ++d) {
+            const int twice = d - first;  // in halves of coarse candidates
+            const int low = coarse_.energy(x / 2, y / 2, twice / 2);
+            const int high = twice % 2 == 0 ? low : coarse_.energy(x / 2, y / 2, twice / 2 + 1);
+            window[d] = std::max(0, ceiling_ - (((low + high + 1) / 2 * steps) >> 8));
+          }
+          pixel.push_back(window);
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<int> guesses(int x, int y) const {
+    const int own = coarse_.winner(x, y);
+    int min = own;
+    int max = own;
+    for (int v = -1; v <= 1; ++v) {
+      for (int u = -1; u <= 1; ++u) {
+        min = std::min(min, coarse_.winner(x + u, y + v));
+        max = std::max(max, coarse_.winner(x + u, y + v));
+      }
+    }
+    if (own - min >= 2) {
+      return {own, min};
+    }
+    return max - own >= 2 ? std::vector<int>{own, max} : std::vector<int>{own};
+  }
+
+  [[nodiscard]] bool has_partners(int x, int candidate) const {
+    for (int column = 2 * x; column <= std::min(2 * x + 1, geometry_.width - 1); ++column) {
+      const int partner = geometry_.partner(column, candidate);
+      if (partner < 0 || partner >= geometry_.width) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  static int code_bit(const Bytes& image, int x, int y, const kernels::PixelOffset& offset) {
+    const auto pixel = [&](int column, int row) {
+      return image.at(std::clamp(column, 0, image.width() - 1),
+                      std::clamp(row, 0, image.height() - 1));
+    };
+    return pixel(x + offset.columns, y + offset.rows) < pixel(x, y) ? 1 : 0;
+  }
+
+  [[nodiscard]] int evidence(int x, int y, int candidate) const {
+    if (!has_partners(x, candidate)) {
+      return 0;
+    }
+    int sum = 0;
+    for (int row = 2 * y; row < 2 * y + 2; ++row) {
+      for (int column = 2 * x; column < 2 * x + 2; ++column) {
+        const int v = std::min(row, geometry_height() - 1);
+        // Columns outside have the code of the last one.
+        const int own = std::min(column, geometry_.width - 1);
+        const int other = std::clamp(geometry_.partner(column, candidate), 0, geometry_.width - 1);
+        int distance = 0;
+        for (const kernels::PixelOffset& offset : kernels::kRayCensusOffsets) {
+          distance +=
+              code_bit(reference_, own, v, offset) != code_bit(partner_, other, v, offset) ? 1 : 0;
+        }
+        const double deviations = distance / parameters_.sigma_measurement;
+        const double epsilon = parameters_.epsilon_measurement;
+        const double nats =
+            outlier_nats_ +
+            std::log((1 - epsilon) * std::exp(-deviations * deviations / 2) + epsilon);
+        sum += static_cast<int>(std::lround(steps_ * std::max(0.0, nats)));
+      }
+    }
+    return sum;
+  }
+
+  [[nodiscard]] int geometry_height() const { return reference_.height(); }
+
+  /// μ · weight towards a neighbour, in units of 2⁻¹⁵.
+  [[nodiscard]] int weight(int x, int y, int u, int v) const {
+    const auto grey = [&](int column, int row) { return grey_.at(column, row); };
+    float weight = 1;
+    if (parameters_.edge_weight < 1 && (u != x || v != y)) {
+      const auto min = static_cast<float>(parameters_.edge_weight);
+      const auto contrast = static_cast<float>(parameters_.edge_contrast);
+      weight = min + (1 - min) * std::exp(-std::fabs(grey(u, v) - grey(x, y)) / contrast);
+    }
+    return static_cast<int>(
+        std::nearbyint(std::min(static_cast<float>(parameters_.mu) * weight * 32768, 32767.0F)));
+  }
+
+  [[nodiscard]] int support(int x, int y, int candidate) const {
+    int max = 0;
+    for (const Window& window : at(x, y)) {
+      const auto cell = window.find(candidate);
+      max = std::max(max, cell == window.end() ? 0 : cell->second);
+    }
+    return max;
+  }
+
+  /// T of a pixel, in quarters of a step.
+  [[nodiscard]] Pixel totals(int x, int y) const {
+    Pixel totals;
+    for (const Window& window : at(x, y)) {
+      Window of_window;
+      for (const auto& [candidate, cell] : window) {
+        int total = 4 * evidence(x, y, candidate);
+        for (const auto& [u, v] : std::array<std::pair<int, int>, 5>{
+                 {{x, y}, {x - 1, y}, {x + 1, y}, {x, y - 1}, {x, y + 1}}}) {
+          if (u >= 0 && u < columns_ && v >= 0 && v < rows_) {
+            total += (8 * support(u, v, candidate) * weight(x, y, u, v)) >> 16;
+          }
+        }
+        of_window[candidate] = total;
+      }
+      totals.push_back(of_window);
+    }
+    return totals;
+  }
+
+  static int max_of(const Pixel& totals) {
+    int max = 0;
+    for (const Window& window : totals) {
+      for (const auto& [candidate, total] : window) {
+        max = std::max(max, total);
+      }
+    }
+    return max;
+  }
+
+  void iterate() {
+    std::vector<Pixel> next;
+    for (int y = 0; y < rows_; ++y) {
+      for (int x = 0; x < columns_; ++x) {
+        const Pixel of_pixel = totals(x, y);
+        const int max = max_of(of_pixel);
+        Pixel pixel;
+        for (const Window& window : of_pixel) {
+          Window smoothed;
+          for (const auto& [candidate, total] : window) {
+            int best = total;
+            for (const auto& [other, of_other] : window) {
+              const double k = (candidate - other) / parameters_.sigma_prior;
+              const int rise = static_cast<int>(std::nearbyint(4 * steps_ * k * k / 2));
+              if (rise < 4 * ceiling_) {
+                best = std::max(best, of_other - rise);
+              }
+            }
+            smoothed[candidate] = (std::max(0, best - max + 4 * ceiling_) + 2) / 4;
+          }
+          pixel.push_back(smoothed);
+        }
+        next.push_back(pixel);
+      }
+    }
+    pixels_ = std::move(next);
+  }
+
+  [[nodiscard]] float winner(int x, int y) const {
+    int best = -1;
+    float disparity_px = std::numeric_limits<float>::quiet_NaN();
+    for (const Window& window : totals(x, y)) {
+      for (const auto& [candidate, total] : window) {
+        if (!has_partners(x, candidate) || total <= best) {
+          continue;
+        }
+        best = total;
+        disparity_px = static_cast<float>(geometry_.disparity_min + candidate);
+        const auto before = window.find(candidate - 1);
+        const auto after = window.find(candidate + 1);
+        if (before == window.end() || after == window.end() || !has_partners(x, candidate - 1) ||
+            !has_partners(x, candidate + 1)) {
+          continue;
+        }
+        const int curvature = 2 * total - before->second - after->second;
+        if (curvature > 0) {
+          disparity_px += static_cast<float>(after->second - before->second) /
+                          static_cast<float>(2 * curvature);
+        }
+      }
+    }
+    return disparity_px;
+  }
+
+  const MethodParameters& parameters_;
+  kernels::CandidateGeometry geometry_;
+  const Bytes& reference_;
+  const Bytes& partner_;
+  const Image<float>& grey_;
+  const GivenBeliefs& coarse_;
+  int columns_;
+  int rows_;
+  double outlier_nats_ = 0;
+  double steps_ = 0;
+  int ceiling_ = 0;
+  std::vector<Pixel> pixels_;
+};
+
+MethodParameters parameters_of(int number) {
+  MethodParameters parameters;
+  parameters.cost = MatchCost::kRayCensus;
+  parameters.aggregation = Aggregation::kBayes;
+  parameters.prior_smoothing = PriorSmoothing::kMaximum;
+  parameters.levels = 2;
+  parameters.sigma_measurement = number % 2 == 0 ? 3 : 8;
+  parameters.epsilon_measurement = number % 3 == 0 ? 0.1 : 0.02;
+  parameters.epsilon_prior = number % 2 == 0 ? 5e-6 : 0.01;
+  parameters.sigma_prior = number % 4 < 2 ? 0.48 : 2;
+  parameters.mu = 0.3;
+  parameters.edge_weight = number % 3 == 1 ? 1 : 0.2;
+  parameters.final_iterations = 1 + number % 3;
+  return parameters;
+}
+
+TEST(WindowLevel, EqualsPlainTranscriptionForAnyExecution) {
+  std::mt19937 random(1);
+  Execution one({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
+  Execution three({.threads = 3});
+  int number = 0;
+  struct Size {
+    int width, height, disparity_min, count;
+  };
+  for (const Size& size : {Size{37, 21, 0, 24},
+                           {40, 7, -9, 20},
+                           {23, 70, -3, 5},
+                           {66, 67, 3, 40},
+                           {17, 2, 0, 1},
+                           {150, 5, 20, 100}}) {
+    for (const int direction : {-1, 1}) {
+      const MethodParameters parameters = parameters_of(number++);
+      const kernels::CandidateGeometry geometry{size.width, size.disparity_min, size.count,
+                                                direction};
+      const Photograph reference = random_photograph(size.width, size.height, random);
+      const Photograph partner = random_photograph(size.width, size.height, random);
+      const scheduler::Extent extent{(size.width + 1) / 2, (size.height + 1) / 2};
+      const int coarse_min = static_cast<int>(std::floor(size.disparity_min / 2.0));
+      const GivenBeliefs coarse({(extent.columns + 1) / 2, (extent.rows + 1) / 2}, coarse_min,
+                                size.count / 2 + 2, random);
+      Image<float> grey(extent.columns, extent.rows);
+      for (int y = 0; y < grey.height(); ++y) {
+        for (int x = 0; x < grey.width(); ++x) {
+          grey.at(x, y) = static_cast<float>(random() % 4 * 8);
+        }
+      }
+      const auto margins = window_margins(geometry);
+      CostImage of_reference;
+      CostImage of_partner;
+      of_reference.prepare(reference, parameters, margins, {true, false, true}, one);
+      of_partner.prepare(partner, parameters, margins, {true, false, true}, one);
+      EdgeWeights edges;
+      edges.prepare(grey.view(), parameters, one);
+      const WindowLevelInput input{.parameters = parameters,
+                                   .geometry = geometry,
+                                   .reference = of_reference,
+                                   .partner = of_partner,
+                                   .edges = parameters.edge_weight < 1 ? &edges : nullptr,
+                                   .coarse = coarse};
+      const DisparityMap expected =
+          PlainLevel(parameters, geometry, reference, partner, grey, coarse).map();
+      for (Execution* const execution : {&one, &three}) {
+        DisparityMap map(extent.columns, extent.rows);
+        search_windows(input, Subpixel::kParabola, {.disparity_px = map.view()}, *execution);
+        for (int y = 0; y < map.height(); ++y) {
+          for (int x = 0; x < map.width(); ++x) {
+            const float value = map.at(x, y);
+            ASSERT_TRUE(std::isnan(value) ? std::isnan(expected.at(x, y))
+                                          : value == expected.at(x, y))
+                << size.width << "x" << size.height << ", direction " << direction << ", pixel "
+                << x << ", " << y << ": " << value << ", expected " << expected.at(x, y);
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace window_level_test
+}  // namespace vantage
