@@ -10,7 +10,8 @@ template <typename Other>
 void check_each_column(const CrossCheckRow& row, const Other& other_px) {
   for (int x = 0; x < row.width; ++x) {
     const double own = row.own_px[x];
-    const double partner = std::floor(x + row.direction * row.columns_per_px * own + 0.5);
+    const double columns = row.direction * static_cast<double>(row.columns_per_px) * own;
+    const double partner = std::floor(x + columns + 0.5);
     bool agrees = false;
     if (partner >= 0 && partner < row.width) {  // false for NaN
       // False when the other map is unknown there.
