@@ -27,7 +27,8 @@ struct WindowEvidenceRow {
   /// partners of all candidates of the windows, on both sides.
   std::array<Codes, 2> partner;
   int direction = 1;  ///< +1 or −1
-  /// First candidates, per column and window.
+  /// First candidates, per column and window. Columns 2i and 2i + 1, which one coarser column
+  /// covers, have the same windows.
   std::array<const std::int16_t*, kWindows> start = {};
   const std::uint8_t* has_second = nullptr;  ///< ≠ 0 for columns with a second window
   /// The second pixel of the last column may lie outside the image: reference rows must be readable

@@ -22,53 +22,62 @@ void evidence(const WindowEvidenceRow& row, const EvidenceByDistance& by_distanc
 }
 #else
 
-// The two pixels of a row are the two halves of a 16-byte block; the two rows are the blocks of a
-// vector, or two vectors.
+// A block of 16 bytes holds eight candidates of the left pixel of a column's row, and of the right
+// one. A vector holds such blocks of, as far as they fit, the two columns of a pair, then both rows.
+using TagBlocks = hn::CappedTag<std::uint8_t, 64>;
 using TagBlock = hn::CappedTag<std::uint8_t, 16>;
-using TagRows = hn::CappedTag<std::uint8_t, 32>;
+using VecBlocks = hn::VFromD<TagBlocks>;
 using VecBlock = hn::VFromD<TagBlock>;
-using VecRows = hn::VFromD<TagRows>;
-constexpr std::size_t kVectorRows = hn::MaxLanes(TagRows()) / 16;
+constexpr std::size_t kBlocks = hn::MaxLanes(TagBlocks()) / 16;
+constexpr std::size_t kVectorColumns = kBlocks == 1 ? 1 : 2;
+constexpr std::size_t kVectorRows = kBlocks / kVectorColumns;
+constexpr int kPair = 2;
 
-// Lookups within blocks.
+// Lookups within blocks, for the columns of a pair.
 struct Places {
-  alignas(32) std::uint8_t of_own[32];     // a pixel's byte, of two bytes, to its half
-  alignas(32) std::uint8_t forwards[32];   // partners at and after the byte of the left pixel
-  alignas(32) std::uint8_t backwards[32];  // partners at and before it
+  alignas(64) std::uint8_t of_own[64];     // a pixel's byte, of four bytes, to its half
+  alignas(64) std::uint8_t forwards[64];   // partners at and after the byte of the left pixel
+  alignas(64) std::uint8_t backwards[64];  // partners at and before it
 };
 constexpr Places places() {
   Places places{};
-  for (int i = 0; i < 32; ++i) {
+  for (int i = 0; i < 64; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    const int half = i % 16 / 8;
-    places.of_own[at] = static_cast<std::uint8_t>(half);
-    places.forwards[at] = static_cast<std::uint8_t>(i % 8 + half);
-    places.backwards[at] = static_cast<std::uint8_t>(7 - i % 8 + half);
+    const int pixel = i / 16 % kPair * 2 + i % 16 / 8;
+    places.of_own[at] = static_cast<std::uint8_t>(pixel);
+    places.forwards[at] = static_cast<std::uint8_t>(i % 8 + pixel);
+    places.backwards[at] = static_cast<std::uint8_t>(7 - i % 8 + pixel);
   }
   return places;
 }
 constexpr Places kPlaces = places();
 
-// One vector of the blocks of its rows; block(row) makes one.
-template <class D, class Block>
-HWY_INLINE hn::VFromD<D> rows_of(D d, std::size_t first_row, const Block& block) {
-  if constexpr (hn::MaxLanes(D()) == 16) {
-    (void)d;
-    return block(first_row);
+// One vector of the same block for each column; row(r) makes those of a row.
+template <class Row>
+HWY_INLINE VecBlocks rows_of(std::size_t first_row, const Row& row) {
+  if constexpr (kVectorRows == 1) {
+    return row(first_row);
   } else {
     (void)first_row;
-    return hn::Combine(d, block(std::size_t{1}), block(std::size_t{0}));
+    return hn::Combine(TagBlocks(), row(std::size_t{1}), row(std::size_t{0}));
   }
 }
 
-// The sum of the blocks of a vector.
-template <class D>
-HWY_INLINE VecBlock sum_of_blocks(D /*d*/, hn::VFromD<D> rows) {
-  const TagBlock block;
+// The sum of the blocks of one of a vector's columns.
+template <std::size_t kColumn, class D>
+HWY_INLINE VecBlock sum_of_blocks(D /*d*/, hn::VFromD<D> blocks) {
   if constexpr (hn::MaxLanes(D()) == 16) {
-    return rows;
+    return blocks;
   } else {
-    return hn::Add(hn::LowerHalf(block, rows), hn::UpperHalf(block, rows));
+    const hn::Half<D> half;
+    if constexpr (hn::MaxLanes(D()) == 64) {
+      return sum_of_blocks<kColumn>(
+          half, hn::Add(hn::LowerHalf(half, blocks), hn::UpperHalf(half, blocks)));
+    } else if constexpr (kColumn == 0) {
+      return hn::LowerHalf(half, blocks);
+    } else {
+      return hn::UpperHalf(half, blocks);
+    }
   }
 }
 
@@ -77,10 +86,8 @@ class Windows {
   Windows(const WindowEvidenceRow& row, const EvidenceByDistance& by_distance)
       : direction_(row.direction),
         before_(row.direction < 0 ? kWindowCandidates - 1 : 0),
-        places_(hn::Load(TagRows(), row.direction < 0 ? kPlaces.backwards : kPlaces.forwards)),
-        own_places_(hn::Load(TagRows(), kPlaces.of_own)),
-        near_(hn::LoadDup128(TagRows(), by_distance.steps.data())),
-        far_(hn::LoadDup128(TagRows(), by_distance.steps.data() + 16)) {
+        near_(hn::LoadDup128(TagBlocks(), by_distance.steps.data())),
+        far_(hn::LoadDup128(TagBlocks(), by_distance.steps.data() + 16)) {
     for (std::size_t p = 0; p < kRayCensusBytes; ++p) {
       for (std::size_t r = 0; r < 2; ++r) {
         reference_[p][r] = row.reference[r][p];
@@ -89,45 +96,66 @@ class Windows {
     }
   }
 
-  [[nodiscard]] HWY_INLINE WindowCells of(int x, int start) const {
+  // Evidence of columns x and x + 1, whose windows begin at `start`. kColumns: 1 if the second one
+  // does not exist.
+  template <int kColumns>
+  HWY_INLINE void write(int x, int start, WindowCells* evidence) const {
     const TagBlock block;
-    const std::ptrdiff_t first = std::ptrdiff_t{2} * x + direction_ * start - before_;
-    VecBlock of_pixels = hn::Zero(block);
-    for (std::size_t r = 0; r < 2; r += kVectorRows) {
-      of_pixels =
-          hn::Add(of_pixels, sum_of_blocks(TagRows(), of_rows(r, std::ptrdiff_t{2} * x, first)));
-    }
     const hn::Repartition<std::uint64_t, TagBlock> d64;
-    const auto left = hn::BitCast(d64, of_pixels);
-    const auto right = hn::BitCast(d64, hn::ShiftRightBytes<8>(block, of_pixels));
-    return hn::GetLane(
-        hn::BitCast(d64, hn::Add(hn::BitCast(block, left), hn::BitCast(block, right))));
+    const std::ptrdiff_t pixel = std::ptrdiff_t{2} * x;
+    const std::ptrdiff_t first = pixel + direction_ * start - before_;
+    const auto sum = [&](std::size_t column) HWY_ATTR {
+      const VecBlocks of_first = of_rows<kColumns>(column, 0, pixel, first);
+      return kVectorRows == 2
+                 ? of_first
+                 : hn::Add(of_first, of_rows<kColumns>(column, 1, pixel, first));
+    };
+    const VecBlocks sums = sum(0);
+    const VecBlock left = sum_of_blocks<0>(TagBlocks(), sums);
+    const VecBlock right = sum_of_blocks<1>(TagBlocks(), kVectorColumns == 2 ? sums : sum(1));
+    const auto of_left = hn::BitCast(d64, left);
+    const auto of_right = hn::BitCast(d64, right);
+    const auto cells = hn::BitCast(
+        d64, hn::Add(hn::BitCast(block, hn::InterleaveLower(d64, of_left, of_right)),
+                     hn::BitCast(block, hn::InterleaveUpper(d64, of_left, of_right))));
+    if constexpr (kColumns == 1) {
+      *evidence = hn::GetLane(cells);
+    } else {
+      hn::StoreU(cells, d64, evidence);
+    }
   }
 
  private:
-  [[nodiscard]] HWY_INLINE VecRows of_rows(std::size_t first_row, std::ptrdiff_t pixel,
-                                           std::ptrdiff_t first) const {
-    const TagRows d;
-    const TagBlock block;
-    const hn::Repartition<std::uint16_t, TagBlock> words;
-    VecRows distance = hn::Zero(d);
+  // The evidence of the pixels of a vector's columns and rows.
+  template <int kColumns>
+  [[nodiscard]] HWY_INLINE VecBlocks of_rows(std::size_t column, std::size_t first_row,
+                                             std::ptrdiff_t pixel, std::ptrdiff_t first) const {
+    const TagBlocks d;
+    const hn::CappedTag<std::uint8_t, 16 * kVectorColumns> columns;
+    const hn::Repartition<std::uint32_t, decltype(columns)> words;
+    const VecBlocks places =
+        hn::Load(d, (direction_ < 0 ? kPlaces.backwards : kPlaces.forwards) + 16 * column);
+    const VecBlocks own_places = hn::Load(d, kPlaces.of_own + 16 * column);
+    VecBlocks distance = hn::Zero(d);
 #pragma GCC unroll 3
     for (std::size_t p = 0; p < kRayCensusBytes; ++p) {
-      const VecRows others = hn::TableLookupBytes(
-          rows_of(d, first_row,
-                  [&](std::size_t r) HWY_ATTR { return hn::LoadU(block, partner_[p][r] + first); }),
-          places_);
-      const VecRows own = hn::TableLookupBytes(
-          rows_of(d, first_row,
+      const VecBlocks others =
+          hn::TableLookupBytes(rows_of(first_row,
+                                       [&](std::size_t r) HWY_ATTR {
+                                         return hn::LoadDup128(columns, partner_[p][r] + first);
+                                       }),
+                               places);
+      const VecBlocks own = hn::TableLookupBytes(
+          rows_of(first_row,
                   [&](std::size_t r) HWY_ATTR {
-                    std::uint16_t bytes;
-                    std::memcpy(&bytes, reference_[p][r] + pixel, sizeof(bytes));
-                    return hn::BitCast(block, hn::Set(words, bytes));
+                    std::uint32_t bytes = 0;
+                    std::memcpy(&bytes, reference_[p][r] + pixel, std::size_t{2 * kColumns});
+                    return hn::BitCast(columns, hn::Set(words, bytes));
                   }),
-          own_places_);
+          own_places);
       distance = hn::Add(distance, bits_of_bytes(d, hn::Xor(own, others)));
     }
-    const VecRows within = hn::And(distance, hn::Set(d, 15));
+    const VecBlocks within = hn::And(distance, hn::Set(d, 15));
     return hn::IfThenElse(hn::Gt(distance, hn::Set(d, 15)), hn::TableLookupBytes(far_, within),
                           hn::TableLookupBytes(near_, within));
   }
@@ -135,10 +163,8 @@ class Windows {
   std::ptrdiff_t direction_;
   std::ptrdiff_t
       before_;  // bytes from the first one loaded to the left pixel's at the window's start
-  VecRows places_;
-  VecRows own_places_;
-  VecRows near_;
-  VecRows far_;
+  VecBlocks near_;
+  VecBlocks far_;
   const std::uint8_t* reference_[kRayCensusBytes][2];
   const std::uint8_t* partner_[kRayCensusBytes][2];
 };
@@ -150,9 +176,21 @@ void evidence(const WindowEvidenceRow& row, const EvidenceByDistance& by_distanc
   const auto [first_start, second_start] = row.start;
   const std::uint8_t* const has_second = row.has_second;
   const int columns = row.columns;
-  for (int x = 0; x < columns; ++x) {
-    first[x] = windows.of(x, first_start[x]);
-    second[x] = has_second[x] != 0 ? windows.of(x, second_start[x]) : 0;
+  int x = 0;
+  for (; x + kPair <= columns; x += kPair) {
+    windows.write<kPair>(x, first_start[x], first + x);
+    if (has_second[x] != 0) {
+      windows.write<kPair>(x, second_start[x], second + x);
+    } else {
+      second[x] = second[x + 1] = 0;
+    }
+  }
+  if (x < columns) {
+    windows.write<1>(x, first_start[x], first + x);
+    second[x] = 0;
+    if (has_second[x] != 0) {
+      windows.write<1>(x, second_start[x], second + x);
+    }
   }
 }
 #endif
