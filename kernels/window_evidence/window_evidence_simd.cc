@@ -23,7 +23,8 @@ void evidence(const WindowEvidenceRow& row, const EvidenceByDistance& by_distanc
 #else
 
 // A block of 16 bytes holds eight candidates of the left pixel of a column's row, and of the right
-// one. A vector holds such blocks of, as far as they fit, the two columns of a pair, then both rows.
+// one. A vector holds such blocks of, as far as they fit, the two columns of a pair, then both
+// rows.
 using TagBlocks = hn::CappedTag<std::uint8_t, 64>;
 using TagBlock = hn::CappedTag<std::uint8_t, 16>;
 using VecBlocks = hn::VFromD<TagBlocks>;
@@ -106,18 +107,17 @@ class Windows {
     const std::ptrdiff_t first = pixel + direction_ * start - before_;
     const auto sum = [&](std::size_t column) HWY_ATTR {
       const VecBlocks of_first = of_rows<kColumns>(column, 0, pixel, first);
-      return kVectorRows == 2
-                 ? of_first
-                 : hn::Add(of_first, of_rows<kColumns>(column, 1, pixel, first));
+      return kVectorRows == 2 ? of_first
+                              : hn::Add(of_first, of_rows<kColumns>(column, 1, pixel, first));
     };
     const VecBlocks sums = sum(0);
     const VecBlock left = sum_of_blocks<0>(TagBlocks(), sums);
     const VecBlock right = sum_of_blocks<1>(TagBlocks(), kVectorColumns == 2 ? sums : sum(1));
     const auto of_left = hn::BitCast(d64, left);
     const auto of_right = hn::BitCast(d64, right);
-    const auto cells = hn::BitCast(
-        d64, hn::Add(hn::BitCast(block, hn::InterleaveLower(d64, of_left, of_right)),
-                     hn::BitCast(block, hn::InterleaveUpper(d64, of_left, of_right))));
+    const auto cells =
+        hn::BitCast(d64, hn::Add(hn::BitCast(block, hn::InterleaveLower(d64, of_left, of_right)),
+                                 hn::BitCast(block, hn::InterleaveUpper(d64, of_left, of_right))));
     if constexpr (kColumns == 1) {
       *evidence = hn::GetLane(cells);
     } else {
@@ -139,12 +139,11 @@ class Windows {
     VecBlocks distance = hn::Zero(d);
 #pragma GCC unroll 3
     for (std::size_t p = 0; p < kRayCensusBytes; ++p) {
-      const VecBlocks others =
-          hn::TableLookupBytes(rows_of(first_row,
-                                       [&](std::size_t r) HWY_ATTR {
-                                         return hn::LoadDup128(columns, partner_[p][r] + first);
-                                       }),
-                               places);
+      const VecBlocks others = hn::TableLookupBytes(
+          rows_of(first_row,
+                  [&](std::size_t r)
+                      HWY_ATTR { return hn::LoadDup128(columns, partner_[p][r] + first); }),
+          places);
       const VecBlocks own = hn::TableLookupBytes(
           rows_of(first_row,
                   [&](std::size_t r) HWY_ATTR {
