@@ -44,8 +44,10 @@ static_assert(kColumns <= 8 && kColumns <= kWindowMargin);
 // 64-bit lanes.
 struct Distribution {
   alignas(64) std::uint8_t to_all_words[64];  // to each of a lane's four words
-  alignas(64) std::uint8_t to_low_byte[64];   // their low bytes, to the low byte of a lane
+  alignas(64) std::uint8_t low_bytes[64];     // their low bytes, to all bytes of a lane
   alignas(64) std::uint8_t bytes[64];         // of eight bytes: to all bytes of a lane
+  alignas(64) std::uint8_t candidates[64];    // no lookup: a lane's candidates
+  alignas(64) std::uint8_t upper[64];  // 8 where bytes 8 to 15 stand for a block's lower half
 };
 constexpr Distribution distribution() {
   Distribution to{};
@@ -53,8 +55,10 @@ constexpr Distribution distribution() {
     for (int byte = 0; byte < 8; ++byte) {
       const auto at = static_cast<std::size_t>(8 * column + byte);
       to.to_all_words[at] = static_cast<std::uint8_t>(2 * column + byte % 2);
-      to.to_low_byte[at] = static_cast<std::uint8_t>(byte == 0 ? 2 * column : 0x80);
+      to.low_bytes[at] = static_cast<std::uint8_t>(2 * column);
       to.bytes[at] = static_cast<std::uint8_t>(column);
+      to.candidates[at] = static_cast<std::uint8_t>(byte);
+      to.upper[at] = column % 2 == 0 ? 8 : 0;
     }
   }
   return to;
@@ -75,23 +79,19 @@ HWY_INLINE Vec64 mask_of(const std::uint8_t* bytes) {
 
 // Cells of windows that begin at `start`, moved to the lanes of windows that begin at `own`.
 HWY_INLINE Vec64 moved(Vec64 cells, const std::int16_t* start, VecS16 own) {
-  const Tag64 d64;
   const Tag8 d8;
   const TagS16 ds16;
-  // By whole windows and more: everything is shifted out.
+  // By whole windows and more: everything is moved out.
   const VecS16 limit = hn::Set(ds16, kWindowCandidates);
-  const VecS16 later = hn::Sub(own, hn::LoadDup128(ds16, start));
-  if (hn::AllTrue(ds16, hn::Eq(later, hn::Zero(ds16)))) {
-    return cells;  // most columns of smooth surfaces
-  }
-  const VecS16 down = hn::Min(hn::Max(later, hn::Zero(ds16)), limit);
-  const VecS16 up = hn::Min(hn::Max(hn::Neg(later), hn::Zero(ds16)), limit);
-  const Vec8 places = hn::Load(d8, kTo.to_low_byte);
-  const auto bits = [&](VecS16 candidates) HWY_ATTR {
-    return hn::BitCast(
-        d64, hn::TableLookupBytesOr0(hn::BitCast(d8, hn::ShiftLeft<3>(candidates)), places));
-  };
-  return hn::Shl(hn::Shr(cells, bits(down)), bits(up));
+  const VecS16 later =
+      hn::Min(hn::Max(hn::Sub(own, hn::LoadDup128(ds16, start)), hn::Neg(limit)), limit);
+  const Vec8 from =
+      hn::Add(hn::TableLookupBytes(hn::BitCast(d8, later), hn::Load(d8, kTo.low_bytes)),
+              hn::Load(d8, kTo.candidates));
+  // Sets the top bit of all but 0 to 7, which become 8 to 15.
+  const Vec8 checked = hn::SaturatedAdd(from, hn::Set(d8, 0x78));
+  return hn::BitCast(Tag64(), hn::TableLookupBytesOr0(hn::BitCast(d8, cells),
+                                                      hn::Xor(checked, hn::Load(d8, kTo.upper))));
 }
 
 struct Totals {
