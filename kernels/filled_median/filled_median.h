@@ -40,8 +40,9 @@ struct FilledRow {
 
 /// Indexed by the sum of absolute differences of three channels.
 using FilledMedianWeights = std::array<std::int32_t, std::size_t{3 * 255 + 1}>;
-/// A sample's weight is exp(−s/this), where s is that sum, in steps of 1/4096.
+/// A sample's weight is exp(−s/this), where s is that sum, in steps of 1/kFilledUnitWeight.
 constexpr double kFilledMedianLevels = 25;
+constexpr int kFilledUnitWeight = 4096;
 const FilledMedianWeights& filled_median_weights();
 
 /// filled_px[x] of unmatched pixels becomes the weighted median of the disparities around it;

@@ -8,8 +8,6 @@
 namespace vantage::kernels {
 namespace {
 
-constexpr int kUnitWeight = 4096;
-
 struct WeightedSample {
   float disparity_px;
   int weight;
@@ -21,7 +19,7 @@ FilledMedianWeights make_weights() {
   FilledMedianWeights weights{};
   for (std::size_t sum = 0; sum < weights.size(); ++sum) {
     weights[sum] = static_cast<std::int32_t>(
-        std::lround(kUnitWeight * std::exp(-static_cast<double>(sum) / kFilledMedianLevels)));
+        std::lround(kFilledUnitWeight * std::exp(-static_cast<double>(sum) / kFilledMedianLevels)));
   }
   return weights;
 }
