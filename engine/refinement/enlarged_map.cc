@@ -1,7 +1,10 @@
 #include "engine/refinement/enlarged_map.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <variant>
 
 #include "kernels/map_enlargement/map_enlargement.h"
@@ -12,8 +15,9 @@ namespace {
 /// Repeats each value for two columns.
 template <typename T>
 void repeat_row(const T* half, int width, T* row) {
-  for (int x = 0; x + 1 < width; x += 2) {
-    row[x] = row[x + 1] = half[x / 2];
+  for (int x = 0; x < width / 2; ++x) {
+    const std::array<T, 2> pair = {half[x], half[x]};
+    std::memcpy(row + std::ptrdiff_t{2} * x, pair.data(), sizeof(pair));
   }
   if (width % 2 == 1) {
     row[width - 1] = half[width / 2];
@@ -45,7 +49,11 @@ void enlarge_map(const MatchedMap& half, const Photograph& image, const Photogra
                                 .intensities = pixels.row(y),
                                 .width = width},
                                map.disparity_px.row(y));
-      repeat_row(half.unmatched.row(own), width, map.unmatched.row(y));
+      if (y % 2 == 1 && y > first_row) {
+        std::copy_n(map.unmatched.row(y - 1), width, map.unmatched.row(y));
+      } else {
+        repeat_row(half.unmatched.row(own), width, map.unmatched.row(y));
+      }
       if (has_confidence) {
         repeat_row(half.confidence.row(own), width, map.confidence.row(y));
       }

@@ -85,26 +85,36 @@ HWY_INLINE VecF enlarged(const EnlargedRow& row, int column, int beside, VecF ow
   return choice.px;
 }
 
-void enlarge(const EnlargedRow& row, float* disparity_px) {
+// The pixels of kColumns columns, all with neighbours on both sides.
+HWY_INLINE void enlarge_columns(const EnlargedRow& row, int column, float* disparity_px) {
   const TagF d;
-  const int columns = (row.width + 1) / 2;
-  // Whole columns with neighbours on both sides.
-  int column = 1;
-  enlarge_map_row_ref(row, 0, std::min(2, row.width), disparity_px);
-  for (; column + kColumns < columns && 2 * (column + kColumns) <= row.width; column += kColumns) {
-    const VecF own = hn::LoadU(d, row.own_px + column);
-    const Neighbour other_row = neighbour_of(row.beside_px + column, own);
-    // Pairs of pixels, the left one in the low byte.
-    HWY_ALIGN std::uint16_t pairs[kColumns];
-    std::memcpy(pairs, row.intensities + 2 * column, sizeof(pairs));
-    const VecI pair = hn::PromoteTo(TagI(), hn::Load(hn::Rebind<std::uint16_t, TagF>(), pairs));
-    const VecI left_intensity = hn::And(pair, hn::Set(TagI(), 0xFF));
-    const VecI right_intensity = hn::ShiftRight<8>(pair);
-    const VecF left = enlarged(row, column, -1, own, other_row, left_intensity);
-    const VecF right = enlarged(row, column, 1, own, other_row, right_intensity);
-    hn::StoreInterleaved2(left, right, d, disparity_px + 2 * column);
+  const VecF own = hn::LoadU(d, row.own_px + column);
+  const Neighbour other_row = neighbour_of(row.beside_px + column, own);
+  // Pairs of pixels, the left one in the low byte.
+  HWY_ALIGN std::uint16_t pairs[kColumns];
+  std::memcpy(pairs, row.intensities + 2 * column, sizeof(pairs));
+  const VecI pair = hn::PromoteTo(TagI(), hn::Load(hn::Rebind<std::uint16_t, TagF>(), pairs));
+  const VecI left_intensity = hn::And(pair, hn::Set(TagI(), 0xFF));
+  const VecI right_intensity = hn::ShiftRight<8>(pair);
+  const VecF left = enlarged(row, column, -1, own, other_row, left_intensity);
+  const VecF right = enlarged(row, column, 1, own, other_row, right_intensity);
+  hn::StoreInterleaved2(left, right, d, disparity_px + 2 * column);
+}
+
+void enlarge(const EnlargedRow& row, float* disparity_px) {
+  // Columns [1, end) have neighbours on both sides.
+  const int end = (row.width + 1) / 2 - 1;
+  if (end - 1 < kColumns) {
+    enlarge_map_row_ref(row, 0, row.width, disparity_px);
+    return;
   }
-  enlarge_map_row_ref(row, std::min(2 * column, row.width), row.width, disparity_px);
+  enlarge_map_row_ref(row, 0, 2, disparity_px);
+  int column = 1;
+  for (; column + kColumns <= end; column += kColumns) {
+    enlarge_columns(row, column, disparity_px);
+  }
+  enlarge_columns(row, end - kColumns, disparity_px);
+  enlarge_map_row_ref(row, 2 * end, row.width, disparity_px);
 }
 
 }  // namespace vantage::kernels::HWY_NAMESPACE

@@ -1,8 +1,10 @@
 #include "engine/matching/windows/window_starter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <utility>
 
 #include "kernels/window_start/window_start.h"
@@ -20,8 +22,9 @@ constexpr int kBeforeGuess = kWindowCandidates / 2 - 1;
 /// Repeats each value for two columns.
 template <typename T>
 void repeat(const T* coarse, int columns, T* values) {
-  for (int x = 0; x + 1 < columns; x += 2) {
-    values[x] = values[x + 1] = coarse[x / 2];
+  for (int x = 0; x < columns / 2; ++x) {
+    const std::array<T, 2> pair = {coarse[x], coarse[x]};
+    std::memcpy(values + std::ptrdiff_t{2} * x, pair.data(), sizeof(pair));
   }
   if (columns % 2 == 1) {
     values[columns - 1] = coarse[columns / 2];
@@ -48,6 +51,7 @@ WindowStarter::WindowStarter(const CoarseBeliefs& coarse, int disparity_min, int
       first_coarse_(coarse_columns_),
       starts_(coarse_columns_),
       offset_bits_(coarse_columns_),
+      has_second_(coarse_columns_),
       energies_(coarse_columns_),
       support_(coarse_columns_) {}
 
@@ -78,7 +82,6 @@ void WindowStarter::make_windows(int y, const std::int16_t* winners, std::size_t
                                  WindowStartRow& row) {
   const auto last_start = static_cast<std::int16_t>(std::max(0, count_ - kWindowCandidates));
   const auto first = static_cast<std::int16_t>(first_);
-  std::uint8_t* const has_second = row.has_second.data();
   std::int16_t* const starts = starts_.data();
   std::int16_t* const first_coarse = first_coarse_.data();
   std::uint8_t* const offset_bits = offset_bits_.data();
@@ -97,10 +100,12 @@ void WindowStarter::make_windows(int y, const std::int16_t* winners, std::size_t
       window == 0 || std::any_of(winners, winners + coarse_columns_,
                                  [](std::int16_t winner) { return winner != kNoSecondWinner; });
   WindowCells* const support = row.support.cells[window].data();
+  std::uint8_t* const marks = has_second_.data();
   if (window == 1) {
-    for (int x = 0; x < columns_; ++x) {
-      has_second[x] = winners[x / 2] == kNoSecondWinner ? 0 : 255;
+    for (int x = 0; x < coarse_columns_; ++x) {
+      marks[x] = winners[x] == kNoSecondWinner ? 0 : 255;
     }
+    repeat(marks, columns_, row.has_second.data());
     if (!exists) {
       std::fill_n(support, columns_, WindowCells{0});
       std::fill_n(row.start[1].data(), columns_, std::int16_t{0});
@@ -116,10 +121,9 @@ void WindowStarter::make_windows(int y, const std::int16_t* winners, std::size_t
                              .columns = coarse_columns_},
                             support_.data());
   if (window == 1) {
+    WindowCells* const of_second = support_.data();
     for (int x = 0; x < coarse_columns_; ++x) {
-      if (winners[x] == kNoSecondWinner) {
-        support_.data()[x] = 0;
-      }
+      of_second[x] = marks[x] == 0 ? 0 : of_second[x];
     }
   }
   repeat(support_.data(), columns_, support);

@@ -43,6 +43,7 @@ class WindowStarter {
   WindowValues<std::int16_t> first_coarse_;
   WindowValues<std::int16_t> starts_;
   WindowValues<std::uint8_t> offset_bits_;
+  WindowValues<std::uint8_t> has_second_;  ///< 255 or 0
   WindowValues<kernels::WindowCells> energies_;
   WindowValues<kernels::WindowCells> support_;
 };
