@@ -272,8 +272,12 @@ void step(const WindowStepRow& given, const std::array<WindowCells*, kWindows>& 
       continue;
     }
     const ColumnTotals<true> totals(row, x);
-    const Vec64 exists = hn::And(mask_of(row.has_second + x), mask_of(row.near_second + x));
     const Totals first = totals.of(0);
+    if (!any_of(row.has_second + x)) {
+      store_first(first);
+      continue;
+    }
+    const Vec64 exists = hn::And(mask_of(row.has_second + x), mask_of(row.near_second + x));
     const Totals second = masked(totals.of(1), exists);
     const Vec16 max =
         max_of_lane(hn::Max(hn::Max(first.even, first.odd), hn::Max(second.even, second.odd)));

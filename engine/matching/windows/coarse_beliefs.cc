@@ -33,12 +33,17 @@ class BlockLanes {
     const auto block = static_cast<std::size_t>(first / kLaneMultiple);
     const int place = first % kLaneMultiple;
     const int here = lanes_[block];
-    WindowCells cells = kUnknown;
     if (here >= 0 &&
         (place + kValidBytes <= kLaneMultiple || lanes_[block + 1] == here + kLaneMultiple)) {
-      std::memcpy(&cells, column + here + place, kValidBytes);
-      return cells;
+      // In registers: reading eight bytes of which six were just written would wait.
+      static_assert(kValidBytes == 6);
+      std::uint32_t first_four;
+      std::uint16_t last_two;
+      std::memcpy(&first_four, column + here + place, sizeof(first_four));
+      std::memcpy(&last_two, column + here + place + sizeof(first_four), sizeof(last_two));
+      return kUnknown << 48 | WindowCells{last_two} << 32 | first_four;
     }
+    WindowCells cells = kUnknown;
     for (int i = 0; i < kValidBytes; ++i) {
       const int lane = lanes_[block + static_cast<std::size_t>((place + i) / kLaneMultiple)];
       if (lane >= 0) {

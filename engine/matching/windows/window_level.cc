@@ -49,7 +49,19 @@ struct Level {
   int rows;
   int iterations;
   Range inner;  ///< columns where all candidates have partners
+  /// Per column: the candidates that have partners for both of its pixels.
+  std::vector<kernels::CandidateRange> partnered;
 };
+
+std::vector<kernels::CandidateRange> partnered_candidates(
+    const kernels::CandidateGeometry& geometry, int columns) {
+  std::vector<kernels::CandidateRange> result;
+  result.reserve(static_cast<std::size_t>(columns));
+  for (int x = 0; x < columns; ++x) {
+    result.push_back(geometry.with_partners(2 * x, std::min(2 * x + 1, geometry.width - 1)));
+  }
+  return result;
+}
 
 /// One band of rows, swept by all iterations as a wavefront.
 class Band {
@@ -83,6 +95,7 @@ class Band {
     const int halo = level_.iterations - 1;
     const Range all{0, level_.rows};
     coarse_end_ = std::max(0, (rows.begin - halo - 1) / 2 - 1);
+    marked_ = -1;
     for (int y = rows.begin - halo; y < rows.end + halo; ++y) {
       if (y >= 0 && y < level_.rows) {
         prepare_starts(y);
@@ -113,6 +126,10 @@ class Band {
       starter_.make_row(coarse_end_, starts_.at(coarse_end_));
     }
     const int own = y / 2;
+    if (own == marked_) {
+      return;
+    }
+    marked_ = own;
     WindowStarter::mark_near(own > 0 ? &starts_.at(own - 1) : nullptr,
                              own + 1 < coarse_rows ? &starts_.at(own + 1) : nullptr, level_.columns,
                              starts_.at(own));
@@ -143,8 +160,9 @@ class Band {
       }
     }
     for_each_outer_column([&](int x) {
-      for (std::size_t q = 0; q < kWindows; ++q) {
-        evidence[q][x] &= with_partner(x, starts.start[q].data()[x]);
+      evidence[0][x] &= with_partner(x, row.start[0][x]);
+      if (row.has_second[x] != 0) {
+        evidence[1][x] &= with_partner(x, row.start[1][x]);
       }
     });
   }
@@ -162,9 +180,7 @@ class Band {
 
   /// 255 for the candidates of a window that have partners for both pixels of the column.
   [[nodiscard]] WindowCells with_partner(int x, int start) const {
-    const kernels::CandidateGeometry& geometry = level_.input.geometry;
-    const kernels::CandidateRange inside =
-        geometry.with_partners(2 * x, std::min(2 * x + 1, geometry.width - 1));
+    const kernels::CandidateRange inside = level_.partnered[static_cast<std::size_t>(x)];
     return lanes_before(inside.end - start) & ~lanes_before(inside.begin - start);
   }
   /// 255 for the first `count` lanes.
@@ -298,6 +314,7 @@ class Band {
   WindowStarter starter_;
   RowRing<WindowStartRow> starts_;  ///< of coarse rows
   int coarse_end_ = 0;              ///< coarse rows before this one are made
+  int marked_ = -1;                 ///< last coarse row with near_second
   RowRing<WindowCellsRow> evidence_;
   std::vector<RowRing<WindowCellsRow>> states_;  ///< after each iteration but the last
   WindowCellsRow absent_;                        ///< of rows outside the image
@@ -366,7 +383,8 @@ void search_windows(const WindowLevelInput& input, Subpixel subpixel,
                     .rows = output.disparity_px.height(),
                     .iterations = input.parameters.final_iterations,
                     .inner = {std::clamp((with_all.begin + 1) / 2, 0, columns),
-                              std::clamp(with_all.end / 2, 0, columns)}};
+                              std::clamp(with_all.end / 2, 0, columns)},
+                    .partnered = partnered_candidates(input.geometry, columns)};
   if (output.state != nullptr) {
     output.state->resize({level.columns, level.rows});
     output.state->disparity_min = input.geometry.disparity_min;
