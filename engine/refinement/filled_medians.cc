@@ -1,6 +1,10 @@
 #include "engine/refinement/filled_medians.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <type_traits>
 #include <variant>
@@ -23,7 +27,7 @@ std::uint8_t grey_level(T value) {
   }
 }
 
-/// Builds `framed` with the kernel's margins: every row is filled with `outside`, then write_row(y,
+/// Builds `framed` with the kernel's margins: they are filled with `outside`, and write_row(y,
 /// values) writes map row y from column 0.
 template <typename T, class WriteRow>
 void frame(int width, int height, int channels, T outside, const WriteRow& write_row,
@@ -32,12 +36,16 @@ void frame(int width, int height, int channels, T outside, const WriteRow& write
                 kReachPx + height + kReachPx, channels);
   execution.for_each_band(framed.height(), [&](int first_row, int end_row) {
     for (int row = first_row; row < end_row; ++row) {
-      T* values = framed.row(row);
-      std::fill_n(values, framed.width() * channels, outside);
+      T* const values = framed.row(row);
+      T* const end = values + framed.width() * channels;
       const int y = row - kReachPx;
-      if (y >= 0 && y < height) {
-        write_row(y, values + kReachPx * channels);
+      if (y < 0 || y >= height) {
+        std::fill(values, end, outside);
+        continue;
       }
+      std::fill_n(values, kReachPx * channels, outside);
+      write_row(y, values + kReachPx * channels);
+      std::fill(values + (kReachPx + width) * channels, end, outside);
     }
   });
 }
@@ -45,12 +53,19 @@ void frame(int width, int height, int channels, T outside, const WriteRow& write
 /// Three channels in grey levels, padded with a 0.
 template <typename T>
 void write_pixels(const T* photograph, int width, int channels, std::uint8_t* pixels) {
-  const int second = channels == 1 ? 0 : 1;
-  const int third = channels == 1 ? 0 : 2;
+  if (channels == 1) {
+    for (int x = 0; x < width; ++x) {
+      const std::uint8_t grey = grey_level(photograph[x]);
+      const std::array<std::uint8_t, kernels::kFilledPixelBytes> pixel = {grey, grey, grey, 0};
+      std::memcpy(pixels + std::ptrdiff_t{kernels::kFilledPixelBytes} * x, pixel.data(),
+                  sizeof(pixel));
+    }
+    return;
+  }
   for (int x = 0; x < width; ++x) {
     pixels[0] = grey_level(photograph[0]);
-    pixels[1] = grey_level(photograph[second]);
-    pixels[2] = grey_level(photograph[third]);
+    pixels[1] = grey_level(photograph[1]);
+    pixels[2] = grey_level(photograph[2]);
     pixels[3] = 0;
     photograph += channels;
     pixels += kernels::kFilledPixelBytes;
