@@ -338,13 +338,11 @@ HWY_INLINE Vec64 selectable_of(const WindowCells* selectable, int x, WindowCells
   return selectable == nullptr ? all : hn::And(hn::LoadU(d64, selectable + x), all);
 }
 
-// The low words of lanes.
-HWY_INLINE void store_words(Vec16 words, std::uint16_t* values) {
-  HWY_ALIGN std::uint64_t lanes[kColumns];
-  hn::Store(hn::BitCast(Tag64(), words), Tag64(), lanes);
-  for (int j = 0; j < kColumns; ++j) {
-    values[j] = static_cast<std::uint16_t>(lanes[j]);
-  }
+// The low bytes or words of lanes.
+template <typename T>
+HWY_INLINE void store_low(Vec16 words, T* values) {
+  const hn::Rebind<T, Tag64> d;
+  hn::StoreU(hn::TruncateTo(d, hn::BitCast(Tag64(), words)), d, values);
 }
 
 void winners(const WindowStepRow& given, const WindowWinners& given_winners) {
@@ -373,7 +371,7 @@ void winners(const WindowStepRow& given, const WindowWinners& given_winners) {
     Vec16 best = max_of_lane(hn::Max(first_codes.even, first_codes.odd));
     Beside beside = beside_winner(first, first_codes, best);
     Totals chosen = first;
-    HWY_ALIGN std::uint64_t is_second[kColumns] = {};
+    Vec16 window = hn::Zero(d16);
     if (both) {
       const Codes codes = codes_of(second, second_selectable);
       const Vec16 second_best = max_of_lane(hn::Max(codes.even, codes.odd));
@@ -384,20 +382,15 @@ void winners(const WindowStepRow& given, const WindowWinners& given_winners) {
                 hn::IfThenElse(wins, of_second.after, beside.after)};
       chosen = {hn::IfThenElse(wins, second.even, first.even),
                 hn::IfThenElse(wins, second.odd, first.odd)};
-      hn::Store(hn::BitCast(d64, hn::VecFromMask(d16, wins)), d64, is_second);
+      window = hn::IfThenElseZero(wins, hn::Set(d16, 1));
     }
-    HWY_ALIGN std::uint64_t codes[kColumns];
-    hn::Store(hn::BitCast(d64, best), d64, codes);
-    for (int j = 0; j < kColumns; ++j) {
-      const auto code = static_cast<std::uint16_t>(codes[j]);
-      const bool wins = code != 0;
-      winners.window[x + j] =
-          wins ? static_cast<std::uint8_t>(is_second[j] & 1U) : std::uint8_t{kNoWindow};
-      winners.lane[x + j] = wins ? static_cast<std::uint8_t>(7 - (code & 7)) : std::uint8_t{0};
-      winners.total[x + j] = wins ? static_cast<std::uint16_t>((code >> 3) - 1) : std::uint16_t{0};
-    }
-    store_words(beside.before, winners.total_before + x);
-    store_words(beside.after, winners.total_after + x);
+    const auto is_none = hn::Eq(best, hn::Zero(d16));
+    const Vec16 lane = hn::Sub(hn::Set(d16, 7), hn::And(best, hn::Set(d16, 7)));
+    store_low(hn::IfThenElse(is_none, hn::Set(d16, kNoWindow), window), winners.window + x);
+    store_low(hn::IfThenZeroElse(is_none, lane), winners.lane + x);
+    store_low(hn::SaturatedSub(hn::ShiftRight<3>(best), hn::Set(d16, 1)), winners.total + x);
+    store_low(beside.before, winners.total_before + x);
+    store_low(beside.after, winners.total_after + x);
     if (winners.support != nullptr) {
       const Vec16 max =
           max_of_lane(hn::Max(hn::Max(first.even, first.odd), hn::Max(second.even, second.odd)));
