@@ -113,9 +113,9 @@ void encode(const Image<T>& image, std::vector<std::uint8_t>& bytes) {
     return;
   }
   constexpr std::uint8_t kSignature[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-  constexpr int kGrey = 0;
-  constexpr int kRgb = 2;
-  constexpr int kRgba = 6;
+  constexpr std::uint8_t kGrey = 0;
+  constexpr std::uint8_t kRgb = 2;
+  constexpr std::uint8_t kRgba = 6;
   std::array<std::uint8_t, 13> header = {};  // no interlacing
   std::ranges::copy(big_endian(static_cast<std::size_t>(image.width())), header.begin());
   std::ranges::copy(big_endian(static_cast<std::size_t>(image.height())), header.begin() + 4);

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "kernels/candidates.h"
 #include "tests/kernels/feature_rows.h"
 #include "tests/kernels/kernel_test_utils.h"
 
@@ -186,11 +187,11 @@ TEST_P(Census, RayCodesOfBytesEqualThoseOfFloats) {
     std::vector<std::vector<std::uint8_t>> expected = codes;
     std::vector<std::vector<std::uint8_t>> of_reference = codes;
     const auto pointers = [](auto& planes) {
-      RayCensusCodes pointers{};
+      RayCensusCodes of_planes{};
       for (std::size_t p = 0; p < planes.size(); ++p) {
-        pointers[p] = planes[p].data();
+        of_planes[p] = planes[p].data();
       }
-      return pointers;
+      return of_planes;
     };
     byte_ray_census_code_row(byte_rows, width, pointers(codes));
     byte_ray_census_code_row_ref(byte_rows, width, pointers(of_reference));
