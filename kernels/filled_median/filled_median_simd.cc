@@ -66,19 +66,22 @@ HWY_INLINE VecI weights_of(VecI differences) {
   const TagF d;
   const TagI di;
   constexpr auto kOctaves = static_cast<float>(-1.4426950408889634 / kFilledMedianLevels);
+  // Sums with this have their integer part in the lowest bits.
+  const Vec shift = hn::Set(d, 0x1.8p23F);
   const Vec octaves = hn::Mul(hn::ConvertTo(d, differences), hn::Set(d, kOctaves));
-  const Vec whole = hn::Round(octaves);
-  const Vec rest = hn::Sub(octaves, whole);
-  // 2^rest for |rest| ≤ 0.5, relative error 2e-7.
-  Vec power = hn::Set(d, 1.339086336e-03F);
+  const Vec shifted = hn::Add(octaves, shift);
+  const Vec rest = hn::Sub(octaves, hn::Sub(shifted, shift));
+  // 2^rest for |rest| ≤ 0.5, relative error 2e-7, in steps of a weight.
+  Vec power = hn::Set(d, 1.339086336e-03F * kFilledUnitWeight);
   for (const float coefficient :
-       {9.676031918e-03F, 5.550357114e-02F, 2.402210749e-01F, 6.931471880e-01F, 1.000000075e+00F}) {
+       {9.676031918e-03F * kFilledUnitWeight, 5.550357114e-02F * kFilledUnitWeight,
+        2.402210749e-01F * kFilledUnitWeight, 6.931471880e-01F * kFilledUnitWeight,
+        1.000000075e+00F * kFilledUnitWeight}) {
     power = hn::MulAdd(power, rest, hn::Set(d, coefficient));
   }
-  static_assert(kFilledUnitWeight == 1 << 12);
-  const VecI exponent = hn::Add(hn::ConvertTo(di, whole), hn::Set(di, 12));
-  return hn::NearestInt(
-      hn::BitCast(d, hn::Add(hn::BitCast(di, power), hn::ShiftLeft<23>(exponent))));
+  const Vec weight =
+      hn::BitCast(d, hn::Add(hn::BitCast(di, power), hn::ShiftLeft<23>(hn::BitCast(di, shifted))));
+  return hn::Sub(hn::BitCast(di, hn::Add(weight, shift)), hn::BitCast(di, shift));
 }
 
 HWY_INLINE Brackets take_samples(const FilledRow& row, int x, Samples& samples) {
