@@ -214,6 +214,45 @@ TEST(FilledMedianWeights, FallWithTheDifference) {
   }
 }
 
+/// A sample of disparity 1 against others of disparity 2 that weigh as much, or one more.
+TEST_P(FilledMedian, WeighsSamplesExactly) {
+  const FilledMedianWeights& weights = filled_median_weights();
+  constexpr int kSize = 2 * kFilledMedianReachPx + 1;
+  const auto median_against = [&](std::size_t difference, int others) {
+    Filled map{kSize, kSize, {}, {}, {}};
+    map.disparity_px.assign(kSize * kSize, kUnknown);
+    map.pixels.assign(kColours * kSize * kSize, 0);
+    map.unmatched.assign(kSize * kSize, 0);
+    map.unmatched[map.at(kFilledMedianReachPx, kFilledMedianReachPx)] = 255;
+    int samples = 0;
+    const auto add = [&](float disparity_px, std::size_t of_sample) {
+      const std::size_t at = map.at(samples % kFilledMedianSamples * kFilledMedianStepPx,
+                                    samples / kFilledMedianSamples * kFilledMedianStepPx);
+      map.disparity_px[at] = disparity_px;
+      for (std::size_t c = 0; c < kColours; ++c) {
+        const std::size_t of_channel = std::min(of_sample, std::size_t{255});
+        map.pixels[at * kColours + c] = static_cast<std::uint8_t>(of_channel);
+        of_sample -= of_channel;
+      }
+      ++samples;
+    };
+    add(1, difference);
+    for (std::size_t next = 0; others > 0; others -= weights[next]) {
+      while (weights[next] > others) {
+        ++next;
+      }
+      add(2, next);
+    }
+    EXPECT_LT(samples, kFilledMedianSamples * kFilledMedianSamples / 2);  // before the pixel
+    return medians(map,
+                   take_filled_medians_row)[map.at(kFilledMedianReachPx, kFilledMedianReachPx)];
+  };
+  for (std::size_t difference = 0; weights[difference] > 0; ++difference) {
+    EXPECT_EQ(median_against(difference, weights[difference]), 1) << difference;
+    EXPECT_EQ(median_against(difference, weights[difference] + 1), 2) << difference;
+  }
+}
+
 TEST_P(FilledMedian, FollowsWhatLooksLikeThePixel) {
   // A dark surface of disparity 9 in front of a bright one of 2, both with noise. A row of the dark
   // one was filled with the background's disparity, a row of the bright one with the foreground's.
