@@ -80,13 +80,14 @@ void WindowStarter::make_row(int y, WindowStartRow& row) {
 
 void WindowStarter::make_windows(int y, const std::int16_t* winners, std::size_t window,
                                  WindowStartRow& row) {
+  const int columns = coarse_columns_;  // a copy: stores cannot alias it
   const auto last_start = static_cast<std::int16_t>(std::max(0, count_ - kWindowCandidates));
   const auto first = static_cast<std::int16_t>(first_);
   std::int16_t* const starts = starts_.data();
   std::int16_t* const first_coarse = first_coarse_.data();
   std::uint8_t* const offset_bits = offset_bits_.data();
   // In 16 bits, which compilers find vectors for. Without a second winner the window is unused.
-  for (int x = 0; x < coarse_columns_; ++x) {
+  for (int x = 0; x < columns; ++x) {
     const auto guess = static_cast<std::int16_t>(2 * winners[x] + first - kBeforeGuess);
     const std::int16_t start = std::min(std::max(guess, std::int16_t{0}), last_start);
     // first ≤ 0: the coarser level begins at or before this one.
@@ -97,12 +98,12 @@ void WindowStarter::make_windows(int y, const std::int16_t* winners, std::size_t
     offset_bits[x] = static_cast<std::uint8_t>((from_first & 1) << 3);
   }
   const bool exists =
-      window == 0 || std::any_of(winners, winners + coarse_columns_,
+      window == 0 || std::any_of(winners, winners + columns,
                                  [](std::int16_t winner) { return winner != kNoSecondWinner; });
   WindowCells* const support = row.support.cells[window].data();
   std::uint8_t* const marks = has_second_.data();
   if (window == 1) {
-    for (int x = 0; x < coarse_columns_; ++x) {
+    for (int x = 0; x < columns; ++x) {
       marks[x] = winners[x] == kNoSecondWinner ? 0 : 255;
     }
     repeat(marks, columns_, row.has_second.data());
@@ -118,11 +119,11 @@ void WindowStarter::make_windows(int y, const std::int16_t* winners, std::size_t
                              .steps = steps_,
                              .ceiling = ceiling_,
                              .lanes = lanes_,
-                             .columns = coarse_columns_},
+                             .columns = columns},
                             support_.data());
   if (window == 1) {
     WindowCells* const of_second = support_.data();
-    for (int x = 0; x < coarse_columns_; ++x) {
+    for (int x = 0; x < columns; ++x) {
       of_second[x] = marks[x] == 0 ? 0 : of_second[x];
     }
   }
