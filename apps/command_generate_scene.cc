@@ -26,6 +26,7 @@ struct SceneJob {
   CommonOptions common;
   std::string output;
   std::optional<int> frames;
+  double camera_speed = 0;  ///< baselines per frame
   std::vector<BaselinePosition> views;
   std::string pose_file;
   std::vector<PosedCamera> cameras;  ///< of the pose file
@@ -33,8 +34,6 @@ struct SceneJob {
 
 constexpr int kMaxFrames = 1000000;
 constexpr const char* kCalibrationFile = "calib.txt";
-constexpr SceneView kLeftCamera{0, 0};
-constexpr SceneView kRightCamera{1, 0};
 
 void add_scene_settings(Settings& settings, SceneJob& job) {
   settings.start_group("Files");
@@ -60,6 +59,8 @@ void add_scene_settings(Settings& settings, SceneJob& job) {
                   "Maximum disparity of the scene; auto: width / 16");
   settings.integer("frames-per-cycle", scene.frames_per_cycle, "N",
                    "Number of frames after which all movements repeat");
+  settings.number("camera-speed", job.camera_speed, "B",
+                  "Movement of both cameras to the right per frame, in baselines");
   settings.integer("samples", scene.samples_per_side, "N", "Average N x N samples per pixel");
   settings.number("right-gain", scene.right_gain, "G",
                   "Gain of the right camera, whose intensity is G * I + O");
@@ -83,12 +84,20 @@ std::string camera_name(std::size_t camera) { return fmt::format("camera-{}", ca
 void check(const SceneJob& job, const Settings& settings) {
   job.scene.validate();
   if (!job.frames) {
-    settings.refuse_idle({"frames-per-cycle"}, "without --frames");
+    settings.refuse_idle({"frames-per-cycle", "camera-speed"}, "without --frames");
   }
   job.common.execution.validate();
   if (job.frames && (*job.frames < 1 || *job.frames > kMaxFrames)) {
     throw UsageError(
         fmt::format("--frames is {}, expected a number from 1 to {}", *job.frames, kMaxFrames));
+  }
+  if (job.camera_speed != 0) {
+    for (const char* const name : {"view", "pose", "right-gain", "right-offset"}) {
+      if (settings.is_set(name)) {
+        throw UsageError(
+            fmt::format("--{} is given with --camera-speed, expected one of them", name));
+      }
+    }
   }
   for (auto view = job.views.begin(); view != job.views.end(); ++view) {
     if (std::find(job.views.begin(), view, *view) != view) {
@@ -152,8 +161,10 @@ void make_frame(const SceneJob& job, const LayeredScene& scene, int frame,
       files.write(name + "-occluded", frame, occluded);
     });
   };
-  make_camera("left", kLeftCamera, kRightCamera);
-  make_camera("right", kRightCamera, kLeftCamera);
+  const SceneView left{frame * job.camera_speed, 0};
+  const SceneView right{left.x + 1, 0};
+  make_camera("left", left, right);
+  make_camera("right", right, left);
   const auto make_view = [&](const std::string& name, const PosedCamera& camera) {
     const SceneRendering rendering =
         report.timed_compute("render", [&] { return scene.render(camera, frame); });
@@ -169,7 +180,7 @@ void make_frame(const SceneJob& job, const LayeredScene& scene, int frame,
 
 /// In Middlebury's format, lengths in baselines.
 std::string calibration_text(const LayeredScene& scene) {
-  const PosedCamera camera = scene.camera(kLeftCamera);
+  const PosedCamera camera = scene.camera({});
   const std::string matrix =
       fmt::format("[{} 0 {}; 0 {} {}; 0 0 1]", camera.matrix(0, 0), camera.matrix(0, 2),
                   camera.matrix(1, 1), camera.matrix(1, 2));
