@@ -31,4 +31,15 @@ struct Extent {
   friend constexpr bool operator==(Extent, Extent) = default;
 };
 
+/// A rectangle of a grid.
+struct Region {
+  Range columns;
+  Range rows;
+
+  [[nodiscard]] constexpr double area() const {
+    return static_cast<double>(columns.size()) * rows.size();
+  }
+  friend constexpr bool operator==(Region, Region) = default;
+};
+
 }  // namespace vantage::scheduler

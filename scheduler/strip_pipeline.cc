@@ -225,4 +225,28 @@ void run_strips(Chain chain, const ChainPlan& plan, Executor& executor, ScratchP
   }
 }
 
+void run_regions(Chain chain, std::span<const Region> regions, Executor& executor,
+                 ScratchPool& scratch) {
+  const int stages = static_cast<int>(chain.size());
+  const PassStages pass =
+      pass_stages(chain, 0, stages, source_rows_to_keep(chain, row_reaches(chain), 0, stages));
+  std::vector<SweepLayout> layouts(regions.size());
+  std::size_t scratch_bytes = 0;  // one size, so that tasks share leases
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    lay_out_sweep(pass, regions[i].columns, regions[i].rows, layouts[i]);
+    scratch_bytes = std::max(scratch_bytes, layouts[i].scratch_bytes);
+  }
+  executor.parallel_for(static_cast<int>(regions.size()), [&](int task) {
+    const auto i = static_cast<std::size_t>(task);
+    const ScratchPool::Lease lease = scratch.lease(scratch_bytes, ScratchUse::kRings);
+    Span* traced = Span::innermost();
+    if (traced != nullptr) {
+      traced->set_strip(0, task, regions[i].rows.begin);
+    }
+    const StoredRows none;
+    Sweep(pass, layouts[i], lease.data(), regions[i].columns, regions[i].rows, none, none, traced)
+        .run();
+  });
+}
+
 }  // namespace vantage::scheduler
