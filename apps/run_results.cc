@@ -117,6 +117,11 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
     results["processor_seconds_per_frame"] = processor_values(sequence);
     results["share_busy"] = sequence.share_busy;
   }
+  if (sequence.reuse.frames > 0) {
+    results["reuse"] = {{"mean_share_of_tiles", sequence.reuse.mean_share_reused()},
+                        {"frames", sequence.reuse.frames},
+                        {"frames_searched_whole", sequence.reuse.frames_searched}};
+  }
   if (job.sequence.measure_flicker) {
     results["flicker"] = flicker_values(total_flicker(delivered));
   }
@@ -160,6 +165,10 @@ void print_summary(const RunJob& job, const RunSession& session, const SequenceR
   tell("{}\n", line);
   if (sequence.frames + sequence.pictures_again > 0) {
     print_processor_time(sequence);
+  }
+  if (sequence.reuse.frames > 0) {
+    tell("run: {:.0f} % of the tiles kept the disparities of the frame before\n",
+         100 * sequence.reuse.mean_share_reused());
   }
   if (sequence.interrupted && sequence.videos_from) {
     tell("run: all files of frames are kept, the videos continue at frame {}\n",

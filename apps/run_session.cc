@@ -138,7 +138,7 @@ void RunSession::rectify(FramePair& pair, Execution& pool) const {
 SequenceRun RunSession::run(const RunJob& job, const ShotTable* shots) const {
   // Pairs of a list may be unrelated.
   const bool any_size = !job.input.pairs.empty() && job.sequence.video.empty() &&
-                        job.sequence.temporal.weight == 0 && !shape.cameras;
+                        !job.sequence.temporal.uses_past() && !shape.cameras;
   return {.pairs = *pairs,
           .selection = selection,
           .frame_size = any_size ? std::nullopt : std::optional(shape.source),

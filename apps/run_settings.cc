@@ -192,6 +192,11 @@ void add_steadiness_settings(Settings& settings, SequenceOptions& options) {
                   "100; 0: off, 1: as strong as their own costs");
   settings.number("temporal-threshold", options.temporal.threshold, "G",
                   "A pixel counts as unchanged if it differs by at most this many grey levels");
+  settings.choice<Reuse>("reuse", options.temporal.reuse,
+                         {{"none", Reuse::kNone}, {"frame", Reuse::kFrame}},
+                         "With a reduced search-size, as of preset realtime: frame keeps the "
+                         "disparities of the frame before where the images do not change, which is "
+                         "faster and steadier");
   settings.flag("measure-flicker", options.measure_flicker,
                 "Measure how much results change where the images do not");
 }
@@ -290,8 +295,9 @@ void refuse_idle_outputs(const Settings& settings, const SequenceOptions& sequen
   if (!sequence.synthesis.match_intensities) {
     settings.refuse_idle({"intensity-fit"}, "with --no-intensity-matching");
   }
-  if (sequence.temporal.weight == 0 && !sequence.measure_flicker) {
-    settings.refuse_idle({"temporal-threshold"}, "without --temporal-prior and --measure-flicker");
+  if (!sequence.temporal.uses_past() && !sequence.measure_flicker) {
+    settings.refuse_idle({"temporal-threshold"},
+                         "without --temporal-prior, --reuse and --measure-flicker");
   }
 }
 

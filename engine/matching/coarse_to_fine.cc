@@ -157,9 +157,12 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
       level_extents({geometry.width, outputs.disparity_px.height()}, parameters.levels);
   const int coarsest = static_cast<int>(extents.size()) - 1;
   levels.resize(parameters, extents, geometry.count);
+  const CoarseMapParts* const parts = coarse_map.is_all ? coarse_map.parts : nullptr;
   if (coarsest > 0) {
     const scheduler::Span span("reduce");
-    run(MatchChain(parameters, geometry, input, outputs, {.reduced = &levels.costs(1)}));
+    run(MatchChain(
+        parameters, geometry, input, outputs,
+        {.reduced = &levels.costs(1), .regions = parts != nullptr ? &parts->costs : nullptr}));
     for (int level = 2; level <= coarsest; ++level) {
       reduce_level(parameters, levels.costs(level - 1), levels.costs(level), execution);
     }
@@ -187,6 +190,9 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
     if (level > 0) {
       place.costs = &levels.costs(level);
       place.result = &levels.start_result(level);
+    }
+    if (level == finest && parts != nullptr) {
+      place.regions = &parts->winners;
     }
     run(MatchChain(parameters, of_level, input, outputs, place));
     cells.finest_level = place.blocks != nullptr

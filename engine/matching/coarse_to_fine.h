@@ -76,6 +76,15 @@ struct LevelCells {
 std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
                                int candidates);
 
+/// Parts of the finest stored level. In each image regions do not overlap.
+struct CoarseMapParts {
+  /// The level's costs are computed here; elsewhere they are those of the last call with these
+  /// CoarseLevels, whose images had the same size and candidates.
+  std::vector<scheduler::Region> costs;
+  /// Winners and result are computed here; elsewhere they are undefined.
+  std::vector<scheduler::Region> winners;
+};
+
 /// The map of a coarse level, in addition to the image's own or instead of it.
 struct CoarseMap {
   int level = 0;  ///< 1 to the coarsest level; 0: not requested
@@ -83,6 +92,8 @@ struct CoarseMap {
   Image<std::int32_t>* winners = nullptr;
   /// No finer level is computed; of the outputs, only the size is used.
   bool is_all = false;
+  /// With is_all and level 1: the only parts to compute; null: all.
+  const CoarseMapParts* parts = nullptr;
 };
 
 /// What the other image's map is checked against, beside the map: the disparities of the map, but

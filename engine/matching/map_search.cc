@@ -58,6 +58,11 @@ void MapSearch::compute(Side reference, const ChainInput& input, const MapOutput
 }
 
 void MapSearch::run_chain(const MatchChain& chain) {
+  if (chain.regions() != nullptr) {
+    scheduler::run_regions(chain.stages(), *chain.regions(), execution_.executor(),
+                           execution_.scratch());
+    return;
+  }
   report_.plan = chain_plan(chain, execution_.options(), execution_.executor().thread_count(),
                             execution_.machine());
   scheduler::run_strips(chain.stages(), report_.plan, execution_.executor(), execution_.scratch());

@@ -122,7 +122,8 @@ MatchChain::MatchChain(const MethodParameters& parameters,
                        const MapOutputs& outputs, const ChainLevel& level)
     : geometry_(geometry),
       outputs_(outputs),
-      height_(level.costs != nullptr ? level.costs->extent().rows : outputs.disparity_px.height()) {
+      height_(level.costs != nullptr ? level.costs->extent().rows : outputs.disparity_px.height()),
+      regions_(level.regions) {
   if (input.pair != nullptr) {
     add_column_ssd(parameters, *input.pair);
     return;

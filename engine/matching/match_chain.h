@@ -59,6 +59,8 @@ struct ChainLevel {
   const CandidateBlocks* coarser_blocks = nullptr;
   /// Output for the most probable candidates, in addition to `result`; null: not requested.
   Image<std::int32_t>* winners = nullptr;
+  /// The only parts of the outputs to make; null: all.
+  const std::vector<scheduler::Region>* regions = nullptr;
 };
 
 // Cells of a row are [x][candidate]: floats (energies or likelihoods), bytes (energies in steps),
@@ -107,6 +109,8 @@ class MatchChain {
   /// Stage counts at which to cut the chain so that each pass holds `iterations`; see
   /// scheduler::PlanRequest.
   [[nodiscard]] std::vector<int> pass_ends(int iterations) const;
+  /// ChainLevel::regions.
+  [[nodiscard]] const std::vector<scheduler::Region>* regions() const { return regions_; }
 
  private:
   void add(std::unique_ptr<scheduler::RowStage> stage);
@@ -142,7 +146,8 @@ class MatchChain {
 
   kernels::CandidateGeometry geometry_;
   MapOutputs outputs_;
-  int height_;            ///< of the level
+  int height_;  ///< of the level
+  const std::vector<scheduler::Region>* regions_;
   float half_scale_ = 1;  ///< of volumes that hold energies
   int first_iteration_ = 0;
   int iterations_ = 0;

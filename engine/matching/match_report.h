@@ -28,6 +28,8 @@ struct MatchReport {
   double finest_pixels = 0;  ///< width × height × maps computed to the finest level
   /// Levels estimated from the images, if parameters ask for it; of several views, the first's.
   std::optional<PairExposure> exposure;
+  /// With MatchRequest::previous: the share of tiles that were searched, of the map with more.
+  std::optional<double> searched_share;
 };
 
 }  // namespace vantage

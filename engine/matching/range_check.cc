@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string_view>
+#include <vector>
 
 #include "engine/matching/range_estimation.h"
 
@@ -48,16 +51,24 @@ MatchesAtEnds matches_at_ends(const DisparityMaps& maps, const MatchOptions& opt
   long long matched = 0;
   long long at_min = 0;
   long long at_max = 0;
+  const std::vector<std::uint8_t> all_matched(static_cast<std::size_t>(map.width()));
   for (int y = 0; y < map.height(); ++y) {
-    const float* px = map.row(y);
-    const std::uint8_t* mask = unmatched.empty() ? nullptr : unmatched.row(y);
+    const float* const px = map.row(y);
+    const std::uint8_t* const mask = unmatched.empty() ? all_matched.data() : unmatched.row(y);
+    // Without branches and in 32 bits, which compilers find vectors for.
+    constexpr float kMax = std::numeric_limits<float>::max();
+    std::int32_t matched_in_row = 0;
+    std::int32_t low_in_row = 0;
+    std::int32_t high_in_row = 0;
     for (int x = 0; x < map.width(); ++x) {
-      if (std::isfinite(px[x]) && (mask == nullptr || mask[x] == 0)) {
-        ++matched;
-        at_min += px[x] < low ? 1 : 0;
-        at_max += px[x] > high ? 1 : 0;
-      }
+      const std::int32_t is_matched = (std::abs(px[x]) <= kMax ? 1 : 0) & (mask[x] == 0 ? 1 : 0);
+      matched_in_row += is_matched;
+      low_in_row += is_matched & (px[x] < low ? 1 : 0);
+      high_in_row += is_matched & (px[x] > high ? 1 : 0);
     }
+    matched += matched_in_row;
+    at_min += low_in_row;
+    at_max += high_in_row;
   }
   if (matched == 0) {
     return {.unmatched = 1};

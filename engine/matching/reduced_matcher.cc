@@ -41,6 +41,42 @@ DisparityRange possible_range(const ResolvedMatchOptions& options, const Photogr
   return {geometry.disparity_min, geometry.disparity_min + geometry.count - 1};
 }
 
+/// What is computed of each level to write some tiles of the map.
+struct SearchedParts {
+  CoarseMapParts search;
+  std::vector<scheduler::Region> coarse_windows;  ///< of the level of windows before the map's
+  std::vector<scheduler::Region> maps;
+};
+
+/// searched: size of the images that are searched. iterations: of levels of windows.
+SearchedParts parts_of(const TileMask& tiles, scheduler::Extent searched, int reductions,
+                       int iterations) {
+  constexpr int kSidePx = 4;
+  const scheduler::Extent level = coarser_extent(searched);
+  const int columns_per_column = 1 << reductions;
+  const int reach = coarse_reach(iterations);
+  SearchedParts parts;
+  parts.search.costs = tiles.widened(level, columns_per_column, 0, kSidePx).regions();
+  parts.maps = tiles.regions();
+  if (reductions == 1) {
+    parts.search.winners = tiles.widened(level, columns_per_column, reach, kSidePx).regions();
+    return parts;
+  }
+  const TileMask windows = tiles.widened(searched, 2, reach, kSidePx);
+  parts.coarse_windows = windows.regions();
+  parts.search.winners = windows.widened(level, 2, reach, kSidePx).regions();
+  return parts;
+}
+
+void copy_rows(const Image<float>& image, Execution& execution, Image<float>& copy) {
+  copy.resize(image.width(), image.height());
+  execution.for_each_band(image.height(), [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      std::copy_n(image.row(y), image.width(), copy.row(y));
+    }
+  });
+}
+
 /// Refinement of maps of half the size, whose columns are two pixels wide.
 RefinementOptions at_half_size(const RefinementOptions& options) {
   RefinementOptions result = options;
@@ -104,8 +140,9 @@ void ReducedMatcher::prepare(const Photograph& left, const Photograph& right, in
   }
 }
 
-void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence, Work& work,
-                             MatchReport& report) const {
+void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence,
+                             const TileMask* tiles, MapSearchWork& search_work, Work& work,
+                             MatchedMap& half, MatchReport& report) const {
   const std::size_t own = index_of(side);
   const std::size_t other = index_of(other_side(side));
   const DisparityRange range = possible_range(options_, work.images[own].reduced(0));
@@ -116,20 +153,27 @@ void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence, W
   input.edges = work.search_edges.prepare(searched, search.parameters, execution_);
   // Only the size counts.
   const ImageView<float> size(nullptr, searched.width(), searched.height(), 1, 0);
-  MapSearch(search, search.parameters, execution_, work.search, report)
+  SearchedParts parts;
+  if (tiles != nullptr) {
+    parts = parts_of(*tiles, {searched.width(), searched.height()}, reductions,
+                     options_.parameters.final_iterations);
+  }
+  MapSearch(search, search.parameters, execution_, search_work, report)
       .compute(side, input, {.disparity_px = size},
-               {.level = kSearchLevel, .winners = &work.winners, .is_all = true});
+               {.level = kSearchLevel,
+                .winners = &work.winners,
+                .is_all = true,
+                .parts = tiles != nullptr ? &parts.search : nullptr});
 
   const auto searched_geometry =
       candidate_geometry(search, side, searched.width(), searched.height());
   const EnergyFormat format(search.parameters);
-  const LevelBeliefs of_search(work.search.levels.result(kSearchLevel),
-                               work.search.levels.blocks(kSearchLevel),
+  const LevelBeliefs of_search(search_work.levels.result(kSearchLevel),
+                               search_work.levels.blocks(kSearchLevel),
                                std::as_const(work.winners).view(), searched_geometry,
                                format.of_result().nats(format.steps_per_nat()));
   std::unique_ptr<WindowBeliefs> of_windows;
   const CoarseBeliefs* coarse = &of_search;
-  MatchedMap& half = work.halves.of(side);
   for (int r = reductions - 1; r >= 0; --r) {
     const Photograph& compared = work.images[own].reduced(r);
     const Photograph& level = work.images[own].reduced(r + 1);
@@ -148,9 +192,12 @@ void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence, W
                                   : &work.window_edges.prepare(level, one_level, execution_)[0];
     }
     const bool is_last = r == 0;
-    half.disparity_px.resize(level.width(), level.height());
-    half.confidence.resize(is_last && wants_confidence ? level.width() : 0,
-                           is_last && wants_confidence ? level.height() : 0);
+    DisparityMap& disparity_px = is_last ? half.disparity_px : work.coarse_px;
+    disparity_px.resize(level.width(), level.height());
+    if (is_last) {
+      half.confidence.resize(wants_confidence ? level.width() : 0,
+                             wants_confidence ? level.height() : 0);
+    }
     const MethodParameters parameters = at_level(options_.parameters, 1);
     WindowState& state = work.states[static_cast<std::size_t>(r % 2)];
     const auto& compared_costs = work.costs[static_cast<std::size_t>(r)];
@@ -162,11 +209,15 @@ void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence, W
                     .edges = edges,
                     .coarse = *coarse},
                    options_.parameters.subpixel,
-                   {.disparity_px = half.disparity_px.view(),
-                    .confidence = half.confidence.view(),
-                    .state = is_last ? nullptr : &state},
+                   {.disparity_px = disparity_px.view(),
+                    .confidence = is_last ? half.confidence.view() : ImageView<float>(),
+                    .state = is_last ? nullptr : &state,
+                    .regions = tiles == nullptr ? nullptr
+                               : is_last        ? &parts.maps
+                                                : &parts.coarse_windows},
                    execution_);
-    const double pixels = static_cast<double>(level.width()) * level.height();
+    const double share = is_last && tiles != nullptr ? tiles->share() : 1;
+    const double pixels = share * level.width() * level.height();
     report.cells += pixels * kernels::kWindowCandidates;
     if (is_last) {
       report.finest_cells += pixels * kernels::kWindowCandidates;
@@ -178,7 +229,21 @@ void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence, W
   }
 }
 
-void ReducedMatcher::refine(const Outputs& outputs, Work& work, StageClock& clock) const {
+void ReducedMatcher::compute_changed(Side side, int reductions, bool wants_confidence,
+                                     PreviousMaps& previous, Work& work,
+                                     MatchReport& report) const {
+  PreviousMaps::OfSide& kept = previous.of(side);
+  const bool is_all = kept.searched.count() == kept.searched.size();
+  compute(side, reductions, wants_confidence, is_all ? nullptr : &kept.searched, kept.search, work,
+          kept.winners, report);
+  report.searched_share = std::max(report.searched_share.value_or(0), kept.searched.share());
+  MatchedMap& half = work.halves.of(side);
+  copy_rows(kept.winners.disparity_px, execution_, half.disparity_px);
+  copy_rows(kept.winners.confidence, execution_, half.confidence);
+}
+
+void ReducedMatcher::refine(const Outputs& outputs, PreviousMaps* previous, Work& work,
+                            StageClock& clock) const {
   if (!options_.refinement) {
     mark_unknown(work.halves.left.disparity_px.view(), execution_, work.halves.left.unmatched);
     mark_unknown(work.halves.right.disparity_px.view(), execution_, work.halves.right.unmatched);
@@ -190,7 +255,8 @@ void ReducedMatcher::refine(const Outputs& outputs, Work& work, StageClock& cloc
                        .map = &work.halves.of(side),
                        .is_result = is_result,
                        .search = options_.disparities,
-                       .pixels_per_column = 2};
+                       .pixels_per_column = 2,
+                       .kept = previous != nullptr ? &previous->of(side).refinement : nullptr};
   };
   const MapToRefine left = to_refine(Side::kLeft, outputs.left);
   const MapToRefine right = to_refine(Side::kRight, outputs.right);
@@ -199,24 +265,32 @@ void ReducedMatcher::refine(const Outputs& outputs, Work& work, StageClock& cloc
 }
 
 void ReducedMatcher::match(const Photograph& left, const Photograph& right, const Outputs& outputs,
-                           DisparityMaps& maps, StageClock& clock, MatchReport& report) const {
+                           PreviousMaps* previous, DisparityMaps& maps, StageClock& clock,
+                           MatchReport& report) const {
   const int reductions = search_reductions(options_, {left.width(), left.height()});
   const auto work = works_.borrow();
   prepare(left, right, reductions, *work);
   const bool is_checked = options_.refinement && options_.refinement->cross_check;
   const bool wants_confidence =
       outputs.confidence || (options_.refinement && uses_confidence(*options_.refinement));
-  work->halves.left.disparity_px.resize(0, 0);
-  work->halves.right.disparity_px.resize(0, 0);
-  if (outputs.left || is_checked) {
-    clock.start("match left");
-    compute(Side::kLeft, reductions, wants_confidence, *work, report);
+  if (previous != nullptr) {
+    clock.start("changes");
+    previous->choose(work->images[0].reduced(1), work->images[1].reduced(1));
   }
-  if (outputs.right || is_checked) {
-    clock.start("match right");
-    compute(Side::kRight, reductions, wants_confidence, *work, report);
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    MatchedMap& half = work->halves.of(side);
+    half.disparity_px.resize(0, 0);
+    if (!((side == Side::kLeft ? outputs.left : outputs.right) || is_checked)) {
+      continue;
+    }
+    clock.start(side == Side::kLeft ? "match left" : "match right");
+    if (previous != nullptr) {
+      compute_changed(side, reductions, wants_confidence, *previous, *work, report);
+    } else {
+      compute(side, reductions, wants_confidence, nullptr, work->search, *work, half, report);
+    }
   }
-  refine(outputs, *work, clock);
+  refine(outputs, previous, *work, clock);
   clock.start("enlarge");
   for (const Side side : {Side::kLeft, Side::kRight}) {
     MatchedMap& map = maps.of(side);
@@ -248,13 +322,19 @@ std::size_t ReducedMatcher::working_bytes(const ResolvedMatchOptions& options,
     if (r > 0) {
       bytes += edge_weight_bytes(options.parameters, pixels);
     }
-    if (r == reductions) {
-      bytes += coarse_level_bytes(options.parameters, extent,
-                                  (options.disparities.count() >> reductions) + 2);
-    }
     extent = coarser_extent(extent);
   }
-  return bytes;
+  return bytes + level_bytes(options, image);
+}
+
+std::size_t ReducedMatcher::level_bytes(const ResolvedMatchOptions& options,
+                                        scheduler::Extent image) {
+  const int reductions = search_reductions(options, image);
+  for (int r = 0; r < reductions; ++r) {
+    image = coarser_extent(image);
+  }
+  return coarse_level_bytes(options.parameters, image,
+                            (options.disparities.count() >> reductions) + 2);
 }
 
 void ReducedMatcher::add_memory_use(MemoryUse& use) const {

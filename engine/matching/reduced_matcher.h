@@ -14,6 +14,7 @@
 #include "engine/matching/map_search.h"
 #include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/matching/previous_maps.h"
 #include "engine/matching/windows/coarse_beliefs.h"
 #include "engine/matching/windows/reduced_images.h"
 #include "engine/object_pool.h"
@@ -51,14 +52,18 @@ class ReducedMatcher {
     bool unmatched = true;
     bool confidence = false;
   };
-  /// Photographs of equal size, for which there are reductions. Throws Error when no pixel has a
+  /// Photographs of equal size, for which there are reductions. `previous`: of the pair before,
+  /// replaced by those of this one; null: everything is searched. Throws Error when no pixel has a
   /// candidate.
   void match(const Photograph& left, const Photograph& right, const Outputs& outputs,
-             DisparityMaps& maps, StageClock& clock, MatchReport& report) const;
+             PreviousMaps* previous, DisparityMaps& maps, StageClock& clock,
+             MatchReport& report) const;
 
   void add_memory_use(MemoryUse& use) const;
   /// Memory of match() but for strips and the outputs: about.
   static std::size_t working_bytes(const ResolvedMatchOptions& options, scheduler::Extent image);
+  /// Of this, the levels of one map's search; PreviousMaps have some for each map.
+  static std::size_t level_bytes(const ResolvedMatchOptions& options, scheduler::Extent image);
 
  private:
   struct Work {
@@ -69,14 +74,20 @@ class ReducedMatcher {
     MapSearchWork search;
     Image<std::int32_t> winners;  ///< of the search
     std::array<WindowState, 2> states;
-    DisparityMaps halves;  ///< maps at half size
+    DisparityMap coarse_px;  ///< of levels of windows but the last
+    DisparityMaps halves;    ///< maps at half size
     RefinementWork refinement;
   };
 
   void prepare(const Photograph& left, const Photograph& right, int reductions, Work& work) const;
-  void compute(Side side, int reductions, bool wants_confidence, Work& work,
-               MatchReport& report) const;
-  void refine(const Outputs& outputs, Work& work, StageClock& clock) const;
+  /// Winners at half size. `tiles`: the only ones to write; null: all. search: of the last
+  /// call for this side, if there are `tiles`.
+  void compute(Side side, int reductions, bool wants_confidence, const TileMask* tiles,
+               MapSearchWork& search, Work& work, MatchedMap& half, MatchReport& report) const;
+  /// compute() of the tiles to search; the others' winners are those of `previous`.
+  void compute_changed(Side side, int reductions, bool wants_confidence, PreviousMaps& previous,
+                       Work& work, MatchReport& report) const;
+  void refine(const Outputs& outputs, PreviousMaps* previous, Work& work, StageClock& clock) const;
 
   const ResolvedMatchOptions& options_;
   Execution& execution_;

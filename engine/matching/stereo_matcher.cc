@@ -261,7 +261,7 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
                     .right = request.right,
                     .unmatched = request.unmatched,
                     .confidence = request.confidence},
-                   maps, clock, times);
+                   request.previous, maps, clock, times);
     return;
   }
   const int check_level = this->check_level({left.width(), left.height()});

@@ -34,6 +34,10 @@ struct MatchRequest {
   bool unmatched = true;      ///< the masks of the maps
   bool confidence = false;    ///< the confidence of the maps
   DisparityPrior prior = {};  ///< for match() without a vertical search only
+  /// For match() with a reduced search-size: tiles keep the maps of the pair before. Replaced by
+  /// the maps of this pair; a request with it runs alone. Ignored where images are too small to be
+  /// reduced.
+  PreviousMaps* previous = nullptr;
 };
 
 /// Computes disparity maps of rectified pairs (EQUATIONS §1, §3, §5).

@@ -81,7 +81,7 @@ T* inside(Image<T>& framed, int y) {
 
 void take_filled_medians(const Mask& unmatched, const Photograph& photograph,
                          const kernels::FilledMedianGrid& grid, Execution& execution,
-                         FilledMediansWork& work, DisparityMap& map_px) {
+                         FilledMediansWork& work, DisparityMap& map_px, const TileMask* tiles) {
   const int width = map_px.width();
   const int height = map_px.height();
   frame(
@@ -100,15 +100,17 @@ void take_filled_medians(const Mask& unmatched, const Photograph& photograph,
       photograph.pixels);
   execution.for_each_band(height, [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
-      kernels::take_filled_medians_row(
-          {.disparity_px = inside(work.before, y),
-           .disparity_pitch = static_cast<std::ptrdiff_t>(work.before.view().stride()),
-           .pixels = inside(work.pixels, y),
-           .pixel_pitch = static_cast<std::ptrdiff_t>(work.pixels.view().stride()),
-           .unmatched = unmatched.row(y),
-           .width = width,
-           .grid = grid},
-          map_px.row(y));
+      for_each_run_in_row(tiles, width, y, [&](scheduler::Range columns) {
+        kernels::take_filled_medians_row(
+            {.disparity_px = inside(work.before, y) + columns.begin,
+             .disparity_pitch = static_cast<std::ptrdiff_t>(work.before.view().stride()),
+             .pixels = inside(work.pixels, y) + columns.begin * kernels::kFilledPixelBytes,
+             .pixel_pitch = static_cast<std::ptrdiff_t>(work.pixels.view().stride()),
+             .unmatched = unmatched.row(y) + columns.begin,
+             .width = columns.size(),
+             .grid = grid},
+            map_px.row(y) + columns.begin);
+      });
     }
   });
 }

@@ -7,6 +7,7 @@
 #include "engine/image/image.h"
 #include "engine/image/memory_use.h"
 #include "engine/image/photograph.h"
+#include "engine/image/tile_mask.h"
 #include "kernels/filled_median/filled_median.h"
 
 namespace vantage {
@@ -25,9 +26,10 @@ inline std::size_t held_bytes(const FilledMediansWork& work) {
 /// them; pixels of similar colour weigh more (kernels/filled_median). Constant-depth filling
 /// decides for each row alone; the median combines rows and follows the image's outlines.
 /// `photograph` is the map's own; all have one size. grid: at most the
-/// default. Identical for any `execution`.
+/// default. tiles: the only ones to change; null: all. Identical for any `execution`.
 void take_filled_medians(const Mask& unmatched, const Photograph& photograph,
                          const kernels::FilledMedianGrid& grid, Execution& execution,
-                         FilledMediansWork& work, DisparityMap& map_px);
+                         FilledMediansWork& work, DisparityMap& map_px,
+                         const TileMask* tiles = nullptr);
 
 }  // namespace vantage

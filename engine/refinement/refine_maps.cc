@@ -94,12 +94,18 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
                     matched.unmatched);
     });
   }
+  for (const MapToRefine* one : maps) {
+    if (one->kept != nullptr) {
+      one->kept->find_changed(one->map->unmatched);
+    }
+  }
   if (options.surface_fit_px > 0) {
     start_step("surface fit");
     for (const MapToRefine* one : maps) {
       MatchedMap& matched = *one->map;
       fit_surface(matched.unmatched, options.surface_fit_px, options.surface_fit_step_px,
-                  one->search, execution, work.surface_fit, matched.disparity_px);
+                  one->search, execution, work.surface_fit, matched.disparity_px,
+                  one->kept != nullptr ? &one->kept->changed() : nullptr);
       if (!matched.disparity_y_px.empty()) {
         fit_surface(matched.unmatched, options.surface_fit_px, options.surface_fit_step_px,
                     one->search_y, execution, work.surface_fit, matched.disparity_y_px);
@@ -109,6 +115,9 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
   start_step("fill");
   for (const MapToRefine* one : maps) {
     MatchedMap& matched = *one->map;
+    if (one->kept != nullptr) {
+      one->kept->restore(matched.disparity_px);
+    }
     for (DisparityMap* component_px : {&matched.disparity_px, &matched.disparity_y_px}) {
       if (component_px->empty()) {
         continue;
@@ -116,8 +125,13 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
       fill_unmatched(matched.unmatched, one->side, options.fill, execution, *component_px);
       if (options.fill == Fill::kMedian) {
         take_filled_medians(matched.unmatched, *one->image, median_grid(*one), execution,
-                            work.filled_medians, *component_px);
+                            work.filled_medians, *component_px,
+                            one->kept != nullptr ? &one->kept->changed() : nullptr);
       }
+    }
+    if (one->kept != nullptr) {
+      one->kept->restore(matched.disparity_px);
+      one->kept->remember(matched);
     }
   }
 }

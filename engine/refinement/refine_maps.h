@@ -11,6 +11,7 @@
 #include "engine/image/photograph.h"
 #include "engine/refinement/edge_snapping.h"
 #include "engine/refinement/filled_medians.h"
+#include "engine/refinement/kept_refinement.h"
 #include "engine/refinement/refinement.h"
 #include "engine/refinement/refinement_options.h"
 #include "engine/refinement/speckles.h"
@@ -41,6 +42,8 @@ struct MapToRefine {
   DisparityRange search_y = kAnyDisparity;
   /// Columns and rows of a map of half the size are 2 pixels apart; its disparities are in pixels.
   int pixels_per_column = 1;
+  /// Where nothing changed since the pair before, its refined values stay. Null: all are refined.
+  KeptRefinement* kept = nullptr;
 };
 
 /// Working memory of refine_maps(), reused from call to call.

@@ -43,7 +43,8 @@ kernels::SurfaceRow surface_row(const Image<float>& samples_px, int margin, int 
 }
 
 void fit_each_pixel(const Mask& unmatched, int radius_px, DisparityRange search,
-                    Execution& execution, SurfaceFitWork& work, DisparityMap& map_px) {
+                    const TileMask* tiles, Execution& execution, SurfaceFitWork& work,
+                    DisparityMap& map_px) {
   const int width = map_px.width();
   fill_with_margins(width, map_px.height(), radius_px, execution, work.samples_px,
                     [&](int y, float* values) {
@@ -55,8 +56,14 @@ void fit_each_pixel(const Mask& unmatched, int radius_px, DisparityRange search,
                     });
   execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
-      kernels::fit_surface_row(surface_row(work.samples_px, radius_px, y, radius_px, width, search),
-                               map_px.row(y));
+      kernels::SurfaceRow row =
+          surface_row(work.samples_px, radius_px, y, radius_px, width, search);
+      const float* const samples_px = row.disparity_px;
+      for_each_run_in_row(tiles, width, y, [&](scheduler::Range columns) {
+        row.disparity_px = samples_px + columns.begin;
+        row.width = columns.size();
+        kernels::fit_surface_row(row, map_px.row(y) + columns.begin);
+      });
     }
   });
 }
@@ -91,9 +98,13 @@ void fit_each_block(const Mask& unmatched, int radius_px, DisparityRange search,
 }  // namespace
 
 void fit_surface(const Mask& unmatched, int radius_px, int step_px, DisparityRange search,
-                 Execution& execution, SurfaceFitWork& work, DisparityMap& map_px) {
-  const auto fit = step_px == 1 ? fit_each_pixel : fit_each_block;
-  fit(unmatched, radius_px, search, execution, work, map_px);
+                 Execution& execution, SurfaceFitWork& work, DisparityMap& map_px,
+                 const TileMask* tiles) {
+  if (step_px == 1) {
+    fit_each_pixel(unmatched, radius_px, search, tiles, execution, work, map_px);
+  } else {
+    fit_each_block(unmatched, radius_px, search, execution, work, map_px);
+  }
 }
 
 }  // namespace vantage

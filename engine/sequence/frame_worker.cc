@@ -97,7 +97,8 @@ FrameWorker::FrameWorker(const FrameTools& tools)
       renderer_(tools.options.synthesis, tools.cameras, tools.execution),
       videos_show_views_(videos_show_views(tools.options)),
       maps_are_stored_(maps_are_stored(tools.options)),
-      temporal_(tools.options.temporal) {
+      temporal_(tools.options.temporal),
+      reuse_(tools.options.temporal.threshold, tools.execution) {
   if (rectifier_ != nullptr && rectifier_->needs_rectification() &&
       views_show_photographs(options_)) {
     photograph_grid_.emplace(*rectifier_, execution_);
@@ -184,14 +185,34 @@ void FrameWorker::match(FrameSlot& slot) {
   }
   // A chunk has no state from before it, whichever of its frames is the first good one.
   const int chunk = slot.frame / options_.chunk_frames;
-  if (chunk != temporal_chunk_) {
+  const bool is_first = chunk != chunk_of_past_;
+  chunk_of_past_ = chunk;
+  if (options_.temporal.reuse == Reuse::kFrame) {
+    match_with_reuse(slot, request, is_first);
+  } else {
+    match_with_prior(slot, request, is_first);
+  }
+}
+
+void FrameWorker::match_with_prior(FrameSlot& slot, MatchRequest request, bool is_first) {
+  if (is_first) {
     temporal_.restart();
-    temporal_chunk_ = chunk;
   }
   request.left = request.right = true;  // both are stored for the next frame
   request.prior = temporal_.priors_for(*slot.left, *slot.right, execution_);
   matcher_.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
   temporal_.remember(*slot.left, *slot.right, slot.maps, execution_);
+}
+
+void FrameWorker::match_with_reuse(FrameSlot& slot, MatchRequest request, bool is_first) {
+  reuse_.start_frame(slot.frame % options_.chunk_frames, is_first);
+  request.previous = &reuse_;
+  try {
+    matcher_.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
+  } catch (...) {
+    reuse_.forget();  // its maps may be those of two frames
+    throw;
+  }
 }
 
 void FrameWorker::check_range(FrameSlot& slot) {

@@ -11,6 +11,7 @@
 #include "engine/matching/stereo_matcher.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/sequence/busy_clock.h"
+#include "engine/sequence/frame_reuse.h"
 #include "engine/sequence/frame_slot.h"
 #include "engine/sequence/pair_source.h"
 #include "engine/sequence/sequence_layout.h"
@@ -43,14 +44,14 @@ struct FrameTools {
   StepAccounts& accounts;
 };
 
-/// The steps of a frame between reading and writing. They depend on the frame and, with a temporal
-/// prior, on the frames before it in its chunk.
+/// The steps of a frame between reading and writing. They depend on the frame and, if
+/// TemporalOptions::uses_past(), on the frames before it in its chunk.
 class FrameWorker {
  public:
   explicit FrameWorker(const FrameTools& tools);
 
   /// Whether compute() must be called in the order of the frames, one at a time.
-  [[nodiscard]] bool computes_in_order() const { return options_.temporal.weight > 0; }
+  [[nodiscard]] bool computes_in_order() const { return options_.temporal.uses_past(); }
 
   /// Decodes and rectifies. Thread rule: concurrently for different slots; the same holds for
   /// encode(), and for compute() unless computes_in_order().
@@ -66,8 +67,11 @@ class FrameWorker {
   /// Time during which at least one frame was in compute(), or rectified.
   [[nodiscard]] double compute_seconds() const { return compute_clock_.seconds(); }
 
-  /// Memory of matching; see StereoMatcher.
-  void add_memory_use(MemoryUse& use) const { matcher_.add_memory_use(use); }
+  /// Memory of matching, see StereoMatcher, and "frame before": what TemporalOptions::reuse keeps.
+  void add_memory_use(MemoryUse& use) const {
+    matcher_.add_memory_use(use);
+    use.add("frame before", reuse_.held_bytes());
+  }
 
   /// The reference's map.
   [[nodiscard]] const DisparityMap& primary_map(const FrameSlot& slot) const;
@@ -77,6 +81,8 @@ class FrameWorker {
 
  private:
   void match(FrameSlot& slot);
+  void match_with_prior(FrameSlot& slot, MatchRequest request, bool is_first);
+  void match_with_reuse(FrameSlot& slot, MatchRequest request, bool is_first);
   /// Looks at the first few frames for which the range may be too narrow.
   void check_range(FrameSlot& slot);
   /// The frame is no longer stored when a file has changed.
@@ -111,7 +117,8 @@ class FrameWorker {
   /// Whether the files of a frame hold the maps that its pictures in videos are made from.
   bool maps_are_stored_;
   TemporalState temporal_;
-  int temporal_chunk_ = -1;  ///< chunk of temporal_
+  FrameReuse reuse_;
+  int chunk_of_past_ = -1;  ///< chunk of temporal_ and reuse_
   mutable BusyClock compute_clock_;
   std::atomic<int> looks_beyond_ = 0;
 };

@@ -175,6 +175,12 @@ std::size_t past_bytes(const SequenceOptions& options, const PairShape& shape) {
   // Per image: its levels before and now, differences and mask; two maps.
   const std::size_t side = 5 + 2 * sizeof(float);
   std::size_t bytes = options.temporal.weight > 0 ? 2 * side * pixels : 0;
+  if (options.temporal.reuse != Reuse::kNone) {
+    // Half size, two maps: image, mask of changes and of pixels without a match; winners, refined.
+    bytes += 2 * (3 + 2 * sizeof(float)) * pixels / 4 +
+             2 * ReducedMatcher::level_bytes(options.match.in_force(),
+                                             {shape.source.width_px, shape.source.height_px});
+  }
   if (options.measure_flicker) {
     bytes += side * pixels;
     for (const ViewPath& view : options.views) {

@@ -59,6 +59,19 @@ void require_near(const ViewPose& pose) {
   }
 }
 
+void check_temporal(const SequenceOptions& options) {
+  const bool is_reduced = options.match.resolved().search_size != SearchSize::kFull;
+  if (options.temporal.weight > 0 && is_reduced) {
+    throw UsageError(
+        fmt::format("temporal-prior is {}, expected 0 with a reduced search-size (preset realtime)",
+                    options.temporal.weight));
+  }
+  if (options.temporal.reuse != Reuse::kNone && !is_reduced) {
+    throw UsageError(
+        "reuse is frame with search-size full, expected a reduced search-size (preset realtime)");
+  }
+}
+
 void check_views(const SequenceOptions& options) {
   const bool wanted = std::ranges::any_of(options.save, is_per_view);
   if (wanted && options.views.empty()) {
@@ -152,11 +165,7 @@ void SequenceOptions::validate() const {
   match.validate();
   synthesis.validate();
   temporal.validate();
-  if (temporal.weight > 0 && match.resolved().search_size != SearchSize::kFull) {
-    throw UsageError(fmt::format(
-        "temporal-prior is {}, expected 0 with a reduced search-size (preset realtime)",
-        temporal.weight));
-  }
+  check_temporal(*this);
   if (match.disparities_y) {
     throw UsageError("disparities-y is set, expected none: sequences consist of rectified pairs");
   }

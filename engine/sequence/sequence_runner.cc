@@ -40,9 +40,9 @@ double processor_seconds() {
 
 FrameDependence dependence_of(const SequenceOptions& options, const SequenceLayout& layout) {
   using Past = FrameDependence::Past;
-  return {.past = options.temporal.weight > 0 ? Past::kChunk
-                  : options.measure_flicker   ? Past::kOne
-                                              : Past::kNone,
+  return {.past = options.temporal.uses_past() ? Past::kChunk
+                  : options.measure_flicker    ? Past::kOne
+                                               : Past::kNone,
           .whole_chunks = layout.has_videos()};
 }
 
@@ -302,6 +302,9 @@ class Run {
     report_.cells += slot.match.cells;
     if (slot.match.cells > 0) {
       report_.plan = slot.match.plan;
+      if (slot.match.searched_share) {
+        report_.reuse.add(*slot.match.searched_share);
+      }
       add_range_check(slot);
     }
     for (const auto& times : {slot.match.stages, slot.times}) {

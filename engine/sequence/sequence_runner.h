@@ -39,6 +39,20 @@ struct FrameRemark {
   std::string text;
 };
 
+/// What frames took from the frames before them, with TemporalOptions::reuse.
+struct ReuseReport {
+  int frames = 0;           ///< of images that are large enough
+  int frames_searched = 0;  ///< of these, those of which every tile was searched
+  double searched_sum = 0;  ///< of the shares of tiles that were searched
+
+  void add(double searched_share) {
+    ++frames;
+    frames_searched += searched_share == 1 ? 1 : 0;
+    searched_sum += searched_share;
+  }
+  [[nodiscard]] double mean_share_reused() const { return 1 - searched_sum / frames; }
+};
+
 struct SequenceReport {
   int frames = 0;          ///< delivered by this run
   int frames_before = 0;   ///< of its share, delivered by earlier runs
@@ -65,7 +79,8 @@ struct SequenceReport {
   std::vector<SequenceStage> processor;
   double share_busy = 0;      ///< of the time of all threads of the execution, processor time
   scheduler::ChainPlan plan;  ///< of the last frame
-  MemoryUse memory;           ///< "frames in flight" and that of matching them
+  ReuseReport reuse;
+  MemoryUse memory;  ///< "frames in flight" and that of matching them
 };
 
 /// Input and settings of a run.

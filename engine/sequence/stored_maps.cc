@@ -15,7 +15,7 @@ bool videos_show_views(const SequenceOptions& options) {
 }
 
 bool maps_are_stored(const SequenceOptions& options) {
-  const bool needs_masks = options.temporal.weight > 0 ||
+  const bool needs_masks = options.temporal.uses_past() ||
                            options.saves_as_video(SequenceOutput::kUnmatched) ||
                            options.saves_as_video(SequenceOutput::kRightUnmatched);
   const bool needs_both =

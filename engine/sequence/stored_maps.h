@@ -12,8 +12,8 @@ namespace vantage {
 bool videos_show_views(const SequenceOptions& options);
 
 /// Whether the files of a frame hold the maps that its pictures in videos, and its flicker
-/// measurement, are made from. False if masks of filled pixels are needed, which no map contains
-/// and a temporal prior uses.
+/// measurement, are made from. False if more is needed than maps contain: masks of filled pixels,
+/// or what later frames take from this one.
 bool maps_are_stored(const SequenceOptions& options);
 
 /// Reads the reference's map, and with `needs_both` also the right one, from the files of `record`.

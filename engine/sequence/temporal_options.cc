@@ -14,6 +14,10 @@ void TemporalOptions::validate() const {
         fmt::format("temporal-prior is {}, expected a number from 0 to {}", weight, kMaxWeight));
   }
   StillPixels{threshold};
+  if (weight > 0 && reuse != Reuse::kNone) {
+    throw UsageError(
+        fmt::format("temporal-prior is {} with reuse frame, expected one of them", weight));
+  }
 }
 
 }  // namespace vantage

@@ -281,6 +281,7 @@ TEST_F(InputRunCommand, WrongUsageIsOneLineAndExit2) {
       {{"--fps", "0"}, "--fps is '0'"},
       {{"--chunk-frames", "0"}, "chunk-frames is 0"},
       {{"--temporal-prior", "-1"}, "-1"},
+      {{"--reuse", "frame", "--preset", "fast"}, "expected a reduced search-size"},
       {{"--progress", "loud"}, "--progress is 'loud'"},
       {{"--crf", "20"}, "--crf has no effect without --video"},
       {{"--save", "preview", "--format", "npy"}, "--format has no effect where --save has no"},

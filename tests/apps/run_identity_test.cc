@@ -128,7 +128,11 @@ INSTANTIATE_TEST_SUITE_P(
                                    {"--intensity-fit", "shot", "--preview-range", "shot"})},
                     Outputs{"TemporalPrior", 2,
                             joined(kVideoOutputs, {"--temporal-prior", "1", "--method", "diffusion",
-                                                   "--iterations", "4"})}),
+                                                   "--iterations", "4"})},
+                    Outputs{"Reuse", 1,
+                            joined(kVideoOutputs, {"--method", "bayes", "--cost", "census-rays",
+                                                   "--prior-smoothing", "maximum", "--levels", "3",
+                                                   "--search-size", "half", "--reuse", "frame"})}),
     [](const auto& instance) { return instance.param.name; });
 
 }  // namespace run_identity_test

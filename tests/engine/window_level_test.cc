@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/image/tile_mask.h"
 #include "engine/matching/aggregation/edge_weights.h"
 #include "kernels/candidate_windows.h"
 #include "kernels/census/census.h"
@@ -50,9 +51,9 @@ class GivenBeliefs final : public CoarseBeliefs {
       winners[x] = static_cast<std::int16_t>(winner(x, y));
     }
   }
-  void energies_row(int y, const std::int16_t* first,
+  void energies_row(int y, scheduler::Range columns, const std::int16_t* first,
                     kernels::WindowCells* energies) const override {
-    for (int x = 0; x < extent_.columns; ++x) {
+    for (int x = columns.begin; x < columns.end; ++x) {
       energies[x] = 0;
       for (int i = 0; i < 6; ++i) {
         energies[x] |= static_cast<kernels::WindowCells>(energy(x, y, first[x] + i)) << (8 * i);
@@ -355,6 +356,34 @@ MethodParameters parameters_of(int number) {
   return parameters;
 }
 
+/// Searches some squares of the level, on a chessboard, and expects those of `whole` and nothing
+/// else.
+void expect_regions_equal(const WindowLevelInput& input, const DisparityMap& whole,
+                          Execution& execution) {
+  constexpr float kUntouched = -99;
+  TileMask tiles(whole.width(), whole.height(), false, 5);
+  for (int row = 0; row < tiles.rows(); ++row) {
+    for (int column = row % 2; column < tiles.columns(); column += 2) {
+      tiles.set(column, row);
+    }
+  }
+  const std::vector<scheduler::Region> regions = tiles.regions();
+  DisparityMap map(whole.width(), whole.height());
+  map.fill(kUntouched);
+  search_windows(input, Subpixel::kParabola, {.disparity_px = map.view(), .regions = &regions},
+                 execution);
+  DisparityMap expected = whole.copy();
+  for (int row = 0; row < tiles.rows(); ++row) {
+    tiles.for_each_run(row, false, [&](scheduler::Range columns) {
+      const scheduler::Range rows = tiles.row_pixels(row);
+      for (int y = rows.begin; y < rows.end; ++y) {
+        std::fill_n(expected.row(y) + columns.begin, columns.size(), kUntouched);
+      }
+    });
+  }
+  EXPECT_TRUE(test::identical(map, expected));
+}
+
 TEST(WindowLevel, EqualsPlainTranscriptionForAnyExecution) {
   std::mt19937 random(1);
   Execution one({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
@@ -412,6 +441,7 @@ TEST(WindowLevel, EqualsPlainTranscriptionForAnyExecution) {
                 << x << ", " << y << ": " << value << ", expected " << expected.at(x, y);
           }
         }
+        expect_regions_equal(input, map, *execution);
       }
     }
   }

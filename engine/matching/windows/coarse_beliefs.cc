@@ -76,18 +76,18 @@ void LevelBeliefs::winners_row(int y, std::int16_t* winners) const {
                  [](std::int32_t winner) { return static_cast<std::int16_t>(winner); });
 }
 
-void LevelBeliefs::energies_row(int y, const std::int16_t* first, WindowCells* energies) const {
-  const int columns = energies_.extent().columns;
+void LevelBeliefs::energies_row(int y, scheduler::Range columns, const std::int16_t* first,
+                                WindowCells* energies) const {
   BlockLanes lanes(blocks_count_);
   if (blocks_ == nullptr) {
     std::vector<std::uint16_t> all(static_cast<std::size_t>(blocks_count_));
     std::iota(all.begin(), all.end(), std::uint16_t{0});
     lanes.set(all);
   }
-  for (int x = 0; x < columns;) {
-    int end = columns;
+  for (int x = columns.begin; x < columns.end;) {
+    int end = columns.end;
     if (blocks_ != nullptr) {
-      const CandidateBlocks::Run run = blocks_->run_at(x, y, columns);
+      const CandidateBlocks::Run run = blocks_->run_at(x, y, columns.end);
       lanes.set(run.blocks);
       end = run.columns.end;
     }
@@ -107,8 +107,9 @@ void WindowBeliefs::winners_row(int y, std::int16_t* winners) const {
   std::copy_n(state_.winner.row(y), state_.winner.width(), winners);
 }
 
-void WindowBeliefs::energies_row(int y, const std::int16_t* first, WindowCells* energies) const {
-  for (int x = 0; x < state_.winner.width(); ++x) {
+void WindowBeliefs::energies_row(int y, scheduler::Range columns, const std::int16_t* first,
+                                 WindowCells* energies) const {
+  for (int x = columns.begin; x < columns.end; ++x) {
     const WindowCells support = state_.support.at(x, y);
     energies[x] = kUnknown;
     for (int i = 0; i < kValidBytes; ++i) {

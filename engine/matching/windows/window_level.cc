@@ -25,6 +25,7 @@ using kernels::kWindowCandidates;
 using kernels::kWindows;
 using kernels::WindowCells;
 using scheduler::Range;
+using scheduler::Region;
 
 /// Rows per task: few enough to balance, enough that the rows made twice, around bands, are few.
 constexpr int kBandRows = 32;
@@ -63,13 +64,17 @@ std::vector<kernels::CandidateRange> partnered_candidates(
   return result;
 }
 
-/// One band of rows, swept by all iterations as a wavefront.
+/// Columns around those of a result that its iterations read, one more than iterations make wrong.
+int halo_columns(int iterations) { return iterations + 1; }
+
+/// One region of a level, swept by all iterations as a wavefront. Each iteration makes the
+/// outermost columns of its halo wrong; nothing of the halo is in the result.
 class Band {
  public:
   explicit Band(const Level& level)
       : level_(level),
         starter_(level.input.coarse, level.input.geometry.disparity_min, level.input.geometry.count,
-                 level.columns, level.prior, level.format.nats_per_step()),
+                 level.prior, level.format.nats_per_step()),
         starts_(level.iterations + 4, level.columns),
         evidence_(level.iterations, level.columns),
         absent_(level.columns),
@@ -91,7 +96,11 @@ class Band {
     }
   }
 
-  void run(Range rows) {
+  void run(const Region& region) {
+    const Range rows = region.rows;
+    result_ = region.columns;
+    columns_ = region.columns.widened(halo_columns(level_.iterations), {0, level_.columns});
+    columns_.begin -= columns_.begin % 2;  // at a coarse column
     const int halo = level_.iterations - 1;
     const Range all{0, level_.rows};
     coarse_end_ = std::max(0, (rows.begin - halo - 1) / 2 - 1);
@@ -106,8 +115,8 @@ class Band {
         // Rows that later iterations of the band read.
         if (rows.widened(level_.iterations - i, all).contains({of_iteration, of_iteration + 1})) {
           kernels::window_step_row(
-              step_row(of_iteration, i),
-              states_[static_cast<std::size_t>(i - 1)].at(of_iteration).data());
+              step_row(of_iteration, columns_, i),
+              from(columns_, states_[static_cast<std::size_t>(i - 1)].at(of_iteration).data()));
         }
       }
       const int finished = y - halo;
@@ -123,7 +132,7 @@ class Band {
     const int coarse_rows = level_.input.coarse.extent().rows;
     const int end = std::min(y / 2 + 2, coarse_rows);
     for (; coarse_end_ < end; ++coarse_end_) {
-      starter_.make_row(coarse_end_, starts_.at(coarse_end_));
+      starter_.make_row(coarse_end_, columns_, starts_.at(coarse_end_));
     }
     const int own = y / 2;
     if (own == marked_) {
@@ -131,49 +140,58 @@ class Band {
     }
     marked_ = own;
     WindowStarter::mark_near(own > 0 ? &starts_.at(own - 1) : nullptr,
-                             own + 1 < coarse_rows ? &starts_.at(own + 1) : nullptr, level_.columns,
+                             own + 1 < coarse_rows ? &starts_.at(own + 1) : nullptr, columns_,
                              starts_.at(own));
   }
 
   void make_evidence(int y) {
     const WindowStartRow& starts = starts_.at(y / 2);
     kernels::WindowEvidenceRow row;
-    row.start = starts.starts();
-    row.has_second = starts.has_second.data();
-    row.columns = level_.columns;
+    row.start = from(columns_, starts.starts());
+    row.has_second = starts.has_second.data() + columns_.begin;
+    row.columns = columns_.size();
     row.direction = level_.input.geometry.direction;
-    const std::ptrdiff_t first_partner = level_.input.geometry.partner(0, 0);
+    const int first_pixel = 2 * columns_.begin;
+    const std::ptrdiff_t first_partner = level_.input.geometry.partner(first_pixel, 0);
     for (std::size_t r = 0; r < 2; ++r) {
       const int of_image =
           std::min(2 * y + static_cast<int>(r), level_.input.reference.height() - 1);
       for (std::size_t p = 0; p < kernels::kRayCensusBytes; ++p) {
-        row.reference[r][p] = level_.reference[p].plain.row(of_image);
+        row.reference[r][p] = level_.reference[p].plain.row(of_image) + first_pixel;
         row.partner[r][p] = level_.partner[p].plain.row(of_image) + first_partner;
       }
     }
     const auto evidence = evidence_.at(y).data();
-    kernels::window_evidence_row(row, level_.format.evidence(), evidence);
+    kernels::window_evidence_row(row, level_.format.evidence(), from(columns_, evidence));
     if (level_.prior.lanes != ~WindowCells{0}) {
       for (WindowCells* const of_window : evidence) {
-        std::transform(of_window, of_window + level_.columns, of_window,
+        std::transform(of_window + columns_.begin, of_window + columns_.end,
+                       of_window + columns_.begin,
                        [this](WindowCells cells) { return cells & level_.prior.lanes; });
       }
     }
     for_each_outer_column([&](int x) {
-      evidence[0][x] &= with_partner(x, row.start[0][x]);
-      if (row.has_second[x] != 0) {
-        evidence[1][x] &= with_partner(x, row.start[1][x]);
+      evidence[0][x] &= with_partner(x, starts.start[0].data()[x]);
+      if (starts.has_second.data()[x] != 0) {
+        evidence[1][x] &= with_partner(x, starts.start[1].data()[x]);
       }
     });
   }
 
-  /// Columns where some candidates lack partners.
+  /// Both windows' values from the first of `columns` on.
+  template <typename T>
+  static std::array<T*, kWindows> from(Range columns, const std::array<T*, kWindows>& values) {
+    return {values[0] + columns.begin, values[1] + columns.begin};
+  }
+
+  /// Columns of the region and its halo where some candidates lack partners.
   template <typename Body>
   void for_each_outer_column(const Body& body) const {
-    for (int x = 0; x < level_.inner.begin; ++x) {
+    for (int x = columns_.begin; x < std::min(level_.inner.begin, columns_.end); ++x) {
       body(x);
     }
-    for (int x = std::max(level_.inner.end, level_.inner.begin); x < level_.columns; ++x) {
+    const int outer_end = std::max(level_.inner.end, level_.inner.begin);
+    for (int x = std::max(outer_end, columns_.begin); x < columns_.end; ++x) {
       body(x);
     }
   }
@@ -189,52 +207,54 @@ class Band {
     return lanes == kWindowCandidates ? ~WindowCells{0} : (WindowCells{1} << (8 * lanes)) - 1;
   }
 
-  /// Row y as iteration `iteration`, 1 being the first, reads it.
-  kernels::WindowRow windows(int y, int iteration) {
+  /// Columns `columns` of row y as iteration `iteration`, 1 being the first, reads it.
+  kernels::WindowRow windows(int y, Range columns, int iteration) {
     if (y < 0 || y >= level_.rows) {
-      const auto absent = absent_.data();
-      return {.support = {absent[0], absent[1]}, .start = starts_.at(std::max(y, 0) / 2).starts()};
+      const auto absent = from(columns, absent_.data());
+      return {.support = {absent[0], absent[1]},
+              .start = from(columns, starts_.at(std::max(y, 0) / 2).starts())};
     }
     WindowStartRow& starts = starts_.at(y / 2);
-    const auto support = iteration == 1
-                             ? starts.support.data()
-                             : states_[static_cast<std::size_t>(iteration - 2)].at(y).data();
-    return {.support = {support[0], support[1]}, .start = starts.starts()};
+    const auto support = from(
+        columns, iteration == 1 ? starts.support.data()
+                                : states_[static_cast<std::size_t>(iteration - 2)].at(y).data());
+    return {.support = {support[0], support[1]}, .start = from(columns, starts.starts())};
   }
 
-  kernels::WindowStepRow step_row(int y, int iteration) {
+  kernels::WindowStepRow step_row(int y, Range columns, int iteration) {
     kernels::WindowStepRow row;
-    row.up = windows(y - 1, iteration);
-    row.centre = windows(y, iteration);
-    row.down = windows(y + 1, iteration);
-    const auto evidence = evidence_.at(y).data();
+    row.up = windows(y - 1, columns, iteration);
+    row.centre = windows(y, columns, iteration);
+    row.down = windows(y + 1, columns, iteration);
+    const auto evidence = from(columns, evidence_.at(y).data());
     row.evidence = {evidence[0], evidence[1]};
     const WindowStartRow& starts = starts_.at(y / 2);
-    row.has_second = starts.has_second.data();
-    row.near_second = starts.near_second.data();
+    row.has_second = starts.has_second.data() + columns.begin;
+    row.near_second = starts.near_second.data() + columns.begin;
     row.mu = mu_;
     row.beside = row.above = row.below = uniform_.data();
     if (const EdgeWeights* const edges = level_.input.edges; edges != nullptr) {
-      row.beside = edges->fixed_beside(y);
-      row.above = edges->fixed_above(y);
-      row.below = edges->fixed_above(y + 1);
+      row.beside = edges->fixed_beside(y) + columns.begin;
+      row.above = edges->fixed_above(y) + columns.begin;
+      row.below = edges->fixed_above(y + 1) + columns.begin;
     }
     row.prior = level_.prior;
-    row.columns = level_.columns;
+    row.columns = columns.size();
     return row;
   }
 
   /// The last iteration of row y, and its winners.
   void select(int y) {
-    const kernels::WindowStepRow row = step_row(y, level_.iterations);
+    const kernels::WindowStepRow row = step_row(y, result_, level_.iterations);
     const WindowStartRow& starts = starts_.at(y / 2);
     const bool needs_support = level_.output.state != nullptr || !level_.output.confidence.empty();
-    kernels::WindowWinners winners{.window = window_.data(),
-                                   .lane = lane_.data(),
-                                   .total = total_.data(),
-                                   .total_before = total_before_.data(),
-                                   .total_after = total_after_.data(),
-                                   .support = needs_support ? support_.data() : nullptr};
+    const int first = result_.begin;
+    kernels::WindowWinners winners{.window = window_.data() + first,
+                                   .lane = lane_.data() + first,
+                                   .total = total_.data() + first,
+                                   .total_before = total_before_.data() + first,
+                                   .total_after = total_after_.data() + first,
+                                   .support = needs_support ? support_.data() + first : nullptr};
     const auto selectable = selectable_.data();
     if (level_.inner != Range{0, level_.columns}) {
       // Set to all at first; only outer columns change.
@@ -243,20 +263,21 @@ class Band {
           selectable[q][x] = with_partner(x, starts.start[q].data()[x]);
         }
       });
-      winners.selectable = {selectable[0], selectable[1]};
+      winners.selectable = {selectable[0] + first, selectable[1] + first};
     }
     kernels::window_winners_row(row, winners);
     float* const disparity_px = level_.output.disparity_px.row(y);
     kernels::window_disparity_row(
         {.winners = &winners,
-         .start = starts.starts(),
+         .start = from(result_, starts.starts()),
          .disparity_min = level_.input.geometry.disparity_min,
          .candidates = std::min(kWindowCandidates, level_.input.geometry.count),
          .is_refined = level_.subpixel == Subpixel::kParabola,
-         .columns = level_.columns},
-        disparity_px);
+         .columns = result_.size()},
+        disparity_px + first);
     for_each_outer_column([&](int x) {
-      if (window_.data()[x] != kernels::kNoWindow && !has_partners_beside(x)) {
+      const bool is_result = result_.contains({x, x + 1});
+      if (is_result && window_.data()[x] != kernels::kNoWindow && !has_partners_beside(x)) {
         disparity_px[x] =
             static_cast<float>(level_.input.geometry.disparity_min + winner(x, starts));
       }
@@ -285,7 +306,7 @@ class Band {
   }
 
   void write_confidence(float* confidence) const {
-    for (int x = 0; x < level_.columns; ++x) {
+    for (int x = result_.begin; x < result_.end; ++x) {
       if (window_.data()[x] == kernels::kNoWindow) {
         confidence[x] = std::numeric_limits<float>::quiet_NaN();
         continue;
@@ -302,8 +323,9 @@ class Band {
   }
 
   void write_state(int y, const WindowStartRow& starts, WindowState& state) const {
-    std::copy_n(support_.data(), level_.columns, state.support.row(y));
-    for (int x = 0; x < level_.columns; ++x) {
+    std::copy_n(support_.data() + result_.begin, result_.size(),
+                state.support.row(y) + result_.begin);
+    for (int x = result_.begin; x < result_.end; ++x) {
       const int candidate = winner(x, starts);
       state.start.at(x, y) = static_cast<std::int16_t>(candidate - lane_.data()[x]);
       state.winner.at(x, y) = static_cast<std::int16_t>(candidate);
@@ -311,6 +333,8 @@ class Band {
   }
 
   const Level& level_;
+  Range result_;   ///< columns of the region
+  Range columns_;  ///< and of its halo
   WindowStarter starter_;
   RowRing<WindowStartRow> starts_;  ///< of coarse rows
   int coarse_end_ = 0;              ///< coarse rows before this one are made
@@ -333,9 +357,9 @@ class Band {
 class BandPool {
  public:
   explicit BandPool(const Level& level) : level_(level) {}
-  void run(Range rows) {
+  void run(const Region& region) {
     std::unique_ptr<Band> band = take();
-    band->run(rows);
+    band->run(region);
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(band));
   }
@@ -356,6 +380,15 @@ class BandPool {
   std::vector<std::unique_ptr<Band>> idle_;
 };
 
+/// The whole level.
+std::vector<Region> bands_of(const Level& level) {
+  std::vector<Region> bands;
+  for (int row = 0; row < level.rows; row += kBandRows) {
+    bands.push_back({{0, level.columns}, {row, std::min(row + kBandRows, level.rows)}});
+  }
+  return bands;
+}
+
 }  // namespace
 
 kernels::CandidateGeometry window_margins(kernels::CandidateGeometry geometry) {
@@ -365,6 +398,10 @@ kernels::CandidateGeometry window_margins(kernels::CandidateGeometry geometry) {
   geometry.disparity_min = -reach;
   geometry.count = 2 * reach + 1;
   return geometry;
+}
+
+int coarse_reach(int iterations) {
+  return (halo_columns(iterations) + 1) / 2 + 2;  // and neighbours of coarse pixels, and theirs
 }
 
 void search_windows(const WindowLevelInput& input, Subpixel subpixel,
@@ -391,10 +428,10 @@ void search_windows(const WindowLevelInput& input, Subpixel subpixel,
     output.state->ceiling = format.ceiling();
     output.state->nats_per_step = format.nats_per_step();
   }
-  const int count = (level.rows + kBandRows - 1) / kBandRows;
+  const std::vector<Region> regions = output.regions != nullptr ? *output.regions : bands_of(level);
   BandPool bands(level);
-  execution.executor().parallel_for(count, [&](int band) {
-    bands.run({band * kBandRows, std::min((band + 1) * kBandRows, level.rows)});
+  execution.executor().parallel_for(static_cast<int>(regions.size()), [&](int task) {
+    bands.run(regions[static_cast<std::size_t>(task)]);
   });
 }
 

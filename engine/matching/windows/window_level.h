@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/matching/aggregation/edge_weights.h"
@@ -7,6 +9,7 @@
 #include "engine/matching/parameters/method_parameters.h"
 #include "engine/matching/windows/coarse_beliefs.h"
 #include "kernels/candidates.h"
+#include "scheduler/range.h"
 
 namespace vantage {
 
@@ -26,6 +29,9 @@ struct WindowLevelInput {
 /// The geometry for which the images of a level are prepared: with enough columns on both sides.
 kernels::CandidateGeometry window_margins(kernels::CandidateGeometry geometry);
 
+/// Columns and rows of the coarser level that search_windows() reads around those of a region.
+int coarse_reach(int iterations);
+
 /// Output of a level of windows; images have the level's size.
 struct WindowLevelOutput {
   /// Disparities of the winners in pixels of `geometry`, NaN where no candidate has a partner.
@@ -33,13 +39,15 @@ struct WindowLevelOutput {
   /// Probability of the winner among the candidates of its window; empty: not requested.
   ImageView<float> confidence = {};
   WindowState* state = nullptr;  ///< for a finer level; null: not requested
+  /// Parts of the level to search, which do not overlap; other pixels are not written. Null: all.
+  const std::vector<scheduler::Region>* regions = nullptr;
 };
 
 /// Bayesian diffusion over windows of candidates (EQUATIONS §3.13): each pixel of the level, which
 /// stands for 2×2 pixels of the images, searches 8 candidates around the winner of the coarser
 /// level's pixel that covers it, and where winners around that differ, 8 around another of them.
 /// The start is the coarser level's result. Rows are swept in bands; nothing but the result is
-/// stored. Identical for any `execution`.
+/// stored. Identical for any `execution`; a pixel does not depend on which others are searched.
 void search_windows(const WindowLevelInput& input, Subpixel subpixel,
                     const WindowLevelOutput& output, Execution& execution);
 

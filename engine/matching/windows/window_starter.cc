@@ -19,25 +19,24 @@ using kernels::WindowCells;
 /// Candidates of a window before the guess.
 constexpr int kBeforeGuess = kWindowCandidates / 2 - 1;
 
-/// Repeats each value for two columns.
+/// Repeats each value for two columns; columns.begin is even.
 template <typename T>
-void repeat(const T* coarse, int columns, T* values) {
-  for (int x = 0; x < columns / 2; ++x) {
+void repeat(const T* coarse, scheduler::Range columns, T* values) {
+  for (int x = columns.begin / 2; x < columns.end / 2; ++x) {
     const std::array<T, 2> pair = {coarse[x], coarse[x]};
     std::memcpy(values + std::ptrdiff_t{2} * x, pair.data(), sizeof(pair));
   }
-  if (columns % 2 == 1) {
-    values[columns - 1] = coarse[columns / 2];
+  if (columns.end % 2 == 1) {
+    values[columns.end - 1] = coarse[columns.end / 2];
   }
 }
 
 }  // namespace
 
-WindowStarter::WindowStarter(const CoarseBeliefs& coarse, int disparity_min, int count, int columns,
+WindowStarter::WindowStarter(const CoarseBeliefs& coarse, int disparity_min, int count,
                              const kernels::WindowPrior& prior, double nats_per_step)
     : coarse_(coarse),
       count_(count),
-      columns_(columns),
       coarse_columns_(coarse.extent().columns),
       first_(2 * coarse.disparity_min() - disparity_min),
       lanes_(prior.lanes),
@@ -62,7 +61,7 @@ void WindowStarter::load_winners(int y, WindowValues<std::int16_t>& row) const {
   winners[coarse_columns_] = winners[coarse_columns_ - 1];
 }
 
-void WindowStarter::make_row(int y, WindowStartRow& row) {
+void WindowStarter::make_row(int y, scheduler::Range columns, WindowStartRow& row) {
   if (winners_y_ == y - 1) {
     std::rotate(winners_.begin(), winners_.begin() + 1, winners_.end());
     load_winners(y + 1, winners_[2]);
@@ -72,22 +71,26 @@ void WindowStarter::make_row(int y, WindowStartRow& row) {
     }
   }
   winners_y_ = y;
-  kernels::second_winners_row({winners_[0].data(), winners_[1].data(), winners_[2].data()},
-                              coarse_columns_, second_.data());
-  make_windows(y, winners_[1].data(), 0, row);
-  make_windows(y, second_.data(), 1, row);
+  const int first = columns.begin / 2;
+  kernels::second_winners_row(
+      {winners_[0].data() + first, winners_[1].data() + first, winners_[2].data() + first},
+      (columns.end + 1) / 2 - first, second_.data() + first);
+  make_windows(y, winners_[1].data(), 0, columns, row);
+  make_windows(y, second_.data(), 1, columns, row);
 }
 
 void WindowStarter::make_windows(int y, const std::int16_t* winners, std::size_t window,
-                                 WindowStartRow& row) {
-  const int columns = coarse_columns_;  // a copy: stores cannot alias it
+                                 scheduler::Range columns, WindowStartRow& row) {
+  // Copies: stores cannot alias them.
+  const int begin = columns.begin / 2;
+  const int end = (columns.end + 1) / 2;
   const auto last_start = static_cast<std::int16_t>(std::max(0, count_ - kWindowCandidates));
   const auto first = static_cast<std::int16_t>(first_);
   std::int16_t* const starts = starts_.data();
   std::int16_t* const first_coarse = first_coarse_.data();
   std::uint8_t* const offset_bits = offset_bits_.data();
   // In 16 bits, which compilers find vectors for. Without a second winner the window is unused.
-  for (int x = 0; x < columns; ++x) {
+  for (int x = begin; x < end; ++x) {
     const auto guess = static_cast<std::int16_t>(2 * winners[x] + first - kBeforeGuess);
     const std::int16_t start = std::min(std::max(guess, std::int16_t{0}), last_start);
     // first ≤ 0: the coarser level begins at or before this one.
@@ -98,50 +101,50 @@ void WindowStarter::make_windows(int y, const std::int16_t* winners, std::size_t
     offset_bits[x] = static_cast<std::uint8_t>((from_first & 1) << 3);
   }
   const bool exists =
-      window == 0 || std::any_of(winners, winners + columns,
+      window == 0 || std::any_of(winners + begin, winners + end,
                                  [](std::int16_t winner) { return winner != kNoSecondWinner; });
   WindowCells* const support = row.support.cells[window].data();
   std::uint8_t* const marks = has_second_.data();
   if (window == 1) {
-    for (int x = 0; x < columns; ++x) {
+    for (int x = begin; x < end; ++x) {
       marks[x] = winners[x] == kNoSecondWinner ? 0 : 255;
     }
-    repeat(marks, columns_, row.has_second.data());
+    repeat(marks, columns, row.has_second.data());
     if (!exists) {
-      std::fill_n(support, columns_, WindowCells{0});
-      std::fill_n(row.start[1].data(), columns_, std::int16_t{0});
+      std::fill_n(support + columns.begin, columns.size(), WindowCells{0});
+      std::fill_n(row.start[1].data() + columns.begin, columns.size(), std::int16_t{0});
       return;
     }
   }
-  coarse_.energies_row(y, first_coarse_.data(), energies_.data());
-  kernels::window_start_row({.energies = energies_.data(),
-                             .offset_bits = offset_bits_.data(),
+  coarse_.energies_row(y, {begin, end}, first_coarse_.data(), energies_.data());
+  kernels::window_start_row({.energies = energies_.data() + begin,
+                             .offset_bits = offset_bits_.data() + begin,
                              .steps = steps_,
                              .ceiling = ceiling_,
                              .lanes = lanes_,
-                             .columns = columns},
-                            support_.data());
+                             .columns = end - begin},
+                            support_.data() + begin);
   if (window == 1) {
     WindowCells* const of_second = support_.data();
-    for (int x = 0; x < columns; ++x) {
+    for (int x = begin; x < end; ++x) {
       of_second[x] = marks[x] == 0 ? 0 : of_second[x];
     }
   }
-  repeat(support_.data(), columns_, support);
-  repeat(starts_.data(), columns_, row.start[window].data());
+  repeat(support_.data(), columns, support);
+  repeat(starts_.data(), columns, row.start[window].data());
 }
 
-void WindowStarter::mark_near(const WindowStartRow* above, const WindowStartRow* below, int columns,
-                              WindowStartRow& row) {
+void WindowStarter::mark_near(const WindowStartRow* above, const WindowStartRow* below,
+                              scheduler::Range columns, WindowStartRow& row) {
   const std::uint8_t* const own = row.has_second.data();
   std::uint8_t* const near = row.near_second.data();
-  for (int x = 0; x < columns; ++x) {
+  for (int x = columns.begin; x < columns.end; ++x) {
     near[x] = own[x - 1] | own[x] | own[x + 1];
   }
   for (const WindowStartRow* const beside : {above, below}) {
     if (beside != nullptr) {
       const std::uint8_t* const of_beside = beside->has_second.data();
-      for (int x = 0; x < columns; ++x) {
+      for (int x = columns.begin; x < columns.end; ++x) {
         near[x] |= of_beside[x];
       }
     }

@@ -6,6 +6,7 @@
 #include "engine/matching/windows/coarse_beliefs.h"
 #include "engine/matching/windows/window_rows.h"
 #include "kernels/candidates.h"
+#include "scheduler/range.h"
 
 namespace vantage {
 
@@ -13,24 +14,25 @@ namespace vantage {
 /// Working memory of one task.
 class WindowStarter {
  public:
-  /// count, disparity_min: of the level's candidates. columns: of the level.
-  WindowStarter(const CoarseBeliefs& coarse, int disparity_min, int count, int columns,
+  /// count, disparity_min: of the level's candidates.
+  WindowStarter(const CoarseBeliefs& coarse, int disparity_min, int count,
                 const kernels::WindowPrior& prior, double nats_per_step);
 
-  /// Everything but near_second of the level's rows that coarse row y covers.
-  void make_row(int y, WindowStartRow& row);
+  /// Everything but near_second of the level's rows that coarse row y covers; `columns` of the
+  /// level, the first one even.
+  void make_row(int y, scheduler::Range columns, WindowStartRow& row);
   /// near_second of `row`; `above` and `below`: those of the coarse rows beside it, null outside.
-  static void mark_near(const WindowStartRow* above, const WindowStartRow* below, int columns,
-                        WindowStartRow& row);
+  static void mark_near(const WindowStartRow* above, const WindowStartRow* below,
+                        scheduler::Range columns, WindowStartRow& row);
 
  private:
   void load_winners(int y, WindowValues<std::int16_t>& row) const;
   /// The windows around `winners`, kNoSecondWinner: none.
-  void make_windows(int y, const std::int16_t* winners, std::size_t window, WindowStartRow& row);
+  void make_windows(int y, const std::int16_t* winners, std::size_t window,
+                    scheduler::Range columns, WindowStartRow& row);
 
   const CoarseBeliefs& coarse_;
   int count_;
-  int columns_;
   int coarse_columns_;
   /// Candidate of the level at the disparity of the coarser level's candidate 0.
   int first_;
