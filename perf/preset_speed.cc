@@ -4,9 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "engine/matching/options/method_names.h"
@@ -82,6 +84,8 @@ nlohmann::json measure(int width, int height, int disparities, const std::string
   }
   for (int round = 0; round <= rounds; ++round) {
     for (Timed& one : contenders) {
+      // Idle threads of the one before may still be looking for work.
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));
       const Stopwatch watch;
       one.run();
       if (round > 0) {
