@@ -14,7 +14,7 @@ namespace vantage::apps {
 std::string why_empty(const PairWithMaps& pair, const ViewPose& pose) {
   const NewView view = new_view(pose, pair.cameras ? &*pair.cameras : nullptr, pair.left.width(),
                                 pair.left.height());
-  int after = 0;
+  int behind = 0;
   int all = 0;
   for (int y = 0; y < pair.maps.left.disparity_px.height(); ++y) {
     for (int x = 0; x < pair.maps.left.disparity_px.width(); ++x) {
@@ -23,7 +23,7 @@ std::string why_empty(const PairWithMaps& pair, const ViewPose& pose) {
         const double depth = view.from_left.homography.row(2).dot(Eigen::Vector3d(x, y, 1)) +
                              d * view.from_left.parallax.z();
         ++all;
-        after += depth > 0 ? 0 : 1;
+        behind += depth > 0 ? 0 : 1;
       }
     }
   }
@@ -31,12 +31,12 @@ std::string why_empty(const PairWithMaps& pair, const ViewPose& pose) {
     return "the left map has no disparities";
   }
   const std::string frame = fmt::format("the frame of {}x{} pixels", view.width_px, view.height_px);
-  if (after == 0) {
+  if (behind == 0) {
     return "all of it is outside " + frame;
   }
-  return after == all ? "all of it is behind the camera"
-                      : fmt::format("{:.0f} % of it is behind the camera, the rest outside {}",
-                                    100.0 * after / all, frame);
+  return behind == all ? "all of it is behind the camera"
+                       : fmt::format("{:.0f} % of it is behind the camera, the rest outside {}",
+                                     100.0 * behind / all, frame);
 }
 
 void warn_of_empty_views(const std::string& command, const PairWithMaps& pair,

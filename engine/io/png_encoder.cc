@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMaxSide = 1'000'000;
 constexpr std::uint8_t kFilterSub = 1;
-/// Of what a chunk may hold, 2³¹ − 1 bytes.
+/// A chunk may hold up to 2³¹ − 1 bytes.
 constexpr std::size_t kMaxChunkBytes = std::size_t{1} << 30;
 
 std::array<std::uint8_t, 4> big_endian(std::size_t value) {

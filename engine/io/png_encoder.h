@@ -8,8 +8,8 @@
 namespace vantage {
 
 /// Encodes an image with 1, 3 (RGB) or 4 (RGBA) channels as PNG to `bytes`, optimised for speed.
-/// The same bytes on every processor. Leaves `bytes` empty for a side of more than 1 000 000
-/// pixels, which libpng does not read. Thread rule: may be called concurrently.
+/// Files are identical on every processor. `bytes` stays empty if a side has more than 1 000 000
+/// pixels, because libpng cannot read such files. Thread rule: may be called concurrently.
 void encode_png(const Image<std::uint8_t>& image, std::vector<std::uint8_t>& bytes);
 void encode_png(const Image<std::uint16_t>& image, std::vector<std::uint8_t>& bytes);
 

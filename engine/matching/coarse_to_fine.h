@@ -44,7 +44,7 @@ class CoarseLevels {
   /// the image.
   void choose_blocks(int level, const kernels::CandidateGeometry& geometry,
                      CandidateBlocks::SmoothTiles smooth, Execution& execution);
-  /// Of the level before.
+  /// Winners of the level that was computed last.
   [[nodiscard]] const Image<std::int32_t>& coarser_winners() const { return *coarser_winners_; }
   /// Whether the next finer level chooses its candidates from the winners of `level`.
   [[nodiscard]] bool needs_winners(int level) const {

@@ -86,7 +86,7 @@ void RayCensusPlanes::prepare_codes(const PlaneSource& source, int thresholds) {
   });
 }
 
-/// The same codes as from floats.
+/// Codes equal those that prepare_codes() makes from floats.
 void RayCensusPlanes::prepare_byte_codes(const PlaneSource& source,
                                          const Image<std::uint8_t>& image) {
   bytes_.resize(source.width(), source.height(), kFilterMarginBefore, kFilterMarginAfter);
