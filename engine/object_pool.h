@@ -38,11 +38,13 @@ class ObjectPool {
     }
   }
 
-  [[nodiscard]] Loan borrow() {
+  /// args: for the constructor of a new object.
+  template <typename... Args>
+  [[nodiscard]] Loan borrow(const Args&... args) {
     const std::lock_guard lock(mutex_);
     if (free_.empty()) {
       free_.reserve(++created_);  // so that returning an object cannot fail
-      return {*this, std::make_unique<T>()};
+      return {*this, std::make_unique<T>(args...)};
     }
     std::unique_ptr<T> object = std::move(free_.back());
     free_.pop_back();

@@ -5,8 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <memory>
-#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -14,6 +12,7 @@
 #include "engine/matching/windows/window_format.h"
 #include "engine/matching/windows/window_rows.h"
 #include "engine/matching/windows/window_starter.h"
+#include "engine/object_pool.h"
 #include "kernels/window_evidence/window_evidence.h"
 #include "kernels/window_step/window_step.h"
 #include "scheduler/range.h"
@@ -353,33 +352,6 @@ class Band {
   WindowValues<kernels::FixedWeight> uniform_;
 };
 
-/// Bands whose working memory is lent to one task after the other.
-class BandPool {
- public:
-  explicit BandPool(const Level& level) : level_(level) {}
-  void run(const Region& region) {
-    std::unique_ptr<Band> band = take();
-    band->run(region);
-    const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(band));
-  }
-
- private:
-  std::unique_ptr<Band> take() {
-    const std::lock_guard lock(mutex_);
-    if (idle_.empty()) {
-      return std::make_unique<Band>(level_);
-    }
-    std::unique_ptr<Band> band = std::move(idle_.back());
-    idle_.pop_back();
-    return band;
-  }
-
-  const Level& level_;
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Band>> idle_;
-};
-
 /// The whole level.
 std::vector<Region> bands_of(const Level& level) {
   std::vector<Region> bands;
@@ -429,9 +401,9 @@ void search_windows(const WindowLevelInput& input, Subpixel subpixel,
     output.state->nats_per_step = format.nats_per_step();
   }
   const std::vector<Region> regions = output.regions != nullptr ? *output.regions : bands_of(level);
-  BandPool bands(level);
+  ObjectPool<Band> bands;
   execution.executor().parallel_for(static_cast<int>(regions.size()), [&](int task) {
-    bands.run(regions[static_cast<std::size_t>(task)]);
+    bands.borrow(level)->run(regions[static_cast<std::size_t>(task)]);
   });
 }
 
