@@ -1,31 +1,13 @@
 #include "engine/refinement/enlarged_map.h"
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <variant>
 
+#include "engine/image/repeated_columns.h"
 #include "kernels/map_enlargement/map_enlargement.h"
 
 namespace vantage {
-namespace {
-
-/// Repeats each value for two columns.
-template <typename T>
-void repeat_row(const T* half, int width, T* row) {
-  for (int x = 0; x < width / 2; ++x) {
-    const std::array<T, 2> pair = {half[x], half[x]};
-    std::memcpy(row + std::ptrdiff_t{2} * x, pair.data(), sizeof(pair));
-  }
-  if (width % 2 == 1) {
-    row[width - 1] = half[width / 2];
-  }
-}
-
-}  // namespace
-
 void enlarge_map(const MatchedMap& half, const Photograph& image, const Photograph& half_image,
                  Execution& execution, MatchedMap& map) {
   const auto& pixels = std::get<Image<std::uint8_t>>(image.pixels);
@@ -52,10 +34,10 @@ void enlarge_map(const MatchedMap& half, const Photograph& image, const Photogra
       if (y % 2 == 1 && y > first_row) {
         std::copy_n(map.unmatched.row(y - 1), width, map.unmatched.row(y));
       } else {
-        repeat_row(half.unmatched.row(own), width, map.unmatched.row(y));
+        repeat_columns(half.unmatched.row(own), {0, width}, map.unmatched.row(y));
       }
       if (has_confidence) {
-        repeat_row(half.confidence.row(own), width, map.confidence.row(y));
+        repeat_columns(half.confidence.row(own), {0, width}, map.confidence.row(y));
       }
     }
   });

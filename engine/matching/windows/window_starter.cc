@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "engine/image/repeated_columns.h"
 #include "kernels/window_start/window_start.h"
 
 namespace vantage {
@@ -18,18 +19,6 @@ using kernels::WindowCells;
 
 /// Candidates of a window before the guess.
 constexpr int kBeforeGuess = kWindowCandidates / 2 - 1;
-
-/// Repeats each value for two columns; columns.begin is even.
-template <typename T>
-void repeat(const T* coarse, scheduler::Range columns, T* values) {
-  for (int x = columns.begin / 2; x < columns.end / 2; ++x) {
-    const std::array<T, 2> pair = {coarse[x], coarse[x]};
-    std::memcpy(values + std::ptrdiff_t{2} * x, pair.data(), sizeof(pair));
-  }
-  if (columns.end % 2 == 1) {
-    values[columns.end - 1] = coarse[columns.end / 2];
-  }
-}
 
 }  // namespace
 
@@ -109,7 +98,7 @@ void WindowStarter::make_windows(int y, const std::int16_t* winners, std::size_t
     for (int x = begin; x < end; ++x) {
       marks[x] = winners[x] == kNoSecondWinner ? 0 : 255;
     }
-    repeat(marks, columns, row.has_second.data());
+    repeat_columns(marks, columns, row.has_second.data());
     if (!exists) {
       std::fill_n(support + columns.begin, columns.size(), WindowCells{0});
       std::fill_n(row.start[1].data() + columns.begin, columns.size(), std::int16_t{0});
@@ -130,8 +119,8 @@ void WindowStarter::make_windows(int y, const std::int16_t* winners, std::size_t
       of_second[x] = marks[x] == 0 ? 0 : of_second[x];
     }
   }
-  repeat(support_.data(), columns, support);
-  repeat(starts_.data(), columns, row.start[window].data());
+  repeat_columns(support_.data(), columns, support);
+  repeat_columns(starts_.data(), columns, row.start[window].data());
 }
 
 void WindowStarter::mark_near(const WindowStartRow* above, const WindowStartRow* below,
