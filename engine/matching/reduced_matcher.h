@@ -49,7 +49,6 @@ class ReducedMatcher {
   struct Outputs {
     bool left = true;
     bool right = true;
-    bool unmatched = true;
     bool confidence = false;
   };
   /// Photographs of equal size, for which there are reductions. `previous`: of the pair before,

@@ -257,10 +257,7 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
       throw UsageError("there is a prior, expected none with a reduced search-size");
     }
     reduced_.match(left, right,
-                   {.left = request.left,
-                    .right = request.right,
-                    .unmatched = request.unmatched,
-                    .confidence = request.confidence},
+                   {.left = request.left, .right = request.right, .confidence = request.confidence},
                    request.previous, maps, clock, times);
     return;
   }
