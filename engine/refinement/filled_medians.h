@@ -25,8 +25,8 @@ inline std::size_t held_bytes(const FilledMediansWork& work) {
 /// Replaces filled pixels (≠ 0 in `unmatched`) by the weighted median of the disparities around
 /// them; pixels of similar colour weigh more (kernels/filled_median). Constant-depth filling
 /// decides for each row alone; the median combines rows and follows the image's outlines.
-/// `photograph` is the map's own; all have one size. grid: at most the
-/// default. tiles: the only ones to change; null: all. Identical for any `execution`.
+/// `photograph` is the map's own; all have one size. grid: at most
+/// the default one. tiles: the only ones to change; null: all. Identical for any `execution`.
 void take_filled_medians(const Mask& unmatched, const Photograph& photograph,
                          const kernels::FilledMedianGrid& grid, Execution& execution,
                          FilledMediansWork& work, DisparityMap& map_px,

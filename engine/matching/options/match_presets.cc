@@ -24,13 +24,13 @@ MethodOverrides coarse_to_fine() {
 
 PresetSettings preset_settings(MatchPreset preset) {
   PresetSettings settings;
+  settings.method = MatchMethod::kBayes;
+  settings.parameters = coarse_to_fine();
   settings.refinement.cross_check_px = 1;
   settings.refinement.speckle_size_px = 100;
   settings.refinement.surface_fit_px = 10;
   switch (preset) {
     case MatchPreset::kRealtime:
-      settings.method = MatchMethod::kBayes;
-      settings.parameters = coarse_to_fine();
       settings.parameters.search_size = SearchSize::kAuto;
       settings.parameters.mu = 0.24;
       settings.parameters.iterations = 2;
@@ -42,8 +42,6 @@ PresetSettings preset_settings(MatchPreset preset) {
       settings.refinement.fill = Fill::kMedian;
       break;
     case MatchPreset::kFast:
-      settings.method = MatchMethod::kBayes;
-      settings.parameters = coarse_to_fine();
       settings.parameters.mu = 0.28;
       settings.parameters.iterations = 2;
       settings.parameters.final_iterations = 0;
@@ -51,8 +49,6 @@ PresetSettings preset_settings(MatchPreset preset) {
       settings.refinement.surface_fit_step_px = 2;
       break;
     case MatchPreset::kBalanced:
-      settings.method = MatchMethod::kBayes;
-      settings.parameters = coarse_to_fine();
       settings.parameters.census_thresholds = 3;
       settings.parameters.mu = 0.28;
       settings.parameters.iterations = 3;
@@ -61,8 +57,6 @@ PresetSettings preset_settings(MatchPreset preset) {
       settings.refinement.fill = Fill::kMedian;
       break;
     case MatchPreset::kQuality:
-      settings.method = MatchMethod::kBayes;
-      settings.parameters = coarse_to_fine();
       settings.parameters.census_thresholds = 3;
       settings.parameters.mu = 0.33;
       settings.parameters.iterations = 10;
