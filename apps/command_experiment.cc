@@ -1,86 +1,158 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <optional>
+#include <set>
 
 #include "apps/commands.h"
-#include "apps/experiment_files.h"
+#include "apps/figure_files.h"
+#include "apps/figure_page.h"
 #include "apps/interrupt.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
+#include "apps/parameter_settings.h"
 #include "apps/progress.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
 #include "apps/tell.h"
+#include "engine/error.h"
+#include "engine/evaluation/method_comparison.h"
+#include "engine/figures/figure_table.h"
+#include "engine/io/atomic_file.h"
 #include "engine/sequence/sequence_layout.h"
 #include "engine/simd.h"
+#include "scheduler/machine.h"
 
 namespace vantage::apps {
 namespace {
 
-constexpr std::string_view kNoise = "noise";
+constexpr const char* kPageName = "figures.html";
 
 struct ExperimentJob {
-  std::string name;
-  BookExperimentOptions options;
+  std::vector<std::string> names;
+  bool list = false;
+  FigureSettings settings;
+  FigurePictures pictures = FigurePictures::kSvg;
   CommonOptions common;
   std::string output;
 };
 
-void add_experiment_settings(Settings& settings, ExperimentJob& job) {
-  settings.start_group("Files");
-  Setting& name =
-      settings.positional("name", job.name,
-                          "noise: error of the methods by noise (Figs. 6.16, 6.17) and by "
-                          "iterations (6.10), and the support of the membrane (6.9)");
-  name.required = true;
-  name.path = PathRole::kNone;
-  name.set = [&job](const SettingValue& value) {
-    if (value != kNoise) {
-      reject_value(value, kNoise);
-    }
-    job.name = to_text(value);
-  };
-  Setting& output = settings.path("output", job.output, "DIR", "Output folder");
-  output.short_name = 'o';
-  output.required = true;
-
-  settings.start_group("Experiment");
-  settings.integer("size", job.options.size_px, "PX", "Width and height of the synthetic images");
-  settings.integer("iterations", job.options.iterations, "N",
-                   "Number of iterations of the iterative methods in the comparison by noise");
-  Setting& pairs = settings.add("pairs", "LIST", "Pairs to compare by noise");
-  pairs.list = true;
-  pairs.set = [&job](const SettingValue& value) {
-    std::vector<std::string> names;
+/// A list of values, as texts with commas, as members of an array, or as several options.
+template <typename T, typename Convert>
+Setting& add_list(Settings& settings, std::string name, std::vector<T>& field,
+                  const std::string& help, const Convert& convert) {
+  Setting& setting = settings.add(std::move(name), "LIST", help);
+  setting.list = true;
+  setting.set = [&field, convert](const SettingValue& value) {
+    std::vector<T> values;
     for (const SettingValue& member : to_list(value)) {
-      for (const std::string& pair : split(to_text(member), ',')) {
-        if (std::ranges::find(names, pair) == names.end()) {
-          names.push_back(pair);
-        }
+      const auto parts =
+          member.is_string() ? split(member.get<std::string>(), ',') : std::vector<std::string>{};
+      for (const std::string& part : parts) {
+        values.push_back(convert(SettingValue(part)));
+      }
+      if (parts.empty()) {
+        values.push_back(convert(member));
       }
     }
-    job.options.pairs = std::move(names);
+    field = std::move(values);
   };
-  pairs.get = [&job] { return job.options.pairs; };
-  add_seed_setting(settings, job.options.seed);
+  setting.get = [&field] { return field; };
+  return setting;
 }
 
-/// The rows of noise.csv, for the report.
-SettingValue describe_runs(const std::vector<ExperimentRun>& runs) {
-  SettingValue rows = SettingValue::array();
-  for (const ExperimentRun& run : runs) {
-    rows.push_back({{"pair", run.pair},
-                    {"method", experiment_method_name(run.method)},
-                    {"iterations", run.iterations},
-                    {"noise_sigma", run.noise_sigma},
-                    {"mean_absolute_px", run.scores.average_px},
-                    {"rms_px", run.scores.rms_px},
-                    {"bad_percent", run.scores.bad_0_5_percent}});
+std::string names_of_methods() {
+  std::string text;
+  for (const ComparedMethod& method : compared_methods()) {
+    text += fmt::format("{:<23} {}\n", method.name, method.description);
   }
-  return rows;
+  return text;
+}
+
+void add_experiment_settings(Settings& settings, ExperimentJob& job) {
+  settings.start_group("Figures");
+  Setting& names = add_list(
+      settings, "figure", job.names,
+      "Figures by their numbers in the book, such as 6.16; 6: those of a chapter; all. --list says "
+      "what there is",
+      [](const SettingValue& value) { return to_text(value); });
+  names.value_name = "FIGURE";
+  names.positional = true;
+  settings.flag("list", job.list, "List the figures and what can be chosen for each");
+  Setting& output = settings.path(
+      "output", job.output, "DIR",
+      "Output folder: figure-N.csv with the numbers, figure-N.svg, figure-N-book.csv with what the "
+      "book says beside what came out, and a page with all of them, figures.html");
+  output.short_name = 'o';
+  settings.choice<FigurePictures>("pictures", job.pictures,
+                                  {{"svg", FigurePictures::kSvg}, {"png", FigurePictures::kPng}},
+                                  "File format of charts and pictures");
+
+  settings.start_group("Experiment (auto and empty lists: as in the book)");
+  settings.integer("size", job.settings.size_px, "PX",
+                   "Width and height of the synthetic pairs; of scenes: their width");
+  add_list(settings, "iterations", job.settings.iterations, "Numbers of iterations", to_integer);
+  add_list(settings, "noise", job.settings.noise_sigmas,
+           "Standard deviations of the noise in grey levels", to_number);
+  add_list(settings, "methods", job.settings.methods, "Methods:\n" + names_of_methods(),
+           [](const SettingValue& value) { return to_text(value); });
+  add_list(settings, "pairs", job.settings.pairs,
+           fmt::format("Synthetic pairs: {}", fmt::join(kBookPairNames, ", ")),
+           [](const SettingValue& value) { return to_text(value); });
+  Setting& seed = settings.add("seed", "N", "Seed of the generated images; auto: the figure's");
+  seed.set = [&job](const SettingValue& value) {
+    const int number = to_integer(value);
+    if (number < 0) {
+      reject_value(value, "a whole number of at least 0");
+    }
+    job.settings.seed = static_cast<std::uint64_t>(number);
+  };
+  seed.get = [&job]() -> SettingValue {
+    return job.settings.seed ? SettingValue(*job.settings.seed) : SettingValue("auto");
+  };
+  add_shared_method_parameters(settings, job.settings.parameters);
+}
+
+std::vector<const BookFigure*> figures_of(const ExperimentJob& job) {
+  if (job.names.empty()) {
+    throw UsageError("FIGURE is missing; see 'vantage experiment --list'");
+  }
+  std::set<const BookFigure*> wanted;
+  for (const std::string& name : job.names) {
+    for (const BookFigure* figure : figures_named(name)) {
+      wanted.insert(figure);
+    }
+  }
+  return {wanted.begin(), wanted.end()};  // by place in the table, the order of the book
+}
+
+void print_list() {
+  for (const BookFigure& figure : book_figures()) {
+    const std::string settings = describe_settings(figure.defaults);
+    fmt::print("{:<12} {}\n{:<12} {}{}\n", figure.key, figure.title, "",
+               settings.empty() ? "nothing to choose" : "", settings);
+  }
+}
+
+/// What a report says of a figure.
+SettingValue describe_figure(const MadeFigure& made, const std::vector<std::string>& files) {
+  SettingValue comparisons = SettingValue::array();
+  for (const BookComparison& comparison : made.content.comparisons) {
+    comparisons.push_back(
+        {{"what", comparison.what}, {"book", comparison.book}, {"here", comparison.ours}});
+  }
+  return {{"title", made.figure->title},
+          {"images", made.content.images},
+          {"settings", describe_settings(made.settings)},
+          {"comparisons", comparisons},
+          {"files", files}};
+}
+
+std::string describe_machine(Execution& execution) {
+  return fmt::format("{}, {} threads, instruction set {}", scheduler::detect_machine().processor,
+                     execution.executor().thread_count(), instruction_set_in_use());
 }
 
 }  // namespace
@@ -88,22 +160,32 @@ SettingValue describe_runs(const std::vector<ExperimentRun>& runs) {
 int command_experiment(const Arguments& arguments) {
   ExperimentJob job;
   Settings settings("experiment",
-                    "Reproduces figures of the book: tables (CSV), charts (SVG), images.");
+                    "Computes figures and tables of the book: numbers (CSV), charts and pictures "
+                    "(SVG), and one page (HTML) with what the book says beside what came out.");
   add_experiment_settings(settings, job);
   add_common_settings(settings, job.common);
   settings.set_short_help(
-      {"name", "output", "size", "iterations", "pairs", "seed", "threads", "quiet"},
-      {"vantage experiment noise -o figures",
-       "vantage experiment noise --size 128 --iterations 20 -o figures"});
+      {"figure", "list", "output", "size", "iterations", "noise", "methods", "pairs", "seed",
+       "threads", "quiet"},
+      {"vantage experiment --list", "vantage experiment all -o figures",
+       "vantage experiment 6.16 6.17 -o figures",
+       "vantage experiment 6.10 --noise 0,4 --methods bayes,membrane -o figures",
+       "vantage experiment 6.9 --beta 0.2 -o figures"});
   if (!settings.read(arguments)) {
     return kExitDone;
   }
-  job.options.validate();
+  if (job.list) {
+    print_list();
+    return kExitDone;
+  }
+  const std::vector<const BookFigure*> figures = figures_of(job);
+  if (job.output.empty()) {
+    throw UsageError("--output is missing, expected --output DIR");
+  }
+  check_settings(figures, job.settings);
   job.common.execution.validate();
   FileChecks files(settings);
-  for (const char* name : {"noise.csv", "iterations.csv", "support.csv"}) {
-    files.add_made_file(std::filesystem::path(job.output) / name, "--output");
-  }
+  files.add_made_folder(job.output, "--output");
   check_common_files(job.common, files);
   RunReport report(settings.command(), settings.values());
   report.start_trace(job.common.trace);
@@ -114,46 +196,43 @@ int command_experiment(const Arguments& arguments) {
   make_folder(folder);
 
   const std::atomic<bool>& interrupted = interrupt_flag();
-  std::vector<ExperimentRun> noise_runs;
-  std::vector<ExperimentRun> iteration_runs;
+  std::vector<MadeFigure> made;
+  SettingValue results = SettingValue::object();
   {
-    Progress progress("experiment noise", "runs",
+    Progress progress("experiment", "figures",
                       job.common.quiet ? ProgressStyle::kNone : ProgressStyle::kAuto);
-    const int noise_total =
-        static_cast<int>(job.options.pairs.size() * kExperimentNoise.size() * kNoiseMethods.size());
-    const int all =
-        noise_total + static_cast<int>(kIterationMethods.size() * kExperimentIterations.size());
-    const auto watch_from = [&](int first) {
-      return ExperimentWatch{
-          [&progress, first, all](int done, int) { progress.update(first + done, all, 0); },
-          &interrupted};
-    };
-    report.timed_compute(
-        "noise", [&] { noise_runs = run_noise_experiment(job.options, execution, watch_from(0)); });
-    report.timed_compute("iterations", [&] {
-      iteration_runs = run_iteration_experiment(job.options, execution, watch_from(noise_total));
-    });
+    for (const BookFigure* figure : figures) {
+      MadeFigure& one =
+          made.emplace_back(figure, settings_in_force(*figure, job.settings), FigureContent{});
+      one.content = report.timed_compute("figures", [&] {
+        return figure->make({one.settings, execution, &interrupted});
+      });
+      if (interrupted) {
+        break;
+      }
+      results[std::string(figure->key)] =
+          describe_figure(one, report.timed_file_access("write", [&] {
+            return write_figure(folder, *figure, one.content, job.pictures);
+          }));
+      progress.update(static_cast<int>(made.size()), static_cast<int>(figures.size()), 0);
+    }
   }
-  if (noise_runs.empty() || iteration_runs.empty()) {
+  if (interrupted) {
     if (!job.common.quiet) {
       tell("experiment: interrupted\n");
     }
     return kExitInterrupted;
   }
-  const double support_difference = report.timed_file_access("write", [&] {
-    write_noise_files(folder, noise_runs);
-    write_iteration_files(folder, iteration_runs);
-    return write_support_files(folder);
+  report.timed_file_access("write", [&] {
+    write_text_file(
+        folder / kPageName,
+        make_figure_page(made, fmt::format("vantage experiment {}", fmt::join(arguments, " ")),
+                         describe_machine(execution)));
   });
-
-  report.set_results({{"noise", describe_runs(noise_runs)},
-                      {"iterations", describe_runs(iteration_runs)},
-                      {"support_largest_difference", support_difference}});
+  report.set_results(std::move(results));
   report.write(job.common.report);
   if (!job.common.quiet) {
-    tell("experiment noise: {} runs, {}x{} pixels -> {}\n",
-         noise_runs.size() + iteration_runs.size(), job.options.size_px, job.options.size_px,
-         job.output);
+    tell("experiment: {} figures -> {}/{}\n", made.size(), job.output, kPageName);
     report.print_summary();
   }
   return kExitDone;

@@ -242,6 +242,11 @@ void add_method_parameters(Settings& settings, MethodOverrides& parameters) {
   add_settings(settings, parameters, method_defaults(), [](const MethodField&) { return true; });
 }
 
+void add_shared_method_parameters(Settings& settings, MethodOverrides& parameters) {
+  add_settings(settings, parameters, method_defaults(),
+               [](const MethodField& field) { return field.option != "iterations"; });
+}
+
 void add_gradient_settings(Settings& settings, MethodOverrides& parameters) {
   add_settings(settings, parameters, method_defaults(), [](const MethodField& field) {
     return field.readers.text == readers::kGradient.text;

@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <limits>
 #include <string_view>
-#include <variant>
 
 #include "apps/embedded_files.h"
 #include "apps/page_template.h"
 #include "engine/build_info.h"
 #include "engine/error.h"
+#include "engine/image/eight_bit.h"
 #include "engine/io/base64.h"
 #include "engine/io/markup_text.h"
 #include "engine/io/photograph_io.h"
@@ -35,31 +35,6 @@ void check_range(std::string_view option, const ViewRange& range) {
         fmt::format("{} is {}:{}, expected two numbers within ±{}, the smaller one first", option,
                     range.first, range.last, kFarthestPageView));
   }
-}
-
-template <typename T>
-std::uint8_t to_8_bit(T value) {
-  const float levels = static_cast<float>(value) * kGreyLevelsPerUnit<T>;
-  return static_cast<std::uint8_t>(std::clamp(levels, 0.0F, 255.0F) + 0.5F);
-}
-
-// Browsers show 8 bits, and would blend transparent pixels with the page.
-Image<std::uint8_t> for_browser(const Photograph& photograph) {
-  return std::visit(
-      []<typename T>(const Image<T>& image) {
-        const int channels = image.channels();
-        const int kept = std::min(channels, 3);
-        Image<std::uint8_t> result(image.width(), image.height(), kept);
-        for (int y = 0; y < image.height(); ++y) {
-          for (int x = 0; x < image.width(); ++x) {
-            for (int c = 0; c < kept; ++c) {
-              result.at(x, y, c) = to_8_bit(image.at(x, y, c));
-            }
-          }
-        }
-        return result;
-      },
-      photograph.pixels);
 }
 
 Image<std::uint8_t> as_numbers(ImageView<const float> map, const DisparityNumbers& numbers) {
@@ -215,8 +190,8 @@ std::string make_view_page(const PairWithMaps& pair, const std::string& names,
        {"version", build_info().version},
        {"style", std::string(embedded_file("view_page/page.css"))},
        {"image_type", lossless ? "image/png" : "image/jpeg"},
-       {"left_image", as_base64(image_name, for_browser(pair.left))},
-       {"right_image", as_base64(image_name, for_browser(pair.right))},
+       {"left_image", as_base64(image_name, eight_bit(pair.left))},
+       {"right_image", as_base64(image_name, eight_bit(pair.right))},
        {"left_map", as_base64("map.png", as_numbers(pair.maps.left.disparity_px.view(), numbers))},
        {"right_map",
         as_base64("map.png", as_numbers(pair.maps.right.disparity_px.view(), numbers))},

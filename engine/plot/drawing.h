@@ -30,6 +30,13 @@ struct StrokeShape {
   double width = 1;
 };
 
+/// A filled polygon with a thin outline, convex.
+struct PolygonShape {
+  std::vector<DrawingPoint> corners;
+  Colour fill;
+  Colour outline;
+};
+
 /// A filled disc.
 struct DiscShape {
   DrawingPoint centre;
@@ -63,7 +70,8 @@ struct PictureShape {
   Image<std::uint8_t> rgb;
 };
 
-using DrawingShape = std::variant<StrokeShape, DiscShape, BoxShape, TextShape, PictureShape>;
+using DrawingShape =
+    std::variant<StrokeShape, PolygonShape, DiscShape, BoxShape, TextShape, PictureShape>;
 
 /// Shapes on a white background, painted in order.
 struct Drawing {

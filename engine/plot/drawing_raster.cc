@@ -34,6 +34,14 @@ class RasterPainter {
     cv::polylines(target_, points, false, rgb(stroke.colour), thickness(stroke.width), cv::LINE_AA,
                   kFractionBits);
   }
+  void operator()(const PolygonShape& polygon) {
+    std::vector<cv::Point> corners;
+    for (const DrawingPoint& point : polygon.corners) {
+      corners.push_back(fixed_point(point));
+    }
+    cv::fillConvexPoly(target_, corners, rgb(polygon.fill), cv::LINE_AA, kFractionBits);
+    cv::polylines(target_, corners, true, rgb(polygon.outline), 1, cv::LINE_AA, kFractionBits);
+  }
   void operator()(const DiscShape& disc) {
     cv::circle(target_, fixed_point(disc.centre), fixed(disc.radius), rgb(disc.colour), cv::FILLED,
                cv::LINE_AA, kFractionBits);

@@ -48,6 +48,14 @@ class SvgWriter {
     }
     text_ += "\"/>\n";
   }
+  void operator()(const PolygonShape& polygon) {
+    append("<polygon fill=\"{}\" stroke=\"{}\" stroke-width=\"0.4\" points=\"", hex(polygon.fill),
+           hex(polygon.outline));
+    for (const DrawingPoint& point : polygon.corners) {
+      append("{:.1f},{:.1f} ", point.x, point.y);
+    }
+    text_ += "\"/>\n";
+  }
   void operator()(const DiscShape& disc) {
     append("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.4g}\" fill=\"{}\"/>\n", disc.centre.x,
            disc.centre.y, disc.radius, hex(disc.colour));

@@ -10,46 +10,74 @@
 namespace vantage {
 namespace command_experiment_test {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 int lines_of(const std::string& text) {
   return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
 }
 
-TEST(ExperimentCommand, WritesAllTablesAndCharts) {
+TEST(ExperimentCommand, WritesNumbersChartsAndAPage) {
   const TemporaryFolder folder;
   const std::string out = folder / "deep/er";
-  const ProcessResult result =
-      run_vantage({"experiment", "noise", "-o", out, "--size", "32", "--iterations", "2", "--pairs",
-                   "rds-square,real-bars", "--report", folder / "r.json"});
+  const ProcessResult result = run_vantage({"experiment", "6.17", "6.9", "-o", out, "--size", "32",
+                                            "--iterations", "2,3", "--noise", "0,4", "--pairs",
+                                            "rds-square,real-bars", "--report", folder / "r.json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(files_below(out),
-              ElementsAre("iterations-maps.png", "iterations.csv", "iterations.svg",
-                          "noise-bad.svg", "noise-mean-absolute.svg", "noise-rms.svg", "noise.csv",
-                          "support-shape.svg", "support.csv", "support.svg"));
-  EXPECT_EQ(lines_of(read_file(out + "/noise.csv")), 1 + 2 * 8 * 4);
-  EXPECT_EQ(lines_of(read_file(out + "/iterations.csv")), 1 + 4 * 5);
-  for (const std::string name :
-       {"noise-bad", "noise-mean-absolute", "noise-rms", "iterations", "support"}) {
-    const XmlOutline plot = read_xml(read_file(out + "/" + name + ".svg"));
+              ElementsAre("figure-6.17-bad.svg", "figure-6.17-book.csv", "figure-6.17.csv",
+                          "figure-6.9-book.csv", "figure-6.9-levels.svg", "figure-6.9-sections.svg",
+                          "figure-6.9-surface.svg", "figure-6.9.csv", "figures.html"));
+  EXPECT_EQ(lines_of(read_file(out + "/figure-6.17.csv")), 1 + 2 * 2 * 4 * 2);
+  for (const std::string name : {"6.17-bad", "6.9-sections"}) {
+    const XmlOutline plot = read_xml(read_file(out + "/figure-" + name + ".svg"));
     EXPECT_EQ(plot.error, "") << name;
-    EXPECT_GT(plot.count("circle"), 30) << name;
+    EXPECT_GT(plot.count("circle"), 10) << name;
   }
-  EXPECT_EQ(read_xml(read_file(out + "/support-shape.svg")).error, "");
-  EXPECT_GT(read_photograph(out + "/iterations-maps.png").width(), 600);
+  EXPECT_EQ(read_xml(read_file(out + "/figure-6.9-surface.svg")).count("polygon"), 20 * 20);
+  const std::string page = read_file(out + "/figures.html");
+  EXPECT_THAT(page, AllOf(HasSubstr("id=\"figure-6.9\""), HasSubstr("id=\"figure-6.17\""),
+                          HasSubstr("<svg"), Not(HasSubstr("src=\"http")), Not(HasSubstr("{{"))));
+  EXPECT_LT(page.find("id=\"figure-6.9\""), page.find("id=\"figure-6.17\""));
   const auto report = nlohmann::json::parse(read_file(folder / "r.json"));
-  EXPECT_EQ(report["results"]["noise"].size(), 64U);
-  EXPECT_EQ(report["results"]["noise"][0]["pair"], "rds-square");
-  EXPECT_LT(report["results"]["support_largest_difference"], 1e-4);
+  EXPECT_EQ(report["results"]["6.17"]["files"].size(), 3U);
+  EXPECT_THAT(report["results"]["6.17"]["settings"].get<std::string>(),
+              HasSubstr("noise 0, 4; methods ssd"));
+}
+
+// Every figure, as small as it gets.
+TEST(ExperimentCommand, MakesAllFigures) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "all";
+  const ProcessResult result =
+      run_vantage({"experiment", "all", "-o", out, "--size", "40", "--iterations", "1,2", "--noise",
+                   "1", "--pictures", "png", "--quiet"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto files = files_below(out);
+  const ProcessResult list = run_vantage({"experiment", "--list"});
+  ASSERT_EQ(list.exit_code, 0);
+  int figures = 0;
+  for (std::size_t begin = 0; begin < list.out.size(); begin = list.out.find('\n', begin) + 1) {
+    if (list.out[begin] != ' ') {
+      const std::string key = list.out.substr(begin, list.out.find(' ', begin) - begin);
+      const auto is_of_figure = [&key](const std::string& file) {
+        return file.starts_with("figure-" + key + ".") || file.starts_with("figure-" + key + "-");
+      };
+      EXPECT_TRUE(std::ranges::any_of(files, is_of_figure)) << key;
+      ++figures;
+    }
+  }
+  EXPECT_GE(figures, 4);
 }
 
 TEST(ExperimentCommand, IsReproducible) {
   const TemporaryFolder folder;
-  const std::vector<std::string> arguments = {"experiment", "noise",       "--size",       "24",
-                                              "--pairs",    "real-square", "--iterations", "1",
-                                              "--quiet",    "-o"};
+  const std::vector<std::string> arguments = {"experiment",   "6.16",        "--size",  "24",
+                                              "--pairs",      "real-square", "--noise", "0,1",
+                                              "--iterations", "1",           "--quiet", "-o"};
   const auto run = [&](const std::string& out, const std::vector<std::string>& more) {
     auto all = arguments;
     all.push_back(out);
@@ -57,23 +85,28 @@ TEST(ExperimentCommand, IsReproducible) {
     const ProcessResult result = run_vantage(all);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_THAT(result.err, IsEmpty());
-    return read_file(out + "/noise.csv");
+    return read_file(out + "/figure-6.16.csv");
   };
   const std::string once = run(folder / "a", {"--threads", "1"});
   EXPECT_EQ(run(folder / "b", {"--threads", "3"}), once);
   EXPECT_NE(run(folder / "c", {"--seed", "2"}), once);
+  EXPECT_NE(run(folder / "d", {"--window", "9"}), once);
 }
 
 TEST(InputExperimentCommand, BadInputIsOneLineAndExit2) {
   const TemporaryFolder folder;
   const std::string out = folder / "o";
   const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {
-      {{"-o", out}, "NAME is missing"},
-      {{"loudness", "-o", out}, "NAME is 'loudness', expected noise"},
-      {{"noise"}, "--output is missing"},
-      {{"noise", "-o", out, "--size", "4"}, "size is 4"},
-      {{"noise", "-o", out, "--pairs", "stripes"}, "pair 'stripes' is unknown"},
-      {{"noise", "-o", out, "--iterations", "-1"}, "iterations is -1"}};
+      {{"-o", out}, "FIGURE is missing"},
+      {{"9.1", "-o", out}, "figure '9.1' is unknown, expected all, a chapter or one of"},
+      {{"6.16"}, "--output is missing"},
+      {{"6.16", "-o", out, "--size", "4"}, "size is 4"},
+      {{"6.16", "-o", out, "--pairs", "stripes"}, "pair 'stripes' is unknown"},
+      {{"6.16", "-o", out, "--methods", "guess"}, "method 'guess' is unknown"},
+      {{"6.16", "-o", out, "--noise", "-1"}, "noise is -1"},
+      {{"6.9", "-o", out, "--size", "40"}, "--size has no effect"},
+      {{"6.9", "-o", out, "--mu", "0.4"}, "--mu has no effect"},
+      {{"6.16", "-o", out, "--iterations", "-1"}, "iterations is -1"}};
   for (const auto& [more, says] : misuses) {
     std::vector<std::string> arguments = {"experiment"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -84,8 +117,8 @@ TEST(InputExperimentCommand, BadInputIsOneLineAndExit2) {
   }
   EXPECT_THAT(files_below(folder.path()), IsEmpty());
   write_file(folder / "file", "x");
-  EXPECT_EQ(run_vantage({"experiment", "noise", "-o", folder / "file", "--size", "16"}).exit_code,
-            1);
+  EXPECT_EQ(
+      run_vantage({"experiment", "6.9", "-o", folder / "file", "--iterations", "1"}).exit_code, 1);
 }
 
 }  // namespace command_experiment_test

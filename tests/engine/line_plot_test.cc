@@ -9,6 +9,8 @@
 #include "engine/error.h"
 #include "engine/io/photograph_io.h"
 #include "engine/plot/heat_map.h"
+#include "engine/plot/picture_sheet.h"
+#include "engine/plot/surface_plot.h"
 #include "tests/engine/io_test_support.h"
 #include "tests/well_formed_xml.h"
 
@@ -221,6 +223,81 @@ TEST(HeatMap, ConstantAndUnknownValues) {
     maps[0].values.at(0, 0) = value;
     EXPECT_EQ(read_xml(to_svg(draw_heat_maps("", maps, 1))).error, "");
   }
+}
+
+TEST(SurfacePlot, DrawsAMeshPerCellButWhereAValueIsUnknown) {
+  SurfacePlot plot{
+      .title = "s", .x_title = "x", .y_title = "y", .z_title = "z", .values = Image<float>(5, 4)};
+  plot.values.fill(1);
+  plot.values.at(1, 1) = 9;
+  plot.values.at(4, 3) = std::numeric_limits<float>::quiet_NaN();
+  const auto meshes_of = [&plot] {
+    std::vector<SurfacePlot> plots;
+    plots.push_back(std::move(plot));
+    const Drawing drawing = draw_surface_plots("surfaces", plots, 2);
+    plot = std::move(plots.front());
+    std::vector<PolygonShape> meshes;
+    for (const DrawingShape& shape : drawing.shapes) {
+      if (const auto* mesh = std::get_if<PolygonShape>(&shape)) {
+        meshes.push_back(*mesh);
+        for (const DrawingPoint& corner : mesh->corners) {
+          EXPECT_GE(corner.x, 0);
+          EXPECT_LT(corner.x, drawing.width);
+          EXPECT_GE(corner.y, 0);
+          EXPECT_LT(corner.y, drawing.height);
+        }
+      }
+    }
+    EXPECT_EQ(read_xml(to_svg(drawing)).error, "");
+    EXPECT_EQ(rasterize(drawing, 1).width(), drawing.width);
+    return meshes;
+  };
+  const auto meshes = meshes_of();
+  ASSERT_EQ(meshes.size(), 4U * 3 - 1);
+  // Above the floor where the value is large: corner 2 of the first cell is (1, 1).
+  EXPECT_LT(meshes[0].corners[2].y, meshes[0].corners[0].y);
+  plot.max_meshes = 2;
+  EXPECT_EQ(meshes_of().size(), 2U * 2 - 1);
+}
+
+TEST(PictureSheet, BreaksTitlesAndKeepsShapes) {
+  std::vector<SheetPicture> pictures(3);
+  for (SheetPicture& picture : pictures) {
+    picture.pixels = Image<std::uint8_t>(4, 2);
+    picture.pixels.fill(7);
+  }
+  pictures[0].title = "a title that is much too long for one line";
+  pictures[1].title = "short";
+  const Drawing drawing = draw_picture_sheet("sheet", pictures, 2, 100);
+  std::vector<PictureShape> shapes;
+  int lines = 0;
+  for (const DrawingShape& shape : drawing.shapes) {
+    if (const auto* picture = std::get_if<PictureShape>(&shape)) {
+      EXPECT_EQ(picture->height, 50);
+      EXPECT_EQ(picture->rgb.at(3, 1, 2), 7);
+      EXPECT_LE(picture->corner.y + picture->height, drawing.height);
+      shapes.push_back({picture->corner, picture->width, picture->height, {}});
+    }
+    lines += std::holds_alternative<TextShape>(shape) ? 1 : 0;
+  }
+  ASSERT_EQ(shapes.size(), 3U);
+  EXPECT_EQ(shapes[0].corner.y, shapes[1].corner.y);
+  EXPECT_GE(shapes[2].corner.y, shapes[0].corner.y + 50);
+  EXPECT_GT(lines, 4);
+}
+
+TEST(PictureSheet, GreyLevelsRunFromMinToMax) {
+  Image<float> values(4, 1);
+  for (int x = 0; x < 4; ++x) {
+    values.at(x, 0) = static_cast<float>(x);
+  }
+  values.at(3, 0) = std::numeric_limits<float>::infinity();
+  const Image<std::uint8_t> picture = grey_picture(values.view(), 0, 2, {1, 2, 3});
+  EXPECT_EQ(picture.at(0, 0), 0);
+  EXPECT_EQ(picture.at(1, 0, 1), 128);
+  EXPECT_EQ(picture.at(2, 0, 2), 255);
+  EXPECT_EQ(picture.at(3, 0, 0), 1);
+  EXPECT_EQ(picture.at(3, 0, 2), 3);
 }
 
 }  // namespace line_plot_test
