@@ -104,11 +104,11 @@ inline constexpr std::array kOptionTexts = {
                "With bayes and several levels: costs of a coarse pixel are W times the sum of the "
                "four it covers, above 0, at most 1; smaller: coarse levels decide less"},
     OptionText{"edge-weight", "W",
-               "With bayes: weight of neighbours across strong intensity edges, 0 to 1; 1: edges "
-               "do not matter"},
+               "With bayes and the diffusions: weight of neighbours across strong intensity "
+               "edges, 0 to 1; 1: edges do not matter"},
     OptionText{"edge-contrast", "C",
-               "With bayes: intensity difference in grey levels over which the weight falls to "
-               "--edge-weight, above 0"},
+               "With bayes and the diffusions: intensity difference in grey levels over which the "
+               "weight falls to --edge-weight, above 0"},
     OptionText{"subpixel", "",
                "Sub-pixel disparities by a parabola through the costs, or whole pixels"},
     OptionText{

@@ -161,9 +161,14 @@ inline constexpr KernelWork kBoxCascadeWork = {1 + 3.0 * BoxCascade::kRadius + 3
 /// Five cells of a star and the result.
 inline constexpr double kStarValues = 6;
 
-inline constexpr KernelWork kDiffusionWork = {6, 0, kStarValues, 0};
+/// weighted: each neighbour is multiplied by its weight; weights are loaded per column.
+constexpr KernelWork diffusion_work(bool weighted) {
+  return weighted ? KernelWork{9, 4 + 4, kStarValues, 4} : KernelWork{6, 0, kStarValues, 0};
+}
 /// Diffusion plus the pull towards the source.
-inline constexpr KernelWork kMembraneWork = kDiffusionWork + KernelWork{2, 0, 1, 0};
+constexpr KernelWork membrane_work(bool weighted) {
+  return diffusion_work(weighted) + KernelWork{2, weighted ? 1.0 : 0.0, 1, 0};
+}
 
 /// Certainty of a column that is read again `loads` times.
 constexpr KernelWork certainty_work(CertaintyMeasure measure, int loads) {
@@ -178,9 +183,9 @@ constexpr KernelWork certainty_work(CertaintyMeasure measure, int loads) {
 /// carries: whether input and output columns store their certainty after their lanes. Columns that
 /// keep their cells (up to two more values per lane) depend on the images and are not counted.
 constexpr KernelWork local_stopping_work(CertaintyMeasure measure, bool input_carries,
-                                         bool output_carries) {
+                                         bool output_carries, bool weighted) {
   const bool margin = measure == CertaintyMeasure::kMargin;
-  KernelWork work = kDiffusionWork + KernelWork{0, 1, 0, 0};
+  KernelWork work = diffusion_work(weighted) + KernelWork{0, 1, 0, 0};
   // The result's margin is computed together with the result.
   work = work + certainty_work(measure, margin ? 0 : 2);
   work = work + (input_carries ? KernelWork{0, 0, 0, 1} : certainty_work(measure, margin ? 1 : 2));

@@ -36,4 +36,29 @@ struct CellStarRow {
 
 using StarRow = CellStarRow<float>;
 
+/// Weights of each column's neighbours, from 0 to 1; the column itself has weight 1. This is
+/// diffusion mediated by intensity edges (7.3). Weights of neutral columns may be any finite
+/// number.
+struct StarWeights {
+  const float* beside = nullptr;  ///< [x], x in [0, columns]: between columns x − 1 and x
+  const float* above = nullptr;   ///< [x], x in [0, columns): for the column above x
+  const float* below = nullptr;   ///< [x]: for the column below x
+
+  [[nodiscard]] bool are_given() const { return beside != nullptr; }
+};
+
+/// The weights of a column's four neighbours times the step of diffusion.
+struct StarSteps {
+  float left;
+  float right;
+  float up;
+  float down;
+
+  static StarSteps of(const StarWeights& weights, float step, int column) {
+    return {step * weights.beside[column], step * weights.beside[column + 1],
+            step * weights.above[column], step * weights.below[column]};
+  }
+  [[nodiscard]] float sum() const { return (left + right) + (up + down); }
+};
+
 }  // namespace vantage::kernels

@@ -26,17 +26,6 @@ enum class BayesState {
   kProbability,  ///< normalised p, after the last iteration
 };
 
-/// Weights of each column's neighbours, from 0 to 1; the column itself has weight 1. This is
-/// diffusion mediated by intensity edges (7.3). Weights of neutral columns may be any finite
-/// number.
-struct StarWeights {
-  const float* beside = nullptr;  ///< [x], x in [0, columns]: between columns x − 1 and x
-  const float* above = nullptr;   ///< [x], x in [0, columns): for the column above x
-  const float* below = nullptr;   ///< [x]: for the column below x
-
-  [[nodiscard]] bool are_given() const { return beside != nullptr; }
-};
-
 /// One row of Bayesian diffusion (6.32)–(6.37). `star.source` holds the likelihoods p0 up to a
 /// factor per column, and 0 in lanes that are not candidates.
 struct BayesRow {

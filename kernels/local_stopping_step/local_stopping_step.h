@@ -11,12 +11,13 @@ enum class CertaintyMeasure {
 };
 
 /// One row of diffusion with local stopping (6.4): a column keeps its cells if the step would lower
-/// its certainty. Certainties are stored with the columns: input columns have it in float
-/// `star.lanes` (star.pitch = lanes + kCertaintyFloats), except before the first iteration
-/// (star.pitch = lanes), when it is computed.
+/// its certainty. The step is that of DiffusionRow without a pull. Certainties are stored with the
+/// columns: input columns have it in float `star.lanes` (star.pitch = lanes + kCertaintyFloats),
+/// except before the first iteration (star.pitch = lanes), when it is computed.
 struct LocalStoppingRow {
   StarRow star;
   float step = 0.15F;
+  StarWeights weights = {};  ///< of the neighbours; absent: all are 1
   CertaintyMeasure measure = CertaintyMeasure::kMargin;
   float scale = 1;  ///< for the entropy: 1/(2σM²)
   int count = 0;    ///< candidates: lanes [0, count); other lanes do not affect certainty

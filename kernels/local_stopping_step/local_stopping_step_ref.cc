@@ -49,10 +49,17 @@ void local_stopping_row_ref(const LocalStoppingRow& row) {
     float* const output = row.output + static_cast<std::ptrdiff_t>(x) * row.output_pitch;
     const float before = star.pitch > star.lanes ? centre[star.lanes] : certainty(centre);
     for (int i = 0; i < star.lanes; ++i) {
-      const float neighbours =
-          (star.left_of(x)[i] + star.right_of(x)[i]) +
-          (star.up[x * star.up_pitch + i] + star.down[x * star.down_pitch + i]);
-      output[i] = own * centre[i] + row.step * neighbours;
+      const float left = star.left_of(x)[i];
+      const float right = star.right_of(x)[i];
+      const float up = star.up[x * star.up_pitch + i];
+      const float down = star.down[x * star.down_pitch + i];
+      if (row.weights.are_given()) {
+        const StarSteps steps = StarSteps::of(row.weights, row.step, x);
+        output[i] = (1.0F - steps.sum()) * centre[i] + ((steps.left * left + steps.right * right) +
+                                                        (steps.up * up + steps.down * down));
+      } else {
+        output[i] = own * centre[i] + row.step * ((left + right) + (up + down));
+      }
     }
     float after = certainty(output);
     if (before > after) {

@@ -96,7 +96,8 @@ struct Margin {
   }
 };
 
-// Diffusion step (6.7) of one column.
+// Diffusion step (6.7) of one column. kWeighted: neighbours have weights.
+template <bool kWeighted>
 struct ColumnStep {
   const float* centre;
   const float* left;
@@ -105,14 +106,30 @@ struct ColumnStep {
   const float* down;
   FloatVec own;
   FloatVec step;
+  StarSteps steps;  // weighted
+
+  HWY_INLINE void take_weights(const LocalStoppingRow& row, int x) {
+    if constexpr (kWeighted) {
+      steps = StarSteps::of(row.weights, row.step, x);
+      own = hn::Set(FloatTag(), 1.0F - steps.sum());
+    }
+  }
 
   HWY_INLINE FloatVec energy(int lane) const {
     const FloatTag df;
     const auto load = [lane, df](const float* cells)
                           HWY_ATTR { return hn::Load(df, cells + lane); };
-    const FloatVec neighbours =
-        hn::Add(hn::Add(load(left), load(right)), hn::Add(load(up), load(down)));
-    return hn::Add(hn::Mul(own, load(centre)), hn::Mul(step, neighbours));
+    if constexpr (kWeighted) {
+      const auto part = [&](float weight, const float* cells)
+                            HWY_ATTR { return hn::Mul(hn::Set(df, weight), load(cells)); };
+      const FloatVec neighbours = hn::Add(hn::Add(part(steps.left, left), part(steps.right, right)),
+                                          hn::Add(part(steps.up, up), part(steps.down, down)));
+      return hn::Add(hn::Mul(own, load(centre)), neighbours);
+    } else {
+      const FloatVec neighbours =
+          hn::Add(hn::Add(load(left), load(right)), hn::Add(load(up), load(down)));
+      return hn::Add(hn::Mul(own, load(centre)), hn::Mul(step, neighbours));
+    }
   }
 };
 
@@ -186,8 +203,9 @@ HWY_INLINE FloatVec negative_entropy(const CandidateLanes& lanes, float scale, c
 }
 
 // Writes the step of one column to `output` and returns the certainty of the result.
-HWY_INLINE FloatVec step_with_margin(const ColumnStep& column, const CandidateLanes& lanes,
-                                     int count, int all_lanes, float* output) {
+template <class Step>
+HWY_INLINE FloatVec step_with_margin(const Step& column, const CandidateLanes& lanes, int count,
+                                     int all_lanes, float* output) {
   const FloatTag df;
   Margin margin;
   int lane = 0;
@@ -210,8 +228,9 @@ HWY_INLINE FloatVec step_with_margin(const ColumnStep& column, const CandidateLa
   return margin.value(count);
 }
 
-HWY_INLINE FloatVec step_with_entropy(const ColumnStep& column, const CandidateLanes& lanes,
-                                      float scale, int all_lanes, float* output) {
+template <class Step>
+HWY_INLINE FloatVec step_with_entropy(const Step& column, const CandidateLanes& lanes, float scale,
+                                      int all_lanes, float* output) {
   const FloatTag df;
   for (int lane = 0; lane < all_lanes; lane += kFloatLanes) {
     hn::Store(column.energy(lane), df, output + lane);
@@ -219,22 +238,25 @@ HWY_INLINE FloatVec step_with_entropy(const ColumnStep& column, const CandidateL
   return negative_entropy(lanes, scale, output);
 }
 
-void local_stopping_row_simd(const LocalStoppingRow& row) {
+template <bool kWeighted>
+HWY_INLINE void local_stopping_columns(const LocalStoppingRow& row) {
   const FloatTag df;
   const StarRow& star = row.star;
   const int all_lanes = star.lanes;
   const CandidateLanes lanes(row.count);
   const bool is_margin = row.measure == CertaintyMeasure::kMargin;
-  ColumnStep column{star.centre,
-                    star.left_of_first,
-                    nullptr,
-                    star.up,
-                    star.down,
-                    hn::Set(df, 1.0F - 4.0F * row.step),
-                    hn::Set(df, row.step)};
+  ColumnStep<kWeighted> column{star.centre,
+                               star.left_of_first,
+                               nullptr,
+                               star.up,
+                               star.down,
+                               hn::Set(df, 1.0F - 4.0F * row.step),
+                               hn::Set(df, row.step),
+                               {}};
   float* output = row.output;
   for (int x = 0; x < star.columns; ++x) {
     column.right = x + 1 < star.columns ? column.centre + star.pitch : star.right_of_last;
+    column.take_weights(row, x);
     FloatVec before;
     if (star.pitch > all_lanes) {
       before = hn::Set(df, column.centre[all_lanes]);
@@ -258,6 +280,14 @@ void local_stopping_row_simd(const LocalStoppingRow& row) {
     column.up += star.up_pitch;
     column.down += star.down_pitch;
     output += row.output_pitch;
+  }
+}
+
+void local_stopping_row_simd(const LocalStoppingRow& row) {
+  if (row.weights.are_given()) {
+    local_stopping_columns<true>(row);
+  } else {
+    local_stopping_columns<false>(row);
   }
 }
 

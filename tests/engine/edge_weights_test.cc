@@ -10,7 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/coarse_to_fine.h"
+#include "tests/engine/table_keys.h"
 
 namespace vantage {
 namespace edge_weights_test {
@@ -147,9 +149,12 @@ TEST(EdgeWeightLevels, AsManyAsTheImageHas) {
   EXPECT_EQ(levels.prepare(photograph, parameters_with(0.2, 1), execution).size(), 1U);
   EXPECT_EQ(levels.prepare(photograph, parameters_with(0.2, 10), execution).size(), 6U);
   EXPECT_TRUE(levels.prepare(photograph, parameters_with(1, 4), execution).empty());
-  MethodParameters membrane = parameters_with(0.2, 4);
-  membrane.aggregation = Aggregation::kMembrane;
-  EXPECT_TRUE(levels.prepare(photograph, membrane, execution).empty());
+  for (const Aggregation aggregation : test::all_aggregations()) {
+    MethodParameters parameters = parameters_with(0.2, 4);
+    parameters.aggregation = aggregation;
+    EXPECT_EQ(levels.prepare(photograph, parameters, execution).empty(),
+              !aggregation_of(aggregation).is_iterative);
+  }
 }
 
 TEST(EdgeWeightLevels, TakeWhatIsPlanned) {

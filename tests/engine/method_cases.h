@@ -125,6 +125,16 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
     p.levels = 3;
     p.iterations = 4;
   });
+  add("diffusion_edges", MatchMethod::kDiffusion, [](MethodOverrides& p) { p.edge_weight = 0.1; });
+  add("membrane_edges_levels", MatchMethod::kMembrane, [](MethodOverrides& p) {
+    p.levels = 3;
+    p.iterations = 4;
+    p.final_iterations = 2;
+    p.edge_weight = 0;
+    p.edge_contrast = 12;
+  });
+  add("local_stopping_edges", MatchMethod::kLocalStopping,
+      [](MethodOverrides& p) { p.edge_weight = 0.2; });
   add("box_levels", MatchMethod::kSsd, [](MethodOverrides& p) {
     p.levels = 3;
     p.window_px = 5;

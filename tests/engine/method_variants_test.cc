@@ -177,7 +177,7 @@ TEST_P(AwkwardShapes, EqualTheOracle) {
       continue;
     }
     test::Tolerance tolerance = tolerance_of(options.resolved());
-    if (options.resolved().certainty == Certainty::kEntropy) {
+    if (options.resolved().aggregation == Aggregation::kLocalStopping) {
       tolerance.strays = 5;  // an eleventh of such small images lies beside a stray pixel
     }
     expect_equals_oracle(pair, options, execution, tolerance, name);

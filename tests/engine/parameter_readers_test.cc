@@ -374,9 +374,12 @@ TEST(ParameterReaders, WhatNothingReadsIsRefusedUnlessAPresetSetsIt) {
   options.method = MatchMethod::kDiffusion;
   EXPECT_EQ(complaint(options), "");
   options.parameters.edge_weight = 0.2;
-  EXPECT_THAT(complaint(options), HasSubstr("edge-weight is set but has no effect with method "
-                                            "diffusion (cost squared, aggregation diffusion, 1 "
-                                            "level); it is read by the aggregation bayes"));
+  EXPECT_EQ(complaint(options), "");
+  options.parameters.edge_weight.reset();
+  options.parameters.mu = 0.2;
+  EXPECT_THAT(complaint(options),
+              HasSubstr("mu is set but has no effect with method diffusion (cost squared, "
+                        "aggregation diffusion, 1 level); it is read by the aggregation bayes"));
   // What a preset sets for an aggregation that is replaced is nobody's mistake.
   options = {};
   options.preset = MatchPreset::kQuality;

@@ -84,6 +84,17 @@ Volume largest_terms(const Volume& probabilities, double sigma_prior, double eps
 
 }  // namespace
 
+PlainEdges::PlainEdges(const Volume& grey, const MethodParameters& parameters)
+    : grey_(&grey), min_(parameters.edge_weight), contrast_(parameters.edge_contrast) {}
+
+double PlainEdges::weight(int x, int y, int u, int v) const {
+  if (grey_ == nullptr) {
+    return 1;
+  }
+  const double difference = std::abs(grey_->at(x, y, 0) - grey_->at(u, v, 0));
+  return min_ + (1 - min_) * std::exp(-difference / contrast_);
+}
+
 Volume plain_box_mean(const Volume& costs, int window_px, Border border) {
   const int radius = window_px / 2;
   Volume result = Volume::like(costs);
@@ -176,7 +187,7 @@ std::vector<double> box_cascade_taps(double sigma_px) {
 }
 
 Volume plain_membrane(const Volume& first, double lambda, double beta, int iterations,
-                      const Volume* start) {
+                      const Volume* start, const PlainEdges& edges) {
   Volume energies = start != nullptr ? *start : first;
   for (int n = 0; n < iterations; ++n) {
     Volume next = energies;
@@ -185,7 +196,7 @@ Volume plain_membrane(const Volume& first, double lambda, double beta, int itera
       double change = beta * (first.at(x, y, i) - here);
       for (const auto& [dx, dy] : kNeighbours) {
         if (is_inside(energies, x + dx, y + dy)) {
-          change += energies.at(x + dx, y + dy, i) - here;
+          change += edges.weight(x, y, x + dx, y + dy) * (energies.at(x + dx, y + dy, i) - here);
         }
       }
       next.at(x, y, i) += lambda * change;
@@ -195,8 +206,9 @@ Volume plain_membrane(const Volume& first, double lambda, double beta, int itera
   return energies;
 }
 
-Volume plain_diffusion(const Volume& first, double lambda, int iterations) {
-  return plain_membrane(first, lambda, 0, iterations);
+Volume plain_diffusion(const Volume& first, double lambda, int iterations,
+                       const PlainEdges& edges) {
+  return plain_membrane(first, lambda, 0, iterations, nullptr, edges);
 }
 
 double plain_margin(const std::vector<double>& column) {
@@ -224,14 +236,14 @@ double plain_negative_entropy(const std::vector<double>& column, double scale) {
 }
 
 Volume plain_local_stopping(const Volume& first, double lambda, Certainty certainty, double scale,
-                            int iterations) {
+                            int iterations, const PlainEdges& edges) {
   const auto certainty_of = [&](const Volume& volume, int x, int y) {
     return certainty == Certainty::kMargin ? plain_margin(column_of(volume, x, y))
                                            : plain_negative_entropy(column_of(volume, x, y), scale);
   };
   Volume energies = first;
   for (int n = 0; n < iterations; ++n) {
-    Volume next = plain_diffusion(energies, lambda, 1);
+    Volume next = plain_diffusion(energies, lambda, 1, edges);
     for (int y = 0; y < first.height; ++y) {
       for (int x = 0; x < first.width; ++x) {
         if (certainty_of(energies, x, y) > certainty_of(next, x, y)) {
@@ -261,17 +273,9 @@ std::vector<double> prior_kernel(int count, double sigma_prior, double epsilon_p
 }
 
 Volume plain_bayes(const Volume& energies, const MethodParameters& parameters, const Volume* start,
-                   const Volume* grey) {
+                   const PlainEdges& edges) {
   const std::vector<double> kernel =
       prior_kernel(energies.count(), parameters.sigma_prior, parameters.epsilon_prior);
-  const auto edge_weight = [&](int x, int y, int u, int v) {
-    if (grey == nullptr) {
-      return 1.0;
-    }
-    const double difference = std::abs(grey->at(x, y, 0) - grey->at(u, v, 0));
-    return parameters.edge_weight +
-           (1 - parameters.edge_weight) * std::exp(-difference / parameters.edge_contrast);
-  };
   Volume probabilities = start != nullptr ? *start : probabilities_of(energies);
   for (int n = 0; n < parameters.iterations; ++n) {
     Volume smooth_energies;
@@ -289,7 +293,7 @@ Volume plain_bayes(const Volume& energies, const MethodParameters& parameters, c
       double sum = smooth_energies.at(x, y, i);
       for (const auto& [dx, dy] : kNeighbours) {
         if (is_inside(energies, x + dx, y + dy)) {
-          sum += edge_weight(x, y, x + dx, y + dy) * smooth_energies.at(x + dx, y + dy, i);
+          sum += edges.weight(x, y, x + dx, y + dy) * smooth_energies.at(x + dx, y + dy, i);
         }
       }
       next.at(x, y, i) += parameters.mu * sum;

@@ -19,11 +19,28 @@ std::vector<double> gaussian_taps(double sigma_px);
 /// cumulant is 0: the least Σ w⁴. σ = 2: 3, 3, 3, 5.
 std::vector<double> box_cascade_taps(double sigma_px);
 
+/// Weights of neighbours by the intensity edge between them (7.3); by default all are 1.
+class PlainEdges {
+ public:
+  PlainEdges() = default;
+  /// `grey`: one cell per pixel, must outlive this.
+  PlainEdges(const Volume& grey, const MethodParameters& parameters);
+
+  /// Of pixels (x, y) and (u, v) for each other.
+  [[nodiscard]] double weight(int x, int y, int u, int v) const;
+
+ private:
+  const Volume* grey_ = nullptr;
+  double min_ = 1;
+  double contrast_ = 1;
+};
+
 /// (6.7), `iterations` times.
-Volume plain_diffusion(const Volume& first, double lambda, int iterations);
+Volume plain_diffusion(const Volume& first, double lambda, int iterations,
+                       const PlainEdges& edges = {});
 /// (6.9), `iterations` times, from `start`; null: from `first`.
 Volume plain_membrane(const Volume& first, double lambda, double beta, int iterations,
-                      const Volume* start = nullptr);
+                      const Volume* start = nullptr, const PlainEdges& edges = {});
 
 /// How distinct the least cell of a column is, over all its cells: (6.13), or (6.15) with
 /// p ∝ exp(−scale · (E − Emin)). A single cell has the margin 0.
@@ -32,16 +49,15 @@ double plain_negative_entropy(const std::vector<double>& column, double scale);
 
 /// Local stopping (EQUATIONS §3.4): restores the columns whose certainty diffusion would reduce.
 Volume plain_local_stopping(const Volume& first, double lambda, Certainty certainty, double scale,
-                            int iterations);
+                            int iterations, const PlainEdges& edges = {});
 
 /// wP over the offsets −(D − 1) … D − 1, summing to 1 (6.33).
 std::vector<double> prior_kernel(int count, double sigma_prior, double epsilon_prior);
 
 /// Probabilities after Bayesian diffusion (6.25)–(6.37), in logarithms, for any μ. `start`: what
-/// the first iteration takes for the probabilities; null: those of the energies. `grey`: the grey
-/// levels that weight neighbours by edge_weight and edge_contrast; null: neighbours count alike.
+/// the first iteration takes for the probabilities; null: those of the energies.
 Volume plain_bayes(const Volume& energies, const MethodParameters& parameters,
-                   const Volume* start = nullptr, const Volume* grey = nullptr);
+                   const Volume* start = nullptr, const PlainEdges& edges = {});
 /// The same for μ = ½ as products (EQUATIONS §3).
 Volume plain_bayes_products(const Volume& energies, const MethodParameters& parameters);
 

@@ -145,7 +145,7 @@ Volume expanded(const Volume& coarser, const Volume& finer, const MethodParamete
 }
 
 Volume plain_bayes_level(const Volume& costs, const Volume* coarser,
-                         const MethodParameters& parameters, const Volume& grey) {
+                         const MethodParameters& parameters, const PlainEdges& edges) {
   Volume start;
   if (coarser != nullptr) {
     start = *coarser;
@@ -160,7 +160,7 @@ Volume plain_bayes_level(const Volume& costs, const Volume* coarser,
       }
     });
   }
-  Volume cells = plain_bayes(costs, parameters, coarser != nullptr ? &start : nullptr, &grey);
+  Volume cells = plain_bayes(costs, parameters, coarser != nullptr ? &start : nullptr, edges);
   for (double& cell : cells.cells) {
     cell = -std::log(cell);
   }
@@ -171,12 +171,13 @@ Volume plain_bayes_level(const Volume& costs, const Volume* coarser,
 
 Volume plain_level(const Volume& costs, const Volume* coarser, const MethodParameters& parameters,
                    const Volume& grey) {
+  const PlainEdges edges(grey, parameters);
   if (parameters.aggregation == Aggregation::kBayes) {
-    return plain_bayes_level(costs, coarser, parameters, grey);
+    return plain_bayes_level(costs, coarser, parameters, edges);
   }
   if (parameters.aggregation == Aggregation::kMembrane) {
-    return plain_membrane(costs, parameters.lambda, parameters.beta, parameters.iterations,
-                          coarser);
+    return plain_membrane(costs, parameters.lambda, parameters.beta, parameters.iterations, coarser,
+                          edges);
   }
   Volume start = costs;
   if (coarser != nullptr) {
@@ -192,10 +193,10 @@ Volume plain_level(const Volume& costs, const Volume* coarser, const MethodParam
     case Aggregation::kBoxCascade:
       return plain_convolution(start, box_cascade_taps(parameters.aggregation_sigma_px));
     case Aggregation::kDiffusion:
-      return plain_diffusion(start, parameters.lambda, parameters.iterations);
+      return plain_diffusion(start, parameters.lambda, parameters.iterations, edges);
     case Aggregation::kLocalStopping:
       return plain_local_stopping(start, parameters.lambda, parameters.certainty,
-                                  entropy_scale(parameters), parameters.iterations);
+                                  entropy_scale(parameters), parameters.iterations, edges);
     default:
       return start;
   }

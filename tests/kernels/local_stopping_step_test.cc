@@ -16,7 +16,8 @@ class LocalStoppingStep : public EveryTarget {
  protected:
   /// Columns whose certainty rises and columns whose certainty falls, ties, and cells beyond the
   /// candidates that would win if they counted.
-  static void compare(CertaintyMeasure measure, bool carries_certainty, bool leaves_certainty) {
+  static void compare(CertaintyMeasure measure, bool carries_certainty, bool leaves_certainty,
+                      bool weighted) {
     unsigned seed = 1;
     int kept = 0;
     int stepped = 0;
@@ -36,8 +37,10 @@ class LocalStoppingStep : public EveryTarget {
             std::fill_n(cells + lanes, kCertaintyFloats, typical * static_cast<float>(x % 4));
           }
         }
+        const RandomStarWeights weights(columns, seed);
         LocalStoppingRow row;
         row.star = rows.star();
+        row.weights = weighted ? weights.star() : StarWeights{};
         row.measure = measure;
         row.scale = 0.02F;
         row.count = count;
@@ -70,15 +73,15 @@ class LocalStoppingStep : public EveryTarget {
 };
 
 TEST_P(LocalStoppingStep, MarginEqualsReference) {
-  compare(CertaintyMeasure::kMargin, true, true);
-  compare(CertaintyMeasure::kMargin, false, true);
-  compare(CertaintyMeasure::kMargin, true, false);
+  compare(CertaintyMeasure::kMargin, true, true, false);
+  compare(CertaintyMeasure::kMargin, false, true, true);
+  compare(CertaintyMeasure::kMargin, true, false, true);
 }
 
 TEST_P(LocalStoppingStep, EntropyEqualsReference) {
-  compare(CertaintyMeasure::kEntropy, true, true);
-  compare(CertaintyMeasure::kEntropy, false, true);
-  compare(CertaintyMeasure::kEntropy, true, false);
+  compare(CertaintyMeasure::kEntropy, true, true, false);
+  compare(CertaintyMeasure::kEntropy, false, true, true);
+  compare(CertaintyMeasure::kEntropy, true, false, true);
 }
 
 INSTANTIATE_TEST_SUITE_P(Targets, LocalStoppingStep, testing::ValuesIn(each_target()),

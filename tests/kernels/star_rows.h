@@ -57,6 +57,26 @@ class CellStarRows {
 
 using StarRows = CellStarRows<float>;
 
+/// Random weights of the neighbours of a row's columns.
+class RandomStarWeights {
+ public:
+  RandomStarWeights(int columns, unsigned seed)
+      : beside_(static_cast<std::size_t>(columns) + 1), above_(beside_), below_(beside_) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> value(0, 1);
+    for (std::vector<float>* const weights : {&beside_, &above_, &below_}) {
+      std::generate(weights->begin(), weights->end(), [&] { return value(random); });
+    }
+  }
+
+  [[nodiscard]] StarWeights star() const { return {beside_.data(), above_.data(), below_.data()}; }
+
+ private:
+  std::vector<float> beside_;
+  std::vector<float> above_;
+  std::vector<float> below_;
+};
+
 /// `count` candidates as displacements in two dimensions, in runs as `choice` says; not given where
 /// they cannot be.
 inline CandidatePlane plane_of(int count, unsigned choice) {

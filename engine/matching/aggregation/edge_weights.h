@@ -9,12 +9,13 @@
 #include "engine/image/photograph.h"
 #include "engine/matching/parameters/method_parameters.h"
 #include "kernels/cells/fixed_energy.h"
+#include "kernels/star_row.h"
 
 namespace vantage {
 
-/// Weights of neighbouring pixels in Bayesian diffusion guided by intensity edges (7.3), in
-/// [edge_weight, 1]; 1 towards pixels outside the image. Working memory, reused without
-/// reallocation. Thread rule: immutable once prepared.
+/// Weights of neighbouring pixels in diffusion guided by intensity edges (7.3), in [edge_weight,
+/// 1]; 1 towards pixels outside the image. Working memory, reused without reallocation. Thread
+/// rule: immutable once prepared.
 class EdgeWeights {
  public:
   /// `grey`: one channel, at least 1×1. Makes float weights or, if cells are in fixed point
@@ -27,6 +28,10 @@ class EdgeWeights {
   [[nodiscard]] const float* beside(int y) const { return floats_.beside.row(y); }
   /// [x], x in [0, width): between the pixels of rows y − 1 and y; y in [0, height].
   [[nodiscard]] const float* above(int y) const { return floats_.above.row(y); }
+  /// Those of the pixels from column x of row y on.
+  [[nodiscard]] kernels::StarWeights star(int x, int y) const {
+    return {.beside = beside(y) + x, .above = above(y) + x, .below = above(y + 1) + x};
+  }
   [[nodiscard]] const kernels::FixedWeight* fixed_beside(int y) const {
     return fixed_.beside.row(y);
   }

@@ -77,7 +77,9 @@ class BayesStage final : public BayesStepStage<float> {
     row.prior = {taps_.data(), radius(), floor_};
     row.state = state_;
     row.mu = mu_;
-    row.weights = weights(task.columns.begin, task.y);
+    if (edges_ != nullptr) {
+      row.weights = edges_->star(task.columns.begin, task.y);
+    }
     row.count = count();
     row.plane = plane_;
     row.output = reinterpret_cast<float*>(task.output);
@@ -98,15 +100,6 @@ class BayesStage final : public BayesStepStage<float> {
 
  private:
   [[nodiscard]] int radius() const { return static_cast<int>(taps_.size()) - 1; }
-  /// From column x on.
-  [[nodiscard]] kernels::StarWeights weights(int x, int y) const {
-    if (edges_ == nullptr) {
-      return {};
-    }
-    return {.beside = edges_->beside(y) + x,
-            .above = edges_->above(y) + x,
-            .below = edges_->above(y + 1) + x};
-  }
   [[nodiscard]] kernels::KernelWork kernel_work() const {
     const int radius = radius_of_work(this->radius(), plane_);
     switch (form_) {

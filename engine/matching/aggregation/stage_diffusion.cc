@@ -11,8 +11,8 @@ namespace {
 class DiffusionStage final : public StarStage {
  public:
   DiffusionStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
-                 int height)
-      : StarStage(geometry, height), step_(static_cast<float>(parameters.lambda)) {
+                 int height, const EdgeWeights* edges)
+      : StarStage(geometry, height), step_(static_cast<float>(parameters.lambda)), edges_(edges) {
     if (parameters.aggregation == Aggregation::kMembrane) {
       pull_ = static_cast<float>(parameters.lambda * parameters.beta);
     }
@@ -23,8 +23,9 @@ class DiffusionStage final : public StarStage {
   }
   [[nodiscard]] bool reads_source() const override { return pull_ != 0; }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
-    return vantage::column_work(pull_ != 0 ? kernels::kMembraneWork : kernels::kDiffusionWork,
-                                count());
+    const bool weighted = edges_ != nullptr;
+    return vantage::column_work(
+        pull_ != 0 ? kernels::membrane_work(weighted) : kernels::diffusion_work(weighted), count());
   }
 
   void make_row(const scheduler::RowTask& task) const override {
@@ -32,6 +33,9 @@ class DiffusionStage final : public StarStage {
     row.star = star(task, lanes(), nullptr);
     row.step = step_;
     row.pull = pull_;
+    if (edges_ != nullptr) {
+      row.weights = edges_->star(task.columns.begin, task.y);
+    }
     row.output = reinterpret_cast<float*>(task.output);
     kernels::diffusion_row(row);
   }
@@ -39,18 +43,20 @@ class DiffusionStage final : public StarStage {
  private:
   float step_;
   float pull_ = 0;
+  const EdgeWeights* edges_;
 };
 
 class LocalStoppingStage final : public StarStage {
  public:
   LocalStoppingStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
-                     int height, IterationPlace place)
+                     int height, IterationPlace place, const EdgeWeights* edges)
       : StarStage(geometry, height),
         step_(static_cast<float>(parameters.lambda)),
         measure_(parameters.certainty == Certainty::kMargin ? kernels::CertaintyMeasure::kMargin
                                                             : kernels::CertaintyMeasure::kEntropy),
         scale_(static_cast<float>(
             1 / (2 * parameters.sigma_measurement * parameters.sigma_measurement))),
+        edges_(edges),
         input_pitch_(place.is_first ? lanes() : lanes() + kernels::kCertaintyFloats),
         output_pitch_(place.is_last ? lanes() : lanes() + kernels::kCertaintyFloats) {}
 
@@ -60,7 +66,8 @@ class LocalStoppingStage final : public StarStage {
   }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     return vantage::column_work(
-        kernels::local_stopping_work(measure_, input_pitch_ > lanes(), output_pitch_ > lanes()),
+        kernels::local_stopping_work(measure_, input_pitch_ > lanes(), output_pitch_ > lanes(),
+                                     edges_ != nullptr),
         count());
   }
 
@@ -68,6 +75,9 @@ class LocalStoppingStage final : public StarStage {
     kernels::LocalStoppingRow row;
     row.star = star(task, input_pitch_, nullptr);
     row.step = step_;
+    if (edges_ != nullptr) {
+      row.weights = edges_->star(task.columns.begin, task.y);
+    }
     row.measure = measure_;
     row.scale = scale_;
     row.count = count();
@@ -80,6 +90,7 @@ class LocalStoppingStage final : public StarStage {
   float step_;
   kernels::CertaintyMeasure measure_;
   float scale_;
+  const EdgeWeights* edges_;
   int input_pitch_;
   int output_pitch_;
 };
@@ -87,14 +98,15 @@ class LocalStoppingStage final : public StarStage {
 }  // namespace
 
 std::unique_ptr<scheduler::RowStage> make_diffusion_stage(
-    const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height) {
-  return std::make_unique<DiffusionStage>(parameters, geometry, height);
+    const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
+    const EdgeWeights* edges) {
+  return std::make_unique<DiffusionStage>(parameters, geometry, height, edges);
 }
 
 std::unique_ptr<scheduler::RowStage> make_local_stopping_stage(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    IterationPlace place) {
-  return std::make_unique<LocalStoppingStage>(parameters, geometry, height, place);
+    IterationPlace place, const EdgeWeights* edges) {
+  return std::make_unique<LocalStoppingStage>(parameters, geometry, height, place, edges);
 }
 
 }  // namespace vantage

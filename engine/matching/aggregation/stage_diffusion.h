@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "engine/matching/aggregation/edge_weights.h"
 #include "engine/matching/parameters/method_parameters.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
@@ -12,8 +13,12 @@ namespace vantage {
 /// `parameters.aggregation` says so. Cells are energies, float, geometry.lanes() per column;
 /// neighbours outside the image are left out. The membrane pulls towards the chain's first stage,
 /// which must be the cost stage with the energies E0.
+///
+/// `edges`: weights of neighbours on this level (7.3), E ← E + λ Σ w_n (E_n − E); must outlive the
+/// stages. Null: all weights are 1.
 std::unique_ptr<scheduler::RowStage> make_diffusion_stage(
-    const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height);
+    const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
+    const EdgeWeights* edges = nullptr);
 
 /// Position of an iteration in its chain.
 struct IterationPlace {
@@ -23,9 +28,9 @@ struct IterationPlace {
 
 /// One iteration of diffusion with local stopping (6.4). Between iterations a column also holds its
 /// certainty and is one cache line longer than its cells; the first input and the last output are
-/// cells only.
+/// cells only. `edges`: as above.
 std::unique_ptr<scheduler::RowStage> make_local_stopping_stage(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    IterationPlace place);
+    IterationPlace place, const EdgeWeights* edges = nullptr);
 
 }  // namespace vantage

@@ -110,7 +110,7 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
       Field{
           "level-weight", readers::kBayesWithLevels, {is_weight, "a number above 0 and at most 1"}},
       options.level_weight...);
-  visit(Field{"edge-weight", readers::kBayes, {is_within<0, 1>, "a number from 0 to 1"}},
+  visit(Field{"edge-weight", readers::kNamed, {is_within<0, 1>, "a number from 0 to 1"}},
         options.edge_weight...);
   visit(Field{"edge-contrast", readers::kEdges, kGreyLevels}, options.edge_contrast...);
 

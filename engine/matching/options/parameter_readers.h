@@ -72,7 +72,7 @@ inline constexpr ParameterReaders kPrunedLevels = {
       return p.candidate_blocks > 0 && can_prune(p);
     }};
 inline constexpr ParameterReaders kEdges = {
-    "the {aggregations} with edge-weight below 1 (the presets)",
+    "{names} with edge-weight below 1 (the presets)",
     [](const MethodParameters& p, std::string_view) { return uses_edge_weights(p); }};
 
 }  // namespace readers

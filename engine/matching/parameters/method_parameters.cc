@@ -14,7 +14,15 @@ MethodParameters at_level(const MethodParameters& parameters, int level) {
 }
 
 bool uses_edge_weights(const MethodParameters& parameters) {
-  return parameters.aggregation == Aggregation::kBayes && parameters.edge_weight < 1;
+  switch (parameters.aggregation) {
+    case Aggregation::kDiffusion:
+    case Aggregation::kMembrane:
+    case Aggregation::kLocalStopping:
+    case Aggregation::kBayes:
+      return parameters.edge_weight < 1;
+    default:
+      return false;
+  }
 }
 
 }  // namespace vantage

@@ -136,9 +136,10 @@ struct MethodParametersOf {
   /// Bayes: weight of the summed energies of 2×2 pixels, which are not independent, as the energy
   /// of one pixel of the next coarser level; 0 < w ≤ 1.
   Field<double> level_weight = by_default<Field>(1.0);
-  /// Bayes: weight of a neighbour across the strongest intensity edge, 0..1; 1: edges are ignored.
+  /// Diffusions and Bayes: weight of a neighbour across the strongest intensity edge, 0..1; 1:
+  /// edges are ignored.
   Field<double> edge_weight = by_default<Field>(1.0);
-  /// Bayes: intensity difference over which the weight falls, grey levels, > 0.
+  /// Diffusions and Bayes: intensity difference over which the weight falls, grey levels, > 0.
   Field<double> edge_contrast = by_default<Field>(8.0);
 
   Field<Subpixel> subpixel = by_default<Field>(Subpixel::kParabola);
