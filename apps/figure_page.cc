@@ -96,7 +96,11 @@ std::string describe_settings(const FigureSettings& settings) {
     parts.push_back(fmt::format("size {} pixels", *settings.size_px));
   }
   add_list("iterations", settings.iterations);
-  add_list("noise", settings.noise_sigmas);
+  if (settings.noise_sigmas == std::vector{kBookNoise}) {
+    parts.emplace_back("noise as in the book (1 for ramp, else 0)");
+  } else {
+    add_list("noise", settings.noise_sigmas);
+  }
   add_list("methods", settings.methods);
   add_list("pairs", settings.pairs);
   if (settings.seed) {

@@ -13,6 +13,9 @@
 
 namespace vantage {
 
+/// A noise: that of the book's text, which depends on the pair (pair_runs.h).
+inline constexpr double kBookNoise = -1;
+
 /// What can be chosen for a figure. In a figure's defaults a field without a value is one that the
 /// figure does not read; in a user's choice it is one that keeps its default.
 struct FigureSettings {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/evaluation/method_comparison.h"
 #include "engine/figures/figure_families.h"
+#include "engine/figures/pair_runs.h"
 #include "engine/io/preview.h"
 #include "engine/plot/line_plot.h"
 #include "engine/plot/picture_sheet.h"
@@ -30,37 +30,6 @@ constexpr ErrorMeasure kMeanAbsolute = {"mean-absolute", "mean |error|, pixels",
 constexpr ErrorMeasure kRms = {"rms", "RMS error, pixels", &DisparityScores::rms_px};
 constexpr ErrorMeasure kBad = {"bad", "bad pixels (|error| > 1/2), %",
                                &DisparityScores::bad_0_5_percent};
-
-ComparisonOptions comparison_of(const FigureSettings& settings) {
-  return {.pairs = settings.pairs,
-          .noise_sigmas = settings.noise_sigmas,
-          .methods = settings.methods,
-          .iterations = settings.iterations,
-          .size_px = settings.size_px.value(),
-          .seed = settings.seed.value(),
-          .parameters = settings.parameters};
-}
-
-FigureTable table_of(const std::vector<ComparisonRun>& runs) {
-  FigureTable table{"",
-                    {"pair", "method", "iterations", "noise_sigma", "mean_absolute_px", "rms_px",
-                     "bad_percent", "evaluated_pixels"},
-                    {}};
-  for (const ComparisonRun& run : runs) {
-    table.rows.push_back({run.pair, run.method, fmt::format("{}", run.iterations),
-                          fmt::format("{}", run.noise_sigma),
-                          fmt::format("{:.6f}", run.scores.average_px),
-                          fmt::format("{:.6f}", run.scores.rms_px),
-                          fmt::format("{:.4f}", run.scores.bad_0_5_percent),
-                          fmt::format("{}", run.scores.evaluated_pixels)});
-  }
-  return table;
-}
-
-/// Names for readers.
-std::string noise_label(double sigma) {
-  return sigma == 0.25 ? "1/4" : sigma == 0.5 ? "1/2" : fmt::format("{}", sigma);
-}
 
 /// The method, and its iterations where there are several.
 std::string curve_name(const FigureSettings& settings, const std::string& method, int iterations) {
@@ -136,7 +105,7 @@ std::string small_noise_bad(const FigureSettings& settings, const std::string& m
 
 FigureContent make_noise_figure(const FigureRun& run, const ErrorMeasure& measure) {
   const FigureSettings& settings = run.settings;
-  const auto runs = compare_methods(comparison_of(settings), run.execution, run.stop);
+  const auto runs = runs_of(run);
   FigureContent content;
   if (runs.empty()) {
     return content;
@@ -244,14 +213,15 @@ std::string last_change(const std::string& method, const std::vector<ComparisonR
 
 FigureContent make_iterations_figure(const FigureRun& run) {
   const FigureSettings& settings = run.settings;
-  const auto runs = compare_methods(comparison_of(settings), run.execution, run.stop);
+  const auto runs = runs_of(run);
   FigureContent content;
   if (runs.empty()) {
     return content;
   }
   std::vector<LinePlot> plots;
   for (const std::string& pair : settings.pairs) {
-    for (const double noise : settings.noise_sigmas) {
+    for (const double chosen_noise : settings.noise_sigmas) {
+      const double noise = noise_in_force(chosen_noise, pair);
       const bool only_one = settings.pairs.size() * settings.noise_sigmas.size() == 1;
       content.pictures.push_back({only_one ? "maps" : fmt::format("maps-{}-noise-{}", pair, noise),
                                   maps_by_iterations(settings, pair, noise, runs)});
@@ -295,7 +265,7 @@ std::vector<BookFigure> comparison_figures() {
                "printed: 1 grey level here.",
        .defaults = {.size_px = 100,
                     .iterations = {1, 3, 10, 30, 100},
-                    .noise_sigmas = {1},
+                    .noise_sigmas = {kBookNoise},
                     .methods = {"diffusion", "local-stopping-margin", "local-stopping-entropy",
                                 "membrane"},
                     .pairs = {"ramp-square"},

@@ -9,5 +9,7 @@ namespace vantage {
 // The figures of each file of this folder.
 std::vector<BookFigure> comparison_figures();
 std::vector<BookFigure> membrane_figures();
+std::vector<BookFigure> pair_map_figures();
+std::vector<BookFigure> pattern_figures();
 
 }  // namespace vantage

@@ -15,7 +15,8 @@
 namespace vantage {
 namespace {
 
-constexpr auto kFamilies = {membrane_figures, comparison_figures};
+constexpr auto kFamilies = {pattern_figures, pair_map_figures, membrane_figures,
+                            comparison_figures};
 
 /// "6.16" after "6.9"; what has a word follows the figures of its chapter.
 struct FigureOrder {
