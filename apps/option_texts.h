@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -109,6 +110,16 @@ inline constexpr std::array kOptionTexts = {
     OptionText{"edge-contrast", "C",
                "With bayes and the diffusions: intensity difference in grey levels over which the "
                "weight falls to --edge-weight, above 0"},
+    OptionText{"selection", "",
+               "Selection of disparities from the aggregated costs. winner: the best one of each "
+               "pixel; scanline: those of each row together, by dynamic programming"},
+    OptionText{"jump-limit", "C|none",
+               "With selection scanline: maximum cost of a change of disparity between neighbours "
+               "in a row, in the unit of the aggregated costs, at least 0; none: no maximum",
+               "by cost: {}", std::numeric_limits<double>::infinity()},
+    OptionText{"jump-penalty", "C",
+               "With selection scanline: cost of a change per pixel of disparity, at least 0",
+               "a quarter of --jump-limit: {}"},
     OptionText{"subpixel", "",
                "Sub-pixel disparities by a parabola through the costs, or whole pixels"},
     OptionText{
@@ -146,6 +157,6 @@ inline constexpr std::array kOptionTexts = {
 inline constexpr std::array<std::pair<std::string_view, const char*>, 3> kOptionGroups = {
     {{"cost", "Matching: cost"},
      {"aggregate", "Matching: aggregation"},
-     {"subpixel", "Matching: selection"}}};
+     {"selection", "Matching: selection"}}};
 
 }  // namespace vantage::apps

@@ -65,6 +65,7 @@ EnumNames<SearchSize> names_of(SearchSize /*type*/) {
           {"quarter", SearchSize::kQuarter},
           {"auto", SearchSize::kAuto}};
 }
+EnumNames<Selection> names_of(Selection /*type*/) { return selection_names(); }
 EnumNames<Subpixel> names_of(Subpixel /*type*/) {
   return {{"parabola", Subpixel::kParabola}, {"none", Subpixel::kNone}};
 }

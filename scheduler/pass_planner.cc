@@ -81,8 +81,12 @@ PassPlanner::PassPlanner(const PassStages& pass, const Machine& machine, const P
 
 PassPlan PassPlanner::plan(int step_rows) {
   step_rows = std::clamp(step_rows, 1, std::max(1, output_.rows));
+  const bool is_uncut =
+      std::any_of(pass_.stages.begin(), pass_.stages.end(),
+                  [](const RowStage* stage) { return stage->needs_whole_rows(); });
   const std::vector<int> widths =
-      request_.strip_columns
+      is_uncut ? std::vector{std::max(1, output_.columns)}
+      : request_.strip_columns
           ? std::vector{std::clamp(*request_.strip_columns, 1, std::max(1, output_.columns))}
           : part_sizes(output_.columns, kMinStripColumns, output_.columns);
   const std::vector<int> heights =

@@ -104,6 +104,10 @@ class RowStage {
   [[nodiscard]] virtual Range input_columns(Range columns, Extent input) const {
     return columns.widened(0, input.all_columns());
   }
+  /// Whether strips narrower than the image only repeat work: to make any columns, this stage looks
+  /// at all columns of its input, and most of its work is on those. The pass that holds it is not
+  /// cut into strips, whatever was asked for.
+  [[nodiscard]] virtual bool needs_whole_rows() const { return false; }
   /// Whether this stage looks, beside its input, at row y of the chain's first stage once more, in
   /// the columns it makes. That stage must have the same extent as this one and those between; all
   /// but the first must look at row y of their input to make row y. Executors keep those rows along

@@ -77,7 +77,8 @@ class ChainPlanner {
     const Extent input = input_extent(chain_, k);
     const int middle = input.columns / 2;
     return k > 1 && input_extent(chain_, k - 1) == input && a.extent() == b.extent() &&
-           a.bytes_per_column() == b.bytes_per_column() && a.reads_source() == b.reads_source() &&
+           a.bytes_per_column() == b.bytes_per_column() &&
+           a.needs_whole_rows() == b.needs_whole_rows() && a.reads_source() == b.reads_source() &&
            a.window_rows() == b.window_rows() && a.first_row_work() == b.first_row_work() &&
            a.input_columns({middle, middle + 1}, input) ==
                b.input_columns({middle, middle + 1}, input) &&

@@ -26,6 +26,7 @@
 #include "engine/matching/selection/stage_coarser_selection.h"
 #include "engine/matching/selection/stage_displacement_selection.h"
 #include "engine/matching/selection/stage_fixed_energy_selection.h"
+#include "engine/matching/selection/stage_scanline_selection.h"
 #include "engine/matching/selection/stage_window_selection.h"
 
 namespace vantage {
@@ -101,8 +102,9 @@ EnergyConversion energy_conversion(const MethodParameters& parameters, const Cha
 /// Whether the level selects from the energies of the coarser one as they are.
 bool repeats_coarser(const MethodParameters& parameters, const ChainInput& input,
                      const ChainLevel& level) {
-  return uses_fixed_energies(parameters) && input.grid == nullptr && level.coarser != nullptr &&
-         level.result == nullptr && at_level(parameters, level.number).iterations == 0;
+  return uses_fixed_energies(parameters) && parameters.selection == Selection::kWinner &&
+         input.grid == nullptr && level.coarser != nullptr && level.result == nullptr &&
+         at_level(parameters, level.number).iterations == 0;
 }
 
 WindowSelectionSettings window_selection(const MethodParameters& parameters) {
@@ -313,7 +315,7 @@ void MatchChain::add_column_ssd(const MethodParameters& parameters, const Prepar
     settings.energy_scale = pair.cost_unit;
     add_stages(pair.grey_float);
   }
-  add(make_window_selection_stage(geometry_, settings, outputs_));
+  add_window_selection(parameters, settings);
 }
 
 void MatchChain::add_box(const MethodParameters& parameters, const ChainInput& input) {
@@ -330,7 +332,26 @@ void MatchChain::add_box(const MethodParameters& parameters, const ChainInput& i
   }
   add(make_column_sum_stage(geometry_, height_, settings.radius, quantised.offset,
                             quantised.scale));
-  add(make_window_selection_stage(geometry_, settings, outputs_));
+  add_window_selection(parameters, settings);
+}
+
+void MatchChain::add_window_selection(const MethodParameters& parameters,
+                                      const WindowSelectionSettings& settings) {
+  add(parameters.selection == Selection::kWinner
+          ? make_window_selection_stage(geometry_, settings, outputs_)
+          : scanline_selection(parameters, make_window_energies(geometry_, height_, settings)));
+}
+
+std::unique_ptr<scheduler::RowStage> MatchChain::scanline_selection(
+    const MethodParameters& parameters, std::unique_ptr<RowEnergies> energies) const {
+  return make_scanline_selection_stage(
+      std::move(energies),
+      {.jump = {static_cast<float>(parameters.jump_penalty),
+                static_cast<float>(parameters.jump_limit)},
+       .subpixel = parameters.subpixel,
+       .confidence = confidence_measure(parameters),
+       .entropy_scale = static_cast<float>(entropy_scale(parameters))},
+      outputs_);
 }
 
 /// `parameters`: of the level.
@@ -372,6 +393,13 @@ void MatchChain::add_result(const MethodParameters& parameters, const ChainLevel
 
 void MatchChain::add_selection(const MethodParameters& parameters, const ChainInput& input,
                                const ChainLevel& level) {
+  if (parameters.selection == Selection::kScanline) {
+    add(scanline_selection(
+        parameters, uses_fixed_energies(parameters)
+                        ? make_fixed_energies(geometry_, EnergyFormat(parameters).steps_per_nat())
+                        : make_cell_energies(geometry_, has_likelihoods(parameters))));
+    return;
+  }
   if (uses_fixed_energies(parameters)) {
     if (input.grid != nullptr) {
       add(make_displacement_fixed_energy_selection_stage(

@@ -15,6 +15,7 @@
 #include "engine/matching/levels/level_volume.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/selection/energy_selector.h"
+#include "engine/matching/selection/row_energies.h"
 #include "engine/matching/selection/stage_cell_selection.h"
 #include "scheduler/strip_plan.h"
 
@@ -94,6 +95,7 @@ struct ChainLevel {
 //  window selection               32 bits                 r columns  border: valid or clip  map
 //  cell, displacement selection   float                              NaN if no candidate    map
 //  fixed energy selection         fixed                              NaN if no candidate    map
+//  scanline selection             float, fixed, 32 b.     whole row  NaN if no candidate    map
 //  coarser selection              coarser row                      NaN if no candidate    map
 // clang-format on
 
@@ -136,6 +138,10 @@ class MatchChain {
       int count) const;
   void add_column_ssd(const MethodParameters& parameters, const PreparedPair& pair);
   void add_box(const MethodParameters& parameters, const ChainInput& input);
+  void add_window_selection(const MethodParameters& parameters,
+                            const WindowSelectionSettings& settings);
+  [[nodiscard]] std::unique_ptr<scheduler::RowStage> scanline_selection(
+      const MethodParameters& parameters, std::unique_ptr<RowEnergies> energies) const;
   void add_aggregation(const MethodParameters& parameters, const ChainInput& input,
                        const ChainLevel& level);
   void add_result(const MethodParameters& parameters, const ChainLevel& level);

@@ -61,6 +61,9 @@ std::string method_text(const MatchOptions& match, const TunedImages& images) {
           fmt::format(", {} blocks on {}", parameters.candidate_blocks, parameters.pruned_levels);
     }
   }
+  if (parameters.selection != Selection::kWinner) {
+    text += fmt::format(", {}", name_of(parameters.selection));
+  }
   if (parameters.search_size != SearchSize::kFull) {
     text += ", reduced search";
   }

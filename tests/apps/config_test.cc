@@ -73,6 +73,8 @@ TEST_F(Config, PrintedSettingsFedBackAreTheSame) {
        "1",        "--prior-smoothing",
        "maximum",  "--census-thresholds",
        "3"},
+      {"match", "a.png", "b.png", "-o", "o.pfm", "--method", "ssd", "--selection", "scanline",
+       "--jump-penalty", "2.5", "--jump-limit", "none"},
       {"match", "a.png", "b.png", "-o", "o.pfm", "--method", "bayes", "--cost", "combined",
        "--sigma-measurement", "estimated", "--sigma-census", "0.15", "--sigma-gradient", "4",
        "--match-exposure", "estimated"},

@@ -151,9 +151,8 @@ TEST(MethodParameters, WithoutAnyChoiceTheyAreThoseOfBalanced) {
 }
 
 TEST(MethodParameters, PresetsAreValidAndNotCombinedWithMethods) {
-  for (const MatchPreset preset :
-       {MatchPreset::kRealtime, MatchPreset::kFast, MatchPreset::kBalanced,
-        MatchPreset::kQuality}) {
+  for (const MatchPreset preset : {MatchPreset::kRealtime, MatchPreset::kFast,
+                                   MatchPreset::kBalanced, MatchPreset::kQuality}) {
     MatchOptions options;
     options.preset = preset;
     EXPECT_EQ(complaint(options), "");
@@ -208,6 +207,7 @@ struct Bound {
 };
 
 void several_levels(MethodOverrides& parameters) { parameters.levels = 2; }
+void scanlines(MethodOverrides& parameters) { parameters.selection = Selection::kScanline; }
 void pruned(MethodOverrides& parameters) {
   parameters.levels = 3;
   parameters.candidate_blocks = 2;
@@ -309,6 +309,20 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
        "above 0",
        MatchMethod::kBayes,
        edges},
+      {"jump-penalty",
+       parameter(&P::jump_penalty),
+       {0, 1000},
+       {-0.01, kNan, kInfinity},
+       "of at least 0",
+       MatchMethod::kSsd,
+       scanlines},
+      {"jump-limit",
+       parameter(&P::jump_limit),
+       {0, 1000, kInfinity},
+       {-0.01, kNan},
+       "at least 0, or none",
+       MatchMethod::kSsd,
+       scanlines},
       {"levels", parameter(&P::levels), {1, 10}, {-1, 0, 11}, "from 1 to 10"},
       {"candidate-blocks", parameter(&P::candidate_blocks), {0}, {-1, 9}, "(all candidates) to 8"},
       {"census-thresholds",

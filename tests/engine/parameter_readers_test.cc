@@ -178,6 +178,10 @@ const std::map<std::string_view, Changes>& changes() {
       {"level-weight", values_of<double>(&P::level_weight, {0.4})},
       {"edge-weight", values_of<double>(&P::edge_weight, {0.05})},
       {"edge-contrast", values_of<double>(&P::edge_contrast, {40})},
+      {"selection",
+       values_of<Selection>(&P::selection, {Selection::kScanline, Selection::kWinner})},
+      {"jump-penalty", values_of<double>(&P::jump_penalty, {0})},
+      {"jump-limit", values_of<double>(&P::jump_limit, {0})},
       {"subpixel", values_of<Subpixel>(&P::subpixel, {Subpixel::kNone})},
   };
   return all;
@@ -211,6 +215,9 @@ MethodParameters parameters_of(const test::SampleRow& row) {
   overrides.edge_weight = situation.edge_weight;
   overrides.certainty = situation.certainty;
   overrides.estimate_sigma_measurement = false;
+  if (row[2] == 0 && row[0] % 2 == 1) {
+    overrides.selection = Selection::kScanline;
+  }
   if (overrides.cost == MatchCost::kGradient &&
       overrides.aggregation == Aggregation::kLocalStopping) {
     overrides.certainty = Certainty::kEntropy;

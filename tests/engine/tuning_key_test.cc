@@ -156,6 +156,8 @@ TEST_F(TuningKeyTest, HasEveryFieldThatChangesTheWork) {
                                                 "level-weight",
                                                 "edge-weight",
                                                 "edge-contrast",
+                                                "jump-penalty",
+                                                "jump-limit",
                                                 "subpixel"};
   std::set<std::string_view> options;
   std::set<std::string_view> in_key;

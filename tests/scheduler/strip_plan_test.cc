@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -154,6 +155,39 @@ TEST(StripPlan, KeepsToWhatIsAskedFor) {
         EXPECT_EQ(pass.band_rows, std::min(band_rows, 61));
       }
     }
+  }
+}
+
+/// A last stage that looks at whole rows.
+class WholeRows final : public RowStage {
+ public:
+  using RowStage::RowStage;
+  [[nodiscard]] std::string_view name() const override { return "whole rows"; }
+  [[nodiscard]] std::size_t bytes_per_column() const override { return 0; }
+  [[nodiscard]] bool needs_whole_rows() const override { return true; }
+  [[nodiscard]] Range input_columns(Range /*columns*/, Extent input) const override {
+    return input.all_columns();
+  }
+  void make_row(const RowTask& /*task*/) const override {}
+};
+
+TEST(StripPlan, StagesOfWholeRowsAreNotCutIntoStrips) {
+  const Extent extent{400, 61};
+  const GeometryChain chain(extent, 3, 1);
+  std::vector<const RowStage*> stages(chain.stages().begin(), chain.stages().end() - 1);
+  const WholeRows last(extent);
+  stages.push_back(&last);
+  for (const std::optional<int> strip_columns : {std::optional<int>(16), std::optional<int>()}) {
+    PlanRequest request;
+    request.threads = 8;
+    request.strip_columns = strip_columns;
+    request.pass_ends = std::vector<int>{3};
+    const ChainPlan plan = plan_chain(stages, Machine{}, request);
+    expect_sound(plan, stages);
+    ASSERT_EQ(plan.passes.size(), 2U);
+    EXPECT_EQ(plan.passes[0].strip_columns, strip_columns.value_or(plan.passes[0].strip_columns));
+    EXPECT_EQ(plan.passes[1].strips, 1);
+    EXPECT_GT(plan.passes[1].bands, 1);  // which leaves threads their work
   }
 }
 

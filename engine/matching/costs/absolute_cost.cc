@@ -40,6 +40,7 @@ MatchingCost absolute_cost() {
           .description = "absolute difference of grey levels",
           .options = {"match-exposure"},
           .can_be_interpolated = true,
+          .jump_limit = 10,
           .make_planes = make_planes_as<GreyPlanes>,
           .make_model = make_model_as<AbsoluteModel>};
 }
@@ -50,6 +51,7 @@ MatchingCost truncated_cost() {
           .description = "absolute difference, at most --truncation",
           .options = {"match-exposure", "truncation"},
           .can_be_interpolated = true,
+          .jump_limit = 10,
           .make_planes = make_planes_as<GreyPlanes>,
           .make_model = make_model_as<TruncatedModel>};
 }

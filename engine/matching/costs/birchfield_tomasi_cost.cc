@@ -47,6 +47,7 @@ MatchingCost birchfield_tomasi_cost() {
           .name = "birchfield-tomasi",
           .description = "smallest absolute difference within half a pixel",
           .options = {"match-exposure"},
+          .jump_limit = 10,
           .make_planes = make_planes_as<SamplingPlanes>,
           .make_model = make_model_as<BirchfieldTomasiModel>};
 }

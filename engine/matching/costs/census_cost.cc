@@ -47,6 +47,7 @@ MatchingCost census_cost() {
           .description = "differing bits of census codes of 9x7 pixels",
           .options = {},
           .unit = ResidualUnit::kCensusBits,
+          .jump_limit = 10,
           .make_planes = make_planes_as<CensusPlanes>,
           .make_model = make_model_as<CensusModel>};
 }

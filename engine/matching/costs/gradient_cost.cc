@@ -96,6 +96,7 @@ MatchingCost gradient_cost() {
           .options = {"match-exposure", "alpha", "norm", "gradient", "prefilter"},
           .unit = ResidualUnit::kGradient,
           .is_evidence = true,
+          .jump_limit = 20,
           .make_planes = make_planes_as<GradientPlanes>,
           .make_model = make_model_as<GradientModel>};
 }

@@ -112,6 +112,8 @@ struct MatchingCost {
   bool has_column_sums = false;
   /// Maximum contrast of a column of energies that a disparity prior uses as scale.
   float max_contrast = std::numeric_limits<float>::infinity();
+  /// Default of jump-limit for aggregated energies, in the cost's unit.
+  double jump_limit = 0;
 
   std::unique_ptr<CostPlanes> (*make_planes)() = nullptr;
   std::unique_ptr<CostModel> (*make_model)(const MethodParameters& parameters) = nullptr;

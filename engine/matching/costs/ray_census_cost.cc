@@ -117,6 +117,7 @@ MatchingCost ray_census_cost() {
           .description = "census codes of 24 pixels in eight directions",
           .options = {"census-thresholds"},
           .unit = ResidualUnit::kCensusBits,
+          .jump_limit = 8,
           .make_planes = make_planes_as<RayCensusPlanes>,
           .make_model = make_model_as<RayCensusModel>,
           .byte_energies = ByteEnergies{.nats_per_step =

@@ -75,8 +75,8 @@ void validate_reduced_search(const MethodParameters& parameters,
   if (is_two_dimensional || !can_reduce_search(parameters)) {
     throw UsageError(
         "search-size is not full, expected full but for a search along rows by aggregation bayes "
-        "with levels above 1, prior-smoothing maximum, and cost census-rays with one threshold and "
-        "colour luma");
+        "with levels above 1, prior-smoothing maximum, selection winner, and cost census-rays with "
+        "one threshold and colour luma");
   }
   if (refinement.edge_snapping_px > 0) {
     refuse("edge-snapping", refinement.edge_snapping_px,
@@ -111,7 +111,8 @@ void require_read(const RefinementOverrides& set, const RefinementOptions& in_fo
 }  // namespace
 
 bool can_check_levels(const MethodParameters& parameters) {
-  return parameters.levels > 1 && parameters.aggregation == Aggregation::kBayes;
+  return parameters.selection == Selection::kWinner && parameters.levels > 1 &&
+         parameters.aggregation == Aggregation::kBayes;
 }
 
 void MatchOptions::validate() const {
@@ -127,6 +128,11 @@ void MatchOptions::validate() const {
         "rows",
         in_force.candidate_blocks));
   }
+  if (in_force.selection != Selection::kWinner && disparities_y) {
+    throw UsageError(
+        "selection is scanline, expected winner with disparities-y: jumps are between candidates "
+        "along rows");
+  }
   const RefinementOptions of_maps = resolved_refinement();
   validate_refinement(of_maps, disparities_y.has_value());
   if (of_maps.cross_check_level > 0 && disparities_y) {
@@ -140,8 +146,8 @@ void MatchOptions::validate() const {
   }
   if (of_maps.cross_check_level > 0 && !can_check_levels(in_force)) {
     throw UsageError(fmt::format(
-        "cross-check-level is {}, expected 0: only aggregation bayes with levels above 1 has maps "
-        "of coarse levels",
+        "cross-check-level is {}, expected 0: only aggregation bayes with levels above 1 and "
+        "selection winner has maps of coarse levels",
         of_maps.cross_check_level));
   }
   require_read(parameters, in_force, chosen());

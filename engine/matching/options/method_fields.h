@@ -114,6 +114,11 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
         options.edge_weight...);
   visit(Field{"edge-contrast", readers::kEdges, kGreyLevels}, options.edge_contrast...);
 
+  constexpr auto is_limit = [](double v) { return v >= 0; };
+  visit(Field{"selection", readers::kAll}, options.selection...);
+  visit(Field{"jump-limit", readers::kScanline, {is_limit, "a number of at least 0, or none"}},
+        options.jump_limit...);
+  visit(Field{"jump-penalty", readers::kScanline, kNotNegative}, options.jump_penalty...);
   visit(Field{"subpixel", readers::kAll}, options.subpixel...);
 }
 

@@ -45,6 +45,12 @@ const EnumNames<MatchPreset>& preset_names() {
   return names;
 }
 
+const EnumNames<Selection>& selection_names() {
+  static const EnumNames<Selection> names = {{"winner", Selection::kWinner},
+                                             {"scanline", Selection::kScanline}};
+  return names;
+}
+
 const EnumNames<MatchCost>& cost_names() {
   static const auto names = names_in_table<MatchCost>(cost_table());
   return names;
@@ -57,13 +63,17 @@ const EnumNames<Aggregation>& aggregation_names() {
 
 std::string_view name_of(MatchMethod method) { return name_among(method_names(), method); }
 std::string_view name_of(MatchPreset preset) { return name_among(preset_names(), preset); }
+std::string_view name_of(Selection selection) { return name_among(selection_names(), selection); }
 std::string_view name_of(MatchCost cost) { return cost_of(cost).name; }
 std::string_view name_of(Aggregation aggregation) { return aggregation_of(aggregation).name; }
 
 std::string summary_of(const MethodParameters& parameters) {
-  return fmt::format("cost {}, aggregation {}, {} level{}", name_of(parameters.cost),
+  return fmt::format("cost {}, aggregation {}, {} level{}{}", name_of(parameters.cost),
                      name_of(parameters.aggregation), parameters.levels,
-                     parameters.levels == 1 ? "" : "s");
+                     parameters.levels == 1 ? "" : "s",
+                     parameters.selection == Selection::kWinner
+                         ? ""
+                         : fmt::format(", selection {}", name_of(parameters.selection)));
 }
 
 }  // namespace vantage

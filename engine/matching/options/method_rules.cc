@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string_view>
 #include <vector>
 
@@ -13,6 +14,10 @@
 
 namespace vantage {
 namespace {
+
+// Defaults of selection scanline (perf/log/2026-11-25-selection.md). Energies of Bayes are −ln p.
+constexpr double kBayesJumpLimit = 15;
+constexpr double kJumpPenaltyShare = 0.25;
 
 MatchCost natural_cost(Aggregation aggregation) { return aggregation_of(aggregation).natural_cost; }
 
@@ -38,6 +43,8 @@ void validate_pruning(const MethodParameters& parameters) {
                   cost_of(parameters).name));
   require(parameters.prior_smoothing == PriorSmoothing::kMaximum, "candidate-blocks", blocks,
           "0 with prior-smoothing sum: pruning needs prior-smoothing maximum");
+  require(parameters.selection == Selection::kWinner, "candidate-blocks", blocks,
+          "0 with selection scanline: a path along a row needs the costs of all candidates");
 }
 
 void validate_search_size(const MethodParameters& parameters) {
@@ -83,6 +90,19 @@ void validate_combination(const MethodParameters& parameters) {
   }
 }
 
+/// Jump costs that are not set: what measurement says for the unit of the aggregated costs.
+void set_jump_defaults(const MethodOverrides& overrides, MethodParameters& parameters) {
+  if (!overrides.jump_limit) {
+    parameters.jump_limit =
+        has_likelihoods(parameters) ? kBayesJumpLimit : cost_of(parameters).jump_limit;
+  }
+  if (!overrides.jump_penalty) {
+    parameters.jump_penalty = std::isinf(parameters.jump_limit)
+                                  ? kJumpPenaltyShare * cost_of(parameters).jump_limit
+                                  : kJumpPenaltyShare * parameters.jump_limit;
+  }
+}
+
 }  // namespace
 
 MethodParameters book_parameters(MatchMethod method) {
@@ -108,6 +128,7 @@ MethodParameters book_parameters(MatchMethod method) {
       parameters.aggregation = Aggregation::kBayes;
       break;
   }
+  set_jump_defaults({}, parameters);
   return parameters;
 }
 
@@ -134,16 +155,19 @@ MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides) {
   if (!overrides.sigma_measurement && !overrides.estimate_sigma_measurement) {
     result.estimate_sigma_measurement = cost_of(result).estimates_sigma;
   }
+  set_jump_defaults(overrides, result);
   return result;
 }
 
 bool can_prune(const MethodParameters& parameters) {
-  return parameters.levels > 1 && has_likelihoods(parameters) && !is_evidence(parameters) &&
+  return parameters.selection == Selection::kWinner && parameters.levels > 1 &&
+         has_likelihoods(parameters) && !is_evidence(parameters) &&
          parameters.prior_smoothing == PriorSmoothing::kMaximum;
 }
 
 bool can_reduce_search(const MethodParameters& parameters) {
-  return parameters.levels > 1 && parameters.aggregation == Aggregation::kBayes &&
+  return parameters.selection == Selection::kWinner && parameters.levels > 1 &&
+         parameters.aggregation == Aggregation::kBayes &&
          parameters.prior_smoothing == PriorSmoothing::kMaximum &&
          parameters.cost == MatchCost::kRayCensus && parameters.census_thresholds == 1 &&
          parameters.colour == ColourUse::kLuma;

@@ -75,5 +75,11 @@ inline constexpr ParameterReaders kEdges = {
     "{names} with edge-weight below 1 (the presets)",
     [](const MethodParameters& p, std::string_view) { return uses_edge_weights(p); }};
 
+// Selection.
+inline constexpr ParameterReaders kScanline = {"selection scanline",
+                                               [](const MethodParameters& p, std::string_view) {
+                                                 return p.selection == Selection::kScanline;
+                                               }};
+
 }  // namespace readers
 }  // namespace vantage

@@ -34,6 +34,11 @@ enum class Aggregation {
   kLocalStopping,  ///< diffusion that stops where certainty would decrease (6.4)
   kBayes,          ///< (6.25)–(6.37)
 };
+/// How the disparities of a map are selected from aggregated costs.
+enum class Selection {
+  kWinner,    ///< winner-take-all: each pixel alone
+  kScanline,  ///< dynamic programming along each row
+};
 enum class Subpixel { kParabola, kNone };
 enum class Border { kValid, kClip };
 /// What costs compare in colour images.
@@ -142,6 +147,12 @@ struct MethodParametersOf {
   /// Diffusions and Bayes: intensity difference over which the weight falls, grey levels, > 0.
   Field<double> edge_contrast = by_default<Field>(8.0);
 
+  Field<Selection> selection = by_default<Field>(Selection::kWinner);
+  /// Scanline: maximum cost of a change of disparity between neighbours in a row, in the unit of
+  /// the aggregated costs, ≥ 0; infinite: none. Default: by cost and aggregation.
+  Field<double> jump_limit = by_default<Field>(200.0);
+  /// Scanline: cost of a change per pixel of disparity, ≥ 0. Default: a quarter of the limit.
+  Field<double> jump_penalty = by_default<Field>(50.0);
   Field<Subpixel> subpixel = by_default<Field>(Subpixel::kParabola);
 
   friend bool operator==(const MethodParametersOf&, const MethodParametersOf&) = default;

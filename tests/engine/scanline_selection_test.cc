@@ -1,0 +1,230 @@
+// Selection along rows (§3.15) of every aggregation against a plain transcription: what the
+// matcher selects costs no more than the best path through the oracle's energies.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/matching/stereo_matcher.h"
+#include "tests/engine/identical_maps.h"
+#include "tests/engine/method_cases.h"
+#include "tests/engine/oracle_comparison.h"
+#include "tests/engine/plain_matching.h"
+
+namespace vantage {
+namespace scanline_selection_test {
+
+using test::identical;
+using test::PixelKind;
+using test::textured_pair;
+using testing::HasSubstr;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+DisparityMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options,
+                      const ExecutionOptions& how = {.threads = 1}) {
+  Execution execution(how);
+  DisparityMaps maps;
+  StereoMatcher(options, execution).match(pair.left, pair.right, {.confidence = true}, maps);
+  return maps;
+}
+
+/// One row of the oracle's energies.
+struct PlainRow {
+  const test::Volume& energies;
+  int y;
+  const MethodParameters& parameters;
+
+  [[nodiscard]] bool counts(int x, int i) const {
+    return energies.has_partner(x, i) && !std::isnan(energies.at(x, y, i));
+  }
+  [[nodiscard]] double jump(int a, int b) const {
+    return std::min(parameters.jump_penalty * std::abs(a - b), parameters.jump_limit);
+  }
+  /// The best total, every candidate of a column from every one of the column before. Columns
+  /// without candidates separate paths.
+  [[nodiscard]] double best_total() const {
+    double total = 0;
+    std::vector<double> before;  // empty: a path starts
+    for (int x = 0; x < energies.width; ++x) {
+      std::vector<double> paths(static_cast<std::size_t>(energies.count()), kInfinity);
+      for (int i = 0; i < energies.count(); ++i) {
+        if (!counts(x, i)) {
+          continue;
+        }
+        double from = before.empty() ? 0 : kInfinity;
+        for (std::size_t k = 0; k < before.size(); ++k) {
+          from = std::min(from, before[k] + jump(static_cast<int>(k), i));
+        }
+        paths[static_cast<std::size_t>(i)] = from + energies.at(x, y, i);
+      }
+      if (*std::min_element(paths.begin(), paths.end()) == kInfinity) {
+        total += before.empty() ? 0 : *std::min_element(before.begin(), before.end());
+        paths.clear();
+      }
+      before = paths;
+    }
+    return total + (before.empty() ? 0 : *std::min_element(before.begin(), before.end()));
+  }
+  [[nodiscard]] double total_of(const float* disparities) const {
+    double total = 0;
+    int before = -1;
+    for (int x = 0; x < energies.width; ++x) {
+      if (std::isnan(disparities[x])) {
+        before = -1;
+        continue;
+      }
+      const int i = static_cast<int>(disparities[x]) - energies.range.min;
+      if (i < 0 || i >= energies.count() || !counts(x, i)) {
+        return kInfinity;
+      }
+      total += energies.at(x, y, i) + (before < 0 ? 0 : jump(before, i));
+      before = i;
+    }
+    return total;
+  }
+};
+
+class ScanlineSelection : public ::testing::TestWithParam<int> {
+ protected:
+  static const std::vector<test::MethodCase>& methods() {
+    static const auto cases = test::method_cases({-3, 14});
+    return cases;
+  }
+  static MatchOptions options() {
+    MatchOptions options = methods()[static_cast<std::size_t>(GetParam())].options;
+    options.parameters.selection = Selection::kScanline;
+    return options;
+  }
+};
+
+TEST_P(ScanlineSelection, CostsNoMoreThanTheBestPath) {
+  const auto pair = textured_pair(47, 19, {-3, 14}, PixelKind::kGrey8, 11);
+  MatchOptions options = this->options();
+  for (const double share : {0.2, 1.0}) {
+    options.parameters.jump_penalty = share * options.resolved().jump_limit;
+    const MethodParameters parameters = options.resolved();
+    const DisparityMaps maps = maps_of(pair, options);
+    for (const Side side : {Side::kLeft, Side::kRight}) {
+      const bool is_left = side == Side::kLeft;
+      const test::Volume energies =
+          test::plain_aggregate(is_left ? pair.left : pair.right, is_left ? pair.right : pair.left,
+                                side, {-3, 14}, parameters);
+      for (int y = 0; y < energies.height; ++y) {
+        const PlainRow row{energies, y, parameters};
+        const double best = row.best_total();
+        // Cells in steps or half floats stray from the oracle's: so may what is selected.
+        const double tolerance =
+            test::is_stepped(methods()[static_cast<std::size_t>(GetParam())]) ? 0.05 : 1e-4;
+        EXPECT_LE(row.total_of(maps.of(side).disparity_px.row(y)),
+                  best + tolerance * std::max(1.0, std::abs(best)))
+            << "row " << y << (is_left ? ", left" : ", right") << ", share " << share;
+      }
+    }
+  }
+}
+
+TEST_P(ScanlineSelection, FreeJumpsGiveWinners) {
+  const auto pair = textured_pair(45, 17, {-3, 14}, PixelKind::kGreyFloat, 12);
+  MatchOptions winners = options();
+  winners.parameters.selection = Selection::kWinner;
+  MatchOptions free = options();
+  free.parameters.jump_limit = 0;
+  const DisparityMaps expected = maps_of(pair, winners);
+  const DisparityMaps maps = maps_of(pair, free);
+  int different = 0;
+  for (int y = 0; y < 17; ++y) {
+    for (int x = 0; x < 45; ++x) {
+      const float wanted = expected.left.disparity_px.at(x, y);
+      const float got = maps.left.disparity_px.at(x, y);
+      EXPECT_EQ(std::isnan(wanted), std::isnan(got));
+      // A margin of 0 is a tie, of which a path takes the candidate beside it.
+      different += !std::isnan(wanted) && wanted != got && maps.left.confidence.at(x, y) != 0;
+      if (wanted == got) {
+        const float confidence = expected.left.confidence.at(x, y);
+        EXPECT_NEAR(maps.left.confidence.at(x, y), confidence,
+                    1e-5 * std::max(1.0F, std::abs(confidence)));
+      }
+    }
+  }
+  EXPECT_LE(different, 45 * 17 / 100);  // means of windows are rounded
+}
+
+TEST_P(ScanlineSelection, DoesNotDependOnThePlan) {
+  const auto pair = textured_pair(59, 23, {-3, 14}, PixelKind::kGrey8, 13);
+  MatchOptions options = this->options();
+  options.parameters.subpixel = Subpixel::kParabola;
+  const DisparityMaps expected =
+      maps_of(pair, options, {.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
+  EXPECT_TRUE(identical(
+      maps_of(pair, options, {.threads = 3, .strip_width_px = 7, .band_height_px = 5}), expected));
+  EXPECT_TRUE(identical(maps_of(pair, options,
+                                {.threads = 2,
+                                 .executor = scheduler::ExecutorKind::kOpenMp,
+                                 .strip_width_px = 16,
+                                 .iterations_per_pass = 3}),
+                        expected));
+  // Sub-pixel positions stay within half a pixel of what is selected.
+  options.parameters.subpixel = Subpixel::kNone;
+  const DisparityMaps whole = maps_of(pair, options);
+  for (int y = 0; y < 23; ++y) {
+    for (int x = 0; x < 59; ++x) {
+      if (!std::isnan(whole.left.disparity_px.at(x, y))) {
+        EXPECT_LE(std::abs(whole.left.disparity_px.at(x, y) - expected.left.disparity_px.at(x, y)),
+                  0.5F);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Methods, ScanlineSelection,
+    ::testing::Range(0, static_cast<int>(test::method_cases({}).size())), [](const auto& instance) {
+      return test::method_cases({})[static_cast<std::size_t>(instance.param)].name;
+    });
+
+std::string complaint(const MatchOptions& options) {
+  try {
+    options.validate();
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ScanlineSelectionOptions, AreCheckedTogether) {
+  MatchOptions options;
+  options.parameters.selection = Selection::kScanline;
+  for (const MatchPreset preset : {MatchPreset::kRealtime, MatchPreset::kFast,
+                                   MatchPreset::kBalanced, MatchPreset::kQuality}) {
+    options.preset = preset;
+    EXPECT_EQ(complaint(options), "");
+    EXPECT_EQ(options.resolved().candidate_blocks, 0);
+    EXPECT_EQ(options.resolved().search_size, SearchSize::kFull);
+    EXPECT_EQ(options.resolved_refinement().cross_check_level, 0);
+  }
+  options.parameters.candidate_blocks = 2;
+  EXPECT_THAT(complaint(options), HasSubstr("candidate-blocks is 2, expected 0 with selection"));
+  options.parameters.candidate_blocks.reset();
+  options.parameters.search_size = SearchSize::kHalf;
+  EXPECT_THAT(complaint(options), HasSubstr("selection winner"));
+  options.parameters.search_size.reset();
+  options.refinement.cross_check_level = 1;
+  EXPECT_THAT(complaint(options), HasSubstr("cross-check-level is 1, expected 0"));
+  options.refinement.cross_check_level.reset();
+  options.preset.reset();
+  options.disparities_y = DisparityRange{-1, 1};
+  EXPECT_THAT(complaint(options), HasSubstr("selection is scanline, expected winner"));
+  options.disparities_y.reset();
+  options.parameters.selection.reset();
+  options.parameters.jump_penalty = 1;
+  EXPECT_THAT(complaint(options), HasSubstr("it is read by selection scanline"));
+}
+
+}  // namespace scanline_selection_test
+}  // namespace vantage
