@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "apps/commands.h"
 #include "apps/figure_files.h"
+#include "apps/figure_inputs.h"
 #include "apps/figure_page.h"
 #include "apps/interrupt.h"
 #include "apps/option_groups.h"
@@ -34,6 +36,7 @@ struct ExperimentJob {
   std::vector<std::string> names;
   bool list = false;
   FigureSettings settings;
+  FigureInputs inputs;
   FigurePictures pictures = FigurePictures::kSvg;
   CommonOptions common;
   std::string output;
@@ -112,6 +115,7 @@ void add_experiment_settings(Settings& settings, ExperimentJob& job) {
   seed.get = [&job]() -> SettingValue {
     return job.settings.seed ? SettingValue(*job.settings.seed) : SettingValue("auto");
   };
+  add_figure_input_settings(settings, job.inputs);
   add_shared_method_parameters(settings, job.settings.parameters);
 }
 
@@ -183,6 +187,12 @@ int command_experiment(const Arguments& arguments) {
     throw UsageError("--output is missing, expected --output DIR");
   }
   check_settings(figures, job.settings);
+  check_figure_inputs(job.inputs, settings);
+  if (job.inputs.given() && std::ranges::none_of(figures, [](const BookFigure* figure) {
+        return figure->images != BookImages::kNone;
+      })) {
+    settings.refuse_idle({"left", "right", "data"}, "on figures of synthetic pairs");
+  }
   job.common.execution.validate();
   FileChecks files(settings);
   files.add_made_folder(job.output, "--output");
@@ -196,6 +206,11 @@ int command_experiment(const Arguments& arguments) {
   make_folder(folder);
 
   const std::atomic<bool>& interrupted = interrupt_flag();
+  std::optional<FigureImages> given;
+  if (job.inputs.given()) {
+    given =
+        report.timed_file_access("read", [&] { return read_figure_inputs(job.inputs, execution); });
+  }
   std::vector<MadeFigure> made;
   SettingValue results = SettingValue::object();
   {
@@ -205,7 +220,10 @@ int command_experiment(const Arguments& arguments) {
       MadeFigure& one =
           made.emplace_back(figure, settings_in_force(*figure, job.settings), FigureContent{});
       one.content = report.timed_compute("figures", [&] {
-        return figure->make({one.settings, execution, &interrupted});
+        return figure->make({.settings = one.settings,
+                             .execution = execution,
+                             .stop = &interrupted,
+                             .given = given ? &*given : nullptr});
       });
       if (interrupted) {
         break;

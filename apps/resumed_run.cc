@@ -1,5 +1,7 @@
 #include "apps/resumed_run.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <filesystem>
 #include <regex>

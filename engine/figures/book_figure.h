@@ -49,17 +49,30 @@ struct BookComparison {
 
 /// A figure as it comes out here.
 struct FigureContent {
-  std::vector<FigurePicture> pictures;
-  std::vector<FigureTable> tables;
-  std::vector<BookComparison> comparisons;
-  std::string images;  ///< which images were used, and why
+  std::vector<FigurePicture> pictures = {};
+  std::vector<FigureTable> tables = {};
+  std::vector<BookComparison> comparisons = {};
+  std::string images = {};  ///< which images were used, and why
 };
+
+/// Photographs of the book. None of them is public (figure_images.h).
+enum class BookImages {
+  kNone,
+  kKids,             ///< Figs. 1.1, 3.4 to 3.6, 5.12
+  kBirch,            ///< Figs. 3.7 to 3.9
+  kStreet,           ///< Figs. 5.3 to 5.6: cameras not rectified, of other brightness
+  kRectifiedStreet,  ///< Fig. 5.9
+  kTree,             ///< Figs. 5.7, 5.8, 6.18
+  kTown,             ///< Fig. 6.19: cameras above each other
+};
+struct FigureImages;
 
 /// One computation of a figure.
 struct FigureRun {
   const FigureSettings& settings;  ///< in force: every field that the figure reads has a value
   Execution& execution;
   const std::atomic<bool>* stop = nullptr;  ///< set: the result will not be used
+  const FigureImages* given = nullptr;      ///< in place of the book's images; null: stand-ins
 };
 
 /// A figure or table of the book.
@@ -71,6 +84,7 @@ struct BookFigure {
   FigureSettings defaults;
   /// Method whose parameters the figure reads although it reads no methods; empty: none.
   std::string_view method = {};
+  BookImages images = BookImages::kNone;  ///< which the figure is about
   FigureContent (*make)(const FigureRun& run) = nullptr;
 };
 

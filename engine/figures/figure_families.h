@@ -8,8 +8,14 @@ namespace vantage {
 
 // The figures of each file of this folder.
 std::vector<BookFigure> comparison_figures();
+std::vector<BookFigure> formula_figures();
+std::vector<BookFigure> gradient_figures();
 std::vector<BookFigure> membrane_figures();
 std::vector<BookFigure> pair_map_figures();
 std::vector<BookFigure> pattern_figures();
+std::vector<BookFigure> response_figures();
+std::vector<BookFigure> several_images_figures();
+std::vector<BookFigure> time_tables();
+std::vector<BookFigure> view_figures();
 
 }  // namespace vantage

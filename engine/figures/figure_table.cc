@@ -15,8 +15,9 @@
 namespace vantage {
 namespace {
 
-constexpr auto kFamilies = {pattern_figures, pair_map_figures, membrane_figures,
-                            comparison_figures};
+constexpr auto kFamilies = {
+    view_figures,     formula_figures,  response_figures,   gradient_figures,       pattern_figures,
+    pair_map_figures, membrane_figures, comparison_figures, several_images_figures, time_tables};
 
 /// "6.16" after "6.9"; what has a word follows the figures of its chapter.
 struct FigureOrder {
