@@ -63,6 +63,7 @@ enum class BookImages {
   kStreet,           ///< Figs. 5.3 to 5.6: cameras not rectified, of other brightness
   kRectifiedStreet,  ///< Fig. 5.9
   kTree,             ///< Figs. 5.7, 5.8, 6.18
+  kCat,              ///< Figs. 5.10, 5.11: two times, moving camera and scene
   kTown,             ///< Fig. 6.19: cameras above each other
 };
 struct FigureImages;

@@ -28,6 +28,7 @@ struct StandIn {
   double noise_sigma = 0;
   int more_cameras = 0;
   bool is_vertical = false;
+  int right_frame = 0;  ///< time of the right image
 };
 
 constexpr std::array kStandIns = {
@@ -70,6 +71,16 @@ constexpr std::array kStandIns = {
             .search = {0, 15},
             .noise_sigma = 2,
             .more_cameras = 3},
+    StandIn{.images = BookImages::kCat,
+            .instead_of = "the sequence cat (Woodfill)",
+            .width_px = 320,
+            .height_px = 240,
+            .far_disparity_px = 8,
+            .near_disparity_px = 13,
+            .search = {-4, 15},
+            .right_y = 0.08,
+            .noise_sigma = 2,
+            .right_frame = 4},
     StandIn{.images = BookImages::kTown,
             .instead_of = "the town sequence (CMU)",
             .width_px = 240,
@@ -118,7 +129,7 @@ FigureImages generate(const StandIn& stand_in, const FigureRun& run) {
   const SceneView right_view =
       stand_in.is_vertical ? SceneView{0, 1} : SceneView{1, stand_in.right_y};
   SceneRendering left = scene->render(SceneView{}, 0);
-  SceneRendering right = scene->render(right_view, 0);
+  SceneRendering right = scene->render(right_view, stand_in.right_frame);
   FigureImages images{
       .description = fmt::format(
           "a generated scene of {}x{} pixels with disparities of {:.3g} to {:.3g}, because {} is "
@@ -131,6 +142,11 @@ FigureImages generate(const StandIn& stand_in, const FigureRun& run) {
                       static_cast<int>(std::ceil(stand_in.search.max * scale))},
       .left_truth = std::move(left.disparity),
       .left_visible = inverted(scene->occlusion(SceneView{}, right_view, 0))};
+  if (stand_in.right_frame != 0) {  // what moves has another displacement
+    images.left_truth.reset();
+    images.left_visible.reset();
+    return images;
+  }
   for (int camera = stand_in.more_cameras; camera > 0; --camera) {
     const double position = static_cast<double>(camera) / (stand_in.more_cameras + 1);
     images.baselines.push_back(position);

@@ -18,6 +18,8 @@ struct FigureImages {
   Photograph left;
   Photograph right;            ///< of the same size
   DisparityRange disparities;  ///< to search
+  /// y_left − y_right to search where the figure searches in two dimensions.
+  DisparityRange disparities_y = {-1, 2};
   std::optional<DisparityMap> left_truth = std::nullopt;
   std::optional<Mask> left_visible = std::nullopt;  ///< 255: seen in both; empty: all with truth
   /// More cameras on the baseline, for multiple-baseline stereo.

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,13 +19,67 @@ namespace {
 
 constexpr double kWidePicture = 320;
 
-FigureContent make_tree_images(const FigureRun& run) {
-  const auto images = images_of(BookImages::kTree, run);
+FigureContent show_pair(BookImages which, const char* first, const char* second,
+                        const FigureRun& run) {
+  const auto images = images_of(which, run);
   FigureContent content{.images = images->description};
   std::vector<SheetPicture> pictures;
-  pictures.push_back(photograph_picture(*images, "left", images->left));
-  pictures.push_back(photograph_picture(*images, "right", images->right));
+  pictures.push_back(photograph_picture(*images, first, images->left));
+  pictures.push_back(photograph_picture(*images, second, images->right));
   content.pictures.push_back({"", draw_picture_sheet("Pair", pictures, 2, kWidePicture)});
+  return content;
+}
+
+FigureContent make_tree_images(const FigureRun& run) {
+  return show_pair(BookImages::kTree, "left", "right", run);
+}
+
+FigureContent make_cat_images(const FigureRun& run) {
+  return show_pair(BookImages::kCat, "earlier frame", "later frame", run);
+}
+
+/// Both components of the displacements from the later frame to the earlier one.
+FigureContent make_cat_displacements(const FigureRun& run) {
+  const auto images = images_of(BookImages::kCat, run);
+  FigureContent content{.images = images->description};
+  FigureTable table{"", {"method", "dx_px", "dy_px", "pixels"}, {}};
+  std::vector<SheetPicture> pictures;
+  for (const std::string& method : run.settings.methods) {
+    MatchOptions options = scene_options(run.settings, method, run.settings.iterations.front(),
+                                         images->disparities, false);
+    options.disparities_y = images->disparities_y;
+    const DisparityMaps maps = scene_maps(*images, options, run.execution);
+    pictures.push_back(map_picture(*images,
+                                   method + ": horizontal component (lighter: to the left)",
+                                   maps.left.disparity_px.view()));
+    pictures.push_back({method + ": vertical component (lighter: upwards)",
+                        grey_picture(maps.left.disparity_y_px.view(),
+                                     static_cast<float>(images->disparities_y.min),
+                                     static_cast<float>(images->disparities_y.max), {0, 0, 0})});
+    std::map<std::pair<float, float>, int> counts;
+    for (int y = 0; y < maps.left.disparity_px.height(); ++y) {
+      for (int x = 0; x < maps.left.disparity_px.width(); ++x) {
+        if (std::isfinite(maps.left.disparity_px.at(x, y))) {
+          ++counts[{maps.left.disparity_px.at(x, y), maps.left.disparity_y_px.at(x, y)}];
+        }
+      }
+    }
+    std::pair<float, float> most;
+    int most_pixels = 0;
+    for (const auto& [displacement, pixels] : counts) {
+      table.rows.push_back({method, fmt::format("{}", displacement.first),
+                            fmt::format("{}", displacement.second), fmt::format("{}", pixels)});
+      if (pixels > most_pixels) {
+        most_pixels = pixels;
+        most = displacement;
+      }
+    }
+    content.comparisons.push_back(
+        {method + ": motion of the background", "more than 10 pixels to the left",
+         fmt::format("most pixels move by {} to the left, {} upwards", most.first, most.second)});
+  }
+  content.pictures.push_back({"", draw_picture_sheet("Displacements", pictures, 2, kWidePicture)});
+  content.tables.push_back(std::move(table));
   return content;
 }
 
@@ -145,6 +202,8 @@ std::vector<BookFigure> gradient_figures() {
   FigureSettings tree_maps = settings_for(BookImages::kTree);
   tree_maps.methods = {"gradient"};
   tree_maps.iterations = {10};
+  FigureSettings cat_maps = tree_maps;
+  cat_maps.size_px = default_width(BookImages::kCat);
   return {{.key = "5.7",
            .section = "5.5.2",
            .title = "The pair tree",
@@ -168,6 +227,22 @@ std::vector<BookFigure> gradient_figures() {
            .method = "gradient",
            .images = BookImages::kRectifiedStreet,
            .make = make_street_disparities},
+          {.key = "5.10",
+           .section = "5.5.3",
+           .title = "The pair cat",
+           .book = "Frames 1 and 5 of a sequence: the camera follows a cat.",
+           .defaults = settings_for(BookImages::kCat),
+           .images = BookImages::kCat,
+           .make = make_cat_images},
+          {.key = "5.11",
+           .section = "5.5.3",
+           .title = "Horizontal displacements of cat",
+           .book = "Horizontal components of the displacements; search of -15 to 4 by -2 to 1 "
+                   "pixels from the first frame to the second, -4 to 15 by -1 to 2 in the signs "
+                   "used here.",
+           .defaults = cat_maps,
+           .images = BookImages::kCat,
+           .make = make_cat_displacements},
           {.key = "5.12",
            .section = "5.6",
            .title = "Post-processing of a disparity map",
