@@ -120,8 +120,11 @@ inline constexpr std::array kOptionTexts = {
     OptionText{"jump-penalty", "C",
                "With selection scanline: cost of a change per pixel of disparity, at least 0",
                "a quarter of --jump-limit: {}"},
+    OptionText{"candidate-step", "PX",
+               "Distance of neighbouring candidates: 1, 0.5 or 0.25 pixels of disparity; between "
+               "pixels the other image is interpolated (time and memory grow accordingly)"},
     OptionText{"subpixel", "",
-               "Sub-pixel disparities by a parabola through the costs, or whole pixels"},
+               "Sub-pixel disparities by a parabola through the costs, or those of the candidates"},
     OptionText{
         "edge-snapping", "PX|on",
         "Move disparity edges to intensity edges up to PX columns away, 0 (off) to 16; on: 4", "{}",

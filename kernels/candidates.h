@@ -17,20 +17,22 @@ struct CandidateRange {
 };
 
 /// The candidates of a disparity space over an image `width` columns wide: index i in
-/// [0, count) stands for disparity_px = disparity_min + i. The partner of reference column x is
-/// x + direction · disparity_px in the other image: direction is −1 when the reference is the left
-/// image and +1 when it is the right one (EQUATIONS §0).
+/// [0, count) stands for disparity_px = (disparity_min + i) / steps_per_px. The partner of
+/// reference column x is x + direction · disparity_px in the other image: direction is −1 when the
+/// reference is the left image and +1 when it is the right one (EQUATIONS §0).
 struct CandidateGeometry {
   int width = 0;
-  int disparity_min = 0;
+  int disparity_min = 0;  ///< in steps
   int count = 0;
   int direction = -1;
+  int steps_per_px = 1;  ///< candidates per pixel of disparity, ≥ 1
 
   [[nodiscard]] int lanes() const {
     return (count + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
   }
+  /// Column of the partner, in steps.
   [[nodiscard]] int partner(int x, int candidate) const {
-    return x + direction * (disparity_min + candidate);
+    return steps_per_px * x + direction * (disparity_min + candidate);
   }
   /// Candidates of column x whose partner lies in columns [margin, width − margin) of the other
   /// image. With margin = window radius: candidates whose whole window has partners.
@@ -39,21 +41,29 @@ struct CandidateGeometry {
   }
   /// Candidates for which every column first..last has a partner inside the other image.
   [[nodiscard]] CandidateRange with_partners(int first, int last, int margin = 0) const {
-    const int low = margin;
-    const int high = width - 1 - margin;
+    const int low = steps_per_px * margin;
+    const int high = steps_per_px * (width - 1 - margin);
+    const int first_step = steps_per_px * first;
+    const int last_step = steps_per_px * last;
     // direction −1: low ≤ first − d and last − d ≤ high; direction +1: likewise with + d.
-    const int min = direction < 0 ? last - high : low - first;
-    const int max = direction < 0 ? first - low : high - last;
+    const int min = direction < 0 ? last_step - high : low - first_step;
+    const int max = direction < 0 ? first_step - low : high - last_step;
     return {std::clamp(min - disparity_min, 0, count),
             std::clamp(max - disparity_min + 1, 0, count)};
   }
   /// Columns [begin, end) where every candidate has a partner for all columns within `radius` that
   /// lie in the reference image. `begin` may exceed `end`; both may exceed the image width.
   [[nodiscard]] CandidateRange columns_with_all_partners(int radius = 0) const {
-    // partner = x − shift for shifts in [least, most].
-    const int min = direction < 0 ? disparity_min : -(disparity_min + count - 1);
-    const int max = min + count - 1;
+    // partner = x − shift for shifts in [min, max], which are widened to whole columns.
+    const int min_steps = direction < 0 ? disparity_min : -(disparity_min + count - 1);
+    const int min = whole_columns(min_steps);
+    const int max = -whole_columns(-(min_steps + count - 1));
     return {max > 0 ? max + radius : 0, min < 0 ? width + min - radius : width};
+  }
+  /// Whole columns in a number of steps, rounded down.
+  [[nodiscard]] int whole_columns(int steps) const {
+    const int columns = steps / steps_per_px;
+    return columns - (columns * steps_per_px > steps ? 1 : 0);
   }
 };
 

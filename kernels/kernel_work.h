@@ -116,8 +116,8 @@ inline constexpr KernelWork kLikelihoodOfEvidenceWork =
     cell_work(4 + kExp2Operations) + KernelWork{1, kLaneTreeOperations, 1, 0};
 /// add_cells(), multiply_cells(): also loads another partner's cells.
 inline constexpr KernelWork kCombineCellsWork = cell_work(1) + KernelWork{0, 0, 1, 0};
-/// One channel: two pixels and a shift (two numbers) per lane.
-inline constexpr KernelWork kInterpolateCandidatesWork = {3, 0, 5, 0};
+/// One plane: a sample and its offset per lane.
+inline constexpr KernelWork kGatherCandidatesWork = {1, 0, 3, 0};
 
 /// Mean and minimum of the column, then the parabola of four operations.
 inline constexpr KernelWork kEnergiesWithPriorWork =

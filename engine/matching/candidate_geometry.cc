@@ -28,7 +28,8 @@ kernels::CandidateGeometry candidate_geometry(const ResolvedMatchOptions& option
                    : "",
         width, height, -std::max(0, max_shift), std::max(0, max_shift)));
   }
-  return {width, min, max - min + 1, direction_of(reference)};
+  const int steps = steps_per_px(parameters);
+  return {width, steps * min, steps * (max - min) + 1, direction_of(reference), steps};
 }
 
 std::optional<DisplacementGrid> displacement_grid(const ResolvedMatchOptions& options,

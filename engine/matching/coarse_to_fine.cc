@@ -85,7 +85,8 @@ void CoarseLevels::resize(const MethodParameters& parameters,
   }
   blocks_.resize(static_cast<std::size_t>(pruned_level_count(parameters, extents.size())));
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    blocks_[i].resize(extents[i], candidates, parameters.candidate_blocks);
+    blocks_[i].resize(extents[i], candidates, parameters.candidate_blocks,
+                      steps_per_px(parameters));
   }
 }
 

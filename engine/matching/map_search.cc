@@ -7,6 +7,21 @@
 #include "scheduler/strip_pipeline.h"
 
 namespace vantage {
+namespace {
+
+/// Chains make maps in candidates.
+void convert_to_px(ImageView<float> map, int steps_per_px, Execution& execution) {
+  const float px_per_step = 1.0F / static_cast<float>(steps_per_px);
+  execution.for_each_band(map.height(), [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      for (int x = 0; x < map.width(); ++x) {
+        map.row(y)[x] *= px_per_step;
+      }
+    }
+  });
+}
+
+}  // namespace
 
 scheduler::ChainPlan chain_plan(const MatchChain& chain, const ExecutionOptions& execution,
                                 int threads, const scheduler::Machine& machine) {
@@ -27,14 +42,27 @@ void MapSearch::compute(Side reference, const ChainInput& input, const MapOutput
   const int height = outputs.disparity_px.height();
   const auto grid = displacement_grid(options_, reference, width, height);
   ChainInput searched = input;
-  double candidates = options_.disparities.count();
   kernels::CandidateGeometry geometry = candidate_geometry(options_, reference, width, height);
   if (grid) {
     searched.grid = &*grid;
     geometry = grid->columns();
-    candidates *= options_.disparities_y->count();
   }
-  const double pixels = static_cast<double>(width) * height;
+  search(geometry, searched, outputs, coarse, check);
+  if (geometry.steps_per_px > 1) {
+    const bool has_own_map = !coarse.is_all && !check.is_all;
+    for (const ImageView<float>& map :
+         {has_own_map ? outputs.disparity_px : ImageView<float>(), check.disparity_px}) {
+      convert_to_px(map, geometry.steps_per_px, execution_);
+    }
+  }
+}
+
+void MapSearch::search(const kernels::CandidateGeometry& geometry, const ChainInput& searched,
+                       const MapOutputs& outputs, const CoarseMap& coarse, const CheckMap& check) {
+  const double candidates = candidate_count(options_.disparities, parameters_) *
+                            (options_.disparities_y ? options_.disparities_y->count() : 1.0);
+  const double pixels =
+      static_cast<double>(outputs.disparity_px.width()) * outputs.disparity_px.height();
   if (parameters_.levels == 1) {
     run_chain(MatchChain(parameters_, geometry, searched, outputs));
     report_.finest_pixels += pixels;

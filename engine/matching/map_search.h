@@ -38,6 +38,8 @@ class MapSearch {
                const CoarseMap& coarse, const CheckMap& check = {});
 
  private:
+  void search(const kernels::CandidateGeometry& geometry, const ChainInput& searched,
+              const MapOutputs& outputs, const CoarseMap& coarse, const CheckMap& check);
   void run_chain(const MatchChain& chain);
 
   const ResolvedMatchOptions& options_;

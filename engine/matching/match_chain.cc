@@ -34,7 +34,7 @@ namespace vantage {
 bool uses_column_ssd(const MethodParameters& parameters) {
   return cost_of(parameters).has_column_sums && aggregation_of(parameters).has_windows &&
          parameters.colour == ColourUse::kLuma && parameters.levels == 1 &&
-         !parameters.match_exposure;
+         !parameters.match_exposure && steps_per_px(parameters) == 1;
 }
 
 namespace {
@@ -346,7 +346,7 @@ std::unique_ptr<scheduler::RowStage> MatchChain::scanline_selection(
     const MethodParameters& parameters, std::unique_ptr<RowEnergies> energies) const {
   return make_scanline_selection_stage(
       std::move(energies),
-      {.jump = {static_cast<float>(parameters.jump_penalty),
+      {.jump = {static_cast<float>(parameters.jump_penalty * parameters.candidate_step_px),
                 static_cast<float>(parameters.jump_limit)},
        .subpixel = parameters.subpixel,
        .confidence = confidence_measure(parameters),

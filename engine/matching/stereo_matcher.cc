@@ -108,10 +108,20 @@ void StereoMatcher::prepare_inputs(MapTask& left, MapTask& right, bool uses_prio
     prepared.images.resize(2);
     CostImage& left_image = prepared.images[0];
     CostImage& right_image = prepared.images[1];
-    left_image.prepare(*left.image, prepared.parameters, geometry, {needs_left, false, needs_right},
+    const int phases = sample_phases(1, geometry.steps_per_px);
+    left_image.prepare(*left.image, prepared.parameters, geometry,
+                       {.as_reference = needs_left,
+                        .as_partner_of_left = false,
+                        .as_partner_of_right = needs_right,
+                        .phases = phases},
                        execution_);
     right_image.prepare(*right.image, prepared.parameters, geometry,
-                        {needs_right, needs_left, false, prepared.of_right}, execution_);
+                        {.as_reference = needs_right,
+                         .as_partner_of_left = needs_left,
+                         .as_partner_of_right = false,
+                         .intensity_changes = prepared.of_right,
+                         .phases = phases},
+                        execution_);
     left.input = {nullptr, &left_image, {CostPartner{&right_image}}};
     right.input = {nullptr, &right_image, {CostPartner{&left_image}}};
   }
@@ -145,7 +155,8 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
   const bool is_pruned = in_force_.parameters.candidate_blocks > 0 && extents.size() > 1;
   CandidateBlocks blocks;
   if (is_pruned) {
-    blocks.resize(extents.front(), geometry.count, in_force_.parameters.candidate_blocks);
+    blocks.resize(extents.front(), geometry.count, in_force_.parameters.candidate_blocks,
+                  geometry.steps_per_px);
   }
   const MatchChain chain(in_force_.parameters, geometry, of_left.input,
                          {.disparity_px = maps.left.disparity_px.view()},
@@ -219,11 +230,12 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
                 .disparity_y_px = map.disparity_y_px.view()},
                coarse, check);
   if (coarse.winners != nullptr) {
+    const auto geometry =
+        candidate_geometry(in_force_, task.side, task.image->width(), task.image->height());
     task.coarse = {.winners = std::as_const(*coarse.winners).view(),
                    .level = check_level,
-                   .disparity_min = candidate_geometry(in_force_, task.side, task.image->width(),
-                                                       task.image->height())
-                                        .disparity_min};
+                   .disparity_min = geometry.disparity_min,
+                   .steps_per_px = geometry.steps_per_px};
   }
 }
 
@@ -332,7 +344,12 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
     CostImage& image = prepared->images[k + 1];
     const double ratio = others[k].baseline / others.front().baseline;
     image.prepare(*others[k].photograph, prepared->parameters, geometry,
-                  {false, true, true, changes[k]}, execution_);
+                  {.as_reference = false,
+                   .as_partner_of_left = (side == Side::kLeft) == (ratio > 0),
+                   .as_partner_of_right = (side == Side::kLeft) != (ratio > 0),
+                   .intensity_changes = changes[k],
+                   .phases = sample_phases(ratio, geometry.steps_per_px)},
+                  execution_);
     task.input.partners.push_back({&image, ratio});
   }
   compute(task, "match", wants_confidence(request), 0, *prepared, clock, times);

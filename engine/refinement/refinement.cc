@@ -75,10 +75,12 @@ void cross_check(ImageView<const float> map_px, const CoarseWinners& other, Side
   unmatched.resize(map_px.width(), map_px.height());
   execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
-      kernels::cross_check_winners_row(row_to_check(map_px, y, side, tolerance_px, 1, unmatched),
-                                       {.winners = other.winners.row(y >> other.level),
-                                        .level = other.level,
-                                        .disparity_min = other.disparity_min});
+      kernels::cross_check_winners_row(
+          row_to_check(map_px, y, side, tolerance_px, 1, unmatched),
+          {.winners = other.winners.row(y >> other.level),
+           .level = other.level,
+           .disparity_min = other.disparity_min,
+           .px_per_candidate = 1.0F / static_cast<float>(other.steps_per_px)});
     }
   });
 }

@@ -21,7 +21,8 @@ void cross_check(ImageView<const float> map_px, ImageView<const float> other_px,
 struct CoarseWinners {
   ImageView<const std::int32_t> winners = {};
   int level = 0;          ///< a winner is valid for 2^level × 2^level pixels
-  int disparity_min = 0;  ///< disparity of candidate 0
+  int disparity_min = 0;  ///< disparity of candidate 0, in candidates
+  int steps_per_px = 1;   ///< candidates per pixel of disparity
 };
 
 /// The same against the winners of a coarse level of the other image's map.

@@ -103,7 +103,8 @@ std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) 
   return pixels * channels * kPlanes * sizeof(float) +
          (check_level > 0 ? kCheckedMaps : 0) * (pixels >> 2 * check_level) * sizeof(std::int32_t) +
          edge_weight_bytes(options.match.resolved(), pixels) +
-         coarse_level_bytes(options.match.resolved(), extent, options.match.disparities.count());
+         coarse_level_bytes(options.match.resolved(), extent,
+                            candidate_count(options.match.disparities, options.match.resolved()));
 }
 
 bool is_on_baseline(const SequenceOptions& options, const ViewPath& view) {

@@ -100,8 +100,8 @@ TuningKey make_tuning_key(const scheduler::Machine& machine, const MatchOptions&
     key.threads += fmt::format(", bound to {}", name_of(*execution.binding));
   }
   key.method = method_text(match, images);
-  const int candidates =
-      match.disparities.count() * (match.disparities_y ? match.disparities_y->count() : 1);
+  const int candidates = candidate_count(match.disparities, match.resolved()) *
+                         (match.disparities_y ? match.disparities_y->count() : 1);
   key.size = fmt::format("about {}x{} pixels, {} {}", class_of(images.width_px, kRootsOfTwo),
                          class_of(images.height_px, kRootsOfTwo), class_of(candidates, kRootsOfTwo),
                          match.disparities_y ? "displacements" : "disparities");

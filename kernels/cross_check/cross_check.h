@@ -18,7 +18,8 @@ struct CrossCheckRow {
 struct CoarseWinnerRow {
   const std::int32_t* winners = nullptr;  ///< ⌈width / 2^level⌉ numbers of candidates
   int level = 0;
-  int disparity_min = 0;  ///< disparity of candidate 0
+  int disparity_min = 0;       ///< disparity of candidate 0, in steps
+  float px_per_candidate = 1;  ///< a power of two
 };
 
 /// Marks the pixels of one row of a disparity map that the other image's map contradicts (5.13).

@@ -29,7 +29,8 @@ void cross_check_row_ref(const CrossCheckRow& row, const float* other_px) {
 
 void cross_check_winners_row_ref(const CrossCheckRow& row, const CoarseWinnerRow& other) {
   check_each_column(row, [&](int column) {
-    return static_cast<double>(other.winners[column >> other.level] + other.disparity_min);
+    return static_cast<double>(other.winners[column >> other.level] + other.disparity_min) *
+           static_cast<double>(other.px_per_candidate);
   });
 }
 

@@ -84,7 +84,9 @@ struct OtherWinners {
   }
   template <class D, class V>
   HWY_INLINE hn::VFromD<D> disparities(D d, V winners) const {
-    return hn::ConvertTo(d, hn::Add(winners, hn::Set(hn::RebindToSigned<D>(), row.disparity_min)));
+    return hn::Mul(
+        hn::ConvertTo(d, hn::Add(winners, hn::Set(hn::RebindToSigned<D>(), row.disparity_min))),
+        hn::Set(d, row.px_per_candidate));
   }
 };
 

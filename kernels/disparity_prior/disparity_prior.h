@@ -22,13 +22,14 @@ inline constexpr float kPriorDepth = 1.0F;
 
 /// Cells of one row, `lanes` floats per column, and the disparities to pull their columns towards.
 struct DisparityPriorRow {
-  /// One disparity per column. Columns whose disparity is NaN or outside [disparity_min,
-  /// disparity_min + count − 1] are unchanged.
+  /// One disparity per column. Columns whose disparity is NaN or outside those of the candidates
+  /// are unchanged.
   const float* prior_px = nullptr;
   int columns = 0;
-  int lanes = 0;  ///< a multiple of kLaneMultiple
-  int count = 0;  ///< candidates: lanes [0, count)
-  int disparity_min = 0;
+  int lanes = 0;          ///< a multiple of kLaneMultiple
+  int count = 0;          ///< candidates: lanes [0, count)
+  int disparity_min = 0;  ///< in steps, as in CandidateGeometry
+  int steps_per_px = 1;
   /// Likelihoods only: the candidate in lane 0, if the cells hold a subset of candidates.
   int first_candidate = 0;
   float weight = 1;  ///< ≥ 0
@@ -36,8 +37,16 @@ struct DisparityPriorRow {
   float max_contrast = std::numeric_limits<float>::infinity();
 
   [[nodiscard]] bool has_prior(int column) const {
-    const float offset = prior_px[column] - static_cast<float>(disparity_min);
+    const float offset = candidate(column);
     return offset >= 0 && offset <= static_cast<float>(count - 1);
+  }
+  /// Position of the prior disparity among the candidates.
+  [[nodiscard]] float candidate(int column) const {
+    return prior_px[column] * static_cast<float>(steps_per_px) - static_cast<float>(disparity_min);
+  }
+  /// Inverse of the number of candidates over which the energy grows to 1.
+  [[nodiscard]] float inverse_reach() const {
+    return 1 / (kPriorReachPx * static_cast<float>(steps_per_px));
   }
 };
 

@@ -8,8 +8,7 @@ namespace {
 
 /// min(k²/4, 1) for candidate i.
 float share_of_depth(const DisparityPriorRow& row, int column, int i) {
-  const float offset = row.prior_px[column] - static_cast<float>(row.disparity_min);
-  const float k = (static_cast<float>(i) - offset) * (1 / kPriorReachPx);
+  const float k = (static_cast<float>(i) - row.candidate(column)) * row.inverse_reach();
   return std::min(k * k, 1.0F);
 }
 

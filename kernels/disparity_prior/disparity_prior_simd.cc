@@ -20,17 +20,18 @@ namespace hn = hwy::HWY_NAMESPACE;
 class ShareOfDepth {
  public:
   HWY_INLINE ShareOfDepth(const DisparityPriorRow& row, int column)
-      : offset_(hn::Set(FloatTag(), row.prior_px[column] - static_cast<float>(row.disparity_min))) {
-  }
+      : offset_(hn::Set(FloatTag(), row.candidate(column))),
+        inverse_reach_(hn::Set(FloatTag(), row.inverse_reach())) {}
   HWY_INLINE FloatVec operator()(int lane) const {
     const FloatTag d;
     const FloatVec i = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<float>(lane)));
-    const FloatVec k = hn::Mul(hn::Sub(i, offset_), hn::Set(d, 1 / kPriorReachPx));
+    const FloatVec k = hn::Mul(hn::Sub(i, offset_), inverse_reach_);
     return hn::Min(hn::Mul(k, k), hn::Set(d, 1.0F));
   }
 
  private:
   FloatVec offset_;
+  FloatVec inverse_reach_;
 };
 
 HWY_INLINE float mean_above_min(const float* cells, int count) {

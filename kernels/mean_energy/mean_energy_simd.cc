@@ -49,6 +49,14 @@ HWY_INLINE void border_column(const WinnerRow& row, const EnergyUnit& unit, int 
     std::fill_n(energies, lanes, 0.0F);
     return;
   }
+  if (row.geometry.steps_per_px > 1) {
+    std::fill_n(energies, lanes, 0.0F);
+    for (int i = candidates.begin; i < candidates.end; ++i) {
+      const double factor = unit.scale / (unit.window_rows * row.window_columns(x, i));
+      energies[i] = static_cast<float>(row.sum(cells[i]) * factor - unit.offset);
+    }
+    return;
+  }
   // WinnerRow::window_columns() for neighbouring candidates.
   const int last_column = row.geometry.width - 1;
   const auto first = hn::Set(d32, std::max(x - row.window_radius, 0));

@@ -47,9 +47,9 @@ struct WinnerRow {
   }
   /// Window columns that lie inside both images, for a candidate of column x; ≥ 1 for candidates().
   [[nodiscard]] int window_columns(int x, int candidate) const {
-    const int shift = x - geometry.partner(x, candidate);
-    return std::min(window_last(x), geometry.width - 1 + shift) - std::max(window_begin(x), shift) +
-           1;
+    const int shift = geometry.steps_per_px * x - geometry.partner(x, candidate);
+    return std::min(window_last(x), geometry.width - 1 + geometry.whole_columns(shift)) -
+           std::max(window_begin(x), -geometry.whole_columns(-shift)) + 1;
   }
   /// Columns [begin, end) of this row where every candidate has a whole window of partners, so that
   /// cells compare directly.

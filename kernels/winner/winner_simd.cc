@@ -220,6 +220,7 @@ class BorderWinners {
     const bool left = geometry.direction < 0;
     const int min = geometry.disparity_min;
     const int count = geometry.count;
+    const int steps = geometry.steps_per_px;
     const bool whole_only = row_.whole_windows_only;
     Columns shape;
     for (std::size_t k = 0; k < kMax; ++k) {
@@ -229,9 +230,13 @@ class BorderWinners {
       // Columns of the other image in the direction of increasing and of decreasing disparities.
       const int room = left ? begin : last_column - last;
       const int room_after = left ? last_column - last : begin;
-      const int full_end = std::clamp(room - min + 1, 0, count);
-      shape.full_end[k] = whole_only || room_after < -min ? 0 : full_end;
-      shape.candidates_end[k] = std::clamp((left ? x : last_column - x) - min + 1, 0, count);
+      const int full_end = std::clamp(steps * room - min + 1, 0, count);
+      // Of candidates between pixels, several in a row have windows of the same size.
+      const bool is_irregular =
+          whole_only || steps * room_after < -min || (steps > 1 && full_end < count);
+      shape.full_end[k] = is_irregular ? 0 : full_end;
+      shape.candidates_end[k] =
+          std::clamp(steps * (left ? x : last_column - x) - min + 1, 0, count);
       shape.full_columns[k] = last - begin + 1;
     }
     return shape;

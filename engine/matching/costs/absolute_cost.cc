@@ -12,7 +12,8 @@ class AbsoluteModel : public CostModel {
   using CostModel::CostModel;
 
   void energies(const CostRow& row, float* cells) const override {
-    kernels::absolute_row(row.intensities(), std::numeric_limits<float>::infinity(), cells);
+    kernels::absolute_row(row.pairs(&GreyPlanes::grey), std::numeric_limits<float>::infinity(),
+                          cells);
   }
   [[nodiscard]] CostBounds energy_bounds() const override { return {0, kWhite}; }
   [[nodiscard]] kernels::KernelWork energy_work(int channels) const override {
@@ -25,7 +26,8 @@ class TruncatedModel final : public AbsoluteModel {
   using AbsoluteModel::AbsoluteModel;
 
   void energies(const CostRow& row, float* cells) const override {
-    kernels::absolute_row(row.intensities(), static_cast<float>(parameters().truncation), cells);
+    kernels::absolute_row(row.pairs(&GreyPlanes::grey), static_cast<float>(parameters().truncation),
+                          cells);
   }
   [[nodiscard]] CostBounds energy_bounds() const override {
     return {0, static_cast<float>(std::min(kWhite, parameters().truncation))};
@@ -39,7 +41,6 @@ MatchingCost absolute_cost() {
           .name = "absolute",
           .description = "absolute difference of grey levels",
           .options = {"match-exposure"},
-          .can_be_interpolated = true,
           .jump_limit = 10,
           .make_planes = make_planes_as<GreyPlanes>,
           .make_model = make_model_as<AbsoluteModel>};
@@ -50,7 +51,6 @@ MatchingCost truncated_cost() {
           .name = "truncated",
           .description = "absolute difference, at most --truncation",
           .options = {"match-exposure", "truncation"},
-          .can_be_interpolated = true,
           .jump_limit = 10,
           .make_planes = make_planes_as<GreyPlanes>,
           .make_model = make_model_as<TruncatedModel>};

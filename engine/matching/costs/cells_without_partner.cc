@@ -7,6 +7,7 @@ namespace vantage {
 
 void clear_without_partner(const kernels::CandidateGeometry& geometry, int radius,
                            scheduler::Range columns, int pitch, std::int32_t* sums) {
+  radius *= geometry.steps_per_px;
   const auto clear = [&](int x) {
     const kernels::CandidateRange inside = geometry.with_partner(x);
     const int inside_end = std::max(inside.begin, inside.end);

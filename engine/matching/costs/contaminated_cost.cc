@@ -12,11 +12,11 @@ class ContaminatedModel final : public CostModel {
   using CostModel::CostModel;
 
   void energies(const CostRow& row, float* cells) const override {
-    kernels::contaminated_energy_row(row.intensities(), measurement(), cells);
+    kernels::contaminated_energy_row(row.pairs(&GreyPlanes::grey), measurement(), cells);
   }
   /// With several channels: the exponential of the mean energy.
   void likelihoods(const CostRow& row, float* cells) const override {
-    const kernels::GreyPairs intensities = row.intensities();
+    const kernels::GreyPairs intensities = row.pairs(&GreyPlanes::grey);
     if (intensities.channels == 1) {
       kernels::contaminated_likelihood_row(intensities, measurement(), cells);
     } else {
@@ -47,7 +47,6 @@ MatchingCost contaminated_cost() {
           .name = "contaminated",
           .description = "log-likelihood, Gaussian noise with outliers",
           .options = {"match-exposure", "sigma-measurement", "epsilon-measurement"},
-          .can_be_interpolated = true,
           .jump_limit = 1.5,
           .make_planes = make_planes_as<GreyPlanes>,
           .make_model = make_model_as<ContaminatedModel>};

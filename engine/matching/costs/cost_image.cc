@@ -19,9 +19,20 @@ void CostImage::prepare(const Photograph& photograph, const MethodParameters& pa
   }
   height_ = photograph.height();
   channels_ = parameters.colour == ColourUse::kChannels && photograph.channels() >= 3 ? 3 : 1;
-  planes_->prepare({photograph, use.intensity_changes, channels_, margins_of(geometry),
-                    use.as_partner_of_left, execution},
-                   parameters);
+  const bool is_partner = use.as_partner_of_left || use.as_partner_of_right;
+  phases_ = is_partner ? use.phases : 1;
+  // Whole columns last: those are what the image is as a reference.
+  for (int phase = phases_ - 1; phase >= 0; --phase) {
+    planes_->prepare({photograph,
+                      use.intensity_changes,
+                      channels_,
+                      margins_of(geometry),
+                      use.as_partner_of_left,
+                      use.as_partner_of_right,
+                      {phase, phases_},
+                      execution},
+                     parameters);
+  }
 }
 
 std::size_t CostImage::held_bytes() const { return planes_ ? planes_->held_bytes() : 0; }

@@ -23,6 +23,9 @@ struct CostImageUse {
   bool as_partner_of_right = true;
   /// Applied to the intensities before any feature is computed.
   IntensityChanges intensity_changes = {};
+  /// As a partner: samples per pixel, ≥ 1 (sample_phases()). Between pixels they are those of the
+  /// image resampled there, see kernels/row_resampling.
+  int phases = 1;
 };
 
 /// Everything that a cost reads of one photograph: luma or channel intensities, gradients, census
@@ -42,6 +45,7 @@ class CostImage {
 
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] int channels() const { return channels_; }  ///< number of compared channels: 1 or 3
+  [[nodiscard]] int phases() const { return phases_; }      ///< CostImageUse::phases
   /// The planes, of the cost's own type.
   [[nodiscard]] const CostPlanes& planes() const { return *planes_; }
   /// Bytes of all planes.
@@ -50,16 +54,22 @@ class CostImage {
  private:
   int height_ = 0;
   int channels_ = 1;
+  int phases_ = 1;
   std::optional<MatchCost> cost_;  ///< the cost that `planes_` belong to
   std::unique_ptr<CostPlanes> planes_;
 };
 
+/// Samples per pixel of a partner for which all its candidates lie on samples, at most
+/// kMaxSamplePhases: if more are needed, candidates are rounded to the nearest sample.
+inline constexpr int kMaxSamplePhases = 16;
+int sample_phases(double baseline_ratio, int steps_per_px);
+
 /// An image that the reference is compared with.
 struct CostPartner {
   const CostImage* image = nullptr;
-  /// The partner of column x is x + direction · disparity · baseline_ratio, interpolated linearly
-  /// where it lies between pixels (6.6; Okutomi & Kanade). ≠ 0, of magnitude ≤ 1000; negative: a
-  /// camera on the other side, whose image must be prepared as a partner of the other direction.
+  /// The partner of column x is x + direction · disparity · baseline_ratio (6.6; Okutomi & Kanade),
+  /// rounded to the samples of the image. ≠ 0, of magnitude ≤ 1000; negative: a camera on the other
+  /// side, whose image must be prepared as a partner of the other direction.
   double baseline_ratio = 1;
   /// The partner's row is y + direction · disparity_y_px (5.5.3). Partners in rows outside the
   /// image are treated like those in columns outside.

@@ -1,6 +1,7 @@
 #include "engine/matching/costs/cost_planes.h"
 
 #include "engine/image/intensity_rows.h"
+#include "kernels/row_resampling/row_resampling.h"
 
 namespace vantage {
 namespace {
@@ -15,10 +16,27 @@ void change_intensities(const IntensityChange& change, int width, float* intensi
                  [&](float level) { return gain * level + offset; });
 }
 
+/// Calls write(row) for the row of whole columns, then moves it to the columns of the phase.
+template <typename Write>
+void write_at_phase(const PlaneSource& source, float* intensities, const Write& write) {
+  if (source.phase.is_whole()) {
+    write(intensities);
+    return;
+  }
+  const int width = source.width();
+  const auto work =
+      source.execution.scratch().lease(sizeof(float) * static_cast<std::size_t>(width));
+  auto* const whole = reinterpret_cast<float*>(work.data());
+  write(whole);
+  const float fraction =
+      static_cast<float>(source.phase.index) / static_cast<float>(source.phase.count);
+  kernels::resample_row(whole, width, fraction, intensities);
+}
+
 }  // namespace
 
 PlaneMargins margins_of(const kernels::CandidateGeometry& geometry) {
-  // Lane i of column x is read at x + disparity_min + i in both the plain and the mirrored plane.
+  // Lane i of sample n is read at n + disparity_min + i in both the plain and the mirrored plane.
   // Kernels write whole vectors: up to a lane multiple past the last pixel used.
   return {std::max(kFilterMarginBefore, -geometry.disparity_min),
           std::max(kFilterMarginAfter,
@@ -26,8 +44,10 @@ PlaneMargins margins_of(const kernels::CandidateGeometry& geometry) {
 }
 
 void PlaneSource::luma_row(int y, float* intensities) const {
-  intensity_row(photograph, y, intensities);
-  change_intensities(intensity_changes.luma, width(), intensities);
+  write_at_phase(*this, intensities, [&](float* row) {
+    intensity_row(photograph, y, row);
+    change_intensities(intensity_changes.luma, width(), row);
+  });
 }
 
 void PlaneSource::channel_row(std::size_t channel, int y, float* intensities) const {
@@ -35,8 +55,10 @@ void PlaneSource::channel_row(std::size_t channel, int y, float* intensities) co
     luma_row(y, intensities);
     return;
   }
-  channel_intensity_row(photograph, static_cast<int>(channel), y, intensities);
-  change_intensities(intensity_changes.channels[channel], width(), intensities);
+  write_at_phase(*this, intensities, [&](float* row) {
+    channel_intensity_row(photograph, static_cast<int>(channel), y, row);
+    change_intensities(intensity_changes.channels[channel], width(), row);
+  });
 }
 
 void prepare_filter_intensities(const PlaneSource& source, FilterIntensities& intensities) {

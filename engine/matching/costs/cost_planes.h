@@ -25,6 +25,15 @@ struct PlaneMargins {
 /// Margins for every lane of every candidate of `geometry`, that of a left-reference map.
 PlaneMargins margins_of(const kernels::CandidateGeometry& geometry);
 
+/// Columns of an image at x + index / count. If partners lie between pixels, the planes of an image
+/// are computed once per phase, each time from the image resampled at those columns.
+struct SamplePhase {
+  int index = 0;
+  int count = 1;
+
+  [[nodiscard]] bool is_whole() const { return index == 0; }
+};
+
 /// A photograph as costs read it, and the shape of the planes computed from it.
 struct PlaneSource {
   const Photograph& photograph;
@@ -32,6 +41,8 @@ struct PlaneSource {
   int channels;  ///< 1 (luma) or 3
   PlaneMargins margins;
   bool has_mirrored;
+  bool has_unmirrored;  ///< of samples between pixels
+  SamplePhase phase;
   Execution& execution;
 
   [[nodiscard]] int width() const { return photograph.width(); }
@@ -86,30 +97,66 @@ void mirror_row(const T* row, int width, T* mirrored) {
 }
 
 /// One quantity per pixel. If the image is the partner of a left reference, also a copy with
-/// mirrored rows.
+/// mirrored rows. With several phases, partners have rows of their own, whose samples are those of
+/// all phases in order.
 template <typename T>
 struct FeaturePlane {
   IntensityPlane<T> plain;
   IntensityPlane<T> mirrored;
+  IntensityPlane<T> between;  ///< with several phases: not mirrored, for a right reference
 
   void resize(const PlaneSource& source) {
     const auto [before, after] = source.margins;
     plain.resize(source.width(), source.height(), before, after);
+    const int samples = last_sample(source) + 1;
     if (source.has_mirrored) {
-      mirrored.resize(source.width(), source.height(), before, after);
+      mirrored.resize(samples, source.height(), before, after);
+    }
+    if (source.has_unmirrored && source.phase.count > 1) {
+      between.resize(samples, source.height(), before, after);
     }
   }
-  /// Writes the margins of plain row y, whose pixels must be filled, and the mirrored row if
-  /// needed.
+  /// Writes the margins of plain row y, whose pixels must be filled, and the samples of partners.
+  /// With several phases, phase 0 comes last.
   void finish_row(const PlaneSource& source, int y) {
     plain.fill_margins(y);
-    if (source.has_mirrored) {
+    if (source.phase.count > 1) {
+      finish_phase(source, y);
+    } else if (source.has_mirrored) {
       mirror_row(plain.row(y), source.width(), mirrored.row(y));
       mirrored.fill_margins(y);
     }
   }
+  /// The rows of an image that is a partner.
+  [[nodiscard]] const IntensityPlane<T>& of_partner(bool is_mirrored, int phases) const {
+    return is_mirrored ? mirrored : phases > 1 ? between : plain;
+  }
   [[nodiscard]] std::size_t held_bytes() const {
-    return plain.held_bytes() + mirrored.held_bytes();
+    return plain.held_bytes() + mirrored.held_bytes() + between.held_bytes();
+  }
+
+ private:
+  static int last_sample(const PlaneSource& source) {
+    return source.phase.count * (source.width() - 1);
+  }
+  void finish_phase(const PlaneSource& source, int y) {
+    const auto [index, count] = source.phase;
+    const int last = last_sample(source);
+    const T* const pixels = plain.row(y);
+    // The last column of other phases lies outside the image.
+    const int columns = source.width() - (index > 0 ? 1 : 0);
+    for (int x = 0; source.has_mirrored && x < columns; ++x) {
+      mirrored.row(y)[last - (count * x + index)] = pixels[x];
+    }
+    for (int x = 0; source.has_unmirrored && x < columns; ++x) {
+      between.row(y)[count * x + index] = pixels[x];
+    }
+    if (index == 0 && source.has_mirrored) {
+      mirrored.fill_margins(y);
+    }
+    if (index == 0 && source.has_unmirrored) {
+      between.fill_margins(y);
+    }
   }
 };
 

@@ -24,10 +24,23 @@ class GradientModel final : public CostModel {
   /// (1−ε) exp((E − max over the column)/σ) + ε, for cells with a partner.
   void likelihoods(const CostRow& row, float* cells) const override {
     energies(row, cells);
-    kernels::likelihood_of_evidence(
-        {row.partner.geometry(), row.columns.begin, row.columns.size()},
-        static_cast<float>(std::max(kernels::kMinEvidenceSigma, parameters().sigma_measurement)),
-        measurement().epsilon, cells);
+    const auto convert = [&](const kernels::EvidenceRow& evidence, float* of_columns) {
+      kernels::likelihood_of_evidence(
+          evidence,
+          static_cast<float>(std::max(kernels::kMinEvidenceSigma, parameters().sigma_measurement)),
+          measurement().epsilon, of_columns);
+    };
+    const kernels::CandidateGeometry& geometry = row.partner.geometry();
+    if (!row.partner.is_gathered()) {
+      convert({geometry, row.columns.begin, row.columns.size()}, cells);
+      return;
+    }
+    for (int x = row.columns.begin; x < row.columns.end; ++x, cells += geometry.lanes()) {
+      // A geometry whose column end − 1 has just these candidates.
+      const auto [begin, end] = row.partner.with_partner(x);
+      convert({{.width = end - begin, .disparity_min = 0, .count = geometry.count}, end - 1, 1},
+              cells);
+    }
   }
   [[nodiscard]] std::optional<float> energy_without_partner() const override { return 0.0F; }
   [[nodiscard]] CostBounds energy_bounds() const override {

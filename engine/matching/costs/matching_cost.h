@@ -29,15 +29,12 @@ struct CostRow {
   const PartnerRows& partner;
   int y = 0;
   scheduler::Range columns;
-  float* work = nullptr;  ///< partner.work_floats(columns) floats
+  GatherMemory* memory = nullptr;  ///< of partner.gather_bytes(); null if nothing is gathered
 
-  [[nodiscard]] kernels::GreyPairs intensities() const {
-    return partner.intensities(y, columns, work);
-  }
   /// `planes`: a member of the cost's own type of planes.
   template <typename Planes>
   [[nodiscard]] auto pairs(Planes planes) const {
-    return partner.pairs(y, columns, planes);
+    return partner.pairs(y, columns, memory, planes);
   }
 };
 
@@ -101,8 +98,6 @@ struct MatchingCost {
   std::vector<std::string_view> options;
 
   ResidualUnit unit = ResidualUnit::kGreyLevels;
-  /// Whether features of partners between pixels can be interpolated (PartnerRows::intensities).
-  bool can_be_interpolated = false;
   /// Energies are −evidence: of either sign, compared with 0, without a scale of their own;
   /// likelihoods compare each candidate with the best one.
   bool is_evidence = false;

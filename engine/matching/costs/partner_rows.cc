@@ -6,32 +6,27 @@
 #include <cmath>
 
 #include "engine/error.h"
-#include "engine/matching/costs/grey_planes.h"
 
 namespace vantage {
+
 namespace {
 
-using kernels::CandidateRange;
-using kernels::CandidateShift;
-using kernels::FeaturePairs;
-using scheduler::Range;
-
-/// Shifts of all lanes. Products that differ from an integer only by rounding become that integer.
-std::vector<CandidateShift> shifts_of(const kernels::CandidateGeometry& geometry, double ratio) {
-  constexpr double kRounding = 1e-9;
-  std::vector<CandidateShift> shifts;
-  for (int lane = 0; lane < geometry.lanes(); ++lane) {
-    double shift = (geometry.disparity_min + lane) * ratio;
-    if (std::abs(shift - std::round(shift)) < kRounding) {
-      shift = std::round(shift);
-    }
-    const double whole = std::floor(shift);
-    shifts.push_back({static_cast<int>(whole), static_cast<float>(shift - whole)});
-  }
-  return shifts;
-}
+/// Products of ratios that differ by less from whole numbers are these.
+constexpr double kRounding = 1e-9;
 
 }  // namespace
+
+using kernels::CandidateRange;
+
+int sample_phases(double baseline_ratio, int steps_per_px) {
+  for (int phases = 1; phases < kMaxSamplePhases; ++phases) {
+    const double samples = std::abs(baseline_ratio) * phases / steps_per_px;
+    if (std::abs(samples - std::round(samples)) < kRounding) {
+      return phases;
+    }
+  }
+  return kMaxSamplePhases;
+}
 
 PartnerRows::PartnerRows(const CostImage& reference, const CostPartner& partner,
                          const kernels::CandidateGeometry& geometry)
@@ -50,15 +45,21 @@ PartnerRows::PartnerRows(const CostImage& reference, const CostPartner& partner,
   if (ratio < 0) {
     geometry_.direction = -geometry_.direction;
   }
-  if (std::abs(ratio) != 1) {
-    shifts_ = shifts_of(geometry_, std::abs(ratio));
+  const int phases = partner_.phases();
+  if (std::abs(std::abs(ratio) * phases / geometry.steps_per_px - 1) < kRounding) {
+    geometry_.steps_per_px = phases;
+    return;
+  }
+  for (int lane = 0; lane < geometry.lanes(); ++lane) {
+    const double shift_px =
+        (geometry.disparity_min + lane) * std::abs(ratio) / geometry.steps_per_px;
+    // Halves go up, so that offsets ascend whatever the sign.
+    offsets_.push_back(static_cast<int>(std::floor(shift_px * phases + 0.5)));
   }
 }
 
-std::size_t PartnerRows::work_floats(int columns) const {
-  return is_interpolated() ? static_cast<std::size_t>(channels()) *
-                                 static_cast<std::size_t>(columns) * shifts_.size()
-                           : 0;
+std::size_t PartnerRows::gather_bytes(int columns) const {
+  return is_gathered() ? kMaxFeatureBytes * static_cast<std::size_t>(columns) * offsets_.size() : 0;
 }
 
 int PartnerRows::channels() const { return std::max(reference_.channels(), partner_.channels()); }
@@ -69,34 +70,19 @@ int PartnerRows::partner_row(int y) const {
   return std::clamp(y + rows_down_, 0, partner_.height() - 1);
 }
 
-int PartnerRows::position(int x) const { return mirrored() ? geometry_.width - 1 - x : x; }
+int PartnerRows::sample(int x) const {
+  return partner_.phases() * (mirrored() ? geometry_.width - 1 - x : x);
+}
 
 CandidateRange PartnerRows::with_partner(int x) const {
-  if (!is_interpolated()) {
+  if (!is_gathered()) {
     return geometry_.with_partner(x);
   }
-  return kernels::candidates_inside(shifts_.data(), geometry_.count, geometry_.width, position(x));
+  return kernels::candidates_inside(offsets_.data(), geometry_.count, last_sample(), sample(x));
 }
 
 CandidateRange PartnerRows::columns_with_all_partners() const {
-  return is_interpolated() ? CandidateRange{} : geometry_.columns_with_all_partners();
-}
-
-FeaturePairs<float, 1> PartnerRows::intensities(int y, Range columns, float* work) const {
-  FeaturePairs<float, 1> row = pairs(y, columns, &GreyPlanes::grey);
-  if (!is_interpolated()) {
-    return row;
-  }
-  row.partner_step = row.lanes;
-  const auto& planes = static_cast<const GreyPlanes&>(partner_.planes());
-  for (int c = 0; c < row.channels; ++c) {
-    kernels::interpolate_candidates(
-        {geometry_.width, position(columns.begin), step(), columns.size(), row.lanes},
-        shifts_.data(), partner_pixels(planes.grey[channel_of(partner_, c)][0], y), work);
-    row.channel[static_cast<std::size_t>(c)].partner[0] = work;
-    work += static_cast<std::ptrdiff_t>(columns.size()) * row.lanes;
-  }
-  return row;
+  return is_gathered() ? CandidateRange{} : geometry_.columns_with_all_partners();
 }
 
 }  // namespace vantage

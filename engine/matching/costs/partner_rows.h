@@ -2,29 +2,52 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <stdexcept>
 #include <vector>
 
 #include "engine/matching/costs/cost_image.h"
 #include "engine/matching/costs/cost_planes.h"
-#include "kernels/candidate_interpolation/candidate_interpolation.h"
+#include "kernels/candidate_gather/candidate_gather.h"
 #include "kernels/candidates.h"
 #include "kernels/feature_pairs.h"
 #include "scheduler/range.h"
 
 namespace vantage {
 
+/// Memory for the gathered features of one block of columns, taken piece by piece.
+class GatherMemory {
+ public:
+  GatherMemory(std::byte* begin, std::size_t bytes) : next_(begin), end_(begin + bytes) {}
+
+  template <typename T>
+  [[nodiscard]] T* take(std::size_t count) {
+    auto* const taken = reinterpret_cast<T*>(next_);
+    next_ += (count * sizeof(T) + alignof(float) - 1) / alignof(float) * alignof(float);
+    if (next_ > end_) {
+      throw std::logic_error("a cost gathers more than kMaxFeatureBytes per candidate");
+    }
+    return taken;
+  }
+
+ private:
+  std::byte* next_;
+  std::byte* end_;
+};
+
 /// Rows of a reference image and of one partner, as kernels compare them. Thread rule: immutable.
 class PartnerRows {
  public:
+  /// Upper limit of the bytes that a cost compares per pixel: three channels of three floats.
+  static constexpr std::size_t kMaxFeatureBytes = 3 * 3 * sizeof(float);
+
   /// `geometry`: of the map. Throws UsageError for a baseline ratio that is 0 or not finite.
   PartnerRows(const CostImage& reference, const CostPartner& partner,
               const kernels::CandidateGeometry& geometry);
 
-  /// Whether partners lie between pixels or farther apart than the disparities: then only
-  /// intensities can be compared.
-  [[nodiscard]] bool is_interpolated() const { return !shifts_.empty(); }
-  /// Floats of working memory that grey_levels() needs for this number of columns.
-  [[nodiscard]] std::size_t work_floats(int columns) const;
+  /// Whether candidates are not neighbouring samples, so that partners are looked up one by one.
+  [[nodiscard]] bool is_gathered() const { return !offsets_.empty(); }
+  /// Bytes of working memory that pairs() needs for this number of columns.
+  [[nodiscard]] std::size_t gather_bytes(int columns) const;
   /// Number of compared channels: 1 or 3.
   [[nodiscard]] int channels() const;
 
@@ -34,15 +57,16 @@ class PartnerRows {
   [[nodiscard]] kernels::CandidateRange with_partner(int x) const;
   /// Columns where the partners of all candidates lie inside; begin may exceed end.
   [[nodiscard]] kernels::CandidateRange columns_with_all_partners() const;
-  /// Candidates as counted in this partner, whose direction may be opposite. Not for interpolated
-  /// partners.
+  /// Candidates as counted in this partner, whose direction may be opposite. Of a gathered partner,
+  /// only count and lanes are meaningful.
   [[nodiscard]] const kernels::CandidateGeometry& geometry() const { return geometry_; }
 
   /// The first `used` of the cost's `planes` for every channel, at the columns of row y and at
-  /// their partners. Rows outside are replaced by the nearest one. Not for interpolated partners.
+  /// their partners. Rows outside are replaced by the nearest one. `memory`: for what is gathered;
+  /// null if is_gathered() is false.
   template <typename Planes, typename T, std::size_t kPlanes>
   [[nodiscard]] kernels::FeaturePairs<T, static_cast<int>(kPlanes)> pairs(
-      int y, scheduler::Range columns,
+      int y, scheduler::Range columns, GatherMemory* memory,
       std::array<std::array<FeaturePlane<T>, kPlanes>, 3> Planes::*planes,
       std::size_t used = kPlanes) const {
     const auto& of_reference = static_cast<const Planes&>(reference_.planes()).*planes;
@@ -51,23 +75,21 @@ class PartnerRows {
     for (int c = 0; c < row.channels; ++c) {
       // With a colour image, a grey image has the same intensity in all channels.
       set_channel(of_reference[channel_of(reference_, c)], of_partner[channel_of(partner_, c)], y,
-                  columns, used, row.channel[static_cast<std::size_t>(c)]);
+                  columns, used, memory, row.channel[static_cast<std::size_t>(c)]);
     }
     return row;
   }
   /// As above, for planes of luma.
   template <typename Planes, typename T, std::size_t kPlanes>
   [[nodiscard]] kernels::FeaturePairs<T, static_cast<int>(kPlanes)> pairs(
-      int y, scheduler::Range columns, std::array<FeaturePlane<T>, kPlanes> Planes::*planes) const {
+      int y, scheduler::Range columns, GatherMemory* memory,
+      std::array<FeaturePlane<T>, kPlanes> Planes::*planes) const {
     auto row = empty_pairs<T, kPlanes>(columns, 1);
     set_channel(static_cast<const Planes&>(reference_.planes()).*planes,
-                static_cast<const Planes&>(partner_.planes()).*planes, y, columns, kPlanes,
+                static_cast<const Planes&>(partner_.planes()).*planes, y, columns, kPlanes, memory,
                 row.channel[0]);
     return row;
   }
-  /// For costs that use GreyPlanes; interpolated in `work` if necessary.
-  [[nodiscard]] kernels::FeaturePairs<float, 1> intensities(int y, scheduler::Range columns,
-                                                            float* work) const;
 
  private:
   template <typename T, std::size_t kPlanes>
@@ -75,40 +97,52 @@ class PartnerRows {
       scheduler::Range columns, int channels) const {
     kernels::FeaturePairs<T, static_cast<int>(kPlanes)> row;
     row.channels = channels;
-    row.partner_step = step();
-    row.columns = columns.size();
     row.lanes = geometry_.lanes();
+    row.partner_step = is_gathered() ? row.lanes : step();
+    row.columns = columns.size();
     row.count = geometry_.count;
     return row;
   }
   template <typename T, std::size_t kPlanes, typename Channel>
   void set_channel(const PlaneSet<T, kPlanes>& of_reference, const PlaneSet<T, kPlanes>& of_partner,
-                   int y, scheduler::Range columns, std::size_t used, Channel& channel) const {
-    const int offset = position(columns.begin) + geometry_.disparity_min;
+                   int y, scheduler::Range columns, std::size_t used, GatherMemory* memory,
+                   Channel& channel) const {
     for (std::size_t p = 0; p < used; ++p) {
       channel.reference[p] = of_reference[p].plain.row(y) + columns.begin;
-      channel.partner[p] = partner_pixels(of_partner[p], y) + offset;
+      const T* const samples =
+          of_partner[p].of_partner(mirrored(), partner_.phases()).row(partner_row(y));
+      channel.partner[p] = is_gathered()
+                               ? gathered(samples, columns, *memory)
+                               : samples + sample(columns.begin) + geometry_.disparity_min;
     }
+  }
+  template <typename T>
+  [[nodiscard]] const T* gathered(const T* samples, scheduler::Range columns,
+                                  GatherMemory& memory) const {
+    T* const values = memory.take<T>(static_cast<std::size_t>(columns.size()) * offsets_.size());
+    kernels::gather_candidates(
+        {last_sample(), sample(columns.begin), step(), columns.size(), geometry_.lanes()},
+        offsets_.data(), samples, values);
+    return values;
   }
   static std::size_t channel_of(const CostImage& image, int channel) {
     return static_cast<std::size_t>(std::min(channel, image.channels() - 1));
   }
   [[nodiscard]] int partner_row(int y) const;
-  /// Position of column x at shift 0 in a row of the partner, mirrored or not.
-  [[nodiscard]] int position(int x) const;
-  [[nodiscard]] int step() const { return mirrored() ? -1 : 1; }
+  [[nodiscard]] int last_sample() const { return partner_.phases() * (geometry_.width - 1); }
+  /// Number of the sample at column x and shift 0 in a row of the partner, mirrored or not.
+  [[nodiscard]] int sample(int x) const;
+  /// Samples from column to column.
+  [[nodiscard]] int step() const { return mirrored() ? -partner_.phases() : partner_.phases(); }
   [[nodiscard]] bool mirrored() const { return geometry_.direction < 0; }
-  template <typename T>
-  [[nodiscard]] const T* partner_pixels(const FeaturePlane<T>& plane, int y) const {
-    return (mirrored() ? plane.mirrored : plane.plain).row(partner_row(y));
-  }
 
   const CostImage& reference_;
   const CostImage& partner_;
+  /// One step is one sample unless is_gathered().
   kernels::CandidateGeometry geometry_;
   int rows_down_;
-  /// Per lane; empty if the shift is disparity_min + lane.
-  std::vector<kernels::CandidateShift> shifts_;
+  /// Sample of each lane at column 0 of the row; empty if it is disparity_min + lane.
+  std::vector<int> offsets_;
 };
 
 }  // namespace vantage

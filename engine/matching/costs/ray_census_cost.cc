@@ -41,7 +41,7 @@ class RayCensusModel final : public CostModel {
 
  private:
   [[nodiscard]] kernels::RayCensusPairs codes(const CostRow& row) const {
-    return ray_codes(row.partner, row.y, row.columns, thresholds_);
+    return ray_codes(row.partner, row.y, row.columns, row.memory, thresholds_);
   }
 
   int thresholds_;
@@ -59,7 +59,7 @@ void RayCensusPlanes::prepare(const PlaneSource& source, const MethodParameters&
   });
   const auto* const image = std::get_if<Image<std::uint8_t>>(&source.photograph.pixels);
   if (image != nullptr && image->channels() == 1 && source.channels == 1 && thresholds == 1 &&
-      source.intensity_changes.luma.is_none()) {
+      source.intensity_changes.luma.is_none() && source.phase.is_whole()) {
     prepare_byte_codes(source, *image);
   } else {
     prepare_codes(source, thresholds);

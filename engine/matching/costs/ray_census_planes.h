@@ -27,10 +27,11 @@ class RayCensusPlanes final : public CostPlanes {
   IntensityPlane<std::uint8_t> bytes_;  ///< intensities of 8-bit grey images
 };
 
-/// thresholds: those the images were prepared with.
+/// thresholds: those the images were prepared with. `memory`: as for PartnerRows::pairs().
 inline kernels::RayCensusPairs ray_codes(const PartnerRows& partner, int y,
-                                         scheduler::Range columns, int thresholds) {
-  return {partner.pairs(y, columns, &RayCensusPlanes::codes,
+                                         scheduler::Range columns, GatherMemory* memory,
+                                         int thresholds) {
+  return {partner.pairs(y, columns, memory, &RayCensusPlanes::codes,
                         static_cast<std::size_t>(kernels::ray_census_bytes(thresholds))),
           thresholds};
 }

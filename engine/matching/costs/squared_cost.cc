@@ -9,11 +9,11 @@ class SquaredModel final : public CostModel {
   using CostModel::CostModel;
 
   void energies(const CostRow& row, float* cells) const override {
-    kernels::squared_row(row.intensities(), cells);
+    kernels::squared_row(row.pairs(&GreyPlanes::grey), cells);
   }
   /// The mean of the channels' squares is the squared residual.
   void likelihoods(const CostRow& row, float* cells) const override {
-    kernels::contaminated_likelihood_row(row.intensities(), measurement(), cells);
+    kernels::contaminated_likelihood_row(row.pairs(&GreyPlanes::grey), measurement(), cells);
   }
   [[nodiscard]] CostBounds energy_bounds() const override {
     return {0, static_cast<float>(kWhite * kWhite)};
@@ -35,7 +35,6 @@ MatchingCost squared_cost() {
           .name = "squared",
           .description = "squared difference of grey levels",
           .options = {"match-exposure"},
-          .can_be_interpolated = true,
           .has_column_sums = true,
           .max_contrast = kContrastIntensity * kContrastIntensity,
           .jump_limit = 200,

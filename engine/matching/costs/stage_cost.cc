@@ -1,20 +1,16 @@
 #include "engine/matching/costs/stage_cost.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <cstddef>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "engine/column_work.h"
-#include "engine/error.h"
 #include "engine/matching/costs/cost_table.h"
 #include "engine/matching/costs/matching_cost.h"
 #include "engine/matching/costs/partner_rows.h"
-#include "engine/word_list.h"
 
 namespace vantage {
 namespace {
@@ -37,9 +33,9 @@ class CostStage final : public scheduler::RowStage {
 
   [[nodiscard]] std::string_view name() const override { return "cost"; }
   [[nodiscard]] std::size_t bytes_per_column() const override { return sizeof(float) * lanes(); }
-  /// Cells of one block for the partners after the first, and work space for interpolation.
+  /// Cells of one block for the partners after the first, and what is gathered.
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
-    return in_one_go() ? 0 : sizeof(float) * (kBlockColumns * lanes() + max_work_floats());
+    return in_one_go() ? 0 : sizeof(float) * kBlockColumns * lanes() + max_gather_bytes();
   }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     kernels::KernelWork work;
@@ -47,8 +43,8 @@ class CostStage final : public scheduler::RowStage {
       work =
           work + (meaning_ == CellMeaning::kEnergy ? model_->energy_work(partner.channels())
                                                    : model_->likelihood_work(partner.channels()));
-      for (int c = 0; partner.is_interpolated() && c < partner.channels(); ++c) {
-        work = work + kernels::kInterpolateCandidatesWork;
+      if (partner.is_gathered()) {
+        work = work + kernels::kGatherCandidatesWork;
       }
       if (&partner != &partners_.front()) {
         work = work + kernels::kCombineCellsWork;
@@ -64,12 +60,12 @@ class CostStage final : public scheduler::RowStage {
       return;
     }
     auto* of_partner = reinterpret_cast<float*>(task.state);
-    float* work = of_partner + kBlockColumns * lanes();
+    auto* const memory = reinterpret_cast<std::byte*>(of_partner + kBlockColumns * lanes());
     for (int x = task.columns.begin; x < task.columns.end; x += kBlockColumns) {
       const Range block = Range{x, x + kBlockColumns}.widened(0, task.columns);
-      compare(partners_.front(), task.y, block, work, cells);
+      compare(partners_.front(), task.y, block, memory, cells);
       for (std::size_t k = 1; k < partners_.size(); ++k) {
-        compare(partners_[k], task.y, block, work, of_partner);
+        compare(partners_[k], task.y, block, memory, of_partner);
         if (meaning_ == CellMeaning::kEnergy) {
           kernels::add_cells(of_partner, block.size() * lanes_, cells);
         } else {
@@ -85,14 +81,14 @@ class CostStage final : public scheduler::RowStage {
 
   [[nodiscard]] std::size_t lanes() const { return static_cast<std::size_t>(lanes_); }
   [[nodiscard]] bool in_one_go() const {
-    return partners_.size() == 1 && !partners_.front().is_interpolated();
+    return partners_.size() == 1 && !partners_.front().is_gathered();
   }
-  [[nodiscard]] std::size_t max_work_floats() const {
-    std::size_t floats = 0;
+  [[nodiscard]] std::size_t max_gather_bytes() const {
+    std::size_t bytes = 0;
     for (const PartnerRows& partner : partners_) {
-      floats = std::max(floats, partner.work_floats(kBlockColumns));
+      bytes = std::max(bytes, partner.gather_bytes(kBlockColumns));
     }
-    return floats;
+    return bytes;
   }
 
   [[nodiscard]] std::optional<float> value_without_partner() const {
@@ -101,7 +97,8 @@ class CostStage final : public scheduler::RowStage {
   }
 
   /// Writes the cells of one partner.
-  void compare(const PartnerRows& partner, int y, Range columns, float* work, float* cells) const {
+  void compare(const PartnerRows& partner, int y, Range columns, std::byte* memory,
+               float* cells) const {
     if (without_partner_ && !partner.has_row(y)) {
       for (int j = 0; j < columns.size(); ++j, cells += lanes_) {
         std::fill(cells, cells + count_, *without_partner_);
@@ -109,7 +106,8 @@ class CostStage final : public scheduler::RowStage {
       }
       return;
     }
-    const CostRow row{partner, y, columns, work};
+    GatherMemory gather(memory, partner.gather_bytes(kBlockColumns));
+    const CostRow row{partner, y, columns, &gather};
     if (meaning_ == CellMeaning::kEnergy) {
       model_->energies(row, cells);
     } else {
@@ -148,17 +146,6 @@ class CostStage final : public scheduler::RowStage {
   std::optional<float> without_partner_;
 };
 
-/// "squared, absolute, truncated or contaminated".
-std::string interpolated_costs() {
-  std::vector<std::string_view> names;
-  for (const MatchingCost& cost : cost_table()) {
-    if (cost.can_be_interpolated) {
-      names.push_back(cost.name);
-    }
-  }
-  return word_list(names, "or");
-}
-
 }  // namespace
 
 std::unique_ptr<scheduler::RowStage> make_cost_stage(const MethodParameters& parameters,
@@ -169,12 +156,6 @@ std::unique_ptr<scheduler::RowStage> make_cost_stage(const MethodParameters& par
   std::vector<PartnerRows> rows;
   for (const CostPartner& partner : partners) {
     rows.emplace_back(reference, partner, geometry);
-    if (const MatchingCost& cost = cost_of(parameters);
-        rows.back().is_interpolated() && !cost.can_be_interpolated) {
-      throw UsageError(fmt::format(
-          "cost {} cannot be interpolated between pixels, as several baselines need, expected {}",
-          cost.name, interpolated_costs()));
-    }
   }
   return std::make_unique<CostStage>(parameters, geometry, std::move(rows), meaning, height);
 }

@@ -27,8 +27,7 @@ enum class CellMeaning {
 /// `reference`, prepared as a reference, `partners` (at least one), prepared as partners of this
 /// direction, and their planes must outlive the stage; all prepared with `parameters`, this range
 /// and equal sizes. With a colour image, a grey one has the same intensity in all channels. Throws
-/// UsageError for a baseline ratio out of range, and for one not ±1 with a cost that cannot be
-/// interpolated.
+/// UsageError for a baseline ratio out of range.
 std::unique_ptr<scheduler::RowStage> make_cost_stage(const MethodParameters& parameters,
                                                      const kernels::CandidateGeometry& geometry,
                                                      const CostImage& reference,

@@ -49,6 +49,7 @@ class DisparityPriorStage final : public scheduler::RowStage {
         .lanes = static_cast<int>(bytes_per_column() / sizeof(float)),
         .count = geometry_.count,
         .disparity_min = geometry_.disparity_min,
+        .steps_per_px = geometry_.steps_per_px,
         .first_candidate = first_candidate_,
         .weight = weight_,
         .max_contrast = max_contrast_,

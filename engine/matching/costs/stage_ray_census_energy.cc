@@ -45,7 +45,7 @@ class RayCensusEnergyStage final : public scheduler::RowStage {
       }
       return;
     }
-    kernels::ray_census_energy_row(ray_codes(partner_, task.y, task.columns, thresholds_),
+    kernels::ray_census_energy_row(ray_codes(partner_, task.y, task.columns, nullptr, thresholds_),
                                    energies_.by_distance, cells);
     const kernels::CandidateRange inner = partner_.columns_with_all_partners();
     close_columns({task.columns.begin, std::min(inner.begin, task.columns.end)}, task, cells);

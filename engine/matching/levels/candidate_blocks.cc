@@ -10,11 +10,13 @@ namespace {
 using kernels::kLaneMultiple;
 using scheduler::Range;
 
-/// Candidates on both sides of a coarse winner to include: the finer level finds the best one among
-/// them.
-constexpr int kReach = 2;
+/// Pixels of disparity on both sides of a coarse winner to include: the finer level finds the best
+/// candidate among them.
+constexpr int kReachPx = 2;
 /// Maximum difference of adjacent coarse winners in and around a smooth tile.
-constexpr int kSmoothStep = 2;
+constexpr int kSmoothStepPx = 2;
+/// Maximum number of candidates per pixel of disparity.
+constexpr int kMaxStepsPerPx = 4;
 /// Coarse pixels of a tile along one direction.
 constexpr int kCoarsePx = CandidateBlocks::kTilePx / 2;
 
@@ -38,8 +40,9 @@ Range blocks_with_partners(const kernels::CandidateGeometry& geometry, Range col
 
 }  // namespace
 
-void CandidateBlocks::resize(scheduler::Extent extent, int candidates, int max) {
+void CandidateBlocks::resize(scheduler::Extent extent, int candidates, int max, int steps_per_px) {
   extent_ = extent;
+  steps_per_px_ = steps_per_px;
   candidates_ = candidates;
   max_ = std::min(max, block_count());
   tile_columns_ = (extent.columns + kTilePx - 1) / kTilePx;
@@ -111,7 +114,7 @@ void CandidateBlocks::find_smooth_tiles(ImageView<const std::int32_t> winners, i
     std::int32_t step =
         *std::max_element(below.begin() + columns.begin, below.begin() + columns.end);
     step = std::max(step, *std::max_element(first, first + std::max(1, columns.size() - 1)));
-    is_smooth_[tile_at(tile_x, tile_y)] = step <= kSmoothStep ? 1 : 0;
+    is_smooth_[tile_at(tile_x, tile_y)] = step <= kSmoothStepPx * steps_per_px_ ? 1 : 0;
   }
 }
 
@@ -189,19 +192,20 @@ void CandidateBlocks::choose_tile(ImageView<const std::int32_t> winners, Range a
       max = std::max(max, of_row[x]);
     }
   }
-  const int only = block_of(min - kReach);
-  if (only == block_of(max + kReach)) {  // most tiles: there is nothing to vote on
+  const int reach = kReachPx * steps_per_px_;
+  const int only = block_of(min - reach);
+  if (only == block_of(max + reach)) {  // most tiles: there is nothing to vote on
     chosen[0] = static_cast<std::uint16_t>(only);
     counts_[tile] = 1;
     return;
   }
   std::fill(votes.begin(), votes.end(), 0);
-  static_assert(2 * kReach < kLaneMultiple);  // so at most two blocks
+  static_assert(2 * kReachPx * kMaxStepsPerPx <= kLaneMultiple);  // so at most two blocks
   for (int y = rows.begin; y < rows.end; ++y) {
     const std::int32_t* const of_row = winners.row(y);
     for (int x = columns.begin; x < columns.end; ++x) {
-      const int first = block_of(of_row[x] - kReach);
-      const int last = block_of(of_row[x] + kReach);
+      const int first = block_of(of_row[x] - reach);
+      const int last = block_of(of_row[x] + reach);
       ++votes[static_cast<std::size_t>(first)];
       votes[static_cast<std::size_t>(last)] += last != first ? 1 : 0;
     }

@@ -39,7 +39,7 @@ class CandidateBlocks {
     bool is_wanted = true;
   };
 
-  /// Tiles where coarse winners in and next to them differ by at most 2 from one to the next.
+  /// Tiles where coarse winners in and next to them differ by at most 2 px from one to the next.
   enum class SmoothTiles {
     kIgnored,
     kMarked,
@@ -48,12 +48,13 @@ class CandidateBlocks {
     kLeftOut,
   };
 
-  /// `max`: maximum number of blocks per tile, 1..kMaxCandidateBlocks. Memory is reused.
-  void resize(scheduler::Extent extent, int candidates, int max);
+  /// `max`: maximum number of blocks per tile, 1..kMaxCandidateBlocks. `steps_per_px`: candidates
+  /// per pixel of disparity, at most 4. Memory is reused.
+  void resize(scheduler::Extent extent, int candidates, int max, int steps_per_px = 1);
 
   /// Chooses the blocks of all tiles from the winning candidates of the next coarser level. Each of
   /// its pixels in or next to a tile votes for the blocks that contain its winner or a candidate
-  /// within two of it; the `max` blocks with the most votes are kept, ties going to the smaller
+  /// within 2 px of it; the `max` blocks with the most votes are kept, ties going to the smaller
   /// one. `selected`: the level's candidates if disparities will be selected on it: votes then go
   /// to the nearest block with partners, so that every pixel that has candidates with partners has
   /// one in a block of its tile. Identical for any `execution`.
@@ -108,6 +109,7 @@ class CandidateBlocks {
 
   scheduler::Extent extent_;
   int candidates_ = 0;
+  int steps_per_px_ = 1;
   int max_ = 1;
   int tile_columns_ = 0;
   int tile_rows_ = 0;

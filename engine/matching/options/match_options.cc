@@ -37,14 +37,24 @@ void validate_range(std::string_view field, DisparityRange range) {
   }
 }
 
-void validate_candidates(DisparityRange x, const std::optional<DisparityRange>& y) {
+void validate_candidates(DisparityRange x, const std::optional<DisparityRange>& y,
+                         const MethodParameters& parameters) {
   validate_range("disparities", x);
-  if (x.count() > kMaxCandidates) {
-    throw UsageError(fmt::format("disparities is {}:{} ({} candidates), expected at most {}", x.min,
-                                 x.max, x.count(), kMaxCandidates));
+  if (const int count = candidate_count(x, parameters); count > kMaxCandidates) {
+    throw UsageError(fmt::format(
+        "disparities is {}:{} ({} candidates{}), expected at most {}", x.min, x.max, count,
+        steps_per_px(parameters) > 1 ? fmt::format(" {} px apart", parameters.candidate_step_px)
+                                     : "",
+        kMaxCandidates));
   }
   if (!y) {
     return;
+  }
+  if (steps_per_px(parameters) > 1) {
+    throw UsageError(
+        fmt::format("candidate-step is {}, expected 1 with disparities-y: displacements are of "
+                    "whole pixels",
+                    parameters.candidate_step_px));
   }
   validate_range("disparities-y", *y);
   const long long pairs = static_cast<long long>(x.count()) * y->count();
@@ -75,7 +85,9 @@ void validate_reduced_search(const MethodParameters& parameters,
   if (is_two_dimensional || !can_reduce_search(parameters)) {
     throw UsageError(
         "search-size is not full, expected full but for a search along rows by aggregation bayes "
-        "with levels above 1, prior-smoothing maximum, selection winner, and cost census-rays with "
+        "with levels above 1, prior-smoothing maximum, selection winner, candidate-step 1, and "
+        "cost "
+        "census-rays with "
         "one threshold and colour luma");
   }
   if (refinement.edge_snapping_px > 0) {
@@ -110,6 +122,10 @@ void require_read(const RefinementOverrides& set, const RefinementOptions& in_fo
 
 }  // namespace
 
+int candidate_count(DisparityRange disparities, const MethodParameters& parameters) {
+  return steps_per_px(parameters) * (disparities.count() - 1) + 1;
+}
+
 bool can_check_levels(const MethodParameters& parameters) {
   return parameters.selection == Selection::kWinner && parameters.levels > 1 &&
          parameters.aggregation == Aggregation::kBayes;
@@ -119,9 +135,10 @@ void MatchOptions::validate() const {
   if (method && preset) {
     throw UsageError("method and preset are both set, expected one of them: a preset has a method");
   }
-  validate_candidates(disparities_auto ? DisparityRange{0, 0} : disparities, disparities_y);
   const MethodParameters in_force = resolved();
   vantage::validate(in_force);
+  validate_candidates(disparities_auto ? DisparityRange{0, 0} : disparities, disparities_y,
+                      in_force);
   if (in_force.candidate_blocks > 0 && disparities_y) {
     throw UsageError(fmt::format(
         "candidate-blocks is {}, expected 0 with disparities-y: blocks are of candidates along "

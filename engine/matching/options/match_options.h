@@ -13,6 +13,9 @@ namespace vantage {
 /// Maximum number of candidates per pixel; a two-dimensional search counts pairs of components.
 inline constexpr int kMaxCandidates = 4096;
 
+/// Number of candidates of `disparities`, which include those between pixels.
+int candidate_count(DisparityRange disparities, const MethodParameters& parameters);
+
 /// Whether maps of these parameters have levels whose winners can be cross-checked.
 bool can_check_levels(const MethodParameters& parameters);
 

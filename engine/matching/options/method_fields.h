@@ -119,6 +119,10 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
   visit(Field{"jump-limit", readers::kScanline, {is_limit, "a number of at least 0, or none"}},
         options.jump_limit...);
   visit(Field{"jump-penalty", readers::kScanline, kNotNegative}, options.jump_penalty...);
+  visit(Field{"candidate-step",
+              readers::kAll,
+              {[](double v) { return v == 1 || v == 0.5 || v == 0.25; }, "1, 0.5 or 0.25 pixels"}},
+        options.candidate_step_px...);
   visit(Field{"subpixel", readers::kAll}, options.subpixel...);
 }
 

@@ -170,7 +170,7 @@ bool can_reduce_search(const MethodParameters& parameters) {
          parameters.aggregation == Aggregation::kBayes &&
          parameters.prior_smoothing == PriorSmoothing::kMaximum &&
          parameters.cost == MatchCost::kRayCensus && parameters.census_thresholds == 1 &&
-         parameters.colour == ColourUse::kLuma;
+         parameters.colour == ColourUse::kLuma && steps_per_px(parameters) == 1;
 }
 
 bool uses_sigma_measurement(const MethodParameters& parameters) {

@@ -25,7 +25,7 @@ void validate(const MethodParameters& parameters);
 bool can_prune(const MethodParameters& parameters);
 
 /// Whether candidates can be searched in reduced images (search_size): Bayes with several levels,
-/// the maximum prior and ray census codes of luma with one threshold.
+/// the maximum prior, ray census codes of luma with one threshold, and candidates of whole pixels.
 bool can_reduce_search(const MethodParameters& parameters);
 
 /// Whether σM is used.

@@ -10,7 +10,12 @@ MethodParameters at_level(const MethodParameters& parameters, int level) {
     result.iterations = parameters.final_iterations;
   }
   result.sigma_prior *= std::pow(parameters.prior_growth, level);
+  result.sigma_prior *= steps_per_px(parameters);
   return result;
+}
+
+int steps_per_px(const MethodParameters& parameters) {
+  return static_cast<int>(std::lround(1 / parameters.candidate_step_px));
 }
 
 bool uses_edge_weights(const MethodParameters& parameters) {

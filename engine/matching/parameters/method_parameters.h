@@ -153,6 +153,8 @@ struct MethodParametersOf {
   Field<double> jump_limit = by_default<Field>(200.0);
   /// Scanline: cost of a change per pixel of disparity, ≥ 0. Default: a quarter of the limit.
   Field<double> jump_penalty = by_default<Field>(50.0);
+  /// Distance of neighbouring candidates in pixels of disparity: 1, 0.5 or 0.25.
+  Field<double> candidate_step_px = by_default<Field>(1.0);
   Field<Subpixel> subpixel = by_default<Field>(Subpixel::kParabola);
 
   friend bool operator==(const MethodParametersOf&, const MethodParametersOf&) = default;
@@ -162,8 +164,12 @@ struct MethodParametersOf {
 using MethodOverrides = MethodParametersOf<OptionalField>;
 using MethodParameters = MethodParametersOf<std::type_identity_t>;
 
-/// The parameters in force on one level, 0 being the finest: iterations and σP differ.
+/// The parameters in force on one level, 0 being the finest, as stages use them: iterations and σP
+/// differ, σP is in candidates.
 MethodParameters at_level(const MethodParameters& parameters, int level);
+
+/// Candidates per pixel of disparity.
+int steps_per_px(const MethodParameters& parameters);
 
 /// Whether the neighbours of a pixel are weighted by the intensity edges between them.
 bool uses_edge_weights(const MethodParameters& parameters);
