@@ -46,6 +46,8 @@ TEST_F(Config, PrintedSettingsFedBackAreTheSame) {
        "0.5",
        "--aggregation-sigma",
        "1.5",
+       "--candidate-step",
+       "0.25",
        "--confidence-threshold",
        "-0.25",
        "--confidence",

@@ -111,6 +111,8 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--disparities-y", "0:1"}, "out.pfm', expected a file name that ends in .flo .tiff"},
       {{"--reference", "right", "--unmatched-right", folder_ / "u.png"},
        "--unmatched-right cannot"},
+      {{"--candidate-step", "0.3"}, "candidate-step is 0.3, expected 1, 0.5 or 0.25 pixels"},
+      {{"--candidate-step", "0.5", "--disparities-y", "0:1"}, "candidate-step is 0.5, expected 1"},
       {{"--baselines", "0"}, "0, expected a finite number other than 0"},
       {{"--baselines", "1,2"}, "--baselines has 2 numbers, expected 1"},
       {{"--baselines", "1,"}, "--baselines is '', expected a number"},

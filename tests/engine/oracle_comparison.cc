@@ -96,7 +96,8 @@ Photograph photograph_of(const std::vector<std::vector<double>>& channels, int w
 /// a thousandth of its floor (EQUATIONS §3: three taps for σP = .4).
 bool leaves_out_taps(const MethodParameters& parameters) {
   for (int k = 1; k < 100; ++k) {
-    const double tap = std::exp(-k * k / (2 * parameters.sigma_prior * parameters.sigma_prior));
+    const double offset = k * parameters.candidate_step_px / parameters.sigma_prior;
+    const double tap = std::exp(-offset * offset / 2);
     if (tap < 1e-3 * parameters.epsilon_prior && tap > 1e-6 * parameters.epsilon_prior) {
       return true;
     }

@@ -85,7 +85,8 @@ class Maps {
     CostImage left;
     CostImage right;
     left.prepare(pair_.left, parameters, geometry, {true, false, false}, execution_);
-    right.prepare(pair_.right, parameters, geometry, {false, true, false, of_right}, execution_);
+    right.prepare(pair_.right, parameters, geometry,
+                  {false, true, false, of_right, geometry.steps_per_px}, execution_);
     ChainInput input{nullptr, &left, {CostPartner{&right}}};
     EdgeWeightLevels edges;
     input.edges = edges.prepare(pair_.left, parameters, execution_);
@@ -182,6 +183,7 @@ const std::map<std::string_view, Changes>& changes() {
        values_of<Selection>(&P::selection, {Selection::kScanline, Selection::kWinner})},
       {"jump-penalty", values_of<double>(&P::jump_penalty, {0})},
       {"jump-limit", values_of<double>(&P::jump_limit, {0})},
+      {"candidate-step", values_of<double>(&P::candidate_step_px, {0.5})},
       {"subpixel", values_of<Subpixel>(&P::subpixel, {Subpixel::kNone})},
   };
   return all;

@@ -274,14 +274,14 @@ std::vector<double> prior_kernel(int count, double sigma_prior, double epsilon_p
 
 Volume plain_bayes(const Volume& energies, const MethodParameters& parameters, const Volume* start,
                    const PlainEdges& edges) {
-  const std::vector<double> kernel =
-      prior_kernel(energies.count(), parameters.sigma_prior, parameters.epsilon_prior);
+  const std::vector<double> kernel = prior_kernel(
+      energies.count(), parameters.sigma_prior * energies.steps, parameters.epsilon_prior);
   Volume probabilities = start != nullptr ? *start : probabilities_of(energies);
   for (int n = 0; n < parameters.iterations; ++n) {
     Volume smooth_energies;
     if (parameters.prior_smoothing == PriorSmoothing::kMaximum) {
-      smooth_energies =
-          largest_terms(probabilities, parameters.sigma_prior, parameters.epsilon_prior);
+      smooth_energies = largest_terms(probabilities, parameters.sigma_prior * energies.steps,
+                                      parameters.epsilon_prior);
     } else {
       smooth_energies = smoothed(probabilities, kernel);
       for (double& cell : smooth_energies.cells) {
@@ -304,8 +304,8 @@ Volume plain_bayes(const Volume& energies, const MethodParameters& parameters, c
 }
 
 Volume plain_bayes_products(const Volume& energies, const MethodParameters& parameters) {
-  const std::vector<double> kernel =
-      prior_kernel(energies.count(), parameters.sigma_prior, parameters.epsilon_prior);
+  const std::vector<double> kernel = prior_kernel(
+      energies.count(), parameters.sigma_prior * energies.steps, parameters.epsilon_prior);
   const Volume first = probabilities_of(energies);
   Volume probabilities = first;
   for (int n = 0; n < parameters.iterations; ++n) {

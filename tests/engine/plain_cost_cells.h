@@ -33,9 +33,26 @@ class PlainCostCells {
         reference_luma_(channels_of(reference, ColourUse::kLuma).front()),
         partners_(partners) {
     for (const PlainPartner& partner : partners) {
-      partner_channels_.push_back(channels_of(*partner.photograph, parameters.colour));
-      partner_luma_.push_back(channels_of(*partner.photograph, ColourUse::kLuma).front());
+      Samples samples;
+      samples.count = samples_per_px(partner.ratio);
+      for (int k = 0; k < samples.count; ++k) {
+        const double fraction = static_cast<double>(k) / samples.count;
+        samples.channels.push_back(channels_of(*partner.photograph, parameters.colour, fraction));
+        samples.luma.push_back(
+            channels_of(*partner.photograph, ColourUse::kLuma, fraction).front());
+      }
+      samples_.push_back(samples);
     }
+  }
+
+  /// The smallest number at which all candidates are samples of the partner; 16 if it is larger.
+  [[nodiscard]] int samples_per_px(double ratio) const {
+    int samples = 1;
+    const auto is_whole = [](double value) { return std::abs(value - std::round(value)) < 1e-9; };
+    while (samples < 16 && !is_whole(ratio * samples / geometry_.steps_per_px)) {
+      ++samples;
+    }
+    return samples;
   }
 
   /// Candidates of one column.
@@ -57,10 +74,18 @@ class PlainCostCells {
     Gradient gradient;
   };
 
-  [[nodiscard]] std::vector<Channel> channels_of(const Photograph& photograph,
-                                                 ColourUse colour) const {
+  /// A partner, resampled at every fraction of a pixel.
+  struct Samples {
+    int count = 1;
+    std::vector<std::vector<Channel>> channels;
+    std::vector<Channel> luma;
+  };
+
+  [[nodiscard]] std::vector<Channel> channels_of(const Photograph& photograph, ColourUse colour,
+                                                 double fraction = 0) const {
     std::vector<Channel> channels;
-    for (const Plane& plane : planes_of(photograph, colour)) {
+    for (const Plane& whole : planes_of(photograph, colour)) {
+      const Plane plane = resampled(whole, fraction);
       channels.push_back({plane, {}});
       if (parameters_.cost == MatchCost::kGradient) {
         channels.back().gradient = gradient_of(plane, parameters_.gradient, parameters_.prefilter);
@@ -79,13 +104,15 @@ class PlainCostCells {
     std::vector<bool> is_inside;
     double max_evidence = -std::numeric_limits<double>::infinity();
     for (int i = 0; i < geometry_.count; ++i) {
-      // Products with ratios that floats cannot hold are meant exactly.
-      const double shift = std::round((geometry_.disparity_min + i) * partner.ratio * 1e9) / 1e9;
-      const double at = x + geometry_.direction * shift;
-      is_inside.push_back(at >= 0 && at <= geometry_.width - 1 && partner_y >= 0 &&
-                          partner_y < height);
-      energies.push_back(mean_cost(p, x, y, std::clamp<double>(at, 0, geometry_.width - 1),
-                                   std::clamp(partner_y, 0, height - 1)));
+      const int samples = samples_[p].count;
+      const double shift = (geometry_.disparity_min + i) * std::abs(partner.ratio) * samples /
+                           geometry_.steps_per_px;
+      const int sign = geometry_.direction * (partner.ratio < 0 ? -1 : 1);
+      const int at = samples * x + sign * static_cast<int>(std::floor(shift + 0.5));
+      const int last = samples * (geometry_.width - 1);
+      is_inside.push_back(at >= 0 && at <= last && partner_y >= 0 && partner_y < height);
+      energies.push_back(
+          mean_cost(p, x, y, std::clamp(at, 0, last), std::clamp(partner_y, 0, height - 1)));
       if (is_inside.back()) {
         max_evidence = std::max(max_evidence, -energies.back());
       }
@@ -121,22 +148,23 @@ class PlainCostCells {
     return energies;
   }
 
-  /// Of the channels; of likelihoods of grey levels the mean of the squares.
-  [[nodiscard]] double mean_cost(std::size_t p, int x, int y, double at, int partner_y) const {
-    const std::size_t channels = std::max(reference_.size(), partner_channels_[p].size());
+  /// Of the channels; of likelihoods of grey levels the mean of the squares. `at`: a sample.
+  [[nodiscard]] double mean_cost(std::size_t p, int x, int y, int at, int partner_y) const {
+    const int whole = at / samples_[p].count;
+    const auto phase = static_cast<std::size_t>(at % samples_[p].count);
+    const std::vector<Channel>& partner = samples_[p].channels[phase];
+    const std::size_t channels = std::max(reference_.size(), partner.size());
     double sum = 0;
     for (std::size_t c = 0; c < channels; ++c) {
-      sum +=
-          cost(reference_[std::min(c, reference_.size() - 1)], x, y,
-               partner_channels_[p][std::min(c, partner_channels_[p].size() - 1)], at, partner_y);
+      sum += cost(reference_[std::min(c, reference_.size() - 1)], x, y,
+                  partner[std::min(c, partner.size() - 1)], whole, partner_y);
     }
     const double mean = sum / static_cast<double>(channels);
     if (parameters_.cost != MatchCost::kCombined) {
       return mean;
     }
-    const int whole = static_cast<int>(std::lround(at));
     const Plane& a = reference_luma_.level;
-    const Plane& b = partner_luma_[p].level;
+    const Plane& b = samples_[p].luma[phase].level;
     const double dx = (a.at(x + 1, y) - a.at(x - 1, y)) / 2 -
                       (b.at(whole + 1, partner_y) - b.at(whole - 1, partner_y)) / 2;
     const double dy = (a.at(x, y + 1) - a.at(x, y - 1)) / 2 -
@@ -187,12 +215,9 @@ class PlainCostCells {
     return static_cast<double>(different) / parameters_.census_thresholds;
   }
 
-  [[nodiscard]] double cost(const Channel& a, int x, int y, const Channel& b, double at,
+  [[nodiscard]] double cost(const Channel& a, int x, int y, const Channel& b, int whole,
                             int partner_y) const {
-    const int whole = static_cast<int>(std::floor(at));
-    const double fraction = at - whole;
-    const double level =
-        (1 - fraction) * b.level.at(whole, partner_y) + fraction * b.level.at(whole + 1, partner_y);
+    const double level = b.level.at(whole, partner_y);
     const double difference = a.level.at(x, y) - level;
     switch (parameters_.cost) {
       case MatchCost::kSquared:
@@ -248,8 +273,7 @@ class PlainCostCells {
   std::vector<Channel> reference_;
   Channel reference_luma_;
   std::vector<PlainPartner> partners_;
-  std::vector<std::vector<Channel>> partner_channels_;
-  std::vector<Channel> partner_luma_;
+  std::vector<Samples> samples_;
 };
 
 }  // namespace vantage::test

@@ -202,17 +202,46 @@ double cost_of_channel(const Channel& channel, int x, int partner, int y,
 }  // namespace
 
 Volume::Volume(int width_px, int height_px, DisparityRange disparities, Side reference,
-               double value)
+               double value, int steps_per_px)
     : width(width_px),
       height(height_px),
       range(disparities),
       direction(direction_of(reference)),
-      cells(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) *
-                static_cast<std::size_t>(disparities.count()),
-            value) {}
+      steps(steps_per_px) {
+  cells.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                   static_cast<std::size_t>(count()),
+               value);
+}
 
 Volume Volume::like(const Volume& other) {
-  return {other.width, other.height, other.range, other.direction < 0 ? Side::kLeft : Side::kRight};
+  return {other.width, other.height, other.range, other.direction < 0 ? Side::kLeft : Side::kRight,
+          0,           other.steps};
+}
+
+Plane resampled(const Plane& plane, double fraction) {
+  if (fraction == 0) {
+    return plane;
+  }
+  const auto weight = [](double distance) {
+    const double t = std::abs(distance);
+    return t < 1 ? 1.5 * t * t * t - 2.5 * t * t + 1 : -.5 * t * t * t + 2.5 * t * t - 4 * t + 2;
+  };
+  Plane result{plane.width, plane.height, {}};
+  for (int y = 0; y < plane.height; ++y) {
+    for (int x = 0; x < plane.width; ++x) {
+      double sum = 0;
+      double min = std::numeric_limits<double>::infinity();
+      double max = -min;
+      for (int u = -1; u <= 2; ++u) {
+        const double value = plane.at(x + u, y);
+        sum += weight(u - fraction) * value;
+        min = std::min(min, value);
+        max = std::max(max, value);
+      }
+      result.values.push_back(std::clamp(sum, min, max));
+    }
+  }
+  return result;
 }
 
 double Plane::at(int x, int y) const {
@@ -310,45 +339,56 @@ Volume plain_costs(const Photograph& reference, const Photograph& other, Side re
                    DisparityRange range, const MethodParameters& parameters) {
   const std::vector<Plane> reference_planes = planes_of(reference, parameters.colour);
   const std::vector<Plane> other_planes = planes_of(other, parameters.colour);
-  std::vector<Channel> channels;
-  for (std::size_t c = 0; c < reference_planes.size(); ++c) {
-    channels.push_back({reference_planes[c], other_planes[c], {}, {}});
-    if (parameters.cost == MatchCost::kGradient) {
-      channels.back().reference_gradient =
-          gradient_of(reference_planes[c], parameters.gradient, parameters.prefilter);
-      channels.back().other_gradient =
-          gradient_of(other_planes[c], parameters.gradient, parameters.prefilter);
-    }
-  }
-  const Channel luma{planes_of(reference, ColourUse::kLuma).front(),
-                     planes_of(other, ColourUse::kLuma).front(),
-                     {},
-                     {}};
-  Volume costs(reference.width(), reference.height(), range, reference_is);
-  for (int y = 0; y < costs.height; ++y) {
-    for (int x = 0; x < costs.width; ++x) {
-      for (int i = 0; i < costs.count(); ++i) {
-        if (!costs.has_partner(x, i) && parameters.cost == MatchCost::kGradient) {
-          continue;  // 0
-        }
-        if (!costs.has_partner(x, i) && parameters.cost == MatchCost::kContaminated) {
-          costs.at(x, y, i) = -std::log(parameters.epsilon_measurement);
-          continue;
-        }
-        const int partner = std::clamp(costs.partner(x, i), 0, costs.width - 1);
-        if (parameters.cost == MatchCost::kCombined) {
-          costs.at(x, y, i) = costs.has_partner(x, i)
-                                  ? combined_cost(channels, luma, x, partner, y, parameters)
-                                  : combined_energy_without_partner(parameters);
-          continue;
-        }
-        for (const Channel& channel : channels) {
-          costs.at(x, y, i) += cost_of_channel(channel, x, partner, y, parameters);
-        }
-        costs.at(x, y, i) /= static_cast<double>(channels.size());
+  const int steps = static_cast<int>(std::lround(1 / parameters.candidate_step_px));
+  // The other image at every fraction of a pixel.
+  std::vector<std::vector<Channel>> phases;
+  std::vector<Channel> lumas;
+  for (int phase = 0; phase < steps; ++phase) {
+    const double fraction = static_cast<double>(phase) / steps;
+    std::vector<Channel> channels;
+    for (std::size_t c = 0; c < reference_planes.size(); ++c) {
+      channels.push_back({reference_planes[c], resampled(other_planes[c], fraction), {}, {}});
+      if (parameters.cost == MatchCost::kGradient) {
+        channels.back().reference_gradient =
+            gradient_of(reference_planes[c], parameters.gradient, parameters.prefilter);
+        channels.back().other_gradient =
+            gradient_of(channels.back().other, parameters.gradient, parameters.prefilter);
       }
     }
+    phases.push_back(channels);
+    lumas.push_back({planes_of(reference, ColourUse::kLuma).front(),
+                     resampled(planes_of(other, ColourUse::kLuma).front(), fraction),
+                     {},
+                     {}});
   }
+  Volume costs(reference.width(), reference.height(), range, reference_is, 0, steps);
+  for_each_cell(costs, [&](int x, int y, int i) {
+    double& cell = costs.at(x, y, i);
+    if (!costs.has_partner(x, i)) {
+      if (parameters.cost == MatchCost::kGradient) {
+        return;  // 0
+      }
+      if (parameters.cost == MatchCost::kContaminated) {
+        cell = -std::log(parameters.epsilon_measurement);
+        return;
+      }
+      if (parameters.cost == MatchCost::kCombined) {
+        cell = combined_energy_without_partner(parameters);
+        return;
+      }
+    }
+    const double position = std::clamp(costs.partner(x, i), 0., costs.width - 1.);
+    const int partner = static_cast<int>(std::floor(position));
+    const auto phase = static_cast<std::size_t>(std::lround((position - partner) * steps));
+    if (parameters.cost == MatchCost::kCombined) {
+      cell = combined_cost(phases[phase], lumas[phase], x, partner, y, parameters);
+      return;
+    }
+    for (const Channel& channel : phases[phase]) {
+      cell += cost_of_channel(channel, x, partner, y, parameters);
+    }
+    cell /= static_cast<double>(phases[phase].size());
+  });
   return costs;
 }
 

@@ -15,22 +15,29 @@ struct Volume {
   int height = 0;
   DisparityRange range;
   int direction = -1;  ///< the partner of x is x + direction · d
+  int steps = 1;       ///< candidates per pixel of disparity
   /// Cells stand for several of the images': there all candidates count as having partners.
   bool is_coarse = false;
   std::vector<double> cells;
 
   Volume() = default;
   /// All cells are `value`.
-  Volume(int width_px, int height_px, DisparityRange disparities, Side reference, double value = 0);
+  Volume(int width_px, int height_px, DisparityRange disparities, Side reference, double value = 0,
+         int steps_per_px = 1);
   /// The shape of `other` and nothing else of it.
   static Volume like(const Volume& other);
 
-  [[nodiscard]] int count() const { return range.count(); }
+  [[nodiscard]] int count() const { return steps * (range.count() - 1) + 1; }
   [[nodiscard]] double& at(int x, int y, int i) { return cells[index(x, y, i)]; }
   [[nodiscard]] double at(int x, int y, int i) const { return cells[index(x, y, i)]; }
-  [[nodiscard]] int partner(int x, int i) const { return x + direction * (range.min + i); }
+  /// Disparity of candidate i.
+  [[nodiscard]] double disparity_px(int i) const {
+    return range.min + static_cast<double>(i) / steps;
+  }
+  /// Steps and fractions of them are exact.
+  [[nodiscard]] double partner(int x, int i) const { return x + direction * disparity_px(i); }
   [[nodiscard]] bool has_partner(int x, int i) const {
-    return is_coarse || (partner(x, i) >= 0 && partner(x, i) < width);
+    return is_coarse || (partner(x, i) >= 0 && partner(x, i) <= width - 1);
   }
 
  private:
@@ -62,6 +69,10 @@ struct Plane {
   /// Coordinates outside replicate the border.
   [[nodiscard]] double at(int x, int y) const;
 };
+
+/// The plane at x + fraction: Keys' cubic convolution (a = −½) of the four pixels around, within
+/// their range.
+Plane resampled(const Plane& plane, double fraction);
 
 /// What costs compare: luma (EQUATIONS §0), or each colour channel.
 std::vector<Plane> planes_of(const Photograph& photograph, ColourUse colour);

@@ -51,14 +51,14 @@ PlainChoice choose(const Volume& energies, int x, int y, const MethodParameters&
     choice.runner_up = kNan;
     return choice;
   }
-  choice.winner = energies.range.min + best;
+  choice.winner = energies.disparity_px(best);
   choice.disparity = choice.winner;
   if (parameters.subpixel == Subpixel::kParabola) {
     const double below = energy_at(best - 1);
     const double above = energy_at(best + 1);
     choice.curvature = below - 2 * choice.energy + above;
     if (choice.curvature > 0) {  // false when a neighbour is no candidate
-      choice.disparity += (below - above) / (2 * choice.curvature);
+      choice.disparity += (below - above) / (2 * choice.curvature) / energies.steps;
     }
   }
   choice.confidence = confidence_of(candidates, choice.energy, parameters);

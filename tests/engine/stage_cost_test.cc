@@ -28,7 +28,6 @@ using test::PlainPartner;
 
 /// Cells of the combined cost have a test of their own.
 const std::vector<MatchCost> kCosts = test::all_costs_but(MatchCost::kCombined);
-const std::vector<MatchCost> kInterpolatedCosts = test::interpolated_costs();
 constexpr CellMeaning kMeanings[] = {CellMeaning::kEnergy, CellMeaning::kLikelihood};
 
 enum class Kind { kGrey8, kGrey16, kGreyFloat, kColour8, kAlphaFloat };
@@ -121,7 +120,11 @@ class StageCost : public ::testing::Test {
     std::vector<CostPartner> partners;
     for (std::size_t k = 0; k < test.others.size(); ++k) {
       const bool as_partner_of_left = test.geometry.direction * test.partners[k].ratio < 0;
-      prepare(images_[k], test.others[k], {false, as_partner_of_left, !as_partner_of_left});
+      prepare(images_[k], test.others[k],
+              {.as_reference = false,
+               .as_partner_of_left = as_partner_of_left,
+               .as_partner_of_right = !as_partner_of_left,
+               .phases = sample_phases(test.partners[k].ratio, test.geometry.steps_per_px)});
       partners.push_back({&images_[k], test.partners[k].ratio, test.partners[k].disparity_y_px});
     }
     return make_cost_stage(test.parameters, test.geometry, reference_, partners, test.meaning,
@@ -317,16 +320,38 @@ TEST_F(StageCost, LikelihoodsOfTheCombinedCostAreThoseOfItsEnergies) {
 TEST_F(StageCost, EqualsPlainCellsForOtherBaselines) {
   for (const double ratio : {.5, 2., -1., 1.37, -.25, 1. / 3}) {
     for (const int direction : {-1, 1}) {
-      for (const Shape& shape : kShapes) {
+      for (const Shape& shape : {kShapes[3], kShapes[5], kShapes[6]}) {
         CostCase test = pair_case(Kind::kColour8, shape, direction);
         test.partners[0].ratio = ratio;
-        for (const MatchCost cost : kInterpolatedCosts) {
+        for (const MatchCost cost : test::all_costs()) {
           test.parameters.cost = cost;
           test.parameters.colour =
               cost == MatchCost::kAbsolute ? ColourUse::kChannels : ColourUse::kLuma;
           for (const CellMeaning meaning : kMeanings) {
             test.meaning = meaning;
             SCOPED_TRACE(describe(test) + ", ratio " + std::to_string(ratio));
+            expect_plain_cells(test);
+            ASSERT_FALSE(HasFatalFailure());
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_F(StageCost, EqualsPlainCellsForCandidatesBetweenPixels) {
+  for (const int steps : {2, 4}) {
+    for (const double ratio : {1., -.5, 3.}) {
+      for (const Shape& shape : kShapes) {
+        CostCase test = pair_case(Kind::kGrey8, shape, steps == 2 ? -1 : 1);
+        test.geometry.steps_per_px = steps;
+        test.partners[0].ratio = ratio;
+        for (const MatchCost cost : test::all_costs()) {
+          test.parameters.cost = cost;
+          for (const CellMeaning meaning : kMeanings) {
+            test.meaning = meaning;
+            SCOPED_TRACE(describe(test) + ", ratio " + std::to_string(ratio) + ", " +
+                         std::to_string(steps) + " steps");
             expect_plain_cells(test);
             ASSERT_FALSE(HasFatalFailure());
           }
@@ -371,7 +396,7 @@ TEST_F(StageCost, EqualsPlainCellsForSeveralPartners) {
     for (const int direction : {-1, 1}) {
       for (const Shape& shape : kShapes) {
         CostCase test = several_partners(shape, direction, interpolated);
-        for (const MatchCost cost : interpolated ? kInterpolatedCosts : kCosts) {
+        for (const MatchCost cost : kCosts) {
           test.parameters.cost = cost;
           for (const CellMeaning meaning : kMeanings) {
             test.meaning = meaning;
@@ -392,8 +417,7 @@ TEST_F(StageCost, StripsEqualTheWholeImage) {
       for (const std::size_t partners : {std::size_t{1}, std::size_t{3}}) {
         test.others.resize(partners);
         test.partners.resize(partners);
-        const bool is_interpolated = interpolated && partners > 1;
-        for (const MatchCost cost : is_interpolated ? kInterpolatedCosts : test::all_costs()) {
+        for (const MatchCost cost : test::all_costs()) {
           test.parameters.cost = cost;
           for (const CellMeaning meaning : kMeanings) {
             test.meaning = meaning;
@@ -436,22 +460,6 @@ TEST_F(StageCost, RefusesBaselinesItCannotServe) {
   for (const double ratio : {0., std::nan(""), 1e6}) {
     test.partners[0].ratio = ratio;
     EXPECT_THROW(make_stage(test), UsageError) << ratio;
-  }
-  test.partners[0].ratio = .5;
-  for (const MatchingCost& cost : cost_table()) {
-    test.parameters.cost = cost.key;
-    if (cost.can_be_interpolated) {
-      EXPECT_NO_THROW(make_stage(test)) << cost.name;
-      continue;
-    }
-    try {
-      make_stage(test);
-      ADD_FAILURE() << cost.name << " was accepted";
-    } catch (const UsageError& error) {
-      EXPECT_EQ(error.what(), "cost " + std::string(cost.name) +
-                                  " cannot be interpolated between pixels, as several baselines "
-                                  "need, expected squared, absolute, truncated or contaminated");
-    }
   }
 }
 

@@ -25,10 +25,6 @@ inline std::vector<MatchCost> all_costs() {
 inline std::vector<MatchCost> all_costs_but(MatchCost left_out) {
   return keys_in(cost_table(), [=](const MatchingCost& cost) { return cost.key != left_out; });
 }
-/// Costs that can be interpolated for partners between pixels.
-inline std::vector<MatchCost> interpolated_costs() {
-  return keys_in(cost_table(), [](const MatchingCost& cost) { return cost.can_be_interpolated; });
-}
 inline std::vector<Aggregation> all_aggregations() {
   return keys_in(aggregation_table(), [](const CellAggregation&) { return true; });
 }

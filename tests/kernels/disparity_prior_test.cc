@@ -28,6 +28,7 @@ struct PriorCase {
     row.lanes = lanes;
     row.count = random_int(random, std::max(1, lanes - 20), lanes);
     row.disparity_min = random_int(random, -30, 30);
+    row.steps_per_px = 1 << (lanes / 16 + columns) % 3;
     const float weights[] = {0, 0.3F, 1, 7, 100};
     row.weight = weights[random() % std::size(weights)];
     row.max_contrast = random() % 3 == 0 ? 20.0F : kInfinity;
@@ -35,8 +36,9 @@ struct PriorCase {
       const int offset = random_int(random, -40, row.count * 10 + 30);
       const float wild[] = {kUnknown, kInfinity, -kInfinity};
       prior_px.push_back(random() % 6 == 0 ? wild[random() % 3]
-                                           : static_cast<float>(row.disparity_min) +
-                                                 static_cast<float>(offset) / 10);
+                                           : (static_cast<float>(row.disparity_min) +
+                                              static_cast<float>(offset) / 10) /
+                                                 static_cast<float>(row.steps_per_px));
       for (int i = 0; i < lanes; ++i) {
         const float cell = static_cast<float>(random() % 10001U) / (likelihoods ? 1e4F : 30.0F);
         cells.push_back(i < row.count ? cell - (likelihoods ? 0.0F : 90.0F)
@@ -76,7 +78,8 @@ void expect_definition(Kernel kernel, bool likelihoods, const Expected& of_candi
     for (int j = 0; j < test.row.columns; ++j) {
       const float* before = test.column(j);
       const double offset =
-          double{test.prior_px[static_cast<std::size_t>(j)]} - test.row.disparity_min;
+          double{test.prior_px[static_cast<std::size_t>(j)]} * test.row.steps_per_px -
+          test.row.disparity_min;
       const bool has_prior = offset >= 0 && offset <= test.row.count - 1;
       double contrast = 0;
       for (int i = 0; i < test.row.count; ++i) {
@@ -88,7 +91,8 @@ void expect_definition(Kernel kernel, bool likelihoods, const Expected& of_candi
         if (!has_prior) {
           ASSERT_EQ(actual, before[i]);
         } else if (i < test.row.count) {
-          const double share = std::min(1.0, (i - offset) * (i - offset) / 4);
+          const double k_px = (i - offset) / test.row.steps_per_px;
+          const double share = std::min(1.0, k_px * k_px / 4);
           const double expected = of_candidate(test.row, before[i], share, contrast);
           ASSERT_NEAR(actual, expected, 2e-5 * std::max(1.0, std::abs(expected)))
               << "column " << j << ", candidate " << i << " of " << test.row.count;

@@ -20,6 +20,7 @@ struct WinnerCase {
   int disparity_min = 0;
   int count = 1;
   int direction = -1;
+  int steps_per_px = 1;
   int radius = 0;
   int index_bits = 0;
   bool whole_windows_only = false;
@@ -28,7 +29,7 @@ struct WinnerCase {
   [[nodiscard]] int samples(int x, int i) const {
     int inside = 0;
     for (int column = x - radius; column <= x + radius; ++column) {
-      inside += in_image(column) && in_image(partner(column, i)) ? 1 : 0;
+      inside += in_image(column) && has_partner(column, i) ? 1 : 0;
     }
     return inside;
   }
@@ -37,7 +38,7 @@ struct WinnerCase {
     if (i < 0 || i >= count) {
       return false;
     }
-    return whole_windows_only ? samples(x, i) == 2 * radius + 1 : in_image(partner(x, i));
+    return whole_windows_only ? samples(x, i) == 2 * radius + 1 : has_partner(x, i);
   }
   /// Have all window columns that lie in the reference image a partner?
   [[nodiscard]] bool is_full(int x, int i) const {
@@ -49,12 +50,16 @@ struct WinnerCase {
   }
   [[nodiscard]] int lanes() const { return (count + 15) / 16 * 16; }
   [[nodiscard]] bool in_image(int column) const { return column >= 0 && column < width; }
-  [[nodiscard]] int partner(int x, int i) const {
-    return direction < 0 ? x - (disparity_min + i) : x + (disparity_min + i);
+  [[nodiscard]] double partner(int x, int i) const {
+    const double shift = static_cast<double>(disparity_min + i) / steps_per_px;
+    return direction < 0 ? x - shift : x + shift;
+  }
+  [[nodiscard]] bool has_partner(int x, int i) const {
+    return partner(x, i) >= 0 && partner(x, i) <= width - 1;
   }
   [[nodiscard]] WinnerRow row() const {
     WinnerRow row;
-    row.geometry = {width, disparity_min, count, direction};
+    row.geometry = {width, disparity_min, count, direction, steps_per_px};
     row.columns = width;
     row.window_radius = radius;
     row.index_bits = index_bits;
@@ -117,6 +122,7 @@ void for_each_winner_case(const Body& body) {
       c.count = count;
       c.disparity_min = random() % 4 == 0 ? 0 : random_int(random, -width - count, width + 2);
       c.direction = random() % 2 == 0 ? -1 : 1;
+      c.steps_per_px = width % 4 == 0 ? 4 : 1 + width % 2;
       c.radius = random_int(random, 0, 5);
       c.whole_windows_only = random() % 2 == 0;
       c.index_bits = random() % 2 == 0 ? 0 : enough_index_bits(count);

@@ -133,7 +133,8 @@ TEST(CandidateGeometry, AgreesWithTheDefinition) {
     if (testing::Test::HasFatalFailure()) {
       return;
     }
-    const CandidateGeometry geometry{c.width, c.disparity_min, c.count, c.direction};
+    const CandidateGeometry geometry{c.width, c.disparity_min, c.count, c.direction,
+                                     c.steps_per_px};
     ASSERT_EQ(geometry.lanes(), c.lanes());
     const CandidateRange all = geometry.columns_with_all_partners(c.radius);
     for (int x = 0; x < c.width; ++x) {
@@ -142,13 +143,13 @@ TEST(CandidateGeometry, AgreesWithTheDefinition) {
       const CandidateRange stretch = geometry.with_partners(x, last);
       bool all_inside = true;
       for (int i = 0; i < c.count; ++i) {
-        ASSERT_EQ(geometry.partner(x, i), c.partner(x, i));
-        const int partner = c.partner(x, i);
+        const double partner = c.partner(x, i);
+        ASSERT_EQ(geometry.partner(x, i), c.steps_per_px * partner);
         ASSERT_EQ(i >= inside.begin && i < inside.end,
-                  partner >= c.radius && partner < c.width - c.radius)
+                  partner >= c.radius && partner <= c.width - 1 - c.radius)
             << c << ", column " << x << ", candidate " << i;
         ASSERT_EQ(i >= stretch.begin && i < stretch.end,
-                  c.in_image(partner) && c.in_image(c.partner(last, i)))
+                  c.has_partner(x, i) && c.has_partner(last, i))
             << c << ", columns " << x << " to " << last << ", candidate " << i;
         all_inside = all_inside && c.is_full(x, i);
       }

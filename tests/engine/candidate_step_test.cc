@@ -1,0 +1,151 @@
+// Candidates between pixels, of every method, against the plain transcription.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "engine/error.h"
+#include "engine/matching/stereo_matcher.h"
+#include "tests/engine/identical_maps.h"
+#include "tests/engine/method_cases.h"
+#include "tests/engine/oracle_comparison.h"
+
+namespace vantage {
+namespace candidate_step_test {
+
+using test::expect_equals_oracle;
+using test::identical;
+using test::method_cases;
+using test::MethodCase;
+using test::PixelKind;
+using test::textured_pair;
+using test::tolerance_of;
+
+class CandidateStep : public ::testing::TestWithParam<MethodCase> {};
+
+TEST_P(CandidateStep, EqualsTheOracle) {
+  if (test::is_stepped(GetParam()) && GetParam().options.resolved().levels == 1) {
+    GTEST_SKIP() << "cells are rounded to steps: see stage_cost_test";
+  }
+  struct Shape {
+    int width;
+    int height;
+    DisparityRange range;
+    double step_px;
+  };
+  Execution execution({.threads = 2, .strip_width_px = 17, .band_height_px = 5});
+  for (const Shape& shape :
+       {Shape{47, 29, {-2, 9}, 0.5}, Shape{43, 21, {1, 6}, 0.25}, Shape{1, 3, {-1, 2}, 0.5},
+        Shape{9, 12, {-12, 12}, 0.25}, Shape{2, 1, {0, 0}, 0.5}}) {
+    const bool is_small = shape.width < 20;
+    const auto pair = textured_pair(shape.width, shape.height, shape.range, PixelKind::kGrey8, 6);
+    MatchOptions options = GetParam().options;
+    options.disparities = shape.range;
+    options.parameters.candidate_step_px = shape.step_px;
+    options.parameters.subpixel = shape.range.min < 0 ? Subpixel::kParabola : Subpixel::kNone;
+    if (is_small && options.resolved().border == Border::kValid) {
+      continue;
+    }
+    test::Tolerance tolerance = tolerance_of(options.resolved());
+    if (options.resolved().levels > 1) {  // stored levels are rounded, see coarse_to_fine_test
+      tolerance.share = 0.9;
+      tolerance.confidence_share = 0;
+    }
+    tolerance.strays = is_small ? 5 : 0;
+    expect_equals_oracle(pair, options, execution, tolerance,
+                         GetParam().name + ", width " + std::to_string(shape.width));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, CandidateStep, ::testing::ValuesIn(method_cases({0, 1})),
+                         [](const auto& instance) { return instance.param.name; });
+
+/// Maps of whole presets, with pruning, check maps and coarse winners.
+TEST(CandidateSteps, PresetsDoNotDependOnTheExecution) {
+  const auto pair = textured_pair(90, 61, {0, 20}, PixelKind::kGrey8, 8);
+  for (const MatchPreset preset : {MatchPreset::kRealtime, MatchPreset::kFast,
+                                   MatchPreset::kBalanced, MatchPreset::kQuality}) {
+    MatchOptions options;
+    options.preset = preset;
+    options.disparities = {0, 20};
+    options.parameters.candidate_step_px = 0.5;
+    DisparityMaps maps[2];
+    int number = 0;
+    for (const ExecutionOptions& with :
+         {ExecutionOptions{.threads = 1, .executor = scheduler::ExecutorKind::kSerial},
+          ExecutionOptions{.threads = 2, .strip_width_px = 23, .band_height_px = 7}}) {
+      Execution execution(with);
+      StereoMatcher(options, execution).match(pair.left, pair.right, {}, maps[number++]);
+    }
+    EXPECT_TRUE(identical(maps[0].left.disparity_px, maps[1].left.disparity_px));
+    EXPECT_TRUE(identical(maps[0].right.disparity_px, maps[1].right.disparity_px));
+    // The left map does not depend on whether the right one is wanted.
+    Execution execution({.threads = 2});
+    StereoMatcher(options, execution).match(pair.left, pair.right, {.right = false}, maps[1]);
+    EXPECT_TRUE(identical(maps[0].left.disparity_px, maps[1].left.disparity_px));
+  }
+}
+
+/// A plane whose disparity is half a pixel: without sub-pixel positions only such candidates find
+/// it.
+TEST(CandidateSteps, FindHalfPixels) {
+  constexpr int kWidth = 80;
+  const auto wide = textured_pair(2 * kWidth, 40, {0, 0}, PixelKind::kGreyFloat, 3).left;
+  const auto& fine = std::get<Image<float>>(wide.pixels);
+  Image<float> left(kWidth - 4, 40);
+  Image<float> right(kWidth - 4, 40);
+  for (int y = 0; y < 40; ++y) {
+    // Means of two samples: what is finer than a pixel is left out.
+    const auto pixel = [&](int n) {
+      return (fine.at(n, y) + 2 * fine.at(n + 1, y) + fine.at(n + 2, y)) / 4;
+    };
+    for (int x = 0; x < left.width(); ++x) {
+      left.at(x, y) = pixel(2 * x);
+      right.at(x, y) = pixel(2 * x + 3);
+    }
+  }
+  const Photograph photographs[] = {{std::move(left)}, {std::move(right)}};
+  for (const MatchMethod method : {MatchMethod::kSsd, MatchMethod::kGradient, MatchMethod::kBayes,
+                                   MatchMethod::kDiffusion, MatchMethod::kMembrane}) {
+    MatchOptions options;
+    options.method = method;
+    options.disparities = {0, 4};
+    options.raw = true;
+    options.parameters.subpixel = Subpixel::kNone;
+    options.parameters.candidate_step_px = 0.5;
+    Execution execution({.threads = 1});
+    DisparityMaps maps;
+    StereoMatcher(options, execution).match(photographs[0], photographs[1], {}, maps);
+    int found = 0;
+    int pixels = 0;
+    for (int y = 5; y < 35; ++y) {
+      for (int x = 10; x < 70; ++x, ++pixels) {
+        found += maps.left.disparity_px.at(x, y) == 1.5F ? 1 : 0;
+      }
+    }
+    EXPECT_GE(found, 0.9 * pixels) << static_cast<int>(method);
+  }
+}
+
+TEST(CandidateSteps, AreRefusedWhereTheyHaveNoMeaning) {
+  MatchOptions options;
+  options.disparities = {0, 2000};
+  options.parameters.candidate_step_px = 0.3;
+  EXPECT_THROW(options.validate(), UsageError);
+  options.parameters.candidate_step_px = 0.25;
+  EXPECT_THROW(options.validate(), UsageError);  // 8001 candidates
+  options.disparities = {0, 20};
+  EXPECT_NO_THROW(options.validate());
+  options.disparities_y = DisparityRange{-1, 1};
+  EXPECT_THROW(options.validate(), UsageError);
+  options.disparities_y.reset();
+  options.preset = MatchPreset::kRealtime;
+  EXPECT_NO_THROW(options.validate());
+  EXPECT_EQ(options.resolved().search_size, SearchSize::kFull);
+  options.parameters.search_size = SearchSize::kHalf;
+  EXPECT_THROW(options.validate(), UsageError);
+}
+
+}  // namespace candidate_step_test
+}  // namespace vantage
