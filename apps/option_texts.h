@@ -110,9 +110,11 @@ inline constexpr std::array kOptionTexts = {
     OptionText{"edge-contrast", "C",
                "With bayes and the diffusions: intensity difference in grey levels over which the "
                "weight falls to --edge-weight, above 0"},
-    OptionText{"selection", "",
-               "Selection of disparities from the aggregated costs. winner: the best one of each "
-               "pixel; scanline: those of each row together, by dynamic programming"},
+    OptionText{
+        "selection", "",
+        "Selection of disparities from the aggregated costs. winner: the best one of each "
+        "pixel; scanline: those of each row together, by dynamic programming; symmetric: those "
+        "of a row of both images together, pixels matched one to one or not at all"},
     OptionText{"jump-limit", "C|none",
                "With selection scanline: maximum cost of a change of disparity between neighbours "
                "in a row, in the unit of the aggregated costs, at least 0; none: no maximum",
@@ -123,6 +125,10 @@ inline constexpr std::array kOptionTexts = {
     OptionText{"candidate-step", "PX",
                "Distance of neighbouring candidates: 1, 0.5 or 0.25 pixels of disparity; between "
                "pixels the other image is interpolated (time and memory grow accordingly)"},
+    OptionText{"occlusion-penalty", "C",
+               "With selection symmetric: cost of a pixel without a match, in the unit of the "
+               "aggregated costs, above 0",
+               "by cost: {}"},
     OptionText{"subpixel", "",
                "Sub-pixel disparities by a parabola through the costs, or those of the candidates"},
     OptionText{

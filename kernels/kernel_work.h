@@ -318,5 +318,10 @@ inline constexpr KernelWork kProbabilityEnergyWork = {0, kDoubleLogOperations + 
 constexpr KernelWork scanline_work(int passes) {
   return {3.0 * passes + 6, kLaneTreeOperations + 3.0 * (passes + 1), 2, 2};
 }
+/// Energies in steps: offset, scale, rounding, two limits.
+inline constexpr KernelWork kStepEnergiesWork = {5, 0, 1 + 0.5, 0};
+/// Per state, of which there is one for each candidate: minimum of two sums and a penalty, two
+/// cells and an offset, minimum.
+inline constexpr KernelWork kSymmetricPathWork = {6, 4, 3 + 2 * 0.5, 4};
 
 }  // namespace vantage::kernels

@@ -27,6 +27,7 @@
 #include "engine/matching/selection/stage_displacement_selection.h"
 #include "engine/matching/selection/stage_fixed_energy_selection.h"
 #include "engine/matching/selection/stage_scanline_selection.h"
+#include "engine/matching/selection/stage_symmetric_selection.h"
 #include "engine/matching/selection/stage_window_selection.h"
 
 namespace vantage {
@@ -127,7 +128,7 @@ MatchChain::MatchChain(const MethodParameters& parameters,
       height_(level.costs != nullptr ? level.costs->extent().rows : outputs.disparity_px.height()),
       regions_(level.regions) {
   if (input.pair != nullptr) {
-    add_column_ssd(parameters, *input.pair);
+    add_column_ssd(parameters, input);
     return;
   }
   half_scale_ = half_scale(bounds_of(parameters, input));
@@ -299,7 +300,8 @@ kernels::CandidateGeometry MatchChain::of_candidates(int first_candidate, int co
   return candidates;
 }
 
-void MatchChain::add_column_ssd(const MethodParameters& parameters, const PreparedPair& pair) {
+void MatchChain::add_column_ssd(const MethodParameters& parameters, const ChainInput& input) {
+  const PreparedPair& pair = *input.pair;
   const bool left = geometry_.direction < 0;
   WindowSelectionSettings settings = window_selection(parameters);
   const auto add_stages = [&](const auto& planes, auto... shift) {
@@ -315,7 +317,7 @@ void MatchChain::add_column_ssd(const MethodParameters& parameters, const Prepar
     settings.energy_scale = pair.cost_unit;
     add_stages(pair.grey_float);
   }
-  add_window_selection(parameters, settings);
+  add_window_selection(parameters, settings, input);
 }
 
 void MatchChain::add_box(const MethodParameters& parameters, const ChainInput& input) {
@@ -332,26 +334,47 @@ void MatchChain::add_box(const MethodParameters& parameters, const ChainInput& i
   }
   add(make_column_sum_stage(geometry_, height_, settings.radius, quantised.offset,
                             quantised.scale));
-  add_window_selection(parameters, settings);
+  add_window_selection(parameters, settings, input);
 }
 
 void MatchChain::add_window_selection(const MethodParameters& parameters,
-                                      const WindowSelectionSettings& settings) {
+                                      const WindowSelectionSettings& settings,
+                                      const ChainInput& input) {
   add(parameters.selection == Selection::kWinner
           ? make_window_selection_stage(geometry_, settings, outputs_)
-          : scanline_selection(parameters, make_window_energies(geometry_, height_, settings)));
+          : row_selection(parameters, input, make_window_energies(geometry_, height_, settings)));
 }
 
-std::unique_ptr<scheduler::RowStage> MatchChain::scanline_selection(
-    const MethodParameters& parameters, std::unique_ptr<RowEnergies> energies) const {
-  return make_scanline_selection_stage(
-      std::move(energies),
-      {.jump = {static_cast<float>(parameters.jump_penalty * parameters.candidate_step_px),
-                static_cast<float>(parameters.jump_limit)},
-       .subpixel = parameters.subpixel,
-       .confidence = confidence_measure(parameters),
-       .entropy_scale = static_cast<float>(entropy_scale(parameters))},
-      outputs_);
+std::unique_ptr<scheduler::RowStage> MatchChain::row_selection(
+    const MethodParameters& parameters, const ChainInput& input,
+    std::unique_ptr<RowEnergies> energies) const {
+  const ConfidenceMeasure confidence = confidence_measure(parameters);
+  const auto scale = static_cast<float>(entropy_scale(parameters));
+  if (parameters.selection == Selection::kScanline) {
+    return make_scanline_selection_stage(
+        std::move(energies),
+        {.jump = {static_cast<float>(parameters.jump_penalty * parameters.candidate_step_px),
+                  static_cast<float>(parameters.jump_limit)},
+         .subpixel = parameters.subpixel,
+         .confidence = confidence,
+         .entropy_scale = scale},
+        outputs_);
+  }
+  static const LevelVolume never_read;
+  const SymmetricPlace place = input.symmetric != nullptr ? *input.symmetric : SymmetricPlace{};
+  // Energies of Bayes are −ln p.
+  const double min = has_likelihoods(parameters) ? 0 : bounds_of(parameters, input).min;
+  const EnergySteps steps = EnergySteps::of(min, parameters.occlusion_penalty, geometry_.width);
+  if (place.right != nullptr && !place.is_stored) {
+    return make_symmetric_store_stage(std::move(energies), steps, *place.right);
+  }
+  return make_symmetric_selection_stage(std::move(energies),
+                                        place.right != nullptr ? *place.right : never_read,
+                                        {.steps = steps,
+                                         .subpixel = parameters.subpixel,
+                                         .confidence = confidence,
+                                         .entropy_scale = scale},
+                                        outputs_, place.right_outputs);
 }
 
 /// `parameters`: of the level.
@@ -393,11 +416,11 @@ void MatchChain::add_result(const MethodParameters& parameters, const ChainLevel
 
 void MatchChain::add_selection(const MethodParameters& parameters, const ChainInput& input,
                                const ChainLevel& level) {
-  if (parameters.selection == Selection::kScanline) {
-    add(scanline_selection(
-        parameters, uses_fixed_energies(parameters)
-                        ? make_fixed_energies(geometry_, EnergyFormat(parameters).steps_per_nat())
-                        : make_cell_energies(geometry_, has_likelihoods(parameters))));
+  if (parameters.selection != Selection::kWinner) {
+    add(row_selection(parameters, input,
+                      uses_fixed_energies(parameters)
+                          ? make_fixed_energies(geometry_, EnergyFormat(parameters).steps_per_nat())
+                          : make_cell_energies(geometry_, has_likelihoods(parameters))));
     return;
   }
   if (uses_fixed_energies(parameters)) {

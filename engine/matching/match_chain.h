@@ -25,6 +25,14 @@ namespace vantage {
 /// faster than computing and then summing costs. Not with several levels, which need the costs.
 bool uses_column_ssd(const MethodParameters& parameters);
 
+/// The chains of both images in a symmetric selection: that of the right image stores its energies,
+/// that of the left one selects both maps.
+struct SymmetricPlace {
+  LevelVolume* right = nullptr;   ///< energies in steps, of the image's size
+  bool is_stored = false;         ///< whether `right` is input
+  MapOutputs right_outputs = {};  ///< of the left image's chain
+};
+
 /// Input of a chain: the pair, for the column SSD stage, or a reference and its partners.
 struct ChainInput {
   const PreparedPair* pair = nullptr;  ///< null: the other members are used
@@ -37,6 +45,8 @@ struct ChainInput {
   /// Weights of neighbours in the reference, per level, the image's own first; empty: all 1. See
   /// EdgeWeightLevels.
   std::span<const EdgeWeights> edges = {};
+  /// Selection symmetric: the place of this chain; null: for plans only.
+  const SymmetricPlace* symmetric = nullptr;
   /// Grid of a two-dimensional search with one partner (its disparity_y_px is ignored) and no
   /// prior; the geometry is then that of the grid's columns. Null: search along rows only.
   const DisplacementGrid* grid = nullptr;
@@ -95,7 +105,9 @@ struct ChainLevel {
 //  window selection               32 bits                 r columns  border: valid or clip  map
 //  cell, displacement selection   float                              NaN if no candidate    map
 //  fixed energy selection         fixed                              NaN if no candidate    map
-//  scanline selection             float, fixed, 32 b.     whole row  NaN if no candidate    map
+//  scanline selection             float, fixed, 32 bits   whole row  NaN if no candidate    map
+//  store energies                 float, fixed, 32 bits   whole row                         stored
+//  symmetric selection            same, stored row        whole row  NaN if unmatched       maps
 //  coarser selection              coarser row                      NaN if no candidate    map
 // clang-format on
 
@@ -136,12 +148,13 @@ class MatchChain {
   [[nodiscard]] std::unique_ptr<scheduler::RowStage> byte_energies(
       const MethodParameters& parameters, const ChainInput& input, int first_candidate,
       int count) const;
-  void add_column_ssd(const MethodParameters& parameters, const PreparedPair& pair);
+  void add_column_ssd(const MethodParameters& parameters, const ChainInput& input);
   void add_box(const MethodParameters& parameters, const ChainInput& input);
   void add_window_selection(const MethodParameters& parameters,
-                            const WindowSelectionSettings& settings);
-  [[nodiscard]] std::unique_ptr<scheduler::RowStage> scanline_selection(
-      const MethodParameters& parameters, std::unique_ptr<RowEnergies> energies) const;
+                            const WindowSelectionSettings& settings, const ChainInput& input);
+  [[nodiscard]] std::unique_ptr<scheduler::RowStage> row_selection(
+      const MethodParameters& parameters, const ChainInput& input,
+      std::unique_ptr<RowEnergies> energies) const;
   void add_aggregation(const MethodParameters& parameters, const ChainInput& input,
                        const ChainLevel& level);
   void add_result(const MethodParameters& parameters, const ChainLevel& level);

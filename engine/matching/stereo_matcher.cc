@@ -12,6 +12,7 @@
 #include "engine/error.h"
 #include "engine/matching/candidate_geometry.h"
 #include "engine/matching/levels/level_extents.h"
+#include "engine/matching/selection/symmetric_energies.h"
 #include "engine/matching/stage_clock.h"
 
 namespace vantage {
@@ -239,6 +240,25 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
   }
 }
 
+/// Computes both maps from one solution (§3.17): the right image's energies are stored, then the
+/// left image's chain selects.
+void StereoMatcher::compute_symmetric(MapTask& left, MapTask& right, bool wants_confidence,
+                                      Prepared& prepared, StageClock& clock,
+                                      MatchReport& report) const {
+  const int width = left.image->width();
+  const int height = left.image->height();
+  prepared.right_energies.resize({width, height},
+                                 candidate_geometry(in_force_, Side::kLeft, width, height).lanes(),
+                                 sizeof(kernels::StepEnergy));
+  SymmetricPlace place{.right = &prepared.right_energies};
+  left.input.symmetric = right.input.symmetric = &place;
+  compute(right, "match right", wants_confidence, 0, prepared, clock, report);
+  place.is_stored = true;
+  place.right_outputs = {.disparity_px = right.map->disparity_px.view(),
+                         .confidence = right.map->confidence.view()};
+  compute(left, "match left", wants_confidence, 0, prepared, clock, report);
+}
+
 MapToRefine StereoMatcher::to_refine(const MapTask& task, bool is_result) const {
   return {.side = task.side,
           .image = task.image,
@@ -277,6 +297,10 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   MapTask of_left{.side = Side::kLeft, .image = &left, .map = &maps.left};
   MapTask of_right{.side = Side::kRight, .image = &right, .map = &maps.right};
   std::tie(of_left.need, of_right.need) = needs(request, {left.width(), left.height()});
+  const bool is_symmetric = in_force_.parameters.selection == Selection::kSymmetric;
+  if (is_symmetric) {
+    of_left.need.whole = of_right.need.whole = true;
+  }
   const auto prepared = prepared_.borrow();
   prepared->parameters = in_force_.parameters;
   prepared->of_right = {};
@@ -292,8 +316,12 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     of_left.input.prior_weight = of_right.input.prior_weight = request.prior.weight;
   }
   const bool confidence = wants_confidence(request);
-  compute(of_left, "match left", confidence, check_level, *prepared, clock, times);
-  compute(of_right, "match right", confidence, check_level, *prepared, clock, times);
+  if (is_symmetric) {
+    compute_symmetric(of_left, of_right, confidence, *prepared, clock, times);
+  } else {
+    compute(of_left, "match left", confidence, check_level, *prepared, clock, times);
+    compute(of_right, "match right", confidence, check_level, *prepared, clock, times);
+  }
 
   if (!in_force_.refinement) {
     if (request.unmatched) {
@@ -312,6 +340,11 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
 void StereoMatcher::match_several(const Photograph& reference, std::span<const OtherView> others,
                                   const MatchRequest& request, DisparityMaps& maps,
                                   MatchReport* report) const {
+  if (in_force_.parameters.selection == Selection::kSymmetric) {
+    throw UsageError(
+        "selection is symmetric, expected winner or scanline with several baselines: a symmetric "
+        "solution is of two images");
+  }
   require_different_baselines(others);
   for (std::size_t k = 0; k < others.size(); ++k) {
     require_equal_sizes(reference, "reference image", *others[k].photograph,
@@ -380,6 +413,7 @@ void StereoMatcher::add_memory_use(MemoryUse& use) const {
              held_bytes(prepared.check_px[0]) + held_bytes(prepared.check_px[1]);
     use.add("prepared images", bytes);
     use.add("coarse levels", prepared.search.levels.held_bytes());
+    use.add("symmetric energies", prepared.right_energies.held_bytes());
   });
   refinement_works_.for_each_idle(
       [&use](const RefinementWork& work) { use.add("refinement", held_bytes(work)); });

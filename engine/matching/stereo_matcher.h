@@ -69,7 +69,8 @@ class StereoMatcher {
   /// of them is x − d · baseline_k / |baseline_1|, so candidates are disparities between the
   /// reference and the first. The result is maps.left if the first is to the right of the
   /// reference, maps.right if it is to the left. At least one other; all images of equal size;
-  /// baselines distinct and not 0. Errors as match().
+  /// baselines distinct and not 0. Errors as match(), and UsageError for selection symmetric, which
+  /// is of two images.
   void match_several(const Photograph& reference, std::span<const OtherView> others,
                      const MatchRequest& request, DisparityMaps& maps,
                      MatchReport* report = nullptr) const;
@@ -93,6 +94,8 @@ class StereoMatcher {
     std::array<Image<std::int32_t>, 2> coarse_winners;
     /// Check maps beside whole maps.
     std::array<DisparityMap, 2> check_px;
+    /// Symmetric selection: energies of the right image.
+    LevelVolume right_energies;
   };
   /// What is computed of an image's map: the map, and what is used to check the other one.
   struct MapNeed {
@@ -129,6 +132,8 @@ class StereoMatcher {
                                                                 MatchReport& report) const;
   void compute(MapTask& task, std::string_view name, bool wants_confidence, int check_level,
                Prepared& prepared, StageClock& clock, MatchReport& report) const;
+  void compute_symmetric(MapTask& left, MapTask& right, bool wants_confidence, Prepared& prepared,
+                         StageClock& clock, MatchReport& report) const;
   [[nodiscard]] MapToRefine to_refine(const MapTask& task, bool is_result) const;
 
   const ResolvedMatchOptions in_force_;

@@ -9,6 +9,7 @@
 #include "engine/error.h"
 #include "engine/matching/coarse_to_fine.h"
 #include "engine/matching/reduced_matcher.h"
+#include "engine/matching/selection/symmetric_energies.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/synthesis/photograph_grid.h"
 #include "engine/synthesis/three_step_synthesizer.h"
@@ -100,11 +101,12 @@ std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) 
   constexpr std::size_t kPlanes = 4 * 2;
   constexpr std::size_t kCheckedMaps = 2;  // of coarse levels
   const int check_level = options.match.resolved_refinement().cross_check_level;
+  const int candidates = candidate_count(options.match.disparities, options.match.resolved());
   return pixels * channels * kPlanes * sizeof(float) +
          (check_level > 0 ? kCheckedMaps : 0) * (pixels >> 2 * check_level) * sizeof(std::int32_t) +
          edge_weight_bytes(options.match.resolved(), pixels) +
-         coarse_level_bytes(options.match.resolved(), extent,
-                            candidate_count(options.match.disparities, options.match.resolved()));
+         coarse_level_bytes(options.match.resolved(), extent, candidates) +
+         symmetric_energy_bytes(options.match.resolved(), extent, candidates);
 }
 
 bool is_on_baseline(const SequenceOptions& options, const ViewPath& view) {

@@ -77,6 +77,8 @@ TEST_F(Config, PrintedSettingsFedBackAreTheSame) {
        "3"},
       {"match", "a.png", "b.png", "-o", "o.pfm", "--method", "ssd", "--selection", "scanline",
        "--jump-penalty", "2.5", "--jump-limit", "none"},
+      {"match", "a.png", "b.png", "-o", "o.pfm", "--selection", "symmetric", "--occlusion-penalty",
+       "7.5"},
       {"match", "a.png", "b.png", "-o", "o.pfm", "--method", "bayes", "--cost", "combined",
        "--sigma-measurement", "estimated", "--sigma-census", "0.15", "--sigma-gradient", "4",
        "--match-exposure", "estimated"},

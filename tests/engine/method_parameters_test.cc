@@ -208,6 +208,7 @@ struct Bound {
 
 void several_levels(MethodOverrides& parameters) { parameters.levels = 2; }
 void scanlines(MethodOverrides& parameters) { parameters.selection = Selection::kScanline; }
+void both_images(MethodOverrides& parameters) { parameters.selection = Selection::kSymmetric; }
 void pruned(MethodOverrides& parameters) {
   parameters.levels = 3;
   parameters.candidate_blocks = 2;
@@ -323,6 +324,13 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
        "at least 0, or none",
        MatchMethod::kSsd,
        scanlines},
+      {"occlusion-penalty",
+       parameter(&P::occlusion_penalty),
+       {0.01, 1000},
+       {0, -0.01, kNan, kInfinity},
+       "a number above 0",
+       MatchMethod::kSsd,
+       both_images},
       {"levels", parameter(&P::levels), {1, 10}, {-1, 0, 11}, "from 1 to 10"},
       {"candidate-blocks", parameter(&P::candidate_blocks), {0}, {-1, 9}, "(all candidates) to 8"},
       {"census-thresholds",

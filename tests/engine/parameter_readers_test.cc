@@ -184,6 +184,7 @@ const std::map<std::string_view, Changes>& changes() {
       {"jump-penalty", values_of<double>(&P::jump_penalty, {0})},
       {"jump-limit", values_of<double>(&P::jump_limit, {0})},
       {"candidate-step", values_of<double>(&P::candidate_step_px, {0.5})},
+      {"occlusion-penalty", values_of<double>(&P::occlusion_penalty, {0.5})},
       {"subpixel", values_of<Subpixel>(&P::subpixel, {Subpixel::kNone})},
   };
   return all;

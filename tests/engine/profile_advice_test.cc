@@ -56,8 +56,9 @@ TEST(ProfileAdvice, OnlyWhatTheCommandCouldDoIsSaid) {
   // The fastest preset, a known range, no look at rows, both maps wanted.
   EXPECT_THAT(profile_advice(profile, kSteps, {.preset = MatchPreset::kRealtime, .candidates = 32}),
               IsEmpty());
-  EXPECT_THAT(profile_advice(profile, kSteps, {.preset = MatchPreset::kRealtime, .candidates = 256}),
-              ElementsAre(HasSubstr("256 candidates are searched in 650 ms")));
+  EXPECT_THAT(
+      profile_advice(profile, kSteps, {.preset = MatchPreset::kRealtime, .candidates = 256}),
+      ElementsAre(HasSubstr("256 candidates are searched in 650 ms")));
   EXPECT_THAT(profile_advice(profile, kSteps, {.preset = {}, .candidates = 32}),
               ElementsAre(HasSubstr("--preset realtime instead of a method of the book")));
   // What takes less than a twentieth is not worth a word.

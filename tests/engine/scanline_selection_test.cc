@@ -182,6 +182,29 @@ TEST_P(ScanlineSelection, DoesNotDependOnThePlan) {
   }
 }
 
+TEST(ScanlineSelectionBetweenPixels, StaysWithinHalfAStep) {
+  const auto pair = textured_pair(59, 23, {-3, 14}, PixelKind::kGrey8, 14);
+  MatchOptions options;
+  options.method = MatchMethod::kMembrane;
+  options.disparities = {-3, 14};
+  options.raw = true;
+  options.parameters.selection = Selection::kScanline;
+  options.parameters.candidate_step_px = 0.25;
+  const DisparityMaps refined = maps_of(pair, options);
+  options.parameters.subpixel = Subpixel::kNone;
+  const DisparityMaps selected = maps_of(pair, options);
+  int fractions = 0;
+  for (int y = 0; y < 23; ++y) {
+    for (int x = 0; x < 59; ++x) {
+      const float px = selected.left.disparity_px.at(x, y);
+      EXPECT_EQ(4 * px, std::round(4 * px));
+      EXPECT_LE(std::abs(refined.left.disparity_px.at(x, y) - px), 0.125F);
+      fractions += px != std::round(px) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(fractions, 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Methods, ScanlineSelection,
     ::testing::Range(0, static_cast<int>(test::method_cases({}).size())), [](const auto& instance) {

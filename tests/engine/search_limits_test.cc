@@ -104,9 +104,8 @@ TEST(SearchLimits, PresetsKeepThem) {
   const SlantedPair pair = slanted_pair();
   Execution execution({.threads = 2});
   DisparityMaps maps;
-  for (const MatchPreset preset :
-       {MatchPreset::kRealtime, MatchPreset::kFast, MatchPreset::kBalanced,
-        MatchPreset::kQuality}) {
+  for (const MatchPreset preset : {MatchPreset::kRealtime, MatchPreset::kFast,
+                                   MatchPreset::kBalanced, MatchPreset::kQuality}) {
     MatchOptions options;
     options.preset = preset;
     options.disparities = kSearch;

@@ -158,6 +158,7 @@ TEST_F(TuningKeyTest, HasEveryFieldThatChangesTheWork) {
                                                 "edge-contrast",
                                                 "jump-penalty",
                                                 "jump-limit",
+                                                "occlusion-penalty",
                                                 "subpixel"};
   std::set<std::string_view> options;
   std::set<std::string_view> in_key;

@@ -42,6 +42,7 @@ MatchingCost absolute_cost() {
           .description = "absolute difference of grey levels",
           .options = {"match-exposure"},
           .jump_limit = 10,
+          .occlusion_penalty = 8,
           .make_planes = make_planes_as<GreyPlanes>,
           .make_model = make_model_as<AbsoluteModel>};
 }
@@ -52,6 +53,7 @@ MatchingCost truncated_cost() {
           .description = "absolute difference, at most --truncation",
           .options = {"match-exposure", "truncation"},
           .jump_limit = 10,
+          .occlusion_penalty = 8,
           .make_planes = make_planes_as<GreyPlanes>,
           .make_model = make_model_as<TruncatedModel>};
 }

@@ -48,6 +48,7 @@ MatchingCost birchfield_tomasi_cost() {
           .description = "smallest absolute difference within half a pixel",
           .options = {"match-exposure"},
           .jump_limit = 10,
+          .occlusion_penalty = 5,
           .make_planes = make_planes_as<SamplingPlanes>,
           .make_model = make_model_as<BirchfieldTomasiModel>};
 }

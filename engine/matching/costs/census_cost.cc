@@ -48,6 +48,7 @@ MatchingCost census_cost() {
           .options = {},
           .unit = ResidualUnit::kCensusBits,
           .jump_limit = 10,
+          .occlusion_penalty = 15,
           .make_planes = make_planes_as<CensusPlanes>,
           .make_model = make_model_as<CensusModel>};
 }

@@ -163,6 +163,7 @@ MatchingCost combined_cost() {
           // This cost is meant for photographs, whose noise differs from pair to pair.
           .estimates_sigma = true,
           .jump_limit = 2,
+          .occlusion_penalty = 1.5,
           .make_planes = make_planes_as<CombinedPlanes>,
           .make_model = make_model_as<CombinedModel>};
 }

@@ -48,6 +48,7 @@ MatchingCost contaminated_cost() {
           .description = "log-likelihood, Gaussian noise with outliers",
           .options = {"match-exposure", "sigma-measurement", "epsilon-measurement"},
           .jump_limit = 1.5,
+          .occlusion_penalty = 1,
           .make_planes = make_planes_as<GreyPlanes>,
           .make_model = make_model_as<ContaminatedModel>};
 }

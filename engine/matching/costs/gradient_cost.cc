@@ -110,6 +110,7 @@ MatchingCost gradient_cost() {
           .unit = ResidualUnit::kGradient,
           .is_evidence = true,
           .jump_limit = 20,
+          .occlusion_penalty = 2,
           .make_planes = make_planes_as<GradientPlanes>,
           .make_model = make_model_as<GradientModel>};
 }

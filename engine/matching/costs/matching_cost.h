@@ -109,6 +109,8 @@ struct MatchingCost {
   float max_contrast = std::numeric_limits<float>::infinity();
   /// Default of jump-limit for aggregated energies, in the cost's unit.
   double jump_limit = 0;
+  /// Default of occlusion-penalty, likewise.
+  double occlusion_penalty = 0;
 
   std::unique_ptr<CostPlanes> (*make_planes)() = nullptr;
   std::unique_ptr<CostModel> (*make_model)(const MethodParameters& parameters) = nullptr;

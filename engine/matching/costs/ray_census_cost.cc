@@ -118,6 +118,7 @@ MatchingCost ray_census_cost() {
           .options = {"census-thresholds"},
           .unit = ResidualUnit::kCensusBits,
           .jump_limit = 8,
+          .occlusion_penalty = 6,
           .make_planes = make_planes_as<RayCensusPlanes>,
           .make_model = make_model_as<RayCensusModel>,
           .byte_energies = ByteEnergies{.nats_per_step =

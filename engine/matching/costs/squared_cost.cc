@@ -38,6 +38,7 @@ MatchingCost squared_cost() {
           .has_column_sums = true,
           .max_contrast = kContrastIntensity * kContrastIntensity,
           .jump_limit = 200,
+          .occlusion_penalty = 100,
           .make_planes = make_planes_as<GreyPlanes>,
           .make_model = make_model_as<SquaredModel>};
 }

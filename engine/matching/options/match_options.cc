@@ -147,10 +147,19 @@ void MatchOptions::validate() const {
   }
   if (in_force.selection != Selection::kWinner && disparities_y) {
     throw UsageError(
-        "selection is scanline, expected winner with disparities-y: jumps are between candidates "
-        "along rows");
+        fmt::format("selection is {}, expected winner with disparities-y: paths are along rows",
+                    name_of(in_force.selection)));
   }
   const RefinementOptions of_maps = resolved_refinement();
+  if (in_force.selection == Selection::kSymmetric && refinement.cross_check.value_or(false)) {
+    throw UsageError(
+        "cross-check is on, expected none with selection symmetric: both maps are of one solution");
+  }
+  if (in_force.selection == Selection::kSymmetric && in_force.candidate_step_px < 1) {
+    throw UsageError(fmt::format(
+        "candidate-step is {}, expected 1 with selection symmetric: it matches whole pixels",
+        in_force.candidate_step_px));
+  }
   validate_refinement(of_maps, disparities_y.has_value());
   if (of_maps.cross_check_level > 0 && disparities_y) {
     throw UsageError(fmt::format(
@@ -220,6 +229,9 @@ RefinementOptions MatchOptions::resolved_refinement() const {
   }
   take_over(settings_of(preset_in_force()).refinement, result);
   take_over(refinement, result);
+  if (!refinement.cross_check && resolved().selection == Selection::kSymmetric) {
+    result.cross_check = false;
+  }
   // As with pruning: a preset's cross-check level applies only where it is possible.
   if (!refinement.cross_check_level && (disparities_y || !can_check_levels(resolved()))) {
     result.cross_check_level = 0;

@@ -123,6 +123,8 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
               readers::kAll,
               {[](double v) { return v == 1 || v == 0.5 || v == 0.25; }, "1, 0.5 or 0.25 pixels"}},
         options.candidate_step_px...);
+  visit(Field{"occlusion-penalty", readers::kSymmetric, {is_positive, "a number above 0"}},
+        options.occlusion_penalty...);
   visit(Field{"subpixel", readers::kAll}, options.subpixel...);
 }
 

@@ -47,7 +47,8 @@ const EnumNames<MatchPreset>& preset_names() {
 
 const EnumNames<Selection>& selection_names() {
   static const EnumNames<Selection> names = {{"winner", Selection::kWinner},
-                                             {"scanline", Selection::kScanline}};
+                                             {"scanline", Selection::kScanline},
+                                             {"symmetric", Selection::kSymmetric}};
   return names;
 }
 

@@ -10,6 +10,7 @@
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/costs/cost_table.h"
 #include "engine/matching/options/method_fields.h"
+#include "engine/matching/options/method_names.h"
 #include "engine/word_list.h"
 
 namespace vantage {
@@ -18,6 +19,8 @@ namespace {
 // Defaults of selection scanline (perf/log/2026-11-25-selection.md). Energies of Bayes are −ln p.
 constexpr double kBayesJumpLimit = 15;
 constexpr double kJumpPenaltyShare = 0.25;
+// Of selection symmetric.
+constexpr double kBayesOcclusionPenalty = 5;
 
 MatchCost natural_cost(Aggregation aggregation) { return aggregation_of(aggregation).natural_cost; }
 
@@ -44,7 +47,8 @@ void validate_pruning(const MethodParameters& parameters) {
   require(parameters.prior_smoothing == PriorSmoothing::kMaximum, "candidate-blocks", blocks,
           "0 with prior-smoothing sum: pruning needs prior-smoothing maximum");
   require(parameters.selection == Selection::kWinner, "candidate-blocks", blocks,
-          "0 with selection scanline: a path along a row needs the costs of all candidates");
+          fmt::format("0 with selection {}: a path along a row needs the costs of all candidates",
+                      name_of(parameters.selection)));
 }
 
 void validate_search_size(const MethodParameters& parameters) {
@@ -90,8 +94,9 @@ void validate_combination(const MethodParameters& parameters) {
   }
 }
 
-/// Jump costs that are not set: what measurement says for the unit of the aggregated costs.
-void set_jump_defaults(const MethodOverrides& overrides, MethodParameters& parameters) {
+/// Penalties of selections that are not set: what measurement says for the unit of the aggregated
+/// costs.
+void set_penalty_defaults(const MethodOverrides& overrides, MethodParameters& parameters) {
   if (!overrides.jump_limit) {
     parameters.jump_limit =
         has_likelihoods(parameters) ? kBayesJumpLimit : cost_of(parameters).jump_limit;
@@ -100,6 +105,11 @@ void set_jump_defaults(const MethodOverrides& overrides, MethodParameters& param
     parameters.jump_penalty = std::isinf(parameters.jump_limit)
                                   ? kJumpPenaltyShare * cost_of(parameters).jump_limit
                                   : kJumpPenaltyShare * parameters.jump_limit;
+  }
+  if (!overrides.occlusion_penalty) {
+    parameters.occlusion_penalty = has_likelihoods(parameters)
+                                       ? kBayesOcclusionPenalty
+                                       : cost_of(parameters).occlusion_penalty;
   }
 }
 
@@ -128,7 +138,7 @@ MethodParameters book_parameters(MatchMethod method) {
       parameters.aggregation = Aggregation::kBayes;
       break;
   }
-  set_jump_defaults({}, parameters);
+  set_penalty_defaults({}, parameters);
   return parameters;
 }
 
@@ -155,7 +165,7 @@ MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides) {
   if (!overrides.sigma_measurement && !overrides.estimate_sigma_measurement) {
     result.estimate_sigma_measurement = cost_of(result).estimates_sigma;
   }
-  set_jump_defaults(overrides, result);
+  set_penalty_defaults(overrides, result);
   return result;
 }
 

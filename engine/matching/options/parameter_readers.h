@@ -80,6 +80,10 @@ inline constexpr ParameterReaders kScanline = {"selection scanline",
                                                [](const MethodParameters& p, std::string_view) {
                                                  return p.selection == Selection::kScanline;
                                                }};
+inline constexpr ParameterReaders kSymmetric = {"selection symmetric",
+                                                [](const MethodParameters& p, std::string_view) {
+                                                  return p.selection == Selection::kSymmetric;
+                                                }};
 
 }  // namespace readers
 }  // namespace vantage

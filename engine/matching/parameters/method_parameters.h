@@ -36,8 +36,9 @@ enum class Aggregation {
 };
 /// How the disparities of a map are selected from aggregated costs.
 enum class Selection {
-  kWinner,    ///< winner-take-all: each pixel alone
-  kScanline,  ///< dynamic programming along each row
+  kWinner,     ///< winner-take-all: each pixel alone
+  kScanline,   ///< dynamic programming along each row
+  kSymmetric,  ///< dynamic programming along each row of both images: one-to-one or unmatched
 };
 enum class Subpixel { kParabola, kNone };
 enum class Border { kValid, kClip };
@@ -155,6 +156,9 @@ struct MethodParametersOf {
   Field<double> jump_penalty = by_default<Field>(50.0);
   /// Distance of neighbouring candidates in pixels of disparity: 1, 0.5 or 0.25.
   Field<double> candidate_step_px = by_default<Field>(1.0);
+  /// Symmetric: cost of a pixel without a match, in the unit of the aggregated costs, > 0. Default:
+  /// by cost and aggregation.
+  Field<double> occlusion_penalty = by_default<Field>(100.0);
   Field<Subpixel> subpixel = by_default<Field>(Subpixel::kParabola);
 
   friend bool operator==(const MethodParametersOf&, const MethodParametersOf&) = default;

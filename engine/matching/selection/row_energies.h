@@ -13,6 +13,12 @@
 
 namespace vantage {
 
+/// `bytes` up to the next multiple of 64, for parts of a stage's state.
+constexpr std::size_t cache_aligned(std::size_t bytes) {
+  constexpr std::size_t kAlignment = 64;
+  return (bytes + kAlignment - 1) / kAlignment * kAlignment;
+}
+
 /// Cells of any kind as a row of float energies, for selections that look at whole rows. Thread
 /// rule: immutable.
 class RowEnergies {

@@ -17,11 +17,6 @@ namespace {
 using scheduler::Extent;
 using scheduler::Range;
 
-std::size_t aligned(std::size_t bytes) {
-  constexpr std::size_t kAlignment = 64;
-  return (bytes + kAlignment - 1) / kAlignment * kAlignment;
-}
-
 class ScanlineSelectionStage final : public scheduler::RowStage {
  public:
   ScanlineSelectionStage(std::unique_ptr<RowEnergies> energies, const ScanlineSettings& settings,
@@ -73,7 +68,7 @@ class ScanlineSelectionStage final : public scheduler::RowStage {
     Place at;
     const auto take = [&](std::size_t bytes) {
       std::byte* const part = state == nullptr ? nullptr : state + at.bytes;
-      at.bytes += aligned(bytes);
+      at.bytes += cache_aligned(bytes);
       return part;
     };
     const auto floats = [&](std::size_t count) {
