@@ -10,7 +10,6 @@
 #include <random>
 #include <vector>
 
-#include "tests/kernels/cell_winner_rows.h"
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
