@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "apps/applied_tuning.h"
@@ -19,6 +20,7 @@
 #include "engine/io/photograph_io.h"
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/matching/volume/posterior_moments.h"
 #include "engine/sequence/preview_range.h"
 #include "engine/simd.h"
 
@@ -97,12 +99,57 @@ void require_equal_sizes(const MatchJob& job, const std::vector<Photograph>& ima
   }
 }
 
+/// Outputs of the disparity space.
+struct SpaceOutputs {
+  std::optional<NpyVolumeFile> volume;
+  std::optional<PosteriorMoments> posterior;
+
+  explicit SpaceOutputs(const MatchJob& job) {
+    if (!job.volume.file.empty()) {
+      volume.emplace(job.volume.file, job.volume.rows, job.vertical);
+    }
+    if (job.wants_posterior()) {
+      posterior.emplace();
+    }
+  }
+  [[nodiscard]] std::vector<VolumeRequest> requests(const MatchJob& job) {
+    const Side side = job.is_left() ? Side::kLeft : Side::kRight;
+    std::vector<VolumeRequest> requests;
+    if (volume) {
+      requests.push_back({side, job.volume.kind, job.volume.level, &*volume});
+    }
+    if (posterior) {
+      requests.push_back({.side = side, .sink = &*posterior});
+    }
+    return requests;
+  }
+};
+
+void write_moments(const std::string& path, const Image<float>& values, bool is_vertical) {
+  if (!path.empty()) {
+    write_disparity(path, is_vertical ? transposed(values.view()).view() : values.view());
+  }
+}
+
+void write_space(const MatchJob& job, SpaceOutputs& space, RunReport& report) {
+  if (space.posterior) {
+    write_moments(job.posterior_mean, space.posterior->mean_px(), job.vertical);
+    write_moments(job.posterior_variance, space.posterior->variance_px2(), job.vertical);
+  }
+  if (space.volume) {
+    space.volume->commit();
+    report.add_result("volume", volume_report(job.volume, *space.volume));
+  }
+}
+
 void match_images(const MatchJob& job, const StereoMatcher& matcher,
-                  const std::vector<Photograph>& images, DisparityMaps& maps, MatchReport& report) {
+                  const std::vector<Photograph>& images, std::span<const VolumeRequest> volumes,
+                  DisparityMaps& maps, MatchReport& report) {
   const MatchRequest request{.left = job.is_left(),
                              .right = job.wants_right(),
                              .unmatched = !(job.unmatched.empty() && job.unmatched_right.empty()),
-                             .confidence = !job.confidence.empty()};
+                             .confidence = !job.confidence.empty(),
+                             .volumes = volumes};
   if (!job.has_several()) {
     matcher.match(images[0], images[1], request, maps, &report);
     return;
@@ -197,8 +244,10 @@ int command_match(const Arguments& arguments) {
   const StereoMatcher matcher(job.match, chosen);
   DisparityMaps maps;
   MatchReport match;
+  SpaceOutputs space(job);
+  const std::vector<VolumeRequest> volumes = space.requests(job);
   const auto compute = [&] {
-    report.timed_compute([&] { match_images(job, matcher, images, maps, match); });
+    report.timed_compute([&] { match_images(job, matcher, images, volumes, maps, match); });
   };
   if (job.check_rectification && !job.match.disparities_y) {
     warn_unless_rectified_beside(compute, settings, job.common, expects_negative,
@@ -215,7 +264,10 @@ int command_match(const Arguments& arguments) {
   }
   report.add_match(match);
   report.set_memory(memory_use(images, maps, matcher, chosen));
-  report.timed_file_access("write", [&] { write_results(job, maps); });
+  report.timed_file_access("write", [&] {
+    write_results(job, maps);
+    write_space(job, space, report);
+  });
 
   report.write(job.common.report);
   if (!job.common.quiet) {
@@ -223,6 +275,9 @@ int command_match(const Arguments& arguments) {
          summary_of(job.match.resolved()), size.columns, size.rows, job.match.disparities.min,
          job.match.disparities.max, job.left, job.output);
     print_exposure(match);
+    if (space.volume) {
+      tell("match: {}\n", volume_summary(job.volume, *space.volume));
+    }
     report.print_summary();
   }
   return kExitDone;

@@ -10,6 +10,7 @@
 #include "engine/error.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/map_formats.h"
+#include "engine/matching/aggregation/aggregation_table.h"
 
 namespace vantage::apps {
 namespace {
@@ -78,6 +79,14 @@ void add_file_settings(Settings& settings, MatchJob& job) {
                 "Write a mask of the unmatched pixels of the right map");
   settings.path("preview", job.preview, "FILE",
                 "Write the map in false colours, scaled to the search range");
+  settings.path("posterior-mean", job.posterior_mean, "FILE",
+                fmt::format("With bayes and the presets but realtime: write the mean of each "
+                            "pixel's p(d), before refinement: {}",
+                            listed_map_formats(MapContent::kDisparity)));
+  settings.path("posterior-variance", job.posterior_variance, "FILE",
+                fmt::format("The same for the variance of p(d) in square pixels: {}",
+                            listed_map_formats(MapContent::kConfidence)));
+  add_volume_settings(settings, job.volume);
   add_rectification_check_setting(settings, job.check_rectification);
 }
 
@@ -107,6 +116,29 @@ void check_several(const MatchJob& job, const Settings& settings) {
   }
 }
 
+void check_posterior(const MatchJob& job, FileChecks& files) {
+  if (!job.wants_posterior()) {
+    return;
+  }
+  const char* const option =
+      job.posterior_mean.empty() ? "--posterior-variance" : "--posterior-mean";
+  if (!has_likelihoods(job.match.resolved())) {
+    throw UsageError(fmt::format("{} cannot be used with {}: only the aggregation bayes has p(d)",
+                                 option, job.match.chosen()));
+  }
+  if (job.match.disparities_y) {
+    throw UsageError(
+        fmt::format("{} cannot be used with --disparities-y: p is one of displacements", option));
+  }
+  if (has_extension(job.posterior_variance, {".png"})) {
+    throw UsageError(
+        fmt::format("--posterior-variance is '{}', but PNG holds no floats, expected {}",
+                    job.posterior_variance, listed_map_formats(MapContent::kConfidence)));
+  }
+  files.add_output(job.posterior_mean, "--posterior-mean", OutputKind::kDisparity);
+  files.add_output(job.posterior_variance, "--posterior-variance", OutputKind::kConfidence);
+}
+
 }  // namespace
 
 void add_match_job_settings(Settings& settings, MatchJob& job) {
@@ -128,7 +160,7 @@ void require_files_hold_search(const MatchJob& job) {
   if (job.match.disparities_auto) {
     return;
   }
-  for (const std::string& file : {job.output, job.output_right}) {
+  for (const std::string& file : {job.output, job.output_right, job.posterior_mean}) {
     require_holds_search(file, job.match.disparities.min, job.match.disparities.max);
   }
 }
@@ -164,6 +196,9 @@ void check(const MatchJob& job, const Settings& settings) {
   files.add_output(job.unmatched, "--unmatched", OutputKind::kMask);
   files.add_output(job.unmatched_right, "--unmatched-right", OutputKind::kMask);
   files.add_output(job.preview, "--preview", OutputKind::kPhotograph);
+  files.add_output(job.volume.file, "--volume", OutputKind::kVolume);
+  check_volume(job.volume, job.match, settings);
+  check_posterior(job, files);
   check_common_files(job.common, files);
   require_files_hold_search(job);
 }

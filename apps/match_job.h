@@ -7,6 +7,7 @@
 #include "apps/match_settings.h"
 #include "apps/option_groups.h"
 #include "apps/settings.h"
+#include "apps/volume_output.h"
 #include "engine/matching/options/match_options.h"
 
 namespace vantage::apps {
@@ -26,6 +27,9 @@ struct MatchJob {
   std::string unmatched;
   std::string unmatched_right;
   std::string preview;
+  VolumeOutput volume;
+  std::string posterior_mean;
+  std::string posterior_variance;
   /// Cameras stand one above the other, the left image's above: columns are searched.
   bool vertical = false;
   bool check_rectification = true;
@@ -35,6 +39,9 @@ struct MatchJob {
     std::vector<std::string> all = {left, right};
     all.insert(all.end(), more.begin(), more.end());
     return all;
+  }
+  [[nodiscard]] bool wants_posterior() const {
+    return !posterior_mean.empty() || !posterior_variance.empty();
   }
   /// Whether the map of the first image is one of a left image.
   [[nodiscard]] bool is_left() const {

@@ -45,6 +45,8 @@ std::vector<std::string> extensions_of(OutputKind kind) {
       return {".mp4"};
     case OutputKind::kTable:
       return {".csv", ".npy"};
+    case OutputKind::kVolume:
+      return {".npy"};
     case OutputKind::kPage:
       return {".html", ".htm"};
     case OutputKind::kPlot:

@@ -20,9 +20,10 @@ enum class OutputKind {
   kPhotograph,
   kMask,
   kVideo,
-  kTable,  ///< numbers: .csv or .npy
-  kPage,   ///< .html
-  kPlot,   ///< a chart: .svg or a picture
+  kTable,   ///< numbers: .csv or .npy
+  kVolume,  ///< .npy
+  kPage,    ///< .html
+  kPlot,    ///< a chart: .svg or a picture
   kText
 };
 

@@ -121,8 +121,9 @@ void ProfiledCommand::redirect() {
     return;
   }
   auto& match = std::get<MatchJob>(job_);
-  for (std::string* path : {&match.output, &match.output_right, &match.confidence, &match.unmatched,
-                            &match.unmatched_right, &match.preview}) {
+  for (std::string* path : {&match.output, &match.output_right, &match.confidence,
+                            &match.volume.file, &match.posterior_mean, &match.posterior_variance,
+                            &match.unmatched, &match.unmatched_right, &match.preview}) {
     if (!path->empty()) {
       redirect(*path);
     }

@@ -14,6 +14,7 @@
 #include "engine/io/displacement_io.h"
 #include "engine/io/frame_source.h"
 #include "engine/io/map_formats.h"
+#include "engine/io/npy_volume_file.h"
 #include "engine/io/photograph_io.h"
 #include "engine/io/video_io.h"
 
@@ -23,6 +24,7 @@
 #include "engine/matching/options/match_presets.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/matching/volume/posterior_moments.h"
 
 // Cameras, and unrectified pairs.
 #include "engine/rectification/feature_matches.h"

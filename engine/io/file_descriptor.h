@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -31,6 +32,9 @@ class FileDescriptor {
 
 /// False on failure, with errno set.
 bool write_all(int descriptor, std::span<const std::uint8_t> bytes);
+
+/// The same from byte `offset` of a file on; threads may write different parts at a time.
+bool write_all_at(int descriptor, std::size_t offset, std::span<const std::uint8_t> bytes);
 
 /// Makes names in `folder` durable across a power cut, if the file system supports it.
 void flush_folder(const std::filesystem::path& folder);

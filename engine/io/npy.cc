@@ -170,6 +170,14 @@ std::vector<std::uint8_t> npy_header(std::string_view type, std::string_view sha
   return bytes;
 }
 
+std::string tuple_of(std::span<const int> shape) {
+  std::string sides;
+  for (const int side : shape) {
+    sides += fmt::format("{},", side);
+  }
+  return sides;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> encode_npy(ImageView<const float> image) {
@@ -186,12 +194,12 @@ std::vector<std::uint8_t> encode_npy(ImageView<const float> image) {
   return bytes;
 }
 
+std::vector<std::uint8_t> npy_float_header(std::span<const int> shape) {
+  return npy_header("<f4", tuple_of(shape));
+}
+
 std::vector<std::uint8_t> encode_npy(std::span<const double> values, std::span<const int> shape) {
-  std::string sides;
-  for (const int side : shape) {
-    sides += fmt::format("{},", side);
-  }
-  std::vector<std::uint8_t> bytes = npy_header("<f8", sides);
+  std::vector<std::uint8_t> bytes = npy_header("<f8", tuple_of(shape));
   const auto* begin = reinterpret_cast<const std::uint8_t*>(values.data());
   bytes.insert(bytes.end(), begin, begin + values.size_bytes());
   return bytes;

@@ -153,7 +153,8 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
                                 const MapOutputs& outputs, CoarseLevels& levels,
                                 Execution& execution,
                                 const std::function<void(const MatchChain&)>& run,
-                                const CoarseMap& coarse_map, const CheckMap& check_map) {
+                                const CoarseMap& coarse_map, const CheckMap& check_map,
+                                const std::vector<VolumeWriter>& volumes) {
   const auto extents =
       level_extents({geometry.width, outputs.disparity_px.height()}, parameters.levels);
   const int coarsest = static_cast<int>(extents.size()) - 1;
@@ -195,6 +196,11 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
     if (level == finest && parts != nullptr) {
       place.regions = &parts->winners;
     }
+    if (const auto* const costs = find_writer(volumes, VolumeKind::kCosts, level)) {
+      run(MatchChain(parameters, of_level, input, outputs,
+                     {.number = level, .costs = place.costs, .volume = costs}));
+    }
+    place.volume = find_writer(volumes, VolumeKind::kAggregated, level);
     run(MatchChain(parameters, of_level, input, outputs, place));
     cells.finest_level = place.blocks != nullptr
                              ? place.blocks->cells()

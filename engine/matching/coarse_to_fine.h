@@ -128,12 +128,14 @@ bool has_check_map(const MethodParameters& parameters, scheduler::Extent extent)
 /// coarser level. Costs are still reduced from all candidates.
 ///
 /// `coarse_map` (Bayesian diffusion only) does not depend on whether finer levels are computed, nor
-/// `check_map` on whether the map is.
+/// `check_map` on whether the map is. `volumes`: take the cells of their levels; costs of a level
+/// are computed once more for them.
 LevelCells match_coarse_to_fine(const MethodParameters& parameters,
                                 const kernels::CandidateGeometry& geometry, const ChainInput& input,
                                 const MapOutputs& outputs, CoarseLevels& levels,
                                 Execution& execution,
                                 const std::function<void(const MatchChain&)>& run,
-                                const CoarseMap& coarse_map = {}, const CheckMap& check_map = {});
+                                const CoarseMap& coarse_map = {}, const CheckMap& check_map = {},
+                                const std::vector<VolumeWriter>& volumes = {});
 
 }  // namespace vantage

@@ -1,9 +1,15 @@
 #include "engine/matching/map_search.h"
 #include "engine/matching/candidate_geometry.h"
 
+#include <fmt/format.h>
+
+#include <map>
 #include <utility>
 
+#include "engine/error.h"
+#include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/costs/displacement_grid.h"
+#include "engine/matching/levels/level_extents.h"
 #include "scheduler/strip_pipeline.h"
 
 namespace vantage {
@@ -37,7 +43,8 @@ scheduler::ChainPlan chain_plan(const MatchChain& chain, const ExecutionOptions&
 }
 
 void MapSearch::compute(Side reference, const ChainInput& input, const MapOutputs& outputs,
-                        const CoarseMap& coarse, const CheckMap& check) {
+                        const CoarseMap& coarse, const CheckMap& check,
+                        std::span<const VolumeRequest> volumes) {
   const int width = outputs.disparity_px.width();
   const int height = outputs.disparity_px.height();
   const auto grid = displacement_grid(options_, reference, width, height);
@@ -47,7 +54,8 @@ void MapSearch::compute(Side reference, const ChainInput& input, const MapOutput
     searched.grid = &*grid;
     geometry = grid->columns();
   }
-  search(geometry, searched, outputs, coarse, check);
+  search(geometry, searched, outputs, coarse, check,
+         start_writers(reference, {width, height}, volumes));
   if (geometry.steps_per_px > 1) {
     const bool has_own_map = !coarse.is_all && !check.is_all;
     for (const ImageView<float>& map :
@@ -58,13 +66,18 @@ void MapSearch::compute(Side reference, const ChainInput& input, const MapOutput
 }
 
 void MapSearch::search(const kernels::CandidateGeometry& geometry, const ChainInput& searched,
-                       const MapOutputs& outputs, const CoarseMap& coarse, const CheckMap& check) {
+                       const MapOutputs& outputs, const CoarseMap& coarse, const CheckMap& check,
+                       const std::vector<VolumeWriter>& writers) {
   const double candidates = candidate_count(options_.disparities, parameters_) *
                             (options_.disparities_y ? options_.disparities_y->count() : 1.0);
   const double pixels =
       static_cast<double>(outputs.disparity_px.width()) * outputs.disparity_px.height();
   if (parameters_.levels == 1) {
-    run_chain(MatchChain(parameters_, geometry, searched, outputs));
+    if (const auto* const costs = find_writer(writers, VolumeKind::kCosts, 0)) {
+      run_chain(MatchChain(parameters_, geometry, searched, outputs, {.volume = costs}));
+    }
+    run_chain(MatchChain(parameters_, geometry, searched, outputs,
+                         {.volume = find_writer(writers, VolumeKind::kAggregated, 0)}));
     report_.finest_pixels += pixels;
     report_.cells += pixels * candidates;
     report_.finest_cells += pixels * candidates;
@@ -73,7 +86,7 @@ void MapSearch::search(const kernels::CandidateGeometry& geometry, const ChainIn
   scheduler::ChainPlan plan_before = report_.plan;
   const LevelCells cells = match_coarse_to_fine(
       parameters_, geometry, searched, outputs, work_.levels, execution_,
-      [this](const MatchChain& chain) { run_chain(chain); }, coarse, check);
+      [this](const MatchChain& chain) { run_chain(chain); }, coarse, check, writers);
   report_.cells += cells.all_levels;
   if (coarse.is_all) {
     if (!plan_before.passes.empty()) {
@@ -83,6 +96,46 @@ void MapSearch::search(const kernels::CandidateGeometry& geometry, const ChainIn
   }
   report_.finest_cells += cells.finest_level;
   report_.finest_pixels += pixels;
+}
+
+/// One writer for all volumes of the same cells.
+std::vector<VolumeWriter> MapSearch::start_writers(Side reference, scheduler::Extent image,
+                                                   std::span<const VolumeRequest> volumes) const {
+  std::vector<VolumeWriter> writers;
+  std::map<std::pair<int, VolumeKind>, std::vector<VolumeSink*>> sinks;
+  const auto levels = static_cast<int>(level_extents(image, parameters_.levels).size());
+  for (const VolumeRequest& volume : volumes) {
+    if (volume.side != reference) {
+      continue;
+    }
+    if (volume.level < 0 || volume.level >= levels) {
+      throw UsageError(fmt::format(
+          "volume-level is {}, expected 0 to {}: images of {}x{} have {} "
+          "level{} here",
+          volume.level, levels - 1, image.columns, image.rows, levels, levels == 1 ? "" : "s"));
+    }
+    sinks[{volume.level, volume.kind}].push_back(volume.sink);
+  }
+  for (const auto& [cells, of_cells] : sinks) {
+    const auto [level, kind] = cells;
+    const bool is_aggregated = kind == VolumeKind::kAggregated;
+    const bool has_whole_windows = is_aggregated && level == 0 &&
+                                   aggregation_of(parameters_).has_windows &&
+                                   parameters_.border == Border::kValid;
+    writers.emplace_back(
+        VolumeWriter::Space{
+            .geometry = candidate_geometry(options_, reference, image.columns, image.rows),
+            .grid = displacement_grid(options_, reference, image.columns, image.rows),
+            .height_px = image.rows,
+            .level = level,
+            .margin_px = has_whole_windows ? parameters_.window_px / 2 : 0,
+            .kind = kind,
+            .content = is_aggregated && has_likelihoods(parameters_) ? VolumeContent::kProbabilities
+                                                                     : VolumeContent::kEnergies},
+        of_cells);
+    writers.back().start();
+  }
+  return writers;
 }
 
 void MapSearch::run_chain(const MatchChain& chain) {

@@ -1,11 +1,17 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/matching/coarse_to_fine.h"
 #include "engine/matching/match_chain.h"
 #include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/matching/volume/volume_request.h"
+#include "engine/matching/volume/volume_writer.h"
+#include "scheduler/range.h"
 #include "scheduler/strip_plan.h"
 
 namespace vantage {
@@ -32,14 +38,19 @@ class MapSearch {
         work_(work),
         report_(report) {}
 
-  /// `outputs` have the image's size; with coarse.is_all only that size is used. Throws Error when
-  /// no pixel has a candidate.
+  /// `outputs` have the image's size; with coarse.is_all only that size is used. `volumes`: those
+  /// whose side is `reference` are written; none with coarse.is_all. Throws Error when no pixel has
+  /// a candidate, UsageError for a level of a volume that the image does not have.
   void compute(Side reference, const ChainInput& input, const MapOutputs& outputs,
-               const CoarseMap& coarse, const CheckMap& check = {});
+               const CoarseMap& coarse, const CheckMap& check = {},
+               std::span<const VolumeRequest> volumes = {});
 
  private:
   void search(const kernels::CandidateGeometry& geometry, const ChainInput& searched,
-              const MapOutputs& outputs, const CoarseMap& coarse, const CheckMap& check);
+              const MapOutputs& outputs, const CoarseMap& coarse, const CheckMap& check,
+              const std::vector<VolumeWriter>& writers);
+  [[nodiscard]] std::vector<VolumeWriter> start_writers(
+      Side reference, scheduler::Extent image, std::span<const VolumeRequest> volumes) const;
   void run_chain(const MatchChain& chain);
 
   const ResolvedMatchOptions& options_;

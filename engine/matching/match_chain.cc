@@ -29,6 +29,7 @@
 #include "engine/matching/selection/stage_scanline_selection.h"
 #include "engine/matching/selection/stage_symmetric_selection.h"
 #include "engine/matching/selection/stage_window_selection.h"
+#include "engine/matching/volume/stage_volume.h"
 
 namespace vantage {
 
@@ -105,16 +106,18 @@ bool repeats_coarser(const MethodParameters& parameters, const ChainInput& input
                      const ChainLevel& level) {
   return uses_fixed_energies(parameters) && parameters.selection == Selection::kWinner &&
          input.grid == nullptr && level.coarser != nullptr && level.result == nullptr &&
-         at_level(parameters, level.number).iterations == 0;
+         level.volume == nullptr && at_level(parameters, level.number).iterations == 0;
 }
 
-WindowSelectionSettings window_selection(const MethodParameters& parameters) {
+WindowSelectionSettings window_selection(const MethodParameters& parameters,
+                                         const ChainLevel& level) {
   WindowSelectionSettings settings;
   settings.radius = parameters.window_px / 2;
   settings.border = parameters.border;
   settings.subpixel = parameters.subpixel;
   settings.confidence = confidence_measure(parameters);
   settings.entropy_scale = entropy_scale(parameters);
+  settings.volume = level.volume;
   return settings;
 }
 
@@ -127,11 +130,16 @@ MatchChain::MatchChain(const MethodParameters& parameters,
       outputs_(outputs),
       height_(level.costs != nullptr ? level.costs->extent().rows : outputs.disparity_px.height()),
       regions_(level.regions) {
-  if (input.pair != nullptr) {
-    add_column_ssd(parameters, input);
+  const bool is_cost_volume = level.volume != nullptr && level.volume->kind() == VolumeKind::kCosts;
+  if (input.pair != nullptr && !is_cost_volume) {
+    add_column_ssd(parameters, input, level);
     return;
   }
   half_scale_ = half_scale(bounds_of(parameters, input));
+  if (is_cost_volume) {
+    add_cost_volume(parameters, input, level);
+    return;
+  }
   if (level.reduced != nullptr) {
     add_reduction(parameters, input, level);
     return;
@@ -148,7 +156,7 @@ MatchChain::MatchChain(const MethodParameters& parameters,
                                        half_scale_, *level.coarser));
   }
   if (aggregation_of(parameters).has_windows && level.result == nullptr) {
-    add_box(parameters, input);
+    add_box(parameters, input, level);
     return;
   }
   add_aggregation(at_level(parameters, level.number), input, level);
@@ -300,10 +308,11 @@ kernels::CandidateGeometry MatchChain::of_candidates(int first_candidate, int co
   return candidates;
 }
 
-void MatchChain::add_column_ssd(const MethodParameters& parameters, const ChainInput& input) {
+void MatchChain::add_column_ssd(const MethodParameters& parameters, const ChainInput& input,
+                                const ChainLevel& level) {
   const PreparedPair& pair = *input.pair;
   const bool left = geometry_.direction < 0;
-  WindowSelectionSettings settings = window_selection(parameters);
+  WindowSelectionSettings settings = window_selection(parameters, level);
   const auto add_stages = [&](const auto& planes, auto... shift) {
     add(make_column_ssd_stage(left ? planes.left : planes.right,
                               left ? planes.right_mirrored : planes.left, geometry_, height_,
@@ -320,10 +329,11 @@ void MatchChain::add_column_ssd(const MethodParameters& parameters, const ChainI
   add_window_selection(parameters, settings, input);
 }
 
-void MatchChain::add_box(const MethodParameters& parameters, const ChainInput& input) {
+void MatchChain::add_box(const MethodParameters& parameters, const ChainInput& input,
+                         const ChainLevel& level) {
   const CostBounds bounds = bounds_of(parameters, input);
   const ColumnSumScale quantised = column_sum_scale(bounds.min, bounds.max, parameters.window_px);
-  WindowSelectionSettings settings = window_selection(parameters);
+  WindowSelectionSettings settings = window_selection(parameters, level);
   settings.energy_scale = 1.0F / quantised.scale;
   settings.energy_offset = quantised.offset;
   if (input.grid != nullptr) {
@@ -402,22 +412,55 @@ void MatchChain::add_aggregation(const MethodParameters& parameters, const Chain
   }
 }
 
+/// Costs of all candidates, handed to the level's writer.
+void MatchChain::add_cost_volume(const MethodParameters& parameters, const ChainInput& input,
+                                 const ChainLevel& level) {
+  add_costs(parameters, input, {.costs = level.costs});
+  if (uses_fixed_energies(parameters)) {
+    add(make_fixed_energy_volume_stage(geometry_, height_, EnergyFormat(parameters).steps_per_nat(),
+                                       nullptr, *level.volume));
+  } else if (has_likelihoods(parameters)) {
+    add(make_likelihood_volume_stage(geometry_, height_, *level.volume));
+  } else {
+    add(make_value_volume_stage(geometry_, height_, *level.volume));
+  }
+}
+
+/// Adds the last stage, which hands its cells to the level's writer, too.
+void MatchChain::add_last(const MethodParameters& parameters, const ChainLevel& level,
+                          std::unique_ptr<scheduler::RowStage> stage) {
+  if (level.volume == nullptr) {
+    add(std::move(stage));
+    return;
+  }
+  add(make_stage_beside_volume(
+      std::move(stage), uses_fixed_energies(parameters)
+                            ? make_fixed_energy_volume_stage(
+                                  geometry_, height_, EnergyFormat(parameters).steps_per_nat(),
+                                  level.blocks, *level.volume)
+                            : make_value_volume_stage(geometry_, height_, *level.volume)));
+}
+
 void MatchChain::add_result(const MethodParameters& parameters, const ChainLevel& level) {
   const LevelResult result{.cells = level.result, .winners = level.winners};
   if (!has_likelihoods(parameters)) {
-    add(make_half_energy_store_stage(geometry_, half_scale_, *level.result));
+    add_last(parameters, level,
+             make_half_energy_store_stage(geometry_, half_scale_, *level.result));
   } else if (uses_fixed_energies(parameters)) {
-    add(make_level_fixed_energy_result_stage(geometry_, result, EnergyFormat(parameters),
-                                             level.blocks));
+    add_last(parameters, level,
+             make_level_fixed_energy_result_stage(geometry_, result, EnergyFormat(parameters),
+                                                  level.blocks));
   } else {
-    add(make_level_probability_stage(geometry_, result));
+    add_last(parameters, level, make_level_probability_stage(geometry_, result));
   }
 }
 
 void MatchChain::add_selection(const MethodParameters& parameters, const ChainInput& input,
                                const ChainLevel& level) {
   if (parameters.selection != Selection::kWinner) {
-    add(row_selection(parameters, input,
+    add_last(
+        parameters, level,
+        row_selection(parameters, input,
                       uses_fixed_energies(parameters)
                           ? make_fixed_energies(geometry_, EnergyFormat(parameters).steps_per_nat())
                           : make_cell_energies(geometry_, has_likelihoods(parameters))));
@@ -425,12 +468,15 @@ void MatchChain::add_selection(const MethodParameters& parameters, const ChainIn
   }
   if (uses_fixed_energies(parameters)) {
     if (input.grid != nullptr) {
-      add(make_displacement_fixed_energy_selection_stage(
-          *input.grid, parameters.subpixel, EnergyFormat(parameters).steps_per_nat(), outputs_));
+      add_last(parameters, level,
+               make_displacement_fixed_energy_selection_stage(
+                   *input.grid, parameters.subpixel, EnergyFormat(parameters).steps_per_nat(),
+                   outputs_));
       return;
     }
-    add(make_fixed_energy_selection_stage(geometry_, height_, energy_selector(parameters),
-                                          level.blocks));
+    add_last(parameters, level,
+             make_fixed_energy_selection_stage(geometry_, height_, energy_selector(parameters),
+                                               level.blocks));
     return;
   }
   CellSelectionSettings settings;
@@ -438,8 +484,10 @@ void MatchChain::add_selection(const MethodParameters& parameters, const ChainIn
   settings.subpixel = parameters.subpixel;
   settings.confidence = confidence_measure(parameters);
   settings.entropy_scale = static_cast<float>(entropy_scale(parameters));
-  add(input.grid != nullptr ? make_displacement_selection_stage(*input.grid, settings, outputs_)
-                            : make_cell_selection_stage(geometry_, settings, outputs_));
+  add_last(parameters, level,
+           input.grid != nullptr
+               ? make_displacement_selection_stage(*input.grid, settings, outputs_)
+               : make_cell_selection_stage(geometry_, settings, outputs_));
 }
 
 }  // namespace vantage

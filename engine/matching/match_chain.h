@@ -17,6 +17,7 @@
 #include "engine/matching/selection/energy_selector.h"
 #include "engine/matching/selection/row_energies.h"
 #include "engine/matching/selection/stage_cell_selection.h"
+#include "engine/matching/volume/volume_writer.h"
 #include "scheduler/strip_plan.h"
 
 namespace vantage {
@@ -33,7 +34,8 @@ struct SymmetricPlace {
   MapOutputs right_outputs = {};  ///< of the left image's chain
 };
 
-/// Input of a chain: the pair, for the column SSD stage, or a reference and its partners.
+/// Input of a chain: the pair, for the column SSD stage, or a reference and its partners. Both, if
+/// a volume of costs is wanted besides.
 struct ChainInput {
   const PreparedPair* pair = nullptr;  ///< null: the other members are used
   const CostImage* reference = nullptr;
@@ -72,6 +74,9 @@ struct ChainLevel {
   Image<std::int32_t>* winners = nullptr;
   /// The only parts of the outputs to make; null: all.
   const std::vector<scheduler::Region>* regions = nullptr;
+  /// Takes the level's cells: aggregated ones in addition to the other outputs, costs instead of
+  /// them. Null: not requested.
+  const VolumeWriter* volume = nullptr;
 };
 
 // Cells of a row are [x][candidate]: floats (energies or likelihoods), bytes (energies in steps),
@@ -109,6 +114,7 @@ struct ChainLevel {
 //  store energies                 float, fixed, 32 bits   whole row                         stored
 //  symmetric selection            same, stored row        whole row  NaN if unmatched       maps
 //  coarser selection              coarser row                      NaN if no candidate    map
+//  volume                         float, fixed                     NaN if no partner      volume
 // clang-format on
 
 /// The stages that compute one disparity map, or one level of it: cost → aggregation → selection.
@@ -148,8 +154,10 @@ class MatchChain {
   [[nodiscard]] std::unique_ptr<scheduler::RowStage> byte_energies(
       const MethodParameters& parameters, const ChainInput& input, int first_candidate,
       int count) const;
-  void add_column_ssd(const MethodParameters& parameters, const ChainInput& input);
-  void add_box(const MethodParameters& parameters, const ChainInput& input);
+  void add_column_ssd(const MethodParameters& parameters, const ChainInput& input,
+                      const ChainLevel& level);
+  void add_box(const MethodParameters& parameters, const ChainInput& input,
+               const ChainLevel& level);
   void add_window_selection(const MethodParameters& parameters,
                             const WindowSelectionSettings& settings, const ChainInput& input);
   [[nodiscard]] std::unique_ptr<scheduler::RowStage> row_selection(
@@ -157,6 +165,10 @@ class MatchChain {
       std::unique_ptr<RowEnergies> energies) const;
   void add_aggregation(const MethodParameters& parameters, const ChainInput& input,
                        const ChainLevel& level);
+  void add_cost_volume(const MethodParameters& parameters, const ChainInput& input,
+                       const ChainLevel& level);
+  void add_last(const MethodParameters& parameters, const ChainLevel& level,
+                std::unique_ptr<scheduler::RowStage> stage);
   void add_result(const MethodParameters& parameters, const ChainLevel& level);
   void add_selection(const MethodParameters& parameters, const ChainInput& input,
                      const ChainLevel& level);

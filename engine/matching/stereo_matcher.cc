@@ -95,17 +95,17 @@ std::vector<IntensityChanges> StereoMatcher::estimate_exposure(const Photograph&
 
 /// Prepares the inputs of both maps' chains.
 void StereoMatcher::prepare_inputs(MapTask& left, MapTask& right, bool uses_prior,
-                                   Prepared& prepared) const {
+                                   Prepared& prepared,
+                                   std::span<const VolumeRequest> volumes) const {
   const bool needs_left = left.need.any();
   const bool needs_right = right.need.any();
   const auto geometry =
       candidate_geometry(in_force_, Side::kLeft, left.image->width(), left.image->height());
-  if (uses_column_ssd(in_force_.parameters) && !in_force_.disparities_y && !uses_prior) {
-    prepare_pair(*left.image, *right.image, geometry,
-                 in_force_.parameters.window_px * in_force_.parameters.window_px,
-                 {needs_left, needs_right}, execution_, prepared.pair);
-    left.input.pair = right.input.pair = &prepared.pair;
-  } else {
+  const bool uses_pair =
+      uses_column_ssd(in_force_.parameters) && !in_force_.disparities_y && !uses_prior;
+  const bool needs_costs = std::ranges::any_of(
+      volumes, [](const VolumeRequest& volume) { return volume.kind == VolumeKind::kCosts; });
+  if (!uses_pair || needs_costs) {
     prepared.images.resize(2);
     CostImage& left_image = prepared.images[0];
     CostImage& right_image = prepared.images[1];
@@ -125,6 +125,12 @@ void StereoMatcher::prepare_inputs(MapTask& left, MapTask& right, bool uses_prio
                         execution_);
     left.input = {nullptr, &left_image, {CostPartner{&right_image}}};
     right.input = {nullptr, &right_image, {CostPartner{&left_image}}};
+  }
+  if (uses_pair) {
+    prepare_pair(*left.image, *right.image, geometry,
+                 in_force_.parameters.window_px * in_force_.parameters.window_px,
+                 {needs_left, needs_right}, execution_, prepared.pair);
+    left.input.pair = right.input.pair = &prepared.pair;
   }
 }
 
@@ -195,7 +201,7 @@ std::pair<StereoMatcher::MapNeed, StereoMatcher::MapNeed> StereoMatcher::needs(
 /// Resizes the images of the task's map and computes what is needed of it.
 void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_confidence,
                             int check_level, Prepared& prepared, StageClock& clock,
-                            MatchReport& report) const {
+                            MatchReport& report, std::span<const VolumeRequest> volumes) const {
   const auto resize = [&](Image<float>& image, bool is_wanted) {
     image.resize(is_wanted ? task.image->width() : 0, is_wanted ? task.image->height() : 0);
   };
@@ -229,7 +235,7 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
                {.disparity_px = task.need.whole ? map.disparity_px.view() : size_alone,
                 .confidence = map.confidence.view(),
                 .disparity_y_px = map.disparity_y_px.view()},
-               coarse, check);
+               coarse, check, task.need.whole ? volumes : std::span<const VolumeRequest>());
   if (coarse.winners != nullptr) {
     const auto geometry =
         candidate_geometry(in_force_, task.side, task.image->width(), task.image->height());
@@ -243,8 +249,8 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
 /// Computes both maps from one solution (§3.17): the right image's energies are stored, then the
 /// left image's chain selects.
 void StereoMatcher::compute_symmetric(MapTask& left, MapTask& right, bool wants_confidence,
-                                      Prepared& prepared, StageClock& clock,
-                                      MatchReport& report) const {
+                                      Prepared& prepared, StageClock& clock, MatchReport& report,
+                                      std::span<const VolumeRequest> volumes) const {
   const int width = left.image->width();
   const int height = left.image->height();
   prepared.right_energies.resize({width, height},
@@ -252,11 +258,11 @@ void StereoMatcher::compute_symmetric(MapTask& left, MapTask& right, bool wants_
                                  sizeof(kernels::StepEnergy));
   SymmetricPlace place{.right = &prepared.right_energies};
   left.input.symmetric = right.input.symmetric = &place;
-  compute(right, "match right", wants_confidence, 0, prepared, clock, report);
+  compute(right, "match right", wants_confidence, 0, prepared, clock, report, volumes);
   place.is_stored = true;
   place.right_outputs = {.disparity_px = right.map->disparity_px.view(),
                          .confidence = right.map->confidence.view()};
-  compute(left, "match left", wants_confidence, 0, prepared, clock, report);
+  compute(left, "match left", wants_confidence, 0, prepared, clock, report, volumes);
 }
 
 MapToRefine StereoMatcher::to_refine(const MapTask& task, bool is_result) const {
@@ -288,6 +294,11 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     if (uses_prior) {
       throw UsageError("there is a prior, expected none with a reduced search-size");
     }
+    if (!request.volumes.empty()) {
+      throw UsageError(
+          "there is no volume with a reduced search-size (preset realtime), which searches a few "
+          "candidates around those of smaller images; expected search-size full");
+    }
     reduced_.match(left, right,
                    {.left = request.left, .right = request.right, .confidence = request.confidence},
                    request.previous, maps, clock, times);
@@ -309,7 +320,7 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     estimate_exposure(left, right, *prepared, times);
     clock.start("prepare");
   }
-  prepare_inputs(of_left, of_right, uses_prior, *prepared);
+  prepare_inputs(of_left, of_right, uses_prior, *prepared, request.volumes);
   if (uses_prior) {
     of_left.input.prior_px = request.prior.left_px;
     of_right.input.prior_px = request.prior.right_px;
@@ -317,10 +328,12 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   }
   const bool confidence = wants_confidence(request);
   if (is_symmetric) {
-    compute_symmetric(of_left, of_right, confidence, *prepared, clock, times);
+    compute_symmetric(of_left, of_right, confidence, *prepared, clock, times, request.volumes);
   } else {
-    compute(of_left, "match left", confidence, check_level, *prepared, clock, times);
-    compute(of_right, "match right", confidence, check_level, *prepared, clock, times);
+    compute(of_left, "match left", confidence, check_level, *prepared, clock, times,
+            request.volumes);
+    compute(of_right, "match right", confidence, check_level, *prepared, clock, times,
+            request.volumes);
   }
 
   if (!in_force_.refinement) {
@@ -385,7 +398,7 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
                   execution_);
     task.input.partners.push_back({&image, ratio});
   }
-  compute(task, "match", wants_confidence(request), 0, *prepared, clock, times);
+  compute(task, "match", wants_confidence(request), 0, *prepared, clock, times, request.volumes);
 
   if (!in_force_.refinement) {
     if (request.unmatched) {

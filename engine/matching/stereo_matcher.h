@@ -18,6 +18,7 @@
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/pair_exposure.h"
 #include "engine/matching/reduced_matcher.h"
+#include "engine/matching/volume/volume_request.h"
 #include "engine/object_pool.h"
 #include "engine/refinement/refine_maps.h"
 #include "scheduler/strip_plan.h"
@@ -31,8 +32,11 @@ class StageClock;
 struct MatchRequest {
   bool left = true;
   bool right = true;
-  bool unmatched = true;      ///< the masks of the maps
-  bool confidence = false;    ///< the confidence of the maps
+  bool unmatched = true;    ///< the masks of the maps
+  bool confidence = false;  ///< the confidence of the maps
+  /// Volumes written to their sinks while maps are computed, not for a reduced search-size. Maps do
+  /// not depend on them.
+  std::span<const VolumeRequest> volumes = {};
   DisparityPrior prior = {};  ///< for match() without a vertical search only
   /// For match() with a reduced search-size: tiles keep the maps of the pair before. Replaced by
   /// the maps of this pair; a request with it runs alone. Ignored where images are too small to be
@@ -53,7 +57,8 @@ class StereoMatcher {
 
   /// left and right: equal size, at least 1×1, any depth and channels; depths may differ. Throws
   /// Error when sizes differ or no pixel has a candidate in the range, UsageError for a prior's
-  /// weight out of range or a prior with a vertical search.
+  /// weight out of range, a prior with a vertical search, or a volume that cannot be had: of a
+  /// level that the images do not have, or with a reduced search-size.
   void match(const Photograph& left, const Photograph& right, const MatchRequest& request,
              DisparityMaps& maps, MatchReport* report = nullptr) const;
 
@@ -123,7 +128,8 @@ class StereoMatcher {
   [[nodiscard]] std::pair<MapNeed, MapNeed> needs(const MatchRequest& request,
                                                   scheduler::Extent image) const;
   [[nodiscard]] bool wants_confidence(const MatchRequest& request) const;
-  void prepare_inputs(MapTask& left, MapTask& right, bool uses_prior, Prepared& prepared) const;
+  void prepare_inputs(MapTask& left, MapTask& right, bool uses_prior, Prepared& prepared,
+                      std::span<const VolumeRequest> volumes = {}) const;
   void estimate_exposure(const Photograph& left, const Photograph& right, Prepared& prepared,
                          MatchReport& report) const;
   [[nodiscard]] std::vector<IntensityChanges> estimate_exposure(const Photograph& reference,
@@ -131,9 +137,11 @@ class StereoMatcher {
                                                                 Prepared& prepared,
                                                                 MatchReport& report) const;
   void compute(MapTask& task, std::string_view name, bool wants_confidence, int check_level,
-               Prepared& prepared, StageClock& clock, MatchReport& report) const;
+               Prepared& prepared, StageClock& clock, MatchReport& report,
+               std::span<const VolumeRequest> volumes) const;
   void compute_symmetric(MapTask& left, MapTask& right, bool wants_confidence, Prepared& prepared,
-                         StageClock& clock, MatchReport& report) const;
+                         StageClock& clock, MatchReport& report,
+                         std::span<const VolumeRequest> volumes) const;
   [[nodiscard]] MapToRefine to_refine(const MapTask& task, bool is_result) const;
 
   const ResolvedMatchOptions in_force_;

@@ -109,10 +109,12 @@ class WindowEnergies final : public RowEnergies {
                  const WindowSelectionSettings& settings)
       : RowEnergies(geometry), height_(height), settings_(settings) {}
 
-  /// Energies of the row; window sums of a block, and those that run from block to block.
+  /// Energies of the row; window sums of a block, and those that run from block to block; and what
+  /// the writer of a volume needs.
   [[nodiscard]] std::size_t work_bytes() const override {
     return sizeof(float) * row_floats() +
-           sizeof(std::int32_t) * (kBlockColumns + 1) * static_cast<std::size_t>(lanes());
+           sizeof(std::int32_t) * (kBlockColumns + 1) * static_cast<std::size_t>(lanes()) +
+           (settings_.volume != nullptr ? sizeof(float) * settings_.volume->work_floats() : 0);
   }
   [[nodiscard]] kernels::KernelWork work() const override {
     return kernels::row_sum_work(true) + kernels::kMeanEnergyWork;
@@ -121,6 +123,9 @@ class WindowEnergies final : public RowEnergies {
                                           std::byte* work) const override {
     auto* const energies = reinterpret_cast<float*>(work);
     if (has_whole_windows() && (y < settings_.radius || y >= height_ - settings_.radius)) {
+      if (settings_.volume != nullptr) {
+        settings_.volume->write_nothing(0, y, geometry().width, energies);
+      }
       return row_of(energies, geometry().width);  // no candidate counts
     }
     auto* const sums = reinterpret_cast<std::int32_t*>(energies + row_floats());
@@ -148,6 +153,11 @@ class WindowEnergies final : public RowEnergies {
       row.first_column = x;
       row.columns = sum.output_end - x;
       kernels::mean_energy_row(row, unit, energies + static_cast<std::ptrdiff_t>(x) * lanes());
+    }
+    if (settings_.volume != nullptr) {
+      settings_.volume->write_values(
+          {.cells = energies, .pitch = lanes(), .y = y, .count = geometry().width},
+          reinterpret_cast<float*>(sum.window_sums + lanes()));
     }
     return row_of(energies, has_whole_windows() ? settings_.radius : 0);
   }

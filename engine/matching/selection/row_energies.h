@@ -66,7 +66,8 @@ std::unique_ptr<RowEnergies> make_cell_energies(const kernels::CandidateGeometry
 std::unique_ptr<RowEnergies> make_fixed_energies(const kernels::CandidateGeometry& geometry,
                                                  float steps_per_nat);
 /// Column sums of 32 bits: mean energies over windows, as stage_window_selection compares them.
-/// Candidates count as settings.border says. `height`: rows of the image.
+/// Candidates count as settings.border says. `height`: rows of the image. energies() hands them to
+/// settings.volume.
 std::unique_ptr<RowEnergies> make_window_energies(const kernels::CandidateGeometry& geometry,
                                                   int height,
                                                   const WindowSelectionSettings& settings);

@@ -171,10 +171,11 @@ class WindowDisplacementStage final : public DisplacementSelectionStage {
     return columns.widened(settings_.radius, input.all_columns());
   }
   /// For some columns: window sums, those of one vertical disparity and their means, all means; and
-  /// the running window sums.
+  /// the running window sums and what the writer of a volume needs.
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
     return sizeof(float) *
-           (kColumns * 2 * (lanes() + row_lanes()) + lanes() + selector().work_floats());
+           (kColumns * 2 * (lanes() + row_lanes()) + lanes() + selector().work_floats() +
+            (settings_.volume != nullptr ? settings_.volume->work_floats() : 0));
   }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     scheduler::ColumnWork work = DisplacementSelectionStage::column_work();
@@ -192,7 +193,8 @@ class WindowDisplacementStage final : public DisplacementSelectionStage {
     auto* const row_means = reinterpret_cast<float*>(row_sums + kColumns * row_lanes());
     float* const means = row_means + kColumns * row_lanes();
     float* const work = means + kColumns * lanes();
-    add_up(task, columns, reinterpret_cast<std::int32_t*>(work + selector().work_floats()), sums);
+    float* const window_sums = work + selector().work_floats();
+    add_up(task, columns, reinterpret_cast<std::int32_t*>(window_sums), sums);
 
     kernels::WinnerRow row;
     row.cells = row_sums;
@@ -222,6 +224,14 @@ class WindowDisplacementStage final : public DisplacementSelectionStage {
       });
     }
     selector().select({means, task.y, columns.begin, columns.size()}, outputs(), work);
+    if (settings_.volume != nullptr) {
+      settings_.volume->write_values({.cells = means,
+                                      .pitch = static_cast<std::ptrdiff_t>(lanes()),
+                                      .x = columns.begin,
+                                      .y = task.y,
+                                      .count = columns.size()},
+                                     window_sums + lanes());
+    }
   }
 
  private:

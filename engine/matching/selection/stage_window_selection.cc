@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -41,10 +42,12 @@ class WindowSelectionStage final : public scheduler::RowStage {
     return columns.widened(settings_.radius, input.all_columns());
   }
   /// For one block of columns: sums, lane-by-lane minima, minima and winners; the running window
-  /// sums from block to block; and the mean energies of a block if all are needed.
+  /// sums from block to block; the mean energies of a block if all are needed; and what the writer
+  /// of a volume needs.
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
     return sizeof(std::int32_t) * (kBlockColumns * (lanes_ + kernels::kLaneMultiple + 2) + lanes_) +
-           (compares_energies() ? sizeof(float) * kBlockColumns * lanes_ : 0);
+           (needs_all_energies() ? sizeof(float) * kBlockColumns * lanes_ : 0) +
+           (settings_.volume != nullptr ? sizeof(float) * settings_.volume->work_floats() : 0);
   }
   /// For rows and columns with complete windows.
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
@@ -58,11 +61,13 @@ class WindowSelectionStage final : public scheduler::RowStage {
     if (wants_energies()) {
       work = work + kernels::kWinnerEnergyWork;
     }
+    if (needs_all_energies()) {
+      work = work + kernels::kMeanEnergyWork;
+    }
     if (compares_energies()) {
-      work = work + kernels::kMeanEnergyWork +
-             (settings_.confidence == ConfidenceMeasure::kMargin
-                  ? kernels::cell_winner_work(false, true)
-                  : kernels::kCellEntropyWork);
+      work = work + (settings_.confidence == ConfidenceMeasure::kMargin
+                         ? kernels::cell_winner_work(false, true)
+                         : kernels::kCellEntropyWork);
     }
     return vantage::column_work(work, geometry_.count);
   }
@@ -76,6 +81,10 @@ class WindowSelectionStage final : public scheduler::RowStage {
           std::fill_n(map.row(task.y) + task.columns.begin, task.columns.size(),
                       std::numeric_limits<float>::quiet_NaN());
         }
+      }
+      if (settings_.volume != nullptr) {
+        settings_.volume->write_nothing(task.columns.begin, task.y, task.columns.size(),
+                                        reinterpret_cast<float*>(task.state));
       }
       return;
     }
@@ -100,11 +109,14 @@ class WindowSelectionStage final : public scheduler::RowStage {
   [[nodiscard]] bool has_parabola() const { return settings_.subpixel == Subpixel::kParabola; }
   [[nodiscard]] bool wants_confidence() const { return !outputs_.confidence.empty(); }
   [[nodiscard]] bool wants_energies() const {
-    return wants_confidence() || !outputs_.energy.empty();
+    return wants_confidence() || !outputs_.energy.empty() || settings_.volume != nullptr;
   }
   /// Whether columns with complete windows need more of their sums than the minimum.
   [[nodiscard]] bool keeps_sums() const {
     return settings_.index_bits == 0 || has_parabola() || wants_energies();
+  }
+  [[nodiscard]] bool needs_all_energies() const {
+    return compares_energies() || settings_.volume != nullptr;
   }
   /// Whether the confidence needs the energies of all candidates.
   [[nodiscard]] bool compares_energies() const {
@@ -172,7 +184,8 @@ class WindowSelectionStage final : public scheduler::RowStage {
     }
   }
 
-  /// Energy and confidence of a block, through `mean_energies` where all candidates are compared.
+  /// Energy, confidence and volume of a block, through `mean_energies` where those of all
+  /// candidates are needed.
   void write_energies(const kernels::WinnerRow& row, int y, const std::int32_t* winners,
                       float* mean_energies) const {
     const Range window_rows = Range{y, y + 1}.widened(settings_.radius, extent().all_rows());
@@ -183,6 +196,17 @@ class WindowSelectionStage final : public scheduler::RowStage {
     if (!outputs_.energy.empty()) {
       std::copy_n(best.data(), row.columns, outputs_.energy.row(y) + row.first_column);
     }
+    if (needs_all_energies()) {
+      kernels::mean_energy_row(row, unit, mean_energies);
+    }
+    if (settings_.volume != nullptr) {
+      settings_.volume->write_values({.cells = mean_energies,
+                                      .pitch = static_cast<std::ptrdiff_t>(lanes_),
+                                      .x = row.first_column,
+                                      .y = y,
+                                      .count = row.columns},
+                                     mean_energies + kBlockColumns * lanes_);
+    }
     if (!wants_confidence()) {
       return;
     }
@@ -192,7 +216,6 @@ class WindowSelectionStage final : public scheduler::RowStage {
                      [](float energy) { return -energy; });
       return;
     }
-    kernels::mean_energy_row(row, unit, mean_energies);
     kernels::CellRow cells;
     cells.cells = mean_energies;
     cells.geometry = geometry_;

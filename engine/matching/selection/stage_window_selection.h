@@ -4,6 +4,7 @@
 
 #include "engine/matching/parameters/method_parameters.h"
 #include "engine/matching/selection/stage_cell_selection.h"
+#include "engine/matching/volume/volume_writer.h"
 #include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
 
@@ -24,6 +25,9 @@ struct WindowSelectionSettings {
   double energy_offset = 0;
   ConfidenceMeasure confidence = ConfidenceMeasure::kMargin;  ///< not kProbability
   double entropy_scale = 1;                                   ///< see CellSelectionSettings
+
+  const VolumeWriter* volume =
+      nullptr;  ///< takes the energies of all candidates; outlives the stage
 };
 
 /// Last stage: sums column sums over 2·radius + 1 columns, cut to the image, selects the candidate

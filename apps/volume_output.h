@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/setting_value.h"
+#include "apps/settings.h"
+#include "engine/io/npy_volume_file.h"
+#include "engine/matching/options/match_options.h"
+#include "engine/matching/volume/volume_request.h"
+
+namespace vantage::apps {
+
+/// What --volume and the options beside it ask for.
+struct VolumeOutput {
+  std::string file;  ///< empty: no volume
+  VolumeKind kind = VolumeKind::kAggregated;
+  int level = 0;
+  std::optional<VolumeRows> rows;  ///< empty: all
+};
+
+void add_volume_settings(Settings& settings, VolumeOutput& output);
+
+/// Throws UsageError where options do not go together or have no effect.
+void check_volume(const VolumeOutput& output, const MatchOptions& options,
+                  const Settings& settings);
+
+/// What a reader of the file has to know: shape, candidates, meaning of the values.
+SettingValue volume_report(const VolumeOutput& output, const NpyVolumeFile& volume);
+/// The same in one line.
+std::string volume_summary(const VolumeOutput& output, const NpyVolumeFile& volume);
+
+}  // namespace vantage::apps

@@ -1,0 +1,101 @@
+// match --volume: what the file and the report say, and what is refused.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/apps/pair_fixture.h"
+
+namespace vantage {
+namespace match_volume_test {
+
+using testing::HasSubstr;
+
+using MatchVolume = PairTest;
+
+TEST_F(MatchVolume, StatesShapeAndCandidates) {
+  const ProcessResult result =
+      run_vantage({"match", left_, right_, "-o", folder_ / "m.pfm", "--method", "bayes", "--volume",
+                   folder_ / "v.npy", "--report", folder_ / "r.json", "--disparities=-200:9"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"))["results"]["volume"];
+  // No pixel of an image 71 columns wide has a disparity below −70.
+  EXPECT_EQ(report["shape"], nlohmann::json({53, 71, 80}));
+  EXPECT_EQ(report["disparities"], "-70:9");
+  EXPECT_EQ(report["values"], "probabilities");
+  const std::string file = read_file(folder_ / "v.npy");
+  const std::size_t header = file.find('\n') + 1;
+  EXPECT_THAT(file.substr(0, header),
+              HasSubstr("'<f4', 'fortran_order': False, 'shape': (53,71,80,)"));
+  EXPECT_EQ(file.size() - header, 53U * 71 * 80 * 4);
+}
+
+TEST_F(MatchVolume, RowsLevelsAndTransposedImages) {
+  const auto shape = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"--volume", folder_ / "v.npy", "--report",
+                                          folder_ / "r.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProcessResult result = match(folder_ / "m.npy", arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(read_file(folder_ / "r.json"))["results"]["volume"]["shape"];
+  };
+  EXPECT_EQ(shape({"--preset", "balanced", "--volume-level", "1"}), nlohmann::json({27, 36, 10}));
+  EXPECT_EQ(shape({"--disparities-y=-1:1", "--volume-rows", "7:9", "--volume-kind", "costs"}),
+            nlohmann::json({3, 71, 3, 10}));
+  EXPECT_EQ(shape({"--vertical"}), nlohmann::json({53, 71, 10}));
+}
+
+TEST_F(MatchVolume, RefusesInOneLineAndLeavesNothing) {
+  const auto expect_refused = [&](const std::vector<std::string>& more, const std::string& why) {
+    const ProcessResult result = match(folder_ / "m.pfm", more);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_TRUE(is_one_line(result, "match"));
+    EXPECT_THAT(result.err, HasSubstr(why));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "v.npy"));
+  };
+  const std::string file = folder_ / "v.npy";
+  expect_refused({"--volume-level", "1"}, "has no effect without --volume");
+  expect_refused({"--volume", file, "--method", "ssd", "--volume-level", "1"}, "expected 0 to 0");
+  expect_refused({"--volume", file, "--volume-rows", "5:4"}, "volume-rows is 5:4");
+  expect_refused({"--volume", file, "--volume-rows", "5:53"}, "expected rows within 0:52");
+  expect_refused({"--volume", folder_ / "v.pfm"}, "ends in .npy");
+  expect_refused({"--volume", file, "--preset", "realtime", "--search-size", "half"},
+                 "expected search-size full");
+}
+
+TEST_F(MatchVolume, MeanAndVarianceOfProbabilities) {
+  const std::string mean = folder_ / "mean.pfm";
+  const std::string variance = folder_ / "variance.pfm";
+  ASSERT_EQ(
+      match(folder_ / "m.pfm", {"--method", "bayes", "--posterior-mean", mean,
+                                "--posterior-variance", variance, "--raw", "--subpixel", "none"})
+          .exit_code,
+      0);
+  const DisparityMap winners = read_disparity(folder_ / "m.pfm");
+  const DisparityMap means = read_disparity(mean);
+  const DisparityMap variances = read_disparity(variance);
+  int certain = 0;
+  for (int y = 0; y < winners.height(); ++y) {
+    for (int x = 0; x < winners.width(); ++x) {
+      if (variances.at(x, y) < 0.01F) {
+        ++certain;
+        EXPECT_NEAR(means.at(x, y), winners.at(x, y), 0.1);
+      }
+    }
+  }
+  EXPECT_GT(certain, 71 * 53 / 2);
+  EXPECT_EQ(match(folder_ / "n.pfm", {"--method", "bayes", "--vertical", "--posterior-mean", mean})
+                .exit_code,
+            0);
+  EXPECT_EQ(read_disparity(mean).width(), 71);
+  const ProcessResult refused =
+      match(folder_ / "m.pfm", {"--method", "ssd", "--posterior-mean", mean});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("only the aggregation bayes has p(d)"));
+}
+
+}  // namespace match_volume_test
+}  // namespace vantage
