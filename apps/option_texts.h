@@ -49,7 +49,10 @@ inline constexpr std::array kOptionTexts = {
                "pixel; 0: no gradient term"},
     OptionText{"alpha", "A",
                "With cost gradient: weight of the difference of the gradients, at least 0"},
-    OptionText{"norm", "", "With cost gradient: norm of the gradients"},
+    OptionText{"gradient-components", "",
+               "With cost gradient: compare gradients, or only their components along rows, which "
+               "no edge along the rows misleads"},
+    OptionText{"norm", "", "With cost gradient and gradient-components xy: norm of the gradients"},
     OptionText{"gradient", "",
                "With cost gradient: derivative filter; its gain scales --confidence-threshold"},
     OptionText{"prefilter", "gaussian|none",

@@ -42,13 +42,20 @@ EnumNames<ColourUse> names_of(ColourUse /*type*/) {
   return {{"luma", ColourUse::kLuma}, {"channels", ColourUse::kChannels}};
 }
 EnumNames<GradientNorm> names_of(GradientNorm /*type*/) {
-  return {{"l2", GradientNorm::kL2}, {"octagon", GradientNorm::kOctagon}};
+  return {{"l2", GradientNorm::kL2},
+          {"octagon", GradientNorm::kOctagon},
+          {"l1", GradientNorm::kL1},
+          {"max", GradientNorm::kMax}};
+}
+EnumNames<GradientComponents> names_of(GradientComponents /*type*/) {
+  return {{"xy", GradientComponents::kXy}, {"x", GradientComponents::kX}};
 }
 EnumNames<GradientFilter> names_of(GradientFilter /*type*/) {
   return {{"central", GradientFilter::kCentral},
           {"sobel", GradientFilter::kSobel},
           {"simoncelli3", GradientFilter::kSimoncelli3},
-          {"simoncelli5", GradientFilter::kSimoncelli5}};
+          {"simoncelli5", GradientFilter::kSimoncelli5},
+          {"forward", GradientFilter::kForward}};
 }
 EnumNames<Border> names_of(Border /*type*/) {
   return {{"clip", Border::kClip}, {"valid", Border::kValid}};

@@ -4,6 +4,7 @@
 #include "kernels/candidates.h"
 #include "kernels/cell_smoothing/cell_smoothing.h"
 #include "kernels/census/census.h"
+#include "kernels/evidence/gradient_norm.h"
 #include "kernels/local_stopping_step/local_stopping_step.h"
 
 namespace vantage::kernels {
@@ -69,8 +70,10 @@ constexpr KernelWork contaminated_likelihood_work(int channels) {
   return squared_work(channels) + KernelWork{kMeasurementOperations};
 }
 /// Two differences, their norm, and its difference to the two half norms.
-constexpr KernelWork negated_evidence_work(bool octagon, int channels) {
-  return compare_work(octagon ? 9 : 8, 3, channels);
+constexpr KernelWork negated_evidence_work(EvidenceNorm norm, int channels) {
+  const bool is_across = norm == EvidenceNorm::kAcross;
+  const int of_norm = norm == EvidenceNorm::kOctagon ? 5 : norm == EvidenceNorm::kL2 ? 4 : 1;
+  return compare_work((is_across ? 3 : 4 + of_norm), is_across ? 2 : 3, channels);
 }
 /// Two exclusive ors and byte bit counts, and three additions of those counts.
 constexpr KernelWork hamming_work(int channels) { return compare_work(7, 2, channels); }

@@ -1,16 +1,13 @@
 #pragma once
 
 #include "kernels/candidates.h"
+#include "kernels/evidence/gradient_norm.h"
 #include "kernels/feature_pairs.h"
 
 namespace vantage::kernels {
 
 /// Planes: α·gx, α·gy and |g|/2 of each pixel's gradient g.
 using GradientPairs = FeaturePairs<float, 3>;
-
-/// Weights of the octagonal norm f1·L1 + f∞·L∞ (5.15–5.17).
-inline constexpr float kOctagonSum = 0.3978247F;
-inline constexpr float kOctagonMax = 0.5626091F;
 
 /// A row of gradients, converted to those planes. On input x and y hold gx and gy.
 struct GradientRowPlanes {
@@ -22,14 +19,14 @@ struct GradientRowPlanes {
 
 /// Fills half_norm and multiplies x and y by α, in place. All three are read and written up to the
 /// first multiple of kLaneMultiple ≥ `width`. Identical on every instruction set.
-void evidence_planes_row(const GradientRowPlanes& row, float alpha, bool octagon);
-void evidence_planes_row_ref(const GradientRowPlanes& row, float alpha, bool octagon);
+void evidence_planes_row(const GradientRowPlanes& row, float alpha, EvidenceNorm norm);
+void evidence_planes_row_ref(const GradientRowPlanes& row, float alpha, EvidenceNorm norm);
 
-/// Negated evidence for a match (5.5): α |gL − gR| − (|gL| + |gR|)/2, where |·| is L2 or the
-/// octagon. With three channels: the mean. Writes columns × lanes floats. Identical on every
+/// Negated evidence for a match (5.5): α |gL − gR| − (|gL| + |gR|)/2, where |·| is the norm.
+/// With three channels: the mean. Writes columns × lanes floats. Identical on every
 /// instruction set.
-void negated_evidence_row(const GradientPairs& row, bool octagon, float* cells);
-void negated_evidence_row_ref(const GradientPairs& row, bool octagon, float* cells);
+void negated_evidence_row(const GradientPairs& row, EvidenceNorm norm, float* cells);
+void negated_evidence_row_ref(const GradientPairs& row, EvidenceNorm norm, float* cells);
 
 /// Cells of negated evidence, geometry.lanes() per column.
 struct EvidenceRow {

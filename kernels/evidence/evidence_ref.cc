@@ -1,40 +1,28 @@
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include "kernels/cells/exp_log.h"
 #include "kernels/evidence/evidence.h"
 
 namespace vantage::kernels {
-namespace {
-
-float norm(float x, float y, bool octagon) {
-  if (!octagon) {
-    return std::sqrt(x * x + y * y);
-  }
-  return kOctagonSum * (std::abs(x) + std::abs(y)) +
-         kOctagonMax * std::max(std::abs(x), std::abs(y));
-}
-
-}  // namespace
-
-void evidence_planes_row_ref(const GradientRowPlanes& row, float alpha, bool octagon) {
+void evidence_planes_row_ref(const GradientRowPlanes& row, float alpha, EvidenceNorm norm) {
   for (int x = 0; x < row.width; ++x) {
-    row.half_norm[x] = 0.5F * norm(row.x[x], row.y[x], octagon);
+    row.half_norm[x] = 0.5F * gradient_norm(row.x[x], row.y[x], norm);
     row.x[x] *= alpha;
     row.y[x] *= alpha;
   }
 }
 
-void negated_evidence_row_ref(const GradientPairs& row, bool octagon, float* cells) {
+void negated_evidence_row_ref(const GradientPairs& row, EvidenceNorm norm, float* cells) {
   for (int j = 0; j < row.columns; ++j) {
     for (int i = 0; i < row.lanes; ++i) {
       const int k = j * row.partner_step + i;
       float sum = 0;
       for (int c = 0; c < row.channels; ++c) {
         const auto& [reference, partner] = row.channel[static_cast<std::size_t>(c)];
-        sum += norm(reference[0][j] - partner[0][k], reference[1][j] - partner[1][k], octagon) -
-               (reference[2][j] + partner[2][k]);
+        sum +=
+            gradient_norm(reference[0][j] - partner[0][k], reference[1][j] - partner[1][k], norm) -
+            (reference[2][j] + partner[2][k]);
       }
       cells[j * row.lanes + i] = row.channels > 1 ? sum * (1.0F / 3.0F) : sum;
     }

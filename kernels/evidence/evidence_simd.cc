@@ -5,6 +5,7 @@
 #include <hwy/highway.h>
 
 #include "kernels/cells/exp_log-inl.h"
+#include "kernels/evidence/gradient_norm-inl.h"
 #include "kernels/feature_pairs-inl.h"
 
 #include <cstdint>
@@ -20,22 +21,6 @@ using Tag = hn::ScalableTag<float>;
 using Vec = hn::VFromD<Tag>;
 using Gradient = Features<float, 3>;
 
-struct NormL2 {
-  HWY_INLINE Vec operator()(Vec x, Vec y) const {
-    return hn::Sqrt(hn::Add(hn::Mul(x, x), hn::Mul(y, y)));
-  }
-};
-
-struct NormOctagon {
-  HWY_INLINE Vec operator()(Vec x, Vec y) const {
-    const Tag d;
-    const Vec across = hn::Abs(x);
-    const Vec down = hn::Abs(y);
-    return hn::Add(hn::Mul(hn::Set(d, kOctagonSum), hn::Add(across, down)),
-                   hn::Mul(hn::Set(d, kOctagonMax), hn::Max(across, down)));
-  }
-};
-
 template <typename Norm>
 HWY_INLINE void evidence_planes_of(const GradientRowPlanes& row, float alpha) {
   const Tag d;
@@ -48,12 +33,8 @@ HWY_INLINE void evidence_planes_of(const GradientRowPlanes& row, float alpha) {
   }
 }
 
-void evidence_planes(const GradientRowPlanes& row, float alpha, bool octagon) {
-  if (octagon) {
-    evidence_planes_of<NormOctagon>(row, alpha);
-  } else {
-    evidence_planes_of<NormL2>(row, alpha);
-  }
+void evidence_planes(const GradientRowPlanes& row, float alpha, EvidenceNorm norm) {
+  with_norm(norm, [&](auto of_norm) { evidence_planes_of<decltype(of_norm)>(row, alpha); });
 }
 
 template <typename Norm>
@@ -66,12 +47,10 @@ struct NegatedEvidence {
   HWY_INLINE Vec finish(Vec cost) const { return cost; }
 };
 
-void negated_evidence(const GradientPairs& row, bool octagon, float* cells) {
-  if (octagon) {
-    compare_row<false>(row, NegatedEvidence<NormOctagon>(), cells);
-  } else {
-    compare_row<false>(row, NegatedEvidence<NormL2>(), cells);
-  }
+void negated_evidence(const GradientPairs& row, EvidenceNorm norm, float* cells) {
+  with_norm(norm, [&](auto of_norm) {
+    compare_row<false>(row, NegatedEvidence<decltype(of_norm)>(), cells);
+  });
 }
 
 /// Mask of the lanes of a vector starting at `first` that lie in `range`.
@@ -117,11 +96,11 @@ HWY_EXPORT(evidence_planes);
 HWY_EXPORT(negated_evidence);
 HWY_EXPORT(evidence_to_likelihood);
 
-void evidence_planes_row(const GradientRowPlanes& row, float alpha, bool octagon) {
-  HWY_DYNAMIC_DISPATCH(evidence_planes)(row, alpha, octagon);
+void evidence_planes_row(const GradientRowPlanes& row, float alpha, EvidenceNorm norm) {
+  HWY_DYNAMIC_DISPATCH(evidence_planes)(row, alpha, norm);
 }
-void negated_evidence_row(const GradientPairs& row, bool octagon, float* cells) {
-  HWY_DYNAMIC_DISPATCH(negated_evidence)(row, octagon, cells);
+void negated_evidence_row(const GradientPairs& row, EvidenceNorm norm, float* cells) {
+  HWY_DYNAMIC_DISPATCH(negated_evidence)(row, norm, cells);
 }
 void likelihood_of_evidence(const EvidenceRow& row, float sigma, float epsilon, float* cells) {
   HWY_DYNAMIC_DISPATCH(evidence_to_likelihood)(row, sigma, epsilon, cells);

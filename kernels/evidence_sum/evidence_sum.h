@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "kernels/candidates.h"
+#include "kernels/evidence/gradient_norm.h"
 
 namespace vantage::kernels {
 
@@ -22,7 +23,7 @@ struct EvidenceBlock {
   GradientBlock partner;
   int columns = 0;
   int rows = 0;
-  bool octagon = false;  ///< norm of the difference: octagon, otherwise L2
+  EvidenceNorm norm = EvidenceNorm::kL2;  ///< of the difference
 };
 
 /// Σ over the block of E = (|gL| + |gR|)/2 − α |gL − gR| (5.5). E is float. Column j is added to

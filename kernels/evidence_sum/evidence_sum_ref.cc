@@ -1,7 +1,5 @@
 #include <algorithm>
-#include <cmath>
 
-#include "kernels/evidence/evidence.h"
 #include "kernels/evidence_sum/evidence_sum.h"
 
 namespace vantage::kernels {
@@ -18,7 +16,7 @@ double pairwise_sum(const float* lanes) {
 }
 
 double evidence_sum_ref(const EvidenceBlock& block) {
-  const auto& [reference, partner, columns, rows, octagon] = block;
+  const auto& [reference, partner, columns, rows, norm] = block;
   float lanes[kLaneMultiple] = {};
   for (int row = 0; row < rows; ++row) {
     for (int j = 0; j < columns; ++j) {
@@ -26,13 +24,8 @@ double evidence_sum_ref(const EvidenceBlock& block) {
       const std::ptrdiff_t partner_at = row * partner.row_stride + j;
       const float dx = reference.x[at] - partner.x[partner_at];
       const float dy = reference.y[at] - partner.y[partner_at];
-      const float across = std::abs(dx);
-      const float down = std::abs(dy);
-      const float difference =
-          octagon ? kOctagonSum * (across + down) + kOctagonMax * std::max(across, down)
-                  : std::sqrt(dx * dx + dy * dy);
       lanes[j % kLaneMultiple] +=
-          reference.half_norm[at] + partner.half_norm[partner_at] - difference;
+          reference.half_norm[at] + partner.half_norm[partner_at] - gradient_norm(dx, dy, norm);
     }
   }
   return pairwise_sum(lanes);

@@ -4,7 +4,8 @@
 // After foreach_target.h, so that it is compiled once per target.
 #include <hwy/highway.h>
 
-#include "kernels/evidence/evidence.h"
+#include "kernels/evidence/gradient_norm-inl.h"
+
 #include "kernels/evidence_sum/evidence_sum.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -14,21 +15,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::ScalableTag<float>;
 using Vec = hn::VFromD<Tag>;
 
-template <bool kOctagon>
+template <typename Norm>
 HWY_INLINE Vec evidence(const GradientBlock& reference, const GradientBlock& partner, int j) {
   const Tag d;
   const Vec dx = hn::Sub(hn::LoadU(d, reference.x + j), hn::LoadU(d, partner.x + j));
   const Vec dy = hn::Sub(hn::LoadU(d, reference.y + j), hn::LoadU(d, partner.y + j));
   const Vec norms =
       hn::Add(hn::LoadU(d, reference.half_norm + j), hn::LoadU(d, partner.half_norm + j));
-  if constexpr (!kOctagon) {
-    return hn::Sub(norms, hn::Sqrt(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy))));
-  } else {
-    const Vec across = hn::Abs(dx);
-    const Vec down = hn::Abs(dy);
-    return hn::Sub(norms, hn::Add(hn::Mul(hn::Set(d, kOctagonSum), hn::Add(across, down)),
-                                  hn::Mul(hn::Set(d, kOctagonMax), hn::Max(across, down))));
-  }
+  return hn::Sub(norms, Norm()(dx, dy));
 }
 
 HWY_INLINE void next_row(GradientBlock& block) {
@@ -37,7 +31,7 @@ HWY_INLINE void next_row(GradientBlock& block) {
   block.half_norm += block.row_stride;
 }
 
-template <bool kOctagon>
+template <typename Norm>
 double sum_of(const EvidenceBlock& block) {
   const Tag d;
   constexpr int kStep = static_cast<int>(hn::MaxLanes(Tag()));
@@ -54,14 +48,13 @@ double sum_of(const EvidenceBlock& block) {
     for (int j = 0; j < whole; j += kLaneMultiple) {
 #pragma GCC unroll 4
       for (int v = 0; v < kVectors; ++v) {
-        sums[v] = hn::Add(sums[v], evidence<kOctagon>(reference, partner, j + v * kStep));
+        sums[v] = hn::Add(sums[v], evidence<Norm>(reference, partner, j + v * kStep));
       }
     }
     for (int v = 0; v * kStep < rest; ++v) {
       const auto counted = hn::FirstN(d, static_cast<std::size_t>(rest - v * kStep));
-      sums[v] = hn::Add(
-          sums[v],
-          hn::IfThenElseZero(counted, evidence<kOctagon>(reference, partner, whole + v * kStep)));
+      sums[v] = hn::Add(sums[v], hn::IfThenElseZero(counted, evidence<Norm>(reference, partner,
+                                                                            whole + v * kStep)));
     }
     next_row(reference);
     next_row(partner);
@@ -74,7 +67,7 @@ double sum_of(const EvidenceBlock& block) {
 }
 
 double evidence_sum_simd(const EvidenceBlock& block) {
-  return block.octagon ? sum_of<true>(block) : sum_of<false>(block);
+  return with_norm(block.norm, [&](auto norm) { return sum_of<decltype(norm)>(block); });
 }
 
 }  // namespace vantage::kernels::HWY_NAMESPACE

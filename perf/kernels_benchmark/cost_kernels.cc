@@ -96,7 +96,8 @@ struct ImageRows {
   }
   void evidence_planes() {
     // α = 1 keeps the gradients constant from call to call.
-    kernels::evidence_planes_row({first.data(), second.data(), third.data(), kWidth}, 1.0F, false);
+    kernels::evidence_planes_row({first.data(), second.data(), third.data(), kWidth}, 1.0F,
+                                 kernels::EvidenceNorm::kL2);
   }
   void census() {
     kernels::CensusRows rows;
@@ -157,12 +158,22 @@ KernelBenchmarks cost_kernels() {
           [](Sampled& d) { kernels::sampling_insensitive_row(d.row, d.cells.data()); }),
       on_own_data<Gradients>(
           "negated_evidence_row/L2", "cell", kCells,
-          per_cell(kernels::negated_evidence_work(false, 1), kLanes),
-          [](Gradients& d) { kernels::negated_evidence_row(d.row, false, d.cells.data()); }),
+          per_cell(kernels::negated_evidence_work(kernels::EvidenceNorm::kL2, 1), kLanes),
+          [](Gradients& d) {
+            kernels::negated_evidence_row(d.row, kernels::EvidenceNorm::kL2, d.cells.data());
+          }),
       on_own_data<Gradients>(
           "negated_evidence_row/octagon", "cell", kCells,
-          per_cell(kernels::negated_evidence_work(true, 1), kLanes),
-          [](Gradients& d) { kernels::negated_evidence_row(d.row, true, d.cells.data()); }),
+          per_cell(kernels::negated_evidence_work(kernels::EvidenceNorm::kOctagon, 1), kLanes),
+          [](Gradients& d) {
+            kernels::negated_evidence_row(d.row, kernels::EvidenceNorm::kOctagon, d.cells.data());
+          }),
+      on_own_data<Gradients>(
+          "negated_evidence_row/x", "cell", kCells,
+          per_cell(kernels::negated_evidence_work(kernels::EvidenceNorm::kAcross, 1), kLanes),
+          [](Gradients& d) {
+            kernels::negated_evidence_row(d.row, kernels::EvidenceNorm::kAcross, d.cells.data());
+          }),
       on_own_data<Codes>("hamming_row", "cell", kCells, per_cell(kernels::hamming_work(1), kLanes),
                          [](Codes& d) { kernels::hamming_row(d.row, d.cells.data()); }),
       on_own_data<RayCodes<1> >(

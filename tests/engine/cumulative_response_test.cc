@@ -72,9 +72,7 @@ PlainSums plain_sums(const Photograph& left, const Photograph& right,
       const double ly = of_left.y.at(x, y);
       const double rx = of_right.x.at(partner_x, partner_y);
       const double ry = of_right.y.at(partner_x, partner_y);
-      const auto length = [&](double a, double b) {
-        return test::length_of(a, b, parameters.norm);
-      };
+      const auto length = [&](double a, double b) { return test::length_of(a, b, parameters); };
       const double evidence =
           (length(lx, ly) + length(rx, ry)) / 2 - parameters.alpha * length(lx - rx, ly - ry);
       sums.whole += evidence;
@@ -120,13 +118,17 @@ TEST(CumulativeResponse, EqualsTheEquationsForAwkwardSizes) {
 TEST(CumulativeResponse, EqualsTheEquationsForAllParameters) {
   const Photograph left = test::noise<float>(29, 13, 3, 1);
   const Photograph right = test::noise<float>(29, 13, 3, 2);
-  for (const GradientFilter filter : {GradientFilter::kCentral, GradientFilter::kSobel,
-                                      GradientFilter::kSimoncelli3, GradientFilter::kSimoncelli5}) {
-    for (const GradientNorm norm : {GradientNorm::kL2, GradientNorm::kOctagon}) {
+  for (const GradientFilter filter :
+       {GradientFilter::kCentral, GradientFilter::kSobel, GradientFilter::kSimoncelli3,
+        GradientFilter::kSimoncelli5, GradientFilter::kForward}) {
+    for (const GradientNorm norm :
+         {GradientNorm::kL2, GradientNorm::kOctagon, GradientNorm::kL1, GradientNorm::kMax}) {
       CumulativeResponseOptions options;
       options.displacements_x = {-1, 1};
       options.parameters.gradient = filter;
       options.parameters.norm = norm;
+      options.parameters.gradient_components =
+          norm == GradientNorm::kMax ? GradientComponents::kX : GradientComponents::kXy;
       options.parameters.prefilter = norm == GradientNorm::kL2;
       options.parameters.alpha = norm == GradientNorm::kL2 ? 0.8 : 1.3;
       expect_equals_equations(left, right, options);

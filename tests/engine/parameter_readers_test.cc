@@ -152,6 +152,8 @@ const std::map<std::string_view, Changes>& changes() {
       {"sigma-census", values_of<double>(&P::sigma_census, {0, 0.05})},
       {"sigma-gradient", values_of<double>(&P::sigma_gradient, {3})},
       {"alpha", values_of<double>(&P::alpha, {0.3})},
+      {"gradient-components",
+       values_of<GradientComponents>(&P::gradient_components, {GradientComponents::kX})},
       {"norm", values_of<GradientNorm>(&P::norm, {GradientNorm::kOctagon})},
       {"gradient", values_of<GradientFilter>(&P::gradient, {GradientFilter::kSimoncelli5})},
       {"prefilter", values_of<bool>(&P::prefilter, {false})},

@@ -233,7 +233,7 @@ class PlainCostCells {
         return std::min(distance(a.level.at(x, y), b.level, whole, partner_y),
                         distance(level, a.level, x, y));
       case MatchCost::kGradient: {
-        const auto length = [&](double u, double v) { return length_of(u, v, parameters_.norm); };
+        const auto length = [&](double u, double v) { return length_of(u, v, parameters_); };
         const double ax = a.gradient.x.at(x, y);
         const double ay = a.gradient.y.at(x, y);
         const double bx = b.gradient.x.at(whole, partner_y);

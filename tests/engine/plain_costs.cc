@@ -132,8 +132,8 @@ double evidence(const Channel& channel, int x, int partner, int y,
   const double ay = channel.reference_gradient.y.at(x, y);
   const double bx = channel.other_gradient.x.at(partner, y);
   const double by = channel.other_gradient.y.at(partner, y);
-  return (length_of(ax, ay, parameters.norm) + length_of(bx, by, parameters.norm)) / 2 -
-         parameters.alpha * length_of(ax - bx, ay - by, parameters.norm);
+  return (length_of(ax, ay, parameters) + length_of(bx, by, parameters)) / 2 -
+         parameters.alpha * length_of(ax - bx, ay - by, parameters);
 }
 
 /// (6.21).
@@ -291,6 +291,10 @@ Gradient gradient_of(const Plane& plane, GradientFilter filter, bool prefilter) 
       derivative = {-1, 0, 1};
       across = {1};
       break;
+    case GradientFilter::kForward:  // (5.8)
+      derivative = {0, -1, 1};
+      across = {1};
+      break;
     case GradientFilter::kSobel:
       derivative = {-1, 0, 1};
       across = {1, 2, 1};
@@ -328,11 +332,23 @@ double combined_energy_without_partner(const MethodParameters& parameters) {
   return combined_energy({kFar, kFar, kFar}, parameters) / 2;
 }
 
-double length_of(double x, double y, GradientNorm norm) {
-  if (norm == GradientNorm::kL2) {
-    return std::sqrt(x * x + y * y);
+double length_of(double x, double y, const MethodParameters& parameters) {
+  if (parameters.gradient_components == GradientComponents::kX) {
+    return std::abs(x);
   }
-  return .3978247 * (std::abs(x) + std::abs(y)) + .5626091 * std::max(std::abs(x), std::abs(y));
+  const double l1 = std::abs(x) + std::abs(y);
+  const double max = std::max(std::abs(x), std::abs(y));
+  switch (parameters.norm) {
+    case GradientNorm::kL2:
+      break;
+    case GradientNorm::kOctagon:
+      return .3978247 * l1 + .5626091 * max;
+    case GradientNorm::kL1:
+      return l1;
+    case GradientNorm::kMax:
+      return max;
+  }
+  return std::sqrt(x * x + y * y);
 }
 
 Volume plain_costs(const Photograph& reference, const Photograph& other, Side reference_is,

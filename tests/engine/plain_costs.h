@@ -85,8 +85,8 @@ struct Gradient {
 };
 Gradient gradient_of(const Plane& plane, GradientFilter filter, bool prefilter);
 
-/// |v| by `norm` (5.15).
-double length_of(double x, double y, GradientNorm norm);
+/// |v| by the norm and the components of `parameters` (5.7, 5.8).
+double length_of(double x, double y, const MethodParameters& parameters);
 
 /// Residuals of the combined cost's terms.
 struct CombinedResiduals {

@@ -117,8 +117,11 @@ TEST(PlainCosts, GainsOfGradientFilters) {
   expect_gain(GradientFilter::kSobel, 8);
   expect_gain(GradientFilter::kSimoncelli3, .9106);
   expect_gain(GradientFilter::kSimoncelli5, .9962);
+  expect_gain(GradientFilter::kForward, 1);
+  MethodParameters octagon;
+  octagon.norm = GradientNorm::kOctagon;
   for (double angle = 0; angle < 6.3; angle += 0.01) {  // (5.17)
-    EXPECT_NEAR(length_of(std::cos(angle), std::sin(angle), GradientNorm::kOctagon), 1, 0.0397);
+    EXPECT_NEAR(length_of(std::cos(angle), std::sin(angle), octagon), 1, 0.0397);
   }
 }
 

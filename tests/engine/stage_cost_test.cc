@@ -264,15 +264,20 @@ TEST_F(StageCost, EqualsPlainCellsForAllCostsAndImages) {
 TEST_F(StageCost, EqualsPlainCellsForAllGradients) {
   CostCase test = pair_case(Kind::kGrey8, {23, 9, -3, 14}, -1);
   test.parameters.cost = MatchCost::kGradient;
-  for (const GradientFilter filter : {GradientFilter::kCentral, GradientFilter::kSobel,
-                                      GradientFilter::kSimoncelli3, GradientFilter::kSimoncelli5}) {
-    for (const GradientNorm norm : {GradientNorm::kL2, GradientNorm::kOctagon}) {
+  for (const GradientFilter filter :
+       {GradientFilter::kCentral, GradientFilter::kSobel, GradientFilter::kSimoncelli3,
+        GradientFilter::kSimoncelli5, GradientFilter::kForward}) {
+    for (const GradientNorm norm :
+         {GradientNorm::kL2, GradientNorm::kOctagon, GradientNorm::kL1, GradientNorm::kMax}) {
       for (const bool prefilter : {false, true}) {
         for (const double alpha : {0., .7, 1., 3.}) {
           test.parameters.gradient = filter;
           test.parameters.norm = norm;
           test.parameters.prefilter = prefilter;
           test.parameters.alpha = alpha;
+          test.parameters.gradient_components = norm == GradientNorm::kMax && prefilter
+                                                    ? GradientComponents::kX
+                                                    : GradientComponents::kXy;
           SCOPED_TRACE("filter " + std::to_string(static_cast<int>(filter)));
           expect_plain_cells(test);
           ASSERT_FALSE(HasFatalFailure());

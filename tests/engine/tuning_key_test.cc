@@ -142,6 +142,7 @@ TEST_F(TuningKeyTest, HasEveryFieldThatChangesTheWork) {
                                                 "sigma-census",
                                                 "sigma-gradient",
                                                 "alpha",
+                                                "gradient-components",
                                                 "norm",
                                                 "gradient",
                                                 "prefilter",

@@ -37,6 +37,16 @@ struct RandomGradients {
   UnalignedRow<float> half_norm;
 };
 
+double length(double x, double y, EvidenceNorm norm) {
+  const double sum = std::abs(x) + std::abs(y);
+  const double max = std::max(std::abs(x), std::abs(y));
+  return norm == EvidenceNorm::kL2        ? std::sqrt(x * x + y * y)
+         : norm == EvidenceNorm::kOctagon ? 0.3978247 * sum + 0.5626091 * max
+         : norm == EvidenceNorm::kL1      ? sum
+         : norm == EvidenceNorm::kMax     ? max
+                                          : std::abs(x);
+}
+
 /// The equation in double precision.
 double plain_sum(const EvidenceBlock& block) {
   double sum = 0;
@@ -46,10 +56,8 @@ double plain_sum(const EvidenceBlock& block) {
       const auto b = row * block.partner.row_stride + j;
       const double dx = double{block.reference.x[a]} - block.partner.x[b];
       const double dy = double{block.reference.y[a]} - block.partner.y[b];
-      const double total = std::abs(dx) + std::abs(dy);
-      const double max = std::max(std::abs(dx), std::abs(dy));
       sum += double{block.reference.half_norm[a]} + block.partner.half_norm[b] -
-             (block.octagon ? 0.3978247 * total + 0.5626091 * max : std::sqrt(dx * dx + dy * dy));
+             length(dx, dy, block.norm);
     }
   }
   return sum;
@@ -67,8 +75,8 @@ TEST_P(EvidenceSumTest, EqualsTheReferenceBitForBit) {
     for (const int rows : kRowCounts) {
       const RandomGradients reference(random, columns, rows, 1);
       const RandomGradients partner(random, columns, rows, 5);
-      for (const bool octagon : {false, true}) {
-        const EvidenceBlock block = {reference.block(), partner.block(), columns, rows, octagon};
+      for (const EvidenceNorm norm : kAllEvidenceNorms) {
+        const EvidenceBlock block = {reference.block(), partner.block(), columns, rows, norm};
         EXPECT_EQ(evidence_sum(block), evidence_sum_ref(block)) << columns << 'x' << rows;
       }
     }
@@ -81,8 +89,8 @@ TEST(EvidenceSum, IsTheSumOfTheEquation) {
     for (const int rows : kRowCounts) {
       const RandomGradients reference(random, columns, rows, 0);
       const RandomGradients partner(random, columns, rows, 0);
-      for (const bool octagon : {false, true}) {
-        const EvidenceBlock block = {reference.block(), partner.block(), columns, rows, octagon};
+      for (const EvidenceNorm norm : kAllEvidenceNorms) {
+        const EvidenceBlock block = {reference.block(), partner.block(), columns, rows, norm};
         EXPECT_NEAR(evidence_sum_ref(block), plain_sum(block), 1e-3 * (1 + columns * rows));
       }
     }
@@ -98,7 +106,7 @@ TEST(EvidenceSum, EqualGradientsSupportWithTheirNorm) {
       norms += 2 * gradients.half_norm[static_cast<std::size_t>(row * gradients.stride + j)];
     }
   }
-  EXPECT_NEAR(evidence_sum({gradients.block(), gradients.block(), 77, 3, false}), norms, 1e-2);
+  EXPECT_NEAR(evidence_sum({gradients.block(), gradients.block(), 77, 3}), norms, 1e-2);
 }
 
 }  // namespace evidence_sum_test

@@ -21,25 +21,37 @@ float draw_component(std::mt19937& random) {
   return random() % 6 == 0 ? 0 : static_cast<float>(random_int(random, -2550, 2550)) / 10;
 }
 
-double norm(double x, double y, bool octagon) {
-  return octagon ? .3978247 * (std::abs(x) + std::abs(y)) +
-                       .5626091 * std::max(std::abs(x), std::abs(y))
-                 : std::hypot(x, y);
+double norm(double x, double y, EvidenceNorm norm) {
+  const double sum = std::abs(x) + std::abs(y);
+  const double max = std::max(std::abs(x), std::abs(y));
+  switch (norm) {
+    case EvidenceNorm::kL2:
+      return std::hypot(x, y);
+    case EvidenceNorm::kOctagon:
+      return .3978247 * sum + .5626091 * max;
+    case EvidenceNorm::kL1:
+      return sum;
+    case EvidenceNorm::kMax:
+      return max;
+    case EvidenceNorm::kAcross:
+      break;
+  }
+  return std::abs(x);
 }
 
 TEST_P(Evidence, NegatedEvidence) {
-  for (const bool octagon : {false, true}) {
+  for (const EvidenceNorm of : kAllEvidenceNorms) {
     for_each_feature_rows<float, 3>(draw_component, [&](const GradientPairs& row) {
       const auto cells = equal_cells(
-          cell_count(row), [&](float* out) { negated_evidence_row(row, octagon, out); },
-          [&](float* out) { negated_evidence_row_ref(row, octagon, out); });
+          cell_count(row), [&](float* out) { negated_evidence_row(row, of, out); },
+          [&](float* out) { negated_evidence_row_ref(row, of, out); });
       for (int j = 0; j < row.columns; ++j) {
         for (int i = 0; i < row.lanes; ++i) {
           const int k = j * row.partner_step + i;
           double sum = 0;
           for (int c = 0; c < row.channels; ++c) {
             const auto& [a, b] = row.channel[static_cast<std::size_t>(c)];
-            sum += norm(double{a[0][j]} - b[0][k], double{a[1][j]} - b[1][k], octagon) -
+            sum += norm(double{a[0][j]} - b[0][k], double{a[1][j]} - b[1][k], of) -
                    (double{a[2][j]} + b[2][k]);
           }
           ASSERT_NEAR(cells[static_cast<std::size_t>(j * row.lanes + i)], sum / row.channels, 2e-4);
@@ -51,7 +63,7 @@ TEST_P(Evidence, NegatedEvidence) {
 
 TEST_P(Evidence, Planes) {
   std::mt19937 random(2);
-  for (const bool octagon : {false, true}) {
+  for (const EvidenceNorm of : kAllEvidenceNorms) {
     for (const int width : {1, 3, 16, 17, 45}) {
       const auto padded = static_cast<std::size_t>((width + 15) / 16 * 16);
       std::vector<float> gx(padded);
@@ -61,19 +73,18 @@ TEST_P(Evidence, Planes) {
       std::vector<float> half_norm(padded);
       std::vector<float> x = gx;
       std::vector<float> y = gy;
-      evidence_planes_row({x.data(), y.data(), half_norm.data(), width}, 1.5F, octagon);
+      evidence_planes_row({x.data(), y.data(), half_norm.data(), width}, 1.5F, of);
       std::vector<float> ref_half_norm(padded);
       std::vector<float> ref_x = gx;
       std::vector<float> ref_y = gy;
-      evidence_planes_row_ref({ref_x.data(), ref_y.data(), ref_half_norm.data(), width}, 1.5F,
-                              octagon);
+      evidence_planes_row_ref({ref_x.data(), ref_y.data(), ref_half_norm.data(), width}, 1.5F, of);
       for (std::size_t k = 0; k < static_cast<std::size_t>(width); ++k) {
         ASSERT_EQ(x[k], ref_x[k]);
         ASSERT_EQ(y[k], ref_y[k]);
         ASSERT_EQ(half_norm[k], ref_half_norm[k]);
         ASSERT_FLOAT_EQ(x[k], 1.5F * gx[k]);
         ASSERT_FLOAT_EQ(y[k], 1.5F * gy[k]);
-        ASSERT_NEAR(half_norm[k], norm(gx[k], gy[k], octagon) / 2, 1e-4);
+        ASSERT_NEAR(half_norm[k], norm(gx[k], gy[k], of) / 2, 1e-4);
       }
     }
   }
@@ -87,7 +98,7 @@ TEST_P(Evidence, OctagonIsNearL2) {
     std::vector<float> x(16, static_cast<float>(100 * std::cos(angle)));
     std::vector<float> y(16, static_cast<float>(100 * std::sin(angle)));
     std::vector<float> half_norm(16);
-    evidence_planes_row({x.data(), y.data(), half_norm.data(), 1}, 1, true);
+    evidence_planes_row({x.data(), y.data(), half_norm.data(), 1}, 1, EvidenceNorm::kOctagon);
     worst = std::max(worst, std::abs(half_norm[0] / 50.0 - 1));
   }
   EXPECT_LE(worst, .0396);

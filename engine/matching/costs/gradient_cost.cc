@@ -9,17 +9,13 @@
 namespace vantage {
 namespace {
 
-bool is_octagon(const MethodParameters& parameters) {
-  return parameters.norm == GradientNorm::kOctagon;
-}
-
 class GradientModel final : public CostModel {
  public:
   using CostModel::CostModel;
 
   void energies(const CostRow& row, float* cells) const override {
-    kernels::negated_evidence_row(row.pairs(&GradientPlanes::gradients), is_octagon(parameters()),
-                                  cells);
+    kernels::negated_evidence_row(row.pairs(&GradientPlanes::gradients),
+                                  evidence_norm(parameters()), cells);
   }
   /// (1−ε) exp((E − max over the column)/σ) + ε, for cells with a partner.
   void likelihoods(const CostRow& row, float* cells) const override {
@@ -44,12 +40,14 @@ class GradientModel final : public CostModel {
   }
   [[nodiscard]] std::optional<float> energy_without_partner() const override { return 0.0F; }
   [[nodiscard]] CostBounds energy_bounds() const override {
-    // The octagon norm is at most (1.4142 + 0.0396 · 1.4142) times the larger component.
-    const double longest = 1.04 * std::numbers::sqrt2 * largest_gradient();
+    // The octagon norm is at most (1.4142 + 0.0396 · 1.4142) times the larger component, L1 twice.
+    const double ratio =
+        evidence_norm(parameters()) == kernels::EvidenceNorm::kL1 ? 2 : 1.04 * std::numbers::sqrt2;
+    const double longest = ratio * largest_gradient();
     return {static_cast<float>(-longest), static_cast<float>(2 * parameters().alpha * longest)};
   }
   [[nodiscard]] kernels::KernelWork energy_work(int channels) const override {
-    return kernels::negated_evidence_work(is_octagon(parameters()), channels);
+    return kernels::negated_evidence_work(evidence_norm(parameters()), channels);
   }
   [[nodiscard]] kernels::KernelWork likelihood_work(int channels) const override {
     return energy_work(channels) + kernels::kLikelihoodOfEvidenceWork;
@@ -60,6 +58,7 @@ class GradientModel final : public CostModel {
   [[nodiscard]] double largest_gradient() const {
     switch (parameters().gradient) {
       case GradientFilter::kCentral:
+      case GradientFilter::kForward:
         return kWhite;
       case GradientFilter::kSobel:
         return 4 * kWhite;
@@ -73,6 +72,23 @@ class GradientModel final : public CostModel {
 };
 
 }  // namespace
+
+kernels::EvidenceNorm evidence_norm(const MethodParameters& parameters) {
+  if (parameters.gradient_components == GradientComponents::kX) {
+    return kernels::EvidenceNorm::kAcross;
+  }
+  switch (parameters.norm) {
+    case GradientNorm::kOctagon:
+      return kernels::EvidenceNorm::kOctagon;
+    case GradientNorm::kL1:
+      return kernels::EvidenceNorm::kL1;
+    case GradientNorm::kMax:
+      return kernels::EvidenceNorm::kMax;
+    case GradientNorm::kL2:
+      break;
+  }
+  return kernels::EvidenceNorm::kL2;
+}
 
 void GradientPlanes::prepare(const PlaneSource& source, const MethodParameters& parameters) {
   const int width = source.width();
@@ -95,7 +111,7 @@ void GradientPlanes::prepare(const PlaneSource& source, const MethodParameters& 
     gradient_row(intensities[c], width, height, y, parameters.gradient,
                  reinterpret_cast<float*>(work.data()), gx.plain.row(y), gy.plain.row(y));
     kernels::evidence_planes_row({gx.plain.row(y), gy.plain.row(y), half_norm.plain.row(y), width},
-                                 alpha, is_octagon(parameters));
+                                 alpha, evidence_norm(parameters));
     for (FeaturePlane<float>& plane : gradients[c]) {
       plane.finish_row(source, y);
     }
@@ -106,7 +122,8 @@ MatchingCost gradient_cost() {
   return {.key = MatchCost::kGradient,
           .name = "gradient",
           .description = "difference of gradients less their mean length",
-          .options = {"match-exposure", "alpha", "norm", "gradient", "prefilter"},
+          .options = {"match-exposure", "alpha", "gradient-components", "norm", "gradient",
+                      "prefilter"},
           .unit = ResidualUnit::kGradient,
           .is_evidence = true,
           .jump_limit = 20,

@@ -4,8 +4,12 @@
 #include <cstddef>
 
 #include "engine/matching/costs/cost_planes.h"
+#include "kernels/evidence/gradient_norm.h"
 
 namespace vantage {
+
+/// The norm of gradients and of their differences that `parameters` ask for.
+kernels::EvidenceNorm evidence_norm(const MethodParameters& parameters);
 
 /// Gradients in the form that the evidence (5.5) uses.
 class GradientPlanes final : public CostPlanes {

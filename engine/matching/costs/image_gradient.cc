@@ -17,6 +17,7 @@ struct DerivativeFilter {
 };
 
 constexpr DerivativeFilter kCentral{{0, -1, 0, 1, 0}, {0, 0, 1, 0, 0}};
+constexpr DerivativeFilter kForward{{0, 0, -1, 1, 0}, {0, 0, 1, 0, 0}};
 constexpr DerivativeFilter kSobel{{0, -1, 0, 1, 0}, {0, 1, 2, 1, 0}};
 constexpr DerivativeFilter kSimoncelli3{{0, -0.4553F, 0, 0.4553F, 0},
                                         {0, 0.2242F, 0.5516F, 0.2242F, 0}};
@@ -25,6 +26,8 @@ constexpr DerivativeFilter kSimoncelli5{{-0.1077F, -0.2827F, 0, 0.2827F, 0.1077F
 
 const DerivativeFilter& filter_of(GradientFilter filter) {
   switch (filter) {
+    case GradientFilter::kForward:
+      return kForward;
     case GradientFilter::kSobel:
       return kSobel;
     case GradientFilter::kSimoncelli3:

@@ -24,9 +24,7 @@ kernels::GradientBlock gradients_at(const CostImage& image, int x, int y) {
 
 EvidencePair::EvidencePair(const Photograph& left, const Photograph& right,
                            MethodParameters parameters, Execution& execution)
-    : width_(left.width()),
-      height_(left.height()),
-      octagon_(parameters.norm == GradientNorm::kOctagon) {
+    : width_(left.width()), height_(left.height()), norm_(evidence_norm(parameters)) {
   if (left.width() != right.width() || left.height() != right.height()) {
     throw Error(fmt::format("left image is {}x{} but right image is {}x{}, expected equal sizes",
                             left.width(), left.height(), right.width(), right.height()));
@@ -67,7 +65,7 @@ double EvidencePair::sum(const CostImage& reference, const CostImage& partner,
                                  .partner = gradients_at(partner, x + partner_dx, y + partner_dy),
                                  .columns = std::min(kBlockColumns, x_end - x),
                                  .rows = std::min(kBlockRows, y_end - y),
-                                 .octagon = octagon_});
+                                 .norm = norm_});
     }
   }
   return total;

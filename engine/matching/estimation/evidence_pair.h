@@ -49,7 +49,7 @@ class EvidencePair {
 
   int width_;
   int height_;
-  bool octagon_;
+  kernels::EvidenceNorm norm_;
   CostImage left_;
   CostImage right_;
 };

@@ -66,7 +66,8 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
                "a number of grey levels per pixel, at least 0, which leaves the term out"}},
         options.sigma_gradient...);
   visit(Field{"alpha", readers::kGradient, kNotNegative}, options.alpha...);
-  visit(Field{"norm", readers::kGradient}, options.norm...);
+  visit(Field{"gradient-components", readers::kGradient}, options.gradient_components...);
+  visit(Field{"norm", readers::kGradientNorm}, options.norm...);
   visit(Field{"gradient", readers::kGradient}, options.gradient...);
   visit(Field{"prefilter", readers::kGradient}, options.prefilter...);
 

@@ -35,6 +35,11 @@ inline constexpr ParameterReaders kAll = {
 // Costs.
 inline constexpr ParameterReaders kCosts = {"the {costs}", reads};
 inline constexpr ParameterReaders kGradient = {"the {costs} (method gradient)", reads};
+inline constexpr ParameterReaders kGradientNorm = {
+    "the {costs} (method gradient) with gradient-components xy",
+    [](const MethodParameters& p, std::string_view option) {
+      return reads(p, option) && p.gradient_components == GradientComponents::kXy;
+    }};
 inline constexpr ParameterReaders kExposure = {
     "every cost but {other_costs}, whose codes no exposure changes", reads};
 inline constexpr ParameterReaders kSigmaMeasurement = {

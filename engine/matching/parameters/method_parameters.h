@@ -64,8 +64,10 @@ enum class SearchSize {
   kQuarter,
   kAuto,  ///< full for up to 16 candidates, half for up to 128, quarter for more
 };
-enum class GradientFilter { kCentral, kSobel, kSimoncelli3, kSimoncelli5 };
-enum class GradientNorm { kL2, kOctagon };
+enum class GradientFilter { kCentral, kSobel, kSimoncelli3, kSimoncelli5, kForward };
+enum class GradientNorm { kL2, kOctagon, kL1, kMax };
+/// Components of the gradients that are compared.
+enum class GradientComponents { kXy, kX };
 
 /// Maximum number of blocks per tile, see MethodParametersOf::candidate_blocks.
 inline constexpr int kMaxCandidateBlocks = 8;
@@ -98,6 +100,8 @@ struct MethodParametersOf {
   Field<double> sigma_gradient = by_default<Field>(0.0);
   /// Gradient evidence: weight of the gradients' difference, ≥ 0.
   Field<double> alpha = by_default<Field>(1.0);
+  Field<GradientComponents> gradient_components = by_default<Field>(GradientComponents::kXy);
+  /// Gradient evidence with both components.
   Field<GradientNorm> norm = by_default<Field>(GradientNorm::kL2);
   Field<GradientFilter> gradient = by_default<Field>(GradientFilter::kCentral);
   /// Gradient evidence: smooth with a Gaussian of σ = ½ first.
