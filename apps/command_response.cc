@@ -9,16 +9,17 @@
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
 #include "apps/parameter_settings.h"
+#include "apps/response_drawings.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
 #include "apps/tell.h"
 #include "engine/error.h"
 #include "engine/evaluation/cumulative_response.h"
+#include "engine/evaluation/rms_differences.h"
 #include "engine/io/atomic_file.h"
 #include "engine/io/npy.h"
 #include "engine/io/photograph_io.h"
-#include "engine/plot/heat_map.h"
-#include "engine/plot/line_plot.h"
+#include "engine/plot/drawing.h"
 #include "engine/simd.h"
 
 namespace vantage::apps {
@@ -32,6 +33,8 @@ struct ResponseJob {
   std::string left;
   std::string right;
   std::string output;
+  std::string rms;
+  std::string evidence_pictures;
   std::string plot;
 };
 
@@ -48,9 +51,15 @@ void add_response_settings(Settings& settings, ResponseJob& job) {
                     "x): whole image, top left, top right, bottom left and bottom right quadrant");
   output.short_name = 'o';
   output.required = true;
+  settings.path("rms", job.rms, "FILE",
+                "Also write the root-mean-square difference of grey levels for each displacement, "
+                "over the pixels that have a partner: .csv, or .npy of shape (y, x)");
+  settings.path("evidence-pictures", job.evidence_pictures, "FILE",
+                "Draw the evidence at each pixel for the displacement with the largest sum of the "
+                "image and of each quadrant: light is for, dark against a match: .svg .png ...");
   settings.path("plot", job.plot, "FILE",
-                "Plot the sums per pixel, as curves over one range or heat maps over two: .svg "
-                ".png .jpg ...");
+                "Plot the sums per pixel, with --rms beside the negated differences, as curves "
+                "over one range or heat maps over two: .svg .png .jpg ...");
 
   settings.start_group("Displacements");
   Setting& x = settings.add("displacements-x", "MIN:MAX",
@@ -90,6 +99,8 @@ void check(const ResponseJob& job, const Settings& settings) {
   job.common.execution.validate();
   FileChecks files(settings);
   files.add_output(job.output, "--output", OutputKind::kTable);
+  files.add_output(job.rms, "--rms", OutputKind::kTable);
+  files.add_output(job.evidence_pictures, "--evidence-pictures", OutputKind::kPlot);
   files.add_output(job.plot, "--plot", OutputKind::kPlot);
   check_common_files(job.common, files);
 }
@@ -127,61 +138,20 @@ void write_data(const std::string& path, const CumulativeResponse& response) {
   write_binary_file(path, encode_npy(values, shape));
 }
 
-Drawing draw_curves(const CumulativeResponse& response) {
-  const bool along_x = response.displacements_y.count() == 1;
-  const DisparityRange range = along_x ? response.displacements_x : response.displacements_y;
-  LinePlot plot{.title = along_x ? fmt::format("dy = {}", response.displacements_y.min)
-                                 : fmt::format("dx = {}", response.displacements_x.min),
-                .x_axis = {.title = along_x ? "dx = x_left - x_right, pixels"
-                                            : "dy = y_left - y_right, pixels"},
-                .y_axis = {.title = "evidence per pixel, grey levels"},
-                .markers = false,
-                .series = {}};
-  for (int part = 0; part < kParts; ++part) {
-    const auto index = static_cast<std::size_t>(part);
-    PlotSeries series{std::string(kImagePartNames[index]), {}, {}};
-    const double pixels = response.pixels(static_cast<ImagePart>(part));
-    for (int i = 0; i < range.count(); ++i) {
-      series.x.push_back(range.min + i);
-      series.y.push_back(response.surfaces[index][static_cast<std::size_t>(i)] / pixels);
-    }
-    plot.series.push_back(std::move(series));
+void write_rms(const std::string& path, const CumulativeResponse& response,
+               const std::vector<double>& rms) {
+  const int columns = response.displacements_x.count();
+  if (!has_extension(path, {".csv"})) {
+    const int shape[] = {response.displacements_y.count(), columns};
+    write_binary_file(path, encode_npy(rms, shape));
+    return;
   }
-  return draw_line_plots("Cumulative response", {plot}, 1);
-}
-
-Drawing draw_surfaces(const CumulativeResponse& response) {
-  std::vector<HeatMap> maps;
-  for (int part = 0; part < kParts; ++part) {
-    const auto index = static_cast<std::size_t>(part);
-    const double pixels = response.pixels(static_cast<ImagePart>(part));
-    HeatMap map{
-        .title = std::string(kImagePartNames[index]),
-        .x_title = "dx = x_left - x_right, pixels",
-        .y_title = "dy = y_left - y_right, pixels; colour: evidence per pixel",
-        .x_first = response.displacements_x.min,
-        .y_first = response.displacements_y.min,
-        .values = Image<float>(response.displacements_x.count(), response.displacements_y.count())};
-    auto value = response.surfaces[index].begin();
-    for (int y = 0; y < map.values.height(); ++y) {
-      for (int x = 0; x < map.values.width(); ++x) {
-        map.values.at(x, y) = static_cast<float>(*value++ / pixels);
-      }
-    }
-    if (const auto dominant = response.dominant(static_cast<ImagePart>(part))) {
-      map.marked = {dominant->x_px, dominant->y_px};
-      map.title += fmt::format(": largest at {}, {}", dominant->x_px, dominant->y_px);
-    }
-    maps.push_back(std::move(map));
+  std::string text = "dx_px,dy_px,rms_grey_levels\n";
+  for (std::size_t i = 0; i < rms.size(); ++i) {
+    text += fmt::format("{},{},{}\n", response.displacements_x.min + static_cast<int>(i) % columns,
+                        response.displacements_y.min + static_cast<int>(i) / columns, rms[i]);
   }
-  constexpr int kColumns = 3;
-  return draw_heat_maps("Cumulative response", maps, kColumns);
-}
-
-void write_plot(const std::string& path, const CumulativeResponse& response) {
-  const bool one_range =
-      response.displacements_x.count() == 1 || response.displacements_y.count() == 1;
-  write_drawing(path, one_range ? draw_curves(response) : draw_surfaces(response));
+  write_text_file(path, text);
 }
 
 /// Prints the table to stdout and returns it for the report.
@@ -237,14 +207,41 @@ int command_response(const Arguments& arguments) {
   const CumulativeResponseOptions options = options_of(job, left.width());
   const CumulativeResponse response = report.timed_compute(
       "response", [&] { return cumulative_response(left, right, options, execution); });
+  std::vector<double> rms;
+  if (!job.rms.empty()) {
+    rms = report.timed_compute("rms", [&] {
+      return rms_differences(left, right, options.displacements_x, options.displacements_y,
+                             execution);
+    });
+  }
+  std::optional<Drawing> pictures;
+  if (!job.evidence_pictures.empty()) {
+    pictures = report.timed_compute("evidence pictures", [&] {
+      return draw_evidence(response, left, right, options.parameters, execution);
+    });
+  }
   report.timed_file_access("write", [&] {
     write_data(job.output, response);
+    if (!rms.empty()) {
+      write_rms(job.rms, response, rms);
+    }
+    if (pictures) {
+      write_drawing(job.evidence_pictures, *pictures);
+    }
     if (!job.plot.empty()) {
-      write_plot(job.plot, response);
+      write_drawing(job.plot, draw_response(response, rms));
     }
   });
 
-  report.set_results({{"dominant", print_dominant(response)}});
+  SettingValue results = {{"dominant", print_dominant(response)}};
+  if (const auto smallest = smallest_rms(response, rms)) {
+    results["smallest_rms"] = {{"dx_px", smallest->displacement.x_px},
+                               {"dy_px", smallest->displacement.y_px},
+                               {"rms_grey_levels", smallest->rms}};
+    fmt::print("{:<14}{:>6}{:>6}{:>16.4f} grey levels\n", "smallest RMS",
+               smallest->displacement.x_px, smallest->displacement.y_px, smallest->rms);
+  }
+  report.set_results(results);
   report.write(job.common.report);
   if (!job.common.quiet) {
     tell("response: {}x{} pixels, displacements {} x {} -> {}\n", left.width(), left.height(),

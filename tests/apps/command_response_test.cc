@@ -83,6 +83,22 @@ TEST_F(ResponseCommand, WritesArraysPlotsAndAReport) {
   EXPECT_EQ(report["results"]["dominant"]["whole"]["dy_px"], 0);
 }
 
+TEST_F(ResponseCommand, DifferencesAndEvidencePictures) {
+  const ProcessResult result =
+      response(folder_ / "r.npy",
+               {"--rms", folder_ / "d.csv", "--evidence-pictures", folder_ / "e.svg", "--plot",
+                folder_ / "p.svg", "--displacements-x=-3:8", "--displacements-y=-1:1", "--report",
+                folder_ / "r.json", "--gradient-components", "x"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(read_file(folder_ / "d.csv"), HasSubstr("dx_px,dy_px,rms_grey_levels\n-3,-1,"));
+  EXPECT_THAT(read_file(folder_ / "e.svg"), HasSubstr("bottom-right: "));
+  EXPECT_THAT(read_file(folder_ / "p.svg"), HasSubstr("negated RMS difference: largest at 2, 0"));
+  const auto smallest =
+      nlohmann::json::parse(read_file(folder_ / "r.json"))["results"]["smallest_rms"];
+  EXPECT_EQ(smallest["dx_px"], 2);
+  EXPECT_EQ(smallest["dy_px"], 0);
+}
+
 TEST_F(ResponseCommand, CurvesForOneRange) {
   ASSERT_EQ(response(folder_ / "r.csv", {"--plot", folder_ / "x.svg"}).exit_code, 0);
   ASSERT_EQ(response(folder_ / "r.csv", {"--displacements-x=2:2", "--displacements-y=-4:4",
