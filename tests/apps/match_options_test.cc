@@ -100,6 +100,10 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
        "lambda is set but has no effect with preset balanced (cost census-rays, aggregation bayes, "
        "7 levels); it is read by diffusion, membrane and local-stopping"},
       {{"--raw", "--fill", "none"}, "fill is set but has no effect with raw"},
+      {{"--selection", "rows"}, "--selection is 'rows', expected one of winner|scanline|symmetric"},
+      {{"--jump-limit", "3"}, "it is read by selection scanline"},
+      {{"--selection", "symmetric", "--cross-check", "2"}, "both maps are of one solution"},
+      {{"--selection", "symmetric", "--baselines", "1"}, "a symmetric solution is of two images"},
       {{"--baselines", "1", "--cross-check", "2"}, "--cross-check has no effect with several"},
       {{"--tuning", "t.json", "--no-tuning"}, "--tuning has no effect with --no-tuning"},
       {{"--max-disp", "64"}, "'--max-disp': --disparities MIN:MAX is the range to search"},
