@@ -193,6 +193,11 @@ int command_experiment(const Arguments& arguments) {
       })) {
     settings.refuse_idle({"left", "right", "data"}, "on figures of synthetic pairs");
   }
+  if (job.inputs.given() && std::ranges::all_of(figures, [](const BookFigure* figure) {
+        return figure->images != BookImages::kNone;
+      })) {
+    settings.refuse_idle({"size", "seed"}, "with photographs: nothing is generated");
+  }
   job.common.execution.validate();
   FileChecks files(settings);
   files.add_made_folder(job.output, "--output");

@@ -150,6 +150,8 @@ TEST(InputExperimentCommand, BadInputIsOneLineAndExit2) {
       {{"6.9", "-o", out, "--mu", "0.4"}, "--mu has no effect"},
       {{"6.16", "-o", out, "--left", "a.png", "--right", "b.png"}, "--left has no effect"},
       {{"3.9", "-o", out, "--left", "a.png"}, "--right is missing"},
+      {{"3.9", "-o", out, "--left", "a.png", "--right", "b.png", "--seed", "2"},
+       "--seed has no effect with photographs"},
       {{"3.9", "-o", out, "--disparities", "0:9"}, "--disparities has no effect without"},
       {{"6.16", "-o", out, "--iterations", "-1"}, "iterations is -1"}};
   for (const auto& [more, says] : misuses) {
