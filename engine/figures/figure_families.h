@@ -8,6 +8,7 @@ namespace vantage {
 
 // The figures of each file of this folder.
 std::vector<BookFigure> comparison_figures();
+std::vector<BookFigure> disparity_space_figures();
 std::vector<BookFigure> formula_figures();
 std::vector<BookFigure> gradient_figures();
 std::vector<BookFigure> membrane_figures();

@@ -15,9 +15,17 @@
 namespace vantage {
 namespace {
 
-constexpr auto kFamilies = {
-    view_figures,     formula_figures,  response_figures,   gradient_figures,       pattern_figures,
-    pair_map_figures, membrane_figures, comparison_figures, several_images_figures, time_tables};
+constexpr auto kFamilies = {view_figures,
+                            formula_figures,
+                            response_figures,
+                            gradient_figures,
+                            pattern_figures,
+                            pair_map_figures,
+                            disparity_space_figures,
+                            membrane_figures,
+                            comparison_figures,
+                            several_images_figures,
+                            time_tables};
 
 /// "6.16" after "6.9"; what has a word follows the figures of its chapter.
 struct FigureOrder {
