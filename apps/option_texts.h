@@ -162,7 +162,13 @@ inline constexpr std::array kOptionTexts = {
     OptionText{"fill", "",
                "Value of unmatched pixels. constant: disparity of the background beside them; "
                "linear: interpolated where both sides nearly agree, else constant; median: median "
-               "of similar pixels around; none: unknown"},
+               "of similar pixels around; canonical: regions without texture interpolated between "
+               "their ends, other pixels as median; thin-plate: the same, continuing slopes; none: "
+               "unknown"},
+    OptionText{
+        "uniform-contrast", "C",
+        "With fill canonical and thin-plate: a region has no texture if neighbouring columns "
+        "differ by at most C grey levels on average, at least 0"},
 };
 
 /// First option and title of each group of a method's options.

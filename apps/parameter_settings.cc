@@ -77,10 +77,9 @@ EnumNames<Subpixel> names_of(Subpixel /*type*/) {
   return {{"parabola", Subpixel::kParabola}, {"none", Subpixel::kNone}};
 }
 EnumNames<Fill> names_of(Fill /*type*/) {
-  return {{"constant", Fill::kConstant},
-          {"linear", Fill::kLinear},
-          {"median", Fill::kMedian},
-          {"none", Fill::kNone}};
+  return {{"constant", Fill::kConstant},    {"linear", Fill::kLinear},
+          {"median", Fill::kMedian},        {"canonical", Fill::kCanonical},
+          {"thin-plate", Fill::kThinPlate}, {"none", Fill::kNone}};
 }
 
 /// A line for each value of an enumeration that has a table, with its name and what it is.

@@ -34,12 +34,17 @@ kernels::FilledMedianGrid median_grid(const MapToRefine& map) {
                                     : kernels::FilledMedianGrid{.count = 5, .step_px = 2};
 }
 
+SurfaceEnergy surface_energy(Fill fill) {
+  return fill == Fill::kThinPlate ? SurfaceEnergy::kThinPlate : SurfaceEnergy::kMembrane;
+}
+
 }  // namespace
 
 std::size_t held_bytes(const RefinementWork& work) {
   return held_bytes(work.edge_snapping) + held_bytes(work.speckles[0]) +
          held_bytes(work.speckles[1]) + held_bytes(work.surface_fit) +
-         held_bytes(work.filled_medians);
+         held_bytes(work.filled_medians) + held_bytes(work.uniform_pixels) +
+         held_bytes(work.uniform) + held_bytes(work.rest);
 }
 
 void refine_maps(const RefinementOptions& options, const MapToRefine& map, const MapToRefine* other,
@@ -113,24 +118,41 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
     }
   }
   start_step("fill");
+  const bool is_canonical = fills_uniform_regions(options.fill);
   for (const MapToRefine* one : maps) {
     MatchedMap& matched = *one->map;
     if (one->kept != nullptr) {
       one->kept->restore(matched.disparity_px);
     }
+    if (is_canonical) {
+      find_textureless_pixels(*one->image, options.uniform_contrast, execution, work.uniform_pixels,
+                              work.uniform);
+      keep_visible_unmatched(matched.disparity_px.view(), matched.unmatched, one->side,
+                             one->pixels_per_column, execution, work.uniform);
+    }
     for (DisparityMap* component_px : {&matched.disparity_px, &matched.disparity_y_px}) {
       if (component_px->empty()) {
         continue;
       }
-      fill_unmatched(matched.unmatched, one->side, options.fill, execution, *component_px);
-      if (options.fill == Fill::kMedian) {
-        take_filled_medians(matched.unmatched, *one->image, median_grid(*one), execution,
-                            work.filled_medians, *component_px,
-                            one->kept != nullptr ? &one->kept->changed() : nullptr);
+      const Mask* unmatched = &matched.unmatched;
+      if (is_canonical) {
+        work.rest = matched.unmatched.copy();
+        fill_canonically(work.uniform, work.uniform_pixels.grey, surface_energy(options.fill),
+                         component_px == &matched.disparity_px ? one->search : one->search_y,
+                         execution, work.rest, *component_px);
+        unmatched = &work.rest;
+      }
+      fill_unmatched(*unmatched, one->side, options.fill, execution, *component_px);
+      if (options.fill == Fill::kMedian || is_canonical) {
+        take_filled_medians(
+            *unmatched, *one->image, median_grid(*one), execution, work.filled_medians,
+            *component_px, one->kept != nullptr && !is_canonical ? &one->kept->changed() : nullptr);
       }
     }
     if (one->kept != nullptr) {
-      one->kept->restore(matched.disparity_px);
+      if (!is_canonical) {  // whose regions reach over many tiles
+        one->kept->restore(matched.disparity_px);
+      }
       one->kept->remember(matched);
     }
   }

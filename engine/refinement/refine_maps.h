@@ -9,6 +9,7 @@
 #include "engine/image/disparity_range.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
+#include "engine/refinement/canonical_fill.h"
 #include "engine/refinement/edge_snapping.h"
 #include "engine/refinement/filled_medians.h"
 #include "engine/refinement/kept_refinement.h"
@@ -16,6 +17,7 @@
 #include "engine/refinement/refinement_options.h"
 #include "engine/refinement/speckles.h"
 #include "engine/refinement/surface_fit.h"
+#include "engine/refinement/uniform_pixels.h"
 
 namespace vantage {
 
@@ -52,6 +54,9 @@ struct RefinementWork {
   std::array<SpeckleWork, 2> speckles;
   SurfaceFitWork surface_fit;
   FilledMediansWork filled_medians;
+  UniformPixelsWork uniform_pixels;
+  Mask uniform;  ///< pixels of regions without texture
+  Mask rest;     ///< unmatched pixels that are not
 };
 
 std::size_t held_bytes(const RefinementWork& work);

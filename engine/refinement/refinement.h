@@ -44,7 +44,7 @@ void mark_unsure(ImageView<const float> confidence, double threshold, Execution&
 
 /// Fills unmatched pixels (EQUATIONS §5.4): at constant depth; with Fill::kLinear along a line
 /// where the disparities at both ends of a run differ by at most 1 px; with Fill::kNone as unknown
-/// (NaN). Fill::kMedian is constant depth here; take_filled_medians() refines it. Except for kNone,
+/// (NaN). All others are constant depth here; take_filled_medians() refines it. Except for kNone,
 /// a row without matched pixels copies the nearest row that has some (the upper one on a tie), and
 /// a map without any is unchanged. Identical for any `execution`.
 void fill_unmatched(const Mask& unmatched, Side side, Fill fill, Execution& execution,

@@ -29,6 +29,8 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
                                  "a number of at least 1"};
   constexpr Limits kThreshold = {
       [](double v) { return v < std::numeric_limits<double>::infinity(); }, "a finite number"};
+  constexpr Limits kContrast = {[](double v) { return v >= 0 && std::isfinite(v); },
+                                "a number of grey levels, at least 0"};
   constexpr Limits kSize = {[](double v) { return v >= 0; }, "a number of pixels, at least 0"};
 
   visit(Field{"edge-snapping", kRadius}, options.edge_snapping_px...);
@@ -42,6 +44,7 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
   visit(Field{"surface-fit", kRadius}, options.surface_fit_px...);
   visit(Field{"surface-fit-step", {is_within<1, 2>, "1 or 2"}}, options.surface_fit_step_px...);
   visit(Field{"fill"}, options.fill...);
+  visit(Field{"uniform-contrast", kContrast}, options.uniform_contrast...);
 }
 
 }  // namespace vantage

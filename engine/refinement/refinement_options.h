@@ -9,10 +9,12 @@ namespace vantage {
 
 /// How unmatched pixels are filled.
 enum class Fill {
-  kConstant,  ///< the background depth next to them (EQUATIONS §5.4)
-  kLinear,    ///< interpolated where the disparities on both sides nearly agree, else constant
-  kMedian,    ///< constant, then the median of similar pixels nearby (filled_medians)
-  kNone,      ///< unknown
+  kConstant,   ///< the background depth next to them (EQUATIONS §5.4)
+  kLinear,     ///< interpolated where the disparities on both sides nearly agree, else constant
+  kMedian,     ///< constant, then the median of similar pixels nearby (filled_medians)
+  kCanonical,  ///< regions without texture: a membrane between their ends; others: as kMedian
+  kThinPlate,  ///< the same with a thin plate
+  kNone,       ///< unknown
 };
 
 /// A confidence_threshold below any confidence.
@@ -43,6 +45,9 @@ struct RefinementOptionsOf {
   /// 1: a plane for each pixel; 2: for each block of 2×2 pixels, which is faster.
   Field<int> surface_fit_step_px = by_default<Field>(1);
   Field<Fill> fill = by_default<Field>(Fill::kConstant);
+  /// Canonical and thin-plate fill: mean intensity difference of neighbouring columns, in grey
+  /// levels, up to which a region has no texture; ≥ 0.
+  Field<double> uniform_contrast = by_default<Field>(1.0);
 
   friend bool operator==(const RefinementOptionsOf&, const RefinementOptionsOf&) = default;
 };
@@ -54,6 +59,11 @@ using RefinementOptions = RefinementOptionsOf<std::type_identity_t>;
 /// Whether refinement reads the confidence of the maps.
 inline bool uses_confidence(const RefinementOptions& refinement) {
   return refinement.confidence_threshold > kNoConfidenceThreshold;
+}
+
+/// Whether uniform regions are filled otherwise than other unmatched pixels.
+inline bool fills_uniform_regions(Fill fill) {
+  return fill == Fill::kCanonical || fill == Fill::kThinPlate;
 }
 
 }  // namespace vantage

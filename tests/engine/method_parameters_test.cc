@@ -449,6 +449,11 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
       {"speckle-size", refinement(&R::speckle_size_px), {0, 1000}, {-1}, "at least 0"},
       {"surface-fit", refinement(&R::surface_fit_px), {0, 1, 16}, {-1, 17}, "from 0 to 16"},
       {"surface-fit-step", refinement(&R::surface_fit_step_px), {1}, {0, 3}, "1 or 2"},
+      {"uniform-contrast",
+       refinement(&R::uniform_contrast),
+       {1},
+       {-0.5, kNan, kInfinity},
+       "a number of grey levels, at least 0"},
   };
   for (const Bound& bound : bounds) {
     const auto complaint_about = [&](double value) {

@@ -434,6 +434,13 @@ TEST(Refinement, WhatNothingReadsIsRefused) {
   EXPECT_EQ(complaint(options), "");
   options.refinement.surface_fit_step_px = 2;
   EXPECT_EQ(complaint(options), "surface-fit-step is set but has no effect with surface-fit 0");
+  options = {};
+  options.refinement.uniform_contrast = 2;
+  EXPECT_EQ(complaint(options),
+            "uniform-contrast is set but has no effect with a fill other than canonical and "
+            "thin-plate");
+  options.refinement.fill = Fill::kThinPlate;
+  EXPECT_EQ(complaint(options), "");
 }
 
 }  // namespace parameter_readers_test

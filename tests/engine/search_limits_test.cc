@@ -65,7 +65,8 @@ void expect_within(const DisparityMap& map, DisparityRange search, const std::st
 TEST(SearchLimits, NoMethodAndNoRefinementLeavesThem) {
   const SlantedPair pair = slanted_pair();
   const std::vector<test::MethodCase> methods = test::method_cases(kSearch);
-  constexpr Fill kFills[] = {Fill::kConstant, Fill::kLinear, Fill::kMedian, Fill::kNone};
+  constexpr Fill kFills[] = {Fill::kConstant, Fill::kLinear,    Fill::kMedian,
+                             Fill::kNone,     Fill::kCanonical, Fill::kThinPlate};
   Execution execution({.threads = 2});
   DisparityMaps maps;
   const auto dimensions_fit = [&](const test::SampleRow& row) {
@@ -76,7 +77,7 @@ TEST(SearchLimits, NoMethodAndNoRefinementLeavesThem) {
   };
   // Methods, fills, surface fit, edge snapping, dimensions.
   for (const test::SampleRow& row :
-       test::sampled_rows({static_cast<int>(methods.size()), 4, 3, 2, 2}, dimensions_fit)) {
+       test::sampled_rows({static_cast<int>(methods.size()), 6, 3, 2, 2}, dimensions_fit)) {
     MatchOptions options = methods[static_cast<std::size_t>(row[0])].options;
     options.raw = false;
     options.parameters.subpixel = Subpixel::kParabola;

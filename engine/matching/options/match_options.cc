@@ -116,6 +116,10 @@ void require_read(const RefinementOverrides& set, const RefinementOptions& in_fo
             kUnchecked);
   refuse_if(!in_force.cross_check && set.cross_check_level.value_or(0) > 0, "cross-check-level",
             kUnchecked);
+  const double contrast = RefinementOptions{}.uniform_contrast;
+  refuse_if(
+      !fills_uniform_regions(in_force.fill) && set.uniform_contrast.value_or(contrast) != contrast,
+      "uniform-contrast", "a fill other than canonical and thin-plate");
   refuse_if(in_force.surface_fit_px == 0 && set.surface_fit_step_px.value_or(1) > 1,
             "surface-fit-step", "surface-fit 0");
 }
