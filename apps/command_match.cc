@@ -36,7 +36,8 @@ void write_map(const MatchJob& job, const std::string& path, const DisparityMaps
   write_displacements(path, {map.disparity_px.view(), map.disparity_y_px.view()}, side);
 }
 
-void write_results(const MatchJob& job, const DisparityMaps& maps) {
+void write_results(const MatchJob& job, const DisparityMaps& maps,
+                   const Image<float>& depth_resolution) {
   const Side side = job.is_left() ? Side::kLeft : Side::kRight;
   const MatchedMap& map = maps.of(side);
   write_map(job, job.output, maps, side);
@@ -45,6 +46,9 @@ void write_results(const MatchJob& job, const DisparityMaps& maps) {
   }
   if (!job.confidence.empty()) {
     write_disparity(job.confidence, map.confidence.view());
+  }
+  if (!job.depth.resolution_file.empty()) {
+    write_disparity(job.depth.resolution_file, depth_resolution.view());
   }
   if (!job.unmatched.empty()) {
     write_mask(job.unmatched, map.unmatched.view());
@@ -216,6 +220,7 @@ int command_match(const Arguments& arguments) {
   }
   require_equal_sizes(job, images);
   const scheduler::Extent size{images[0].width(), images[0].height()};
+  const std::optional<DepthScale> scale = job.depth.scale(size.columns, size.rows);
   if (job.vertical) {
     transpose(images);
   }
@@ -264,8 +269,17 @@ int command_match(const Arguments& arguments) {
   }
   report.add_match(match);
   report.set_memory(memory_use(images, maps, matcher, chosen));
+  // Along the baseline.
+  const MatchedMap& map = maps.of(job.is_left() ? Side::kLeft : Side::kRight);
+  const auto along_px =
+      (job.vertical && job.match.disparities_y ? map.disparity_y_px : map.disparity_px).view();
+  report_depth_resolution(along_px, scale, job.disparity_resolution_px(), report);
+  Image<float> depth_resolution;
+  if (!job.depth.resolution_file.empty()) {
+    depth_resolution_map(along_px, *scale, job.disparity_resolution_px(), chosen, depth_resolution);
+  }
   report.timed_file_access("write", [&] {
-    write_results(job, maps);
+    write_results(job, maps, depth_resolution);
     write_space(job, space, report);
   });
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <tuple>
 #include <utility>
 
 #include "apps/input_limits.h"
@@ -144,6 +145,7 @@ void check_posterior(const MatchJob& job, FileChecks& files) {
 void add_match_job_settings(Settings& settings, MatchJob& job) {
   add_file_settings(settings, job);
   add_reference_setting(settings, job.match);
+  add_depth_settings(settings, job.depth);
   add_match_settings(settings, job.match);
   add_tuning_settings(settings, job.tuning);
   add_common_settings(settings, job.common);
@@ -154,6 +156,11 @@ void add_match_job_settings(Settings& settings, MatchJob& job) {
       {"vantage match left.png right.png -o disparity.pfm --preview preview.png",
        "vantage match left.png right.png -o disparity.npy --disparities 0:127 --preset fast",
        "vantage match left.png right.png -o disparity.png --fill none --unmatched mask.png"});
+}
+
+double MatchJob::disparity_resolution_px() const {
+  const bool has_fractions = match.resolved().subpixel != Subpixel::kNone;
+  return depth.step_px.value_or(has_fractions ? 0.1 : 1);
 }
 
 void require_files_hold_search(const MatchJob& job) {
@@ -168,6 +175,7 @@ void require_files_hold_search(const MatchJob& job) {
 void check(const MatchJob& job, const Settings& settings) {
   job.match.validate();
   job.common.execution.validate();
+  job.depth.validate(job.vertical);
   if (job.has_several()) {
     check_several(job, settings);
   } else if (job.match.reference == Side::kRight &&
@@ -180,11 +188,15 @@ void check(const MatchJob& job, const Settings& settings) {
   if (job.tuning.ignored) {
     settings.refuse_idle({"tuning"}, "with --no-tuning");
   }
-  if (has_extension(job.confidence, {".png"})) {
-    throw UsageError(
-        fmt::format("--confidence is '{}', but PNG holds no floats and confidences have no fixed "
-                    "range, expected {}",
-                    job.confidence, listed_map_formats(MapContent::kConfidence)));
+  for (const auto& [option, file, content] :
+       {std::tuple{"confidence", &job.confidence, "confidences"},
+        std::tuple{"depth-resolution", &job.depth.resolution_file, "distances"}}) {
+    if (has_extension(*file, {".png"})) {
+      throw UsageError(
+          fmt::format("--{} is '{}', but PNG holds no floats and {} have no fixed "
+                      "range, expected {}",
+                      option, *file, content, listed_map_formats(MapContent::kConfidence)));
+    }
   }
   const OutputKind map_kind =
       job.match.disparities_y ? OutputKind::kDisplacements : OutputKind::kDisparity;
@@ -193,6 +205,7 @@ void check(const MatchJob& job, const Settings& settings) {
   files.add_output(job.output, "--output", map_kind);
   files.add_output(job.output_right, "--output-right", map_kind);
   files.add_output(job.confidence, "--confidence", OutputKind::kConfidence);
+  files.add_output(job.depth.resolution_file, "--depth-resolution", OutputKind::kConfidence);
   files.add_output(job.unmatched, "--unmatched", OutputKind::kMask);
   files.add_output(job.unmatched_right, "--unmatched-right", OutputKind::kMask);
   files.add_output(job.preview, "--preview", OutputKind::kPhotograph);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "apps/applied_tuning.h"
+#include "apps/depth_settings.h"
 #include "apps/match_settings.h"
 #include "apps/option_groups.h"
 #include "apps/settings.h"
@@ -17,6 +18,7 @@ struct MatchJob {
   MatchOptions match = options_with_found_range();
   CommonOptions common;
   TuningSource tuning;
+  DepthSettings depth;
   std::string left;
   std::string right;
   std::vector<std::string> more;  ///< images beyond the pair
@@ -34,6 +36,8 @@ struct MatchJob {
   bool vertical = false;
   bool check_rectification = true;
 
+  /// δ of depths.
+  [[nodiscard]] double disparity_resolution_px() const;
   [[nodiscard]] bool has_several() const { return !baselines.empty() || !more.empty(); }
   [[nodiscard]] std::vector<std::string> inputs() const {
     std::vector<std::string> all = {left, right};

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+
+#include "engine/execution.h"
+#include "engine/image/image.h"
+
+namespace vantage {
+
+/// What turns disparities of a rectified pair into depths: Z = f · b / (d + doffs).
+struct DepthScale {
+  double focal_length_px = 1;  ///< f, above 0
+  double baseline = 1;         ///< b, above 0; its unit is that of depths
+  double doffs_px = 0;         ///< cx of the right − cx of the left image
+};
+
+/// Depth at a disparity; empty at infinity and beyond.
+std::optional<double> depth(const DepthScale& scale, double disparity_px);
+
+/// δZ, the distance to the next farther depth that can be told from the one at this disparity, at a
+/// resolution of `step_px` (δ, above 0) of disparities: δZ = δ / (f b) · Z (Z + δZ) (4.1). Empty if
+/// that is infinity. δZ / Z does not depend on f and b.
+std::optional<double> depth_resolution(const DepthScale& scale, double step_px,
+                                       double disparity_px);
+
+/// The same for each pixel of a map, NaN = unknown or infinite. Resizes `resolution`. Identical for
+/// any `execution`.
+void depth_resolution_map(ImageView<const float> disparity_px, const DepthScale& scale,
+                          double step_px, Execution& execution, Image<float>& resolution);
+
+}  // namespace vantage
