@@ -147,6 +147,7 @@ nlohmann::json compare(const Settings& settings) {
     if (remaps.size() == 1) {
       add(place.name + ", hard edges", place, {.soft_edges = false});
       add(place.name + ", inpaint", place, {.holes = HoleFilling::kInpaint});
+      add(place.name + ", texture", place, {.holes = HoleFilling::kTexture});
     }
   }
   for (int round = 0; round < settings.rounds; ++round) {

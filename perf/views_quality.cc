@@ -91,6 +91,7 @@ const std::vector<Contender>& contenders() {
       {"hard edges", "truth", ours({.soft_edges = false})},
       {"spread", "truth", ours({.holes = HoleFilling::kSpread})},
       {"inpaint", "truth", ours({.holes = HoleFilling::kInpaint})},
+      {"texture", "truth", ours({.holes = HoleFilling::kTexture})},
       {"forward", "truth", ours({.warp = WarpColour::kForward})},
       {"plain z-buffer", "truth",
        [](const LoadedPair& pair, const DisparityMaps& maps, double view_x, Execution& /*unused*/) {
@@ -101,6 +102,7 @@ const std::vector<Contender>& contenders() {
       {"balanced, forward", "balanced", ours({.warp = WarpColour::kForward})},
       {"balanced, hard edges", "balanced", ours({.soft_edges = false})},
       {"balanced, inpaint", "balanced", ours({.holes = HoleFilling::kInpaint})},
+      {"balanced, texture", "balanced", ours({.holes = HoleFilling::kTexture})},
       {"balanced, median", "balanced, median", ours({})},
       {"quality", "quality", ours({})},
       {"StereoSGBM", "sgbm", ours({})},

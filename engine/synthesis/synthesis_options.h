@@ -6,10 +6,11 @@ namespace vantage {
 
 /// How holes, which neither warped image covers, are filled (EQUATIONS §6, hole filling).
 enum class HoleFilling {
-  kMirror,  ///< the background side mirrored along the scanline
-  kSpread,  ///< the background side's border pixel repeated
-  kNone,    ///< left black
-  kInpaint  ///< continued from the background around them in all directions
+  kMirror,   ///< the background side mirrored along the scanline
+  kSpread,   ///< the background side's border pixel repeated
+  kNone,     ///< left black
+  kInpaint,  ///< continued from the background around them in all directions
+  kTexture   ///< patches of the background copied into them: its texture goes on
 };
 
 /// How colour is transferred to the new view after the forward mapping of disparities.
@@ -17,6 +18,11 @@ enum class WarpColour {
   kOnePass,  ///< fetched backward from the source image, one bicubic interpolation (3.2.7)
   kForward   ///< the source pixel moved to the nearest position: the book's method
 };
+
+/// Whether holes are filled when all rows of a view are complete.
+inline bool fills_across_rows(HoleFilling holes) {
+  return holes == HoleFilling::kInpaint || holes == HoleFilling::kTexture;
+}
 
 struct SynthesisOptions {
   WarpColour warp = WarpColour::kOnePass;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/synthesis/background_inpainting.h"
+#include "engine/synthesis/background_texture.h"
 #include "engine/synthesis/warped_pair_layout.h"
 #include "kernels/hole_fill/hole_fill.h"
 #include "kernels/soft_edges/soft_edges.h"
@@ -27,7 +28,7 @@ ViewFinisher<T>::ViewFinisher(const SynthesisOptions& options, double alpha, Out
       alpha_(alpha),
       softens_(softens(options, alpha)),
       outlines_(std::move(outlines)),
-      keeps_rows_(options.holes == HoleFilling::kInpaint ||
+      keeps_rows_(fills_across_rows(options.holes) ||
                   (softens_ && std::holds_alternative<EdgeCoverage>(outlines_))),
       image_(image),
       sources_(sources),
@@ -56,10 +57,12 @@ std::size_t ViewFinisher<T>::row_bytes(int width) {
 template <typename T>
 std::size_t ViewFinisher<T>::working_bytes(const SynthesisOptions& options, int width, int height,
                                            int channels) {
-  return options.holes == HoleFilling::kInpaint
-             ? row_bytes(width) * static_cast<std::size_t>(height) +
-                   inpainting_bytes(width, height, channels)
-             : 0;
+  if (!fills_across_rows(options.holes)) {
+    return 0;
+  }
+  return row_bytes(width) * static_cast<std::size_t>(height) +
+         (options.holes == HoleFilling::kInpaint ? inpainting_bytes(width, height, channels)
+                                                 : texture_synthesis_bytes(width, height));
 }
 
 template <typename T>
@@ -87,17 +90,23 @@ ImageView<const float> ViewFinisher<T>::kept_disparity() const {
 }
 
 template <typename T>
+ImageView<const std::uint8_t> ViewFinisher<T>::kept_filled() const {
+  return {kept_row(0).filled, image_.width(), image_.height(), 1, row_bytes(image_.width())};
+}
+
+template <typename T>
 void ViewFinisher<T>::fill_row(const BlendedScanline& row, const RowMemory& memory) {
   const int width = image_.width();
-  kernels::fill_holes_row(kernels::HoleFillRow<T>{.pixels = image_.row(row.y),
-                                                  .disparity_px = row.disparity_px,
-                                                  .width = width,
-                                                  .channels = image_.channels(),
-                                                  .gradient_limit_px = row.warped.gradient_limit_px,
-                                                  .mixed_px = softens_ ? kMixedPx : 0,
-                                                  .filled_disparity_px = memory.disparity_px,
-                                                  .filled = memory.filled},
-                          options_.holes == HoleFilling::kMirror);
+  kernels::fill_holes_row(
+      kernels::HoleFillRow<T>{.pixels = image_.row(row.y),
+                              .disparity_px = row.disparity_px,
+                              .width = width,
+                              .channels = image_.channels(),
+                              .gradient_limit_px = row.warped.gradient_limit_px,
+                              .mixed_px = softens_ ? kMixedPx : 0,
+                              .filled_disparity_px = memory.disparity_px,
+                              .filled = memory.filled},
+      options_.holes == HoleFilling::kMirror || options_.holes == HoleFilling::kTexture);
   std::uint8_t* sources = sources_.row(row.y);
   for (int x = 0; x < width; ++x) {
     sources[x] = static_cast<std::uint8_t>(sources[x] & ~memory.filled[x]);
@@ -107,9 +116,9 @@ void ViewFinisher<T>::fill_row(const BlendedScanline& row, const RowMemory& memo
 template <typename T>
 void ViewFinisher<T>::finish_row(const BlendedScanline& row) {
   const int width = image_.width();
-  const bool inpaints = options_.holes == HoleFilling::kInpaint;
+  const bool is_completed_later = fills_across_rows(options_.holes);
   const bool fills = options_.holes != HoleFilling::kNone && row.holes > 0;
-  if (!inpaints && !fills && !softens_) {
+  if (!is_completed_later && !fills && !softens_) {
     return;
   }
   scheduler::ScratchPool::Lease lease;
@@ -123,7 +132,7 @@ void ViewFinisher<T>::finish_row(const BlendedScanline& row) {
     std::copy_n(row.disparity_px, width, memory.disparity_px);
     std::fill_n(memory.filled, width, std::uint8_t{0});
   }
-  if (inpaints && row.holes == width) {
+  if (is_completed_later && row.holes == width) {
     std::fill_n(memory.filled, width, std::uint8_t{255});
   }
   const auto* offsets = std::get_if<std::array<double, 2>>(&outlines_);
@@ -140,7 +149,7 @@ void ViewFinisher<T>::finish_row(const BlendedScanline& row) {
                                    .left_offset = (*offsets)[0],
                                    .right_offset = (*offsets)[1]},
                                   memory.shares);
-  if (!inpaints && outlines > 0) {
+  if (!is_completed_later && outlines > 0) {
     kernels::mix_outlines_row(memory.shares, width, image_.channels(), image_.row(row.y));
   }
 }
@@ -149,12 +158,11 @@ template <typename T>
 void ViewFinisher<T>::finish_view() {
   const int width = image_.width();
   const int height = image_.height();
-  const bool inpaints = options_.holes == HoleFilling::kInpaint;
-  if (inpaints) {
-    inpaint_background(
-        image_,
-        ImageView<const std::uint8_t>(kept_row(0).filled, width, height, 1, row_bytes(width)),
-        kept_disparity(), options_.disparity_gradient_limit_px);
+  const double limit_px = options_.disparity_gradient_limit_px;
+  if (options_.holes == HoleFilling::kInpaint) {
+    inpaint_background(image_, kept_filled(), kept_disparity(), limit_px);
+  } else if (options_.holes == HoleFilling::kTexture) {
+    synthesize_background_texture(image_, kept_filled(), kept_disparity(), limit_px, execution_);
   }
   if (!softens_) {
     return;
@@ -162,7 +170,7 @@ void ViewFinisher<T>::finish_view() {
   if (const auto* coverage = std::get_if<EdgeCoverage>(&outlines_)) {
     soften_outlines(*coverage, kept_disparity(),
                     static_cast<float>(options_.disparity_gradient_limit_px), image_, execution_);
-  } else if (inpaints) {
+  } else if (fills_across_rows(options_.holes)) {
     execution_.for_each_band(height, [&](int first_row, int end_row) {
       for (int y = first_row; y < end_row; ++y) {
         kernels::mix_outlines_row(kept_row(y).shares, width, image_.channels(), image_.row(y));

@@ -26,7 +26,7 @@ struct BlendedScanline {
 using OutlinePlaces = std::variant<std::array<double, 2>, EdgeCoverage>;
 
 /// Finishes blended scanlines of a view: fills holes and softens outlines, in the order that the
-/// hole filling needs: mostly row by row, inpainting when all rows are complete.
+/// hole filling needs: mostly row by row, inpainting and texture when all rows are complete.
 ///
 /// Thread rule: finish_row() may be called concurrently for different rows, once for each;
 /// finish_view() after all of them. Does not own what it is given, which must outlive it. T is
@@ -65,6 +65,7 @@ class ViewFinisher {
   [[nodiscard]] RowMemory row_memory(std::byte* memory) const;
   [[nodiscard]] RowMemory kept_row(int y) const;
   [[nodiscard]] ImageView<const float> kept_disparity() const;
+  [[nodiscard]] ImageView<const std::uint8_t> kept_filled() const;
   void fill_row(const BlendedScanline& row, const RowMemory& memory);
 
   const SynthesisOptions& options_;
