@@ -45,6 +45,33 @@ TEST_F(MatchCommand, WritesEverythingAskedFor) {
   EXPECT_EQ(mask.channels(), 1);
 }
 
+TEST_F(MatchCommand, WritesAndReportsDepthResolution) {
+  const ProcessResult result = match(
+      folder_ / "map.pfm", {"--method", "ssd", "--subpixel", "none", "--focal-length", "500",
+                            "--baseline-length", "0.1", "--depth-resolution", folder_ / "z.npy",
+                            "--report", folder_ / "report.json", "--fill", "canonical"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const DisparityMap map = read_disparity(folder_ / "map.pfm");
+  const DisparityMap resolution = read_disparity(folder_ / "z.npy");
+  float nearest = 0;
+  for (int y = 0; y < map.height(); ++y) {
+    for (int x = 0; x < map.width(); ++x) {
+      const float d = map.at(x, y);
+      nearest = std::max(nearest, d);
+      if (d > 1) {
+        EXPECT_FLOAT_EQ(resolution.at(x, y), 50 / (d - 1) - 50 / d);
+      } else {
+        EXPECT_TRUE(std::isnan(resolution.at(x, y)));
+      }
+    }
+  }
+  const auto report = nlohmann::json::parse(read_file(folder_ / "report.json"));
+  const auto& values = report["results"]["depth_resolution"];
+  EXPECT_EQ(values["disparity_resolution_px"], 1);
+  EXPECT_FLOAT_EQ(values["nearest"]["depth"].get<float>(), 50 / nearest);
+  EXPECT_FLOAT_EQ(values["nearest"]["relative_resolution"].get<float>(), 1 / (nearest - 1));
+}
+
 TEST_F(MatchCommand, EqualsTheLibrary) {
   ASSERT_EQ(
       match(folder_ / "map.pfm", {"--method", "ssd", "--window=3", "--raw", "--border", "valid"})

@@ -127,6 +127,7 @@ TEST_F(SynthCommand, OptionsReachTheSynthesis) {
   EXPECT_NE(view({"--holes", "spread"}), mirrored);
   EXPECT_NE(view({"--holes", "none"}), mirrored);
   EXPECT_NE(view({"--holes", "inpaint"}), mirrored);
+  EXPECT_NE(view({"--holes", "texture"}), mirrored);
   EXPECT_NE(view({"--soft-edges", "off"}), mirrored);
   EXPECT_EQ(view({"--holes", "mirror", "--warp", "one-pass", "--gamma", "0.5"}), mirrored);
   EXPECT_EQ(view({"--soft-edges", "on"}), mirrored);

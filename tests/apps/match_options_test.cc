@@ -94,7 +94,17 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--disparities-y", "0:1", "--edge-snapping", "on"}, "expected 0 with disparities-y"},
       {{"--cross-check", "never"}, "--cross-check is 'never', expected a number"},
       {{"--fill", "quadratic"},
-       "--fill is 'quadratic', expected one of constant|linear|median|none"},
+       "--fill is 'quadratic', expected one of "
+       "constant|linear|median|canonical|thin-plate|none"},
+      {{"--uniform-contrast", "2"},
+       "uniform-contrast is set but has no effect with a fill other than canonical and thin-plate"},
+      {{"--depth-resolution", folder_ / "z.npy"},
+       "--depth-resolution needs --calibration or --focal-length"},
+      {{"--baseline-length", "2"}, "--baseline-length has no effect without --focal-length"},
+      {{"--focal-length", "0"}, "focal-length is 0, expected a number above 0"},
+      {{"--focal-length", "9", "--calibration", left_}, "expected one of both"},
+      {{"--calibration", left_, "--vertical"}, "expected --focal-length and --baseline-length"},
+      {{"--focal-length", "9", "--depth-resolution", folder_ / "z.png"}, "PNG holds no floats"},
       {{"--prefilter", "box"}, "--prefilter is 'box', expected one of gaussian|none"},
       {{"--lambda", "0.1"},
        "lambda is set but has no effect with preset balanced (cost census-rays, aggregation bayes, "
