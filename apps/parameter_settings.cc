@@ -256,7 +256,8 @@ void add_shared_method_parameters(Settings& settings, MethodOverrides& parameter
 
 void add_gradient_settings(Settings& settings, MethodOverrides& parameters) {
   add_settings(settings, parameters, method_defaults(), [](const MethodField& field) {
-    return field.readers.text == readers::kGradient.text;
+    return field.readers.text == readers::kGradient.text ||
+           field.readers.text == readers::kGradientNorm.text;
   });
 }
 
