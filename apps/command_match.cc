@@ -204,9 +204,6 @@ int command_match(const Arguments& arguments) {
   if (!settings.read(arguments)) {
     return kExitDone;
   }
-  if (job.has_several() && !job.match.method && !job.match.preset) {
-    job.match.method = MatchMethod::kSsd;  // census codes cannot be interpolated
-  }
   check(job, settings);
   RunReport report(settings.command(), reported_settings(settings, job.match));
   report.start_trace(job.common.trace);

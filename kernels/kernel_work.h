@@ -117,8 +117,13 @@ inline constexpr KernelWork kLikelihoodOfEnergiesWork = cell_work(1 + kExp2Opera
 /// Starts with the column's minimum.
 inline constexpr KernelWork kLikelihoodOfEvidenceWork =
     cell_work(4 + kExp2Operations) + KernelWork{1, kLaneTreeOperations, 1, 0};
-/// add_cells(), multiply_cells(): also loads another partner's cells.
-inline constexpr KernelWork kCombineCellsWork = cell_work(1) + KernelWork{0, 0, 1, 0};
+/// choose_energies_row(), choose_likelihoods_row(): each partner is sorted into half of them.
+inline constexpr KernelWork choose_partners_work(int partners, bool likelihoods) {
+  const int half = (partners + 1) / 2;
+  return cell_work(partners * (2 * half + 2 + (likelihoods ? kLogOperations : 0)) + 4 * half + 3 +
+                   (likelihoods ? kExp2Operations + 1 : 0)) +
+         KernelWork{0, 0, 1.0 * partners, 0};
+}
 /// One plane: a sample and its offset per lane.
 inline constexpr KernelWork kGatherCandidatesWork = {1, 0, 3, 0};
 

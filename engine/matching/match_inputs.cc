@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "kernels/partner_choice/partner_choice.h"
 
 namespace vantage {
 
@@ -20,6 +21,10 @@ void require_equal_sizes(const Photograph& first, std::string_view first_name,
 void require_different_baselines(std::span<const OtherView> others) {
   if (others.empty()) {
     throw UsageError("there is no image beside the reference, expected at least one");
+  }
+  if (others.size() > kernels::kMaxPartners) {
+    throw UsageError(fmt::format("there are {} images beside the reference, expected at most {}",
+                                 others.size(), kernels::kMaxPartners));
   }
   for (std::size_t i = 0; i < others.size(); ++i) {
     const double baseline = others[i].baseline;

@@ -33,7 +33,7 @@ struct OtherView {
 
 void require_equal_sizes(const Photograph& first, std::string_view first_name,
                          const Photograph& second, std::string_view second_name);
-/// At least one other view; baselines finite, not 0 and distinct.
+/// 1 to kernels::kMaxPartners other views; baselines finite, not 0 and distinct.
 void require_different_baselines(std::span<const OtherView> others);
 /// Weight in range, maps of the image's size.
 void require_usable(const DisparityPrior& prior, const Photograph& image);

@@ -74,13 +74,6 @@ void likelihood_of_costs_ref(const CellExtent& row, ContaminatedGaussian model, 
 void likelihood_of_energies(const CellExtent& row, float* cells);
 void likelihood_of_energies_ref(const CellExtent& row, float* cells);
 
-/// cells += addend, cells *= factor, for several partners. cells_count: a multiple of
-/// kLaneMultiple.
-void add_cells(const float* addend, int cells_count, float* cells);
-void add_cells_ref(const float* addend, int cells_count, float* cells);
-void multiply_cells(const float* factor, int cells_count, float* cells);
-void multiply_cells_ref(const float* factor, int cells_count, float* cells);
-
 /// Minimum and maximum grey level within half a pixel of each pixel, linearly interpolated. Columns
 /// −1 and width are read. The outputs may be written up to the next multiple of kLaneMultiple; the
 /// input is read one column farther.

@@ -98,18 +98,6 @@ void likelihood_of_energies_ref(const CellExtent& row, float* cells) {
   }
 }
 
-void add_cells_ref(const float* addend, int cells_count, float* cells) {
-  for (int k = 0; k < cells_count; ++k) {
-    cells[k] += addend[k];
-  }
-}
-
-void multiply_cells_ref(const float* factor, int cells_count, float* cells) {
-  for (int k = 0; k < cells_count; ++k) {
-    cells[k] *= factor[k];
-  }
-}
-
 void sampling_bounds_row_ref(const float* grey, int width, float* min, float* max) {
   for (int x = 0; x < width; ++x) {
     const float before = 0.5F * (grey[x] + grey[x - 1]);

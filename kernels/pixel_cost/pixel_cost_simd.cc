@@ -133,20 +133,6 @@ void energies_to_likelihood(const CellExtent& row, float* cells) {
       row, [&](Vec energy) HWY_ATTR { return exp2_of_negative(hn::Mul(energy, factor)); }, cells);
 }
 
-void add(const float* addend, int cells_count, float* cells) {
-  const Tag d;
-  for (int k = 0; k < cells_count; k += static_cast<int>(hn::Lanes(d))) {
-    hn::StoreU(hn::Add(hn::LoadU(d, cells + k), hn::LoadU(d, addend + k)), d, cells + k);
-  }
-}
-
-void multiply(const float* factor, int cells_count, float* cells) {
-  const Tag d;
-  for (int k = 0; k < cells_count; k += static_cast<int>(hn::Lanes(d))) {
-    hn::StoreU(hn::Mul(hn::LoadU(d, cells + k), hn::LoadU(d, factor + k)), d, cells + k);
-  }
-}
-
 void sampling_bounds(const float* grey, int width, float* min, float* max) {
   const Tag d;
   const Vec half = hn::Set(d, 0.5F);
@@ -171,8 +157,6 @@ HWY_EXPORT(contaminated_energy);
 HWY_EXPORT(contaminated_likelihood);
 HWY_EXPORT(costs_to_likelihood);
 HWY_EXPORT(energies_to_likelihood);
-HWY_EXPORT(add);
-HWY_EXPORT(multiply);
 HWY_EXPORT(sampling_bounds);
 
 void squared_row(const GreyPairs& row, float* cells) { HWY_DYNAMIC_DISPATCH(squared)(row, cells); }
@@ -193,12 +177,6 @@ void likelihood_of_costs(const CellExtent& row, ContaminatedGaussian model, floa
 }
 void likelihood_of_energies(const CellExtent& row, float* cells) {
   HWY_DYNAMIC_DISPATCH(energies_to_likelihood)(row, cells);
-}
-void add_cells(const float* addend, int cells_count, float* cells) {
-  HWY_DYNAMIC_DISPATCH(add)(addend, cells_count, cells);
-}
-void multiply_cells(const float* factor, int cells_count, float* cells) {
-  HWY_DYNAMIC_DISPATCH(multiply)(factor, cells_count, cells);
 }
 void sampling_bounds_row(const float* grey, int width, float* min, float* max) {
   HWY_DYNAMIC_DISPATCH(sampling_bounds)(grey, width, min, max);

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "kernels/census/census.h"
 #include "kernels/combined_cost/combined_cost.h"
 #include "kernels/evidence/evidence.h"
 #include "kernels/gradient/gradient.h"
+#include "kernels/partner_choice/partner_choice.h"
 #include "kernels/pixel_cost/pixel_cost.h"
 #include "kernels/ray_census/ray_census.h"
 #include "perf/kernels_benchmark/kernel_benchmark.h"
@@ -62,10 +64,11 @@ struct Combined {
 
 struct Cells {
   AlignedValues<float> cells{kCellCount, 1000, 1e-3F, 1};
-  AlignedValues<float> ones{kCellCount};  // keeps products constant from call to call
+  AlignedValues<float> chosen{kCellCount};
+  std::vector<kernels::CandidateRange> seen;  // of two partners
   kernels::CellExtent row{kColumns, kLanes, kLanes};
 
-  Cells() { std::fill_n(ones.data(), kCellCount, 1.0F); }
+  Cells() : seen(2 * kColumns, {0, kLanes}) {}
 };
 
 /// Rows of an image with margins, and the outputs computed from them.
@@ -214,9 +217,15 @@ KernelBenchmarks cost_kernels() {
       cells("likelihood_of_energies", kernels::kLikelihoodOfEnergiesWork,
             [](Cells& d) { kernels::likelihood_of_energies(d.row, d.cells.data()); }),
       cells("likelihood_of_evidence", kernels::kLikelihoodOfEvidenceWork, likelihood_of_evidence),
-      cells("multiply_cells", kernels::kCombineCellsWork,
+      cells("choose_likelihoods_row", kernels::choose_partners_work(2, true),
             [](Cells& d) {
-              kernels::multiply_cells(d.ones.data(), kColumns * kLanes, d.cells.data());
+              kernels::choose_likelihoods_row({.cells = d.cells.data(),
+                                               .seen = d.seen.data(),
+                                               .partners = 2,
+                                               .columns = kColumns,
+                                               .lanes = kLanes,
+                                               .count = kLanes},
+                                              d.chosen.data());
             }),
       pixels("separable_filter_row", {18, 48}, [](ImageRows& d) { d.filter(); }),
       pixels("evidence_planes_row/L2", {7, 20}, [](ImageRows& d) { d.evidence_planes(); }),

@@ -243,24 +243,6 @@ TEST_P(PixelCost, LikelihoodsOfEnergies) {
   }
 }
 
-TEST_P(PixelCost, SumsAndProducts) {
-  std::mt19937 random(6);
-  for (const int count : {16, 48, 160}) {
-    std::vector<float> a(static_cast<std::size_t>(count));
-    std::vector<float> b(a.size());
-    std::generate(a.begin(), a.end(), [&] { return draw_grey(random); });
-    std::generate(b.begin(), b.end(), [&] { return draw_grey(random); });
-    const auto run = [&](auto kernel) {
-      return [&, kernel](float* out) {
-        std::copy(a.begin(), a.end(), out);
-        kernel(b.data(), count, out);
-      };
-    };
-    EXPECT_EQ(equal_cells(a.size(), run(add_cells), run(add_cells_ref))[1], a[1] + b[1]);
-    EXPECT_EQ(equal_cells(a.size(), run(multiply_cells), run(multiply_cells_ref))[1], a[1] * b[1]);
-  }
-}
-
 TEST(ExpLog, Exponential) {
   EXPECT_EQ(exp2_of_negative(0), 1);
   for (float exponent = 0; exponent > -125; exponent -= .00317F) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace vantage {
 
@@ -22,7 +23,8 @@ CostBounds cost_bounds(const MethodParameters& parameters, int partners) {
   // Costs are floats and may exceed the exact bounds slightly.
   constexpr float room = 1.0001F;
   const CostBounds one = cost_of(parameters).make_model(parameters)->energy_bounds();
-  const float count = room * static_cast<float>(partners);
+  // Several partners count as the root of their number (kernels/partner_choice).
+  const float count = room * std::sqrt(static_cast<float>(partners));
   return {one.min * count, one.max * count};
 }
 

@@ -11,6 +11,7 @@
 #include "engine/matching/costs/cost_table.h"
 #include "engine/matching/costs/matching_cost.h"
 #include "engine/matching/costs/partner_rows.h"
+#include "kernels/partner_choice/partner_choice.h"
 
 namespace vantage {
 namespace {
@@ -33,9 +34,12 @@ class CostStage final : public scheduler::RowStage {
 
   [[nodiscard]] std::string_view name() const override { return "cost"; }
   [[nodiscard]] std::size_t bytes_per_column() const override { return sizeof(float) * lanes(); }
-  /// Cells of one block for the partners after the first, and what is gathered.
+  /// Of one block: cells of each partner, the candidates it sees, and what is gathered.
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
-    return in_one_go() ? 0 : sizeof(float) * kBlockColumns * lanes() + max_gather_bytes();
+    return in_one_go() ? 0
+                       : partners_.size() * kBlockColumns *
+                                 (sizeof(float) * lanes() + sizeof(CandidateRange)) +
+                             max_gather_bytes();
   }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     kernels::KernelWork work;
@@ -46,9 +50,10 @@ class CostStage final : public scheduler::RowStage {
       if (partner.is_gathered()) {
         work = work + kernels::kGatherCandidatesWork;
       }
-      if (&partner != &partners_.front()) {
-        work = work + kernels::kCombineCellsWork;
-      }
+    }
+    if (partners_.size() > 1) {
+      work = work + kernels::choose_partners_work(static_cast<int>(partners_.size()),
+                                                  meaning_ == CellMeaning::kLikelihood);
     }
     return vantage::column_work(work, count_);
   }
@@ -59,18 +64,31 @@ class CostStage final : public scheduler::RowStage {
       compare(partners_.front(), task.y, task.columns, nullptr, cells);
       return;
     }
-    auto* of_partner = reinterpret_cast<float*>(task.state);
-    auto* const memory = reinterpret_cast<std::byte*>(of_partner + kBlockColumns * lanes());
+    const std::size_t stride = kBlockColumns * lanes();
+    auto* const of_partners = reinterpret_cast<float*>(task.state);
+    auto* const seen = reinterpret_cast<CandidateRange*>(of_partners + partners_.size() * stride);
+    auto* const memory = reinterpret_cast<std::byte*>(seen + partners_.size() * kBlockColumns);
     for (int x = task.columns.begin; x < task.columns.end; x += kBlockColumns) {
       const Range block = Range{x, x + kBlockColumns}.widened(0, task.columns);
-      compare(partners_.front(), task.y, block, memory, cells);
-      for (std::size_t k = 1; k < partners_.size(); ++k) {
-        compare(partners_[k], task.y, block, memory, of_partner);
-        if (meaning_ == CellMeaning::kEnergy) {
-          kernels::add_cells(of_partner, block.size() * lanes_, cells);
-        } else {
-          kernels::multiply_cells(of_partner, block.size() * lanes_, cells);
+      if (partners_.size() == 1) {
+        compare(partners_.front(), task.y, block, memory, cells);
+      } else {
+        CandidateRange* next = seen;
+        for (std::size_t k = 0; k < partners_.size(); ++k) {
+          compare(partners_[k], task.y, block, memory, of_partners + k * stride);
+          for (int column = block.begin; column < block.end; ++column) {
+            *next++ =
+                partners_[k].has_row(task.y) ? partners_[k].with_partner(column) : CandidateRange{};
+          }
         }
+        choose({.cells = of_partners,
+                .partner_stride = static_cast<std::ptrdiff_t>(stride),
+                .seen = seen,
+                .partners = static_cast<int>(partners_.size()),
+                .columns = block.size(),
+                .lanes = lanes_,
+                .count = count_},
+               cells);
       }
       cells += static_cast<std::size_t>(block.size()) * lanes();
     }
@@ -94,6 +112,14 @@ class CostStage final : public scheduler::RowStage {
   [[nodiscard]] std::optional<float> value_without_partner() const {
     return meaning_ == CellMeaning::kEnergy ? model_->energy_without_partner()
                                             : model_->likelihood_without_partner();
+  }
+
+  void choose(const kernels::PartnerCells& of_partners, float* cells) const {
+    if (meaning_ == CellMeaning::kEnergy) {
+      kernels::choose_energies_row(of_partners, cells);
+    } else {
+      kernels::choose_likelihoods_row(of_partners, cells);
+    }
   }
 
   /// Writes the cells of one partner.

@@ -22,7 +22,8 @@ enum class CellMeaning {
 ///
 /// Energies and likelihoods are those of the cost (CostModel). A cell whose partner is outside has
 /// the cost at the clamped coordinate, or the value that the cost defines for such cells. Several
-/// partners: energies are added, likelihoods multiplied.
+/// partners (at most kernels::kMaxPartners): the better half of those that see the candidate, see
+/// kernels/partner_choice.
 ///
 /// `reference`, prepared as a reference, `partners` (at least one), prepared as partners of this
 /// direction, and their planes must outlive the stage; all prepared with `parameters`, this range
