@@ -451,6 +451,15 @@ TEST_F(MatchCommandOptions, SeveralImagesOfOneCameraAgreeWithThePair) {
   EXPECT_EQ(read_file(folder_ / "c.pfm"), read_file(folder_ / "d.pfm"));
 }
 
+TEST_F(MatchCommandOptions, SeveralImagesWorkWithEveryCostAndPreset) {
+  for (const char* const choice : {"--preset=realtime", "--preset=fast", "--preset=balanced",
+                                   "--preset=quality", "--cost=gradient", "--cost=combined"}) {
+    const ProcessResult result = match(
+        folder_ / "several.pfm", {left_, "--baselines=1,-2.37", choice, "--candidate-step", "0.5"});
+    EXPECT_EQ(result.exit_code, 0) << choice << ": " << result.err;
+  }
+}
+
 TEST_F(MatchCommandOptions, RunAndSynthTakeThem) {
   ProcessResult result =
       run_vantage({"synth", left_, right_, "-o", folder_ / "v.png", "--view", "0.5",

@@ -55,15 +55,38 @@ class PlainCostCells {
     return samples;
   }
 
-  /// Candidates of one column.
+  /// Candidates of one column: of several partners the better half of those that see the candidate
+  /// (all, if none does), as means of energies times the root of the number of partners.
   [[nodiscard]] std::vector<double> column(int x, int y) const {
     const bool is_energy = meaning_ == CellMeaning::kEnergy;
-    std::vector<double> cells(static_cast<std::size_t>(geometry_.count), is_energy ? 0 : 1);
+    std::vector<std::vector<double>> of_partners;
     for (std::size_t p = 0; p < partners_.size(); ++p) {
-      const std::vector<double> of_partner = column(p, x, y);
-      for (std::size_t i = 0; i < cells.size(); ++i) {
-        cells[i] = is_energy ? cells[i] + of_partner[i] : cells[i] * of_partner[i];
+      of_partners.push_back(column(p, x, y));
+    }
+    if (partners_.size() == 1) {
+      return of_partners.front();
+    }
+    std::vector<double> cells;
+    for (int i = 0; i < geometry_.count; ++i) {
+      std::vector<double> all;
+      std::vector<double> seen;
+      for (std::size_t p = 0; p < partners_.size(); ++p) {
+        const double cell = of_partners[p][static_cast<std::size_t>(i)];
+        all.push_back(is_energy ? cell : -std::log(cell));
+        if (sees(p, x, y, i)) {
+          seen.push_back(all.back());
+        }
       }
+      std::sort(seen.begin(), seen.end());
+      seen.resize(std::min(seen.size(), (all.size() + 1) / 2));
+      const std::vector<double>& used = seen.empty() ? all : seen;
+      double sum = 0;
+      for (const double energy : used) {
+        sum += energy;
+      }
+      const double energy =
+          sum / static_cast<double>(used.size()) * std::sqrt(static_cast<double>(partners_.size()));
+      cells.push_back(is_energy ? energy : std::exp(-energy));
     }
     return cells;
   }
@@ -94,6 +117,23 @@ class PlainCostCells {
     return channels;
   }
 
+  /// Sample of candidate i in partner p.
+  [[nodiscard]] int sample(std::size_t p, int x, int i) const {
+    const double ratio = partners_[p].ratio;
+    const double shift = (geometry_.disparity_min + i) * std::abs(ratio) * samples_[p].count /
+                         geometry_.steps_per_px;
+    const int sign = geometry_.direction * (ratio < 0 ? -1 : 1);
+    return samples_[p].count * x + sign * static_cast<int>(std::floor(shift + 0.5));
+  }
+  [[nodiscard]] int last_sample(std::size_t p) const {
+    return samples_[p].count * (geometry_.width - 1);
+  }
+  [[nodiscard]] bool sees(std::size_t p, int x, int y, int i) const {
+    const int row = y + geometry_.direction * partners_[p].disparity_y_px;
+    return sample(p, x, i) >= 0 && sample(p, x, i) <= last_sample(p) && row >= 0 &&
+           row < reference_.front().level.height;
+  }
+
   [[nodiscard]] std::vector<double> column(std::size_t p, int x, int y) const {
     const PlainPartner& partner = partners_[p];
     const bool is_energy = meaning_ == CellMeaning::kEnergy;
@@ -104,15 +144,9 @@ class PlainCostCells {
     std::vector<bool> is_inside;
     double max_evidence = -std::numeric_limits<double>::infinity();
     for (int i = 0; i < geometry_.count; ++i) {
-      const int samples = samples_[p].count;
-      const double shift = (geometry_.disparity_min + i) * std::abs(partner.ratio) * samples /
-                           geometry_.steps_per_px;
-      const int sign = geometry_.direction * (partner.ratio < 0 ? -1 : 1);
-      const int at = samples * x + sign * static_cast<int>(std::floor(shift + 0.5));
-      const int last = samples * (geometry_.width - 1);
-      is_inside.push_back(at >= 0 && at <= last && partner_y >= 0 && partner_y < height);
-      energies.push_back(
-          mean_cost(p, x, y, std::clamp(at, 0, last), std::clamp(partner_y, 0, height - 1)));
+      is_inside.push_back(sees(p, x, y, i));
+      energies.push_back(mean_cost(p, x, y, std::clamp(sample(p, x, i), 0, last_sample(p)),
+                                   std::clamp(partner_y, 0, height - 1)));
       if (is_inside.back()) {
         max_evidence = std::max(max_evidence, -energies.back());
       }
