@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <random>
 #include <utility>
 
 #include "kernels/pixel_row/pixel_row.h"
@@ -98,6 +100,36 @@ TYPED_TEST(BackgroundTexture, GoesOnAndIsNeverTheObjects) {
       for (int k = 0; k < 90 * channels; ++k) {
         ASSERT_EQ(scene.image.row(y)[k], on_one_thread.image.row(y)[k]);
       }
+    }
+  }
+}
+
+/// The object is a copy of what is at the left of the hole, and bright where the hole would be.
+TEST(BackgroundTextureOfNoise, TakesNothingFromSurfacesInFront) {
+  constexpr int kHole = 60;
+  constexpr int kShift = 30;
+  Scene<std::uint8_t> scene(90, 40, 3);
+  std::mt19937 random(7);
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 90; ++x) {
+      scene.set(x, y, 0.1 * static_cast<double>(random() % 6));
+    }
+  }
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 20; x < 40; ++x) {
+      scene.add_object(x, y);
+      if (x + kShift < kHole) {
+        std::copy_n(&scene.image.at(x + kShift, y), 3, &scene.image.at(x, y));
+      }
+    }
+    for (int x = kHole; x < kHole + 7; ++x) {
+      scene.cut(x, y);
+    }
+  }
+  scene.synthesize(1);
+  for (int y = 0; y < 40; ++y) {
+    for (int x = kHole; x < kHole + 7; ++x) {
+      ASSERT_LE(scene.image.at(x, y), Scene<std::uint8_t>::level(0.5)) << x << ", " << y;
     }
   }
 }
