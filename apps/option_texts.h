@@ -113,6 +113,10 @@ inline constexpr std::array kOptionTexts = {
     OptionText{"edge-contrast", "C",
                "With bayes and the diffusions: intensity difference in grey levels over which the "
                "weight falls to --edge-weight, above 0"},
+    OptionText{"edge-diffusion", "N",
+               "With bayes and the diffusions: number of steps by which intensities are diffused "
+               "along with the support, one per iteration, before edges are looked for: small "
+               "differences fade, strong edges stay (Perona and Malik), 0 to 1000"},
     OptionText{
         "selection", "",
         "Selection of disparities from the aggregated costs. winner: the best one of each "

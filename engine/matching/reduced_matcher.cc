@@ -188,6 +188,7 @@ void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence,
       // Those of the search include the level's own.
       MethodParameters one_level = options_.parameters;
       one_level.levels = 1;
+      one_level.iterations = one_level.final_iterations;
       edges = r + 1 == reductions ? &input.edges[0]
                                   : &work.window_edges.prepare(level, one_level, execution_)[0];
     }

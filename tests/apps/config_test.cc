@@ -84,7 +84,7 @@ TEST_F(Config, PrintedSettingsFedBackAreTheSame) {
        "--match-exposure", "estimated"},
       {"match", "a.png", "b.png", "c.png", "-o", "o.pfm", "--baselines=-1,2.5", "--method",
        "local-stopping", "--certainty", "entropy", "--lambda", "0.1", "--cost", "truncated",
-       "--truncation", "12"},
+       "--truncation", "12", "--edge-weight", "0.3", "--edge-diffusion", "5"},
       {"synth", "a.png", "b.png", "-o", "v%03d.png", "--view", "0.1", "--view=-0.3,0", "--gamma",
        "alpha", "--no-intensity-matching", "--holes", "spread"},
       {"synth", "a.png", "b.png", "-o", "v.mp4", "--sweep", "-1:2:7", "--disparity-scale", "4"},

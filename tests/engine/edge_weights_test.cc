@@ -79,6 +79,24 @@ PlainGrey halved(const PlainGrey& finer) {
   return coarser;
 }
 
+/// One step of anisotropic diffusion.
+PlainGrey diffused(const PlainGrey& grey) {
+  PlainGrey result = grey;
+  for (int y = 0; y < grey.height; ++y) {
+    for (int x = 0; x < grey.width; ++x) {
+      for (const auto& [u, v] :
+           {std::pair(x - 1, y), std::pair(x + 1, y), std::pair(x, y - 1), std::pair(x, y + 1)}) {
+        if (u >= 0 && u < grey.width && v >= 0 && v < grey.height) {
+          const double difference = grey.at(u, v) - grey.at(x, y);
+          result.levels[static_cast<std::size_t>(y * grey.width + x)] +=
+              0.2 * difference * std::exp(-std::abs(difference) / 5);
+        }
+      }
+    }
+  }
+  return result;
+}
+
 TEST(EdgeWeightLevels, AreThoseOfNeighboursOnEachLevel) {
   Execution execution({.threads = 2});
   EdgeWeightLevels levels;
@@ -96,16 +114,49 @@ TEST(EdgeWeightLevels, AreThoseOfNeighboursOnEachLevel) {
       for (int y = 0; y < grey.height; ++y) {
         for (int x = 0; x <= grey.width; ++x) {
           const bool inside = x > 0 && x < grey.width;
-          ASSERT_NEAR(level.beside(y)[x], inside ? grey.weight(x - 1, y, x, y) : 1, 2e-6);
+          ASSERT_NEAR(level.of_iteration(1).beside(y)[x], inside ? grey.weight(x - 1, y, x, y) : 1,
+                      2e-6);
         }
       }
       for (int y = 0; y <= grey.height; ++y) {
         for (int x = 0; x < grey.width; ++x) {
           const bool inside = y > 0 && y < grey.height;
-          ASSERT_NEAR(level.above(y)[x], inside ? grey.weight(x, y - 1, x, y) : 1, 2e-6);
+          ASSERT_NEAR(level.of_iteration(1).above(y)[x], inside ? grey.weight(x, y - 1, x, y) : 1,
+                      2e-6);
         }
       }
       grey = halved(grey);
+    }
+  }
+}
+
+TEST(EdgeWeights, AreThoseOfTheImageDiffusedAlong) {
+  constexpr int kSteps = 3;
+  MethodParameters parameters = parameters_with(0.2, 1);
+  parameters.edge_diffusion = kSteps;
+  for (const auto& [width, height] : {std::pair(23, 17), std::pair(1, 9), std::pair(1, 1)}) {
+    const Photograph photograph = random_photograph(width, height, 1);
+    Image<float> grey(width, height);
+    for (int y = 0; y < height; ++y) {
+      std::copy_n(std::get<Image<std::uint8_t>>(photograph.pixels).row(y), width, grey.row(y));
+    }
+    for (const int threads : {1, 3}) {
+      Execution execution({.threads = threads});
+      EdgeWeights weights;
+      weights.prepare(std::as_const(grey).view(), parameters, execution);
+      PlainGrey seen = plain_grey(photograph);
+      for (int n = 1; n <= kSteps + 2; ++n) {
+        seen = n <= kSteps ? diffused(seen) : seen;
+        for (int y = 0; y < height; ++y) {
+          for (int x = 1; x < width; ++x) {
+            ASSERT_NEAR(weights.of_iteration(n).beside(y)[x], seen.weight(x - 1, y, x, y), 1e-4)
+                << n;
+          }
+          for (int x = 0; x < width && y > 0; ++x) {
+            ASSERT_NEAR(weights.of_iteration(n).above(y)[x], seen.weight(x, y - 1, x, y), 1e-4);
+          }
+        }
+      }
     }
   }
 }
@@ -129,12 +180,12 @@ TEST(EdgeWeightLevels, AreTheSameInFixedPointWithTheWeightOfNeighbours) {
       for (int y = 0; y <= rows; ++y) {
         for (int x = 0; x <= columns; ++x) {
           if (y < rows) {
-            ASSERT_EQ(fixed[level].fixed_beside(y)[x],
-                      kernels::fixed_weight(0.3F * floats[level].beside(y)[x]));
+            ASSERT_EQ(fixed[level].of_iteration(1).fixed_beside(y)[x],
+                      kernels::fixed_weight(0.3F * floats[level].of_iteration(1).beside(y)[x]));
           }
           if (x < columns) {
-            ASSERT_EQ(fixed[level].fixed_above(y)[x],
-                      kernels::fixed_weight(0.3F * floats[level].above(y)[x]));
+            ASSERT_EQ(fixed[level].of_iteration(1).fixed_above(y)[x],
+                      kernels::fixed_weight(0.3F * floats[level].of_iteration(1).above(y)[x]));
           }
         }
       }
@@ -163,6 +214,8 @@ TEST(EdgeWeightLevels, TakeWhatIsPlanned) {
   MethodParameters parameters = parameters_with(0.2, 5);
   for (const PriorSmoothing smoothing : {PriorSmoothing::kSum, PriorSmoothing::kMaximum}) {
     parameters.prior_smoothing = smoothing;
+    parameters.edge_diffusion = smoothing == PriorSmoothing::kSum ? 4 : 0;
+    parameters.final_iterations = 2;
     EdgeWeightLevels levels;
     levels.prepare(photograph, parameters, execution);
     const auto held = static_cast<double>(levels.held_bytes());

@@ -89,6 +89,7 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
   });
   add("bayes_edges", MatchMethod::kBayes, [](MethodOverrides& p) {
     p.edge_weight = 0.2;
+    p.edge_diffusion = 4;
     p.sigma_prior = 0.4;
   });
   add("bayes_maximum", MatchMethod::kBayes, [](MethodOverrides& p) {
@@ -103,6 +104,7 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
     p.iterations = 3;
     p.final_iterations = 1;
     p.edge_weight = 0.2;
+    p.edge_diffusion = 2;
     p.prior_growth = 1.2;
     p.level_weight = 0.6;
     p.epsilon_prior = 5e-6;
@@ -125,16 +127,22 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
     p.levels = 3;
     p.iterations = 4;
   });
-  add("diffusion_edges", MatchMethod::kDiffusion, [](MethodOverrides& p) { p.edge_weight = 0.1; });
+  add("diffusion_edges", MatchMethod::kDiffusion, [](MethodOverrides& p) {
+    p.edge_weight = 0.1;
+    p.edge_diffusion = 3;
+  });
   add("membrane_edges_levels", MatchMethod::kMembrane, [](MethodOverrides& p) {
     p.levels = 3;
     p.iterations = 4;
     p.final_iterations = 2;
     p.edge_weight = 0;
     p.edge_contrast = 12;
+    p.edge_diffusion = 8;
   });
-  add("local_stopping_edges", MatchMethod::kLocalStopping,
-      [](MethodOverrides& p) { p.edge_weight = 0.2; });
+  add("local_stopping_edges", MatchMethod::kLocalStopping, [](MethodOverrides& p) {
+    p.edge_weight = 0.2;
+    p.edge_diffusion = 20;
+  });
   add("box_levels", MatchMethod::kSsd, [](MethodOverrides& p) {
     p.levels = 3;
     p.window_px = 5;

@@ -181,6 +181,7 @@ const std::map<std::string_view, Changes>& changes() {
       {"level-weight", values_of<double>(&P::level_weight, {0.4})},
       {"edge-weight", values_of<double>(&P::edge_weight, {0.05})},
       {"edge-contrast", values_of<double>(&P::edge_contrast, {40})},
+      {"edge-diffusion", values_of<int>(&P::edge_diffusion, {1, 3})},
       {"selection",
        values_of<Selection>(&P::selection, {Selection::kScanline, Selection::kWinner})},
       {"jump-penalty", values_of<double>(&P::jump_penalty, {0})},

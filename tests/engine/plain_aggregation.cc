@@ -85,13 +85,33 @@ Volume largest_terms(const Volume& probabilities, double sigma_prior, double eps
 }  // namespace
 
 PlainEdges::PlainEdges(const Volume& grey, const MethodParameters& parameters)
-    : grey_(&grey), min_(parameters.edge_weight), contrast_(parameters.edge_contrast) {}
+    : grey_({grey}), min_(parameters.edge_weight), contrast_(parameters.edge_contrast) {
+  for (int n = 0; n < std::min(parameters.edge_diffusion, parameters.iterations); ++n) {
+    const Volume& before = grey_.back();
+    Volume after = before;
+    for_each_cell(before, [&](int x, int y, int /*cell*/) {
+      double change = 0;
+      for (const auto& [dx, dy] : kNeighbours) {
+        if (is_inside(before, x + dx, y + dy)) {
+          const double difference = before.at(x + dx, y + dy, 0) - before.at(x, y, 0);
+          change += difference * std::exp(-std::abs(difference) / contrast_);
+        }
+      }
+      after.at(x, y, 0) += 0.2 * change;
+    });
+    grey_.push_back(std::move(after));
+  }
+  if (grey_.size() > 1) {
+    grey_.erase(grey_.begin());  // iteration 1 sees the image after one step
+  }
+}
 
-double PlainEdges::weight(int x, int y, int u, int v) const {
-  if (grey_ == nullptr) {
+double PlainEdges::weight(int n, int x, int y, int u, int v) const {
+  if (grey_.empty()) {
     return 1;
   }
-  const double difference = std::abs(grey_->at(x, y, 0) - grey_->at(u, v, 0));
+  const Volume& grey = grey_[std::min(static_cast<std::size_t>(n), grey_.size()) - 1];
+  const double difference = std::abs(grey.at(x, y, 0) - grey.at(u, v, 0));
   return min_ + (1 - min_) * std::exp(-difference / contrast_);
 }
 
@@ -187,16 +207,16 @@ std::vector<double> box_cascade_taps(double sigma_px) {
 }
 
 Volume plain_membrane(const Volume& first, double lambda, double beta, int iterations,
-                      const Volume* start, const PlainEdges& edges) {
+                      const Volume* start, const PlainEdges& edges, int done) {
   Volume energies = start != nullptr ? *start : first;
-  for (int n = 0; n < iterations; ++n) {
+  for (int n = done + 1; n <= done + iterations; ++n) {
     Volume next = energies;
     for_each_cell(energies, [&](int x, int y, int i) {
       const double here = energies.at(x, y, i);
       double change = beta * (first.at(x, y, i) - here);
       for (const auto& [dx, dy] : kNeighbours) {
         if (is_inside(energies, x + dx, y + dy)) {
-          change += edges.weight(x, y, x + dx, y + dy) * (energies.at(x + dx, y + dy, i) - here);
+          change += edges.weight(n, x, y, x + dx, y + dy) * (energies.at(x + dx, y + dy, i) - here);
         }
       }
       next.at(x, y, i) += lambda * change;
@@ -243,7 +263,7 @@ Volume plain_local_stopping(const Volume& first, double lambda, Certainty certai
   };
   Volume energies = first;
   for (int n = 0; n < iterations; ++n) {
-    Volume next = plain_diffusion(energies, lambda, 1, edges);
+    Volume next = plain_membrane(energies, lambda, 0, 1, nullptr, edges, n);
     for (int y = 0; y < first.height; ++y) {
       for (int x = 0; x < first.width; ++x) {
         if (certainty_of(energies, x, y) > certainty_of(next, x, y)) {
@@ -293,7 +313,7 @@ Volume plain_bayes(const Volume& energies, const MethodParameters& parameters, c
       double sum = smooth_energies.at(x, y, i);
       for (const auto& [dx, dy] : kNeighbours) {
         if (is_inside(energies, x + dx, y + dy)) {
-          sum += edges.weight(x, y, x + dx, y + dy) * smooth_energies.at(x + dx, y + dy, i);
+          sum += edges.weight(n + 1, x, y, x + dx, y + dy) * smooth_energies.at(x + dx, y + dy, i);
         }
       }
       next.at(x, y, i) += parameters.mu * sum;

@@ -19,18 +19,19 @@ std::vector<double> gaussian_taps(double sigma_px);
 /// cumulant is 0: the least Σ w⁴. σ = 2: 3, 3, 3, 5.
 std::vector<double> box_cascade_taps(double sigma_px);
 
-/// Weights of neighbours by the intensity edge between them (7.3); by default all are 1.
+/// Weights of neighbours by the intensity edge between them (7.3), in each iteration of a level; by
+/// default all are 1.
 class PlainEdges {
  public:
   PlainEdges() = default;
-  /// `grey`: one cell per pixel, must outlive this.
+  /// `grey`: one cell per pixel. `parameters`: of the level.
   PlainEdges(const Volume& grey, const MethodParameters& parameters);
 
-  /// Of pixels (x, y) and (u, v) for each other.
-  [[nodiscard]] double weight(int x, int y, int u, int v) const;
+  /// Of pixels (x, y) and (u, v) for each other in iteration n, 1 being the first.
+  [[nodiscard]] double weight(int n, int x, int y, int u, int v) const;
 
  private:
-  const Volume* grey_ = nullptr;
+  std::vector<Volume> grey_;  ///< as the first iterations see it, and all after them
   double min_ = 1;
   double contrast_ = 1;
 };
@@ -38,9 +39,9 @@ class PlainEdges {
 /// (6.7), `iterations` times.
 Volume plain_diffusion(const Volume& first, double lambda, int iterations,
                        const PlainEdges& edges = {});
-/// (6.9), `iterations` times, from `start`; null: from `first`.
+/// (6.9), `iterations` times, from `start`; null: from `first`. `done`: iterations before.
 Volume plain_membrane(const Volume& first, double lambda, double beta, int iterations,
-                      const Volume* start = nullptr, const PlainEdges& edges = {});
+                      const Volume* start = nullptr, const PlainEdges& edges = {}, int done = 0);
 
 /// How distinct the least cell of a column is, over all its cells: (6.13), or (6.15) with
 /// p ∝ exp(−scale · (E − Emin)). A single cell has the margin 0.

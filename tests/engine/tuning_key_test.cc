@@ -157,6 +157,7 @@ TEST_F(TuningKeyTest, HasEveryFieldThatChangesTheWork) {
                                                 "level-weight",
                                                 "edge-weight",
                                                 "edge-contrast",
+                                                "edge-diffusion",
                                                 "jump-penalty",
                                                 "jump-limit",
                                                 "occlusion-penalty",

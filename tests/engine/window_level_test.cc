@@ -18,6 +18,7 @@
 #include "engine/matching/aggregation/edge_weights.h"
 #include "kernels/candidate_windows.h"
 #include "kernels/census/census.h"
+#include "kernels/intensity_diffusion/intensity_diffusion.h"
 #include "tests/engine/identical_maps.h"
 
 namespace vantage {
@@ -90,6 +91,14 @@ Photograph random_photograph(int width, int height, std::mt19937& random) {
   return {std::move(pixels)};
 }
 
+Image<float> copy_of(const Image<float>& image) {
+  Image<float> copy(image.width(), image.height());
+  for (int y = 0; y < image.height(); ++y) {
+    std::copy_n(image.row(y), image.width(), copy.row(y));
+  }
+  return copy;
+}
+
 /// A level, transcribed from EQUATIONS §3.13 pixel by pixel.
 class PlainLevel {
  public:
@@ -100,7 +109,7 @@ class PlainLevel {
         geometry_(geometry),
         reference_(std::get<Bytes>(reference.pixels)),
         partner_(std::get<Bytes>(partner.pixels)),
-        grey_(grey),
+        grey_(copy_of(grey)),
         coarse_(coarse),
         columns_(grey.width()),
         rows_(grey.height()) {
@@ -114,8 +123,10 @@ class PlainLevel {
 
   DisparityMap map() {
     for (int i = 1; i < parameters_.final_iterations; ++i) {
+      diffuse_intensities(i);
       iterate();
     }
+    diffuse_intensities(parameters_.final_iterations);
     DisparityMap result(columns_, rows_);
     for (int y = 0; y < rows_; ++y) {
       for (int x = 0; x < columns_; ++x) {
@@ -126,6 +137,25 @@ class PlainLevel {
   }
 
  private:
+  /// Before iteration n.
+  void diffuse_intensities(int n) {
+    if (n > parameters_.edge_diffusion) {
+      return;
+    }
+    const Image<float> before = copy_of(grey_);
+    std::vector<float> work(
+        static_cast<std::size_t>(kernels::intensity_diffusion_work_floats(columns_)));
+    for (int y = 0; y < rows_; ++y) {
+      kernels::intensity_diffusion_row({.up = y > 0 ? before.row(y - 1) : nullptr,
+                                        .centre = before.row(y),
+                                        .down = y + 1 < rows_ ? before.row(y + 1) : nullptr,
+                                        .width = columns_,
+                                        .contrast = static_cast<float>(parameters_.edge_contrast),
+                                        .work = work.data(),
+                                        .output = grey_.row(y)});
+    }
+  }
+
   /// Cells of a window by candidate.
   using Window = std::map<int, int>;
   using Pixel = std::vector<Window>;
@@ -330,7 +360,7 @@ class PlainLevel {
   kernels::CandidateGeometry geometry_;
   const Bytes& reference_;
   const Bytes& partner_;
-  const Image<float>& grey_;
+  Image<float> grey_;  ///< as the current iteration sees it
   const GivenBeliefs& coarse_;
   int columns_;
   int rows_;
@@ -352,6 +382,7 @@ MethodParameters parameters_of(int number) {
   parameters.sigma_prior = number % 4 < 2 ? 0.48 : 2;
   parameters.mu = 0.3;
   parameters.edge_weight = number % 3 == 1 ? 1 : 0.2;
+  parameters.edge_diffusion = number % 2 == 0 ? 2 : 0;
   parameters.final_iterations = 1 + number % 3;
   return parameters;
 }

@@ -25,18 +25,20 @@ AggregationReach iterations_reach(const MethodParameters& parameters) {
 
 Stages diffusion_stages(const MethodParameters& parameters, const AggregationPlace& place) {
   Stages stages;
-  for (int i = 0; i < parameters.iterations; ++i) {
-    stages.push_back(make_diffusion_stage(parameters, place.geometry, place.height, place.edges));
+  for (int i = 1; i <= parameters.iterations; ++i) {
+    stages.push_back(make_diffusion_stage(parameters, place.geometry, place.height,
+                                          weights_of_iteration(place.edges, i)));
   }
   return stages;
 }
 
 Stages local_stopping_stages(const MethodParameters& parameters, const AggregationPlace& place) {
   Stages stages;
-  for (int i = 0; i < parameters.iterations; ++i) {
-    stages.push_back(make_local_stopping_stage(
-        parameters, place.geometry, place.height,
-        {.is_first = i == 0, .is_last = i + 1 == parameters.iterations}, place.edges));
+  for (int i = 1; i <= parameters.iterations; ++i) {
+    stages.push_back(
+        make_local_stopping_stage(parameters, place.geometry, place.height,
+                                  {.is_first = i == 1, .is_last = i == parameters.iterations},
+                                  weights_of_iteration(place.edges, i)));
   }
   return stages;
 }
@@ -92,44 +94,44 @@ std::span<const CellAggregation> aggregation_table() {
                             return make_box_cascade_stages(place.geometry, place.height,
                                                            parameters.aggregation_sigma_px);
                           }},
-      CellAggregation{
-          .key = Aggregation::kDiffusion,
-          .name = "diffusion",
-          .description = "repeated mean with the four neighbours",
-          .options = {"iterations", "final-iterations", "lambda", "edge-weight", "edge-contrast"},
-          .is_iterative = true,
-          .reach = iterations_reach,
-          .make_stages = diffusion_stages},
+      CellAggregation{.key = Aggregation::kDiffusion,
+                      .name = "diffusion",
+                      .description = "repeated mean with the four neighbours",
+                      .options = {"iterations", "final-iterations", "lambda", "edge-weight",
+                                  "edge-contrast", "edge-diffusion"},
+                      .is_iterative = true,
+                      .reach = iterations_reach,
+                      .make_stages = diffusion_stages},
       CellAggregation{.key = Aggregation::kMembrane,
                       .name = "membrane",
                       .description = "diffusion with a pull towards the first costs",
                       .options = {"iterations", "final-iterations", "lambda", "beta", "edge-weight",
-                                  "edge-contrast"},
+                                  "edge-contrast", "edge-diffusion"},
                       .is_iterative = true,
                       .coarser_use = CoarserUse::kStart,
                       .reach = iterations_reach,
                       .make_stages = diffusion_stages},
-      CellAggregation{.key = Aggregation::kLocalStopping,
-                      .name = "local-stopping",
-                      .description = "diffusion that stops where certainty would fall",
-                      .options = {"iterations", "final-iterations", "lambda", "certainty",
-                                  "sigma-measurement", "edge-weight", "edge-contrast"},
-                      .is_iterative = true,
-                      .reach = iterations_reach,
-                      .confidence =
-                          [](const MethodParameters& parameters) {
-                            return parameters.certainty == Certainty::kMargin
-                                       ? ConfidenceMeasure::kMargin
-                                       : ConfidenceMeasure::kEntropy;
-                          },
-                      .make_stages = local_stopping_stages},
+      CellAggregation{
+          .key = Aggregation::kLocalStopping,
+          .name = "local-stopping",
+          .description = "diffusion that stops where certainty would fall",
+          .options = {"iterations", "final-iterations", "lambda", "certainty", "sigma-measurement",
+                      "edge-weight", "edge-contrast", "edge-diffusion"},
+          .is_iterative = true,
+          .reach = iterations_reach,
+          .confidence =
+              [](const MethodParameters& parameters) {
+                return parameters.certainty == Certainty::kMargin ? ConfidenceMeasure::kMargin
+                                                                  : ConfidenceMeasure::kEntropy;
+              },
+          .make_stages = local_stopping_stages},
       CellAggregation{
           .key = Aggregation::kBayes,
           .name = "bayes",
           .description = "neighbours support similar disparities",
           .options = {"iterations", "final-iterations", "mu", "sigma-prior", "epsilon-prior",
                       "prior-growth", "prior-smoothing", "level-weight", "edge-weight",
-                      "edge-contrast", "sigma-measurement", "epsilon-measurement",
+                      "edge-contrast", "edge-diffusion", "sigma-measurement", "epsilon-measurement",
                       "candidate-blocks", "pruned-levels"},
           .natural_cost = MatchCost::kContaminated,
           .cells = CellMeaning::kLikelihood,

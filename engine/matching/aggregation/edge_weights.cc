@@ -9,6 +9,7 @@
 #include "engine/matching/levels/level_extents.h"
 #include "kernels/candidate_windows.h"
 #include "kernels/edge_weights/edge_weights.h"
+#include "kernels/intensity_diffusion/intensity_diffusion.h"
 
 namespace vantage {
 namespace {
@@ -27,11 +28,40 @@ void halve(ImageView<const float> finer, ImageView<float> coarser, Execution& ex
   });
 }
 
+/// One step of anisotropic diffusion (IntensityDiffusionRow).
+void diffuse(ImageView<const float> grey, double contrast, Execution& execution,
+             Image<float>& diffused) {
+  const int width = grey.width();
+  const int height = grey.height();
+  diffused.resize(width, height);
+  execution.for_each_band(height, [&](int first_row, int end_row) {
+    const auto work = execution.scratch().lease(
+        sizeof(float) * static_cast<std::size_t>(kernels::intensity_diffusion_work_floats(width)));
+    for (int y = first_row; y < end_row; ++y) {
+      kernels::IntensityDiffusionRow row;
+      row.up = y > 0 ? grey.row(y - 1) : nullptr;
+      row.centre = grey.row(y);
+      row.down = y + 1 < height ? grey.row(y + 1) : nullptr;
+      row.width = width;
+      row.contrast = static_cast<float>(contrast);
+      row.work = reinterpret_cast<float*>(work.data());
+      row.output = diffused.row(y);
+      kernels::intensity_diffusion_row(row);
+    }
+  });
+}
+
+/// Sets of weights of a level.
+std::size_t weight_sets(const MethodParameters& parameters) {
+  return static_cast<std::size_t>(
+      std::max(std::min(parameters.edge_diffusion, parameters.iterations), 1));
+}
+
 }  // namespace
 
 template <typename Weight, typename Store>
-void EdgeWeights::make(ImageView<const float> grey, const MethodParameters& parameters,
-                       Execution& execution, const Store& store, Planes<Weight>& planes) {
+void EdgeWeightPlanes::make(ImageView<const float> grey, const MethodParameters& parameters,
+                            Execution& execution, const Store& store, Planes<Weight>& planes) {
   const kernels::EdgeModel model{.min = static_cast<float>(parameters.edge_weight),
                                  .contrast = static_cast<float>(parameters.edge_contrast)};
   const int width = grey.width();
@@ -63,8 +93,8 @@ void EdgeWeights::make(ImageView<const float> grey, const MethodParameters& para
   });
 }
 
-void EdgeWeights::prepare(ImageView<const float> grey, const MethodParameters& parameters,
-                          Execution& execution) {
+void EdgeWeightPlanes::prepare(ImageView<const float> grey, const MethodParameters& parameters,
+                               Execution& execution) {
   if (uses_fixed_energies(parameters)) {
     const auto mu = static_cast<float>(parameters.mu);
     make(
@@ -81,9 +111,32 @@ void EdgeWeights::prepare(ImageView<const float> grey, const MethodParameters& p
       floats_);
 }
 
-std::size_t EdgeWeights::held_bytes() const {
+std::size_t EdgeWeightPlanes::held_bytes() const {
   return vantage::held_bytes(floats_.beside) + vantage::held_bytes(floats_.above) +
          vantage::held_bytes(fixed_.beside) + vantage::held_bytes(fixed_.above);
+}
+
+void EdgeWeights::prepare(ImageView<const float> grey, const MethodParameters& parameters,
+                          Execution& execution) {
+  planes_.resize(weight_sets(parameters));
+  if (parameters.edge_diffusion == 0) {
+    planes_.front().prepare(grey, parameters, execution);
+    return;
+  }
+  for (std::size_t n = 0; n < planes_.size(); ++n) {
+    const Image<float>& before = diffused_[(n + 1) % 2];
+    Image<float>& after = diffused_[n % 2];
+    diffuse(n == 0 ? grey : before.view(), parameters.edge_contrast, execution, after);
+    planes_[n].prepare(std::as_const(after).view(), parameters, execution);
+  }
+}
+
+std::size_t EdgeWeights::held_bytes() const {
+  std::size_t bytes = vantage::held_bytes(diffused_[0]) + vantage::held_bytes(diffused_[1]);
+  for (const EdgeWeightPlanes& planes : planes_) {
+    bytes += planes.held_bytes();
+  }
+  return bytes;
 }
 
 std::span<const EdgeWeights> EdgeWeightLevels::prepare(const Photograph& reference,
@@ -107,8 +160,9 @@ std::span<const EdgeWeights> EdgeWeightLevels::prepare(const Photograph& referen
     } else {
       halve(std::as_const(grey_[level - 1]).view(), grey.view(), execution);
     }
-    if (at_level(parameters, static_cast<int>(level)).iterations > 0) {
-      levels_[level].prepare(grey.view(), parameters, execution);
+    const MethodParameters of_level = at_level(parameters, static_cast<int>(level));
+    if (of_level.iterations > 0) {
+      levels_[level].prepare(std::as_const(grey).view(), of_level, execution);
     }
   }
   return levels_;
@@ -129,10 +183,15 @@ std::size_t edge_weight_bytes(const MethodParameters& parameters, std::size_t pi
   if (!uses_edge_weights(parameters)) {
     return 0;
   }
-  // Two weights and one grey level per pixel, on all levels.
+  // Per pixel: one grey level, two diffused ones, and two weights per set.
   const std::size_t weight =
       uses_fixed_energies(parameters) ? sizeof(kernels::FixedWeight) : sizeof(float);
-  return (2 * weight + sizeof(float)) * (pixels + pixels / 3);
+  const std::size_t levels = parameters.edge_diffusion > 0 ? 3 : 1;
+  const auto bytes_of_level = [&](int level) {
+    return 2 * weight * weight_sets(at_level(parameters, level)) + levels * sizeof(float);
+  };
+  return bytes_of_level(0) * pixels +
+         (parameters.levels > 1 ? bytes_of_level(1) * (pixels / 3) : 0);
 }
 
 }  // namespace vantage

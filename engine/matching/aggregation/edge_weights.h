@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -13,14 +15,12 @@
 
 namespace vantage {
 
-/// Weights of neighbouring pixels in diffusion guided by intensity edges (7.3), in [edge_weight,
-/// 1]; 1 towards pixels outside the image. Working memory, reused without reallocation. Thread
-/// rule: immutable once prepared.
-class EdgeWeights {
+/// Weights of neighbouring pixels for each other, in [edge_weight, 1]; 1 towards pixels outside the
+/// image. Float weights or, if cells are in fixed point (EnergyFormat), those times μ in fixed
+/// point, whichever the kernels read. Thread rule: immutable once prepared.
+class EdgeWeightPlanes {
  public:
-  /// `grey`: one channel, at least 1×1. Makes float weights or, if cells are in fixed point
-  /// (EnergyFormat), those times μ in fixed point, whichever the kernels for `parameters` read.
-  /// Identical for any `execution`.
+  /// `grey`: one channel, at least 1×1. Identical for any `execution`.
   void prepare(ImageView<const float> grey, const MethodParameters& parameters,
                Execution& execution);
 
@@ -52,6 +52,31 @@ class EdgeWeights {
   Planes<float> floats_;
   Planes<kernels::FixedWeight> fixed_;
 };
+
+/// Weights of neighbouring pixels in the iterations of one level (6.7, 7.3). With edge_diffusion
+/// the image is diffused anisotropically along with the support, and each iteration has weights of
+/// its own. Working memory, reused without reallocation. Thread rule: immutable once prepared.
+class EdgeWeights {
+ public:
+  /// `grey`: one channel, at least 1×1. `parameters`: of the level. Identical for any `execution`.
+  void prepare(ImageView<const float> grey, const MethodParameters& parameters,
+               Execution& execution);
+
+  /// Weights that iteration n ≥ 1 reads.
+  [[nodiscard]] const EdgeWeightPlanes& of_iteration(int n) const {
+    return planes_[std::min(static_cast<std::size_t>(n), planes_.size()) - 1];
+  }
+  [[nodiscard]] std::size_t held_bytes() const;
+
+ private:
+  std::vector<EdgeWeightPlanes> planes_;
+  std::array<Image<float>, 2> diffused_;  ///< the image after the last steps
+};
+
+/// Of iteration n; n = 0, the start, reads none. `edges` null: null.
+inline const EdgeWeightPlanes* weights_of_iteration(const EdgeWeights* edges, int n) {
+  return edges != nullptr && n > 0 ? &edges->of_iteration(n) : nullptr;
+}
 
 /// The weights of an image and its coarser levels, whose pixels are means of 2×2 pixels of the
 /// finer level (fewer at the border). Working memory, reused without reallocation.

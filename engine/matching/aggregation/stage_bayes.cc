@@ -50,7 +50,7 @@ float neutral_state(Form form) { return form == Form::kHalf ? 1 : 0; }
 class BayesStage final : public BayesStepStage<float> {
  public:
   BayesStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
-             int height, Form form, BayesState state, const EdgeWeights* edges,
+             int height, Form form, BayesState state, const EdgeWeightPlanes* edges,
              const kernels::CandidatePlane& plane)
       : BayesStepStage(geometry, height, form == Form::kStart, neutral_state(form)),
         form_(form),
@@ -119,7 +119,7 @@ class BayesStage final : public BayesStepStage<float> {
   float mu_;
   std::vector<float> taps_;
   float floor_;
-  const EdgeWeights* edges_;
+  const EdgeWeightPlanes* edges_;
   kernels::CandidatePlane plane_;
 };
 
@@ -198,8 +198,8 @@ std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
                                                                CoarserResult{coarser}, plane));
       continue;
     }
-    stages.push_back(
-        std::make_unique<BayesStage>(parameters, geometry, height, form, state, edges, plane));
+    stages.push_back(std::make_unique<BayesStage>(parameters, geometry, height, form, state,
+                                                  weights_of_iteration(edges, i), plane));
   }
   return stages;
 }

@@ -11,7 +11,7 @@ namespace {
 class DiffusionStage final : public StarStage {
  public:
   DiffusionStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
-                 int height, const EdgeWeights* edges)
+                 int height, const EdgeWeightPlanes* edges)
       : StarStage(geometry, height), step_(static_cast<float>(parameters.lambda)), edges_(edges) {
     if (parameters.aggregation == Aggregation::kMembrane) {
       pull_ = static_cast<float>(parameters.lambda * parameters.beta);
@@ -43,13 +43,13 @@ class DiffusionStage final : public StarStage {
  private:
   float step_;
   float pull_ = 0;
-  const EdgeWeights* edges_;
+  const EdgeWeightPlanes* edges_;
 };
 
 class LocalStoppingStage final : public StarStage {
  public:
   LocalStoppingStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
-                     int height, IterationPlace place, const EdgeWeights* edges)
+                     int height, IterationPlace place, const EdgeWeightPlanes* edges)
       : StarStage(geometry, height),
         step_(static_cast<float>(parameters.lambda)),
         measure_(parameters.certainty == Certainty::kMargin ? kernels::CertaintyMeasure::kMargin
@@ -90,7 +90,7 @@ class LocalStoppingStage final : public StarStage {
   float step_;
   kernels::CertaintyMeasure measure_;
   float scale_;
-  const EdgeWeights* edges_;
+  const EdgeWeightPlanes* edges_;
   int input_pitch_;
   int output_pitch_;
 };
@@ -99,13 +99,13 @@ class LocalStoppingStage final : public StarStage {
 
 std::unique_ptr<scheduler::RowStage> make_diffusion_stage(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const EdgeWeights* edges) {
+    const EdgeWeightPlanes* edges) {
   return std::make_unique<DiffusionStage>(parameters, geometry, height, edges);
 }
 
 std::unique_ptr<scheduler::RowStage> make_local_stopping_stage(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    IterationPlace place, const EdgeWeights* edges) {
+    IterationPlace place, const EdgeWeightPlanes* edges) {
   return std::make_unique<LocalStoppingStage>(parameters, geometry, height, place, edges);
 }
 

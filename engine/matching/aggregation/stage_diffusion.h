@@ -14,11 +14,11 @@ namespace vantage {
 /// neighbours outside the image are left out. The membrane pulls towards the chain's first stage,
 /// which must be the cost stage with the energies E0.
 ///
-/// `edges`: weights of neighbours on this level (7.3), E ← E + λ Σ w_n (E_n − E); must outlive the
-/// stages. Null: all weights are 1.
+/// `edges`: weights of neighbours in this iteration (7.3), E ← E + λ Σ w_n (E_n − E); must outlive
+/// the stages. Null: all weights are 1.
 std::unique_ptr<scheduler::RowStage> make_diffusion_stage(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const EdgeWeights* edges = nullptr);
+    const EdgeWeightPlanes* edges = nullptr);
 
 /// Position of an iteration in its chain.
 struct IterationPlace {
@@ -31,6 +31,6 @@ struct IterationPlace {
 /// cells only. `edges`: as above.
 std::unique_ptr<scheduler::RowStage> make_local_stopping_stage(
     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    IterationPlace place, const EdgeWeights* edges = nullptr);
+    IterationPlace place, const EdgeWeightPlanes* edges = nullptr);
 
 }  // namespace vantage

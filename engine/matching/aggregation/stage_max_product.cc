@@ -42,7 +42,7 @@ class MaxProductStage final : public BayesStepStage<FixedEnergy> {
  public:
   /// is_start: the state before the first iteration. smooths: iterations follow.
   MaxProductStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
-                  int height, bool is_start, bool smooths, const EdgeWeights* edges,
+                  int height, bool is_start, bool smooths, const EdgeWeightPlanes* edges,
                   const CandidateBlocks* blocks, const kernels::CandidatePlane& plane)
       : BayesStepStage(cell_geometry(geometry, blocks), height, is_start, 0),
         smooths_(smooths),
@@ -136,7 +136,7 @@ class MaxProductStage final : public BayesStepStage<FixedEnergy> {
   bool smooths_;
   FixedWeight mu_;
   PriorRises rises_;
-  const EdgeWeights* edges_;
+  const EdgeWeightPlanes* edges_;
   const CandidateBlocks* blocks_;
   std::optional<BlockStars> stars_;  ///< set if there are blocks
 };
@@ -213,7 +213,8 @@ std::vector<std::unique_ptr<scheduler::RowStage>> make_max_product_stages(
       continue;
     }
     stages.push_back(std::make_unique<MaxProductStage>(parameters, geometry, height, is_start,
-                                                       smooths, edges, blocks, plane));
+                                                       smooths, weights_of_iteration(edges, i),
+                                                       blocks, plane));
   }
   return stages;
 }

@@ -114,6 +114,8 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
   visit(Field{"edge-weight", readers::kNamed, {is_within<0, 1>, "a number from 0 to 1"}},
         options.edge_weight...);
   visit(Field{"edge-contrast", readers::kEdges, kGreyLevels}, options.edge_contrast...);
+  visit(Field{"edge-diffusion", readers::kEdges, {is_within<0, 1000>, "a number from 0 to 1000"}},
+        options.edge_diffusion...);
 
   constexpr auto is_limit = [](double v) { return v >= 0; };
   visit(Field{"selection", readers::kAll}, options.selection...);

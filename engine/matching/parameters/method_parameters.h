@@ -151,6 +151,9 @@ struct MethodParametersOf {
   Field<double> edge_weight = by_default<Field>(1.0);
   /// Diffusions and Bayes: intensity difference over which the weight falls, grey levels, > 0.
   Field<double> edge_contrast = by_default<Field>(8.0);
+  /// Diffusions and Bayes: iteration n weights neighbours by the intensities after min(n, this)
+  /// steps of anisotropic diffusion, 0..1000.
+  Field<int> edge_diffusion = by_default<Field>(0);
 
   Field<Selection> selection = by_default<Field>(Selection::kWinner);
   /// Scanline: maximum cost of a change of disparity between neighbours in a row, in the unit of

@@ -233,9 +233,10 @@ class Band {
     row.mu = mu_;
     row.beside = row.above = row.below = uniform_.data();
     if (const EdgeWeights* const edges = level_.input.edges; edges != nullptr) {
-      row.beside = edges->fixed_beside(y) + columns.begin;
-      row.above = edges->fixed_above(y) + columns.begin;
-      row.below = edges->fixed_above(y + 1) + columns.begin;
+      const EdgeWeightPlanes& weights = edges->of_iteration(iteration);
+      row.beside = weights.fixed_beside(y) + columns.begin;
+      row.above = weights.fixed_above(y) + columns.begin;
+      row.below = weights.fixed_above(y + 1) + columns.begin;
     }
     row.prior = level_.prior;
     row.columns = columns.size();

@@ -22,7 +22,7 @@ struct WindowLevelInput {
   kernels::CandidateGeometry geometry;
   const CostImage& reference;
   const CostImage& partner;
-  const EdgeWeights* edges;  ///< of the level; null: all weights are 1
+  const EdgeWeights* edges;  ///< of the level, for final_iterations; null: all weights are 1
   const CoarseBeliefs& coarse;
 };
 
