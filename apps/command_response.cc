@@ -96,6 +96,9 @@ CumulativeResponseOptions options_of(const ResponseJob& job, int width) {
 
 void check(const ResponseJob& job, const Settings& settings) {
   options_of(job, 0).validate();
+  if (job.parameters.gradient_components == GradientComponents::kX) {
+    settings.refuse_idle({"norm"}, "with --gradient-components x");
+  }
   job.common.execution.validate();
   FileChecks files(settings);
   files.add_output(job.output, "--output", OutputKind::kTable);

@@ -1,68 +1,12 @@
 #include "engine/evaluation/disparity_section.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <vector>
 
-#include "engine/error.h"
-
 namespace vantage {
-namespace {
-
-/// Keeps one row of a volume.
-class KeptSection final : public VolumeSink {
- public:
-  KeptSection(int y, DisparitySection& section) : y_(y), section_(section) {}
-
-  void start(const VolumeShape& shape) override {
-    section_.disparities = shape.disparities;
-    section_.steps_per_px = shape.steps_per_px;
-    section_.content = shape.content;
-    section_.values.resize(shape.width_px, shape.candidates());
-  }
-  void write(int x, int y, int columns, const float* values) override {
-    if (y != y_) {
-      return;
-    }
-    const int candidates = section_.values.height();
-    for (int j = 0; j < columns; ++j) {
-      for (int i = 0; i < candidates; ++i) {
-        section_.values.at(x + j, i) = *values++;
-      }
-    }
-  }
-
- private:
-  int y_;
-  DisparitySection& section_;
-};
-
-}  // namespace
-
-DisparitySection disparity_section(const StereoMatcher& matcher, const Photograph& left,
-                                   const Photograph& right, Side reference, VolumeKind kind,
-                                   int y) {
-  if (y < 0 || y >= left.height()) {
-    throw UsageError(fmt::format("y is {}, expected a row from 0 to {}", y, left.height() - 1));
-  }
-  if (matcher.in_force().disparities_y) {
-    throw UsageError("there are displacements in a section, expected a search along rows only");
-  }
-  DisparitySection section;
-  KeptSection sink(y, section);
-  const VolumeRequest request{.side = reference, .kind = kind, .sink = &sink};
-  const bool is_left = reference == Side::kLeft;
-  DisparityMaps maps;
-  matcher.match(left, right,
-                {.left = is_left, .right = !is_left, .unmatched = false, .volumes = {&request, 1}},
-                maps);
-  return section;
-}
-
 float section_quantile(const DisparitySection& section, double share) {
   std::vector<float> known;
   for (int i = 0; i < section.values.height(); ++i) {

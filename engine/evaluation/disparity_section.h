@@ -4,10 +4,7 @@
 
 #include "engine/image/disparity_range.h"
 #include "engine/image/image.h"
-#include "engine/image/side.h"
 #include "engine/image/volume_sink.h"
-#include "engine/matching/stereo_matcher.h"
-#include "engine/matching/volume/volume_request.h"
 
 namespace vantage {
 
@@ -20,11 +17,6 @@ struct DisparitySection {
   /// no partner or was not searched.
   Image<float> values;
 };
-
-/// Section `y` of the image `reference`. Errors as StereoMatcher::match() with a volume; UsageError
-/// for a row that the image does not have or a two-dimensional search.
-DisparitySection disparity_section(const StereoMatcher& matcher, const Photograph& left,
-                                   const Photograph& right, Side reference, VolumeKind kind, int y);
 
 /// The value below which `share` (0..1) of the known values of a section lie.
 float section_quantile(const DisparitySection& section, double share);

@@ -121,6 +121,7 @@ TEST_F(InputResponseCommand, BadInputIsOneLine) {
       {{"--displacements-x", "wide"}, "--displacements-x is 'wide', expected MIN:MAX"},
       {{"--displacements-y", "auto"}, "--displacements-y is 'auto'"},
       {{"--alpha", "-1"}, "alpha is -1"},
+      {{"--norm", "l1", "--gradient-components", "x"}, "norm has no effect"},
       {{"--gradient", "prewitt"}, "--gradient is 'prewitt'"},
       {{"--plot", folder_ / "plot.txt"}, "--plot is"},
       {{"--plot", left_}, "which is also an input"}};
