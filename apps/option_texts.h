@@ -80,6 +80,11 @@ inline constexpr std::array kOptionTexts = {
                "disparities, 1 to 8, around what the coarser level found; 0: search all"},
     OptionText{"pruned-levels", "N",
                "Number of finest levels on which --candidate-blocks limits the search, 1 to 10"},
+    OptionText{
+        "window-levels", "N",
+        "With bayes, several levels, prior-smoothing maximum and cost census-rays: number of "
+        "finest levels, 0 to 2, that search 8 to 16 disparities around what the coarser level "
+        "found, in place of --candidate-blocks; images of several cameras: none"},
     OptionText{"final-iterations", "N",
                "With several levels: number of iterations on the finest one, 0 to 10000",
                "as --iterations"},

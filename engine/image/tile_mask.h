@@ -66,6 +66,15 @@ class TileMask {
   /// Rectangles of pixels that cover the tiles that are set, and nothing else, each pixel once.
   [[nodiscard]] std::vector<scheduler::Region> regions() const;
 
+  /// The tiles that are not set.
+  [[nodiscard]] TileMask inverse() const {
+    TileMask result = *this;
+    for (std::uint8_t& tile : result.tiles_) {
+      tile ^= 1U;
+    }
+    return result;
+  }
+
   /// Tiles of side_px of an image whose pixels stand for px_per_column² pixels of this one: those
   /// with pixels in, or within margin_px (of the result's pixels) of, tiles that are set.
   [[nodiscard]] TileMask widened(scheduler::Extent image, int px_per_column, int margin_px,

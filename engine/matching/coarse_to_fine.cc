@@ -7,9 +7,12 @@
 #include <utility>
 
 #include "engine/matching/aggregation/aggregation_table.h"
+#include "engine/matching/levels/energy_format.h"
 #include "engine/matching/levels/level_stages.h"
+#include "engine/matching/levels/smooth_tiles.h"
 #include "engine/matching/levels/stage_half_energies.h"
 #include "engine/matching/levels/stage_level_likelihoods.h"
+#include "engine/matching/window_volume.h"
 #include "scheduler/trace.h"
 
 namespace vantage {
@@ -20,11 +23,15 @@ constexpr std::array<std::string_view, 10> kLevelNames = {
     "level 0", "level 1", "level 2", "level 3", "level 4",
     "level 5", "level 6", "level 7", "level 8", "level 9"};
 
-/// Never includes the coarsest level.
+/// Neither includes the coarsest level.
+int window_level_count(const MethodParameters& parameters, std::size_t levels) {
+  return std::min(parameters.window_levels, static_cast<int>(levels) - 1);
+}
 int pruned_level_count(const MethodParameters& parameters, std::size_t levels) {
-  return parameters.candidate_blocks == 0
-             ? 0
-             : std::min(parameters.pruned_levels, static_cast<int>(levels) - 1);
+  const int pruned = std::min(parameters.pruned_levels, static_cast<int>(levels) - 1);
+  const bool has_blocks =
+      parameters.candidate_blocks > 0 && pruned > window_level_count(parameters, levels);
+  return has_blocks ? pruned : 0;
 }
 
 int cell_bytes(const MethodParameters& parameters) { return has_likelihoods(parameters) ? 1 : 2; }
@@ -47,31 +54,87 @@ void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
   });
 }
 
-CandidateBlocks::SmoothTiles smooth_tiles(const CheckMap& check_map) {
+CandidateBlocks::SmoothTiles use_of_smooth_tiles(const CheckMap& check_map) {
   using enum CandidateBlocks::SmoothTiles;
   return check_map.disparity_px.empty() ? kIgnored : check_map.is_all ? kLeftOut : kMarked;
 }
 
 /// `map_px` may be `check_px`.
-void make_check_map(const CandidateBlocks& blocks, ImageView<const std::int32_t> winners,
+void make_check_map(const TileMask& smooth, ImageView<const std::int32_t> winners,
                     int disparity_min, ImageView<const float> map_px, ImageView<float> check_px,
                     Execution& execution) {
   execution.for_each_band(check_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
       const std::int32_t* const of_row = winners.row(y / 2);
       float* const row = check_px.row(y);
-      for (int first = 0; first < check_px.width(); first += CandidateBlocks::kTilePx) {
-        const int end = std::min(first + CandidateBlocks::kTilePx, check_px.width());
-        if (!blocks.is_smooth(first, y)) {
-          std::copy(map_px.row(y) + first, map_px.row(y) + end, row + first);
-          continue;
-        }
-        for (int x = first; x < end; ++x) {
+      const int tile_y = smooth.row_of_pixel(y);
+      smooth.for_each_run(tile_y, false, [&](scheduler::Range columns) {
+        std::copy(map_px.row(y) + columns.begin, map_px.row(y) + columns.end, row + columns.begin);
+      });
+      smooth.for_each_run(tile_y, true, [&](scheduler::Range columns) {
+        for (int x = columns.begin; x < columns.end; ++x) {
           row[x] = static_cast<float>(of_row[x / 2] + disparity_min);
         }
-      }
+      });
     }
   });
+}
+
+/// What a check map is made from.
+struct CheckSource {
+  const TileMask* smooth = nullptr;            ///< of the image
+  ImageView<const std::int32_t> winners = {};  ///< of level 1
+};
+
+/// The levels that are searched in windows. `smooth` is filled if there is a check map.
+CheckSource search_fine_levels(const MethodParameters& parameters,
+                               const kernels::CandidateGeometry& geometry, const ChainInput& input,
+                               const MapOutputs& outputs,
+                               const std::vector<scheduler::Extent>& extents, CoarseLevels& levels,
+                               Execution& execution, const CoarseMap& coarse_map,
+                               const CheckMap& check_map, const std::vector<VolumeWriter>& volumes,
+                               LevelCells& cells, TileMask& smooth) {
+  const int from = levels.window_levels();
+  const EnergyFormat format(parameters);
+  const LevelBeliefs coarse(levels.result(from), levels.blocks(from),
+                            std::as_const(levels.coarser_winners()).view(), geometry,
+                            format.of_result().nats(format.steps_per_nat()));
+  FineWindows windows(parameters, geometry, input, execution, levels.windows());
+  const auto count = [&cells](const scheduler::Extent& extent, double share) {
+    cells.finest_level = share * extent.columns * extent.rows * kernels::kWindowCandidates;
+    cells.all_levels += cells.finest_level;
+  };
+  CheckSource source{.smooth = &smooth, .winners = std::as_const(levels.coarser_winners()).view()};
+  if (from == 2) {
+    const scheduler::Span span(kLevelNames[1]);
+    Image<std::int32_t>& winners =
+        coarse_map.level == 1 ? *coarse_map.winners : levels.windows().winners;
+    windows.search_level_1(coarse, extents[1], winners);
+    source.winners = std::as_const(winners).view();
+    if (const auto* const writer = find_writer(volumes, VolumeKind::kAggregated, 1)) {
+      write_window_volume(levels.windows().state, geometry.count, *writer, execution);
+    }
+    count(extents[1], 1);
+  }
+  if (coarse_map.is_all) {
+    return source;
+  }
+  const scheduler::Span span(kLevelNames[0]);
+  std::optional<TileMask> rough;
+  if (!check_map.disparity_px.empty()) {
+    smooth = smooth_tiles(source.winners, extents[0], geometry.steps_per_px, execution);
+    if (check_map.is_all) {
+      rough = smooth.inverse();
+    }
+  }
+  const auto* const writer = find_writer(volumes, VolumeKind::kAggregated, 0);
+  WindowState* const state = writer != nullptr ? &levels.windows().finest : nullptr;
+  windows.search_level_0(from == 1 ? &coarse : nullptr, outputs, rough ? &*rough : nullptr, state);
+  if (writer != nullptr) {
+    write_window_volume(*state, geometry.count, *writer, execution);
+  }
+  count(extents[0], rough ? rough->share() : 1);
+  return source;
 }
 
 }  // namespace
@@ -83,6 +146,7 @@ void CoarseLevels::resize(const MethodParameters& parameters,
   for (std::size_t i = 0; i < costs_.size(); ++i) {
     costs_[i].resize(extents[i + 1], lanes, cell_bytes(parameters));
   }
+  window_levels_ = window_level_count(parameters, extents.size());
   blocks_.resize(static_cast<std::size_t>(pruned_level_count(parameters, extents.size())));
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     blocks_[i].resize(extents[i], candidates, parameters.candidate_blocks,
@@ -122,30 +186,38 @@ std::size_t CoarseLevels::held_bytes() const {
   for (const CandidateBlocks& blocks : blocks_) {
     bytes += blocks.held_bytes();
   }
-  return bytes + vantage::held_bytes(winners_);
+  return bytes + vantage::held_bytes(winners_) + windows_.held_bytes();
 }
 
 std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
                                int candidates) {
   const auto extents = level_extents(extent, parameters.levels);
   const int lanes = kernels::CandidateGeometry{.count = candidates}.lanes();
+  const int windows = window_level_count(parameters, extents.size());
+  const auto first_result = static_cast<std::size_t>(std::max(1, windows));
   std::size_t bytes = 0;
   for (std::size_t level = 1; level < extents.size(); ++level) {
     const std::size_t of_level = static_cast<std::size_t>(extents[level].columns) *
                                  static_cast<std::size_t>(extents[level].rows) *
                                  static_cast<std::size_t>(lanes * cell_bytes(parameters));
-    bytes += (level <= 2 ? 2 : 1) * of_level;
+    const bool has_result = level >= first_result && level < first_result + 2;
+    bytes += (has_result ? 2 : 1) * of_level;
   }
-  if (pruned_level_count(parameters, extents.size()) > 0) {
+  if (extents.size() > 1 && (windows > 0 || pruned_level_count(parameters, extents.size()) > 0)) {
+    // Winners; with two levels of windows also the state of level 1.
+    constexpr std::size_t kState =
+        sizeof(kernels::WindowCells) + 2 * sizeof(std::int16_t) + sizeof(float);
     bytes += static_cast<std::size_t>(extents[1].columns) *
-             static_cast<std::size_t>(extents[1].rows) * sizeof(std::int32_t);
+             static_cast<std::size_t>(extents[1].rows) *
+             (sizeof(std::int32_t) + (windows > 1 ? kState : 0));
   }
   return bytes;
 }
 
 bool has_check_map(const MethodParameters& parameters, scheduler::Extent extent) {
-  return pruned_level_count(parameters, level_extents(extent, parameters.levels).size()) > 0 &&
-         at_level(parameters, 0).iterations <= 1;
+  const std::size_t levels = level_extents(extent, parameters.levels).size();
+  return window_level_count(parameters, levels) > 0 ||
+         (pruned_level_count(parameters, levels) > 0 && at_level(parameters, 0).iterations <= 1);
 }
 
 LevelCells match_coarse_to_fine(const MethodParameters& parameters,
@@ -169,9 +241,19 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
       reduce_level(parameters, levels.costs(level - 1), levels.costs(level), execution);
     }
   }
+  for (int level = 0; level <= coarsest; ++level) {
+    if (const auto* const writer = find_writer(volumes, VolumeKind::kCosts, level)) {
+      kernels::CandidateGeometry of_level = geometry;
+      of_level.width = extents[static_cast<std::size_t>(level)].columns;
+      run(MatchChain(parameters, of_level, input, outputs,
+                     {.number = level,
+                      .costs = level > 0 ? &levels.costs(level) : nullptr,
+                      .volume = writer}));
+    }
+  }
   LevelCells cells;
   const int finest = coarse_map.is_all ? coarse_map.level : 0;
-  for (int level = coarsest; level >= finest; --level) {
+  for (int level = coarsest; level >= std::max(finest, levels.window_levels()); --level) {
     const scheduler::Span span(kLevelNames[static_cast<std::size_t>(level)]);
     const scheduler::Extent extent = extents[static_cast<std::size_t>(level)];
     kernels::CandidateGeometry of_level = geometry;
@@ -181,7 +263,8 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
     if (levels.blocks(level) != nullptr) {
       levels.choose_blocks(
           level, geometry,
-          level == 0 ? smooth_tiles(check_map) : CandidateBlocks::SmoothTiles::kIgnored, execution);
+          level == 0 ? use_of_smooth_tiles(check_map) : CandidateBlocks::SmoothTiles::kIgnored,
+          execution);
       place.blocks = levels.blocks(level);
       place.coarser_blocks = levels.blocks(level + 1);
     }
@@ -196,10 +279,6 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
     if (level == finest && parts != nullptr) {
       place.regions = &parts->winners;
     }
-    if (const auto* const costs = find_writer(volumes, VolumeKind::kCosts, level)) {
-      run(MatchChain(parameters, of_level, input, outputs,
-                     {.number = level, .costs = place.costs, .volume = costs}));
-    }
     place.volume = find_writer(volumes, VolumeKind::kAggregated, level);
     run(MatchChain(parameters, of_level, input, outputs, place));
     cells.finest_level = place.blocks != nullptr
@@ -207,9 +286,17 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
                              : static_cast<double>(extent.columns) * extent.rows * geometry.count;
     cells.all_levels += cells.finest_level;
   }
+  TileMask smooth;
+  CheckSource source;
+  if (finest < levels.window_levels()) {
+    source = search_fine_levels(parameters, geometry, input, outputs, extents, levels, execution,
+                                coarse_map, check_map, volumes, cells, smooth);
+  } else if (!check_map.disparity_px.empty()) {
+    source = {&levels.blocks(0)->smooth(), std::as_const(levels.coarser_winners()).view()};
+  }
   if (!check_map.disparity_px.empty()) {
-    make_check_map(*levels.blocks(0), std::as_const(levels.coarser_winners()).view(),
-                   geometry.disparity_min, outputs.disparity_px, check_map.disparity_px, execution);
+    make_check_map(*source.smooth, source.winners, geometry.disparity_min, outputs.disparity_px,
+                   check_map.disparity_px, execution);
   }
   return cells;
 }

@@ -8,6 +8,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
+#include "engine/matching/fine_windows.h"
 #include "engine/matching/levels/candidate_blocks.h"
 #include "engine/matching/levels/level_volume.h"
 #include "engine/matching/match_chain.h"
@@ -48,8 +49,11 @@ class CoarseLevels {
   [[nodiscard]] const Image<std::int32_t>& coarser_winners() const { return *coarser_winners_; }
   /// Whether the next finer level chooses its candidates from the winners of `level`.
   [[nodiscard]] bool needs_winners(int level) const {
-    return level > 0 && level <= pruned_levels();
+    return level > 0 && (level <= pruned_levels() || level == window_levels_);
   }
+  /// Number of finest levels that are searched in windows.
+  [[nodiscard]] int window_levels() const { return window_levels_; }
+  [[nodiscard]] FineWindowsWork& windows() { return windows_; }
   /// Image for the winners of `level` ≥ 1, resized to the level. `kept`: an image that outlives the
   /// levels; null: working memory.
   Image<std::int32_t>& start_winners(int level, Image<std::int32_t>* kept);
@@ -64,6 +68,8 @@ class CoarseLevels {
   std::vector<CandidateBlocks> blocks_;  ///< of pruned levels
   Image<std::int32_t> winners_;          ///< of the previous (coarser) level, unless kept elsewhere
   Image<std::int32_t>* coarser_winners_ = nullptr;  ///< of the previous level
+  int window_levels_ = 0;
+  FineWindowsWork windows_;
 };
 
 /// Number of aggregated cells.
@@ -106,8 +112,8 @@ struct CheckMap {
   bool is_all = false;
 };
 
-/// Whether the finest level of images of `extent` is pruned and has at most one iteration: there
-/// are smooth tiles (CandidateBlocks::is_smooth), and others can do without them.
+/// Whether the finest level of images of `extent` can do without its smooth_tiles(): it is searched
+/// in windows, or pruned with at most one iteration.
 bool has_check_map(const MethodParameters& parameters, scheduler::Extent extent);
 
 /// Computes one map coarse to fine (6.7). Costs are reduced level by level: energies −ln p0 are
@@ -119,13 +125,14 @@ bool has_check_map(const MethodParameters& parameters, scheduler::Extent extent)
 /// same on all levels. The finest level's costs are computed from the images twice and never
 /// stored. Iterations and σP depend on the level (at_level).
 ///
-/// `run` is called with one chain after the other: the first reduces the image's costs, the last
-/// selects winners into `outputs`. parameters.levels > 1; geometry and outputs are the image's;
-/// input without ChainInput::pair.
+/// `run` is called with one chain after the other: the first reduces the image's costs, the last,
+/// without windows, selects winners into `outputs`. parameters.levels > 1; geometry and outputs are
+/// the image's; input without ChainInput::pair.
 ///
 /// With parameters.candidate_blocks > 0 the finest `pruned_levels` levels (never the coarsest)
 /// process only a few candidate blocks per tile (CandidateBlocks), near the winners of the next
-/// coarser level. Costs are still reduced from all candidates.
+/// coarser level. Costs are still reduced from all candidates. The finest `window_levels` levels
+/// (never the coarsest) are searched in windows instead.
 ///
 /// `coarse_map` (Bayesian diffusion only) does not depend on whether finer levels are computed, nor
 /// `check_map` on whether the map is. `volumes`: take the cells of their levels; costs of a level

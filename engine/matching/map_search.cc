@@ -84,15 +84,26 @@ void MapSearch::search(const kernels::CandidateGeometry& geometry, const ChainIn
     return;
   }
   scheduler::ChainPlan plan_before = report_.plan;
+  scheduler::ChainPlan plan_of_costs;
   const LevelCells cells = match_coarse_to_fine(
       parameters_, geometry, searched, outputs, work_.levels, execution_,
-      [this](const MatchChain& chain) { run_chain(chain); }, coarse, check, writers);
+      [&, is_first = true](const MatchChain& chain) mutable {
+        run_chain(chain);
+        if (is_first) {
+          plan_of_costs = report_.plan;
+          is_first = false;
+        }
+      },
+      coarse, check, writers);
   report_.cells += cells.all_levels;
   if (coarse.is_all) {
     if (!plan_before.passes.empty()) {
       report_.plan = std::move(plan_before);
     }
     return;
+  }
+  if (parameters_.window_levels > 0) {
+    report_.plan = std::move(plan_of_costs);  // windows have no chain
   }
   report_.finest_cells += cells.finest_level;
   report_.finest_pixels += pixels;

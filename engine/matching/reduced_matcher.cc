@@ -117,6 +117,7 @@ ResolvedMatchOptions reduced_options(const ResolvedMatchOptions& options,
                                      DisparityRange whole_range, int reductions) {
   ResolvedMatchOptions result = at_reduction(options, whole_range, reductions);
   result.parameters.search_size = SearchSize::kFull;
+  result.parameters.window_levels = 0;  // ReducedMatcher has its own
   return result;
 }
 
@@ -199,7 +200,8 @@ void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence,
       half.confidence.resize(wants_confidence ? level.width() : 0,
                              wants_confidence ? level.height() : 0);
     }
-    const MethodParameters parameters = at_level(options_.parameters, 1);
+    MethodParameters parameters = at_level(options_.parameters, 1);
+    parameters.iterations = options_.parameters.final_iterations;
     WindowState& state = work.states[static_cast<std::size_t>(r % 2)];
     const auto& compared_costs = work.costs[static_cast<std::size_t>(r)];
     const scheduler::Span span("windows");

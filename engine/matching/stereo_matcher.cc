@@ -14,6 +14,7 @@
 #include "engine/matching/levels/level_extents.h"
 #include "engine/matching/selection/symmetric_energies.h"
 #include "engine/matching/stage_clock.h"
+#include "engine/matching/windows/window_level.h"
 
 namespace vantage {
 namespace {
@@ -105,21 +106,24 @@ void StereoMatcher::prepare_inputs(MapTask& left, MapTask& right, bool uses_prio
       uses_column_ssd(in_force_.parameters) && !in_force_.disparities_y && !uses_prior;
   const bool needs_costs = std::ranges::any_of(
       volumes, [](const VolumeRequest& volume) { return volume.kind == VolumeKind::kCosts; });
+  // Windows read plain rows, with margins on both sides.
+  const bool has_windows = prepared.parameters.window_levels > 0;
+  const auto margins = has_windows ? window_margins(geometry) : geometry;
   if (!uses_pair || needs_costs) {
     prepared.images.resize(2);
     CostImage& left_image = prepared.images[0];
     CostImage& right_image = prepared.images[1];
     const int phases = sample_phases(1, geometry.steps_per_px);
-    left_image.prepare(*left.image, prepared.parameters, geometry,
+    left_image.prepare(*left.image, prepared.parameters, margins,
                        {.as_reference = needs_left,
                         .as_partner_of_left = false,
-                        .as_partner_of_right = needs_right,
+                        .as_partner_of_right = needs_right || has_windows,
                         .phases = phases},
                        execution_);
-    right_image.prepare(*right.image, prepared.parameters, geometry,
+    right_image.prepare(*right.image, prepared.parameters, margins,
                         {.as_reference = needs_right,
                          .as_partner_of_left = needs_left,
-                         .as_partner_of_right = false,
+                         .as_partner_of_right = has_windows,
                          .intensity_changes = prepared.of_right,
                          .phases = phases},
                         execution_);
@@ -159,7 +163,10 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
   }
   const LevelVolume coarser;  // never read
   const auto extents = level_extents({left.width(), left.height()}, in_force_.parameters.levels);
-  const bool is_pruned = in_force_.parameters.candidate_blocks > 0 && extents.size() > 1;
+  const bool has_windows = in_force_.parameters.window_levels > 0 && extents.size() > 1;
+  LevelVolume costs;  // never written
+  const bool is_pruned =
+      !has_windows && in_force_.parameters.candidate_blocks > 0 && extents.size() > 1;
   CandidateBlocks blocks;
   if (is_pruned) {
     blocks.resize(extents.front(), geometry.count, in_force_.parameters.candidate_blocks,
@@ -167,8 +174,10 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
   }
   const MatchChain chain(in_force_.parameters, geometry, of_left.input,
                          {.disparity_px = maps.left.disparity_px.view()},
-                         {.coarser = extents.size() > 1 ? &coarser : nullptr,
-                          .blocks = is_pruned ? &blocks : nullptr});
+                         has_windows
+                             ? ChainLevel{.reduced = &costs}
+                             : ChainLevel{.coarser = extents.size() > 1 ? &coarser : nullptr,
+                                          .blocks = is_pruned ? &blocks : nullptr});
   std::vector<scheduler::ChainPlan> plans;
   for (const ExecutionOptions& execution : executions) {
     plans.push_back(chain_plan(chain, execution, thread_count(execution, execution_.machine()),
@@ -372,6 +381,7 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
       candidate_geometry(in_force_, Side::kLeft, reference.width(), reference.height());
   const auto prepared = prepared_.borrow();
   prepared->parameters = in_force_.parameters;
+  prepared->parameters.window_levels = 0;  // windows compare two images
   std::vector<IntensityChanges> changes(others.size());
   if (exposure_) {
     clock.start("grey levels");

@@ -56,6 +56,9 @@ std::string method_text(const MatchOptions& match, const TunedImages& images) {
   }
   if (parameters.levels > 1) {
     text += fmt::format(", {} levels", parameters.levels);
+    if (parameters.window_levels > 0) {
+      text += fmt::format(", windows on {}", parameters.window_levels);
+    }
     if (parameters.candidate_blocks > 0) {
       text +=
           fmt::format(", {} blocks on {}", parameters.candidate_blocks, parameters.pruned_levels);

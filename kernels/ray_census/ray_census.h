@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "kernels/candidates.h"
@@ -48,17 +49,26 @@ void ray_census_likelihood_row_ref(const RayCensusPairs& row,
                                    const LikelihoodByDistance& likelihoods, float* cells);
 
 /// Bytes indexed by distance, padded to whole vectors.
-struct EnergyByDistance {
+struct ByteByDistance {
   alignas(64) std::array<std::uint8_t, kRayCensusTableBytes> steps{};
   /// The last entry that differs from the one before: all after it are equal to it, and need not be
   /// looked up.
   int last = kMaxRayCensusDistances - 1;
+
+  /// Finds `last` of a table whose first `distances` entries are used.
+  void find_last(int distances) {
+    last = distances - 1;
+    while (last > 0 &&
+           steps[static_cast<std::size_t>(last)] == steps[static_cast<std::size_t>(last) - 1]) {
+      --last;
+    }
+  }
 };
 
 /// energies.steps[distance]. One channel. Lanes ≥ row.count become 255.
-void ray_census_energy_row(const RayCensusPairs& row, const EnergyByDistance& energies,
+void ray_census_energy_row(const RayCensusPairs& row, const ByteByDistance& energies,
                            std::uint8_t* cells);
-void ray_census_energy_row_ref(const RayCensusPairs& row, const EnergyByDistance& energies,
+void ray_census_energy_row_ref(const RayCensusPairs& row, const ByteByDistance& energies,
                                std::uint8_t* cells);
 
 }  // namespace vantage::kernels

@@ -74,7 +74,7 @@ void ray_census_likelihood_row_ref(const RayCensusPairs& row,
   });
 }
 
-void ray_census_energy_row_ref(const RayCensusPairs& row, const EnergyByDistance& energies,
+void ray_census_energy_row_ref(const RayCensusPairs& row, const ByteByDistance& energies,
                                std::uint8_t* cells) {
   each_cell(row, cells, [&](int column, int lane) {
     return lane < row.count ? energies.steps[static_cast<std::size_t>(distance(row, column, lane))]

@@ -13,6 +13,7 @@
 
 #include "kernels/candidates.h"
 #include "kernels/cells/byte_cells-inl.h"
+#include "kernels/ray_census/ray_census-inl.h"
 #include "kernels/ray_census/ray_census.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -24,7 +25,7 @@ void hamming(const RayCensusPairs& row, float* cells) { ray_hamming_row_ref(row,
 void likelihoods(const RayCensusPairs& row, const LikelihoodByDistance& table, float* cells) {
   ray_census_likelihood_row_ref(row, table, cells);
 }
-void energies(const RayCensusPairs& row, const EnergyByDistance& table, std::uint8_t* cells) {
+void energies(const RayCensusPairs& row, const ByteByDistance& table, std::uint8_t* cells) {
   ray_census_energy_row_ref(row, table, cells);
 }
 #else
@@ -40,29 +41,14 @@ struct ReferenceCodes {
 template <int kChannels, int kThresholds, class D8, class Partner>
 HWY_INLINE VecOf<D8> distances(D8 d, const ReferenceCodes<kChannels, kThresholds, D8>& reference,
                                const Partner& partner) {
-  auto ones = hn::Zero(d);
-  auto twos = hn::Zero(d);
+  CodeDistance<kThresholds, D8> distance(d);
 #pragma GCC unroll 3
   for (std::size_t c = 0; c < kChannels; ++c) {
-    const auto& own = reference.byte[c];
-#pragma GCC unroll 3
-    for (std::size_t p = 0; p < kRayCensusBytes; ++p) {
-      const auto upper = hn::Xor(own[p], partner(c, p));
-      if constexpr (kThresholds == 1) {
-        ones = hn::Add(ones, bits_of_bytes(d, upper));
-      } else {
-        // |a − b| of two-bit numbers: 1 if the lower bits differ, plus 2 if the upper bits differ;
-        // except for a, b = 1, 2: both bits differ, and a's bits differ from each other, so only 1
-        // counts.
-        const std::size_t q = p + kRayCensusBytes;
-        const auto lower = hn::Xor(own[q], partner(c, q));
-        const auto is_1_or_2 = hn::Xor(own[p], own[q]);
-        ones = hn::Add(ones, bits_of_bytes(d, lower));
-        twos = hn::Add(twos, bits_of_bytes(d, hn::AndNot(hn::And(lower, is_1_or_2), upper)));
-      }
-    }
+    distance.add(
+        d, [&](std::size_t p) HWY_ATTR { return reference.byte[c][p]; },
+        [&](std::size_t p) HWY_ATTR { return partner(c, p); });
   }
-  return kThresholds == 1 ? ones : hn::Add(ones, hn::Add(twos, twos));
+  return distance.value();
 }
 
 // Calls cell(d, distances, lane) for the vectors of D8's size of one column while whole vectors
@@ -123,39 +109,6 @@ HWY_INLINE void store_floats(D8 d, const VecOf<D8> (&bytes)[4], float* cells) {
         cells);
   store(hn::InterleaveUpper(d, bytes[0], bytes[1]), hn::InterleaveUpper(d, bytes[2], bytes[3]),
         cells + 2 * n);
-}
-
-// table[index] for index < kEntries.
-template <int kEntries, class D8>
-HWY_INLINE VecOf<D8> looked_up(D8 d, const std::uint8_t* table, VecOf<D8> index) {
-  // Distances are below 128, and comparing signed bytes is cheaper.
-  const hn::RebindToSigned<D8> d8s;
-  const auto within = hn::And(index, hn::Set(d, 15));
-  auto value = hn::TableLookupBytes(hn::LoadDup128(d, table), within);
-#pragma GCC unroll 4
-  for (int first = 16; first < kEntries; first += 16) {
-    const auto last_before = hn::Set(d8s, static_cast<std::int8_t>(first - 1));
-    value = hn::IfThenElse(hn::RebindMask(d, hn::Gt(hn::BitCast(d8s, index), last_before)),
-                           hn::TableLookupBytes(hn::LoadDup128(d, table + first), within), value);
-  }
-  return value;
-}
-
-// table.steps[index]; kEntries: multiple of 16, above table.last.
-template <int kEntries, class D8>
-HWY_INLINE VecOf<D8> looked_up_energies(D8 d, const EnergyByDistance& table, VecOf<D8> index) {
-  const std::uint8_t* const steps = table.steps.data();
-  const auto within = hn::Min(index, hn::Set(d, static_cast<std::uint8_t>(table.last)));
-#if HWY_TARGET == HWY_AVX3_DL
-  // Highway has no lookup of bytes across blocks yet.
-  if constexpr (kEntries <= 64 && hn::MaxLanes(D8()) == 64) {
-    return VecOf<D8>{_mm512_permutexvar_epi8(within.raw, hn::Load(d, steps).raw)};
-  } else if constexpr (kEntries <= 64 && hn::MaxLanes(D8()) == 32) {
-    return VecOf<D8>{
-        _mm256_permutex2var_epi8(hn::Load(d, steps).raw, within.raw, hn::Load(d, steps + 32).raw)};
-  }
-#endif
-  return looked_up<kEntries>(d, steps, within);
 }
 
 template <int kChannels, int kThresholds>
@@ -253,7 +206,7 @@ HWY_INLINE VecOf<D8> references_of_columns(D8 d, const std::uint8_t* reference) 
 // Energies of columns of kLaneMultiple lanes, as many as fit into a vector, which a single column
 // would not fill. Starts at a column and returns the first remaining one.
 template <int kThresholds, int kEntries, class D8>
-HWY_INLINE int energies_of_several(D8 d, const RayCensusPairs& row, const EnergyByDistance& table,
+HWY_INLINE int energies_of_several(D8 d, const RayCensusPairs& row, const ByteByDistance& table,
                                    int column, std::uint8_t* cells) {
   constexpr int kColumns = hn::MaxLanes(D8()) / kLaneMultiple;
   if constexpr (kColumns > 1) {
@@ -269,7 +222,7 @@ HWY_INLINE int energies_of_several(D8 d, const RayCensusPairs& row, const Energy
       const auto distance = distances(d, own, [&](std::size_t /*channel*/, std::size_t p) HWY_ATTR {
         return partners_of_columns(d, partner[p] + at, step);
       });
-      hn::StoreU(looked_up_energies<kEntries>(d, table, distance), d,
+      hn::StoreU(looked_up_bytes<kEntries>(d, table, distance), d,
                  cells + static_cast<std::ptrdiff_t>(column) * kLaneMultiple);
     }
   }
@@ -277,10 +230,10 @@ HWY_INLINE int energies_of_several(D8 d, const RayCensusPairs& row, const Energy
 }
 
 template <int kThresholds, int kEntries>
-HWY_INLINE void energy_columns(const RayCensusPairs& given, const EnergyByDistance& of_distances,
+HWY_INLINE void energy_columns(const RayCensusPairs& given, const ByteByDistance& of_distances,
                                std::uint8_t* cells) {
   const RayCensusPairs row = given;  // copies: stores cannot alias them
-  const EnergyByDistance table = of_distances;
+  const ByteByDistance table = of_distances;
   int first = 0;
   if (row.lanes == kLaneMultiple) {
     first = energies_of_several<kThresholds, kEntries>(hn::ScalableTag<std::uint8_t>(), row, table,
@@ -291,7 +244,7 @@ HWY_INLINE void energy_columns(const RayCensusPairs& given, const EnergyByDistan
   for (int j = first; j < row.columns; ++j) {
     std::uint8_t* const column = cells + static_cast<std::ptrdiff_t>(j) * row.lanes;
     each_lane<1, kThresholds>(row, j, [&](auto d, auto distance, int lane) HWY_ATTR {
-      hn::StoreU(looked_up_energies<kEntries>(d, table, distance), d, column + lane);
+      hn::StoreU(looked_up_bytes<kEntries>(d, table, distance), d, column + lane);
     });
   }
   for (int j = 0; row.count < row.lanes && j < row.columns; ++j, cells += row.lanes) {
@@ -299,18 +252,10 @@ HWY_INLINE void energy_columns(const RayCensusPairs& given, const EnergyByDistan
   }
 }
 
-void energies(const RayCensusPairs& row, const EnergyByDistance& table, std::uint8_t* cells) {
-  if (row.thresholds == 1) {
-    if (table.last < 16) {
-      energy_columns<1, 16>(row, table, cells);
-    } else {
-      energy_columns<1, 32>(row, table, cells);
-    }
-  } else if (table.last < 48) {
-    energy_columns<3, 48>(row, table, cells);
-  } else {
-    energy_columns<3, kRayCensusTableBytes>(row, table, cells);
-  }
+void energies(const RayCensusPairs& row, const ByteByDistance& table, std::uint8_t* cells) {
+  with_entries(row.thresholds, table, [&](auto thresholds, auto entries) HWY_ATTR {
+    energy_columns<decltype(thresholds)::value, decltype(entries)::value>(row, table, cells);
+  });
 }
 #endif
 
@@ -330,7 +275,7 @@ void ray_census_likelihood_row(const RayCensusPairs& row, const LikelihoodByDist
                                float* cells) {
   HWY_DYNAMIC_DISPATCH(likelihoods)(row, table, cells);
 }
-void ray_census_energy_row(const RayCensusPairs& row, const EnergyByDistance& table,
+void ray_census_energy_row(const RayCensusPairs& row, const ByteByDistance& table,
                            std::uint8_t* cells) {
   HWY_DYNAMIC_DISPATCH(energies)(row, table, cells);
 }

@@ -1,11 +1,32 @@
-#include <bit>
 #include <cstddef>
+#include <cstdlib>
 
 #include "kernels/window_evidence/window_evidence.h"
 
 namespace vantage::kernels {
+namespace {
 
-void window_evidence_row_ref(const WindowEvidenceRow& row, const EvidenceByDistance& by_distance,
+/// Distance of the codes of the reference's pixel `own` and the partner's pixel `other` of row r.
+int code_distance(const WindowEvidenceRow& row, std::size_t r, std::ptrdiff_t own,
+                  std::ptrdiff_t other) {
+  int distance = 0;
+  for (std::size_t p = 0; p < kRayCensusBytes; ++p) {
+    for (int bit = 0; bit < 8; ++bit) {
+      // The neighbour's number in a code.
+      const auto number = [&](const WindowEvidenceRow::Codes& codes, std::ptrdiff_t at) {
+        const int upper = (codes[p][at] >> bit) & 1;
+        return row.thresholds == 1 ? upper
+                                   : 2 * upper + ((codes[p + kRayCensusBytes][at] >> bit) & 1);
+      };
+      distance += std::abs(number(row.reference[r], own) - number(row.partner[r], other));
+    }
+  }
+  return distance;
+}
+
+}  // namespace
+
+void window_evidence_row_ref(const WindowEvidenceRow& row, const ByteByDistance& by_distance,
                              const std::array<WindowCells*, kWindows>& evidence) {
   for (int x = 0; x < row.columns; ++x) {
     for (std::size_t q = 0; q < kWindows; ++q) {
@@ -15,15 +36,11 @@ void window_evidence_row_ref(const WindowEvidenceRow& row, const EvidenceByDista
       }
       for (int k = 0; k < kWindowCandidates; ++k) {
         unsigned sum = 0;
-        for (int pixel = 2 * x; pixel < 2 * x + 2; ++pixel) {
-          for (std::size_t r = 0; r < 2; ++r) {
-            unsigned distance = 0;
-            for (std::size_t p = 0; p < kRayCensusBytes; ++p) {
-              const int own = row.reference[r][p][pixel];
-              const int other = row.partner[r][p][pixel + row.direction * (row.start[q][x] + k)];
-              distance += static_cast<unsigned>(std::popcount(static_cast<unsigned>(own ^ other)));
-            }
-            sum += by_distance.steps[distance];
+        for (int pixel = row.side * x; pixel < row.side * (x + 1); ++pixel) {
+          for (std::size_t r = 0; r < static_cast<std::size_t>(row.side); ++r) {
+            const int other = pixel + row.direction * (row.start[q][x] + k);
+            const int distance = code_distance(row, r, pixel, other);
+            sum += by_distance.steps[static_cast<std::size_t>(distance)];
           }
         }
         evidence[q][x] |= static_cast<WindowCells>(sum) << (8 * k);

@@ -7,7 +7,7 @@
 
 namespace vantage::kernels {
 
-// Windows of a level from the next coarser one, whose candidates are twice as far apart.
+// Windows of a level from the next coarser one, whose candidates are as far apart, or twice as far.
 
 inline constexpr std::int16_t kNoSecondWinner = INT16_MIN;
 /// Coarse candidates by which a neighbour's winner must differ to be another surface's.
@@ -23,12 +23,20 @@ void second_winners_row(const std::array<const std::int16_t*, 3>& winners, int c
 void second_winners_row_ref(const std::array<const std::int16_t*, 3>& winners, int columns,
                             std::int16_t* second);
 
+/// Coarse candidates whose energies the start of a window needs.
+constexpr int coarse_candidates(int spacing) {
+  return spacing == 1 ? kWindowCandidates : kWindowCandidates / 2 + 2;
+}
+
 /// Coarse energies at the place of a window.
 struct CoarseEnergies {
+  /// Candidates from one coarse candidate to the next, 1 or 2.
+  int spacing = 2;
   /// Byte i: the energy of the i-th coarse candidate from the one at or before the window's first
-  /// candidate on, 255 where it is not known. Bytes 0 to 5 are used.
+  /// candidate on, 255 where it is not known. coarse_candidates(spacing) bytes are used.
   const WindowCells* energies = nullptr;
-  /// 8 if the window begins between that coarse candidate and the next, else 0.
+  /// With a spacing of 2: 8 if the window begins between that coarse candidate and the next, else
+  /// 0.
   const std::uint8_t* offset_bits = nullptr;
   /// Steps of a cell per step of an energy, in units of 1/256.
   std::uint16_t steps = 256;

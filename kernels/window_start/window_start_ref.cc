@@ -27,7 +27,7 @@ void window_start_row_ref(const CoarseEnergies& coarse, WindowCells* support) {
   for (int x = 0; x < coarse.columns; ++x) {
     support[x] = 0;
     for (int k = 0; k < kWindowCandidates; ++k) {
-      const int at = k + coarse.offset_bits[x] / 8;
+      const int at = coarse.spacing == 1 ? 2 * k : k + coarse.offset_bits[x] / 8;
       const int energy = window_cell(coarse.energies[x], at / 2);
       const int next = at % 2 == 0 ? energy : window_cell(coarse.energies[x], at / 2 + 1);
       const int steps = ((energy + next + 1) / 2 * coarse.steps) >> 8;

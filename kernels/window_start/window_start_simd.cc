@@ -45,19 +45,15 @@ void second_winners(const std::array<const std::int16_t*, 3>& winners, int colum
   }
 }
 
-void start(const CoarseEnergies& given, WindowCells* support) {
-  const CoarseEnergies coarse = given;  // a copy: stores cannot alias it
-  const hn::ScalableTag<std::uint64_t> d64;
-  const hn::Repartition<std::uint8_t, decltype(d64)> d8;
-  const hn::Repartition<std::uint16_t, decltype(d64)> d16;
-  constexpr int kColumns = static_cast<int>(hn::MaxLanes(d64));
-  const auto steps = hn::Set(d16, coarse.steps);
-  const auto ceiling = hn::Set(d16, coarse.ceiling);
-  const auto lanes = hn::Set(d64, coarse.lanes);
-  const auto all_bits = hn::Set(d64, 64);
-  const auto upper = hn::Set(d16, 0xFF00);
-  for (int x = 0; x < coarse.columns; x += kColumns) {
-    const auto coarse_cells = hn::LoadU(d64, coarse.energies + x);
+// Energies of the windows of a vector of columns, from x on.
+template <int kSpacing, class D64>
+HWY_INLINE hn::VFromD<D64> energies_at(D64 d64, const CoarseEnergies& coarse, int x) {
+  const auto coarse_cells = hn::LoadU(d64, coarse.energies + x);
+  if constexpr (kSpacing == 1) {
+    return coarse_cells;
+  } else {
+    const hn::Repartition<std::uint8_t, D64> d8;
+    constexpr int kColumns = static_cast<int>(hn::MaxLanes(D64()));
     const auto even = hn::BitCast(d8, coarse_cells);
     const auto odd = hn::AverageRound(even, hn::BitCast(d8, hn::ShiftRight<8>(coarse_cells)));
     // All sixteen energies of the columns of a block, then the lower and upper halves of each.
@@ -70,8 +66,22 @@ void start(const CoarseEnergies& given, WindowCells* support) {
       bits[j] = coarse.offset_bits[x + j];
     }
     const auto down = hn::Load(d64, bits);
-    const auto energies =
-        hn::BitCast(d16, hn::Or(hn::Shr(low, down), hn::Shl(high, hn::Sub(all_bits, down))));
+    return hn::Or(hn::Shr(low, down), hn::Shl(high, hn::Sub(hn::Set(d64, 64), down)));
+  }
+}
+
+template <int kSpacing>
+HWY_INLINE void start_spaced(const CoarseEnergies& given, WindowCells* support) {
+  const CoarseEnergies coarse = given;  // a copy: stores cannot alias it
+  const hn::ScalableTag<std::uint64_t> d64;
+  const hn::Repartition<std::uint16_t, decltype(d64)> d16;
+  constexpr int kColumns = static_cast<int>(hn::MaxLanes(d64));
+  const auto steps = hn::Set(d16, coarse.steps);
+  const auto ceiling = hn::Set(d16, coarse.ceiling);
+  const auto lanes = hn::Set(d64, coarse.lanes);
+  const auto upper = hn::Set(d16, 0xFF00);
+  for (int x = 0; x < coarse.columns; x += kColumns) {
+    const auto energies = hn::BitCast(d16, energies_at<kSpacing>(d64, coarse, x));
     const auto cells = [&](auto energy) HWY_ATTR {
       return hn::SaturatedSub(ceiling, hn::MulHigh(energy, steps));
     };
@@ -79,6 +89,14 @@ void start(const CoarseEnergies& given, WindowCells* support) {
     const auto odd_cells = cells(hn::And(energies, upper));
     const auto result = hn::BitCast(d64, hn::Or(even_cells, hn::ShiftLeft<8>(odd_cells)));
     hn::StoreU(hn::And(result, lanes), d64, support + x);
+  }
+}
+
+void start(const CoarseEnergies& coarse, WindowCells* support) {
+  if (coarse.spacing == 1) {
+    start_spaced<1>(coarse, support);
+  } else {
+    start_spaced<2>(coarse, support);
   }
 }
 #endif

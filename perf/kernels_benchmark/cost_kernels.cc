@@ -51,7 +51,7 @@ struct RayCodes : Pairs<std::uint8_t, kernels::kMaxRayCensusBytes> {
   kernels::RayCensusPairs pairs{row, kThresholds};
   AlignedValues<std::uint8_t> bytes{kCellCount};
   kernels::LikelihoodByDistance likelihoods;
-  kernels::EnergyByDistance energies;
+  kernels::ByteByDistance energies;
 };
 
 /// All terms of the combined cost.

@@ -122,7 +122,7 @@ TEST(CandidateBlocks, SmoothTilesHaveSmallSteps) {
           SCOPED_TRACE(testing::Message() << step << ": " << tile_x << ", " << tile_y);
           const int tile = is_down ? tile_y : tile_x;
           const bool is_rough = step == 3 && tile == 2;
-          EXPECT_EQ(blocks.is_smooth(8 * tile_x, 8 * tile_y + 7), !is_rough);
+          EXPECT_EQ(blocks.smooth().at(tile_x, tile_y), !is_rough);
           // Tiles beside rough ones along the row are made, and all around them have blocks.
           const int made = is_down ? 0 : 1;
           const auto run = blocks.run_at(8 * tile_x, 8 * tile_y, extent.columns);

@@ -1,4 +1,5 @@
-// What maps are checked against where the finest level is pruned: smooth tiles have coarse winners.
+// What maps are checked against where the finest level is pruned or searched in windows: smooth
+// tiles have coarse winners.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include "engine/matching/candidate_geometry.h"
 #include "engine/matching/coarse_to_fine.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/matching/windows/window_level.h"
 #include "engine/refinement/refinement.h"
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/identical_maps.h"
@@ -47,7 +49,7 @@ test::PhotographPair two_surfaces() {
   return {Photograph{std::move(left)}, Photograph{std::move(right)}};
 }
 
-MatchOptions options_of(int final_iterations) {
+MatchOptions options_of(int final_iterations, int window_levels) {
   MatchOptions options;
   options.method = MatchMethod::kBayes;
   options.disparities = kRange;
@@ -58,6 +60,7 @@ MatchOptions options_of(int final_iterations) {
   options.parameters.final_iterations = final_iterations;
   options.parameters.prior_smoothing = PriorSmoothing::kMaximum;
   options.parameters.candidate_blocks = 2;
+  options.parameters.window_levels = window_levels;
   options.refinement.cross_check_px = 1;
   options.refinement.fill = Fill::kNone;
   return options;
@@ -81,8 +84,9 @@ Image<std::int32_t> coarse_winners(const test::PhotographPair& pair, const Match
   const auto geometry = candidate_geometry(options.in_force(), reference, kWidth, kHeight);
   CostImage left;
   CostImage right;
-  left.prepare(pair.left, parameters, geometry, {is_left, false, !is_left}, execution);
-  right.prepare(pair.right, parameters, geometry, {!is_left, is_left, false}, execution);
+  const auto margins = window_margins(geometry);
+  left.prepare(pair.left, parameters, margins, {is_left, false, true}, execution);
+  right.prepare(pair.right, parameters, margins, {!is_left, is_left, true}, execution);
   DisparityMap size_alone(kWidth, kHeight);
   EdgeWeightLevels edges;
   CoarseLevels levels;
@@ -115,10 +119,18 @@ bool is_smooth(const Image<std::int32_t>& winners, int tile_x, int tile_y) {
   return true;
 }
 
+struct Case {
+  int final_iterations;
+  int window_levels;
+  /// More iterations without windows read too far into smooth tiles.
+  [[nodiscard]] bool has_check_map() const { return window_levels > 0 || final_iterations <= 1; }
+};
+
 TEST(CheckMap, IsTheMapButInSmoothTilesCoarseWinners) {
   const auto pair = two_surfaces();
-  for (const int final_iterations : {0, 1, 2}) {
-    const MatchOptions options = options_of(final_iterations);
+  for (const Case& of : {Case{0, 0}, {1, 0}, {2, 0}, {1, 1}, {2, 1}, {2, 2}}) {
+    const int final_iterations = of.final_iterations;
+    const MatchOptions options = options_of(final_iterations, of.window_levels);
     MatchOptions raw = options;
     raw.raw = true;
     raw.refinement = {};
@@ -128,26 +140,26 @@ TEST(CheckMap, IsTheMapButInSmoothTilesCoarseWinners) {
     int smooth = 0;
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
-        // More iterations read too far into smooth tiles.
-        const bool is_coarse = final_iterations <= 1 && is_smooth(coarse, x / 8, y / 8);
+        const bool is_coarse = of.has_check_map() && is_smooth(coarse, x / 8, y / 8);
         check_px.at(x, y) = is_coarse ? static_cast<float>(coarse.at(x / 2, y / 2))
                                       : winners.right.disparity_px.at(x, y);
         smooth += is_coarse ? 1 : 0;
       }
     }
-    EXPECT_EQ(smooth > kWidth * kHeight / 3, final_iterations <= 1) << smooth;
+    EXPECT_EQ(smooth > kWidth * kHeight / 3, of.has_check_map()) << smooth;
     Execution execution({.threads = 1});
     Mask expected;
     cross_check(winners.left.disparity_px.view(), std::as_const(check_px).view(), Side::kLeft, 1,
                 execution, expected);
-    EXPECT_TRUE(identical(matched(pair, options).left.unmatched, expected)) << final_iterations;
+    EXPECT_TRUE(identical(matched(pair, options).left.unmatched, expected))
+        << final_iterations << " iterations, " << of.window_levels << " levels of windows";
   }
 }
 
 TEST(CheckMap, LeavesTilesOutAndChangesNoMap) {
   const auto pair = two_surfaces();
-  for (const int final_iterations : {0, 1}) {
-    const MatchOptions options = options_of(final_iterations);
+  for (const Case& of : {Case{0, 0}, {1, 0}, {2, 1}, {1, 2}}) {
+    const MatchOptions options = options_of(of.final_iterations, of.window_levels);
     MatchReport of_both;
     const DisparityMaps both = matched(pair, options, {}, {.threads = 1}, &of_both);
     for (const int strip_px : {23, 1000}) {

@@ -340,6 +340,7 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
        both_images},
       {"levels", parameter(&P::levels), {1, 10}, {-1, 0, 11}, "from 1 to 10"},
       {"candidate-blocks", parameter(&P::candidate_blocks), {0}, {-1, 9}, "(all candidates) to 8"},
+      {"window-levels", parameter(&P::window_levels), {0}, {-1, 3}, "from 0 to 2"},
       {"census-thresholds",
        parameter(&P::census_thresholds),
        {1, 3},

@@ -167,6 +167,7 @@ const std::map<std::string_view, Changes>& changes() {
       {"search-size", values_of<SearchSize>(&P::search_size, {SearchSize::kHalf})},
       {"candidate-blocks", values_of<int>(&P::candidate_blocks, {2})},
       {"pruned-levels", values_of<int>(&P::pruned_levels, {1})},
+      {"window-levels", values_of<int>(&P::window_levels, {1})},
       {"final-iterations", values_of<int>(&P::final_iterations, {0, 5})},
       {"lambda", values_of<double>(&P::lambda, {0.05})},
       {"beta", values_of<double>(&P::beta, {1.5})},
@@ -247,8 +248,8 @@ bool is_without_difference(std::string_view name, const MethodParameters& parame
   if (name == "candidate-blocks") {
     return !can_prune(parameters);  // it is 0, and only that is accepted
   }
-  if (name == "search-size") {
-    return true;  // more than one search: see reduced_matcher_test
+  if (name == "search-size" || name == "window-levels") {
+    return true;  // other searches: see reduced_matcher_test, fine_windows_test
   }
   if (name == "certainty") {
     return parameters.cost == MatchCost::kGradient;  // which has entropy only

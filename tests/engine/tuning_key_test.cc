@@ -97,6 +97,8 @@ TEST_F(TuningKeyTest, DifferentWorkHasDifferentKeys) {
   add(key());
   match_.parameters.census_thresholds = 3;
   add(key());
+  match_.parameters.window_levels = 1;
+  add(key());
   match_.parameters.colour = ColourUse::kChannels;
   add(key());
   match_.method = MatchMethod::kMembrane;

@@ -52,11 +52,11 @@ class GivenBeliefs final : public CoarseBeliefs {
       winners[x] = static_cast<std::int16_t>(winner(x, y));
     }
   }
-  void energies_row(int y, scheduler::Range columns, const std::int16_t* first,
+  void energies_row(int y, scheduler::Range columns, const std::int16_t* first, int valid,
                     kernels::WindowCells* energies) const override {
     for (int x = columns.begin; x < columns.end; ++x) {
       energies[x] = 0;
-      for (int i = 0; i < 6; ++i) {
+      for (int i = 0; i < valid; ++i) {
         energies[x] |= static_cast<kernels::WindowCells>(energy(x, y, first[x] + i)) << (8 * i);
       }
     }
@@ -81,11 +81,12 @@ class GivenBeliefs final : public CoarseBeliefs {
   std::vector<std::uint8_t> energies_;
 };
 
-Photograph random_photograph(int width, int height, std::mt19937& random) {
+/// contrast: grey levels from one value to the next.
+Photograph random_photograph(int width, int height, int contrast, std::mt19937& random) {
   Bytes pixels(width, height);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      pixels.at(x, y) = static_cast<std::uint8_t>(random() % 8 * 30);
+      pixels.at(x, y) = static_cast<std::uint8_t>(random() % 8 * static_cast<unsigned>(contrast));
     }
   }
   return {std::move(pixels)};
@@ -99,13 +100,24 @@ Image<float> copy_of(const Image<float>& image) {
   return copy;
 }
 
+/// What levels differ in.
+struct Kind {
+  int side;     ///< pixels of a column along one direction
+  int spacing;  ///< candidates from one coarse candidate to the next
+  int thresholds;
+  double prior_weight;
+};
+
 /// A level, transcribed from EQUATIONS §3.13 pixel by pixel.
 class PlainLevel {
  public:
-  PlainLevel(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
-             const Photograph& reference, const Photograph& partner, const Image<float>& grey,
+  PlainLevel(const MethodParameters& parameters, const Kind& kind,
+             const kernels::CandidateGeometry& geometry, const Photograph& reference,
+             const Photograph& partner, const Image<float>& grey, const Image<float>& prior_px,
              const GivenBeliefs& coarse)
       : parameters_(parameters),
+        kind_(kind),
+        prior_px_(prior_px),
         geometry_(geometry),
         reference_(std::get<Bytes>(reference.pixels)),
         partner_(std::get<Bytes>(partner.pixels)),
@@ -122,11 +134,11 @@ class PlainLevel {
   }
 
   DisparityMap map() {
-    for (int i = 1; i < parameters_.final_iterations; ++i) {
+    for (int i = 1; i < parameters_.iterations; ++i) {
       diffuse_intensities(i);
       iterate();
     }
-    diffuse_intensities(parameters_.final_iterations);
+    diffuse_intensities(parameters_.iterations);
     DisparityMap result(columns_, rows_);
     for (int y = 0; y < rows_; ++y) {
       for (int x = 0; x < columns_; ++x) {
@@ -166,19 +178,21 @@ class PlainLevel {
 
   void start() {
     pixels_.resize(static_cast<std::size_t>(columns_ * rows_));
-    const int first = 2 * coarse_.disparity_min() - geometry_.disparity_min;
+    const int spacing = kind_.spacing;
+    const int first = spacing * coarse_.disparity_min() - geometry_.disparity_min;
     const int steps = static_cast<int>(std::ceil(256 * coarse_.nats_per_step() * steps_));
     for (int y = 0; y < rows_; ++y) {
       for (int x = 0; x < columns_; ++x) {
         Pixel& pixel = pixels_[static_cast<std::size_t>(y * columns_ + x)];
         for (const int winner : guesses(x / 2, y / 2)) {
           const int window_start =
-              std::clamp(2 * winner + first - 3, 0, std::max(0, geometry_.count - 8));
+              std::clamp(spacing * winner + first - 3, 0, std::max(0, geometry_.count - 8));
           Window window;
           for (int d = window_start; d < std::min(window_start + 8, geometry_.count); ++d) {
-            const int twice = d - first;  // in halves of coarse candidates
-            const int low = coarse_.energy(x / 2, y / 2, twice / 2);
-            const int high = twice % 2 == 0 ? low : coarse_.energy(x / 2, y / 2, twice / 2 + 1);
+            const int place = d - first;
+            const int low = coarse_.energy(x / 2, y / 2, place / spacing);
+            const int high =
+                place % spacing == 0 ? low : coarse_.energy(x / 2, y / 2, place / spacing + 1);
             window[d] = std::max(0, ceiling_ - (((low + high + 1) / 2 * steps) >> 8));
           }
           pixel.push_back(window);
@@ -204,7 +218,8 @@ class PlainLevel {
   }
 
   [[nodiscard]] bool has_partners(int x, int candidate) const {
-    for (int column = 2 * x; column <= std::min(2 * x + 1, geometry_.width - 1); ++column) {
+    const int side = kind_.side;
+    for (int column = side * x; column < std::min(side * (x + 1), geometry_.width); ++column) {
       const int partner = geometry_.partner(column, candidate);
       if (partner < 0 || partner >= geometry_.width) {
         return false;
@@ -213,12 +228,32 @@ class PlainLevel {
     return true;
   }
 
-  static int code_bit(const Bytes& image, int x, int y, const kernels::PixelOffset& offset) {
+  /// The number of thresholds that a neighbour is less than: the pixel, and with three of them 1.25
+  /// grey levels below and above it.
+  [[nodiscard]] int number(const Bytes& image, int x, int y,
+                           const kernels::PixelOffset& offset) const {
     const auto pixel = [&](int column, int row) {
       return image.at(std::clamp(column, 0, image.width() - 1),
                       std::clamp(row, 0, image.height() - 1));
     };
-    return pixel(x + offset.columns, y + offset.rows) < pixel(x, y) ? 1 : 0;
+    const double difference = pixel(x + offset.columns, y + offset.rows) - pixel(x, y);
+    if (kind_.thresholds == 1) {
+      return difference < 0 ? 1 : 0;
+    }
+    return (difference < -1.25 ? 1 : 0) + (difference < 0 ? 1 : 0) + (difference < 1.25 ? 1 : 0);
+  }
+
+  /// Of the prior at a pixel, above the least.
+  [[nodiscard]] int prior_steps(int column, int row, int candidate) const {
+    if (kind_.prior_weight == 0) {
+      return 0;
+    }
+    const float offset = prior_px_.at(column, row) - static_cast<float>(geometry_.disparity_min);
+    if (!(offset >= 0 && offset <= static_cast<float>(geometry_.count - 1))) {
+      return 0;
+    }
+    const double k = (static_cast<float>(candidate) - offset) / 2;
+    return static_cast<int>(std::lround(steps_ * kind_.prior_weight * (1 - std::min(1.0, k * k))));
   }
 
   [[nodiscard]] int evidence(int x, int y, int candidate) const {
@@ -226,8 +261,10 @@ class PlainLevel {
       return 0;
     }
     int sum = 0;
-    for (int row = 2 * y; row < 2 * y + 2; ++row) {
-      for (int column = 2 * x; column < 2 * x + 2; ++column) {
+    int of_prior = 0;
+    const int side = kind_.side;
+    for (int row = side * y; row < side * (y + 1); ++row) {
+      for (int column = side * x; column < side * (x + 1); ++column) {
         const int v = std::min(row, geometry_height() - 1);
         // Columns outside have the code of the last one.
         const int own = std::min(column, geometry_.width - 1);
@@ -235,17 +272,18 @@ class PlainLevel {
         int distance = 0;
         for (const kernels::PixelOffset& offset : kernels::kRayCensusOffsets) {
           distance +=
-              code_bit(reference_, own, v, offset) != code_bit(partner_, other, v, offset) ? 1 : 0;
+              std::abs(number(reference_, own, v, offset) - number(partner_, other, v, offset));
         }
-        const double deviations = distance / parameters_.sigma_measurement;
+        const double deviations = distance / (parameters_.sigma_measurement * kind_.thresholds);
         const double epsilon = parameters_.epsilon_measurement;
         const double nats =
             outlier_nats_ +
             std::log((1 - epsilon) * std::exp(-deviations * deviations / 2) + epsilon);
         sum += static_cast<int>(std::lround(steps_ * std::max(0.0, nats)));
+        of_prior += prior_steps(own, v, candidate);
       }
     }
-    return sum;
+    return std::min(255, sum + of_prior);
   }
 
   [[nodiscard]] int geometry_height() const { return reference_.height(); }
@@ -357,6 +395,8 @@ class PlainLevel {
   }
 
   const MethodParameters& parameters_;
+  const Kind& kind_;
+  const Image<float>& prior_px_;
   kernels::CandidateGeometry geometry_;
   const Bytes& reference_;
   const Bytes& partner_;
@@ -383,7 +423,7 @@ MethodParameters parameters_of(int number) {
   parameters.mu = 0.3;
   parameters.edge_weight = number % 3 == 1 ? 1 : 0.2;
   parameters.edge_diffusion = number % 2 == 0 ? 2 : 0;
-  parameters.final_iterations = 1 + number % 3;
+  parameters.iterations = 1 + number % 3;
   return parameters;
 }
 
@@ -429,16 +469,32 @@ TEST(WindowLevel, EqualsPlainTranscriptionForAnyExecution) {
                            {66, 67, 3, 40},
                            {17, 2, 0, 1},
                            {150, 5, 20, 100}}) {
-    for (const int direction : {-1, 1}) {
-      const MethodParameters parameters = parameters_of(number++);
+    for (const Kind& kind :
+         {Kind{2, 2, 1, 0}, Kind{1, 1, 3, 0}, Kind{1, 1, 1, 0.7}, Kind{2, 1, 3, 0.4}}) {
+      const int direction = number % 2 == 0 ? -1 : 1;
+      MethodParameters parameters = parameters_of(number++);
+      parameters.census_thresholds = kind.thresholds;
       const kernels::CandidateGeometry geometry{size.width, size.disparity_min, size.count,
                                                 direction};
-      const Photograph reference = random_photograph(size.width, size.height, random);
-      const Photograph partner = random_photograph(size.width, size.height, random);
-      const scheduler::Extent extent{(size.width + 1) / 2, (size.height + 1) / 2};
-      const int coarse_min = static_cast<int>(std::floor(size.disparity_min / 2.0));
+      const int contrast = kind.thresholds == 1 ? 30 : 1;
+      const Photograph reference = random_photograph(size.width, size.height, contrast, random);
+      const Photograph partner = random_photograph(size.width, size.height, contrast, random);
+      const scheduler::Extent extent{(size.width + kind.side - 1) / kind.side,
+                                     (size.height + kind.side - 1) / kind.side};
+      const int spacing = kind.spacing;
+      const int coarse_min =
+          static_cast<int>(std::floor(size.disparity_min / static_cast<double>(spacing)));
       const GivenBeliefs coarse({(extent.columns + 1) / 2, (extent.rows + 1) / 2}, coarse_min,
-                                size.count / 2 + 2, random);
+                                spacing == 1 ? size.count : size.count / 2 + 2, random);
+      Image<float> prior_px(size.width, size.height);
+      for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) {
+          // Some unknown, some outside the range.
+          prior_px.at(x, y) = random() % 4 == 0 ? std::numeric_limits<float>::quiet_NaN()
+                                                : static_cast<float>(size.disparity_min) - 2 +
+                                                      static_cast<float>(random() % 16) * 0.75F;
+        }
+      }
       Image<float> grey(extent.columns, extent.rows);
       for (int y = 0; y < grey.height(); ++y) {
         for (int x = 0; x < grey.width(); ++x) {
@@ -453,13 +509,19 @@ TEST(WindowLevel, EqualsPlainTranscriptionForAnyExecution) {
       EdgeWeights edges;
       edges.prepare(grey.view(), parameters, one);
       const WindowLevelInput input{.parameters = parameters,
+                                   .side = kind.side,
+                                   .spacing = spacing,
                                    .geometry = geometry,
                                    .reference = of_reference,
                                    .partner = of_partner,
                                    .edges = parameters.edge_weight < 1 ? &edges : nullptr,
-                                   .coarse = coarse};
+                                   .coarse = coarse,
+                                   .prior_px = kind.prior_weight > 0
+                                                   ? std::as_const(prior_px).view()
+                                                   : ImageView<const float>(),
+                                   .prior_weight = kind.prior_weight};
       const DisparityMap expected =
-          PlainLevel(parameters, geometry, reference, partner, grey, coarse).map();
+          PlainLevel(parameters, kind, geometry, reference, partner, grey, prior_px, coarse).map();
       for (Execution* const execution : {&one, &three}) {
         DisparityMap map(extent.columns, extent.rows);
         search_windows(input, Subpixel::kParabola, {.disparity_px = map.view()}, *execution);
@@ -468,8 +530,9 @@ TEST(WindowLevel, EqualsPlainTranscriptionForAnyExecution) {
             const float value = map.at(x, y);
             ASSERT_TRUE(std::isnan(value) ? std::isnan(expected.at(x, y))
                                           : value == expected.at(x, y))
-                << size.width << "x" << size.height << ", direction " << direction << ", pixel "
-                << x << ", " << y << ": " << value << ", expected " << expected.at(x, y);
+                << size.width << "x" << size.height << ", side " << kind.side << ", direction "
+                << direction << ", pixel " << x << ", " << y << ": " << value << ", expected "
+                << expected.at(x, y);
           }
         }
         expect_regions_equal(input, map, *execution);

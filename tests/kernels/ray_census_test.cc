@@ -116,8 +116,8 @@ TEST_P(RayCensus, LikelihoodsAreTheTables) {
 }
 
 /// Entries that differ up to the last one, which the rest repeats.
-EnergyByDistance energies_up_to(int last) {
-  EnergyByDistance table;
+ByteByDistance energies_up_to(int last) {
+  ByteByDistance table;
   table.last = last;
   for (int k = 0; k < kMaxRayCensusDistances; ++k) {
     table.steps[static_cast<std::size_t>(k)] =
@@ -126,7 +126,7 @@ EnergyByDistance energies_up_to(int last) {
   return table;
 }
 
-void expect_energies_of(const EnergyByDistance& table) {
+void expect_energies_of(const ByteByDistance& table) {
   for_each_cell(
       [&](RayCensusPairs row) {
         row.channels = 1;

@@ -28,7 +28,8 @@ TEST_P(WindowStart, EqualsReference) {
       }
       offset_bits[x] = random() % 2 == 0 ? 8 : 0;
     }
-    const CoarseEnergies coarse{.energies = energies.data(),
+    const CoarseEnergies coarse{.spacing = 1 + columns / 2 % 2,
+                                .energies = energies.data(),
                                 .offset_bits = offset_bits.data(),
                                 .steps = static_cast<std::uint16_t>(random_int(random, 1, 1000)),
                                 .ceiling = static_cast<std::uint8_t>(random_int(random, 1, 255)),

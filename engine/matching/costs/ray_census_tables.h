@@ -31,7 +31,7 @@ inline kernels::LikelihoodByDistance ray_census_likelihoods(
 
 /// −ln of the measurement model by distance, in steps of a byte.
 struct RayCensusEnergies {
-  kernels::EnergyByDistance by_distance;
+  kernels::ByteByDistance by_distance;
   std::uint8_t without_partner = 0;  ///< −ln ε, the maximum
   float step = kernels::kEnergyStep;
 };
@@ -57,13 +57,7 @@ inline RayCensusEnergies ray_census_energies(const MethodParameters& parameters)
     energies.by_distance.steps[static_cast<std::size_t>(distance)] =
         in_steps((1 - epsilon) * std::exp(-deviations * deviations / 2) + epsilon);
   }
-  const auto& steps = energies.by_distance.steps;
-  int& last = energies.by_distance.last;
-  last = distances - 1;
-  while (last > 0 &&
-         steps[static_cast<std::size_t>(last)] == steps[static_cast<std::size_t>(last) - 1]) {
-    --last;
-  }
+  energies.by_distance.find_last(distances);
   energies.without_partner = in_steps(epsilon);
   return energies;
 }

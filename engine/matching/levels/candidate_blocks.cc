@@ -13,8 +13,6 @@ using scheduler::Range;
 /// Pixels of disparity on both sides of a coarse winner to include: the finer level finds the best
 /// candidate among them.
 constexpr int kReachPx = 2;
-/// Maximum difference of adjacent coarse winners in and around a smooth tile.
-constexpr int kSmoothStepPx = 2;
 /// Maximum number of candidates per pixel of disparity.
 constexpr int kMaxStepsPerPx = 4;
 /// Coarse pixels of a tile along one direction.
@@ -53,7 +51,6 @@ void CandidateBlocks::resize(scheduler::Extent extent, int candidates, int max, 
   counts_.resize(tiles);
   run_ends_.resize(tiles);
   is_as_above_.resize(tiles);
-  is_smooth_.resize(tiles);
   is_wanted_.resize(tiles);
 }
 
@@ -76,11 +73,7 @@ void CandidateBlocks::choose(ImageView<const std::int32_t> winners,
     }
   });
   if (smooth != SmoothTiles::kIgnored) {
-    execution.for_each_band(tile_rows_, [&](int first_row, int end_row) {
-      for (int tile_y = first_row; tile_y < end_row; ++tile_y) {
-        find_smooth_tiles(winners, tile_y);
-      }
-    });
+    smooth_ = smooth_tiles(winners, extent_, steps_per_px_, execution);
   }
   if (smooth == SmoothTiles::kLeftOut) {
     leave_out_smooth_tiles();
@@ -92,39 +85,13 @@ void CandidateBlocks::choose(ImageView<const std::int32_t> winners,
   });
 }
 
-void CandidateBlocks::find_smooth_tiles(ImageView<const std::int32_t> winners, int tile_y) {
-  const Range rows = coarse_pixels_around(tile_y, winners.height());
-  // Per column: the largest difference to the right and below, over the rows.
-  const auto width = static_cast<std::size_t>(winners.width());
-  std::vector<std::int32_t> right(width);
-  std::vector<std::int32_t> below(width);
-  for (int y = rows.begin; y < rows.end; ++y) {
-    const std::int32_t* const row = winners.row(y);
-    const std::int32_t* const next = winners.row(std::min(y + 1, rows.end - 1));
-    for (std::size_t x = 0; x + 1 < width; ++x) {
-      right[x] = std::max(right[x], std::abs(row[x] - row[x + 1]));
-    }
-    for (std::size_t x = 0; x < width; ++x) {
-      below[x] = std::max(below[x], std::abs(row[x] - next[x]));
-    }
-  }
-  for (int tile_x = 0; tile_x < tile_columns_; ++tile_x) {
-    const Range columns = coarse_pixels_around(tile_x, winners.width());
-    const auto first = right.begin() + columns.begin;
-    std::int32_t step =
-        *std::max_element(below.begin() + columns.begin, below.begin() + columns.end);
-    step = std::max(step, *std::max_element(first, first + std::max(1, columns.size() - 1)));
-    is_smooth_[tile_at(tile_x, tile_y)] = step <= kSmoothStepPx * steps_per_px_ ? 1 : 0;
-  }
-}
-
 void CandidateBlocks::leave_out_smooth_tiles() {
   const auto all_around = [this](int tile_x, int tile_y, int reach_rows, const auto& is_so) {
     const Range rows = Range{tile_y, tile_y + 1}.widened(reach_rows, {0, tile_rows_});
     const Range columns = Range{tile_x, tile_x + 1}.widened(1, {0, tile_columns_});
     for (int y = rows.begin; y < rows.end; ++y) {
       for (int x = columns.begin; x < columns.end; ++x) {
-        if (!is_so(tile_at(x, y))) {
+        if (!is_so(x, y)) {
           return false;
         }
       }
@@ -134,14 +101,14 @@ void CandidateBlocks::leave_out_smooth_tiles() {
   for (int tile_y = 0; tile_y < tile_rows_; ++tile_y) {
     for (int tile_x = 0; tile_x < tile_columns_; ++tile_x) {
       // Single tiles are made: shorter runs would cost more than they save.
-      const auto is_smooth = [this](std::size_t tile) { return is_smooth_[tile] != 0; };
+      const auto is_smooth = [this](int x, int y) { return smooth_.at(x, y); };
       is_wanted_[tile_at(tile_x, tile_y)] = all_around(tile_x, tile_y, 0, is_smooth) ? 0 : 1;
     }
   }
   for (int tile_y = 0; tile_y < tile_rows_; ++tile_y) {
     for (int tile_x = 0; tile_x < tile_columns_; ++tile_x) {
       if (all_around(tile_x, tile_y, 1,
-                     [this](std::size_t tile) { return is_wanted_[tile] == 0; })) {
+                     [this](int x, int y) { return is_wanted_[tile_at(x, y)] == 0; })) {
         counts_[tile_at(tile_x, tile_y)] = 0;
       }
     }
@@ -248,8 +215,8 @@ double CandidateBlocks::cells() const {
 
 std::size_t CandidateBlocks::held_bytes() const {
   return blocks_.capacity() * sizeof(std::uint16_t) + counts_.capacity() +
-         run_ends_.capacity() * sizeof(int) + is_as_above_.capacity() + is_smooth_.capacity() +
-         is_wanted_.capacity();
+         run_ends_.capacity() * sizeof(int) + is_as_above_.capacity() +
+         static_cast<std::size_t>(smooth_.size()) + is_wanted_.capacity();
 }
 
 int candidates_in(const CandidateBlocks* blocks, int count) {

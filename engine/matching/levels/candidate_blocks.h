@@ -10,6 +10,8 @@
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
+#include "engine/image/tile_mask.h"
+#include "engine/matching/levels/smooth_tiles.h"
 #include "engine/matching/parameters/method_parameters.h"
 #include "kernels/candidates.h"
 #include "scheduler/range.h"
@@ -27,7 +29,7 @@ using BlockList = std::span<const std::uint16_t>;
 /// plain array.
 class CandidateBlocks {
  public:
-  static constexpr int kTilePx = 8;
+  static constexpr int kTilePx = kLevelTilePx;
   /// Maximum columns of a run, which stages process at a time.
   static constexpr int kMaxRunColumns = 32;
 
@@ -39,7 +41,7 @@ class CandidateBlocks {
     bool is_wanted = true;
   };
 
-  /// Tiles where coarse winners in and next to them differ by at most 2 px from one to the next.
+  /// What becomes of smooth_tiles().
   enum class SmoothTiles {
     kIgnored,
     kMarked,
@@ -75,10 +77,8 @@ class CandidateBlocks {
     return {
         {x, std::min({run_end, end, x + kMaxRunColumns})}, of_tile(tile), is_wanted_[tile] != 0};
   }
-  /// Whether the tile of a pixel is smooth; not with SmoothTiles::kIgnored.
-  [[nodiscard]] bool is_smooth(int x, int y) const {
-    return is_smooth_[tile_at(x / kTilePx, y / kTilePx)] != 0;
-  }
+  /// Not with SmoothTiles::kIgnored.
+  [[nodiscard]] const TileMask& smooth() const { return smooth_; }
   /// Whether row y, adjacent to the row run_y of `run`, has the same blocks along the run.
   [[nodiscard]] bool has_blocks_of(const Run& run, int run_y, int y) const;
   /// Number of candidates in the lanes of `blocks`; they come first.
@@ -99,7 +99,6 @@ class CandidateBlocks {
     return {blocks_.data() + tile * static_cast<std::size_t>(max_), counts_[tile]};
   }
   void compare_tiles(int tile_y);
-  void find_smooth_tiles(ImageView<const std::int32_t> winners, int tile_y);
   void leave_out_smooth_tiles();
   void choose_tile(ImageView<const std::int32_t> winners, scheduler::Range allowed, int tile_x,
                    int tile_y, std::vector<int>& votes);
@@ -117,7 +116,7 @@ class CandidateBlocks {
   std::vector<std::uint8_t> counts_;
   std::vector<int> run_ends_;              ///< first tile to the right with other blocks
   std::vector<std::uint8_t> is_as_above_;  ///< whether a tile has the blocks of the tile above
-  std::vector<std::uint8_t> is_smooth_;
+  TileMask smooth_;
   std::vector<std::uint8_t> is_wanted_;
 };
 

@@ -154,6 +154,12 @@ void MatchOptions::validate() const {
         fmt::format("selection is {}, expected winner with disparities-y: paths are along rows",
                     name_of(in_force.selection)));
   }
+  if (in_force.window_levels > 0 && disparities_y) {
+    throw UsageError(
+        fmt::format("window-levels is {}, expected 0 with disparities-y: windows are of candidates "
+                    "along rows",
+                    in_force.window_levels));
+  }
   const RefinementOptions of_maps = resolved_refinement();
   if (in_force.selection == Selection::kSymmetric && refinement.cross_check.value_or(false)) {
     throw UsageError(
@@ -214,10 +220,15 @@ MethodParameters MatchOptions::resolved() const {
   }
   MethodParameters result =
       resolve(method.value_or(settings.method), merge(settings.parameters, parameters));
-  // A preset's search size and pruning apply only where they are possible: the user's choices take
-  // precedence.
+  // A preset's search size, windows and pruning apply only where they are possible: the user's
+  // choices take precedence.
   if (!parameters.search_size && (disparities_y || !can_reduce_search(result))) {
     result.search_size = SearchSize::kFull;
+  }
+  const bool chooses_blocks = parameters.candidate_blocks || parameters.pruned_levels;
+  if (!parameters.window_levels &&
+      (disparities_y || chooses_blocks || !can_search_windows(result))) {
+    result.window_levels = 0;
   }
   if (!parameters.candidate_blocks && (disparities_y || !can_prune(result))) {
     result.candidate_blocks = 0;

@@ -17,6 +17,7 @@ MethodOverrides coarse_to_fine() {
   parameters.prior_smoothing = PriorSmoothing::kMaximum;
   parameters.edge_weight = 0.2;
   parameters.candidate_blocks = 3;
+  parameters.window_levels = 1;
   return parameters;
 }
 
@@ -44,6 +45,7 @@ PresetSettings preset_settings(MatchPreset preset) {
     case MatchPreset::kFast:
       settings.parameters.mu = 0.28;
       settings.parameters.iterations = 2;
+      settings.parameters.window_levels = 0;
       settings.parameters.final_iterations = 0;
       settings.refinement.cross_check_level = 1;
       settings.refinement.surface_fit_step_px = 2;

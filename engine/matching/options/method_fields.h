@@ -91,6 +91,8 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
               {is_within<0, kMaxCandidateBlocks>, "a number from 0 (all candidates) to 8"}},
         options.candidate_blocks...);
   visit(Field{"pruned-levels", readers::kPrunedLevels, kLevels}, options.pruned_levels...);
+  visit(Field{"window-levels", readers::kWindowLevels, {is_within<0, 2>, "a number from 0 to 2"}},
+        options.window_levels...);
   visit(Field{"final-iterations", readers::kNamedWithLevels, kIterations},
         options.final_iterations...);
   visit(Field{"lambda", readers::kNamed}, options.lambda...);

@@ -58,6 +58,15 @@ void validate_search_size(const MethodParameters& parameters) {
   }
 }
 
+void validate_windows(const MethodParameters& parameters) {
+  if (parameters.window_levels > 0) {
+    require(parameters.final_iterations > 0, "final-iterations", parameters.final_iterations,
+            "at least 1 with window-levels above 0");
+    require(parameters.window_levels < 2 || parameters.iterations > 0, "iterations",
+            parameters.iterations, "at least 1 with window-levels 2");
+  }
+}
+
 void validate_step(const MethodParameters& parameters) {
   if (parameters.aggregation == Aggregation::kMembrane) {
     const double max = 1 / (4 + parameters.beta);
@@ -175,12 +184,16 @@ bool can_prune(const MethodParameters& parameters) {
          parameters.prior_smoothing == PriorSmoothing::kMaximum;
 }
 
-bool can_reduce_search(const MethodParameters& parameters) {
+bool can_search_windows(const MethodParameters& parameters) {
   return parameters.selection == Selection::kWinner && parameters.levels > 1 &&
          parameters.aggregation == Aggregation::kBayes &&
          parameters.prior_smoothing == PriorSmoothing::kMaximum &&
-         parameters.cost == MatchCost::kRayCensus && parameters.census_thresholds == 1 &&
-         parameters.colour == ColourUse::kLuma && steps_per_px(parameters) == 1;
+         parameters.cost == MatchCost::kRayCensus && parameters.colour == ColourUse::kLuma &&
+         steps_per_px(parameters) == 1;
+}
+
+bool can_reduce_search(const MethodParameters& parameters) {
+  return can_search_windows(parameters) && parameters.census_thresholds == 1;
 }
 
 bool uses_sigma_measurement(const MethodParameters& parameters) {
@@ -200,6 +213,7 @@ void validate(const MethodParameters& parameters) {
   require_within_limits(parameters);
   validate_pruning(parameters);
   validate_search_size(parameters);
+  validate_windows(parameters);
   validate_step(parameters);
   validate_combination(parameters);
 }

@@ -24,6 +24,10 @@ void validate(const MethodParameters& parameters);
 /// the maximum prior and any cost but evidence.
 bool can_prune(const MethodParameters& parameters);
 
+/// Whether fine levels can search windows of candidates (window_levels): Bayes with several levels,
+/// the maximum prior and ray census codes of luma.
+bool can_search_windows(const MethodParameters& parameters);
+
 /// Whether candidates can be searched in reduced images (search_size): Bayes with several levels,
 /// the maximum prior, ray census codes of luma with one threshold, and candidates of whole pixels.
 bool can_reduce_search(const MethodParameters& parameters);

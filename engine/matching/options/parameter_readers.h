@@ -76,6 +76,13 @@ inline constexpr ParameterReaders kPrunedLevels = {
     [](const MethodParameters& p, std::string_view) {
       return p.candidate_blocks > 0 && can_prune(p);
     }};
+/// The default counts as read where only it is possible.
+inline constexpr ParameterReaders kWindowLevels = {
+    "the aggregation bayes with levels above 1, prior-smoothing maximum and cost census-rays of "
+    "luma (the presets)",
+    [](const MethodParameters& p, std::string_view) {
+      return p.window_levels == 0 || can_search_windows(p);
+    }};
 inline constexpr ParameterReaders kEdges = {
     "{names} with edge-weight below 1 (the presets)",
     [](const MethodParameters& p, std::string_view) { return uses_edge_weights(p); }};

@@ -1,6 +1,7 @@
 #include "engine/matching/windows/coarse_beliefs.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <numeric>
 #include <vector>
@@ -14,8 +15,6 @@ namespace {
 using kernels::kLaneMultiple;
 using kernels::WindowCells;
 
-/// Bytes of energies_row() that are valid.
-constexpr int kValidBytes = 6;
 constexpr WindowCells kUnknown = ~WindowCells{0};
 
 /// Lanes of the blocks of a column: −1 for blocks that it does not hold.
@@ -28,15 +27,21 @@ class BlockLanes {
       lanes_[blocks[k]] = static_cast<int>(k) * kLaneMultiple;
     }
   }
-  /// The cells of consecutive candidates from `first` on.
+  /// The cells of kValid consecutive candidates from `first` on.
+  template <int kValid>
   [[nodiscard]] WindowCells fetch(const std::uint8_t* column, int first) const {
     const auto block = static_cast<std::size_t>(first / kLaneMultiple);
     const int place = first % kLaneMultiple;
     const int here = lanes_[block];
     if (here >= 0 &&
-        (place + kValidBytes <= kLaneMultiple || lanes_[block + 1] == here + kLaneMultiple)) {
+        (place + kValid <= kLaneMultiple || lanes_[block + 1] == here + kLaneMultiple)) {
+      if constexpr (kValid == 8) {
+        WindowCells cells;
+        std::memcpy(&cells, column + here + place, sizeof(cells));
+        return cells;
+      }
       // In registers: reading eight bytes of which six were just written would wait.
-      static_assert(kValidBytes == 6);
+      static_assert(kValid == 6 || kValid == 8);
       std::uint32_t first_four;
       std::uint16_t last_two;
       std::memcpy(&first_four, column + here + place, sizeof(first_four));
@@ -44,7 +49,7 @@ class BlockLanes {
       return kUnknown << 48 | WindowCells{last_two} << 32 | first_four;
     }
     WindowCells cells = kUnknown;
-    for (int i = 0; i < kValidBytes; ++i) {
+    for (int i = 0; i < kValid; ++i) {
       const int lane = lanes_[block + static_cast<std::size_t>((place + i) / kLaneMultiple)];
       if (lane >= 0) {
         cells &= ~(WindowCells{255} << (8 * i));
@@ -77,7 +82,17 @@ void LevelBeliefs::winners_row(int y, std::int16_t* winners) const {
 }
 
 void LevelBeliefs::energies_row(int y, scheduler::Range columns, const std::int16_t* first,
-                                WindowCells* energies) const {
+                                int valid, WindowCells* energies) const {
+  if (valid == 8) {
+    fetch_row<8>(y, columns, first, energies);
+  } else {
+    fetch_row<6>(y, columns, first, energies);
+  }
+}
+
+template <int kValid>
+void LevelBeliefs::fetch_row(int y, scheduler::Range columns, const std::int16_t* first,
+                             WindowCells* energies) const {
   BlockLanes lanes(blocks_count_);
   if (blocks_ == nullptr) {
     std::vector<std::uint16_t> all(static_cast<std::size_t>(blocks_count_));
@@ -93,7 +108,7 @@ void LevelBeliefs::energies_row(int y, scheduler::Range columns, const std::int1
     }
     for (; x < end; ++x) {
       if (first[x] >= 0) {
-        energies[x] = lanes.fetch(energies_.column<std::uint8_t>(x, y), first[x]);
+        energies[x] = lanes.fetch<kValid>(energies_.column<std::uint8_t>(x, y), first[x]);
       }
     }
   }
@@ -108,19 +123,22 @@ void WindowBeliefs::winners_row(int y, std::int16_t* winners) const {
 }
 
 void WindowBeliefs::energies_row(int y, scheduler::Range columns, const std::int16_t* first,
-                                 WindowCells* energies) const {
+                                 int /*valid*/, WindowCells* energies) const {
+  constexpr WindowCells kEveryByte = 0x0101'0101'0101'0101;
+  const WindowCells ceiling = kEveryByte * static_cast<WindowCells>(state_.ceiling);
+  const WindowCells* const support = state_.support.row(y);
+  const std::int16_t* const start = state_.start.row(y);
   for (int x = columns.begin; x < columns.end; ++x) {
-    const WindowCells support = state_.support.at(x, y);
-    energies[x] = kUnknown;
-    for (int i = 0; i < kValidBytes; ++i) {
-      const int lane = first[x] + i - state_.start.at(x, y);
-      if (lane >= 0 && lane < kernels::kWindowCandidates) {
-        const auto energy =
-            static_cast<WindowCells>(state_.ceiling - kernels::window_cell(support, lane));
-        energies[x] &= ~(WindowCells{255} << (8 * i));
-        energies[x] |= energy << (8 * i);
-      }
+    const int lanes = first[x] - start[x];
+    if (std::abs(lanes) >= kernels::kWindowCandidates) {
+      energies[x] = kUnknown;
+      continue;
     }
+    const auto moved = [lanes](WindowCells cells) {
+      return lanes >= 0 ? cells >> (8 * lanes) : cells << (-8 * lanes);
+    };
+    // No byte borrows from the next: cells are at most the ceiling.
+    energies[x] = (ceiling - moved(support[x])) | ~moved(kUnknown);
   }
 }
 

@@ -12,8 +12,8 @@
 
 namespace vantage {
 
-/// What a level knows of its pixels' disparities, read by the next finer level of windows, whose
-/// candidates are half as far apart. Thread rule: immutable.
+/// What a level knows of its pixels' disparities, read by the next finer level of windows. Thread
+/// rule: immutable.
 class CoarseBeliefs {
  public:
   CoarseBeliefs() = default;
@@ -29,9 +29,9 @@ class CoarseBeliefs {
   /// The candidates with the lowest energy of row y.
   virtual void winners_row(int y, std::int16_t* winners) const = 0;
   /// Byte i of energies[x]: the energy of candidate first[x] + i of column x in row y, above the
-  /// least of the column, for x in `columns`; 255 where it was not searched. Six bytes are valid.
-  /// Columns with first[x] below 0 are left out.
-  virtual void energies_row(int y, scheduler::Range columns, const std::int16_t* first,
+  /// least of the column, for x in `columns`; 255 where it was not searched. valid: bytes that
+  /// count, 6 or 8. Columns with first[x] below 0 are left out.
+  virtual void energies_row(int y, scheduler::Range columns, const std::int16_t* first, int valid,
                             kernels::WindowCells* energies) const = 0;
 };
 
@@ -49,10 +49,14 @@ class LevelBeliefs final : public CoarseBeliefs {
   [[nodiscard]] int disparity_min() const override { return disparity_min_; }
   [[nodiscard]] double nats_per_step() const override { return nats_per_step_; }
   void winners_row(int y, std::int16_t* winners) const override;
-  void energies_row(int y, scheduler::Range columns, const std::int16_t* first,
+  void energies_row(int y, scheduler::Range columns, const std::int16_t* first, int valid,
                     kernels::WindowCells* energies) const override;
 
  private:
+  template <int kValid>
+  void fetch_row(int y, scheduler::Range columns, const std::int16_t* first,
+                 kernels::WindowCells* energies) const;
+
   const LevelVolume& energies_;
   const CandidateBlocks* blocks_;
   ImageView<const std::int32_t> winners_;
@@ -89,7 +93,7 @@ class WindowBeliefs final : public CoarseBeliefs {
   [[nodiscard]] int disparity_min() const override { return state_.disparity_min; }
   [[nodiscard]] double nats_per_step() const override { return state_.nats_per_step; }
   void winners_row(int y, std::int16_t* winners) const override;
-  void energies_row(int y, scheduler::Range columns, const std::int16_t* first,
+  void energies_row(int y, scheduler::Range columns, const std::int16_t* first, int valid,
                     kernels::WindowCells* energies) const override;
 
  private:

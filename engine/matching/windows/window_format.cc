@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "kernels/census/census.h"
-
 namespace vantage {
 namespace {
 
@@ -23,18 +21,20 @@ WindowFormat::WindowFormat(const MethodParameters& parameters)
   constexpr double kMaxStepsPerNat = 16;
   const double outlier_nats = -std::log(parameters.epsilon_measurement);
   const double ceiling = ceiling_nats(parameters);
-  const double weight = 1;
   steps_per_nat_ = std::min({kMaxStepsPerNat, kMaxCell / std::max(ceiling, 1e-3),
-                             kernels::kMaxPixelEvidence / std::max(outlier_nats * weight, 1e-3)});
+                             kernels::kMaxPixelEvidence / std::max(outlier_nats, 1e-3)});
   ceiling_ = static_cast<int>(std::lround(steps_per_nat_ * ceiling));
-  for (int distance = 0; distance <= kernels::kRayCensusNeighbours; ++distance) {
-    const double deviations = distance / parameters.sigma_measurement;
+  const int thresholds = parameters.census_thresholds;
+  const int distances = kernels::ray_census_distances(thresholds);
+  for (int distance = 0; distance < distances; ++distance) {
+    const double deviations = distance / (parameters.sigma_measurement * thresholds);
     const double epsilon = parameters.epsilon_measurement;
     const double nats =
         outlier_nats + std::log((1 - epsilon) * std::exp(-deviations * deviations / 2) + epsilon);
     evidence_.steps[static_cast<std::size_t>(distance)] =
-        static_cast<std::uint8_t>(std::lround(steps_per_nat_ * weight * std::max(nats, 0.0)));
+        static_cast<std::uint8_t>(std::lround(steps_per_nat_ * std::max(nats, 0.0)));
   }
+  evidence_.find_last(distances);
 }
 
 kernels::WindowPrior WindowFormat::prior(int count) const {

@@ -15,7 +15,7 @@ class WindowFormat {
 
   [[nodiscard]] double nats_per_step() const { return 1 / steps_per_nat_; }
   /// Evidence of one pixel: the log-likelihood of a distance of its code above that of an outlier.
-  [[nodiscard]] const kernels::EvidenceByDistance& evidence() const { return evidence_; }
+  [[nodiscard]] const kernels::ByteByDistance& evidence() const { return evidence_; }
   /// count: candidates of the level.
   [[nodiscard]] kernels::WindowPrior prior(int count) const;
   [[nodiscard]] int ceiling() const { return ceiling_; }
@@ -24,7 +24,7 @@ class WindowFormat {
   double sigma_prior_;
   double steps_per_nat_;
   int ceiling_;
-  kernels::EvidenceByDistance evidence_;
+  kernels::ByteByDistance evidence_;
 };
 
 }  // namespace vantage

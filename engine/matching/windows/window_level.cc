@@ -8,12 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "engine/matching/costs/ray_census_planes.h"
+#include "engine/matching/windows/window_evidence.h"
 #include "engine/matching/windows/window_format.h"
 #include "engine/matching/windows/window_rows.h"
 #include "engine/matching/windows/window_starter.h"
 #include "engine/object_pool.h"
-#include "kernels/window_evidence/window_evidence.h"
 #include "kernels/window_step/window_step.h"
 #include "scheduler/range.h"
 
@@ -29,13 +28,6 @@ using scheduler::Region;
 /// Rows per task: few enough to balance, enough that the rows made twice, around bands, are few.
 constexpr int kBandRows = 32;
 
-/// Planes of the codes of one channel.
-using Codes = PlaneSet<std::uint8_t, kernels::kMaxRayCensusBytes>;
-
-const Codes& codes_of(const CostImage& image) {
-  return static_cast<const RayCensusPlanes&>(image.planes()).codes[0];
-}
-
 /// What all tasks of a level share.
 struct Level {
   const WindowLevelInput& input;
@@ -43,25 +35,11 @@ struct Level {
   const WindowLevelOutput& output;
   WindowFormat format;
   kernels::WindowPrior prior;
-  const Codes& reference;
-  const Codes& partner;
+  const WindowEvidence& evidence;
   int columns;
   int rows;
   int iterations;
-  Range inner;  ///< columns where all candidates have partners
-  /// Per column: the candidates that have partners for both of its pixels.
-  std::vector<kernels::CandidateRange> partnered;
 };
-
-std::vector<kernels::CandidateRange> partnered_candidates(
-    const kernels::CandidateGeometry& geometry, int columns) {
-  std::vector<kernels::CandidateRange> result;
-  result.reserve(static_cast<std::size_t>(columns));
-  for (int x = 0; x < columns; ++x) {
-    result.push_back(geometry.with_partners(2 * x, std::min(2 * x + 1, geometry.width - 1)));
-  }
-  return result;
-}
 
 /// Columns around those of a result that its iterations read, one more than iterations make wrong.
 int halo_columns(int iterations) { return iterations + 1; }
@@ -72,8 +50,8 @@ class Band {
  public:
   explicit Band(const Level& level)
       : level_(level),
-        starter_(level.input.coarse, level.input.geometry.disparity_min, level.input.geometry.count,
-                 level.prior, level.format.nats_per_step()),
+        starter_(level.input.coarse, level.input.spacing, level.input.geometry.disparity_min,
+                 level.input.geometry.count, level.prior, level.format.nats_per_step()),
         starts_(level.iterations + 4, level.columns),
         evidence_(level.iterations, level.columns),
         absent_(level.columns),
@@ -107,7 +85,7 @@ class Band {
     for (int y = rows.begin - halo; y < rows.end + halo; ++y) {
       if (y >= 0 && y < level_.rows) {
         prepare_starts(y);
-        make_evidence(y);
+        level_.evidence.make_row(y, columns_, starts_.at(y / 2), evidence_.at(y));
       }
       for (int i = 1; i < level_.iterations; ++i) {
         const int of_iteration = y - (i - 1);
@@ -143,67 +121,10 @@ class Band {
                              starts_.at(own));
   }
 
-  void make_evidence(int y) {
-    const WindowStartRow& starts = starts_.at(y / 2);
-    kernels::WindowEvidenceRow row;
-    row.start = from(columns_, starts.starts());
-    row.has_second = starts.has_second.data() + columns_.begin;
-    row.columns = columns_.size();
-    row.direction = level_.input.geometry.direction;
-    const int first_pixel = 2 * columns_.begin;
-    const std::ptrdiff_t first_partner = level_.input.geometry.partner(first_pixel, 0);
-    for (std::size_t r = 0; r < 2; ++r) {
-      const int of_image =
-          std::min(2 * y + static_cast<int>(r), level_.input.reference.height() - 1);
-      for (std::size_t p = 0; p < kernels::kRayCensusBytes; ++p) {
-        row.reference[r][p] = level_.reference[p].plain.row(of_image) + first_pixel;
-        row.partner[r][p] = level_.partner[p].plain.row(of_image) + first_partner;
-      }
-    }
-    const auto evidence = evidence_.at(y).data();
-    kernels::window_evidence_row(row, level_.format.evidence(), from(columns_, evidence));
-    if (level_.prior.lanes != ~WindowCells{0}) {
-      for (WindowCells* const of_window : evidence) {
-        std::transform(of_window + columns_.begin, of_window + columns_.end,
-                       of_window + columns_.begin,
-                       [this](WindowCells cells) { return cells & level_.prior.lanes; });
-      }
-    }
-    for_each_outer_column([&](int x) {
-      evidence[0][x] &= with_partner(x, starts.start[0].data()[x]);
-      if (starts.has_second.data()[x] != 0) {
-        evidence[1][x] &= with_partner(x, starts.start[1].data()[x]);
-      }
-    });
-  }
-
   /// Both windows' values from the first of `columns` on.
   template <typename T>
   static std::array<T*, kWindows> from(Range columns, const std::array<T*, kWindows>& values) {
     return {values[0] + columns.begin, values[1] + columns.begin};
-  }
-
-  /// Columns of the region and its halo where some candidates lack partners.
-  template <typename Body>
-  void for_each_outer_column(const Body& body) const {
-    for (int x = columns_.begin; x < std::min(level_.inner.begin, columns_.end); ++x) {
-      body(x);
-    }
-    const int outer_end = std::max(level_.inner.end, level_.inner.begin);
-    for (int x = std::max(outer_end, columns_.begin); x < columns_.end; ++x) {
-      body(x);
-    }
-  }
-
-  /// 255 for the candidates of a window that have partners for both pixels of the column.
-  [[nodiscard]] WindowCells with_partner(int x, int start) const {
-    const kernels::CandidateRange inside = level_.partnered[static_cast<std::size_t>(x)];
-    return lanes_before(inside.end - start) & ~lanes_before(inside.begin - start);
-  }
-  /// 255 for the first `count` lanes.
-  static WindowCells lanes_before(int count) {
-    const int lanes = std::clamp(count, 0, kWindowCandidates);
-    return lanes == kWindowCandidates ? ~WindowCells{0} : (WindowCells{1} << (8 * lanes)) - 1;
   }
 
   /// Columns `columns` of row y as iteration `iteration`, 1 being the first, reads it.
@@ -256,11 +177,11 @@ class Band {
                                    .total_after = total_after_.data() + first,
                                    .support = needs_support ? support_.data() + first : nullptr};
     const auto selectable = selectable_.data();
-    if (level_.inner != Range{0, level_.columns}) {
+    if (!level_.evidence.has_all_partners()) {
       // Set to all at first; only outer columns change.
-      for_each_outer_column([&](int x) {
+      level_.evidence.for_each_outer_column(result_, [&](int x) {
         for (std::size_t q = 0; q < kWindows; ++q) {
-          selectable[q][x] = with_partner(x, starts.start[q].data()[x]);
+          selectable[q][x] = level_.evidence.with_partner(x, starts.start[q].data()[x]);
         }
       });
       winners.selectable = {selectable[0] + first, selectable[1] + first};
@@ -275,9 +196,8 @@ class Band {
          .is_refined = level_.subpixel == Subpixel::kParabola,
          .columns = result_.size()},
         disparity_px + first);
-    for_each_outer_column([&](int x) {
-      const bool is_result = result_.contains({x, x + 1});
-      if (is_result && window_.data()[x] != kernels::kNoWindow && !has_partners_beside(x)) {
+    level_.evidence.for_each_outer_column(result_, [&](int x) {
+      if (window_.data()[x] != kernels::kNoWindow && !has_partners_beside(x)) {
         disparity_px[x] =
             static_cast<float>(level_.input.geometry.disparity_min + winner(x, starts));
       }
@@ -380,21 +300,18 @@ int coarse_reach(int iterations) {
 void search_windows(const WindowLevelInput& input, Subpixel subpixel,
                     const WindowLevelOutput& output, Execution& execution) {
   const WindowFormat format(input.parameters);
-  const kernels::CandidateRange with_all = input.geometry.columns_with_all_partners();
   const int columns = output.disparity_px.width();
+  const kernels::WindowPrior prior = format.prior(input.geometry.count);
+  const WindowEvidence evidence(input, format, columns, prior.lanes);
   const Level level{.input = input,
                     .subpixel = subpixel,
                     .output = output,
                     .format = format,
-                    .prior = format.prior(input.geometry.count),
-                    .reference = codes_of(input.reference),
-                    .partner = codes_of(input.partner),
+                    .prior = prior,
+                    .evidence = evidence,
                     .columns = columns,
                     .rows = output.disparity_px.height(),
-                    .iterations = input.parameters.final_iterations,
-                    .inner = {std::clamp((with_all.begin + 1) / 2, 0, columns),
-                              std::clamp(with_all.end / 2, 0, columns)},
-                    .partnered = partnered_candidates(input.geometry, columns)};
+                    .iterations = input.parameters.iterations};
   if (output.state != nullptr) {
     output.state->resize({level.columns, level.rows});
     output.state->disparity_min = input.geometry.disparity_min;

@@ -15,15 +15,23 @@ namespace vantage {
 
 /// Input of a level of windows. All must outlive the call.
 struct WindowLevelInput {
-  /// Iterations (final_iterations, at least 1), prior and measurement of the level.
+  /// Iterations (at least 1), prior and measurement of the level, see at_level().
   const MethodParameters& parameters;
-  /// Candidates of the pixels whose codes are compared, twice as wide and high as the level. Both
-  /// images are prepared with one census threshold for window_margins() of it.
+  /// Pixels of a column along one direction, 1 or 2.
+  int side = 2;
+  /// Candidates from one candidate of `coarse` to the next, 1 or 2.
+  int spacing = 2;
+  /// Candidates of the pixels whose codes are compared: side times as wide and high as the level.
+  /// Both images are prepared with the parameters' cost for window_margins() of it.
   kernels::CandidateGeometry geometry;
   const CostImage& reference;
   const CostImage& partner;
   const EdgeWeights* edges;  ///< of the level, for final_iterations; null: all weights are 1
   const CoarseBeliefs& coarse;
+  /// Disparities that attract pixels, on the reference's grid; empty: none. See
+  /// kernels/disparity_prior.
+  ImageView<const float> prior_px = {};
+  double prior_weight = 0;
 };
 
 /// The geometry for which the images of a level are prepared: with enough columns on both sides.
@@ -44,7 +52,7 @@ struct WindowLevelOutput {
 };
 
 /// Bayesian diffusion over windows of candidates (EQUATIONS §3.13): each pixel of the level, which
-/// stands for 2×2 pixels of the images, searches 8 candidates around the winner of the coarser
+/// stands for side² pixels of the images, searches 8 candidates around the winner of the coarser
 /// level's pixel that covers it, and where winners around that differ, 8 around another of them.
 /// The start is the coarser level's result. Rows are swept in bands; nothing but the result is
 /// stored. Identical for any `execution`; a pixel does not depend on which others are searched.

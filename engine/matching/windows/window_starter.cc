@@ -22,12 +22,13 @@ constexpr int kBeforeGuess = kWindowCandidates / 2 - 1;
 
 }  // namespace
 
-WindowStarter::WindowStarter(const CoarseBeliefs& coarse, int disparity_min, int count,
+WindowStarter::WindowStarter(const CoarseBeliefs& coarse, int spacing, int disparity_min, int count,
                              const kernels::WindowPrior& prior, double nats_per_step)
     : coarse_(coarse),
+      spacing_(spacing),
       count_(count),
       coarse_columns_(coarse.extent().columns),
-      first_(2 * coarse.disparity_min() - disparity_min),
+      first_(spacing * coarse.disparity_min() - disparity_min),
       lanes_(prior.lanes),
       steps_(static_cast<std::uint16_t>(
           std::min(65535.0, std::ceil(256 * coarse.nats_per_step() / nats_per_step)))),
@@ -75,19 +76,21 @@ void WindowStarter::make_windows(int y, const std::int16_t* winners, std::size_t
   const int end = (columns.end + 1) / 2;
   const auto last_start = static_cast<std::int16_t>(std::max(0, count_ - kWindowCandidates));
   const auto first = static_cast<std::int16_t>(first_);
+  const auto spacing = static_cast<std::int16_t>(spacing_);
+  const int halvings = spacing_ - 1;
   std::int16_t* const starts = starts_.data();
   std::int16_t* const first_coarse = first_coarse_.data();
   std::uint8_t* const offset_bits = offset_bits_.data();
   // In 16 bits, which compilers find vectors for. Without a second winner the window is unused.
   for (int x = begin; x < end; ++x) {
-    const auto guess = static_cast<std::int16_t>(2 * winners[x] + first - kBeforeGuess);
+    const auto guess = static_cast<std::int16_t>(spacing * winners[x] + first - kBeforeGuess);
     const std::int16_t start = std::min(std::max(guess, std::int16_t{0}), last_start);
     // first ≤ 0: the coarser level begins at or before this one.
     const auto from_first = static_cast<std::int16_t>(start - first);
     starts[x] = start;
-    const auto at_start = static_cast<std::int16_t>(from_first >> 1);
+    const auto at_start = static_cast<std::int16_t>(from_first >> halvings);
     first_coarse[x] = winners[x] == kNoSecondWinner ? kNoSecondWinner : at_start;
-    offset_bits[x] = static_cast<std::uint8_t>((from_first & 1) << 3);
+    offset_bits[x] = static_cast<std::uint8_t>((from_first & halvings) << 3);
   }
   const bool exists =
       window == 0 || std::any_of(winners + begin, winners + end,
@@ -105,8 +108,10 @@ void WindowStarter::make_windows(int y, const std::int16_t* winners, std::size_t
       return;
     }
   }
-  coarse_.energies_row(y, {begin, end}, first_coarse_.data(), energies_.data());
-  kernels::window_start_row({.energies = energies_.data() + begin,
+  coarse_.energies_row(y, {begin, end}, first_coarse_.data(), kernels::coarse_candidates(spacing_),
+                       energies_.data());
+  kernels::window_start_row({.spacing = spacing_,
+                             .energies = energies_.data() + begin,
                              .offset_bits = offset_bits_.data() + begin,
                              .steps = steps_,
                              .ceiling = ceiling_,

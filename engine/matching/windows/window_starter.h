@@ -14,8 +14,9 @@ namespace vantage {
 /// Working memory of one task.
 class WindowStarter {
  public:
-  /// count, disparity_min: of the level's candidates.
-  WindowStarter(const CoarseBeliefs& coarse, int disparity_min, int count,
+  /// spacing: the level's candidates from one coarse candidate to the next, 1 or 2. disparity_min,
+  /// count: of the level's candidates.
+  WindowStarter(const CoarseBeliefs& coarse, int spacing, int disparity_min, int count,
                 const kernels::WindowPrior& prior, double nats_per_step);
 
   /// Everything but near_second of the level's rows that coarse row y covers; `columns` of the
@@ -32,6 +33,7 @@ class WindowStarter {
                     scheduler::Range columns, WindowStartRow& row);
 
   const CoarseBeliefs& coarse_;
+  int spacing_;
   int count_;
   int coarse_columns_;
   /// Candidate of the level at the disparity of the coarser level's candidate 0.
