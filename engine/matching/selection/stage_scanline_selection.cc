@@ -1,4 +1,5 @@
 #include "engine/matching/selection/stage_scanline_selection.h"
+#include "engine/matching/selection/whole_row_stage.h"
 
 #include <algorithm>
 #include <array>
@@ -17,22 +18,17 @@ namespace {
 using scheduler::Extent;
 using scheduler::Range;
 
-class ScanlineSelectionStage final : public scheduler::RowStage {
+class ScanlineSelectionStage final : public WholeRowStage {
  public:
   ScanlineSelectionStage(std::unique_ptr<RowEnergies> energies, const ScanlineSettings& settings,
                          const MapOutputs& outputs)
-      : RowStage({energies->geometry().width, outputs.disparity_px.height()}),
+      : WholeRowStage({energies->geometry().width, outputs.disparity_px.height()}),
         energies_(std::move(energies)),
         geometry_(energies_->geometry()),
         settings_(settings),
         outputs_(outputs) {}
 
   [[nodiscard]] std::string_view name() const override { return "scanline selection"; }
-  [[nodiscard]] std::size_t bytes_per_column() const override { return 0; }
-  [[nodiscard]] bool needs_whole_rows() const override { return true; }
-  [[nodiscard]] Range input_columns(Range /*columns*/, Extent input) const override {
-    return input.all_columns();
-  }
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
     return place(nullptr).bytes;
   }

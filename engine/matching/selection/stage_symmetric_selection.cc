@@ -1,4 +1,5 @@
 #include "engine/matching/selection/stage_symmetric_selection.h"
+#include "engine/matching/selection/whole_row_stage.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,12 +59,12 @@ double subpixel_position(const SymmetricRow& row, Pair pair) {
   return of_left && of_right ? (*of_left + *of_right) / 2 : of_left.value_or(of_right.value_or(0));
 }
 
-class SymmetricSelectionStage final : public scheduler::RowStage {
+class SymmetricSelectionStage final : public WholeRowStage {
  public:
   SymmetricSelectionStage(std::unique_ptr<RowEnergies> energies, const LevelVolume& right,
                           const SymmetricSettings& settings, const MapOutputs& left_outputs,
                           const MapOutputs& right_outputs)
-      : RowStage({energies->geometry().width, left_outputs.disparity_px.height()}),
+      : WholeRowStage({energies->geometry().width, left_outputs.disparity_px.height()}),
         energies_(std::move(energies)),
         geometry_(energies_->geometry()),
         right_(right),
@@ -71,11 +72,6 @@ class SymmetricSelectionStage final : public scheduler::RowStage {
         outputs_{left_outputs, right_outputs} {}
 
   [[nodiscard]] std::string_view name() const override { return "symmetric selection"; }
-  [[nodiscard]] std::size_t bytes_per_column() const override { return 0; }
-  [[nodiscard]] bool needs_whole_rows() const override { return true; }
-  [[nodiscard]] Range input_columns(Range /*columns*/, Extent input) const override {
-    return input.all_columns();
-  }
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
     return place(nullptr).bytes;
   }
