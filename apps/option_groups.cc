@@ -62,16 +62,16 @@ void add_soft_edges_setting(Settings& settings, bool& soft_edges) {
 }
 
 void add_holes_setting(Settings& settings, HoleFilling& holes) {
-  settings.choice<HoleFilling>("holes", holes,
-                               {{"mirror", HoleFilling::kMirror},
-                                {"spread", HoleFilling::kSpread},
-                                {"inpaint", HoleFilling::kInpaint},
-                                {"texture", HoleFilling::kTexture},
-                                {"none", HoleFilling::kNone}},
-                               "Filling of areas that no image shows: background mirrored along "
-                               "the row (mirror), its border pixel repeated (spread), background "
-                               "continued from all sides (inpaint), patches of it copied so that "
-                               "its texture goes on (texture), or black (none)");
+  settings.choice<HoleFilling>(
+      "holes", holes,
+      {{"mirror", HoleFilling::kMirror},
+       {"spread", HoleFilling::kSpread},
+       {"inpaint", HoleFilling::kInpaint},
+       {"texture", HoleFilling::kTexture},
+       {"none", HoleFilling::kNone}},
+      "Filling of areas that no image shows: background mirrored along the row "
+      "(mirror), its border pixel repeated (spread), continued from all "
+      "sides (inpaint) or copied in patches (texture), or black (none)");
 }
 
 void add_combining_settings(Settings& settings, SynthesisOptions& options) {

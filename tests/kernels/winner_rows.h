@@ -20,10 +20,10 @@ struct WinnerCase {
   int disparity_min = 0;
   int count = 1;
   int direction = -1;
-  int steps_per_px = 1;
   int radius = 0;
   int index_bits = 0;
   bool whole_windows_only = false;
+  int steps_per_px = 1;
 
   /// Window columns of candidate i at column x that lie inside both images.
   [[nodiscard]] int samples(int x, int i) const {
