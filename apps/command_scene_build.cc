@@ -92,7 +92,9 @@ int command_scene_build(const Arguments& arguments) {
   add_file_settings(settings, job);
   add_match_settings(settings, job.match);
   settings.start_group("Check");
-  add_rectification_check_setting(settings, job.check_rectification);
+  add_rectification_check_setting(
+      settings, job.check_rectification,
+      "Accept neighbours without checking that rows correspond and that enough pixels match");
   add_common_settings(settings, job.common);
   add_input_limit_settings(settings, job.common.execution);
   settings.set_short_help(

@@ -59,10 +59,8 @@ bool expects_negative_disparities(const MatchOptions& options) {
   return !options.disparities_auto && -options.disparities.min > options.disparities.max;
 }
 
-void add_rectification_check_setting(Settings& settings, bool& wanted) {
-  Setting& setting = settings.add(
-      "no-rectification-check", "",
-      "Do not check, and warn, whether rows correspond and whether left and right are exchanged");
+void add_rectification_check_setting(Settings& settings, bool& wanted, const char* text) {
+  Setting& setting = settings.add("no-rectification-check", "", text);
   setting.flag = true;
   setting.changes_results = false;
   setting.set = [&wanted](const SettingValue& value) { wanted = !to_truth(value); };

@@ -9,18 +9,12 @@
 #include "apps/rectification_check.h"
 #include "apps/tell.h"
 #include "apps/vertical_error_report.h"
+#include "engine/scene_graph/edge_check.h"
 
 namespace vantage::apps {
 namespace {
 
 constexpr std::size_t kMaxWarnings = 5;
-
-const char* line_of(const SceneEdge& edge) {
-  if (edge.slope != 0) {
-    return "lines along the edge";
-  }
-  return edge.is_vertical ? "columns" : "rows";
-}
 
 }  // namespace
 
@@ -39,7 +33,7 @@ SettingValue SceneRectification::add(const SceneBuilder::BuiltEdge& edge) {
   const bool looks_exchanged = !expects_negative_disparities_ && error.looks_exchanged();
   if (!is_rectified(error)) {
     warnings_.push_back(
-        {error.systematic_px, fmt::format("{}: {}; {}", name, cost_text(error, line_of(ends)),
+        {error.systematic_px, fmt::format("{}: {}; {}", name, cost_text(error, lines_of(ends)),
                                           vertical_error_text(error))});
   }
   if (looks_exchanged) {

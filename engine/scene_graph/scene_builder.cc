@@ -22,6 +22,7 @@
 #include "engine/io/photograph_io.h"
 #include "engine/io/temporary_name.h"
 #include "engine/matching/range_estimation.h"
+#include "engine/scene_graph/edge_check.h"
 #include "engine/scene_graph/sheared_images.h"
 
 namespace vantage {
@@ -266,53 +267,42 @@ MatchOptions SceneBuilder::options_for(const SceneEdge& edge, const Photograph& 
   return options;
 }
 
-void SceneBuilder::match(const SceneEdge& edge, const std::array<Photograph, 2>& images,
-                         DisparityMaps& maps, StoredEdge& result, MatchReport* report) const {
-  try {
-    const StereoMatcher matcher(options_for(edge, images[0], images[1]), execution_);
-    result.disparities = matcher.in_force().disparities;
-    matcher.match(images[0], images[1], {}, maps, report);
-  } catch (const UsageError&) {
-    throw;
-  } catch (const Error& error) {
-    const auto name_of = [&](int vertex) {
-      return images_[static_cast<std::size_t>(vertex)].file.string();
-    };
-    throw Error(
-        fmt::format("{} and {}: {}", name_of(edge.first), name_of(edge.second), error.what()));
-  }
-}
-
-SceneBuilder::BuiltEdge SceneBuilder::build(int edge, MatchReport* report) {
-  const SceneEdge& wanted = layout_.edges().at(static_cast<std::size_t>(edge));
-  const std::array<int, 2> ends = {wanted.first, wanted.second};
-  std::array<Photograph, 2> images;
-  for (std::size_t side = 0; side < 2; ++side) {
-    images[side] = read_photograph(images_[static_cast<std::size_t>(ends[side])].file);
-    if (wanted.is_vertical) {
-      images[side] = transposed(images[side]);
-    }
-  }
-  const bool is_oblique = wanted.slope != 0;
-  const int height = images[0].height();
-  const Shear shear(wanted.slope, images[0].width());
-  for (std::size_t side = 0; side < 2 && is_oblique; ++side) {
-    images[side] = sheared(images[side], shear, execution_);
-  }
-  BuiltEdge built;
+DisparityMaps SceneBuilder::match(const std::array<Photograph, 2>& images, BuiltEdge& built,
+                                  MatchReport* report) const {
   StoredEdge& result = built.stored;
-  result.edge = wanted;
   if (options_.check_rectification) {
     const auto start = std::chrono::steady_clock::now();
-    built.rectification = check_rectification(images[0], images[1]);
+    built.rectification = require_rectified(images[0], images[1], lines_of(result.edge));
     if (built.rectification) {
       result.rectification_error_px = built.rectification->systematic_px;
     }
     built.check_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
+  const StereoMatcher matcher(options_for(result.edge, images[0], images[1]), execution_);
+  result.disparities = matcher.in_force().disparities;
   DisparityMaps maps;
-  match(wanted, images, maps, result, report);
+  matcher.match(images[0], images[1], {}, maps, report);
+  return maps;
+}
+
+DisparityMaps SceneBuilder::maps_of(BuiltEdge& built, MatchReport* report) const {
+  const SceneEdge& edge = built.stored.edge;
+  const std::array<int, 2> ends = {edge.first, edge.second};
+  std::array<Photograph, 2> images;
+  for (std::size_t side = 0; side < 2; ++side) {
+    images[side] = read_photograph(image_file(ends[side]));
+    if (edge.is_vertical) {
+      images[side] = transposed(images[side]);
+    }
+  }
+  const bool is_oblique = edge.slope != 0;
+  const int height = images[0].height();
+  const Shear shear(edge.slope, images[0].width());
+  for (std::size_t side = 0; side < 2 && is_oblique; ++side) {
+    images[side] = sheared(images[side], shear, execution_);
+  }
+  DisparityMaps maps = match(images, built, report);
   const std::array<DisparityMap*, 2> disparities = {&maps.left.disparity_px,
                                                     &maps.right.disparity_px};
   const std::array<Mask*, 2> masks = {&maps.left.unmatched, &maps.right.unmatched};
@@ -323,20 +313,44 @@ SceneBuilder::BuiltEdge SceneBuilder::build(int edge, MatchReport* report) {
       disparity = unsheared_disparity(disparity.view(), shear, height, execution_);
       unmatched = unsheared_mask(unmatched.view(), shear, height);
       mark_partners_beyond_border(disparity.view(), shear, side == 0 ? -1 : 1, unmatched.view());
-      scale(disparity.view(), wanted.length / wanted.length_along());
+      scale(disparity.view(), edge.length / edge.length_along());
     }
-    if (wanted.is_vertical) {
+    if (edge.is_vertical) {
       disparity = transposed(disparity.view());
       unmatched = transposed(unmatched.view());
     }
-    result.matched_share[side] = matched_share_of(unmatched.view());
-    const std::string name = map_name(wanted, side);
+    built.stored.matched_share[side] = matched_share_of(unmatched.view());
+  }
+  if (options_.check_rectification) {
+    require_matched(built.stored.matched_share, built.stored.disparities, built.rectification);
+  }
+  return maps;
+}
+
+SceneBuilder::BuiltEdge SceneBuilder::build(int edge, MatchReport* report) {
+  BuiltEdge built;
+  StoredEdge& result = built.stored;
+  result.edge = layout_.edges().at(static_cast<std::size_t>(edge));
+  DisparityMaps maps;
+  try {
+    maps = maps_of(built, report);
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Error& error) {
+    throw Error(fmt::format("{} and {}: {}", image_file(result.edge.first).string(),
+                            image_file(result.edge.second).string(), error.what()));
+  }
+  const std::array<const DisparityMap*, 2> disparities = {&maps.left.disparity_px,
+                                                          &maps.right.disparity_px};
+  const std::array<const Mask*, 2> masks = {&maps.left.unmatched, &maps.right.unmatched};
+  for (std::size_t side = 0; side < 2; ++side) {
+    const std::string name = map_name(result.edge, side);
     const auto stored = [&](const std::string& file) {
       return StoredFile{.name = file, .bytes = fs::file_size(folder_ / file)};
     };
-    write_disparity(folder_ / (name + kMapEnd), disparity.view());
+    write_disparity(folder_ / (name + kMapEnd), disparities[side]->view());
     result.maps[side] = stored(name + kMapEnd);
-    write_mask(folder_ / (name + kMaskEnd), unmatched.view());
+    write_mask(folder_ / (name + kMaskEnd), masks[side]->view());
     result.unmatched[side] = stored(name + kMaskEnd);
   }
   scene_.edges.push_back(result);

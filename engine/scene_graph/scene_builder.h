@@ -28,7 +28,9 @@ struct SceneBuildOptions {
   std::string settings = "{}";  ///< a JSON object: the fields of `match` that affect maps
   /// Copies the images into the folder, which then depends on nothing else.
   bool copy_images = false;
-  bool check_rectification = true;  ///< checks that rows and columns correspond
+  /// Refuses edges whose rows or columns do not correspond, or of which few pixels match
+  /// (edge_check.h).
+  bool check_rectification = true;
 
   /// Throws UsageError as MatchOptions does, and for a search in two dimensions.
   void validate() const;
@@ -71,15 +73,20 @@ class SceneBuilder {
     double check_seconds = 0;  ///< duration of this check
   };
 
-  /// Matches and stores an edge of the layout. Throws Error naming the images.
+  /// Matches and stores an edge of the layout. Throws Error naming the images, also for those that
+  /// the check refuses; nothing of such an edge is stored.
   BuiltEdge build(int edge, MatchReport* report = nullptr);
 
  private:
   [[nodiscard]] StoredImage stored_image(const SceneImage& image) const;
   void remove_leftovers() const;
   void keep_finished_edges();
-  void match(const SceneEdge& edge, const std::array<Photograph, 2>& images, DisparityMaps& maps,
-             StoredEdge& result, MatchReport* report) const;
+  /// The maps of `built.stored.edge` on the grids of its images; sets the other values of `built`
+  /// but the files.
+  [[nodiscard]] DisparityMaps maps_of(BuiltEdge& built, MatchReport* report) const;
+  /// Checks and matches images whose rows correspond.
+  [[nodiscard]] DisparityMaps match(const std::array<Photograph, 2>& images, BuiltEdge& built,
+                                    MatchReport* report) const;
   [[nodiscard]] MatchOptions options_for(const SceneEdge& edge, const Photograph& first,
                                          const Photograph& second) const;
 

@@ -20,6 +20,7 @@
 #include "engine/image/transposed.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/photograph_io.h"
+#include "engine/scene_graph/edge_check.h"
 #include "tests/engine/identical_maps.h"
 #include "tests/engine/io_test_support.h"
 
@@ -379,7 +380,7 @@ TEST_F(SceneBuilderTest, TellsWhetherRowsAndColumnsCorrespond) {
     }
     SceneBuildOptions build;
     build.match.preset = MatchPreset::kFast;  // maps are not looked at
-    build.match.disparities = {0, 20};
+    build.match.disparities = {-20, 20};
     fs::remove_all(place_);
     SceneBuilder checking(place_, images, build, threads());
     const auto error = checking.build(0).rectification;
@@ -396,6 +397,18 @@ TEST_F(SceneBuilderTest, TellsWhetherRowsAndColumnsCorrespond) {
     const VerticalError exchanged = error_between(straight, {-straight.x, -straight.y});
     EXPECT_TRUE(exchanged.looks_exchanged()) << straight.x << "," << straight.y;
   }
+}
+
+TEST(EdgeCheck, SaysWhyLittleMatches) {
+  const auto error_with = [](double second_share, double negative_share) {
+    const VerticalError rows{.inliers = 325, .negative_share = negative_share};
+    return error_of([&] { require_matched({0.5, second_share}, {0, 100}, rows); });
+  };
+  EXPECT_THAT(error_with(0.25, 1),
+              AllOf(HasSubstr("25 % of the pixels match, expected at least 30 %"),
+                    HasSubstr("the images look exchanged (100 % of 325 points")));
+  EXPECT_THAT(error_with(0.25, 0.5), HasSubstr("--disparities (0:100 was searched)"));
+  EXPECT_NO_THROW(require_matched({0.5, 0.31}, {0, 100}, std::nullopt));
 }
 
 TEST_F(SceneBuilderTest, SaysWhatIsWrong) {

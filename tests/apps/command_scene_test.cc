@@ -17,6 +17,7 @@
 #include "engine/io/video_io.h"
 #include "tests/apps/pair_fixture.h"
 #include "tests/apps/vantage_process.h"
+#include "tests/engine/unrectified_pair.h"
 #include "tests/temporary_folder.h"
 
 namespace vantage {
@@ -296,6 +297,50 @@ TEST_F(SceneCommand, WarnsOfEdgesThatDoNotCorrespond) {
   write_file(folder_ / "list.csv", "1.png,0,0\n0.png,1,0\n");
   EXPECT_THAT(build_with({}).err,
               HasSubstr("warning: edge 0-1 (1.png, 0.png): the images look exchanged: "));
+}
+
+TEST_F(SceneCommand, RefusesHandHeldCamerasUnlessForced) {
+  const test::UnrectifiedPair pair = test::unrectified_pair(execution_);
+  write_photograph(folder_ / "a.png", pair.left);
+  write_photograph(folder_ / "b.png", pair.right);
+  write_file(folder_ / "list.csv", "a.png,0,0\nb.png,1,0\n");
+  const std::vector<std::string> turned = {"--positions", folder_ / "list.csv"};
+  const ProcessResult refused = build(turned);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_TRUE(is_one_line(refused, "scene build")) << refused.err;
+  EXPECT_THAT(refused.err,
+              AllOf(HasSubstr("a.png and "),
+                    HasSubstr("b.png: not a rectified pair: rows are off "
+                              "by "),
+                    HasSubstr("expected at most 1.5 px"), HasSubstr("'vantage rectify'"),
+                    HasSubstr("--no-rectification-check")));
+  EXPECT_TRUE(fs::is_empty(place_ + "/maps"));
+  EXPECT_THAT(view({"--at", "0.5,0", "-o", folder_ / "v.png"}).err,
+              HasSubstr("1 of 1 edges are not matched yet"));
+  std::vector<std::string> forced = turned;
+  forced.emplace_back("--no-rectification-check");
+  EXPECT_EQ(build(forced).exit_code, 0);
+
+  // What the message suggests.
+  fs::remove_all(place_);
+  ASSERT_EQ(
+      run_vantage({"rectify", folder_ / "a.png", folder_ / "b.png", "-o", folder_ / "rectified"})
+          .exit_code,
+      0);
+  const ProcessResult repaired = build({"--images", folder_ / "rectified/*.png"});
+  EXPECT_EQ(repaired.exit_code, 0) << repaired.err;
+}
+
+TEST_F(SceneCommand, RefusesImagesOfWhichLittleMatches) {
+  const ProcessResult refused =
+      run_vantage({"scene", "build", "--images", images_ + "/[01].png", "-o", place_,
+                   "--disparities=40:60", "--preset", "fast"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_TRUE(is_one_line(refused, "scene build")) << refused.err;
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("1.png: "),
+                                 HasSubstr("% of the pixels match, expected at least 30 %"),
+                                 HasSubstr("--disparities (40:60 was searched)")));
+  EXPECT_TRUE(fs::is_empty(place_ + "/maps"));
 }
 
 TEST_F(SceneCommand, CamerasNeedNoRowsOrColumns) {
