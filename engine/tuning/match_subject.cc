@@ -43,8 +43,10 @@ std::vector<int> part_sizes(int total, int size, int max_parts, bool finely) {
   return sizes;
 }
 
+/// Whether the finest level has passes of iterations. Windows have none.
 bool is_iterative(const MethodParameters& parameters) {
-  return aggregation_of(parameters).is_iterative && parameters.iterations > 1;
+  return aggregation_of(parameters).is_iterative && parameters.iterations > 1 &&
+         parameters.window_levels == 0;
 }
 
 bool is_same_plan(const scheduler::ChainPlan& a, const scheduler::ChainPlan& b) {

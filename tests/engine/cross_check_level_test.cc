@@ -228,7 +228,7 @@ TEST(CrossCheckLevelOption, IsForLevelsOfBayesianDiffusion) {
   } catch (const UsageError& error) {
     EXPECT_STREQ(error.what(),
                  "cross-check-level is 2, expected 0: only aggregation bayes with levels above 1 "
-                 "has maps of coarse levels");
+                 "and selection winner has maps of coarse levels");
   }
 }
 

@@ -75,7 +75,7 @@ TEST_F(MatchSubjectTest, CandidatesAreOtherPlans) {
 TEST_F(MatchSubjectTest, WhatIsGivenOrMakesNoSenseIsNotSearched) {
   EXPECT_TRUE(candidates("threads").empty()) << "given";
   EXPECT_TRUE(candidates("in-flight").empty()) << "of sequences only";
-  EXPECT_TRUE(candidates("iterations-per-pass").empty()) << "box sums have none";
+  EXPECT_TRUE(candidates("iterations-per-pass").empty()) << "windows have none";
   EXPECT_FALSE(candidates("band-height").empty());
   options_.searches_bands = false;
   EXPECT_TRUE(candidates("band-height").empty());

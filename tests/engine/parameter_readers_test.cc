@@ -1,6 +1,7 @@
 // What visit_fields() says reads a parameter, against what changes when the parameter is changed:
 // maps that the matching code makes of given parameters, without the validation that uses the list.
 #include "engine/matching/options/parameter_readers.h"
+#include "engine/matching/windows/window_level.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -84,9 +85,11 @@ class Maps {
     const auto geometry = candidate_geometry(options.in_force(), Side::kLeft, kWidth, kHeight);
     CostImage left;
     CostImage right;
-    left.prepare(pair_.left, parameters, geometry, {true, false, false}, execution_);
-    right.prepare(pair_.right, parameters, geometry,
-                  {false, true, false, of_right, geometry.steps_per_px}, execution_);
+    const bool has_windows = parameters.window_levels > 0;
+    const auto margins = has_windows ? window_margins(geometry) : geometry;
+    left.prepare(pair_.left, parameters, margins, {true, false, false}, execution_);
+    right.prepare(pair_.right, parameters, margins,
+                  {false, true, has_windows, of_right, geometry.steps_per_px}, execution_);
     ChainInput input{nullptr, &left, {CostPartner{&right}}};
     EdgeWeightLevels edges;
     input.edges = edges.prepare(pair_.left, parameters, execution_);
@@ -248,8 +251,8 @@ bool is_without_difference(std::string_view name, const MethodParameters& parame
   if (name == "candidate-blocks") {
     return !can_prune(parameters);  // it is 0, and only that is accepted
   }
-  if (name == "search-size" || name == "window-levels") {
-    return true;  // other searches: see reduced_matcher_test, fine_windows_test
+  if (name == "search-size") {
+    return true;  // more than one search: see reduced_matcher_test
   }
   if (name == "certainty") {
     return parameters.cost == MatchCost::kGradient;  // which has entropy only
