@@ -60,6 +60,9 @@ void validate_search_size(const MethodParameters& parameters) {
 
 void validate_windows(const MethodParameters& parameters) {
   if (parameters.window_levels > 0) {
+    require(can_search_windows(parameters), "window-levels", parameters.window_levels,
+            "0 but with aggregation bayes, levels above 1, prior-smoothing maximum, selection "
+            "winner, candidate-step 1 and cost census-rays of luma");
     require(parameters.final_iterations > 0, "final-iterations", parameters.final_iterations,
             "at least 1 with window-levels above 0");
     require(parameters.window_levels < 2 || parameters.iterations > 0, "iterations",
