@@ -251,6 +251,9 @@ bool is_without_difference(std::string_view name, const MethodParameters& parame
   if (name == "candidate-blocks") {
     return !can_prune(parameters);  // it is 0, and only that is accepted
   }
+  if (name == "window-levels") {
+    return !can_search_windows(parameters);  // likewise
+  }
   if (name == "search-size") {
     return true;  // more than one search: see reduced_matcher_test
   }
