@@ -75,7 +75,7 @@ struct FloatCells {
   [[nodiscard]] CellRow row(const WinnerCase& c, int begin, int end, bool probabilities) const {
     CellRow row;
     row.cells = cells.data() + index(begin, 0);
-    row.geometry = {c.width, c.disparity_min, c.count, c.direction};
+    row.geometry = {c.width, c.disparity_min, c.count, c.direction, c.steps_per_px};
     row.first_column = begin;
     row.columns = end - begin;
     row.margin = c.radius;

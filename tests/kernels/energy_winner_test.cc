@@ -71,7 +71,7 @@ struct EnergyCells {
     EnergyRow row;
     row.cells = cells.row(0) + static_cast<std::ptrdiff_t>(begin) * pitch;
     row.pitch = pitch;
-    row.geometry = {c.width, c.disparity_min, c.count, c.direction};
+    row.geometry = {c.width, c.disparity_min, c.count, c.direction, c.steps_per_px};
     row.first_column = begin;
     row.columns = end - begin;
     return row;

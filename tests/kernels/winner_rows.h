@@ -68,8 +68,9 @@ struct WinnerCase {
   }
   friend std::ostream& operator<<(std::ostream& out, const WinnerCase& c) {
     return out << "width " << c.width << ", disparities from " << c.disparity_min << ", " << c.count
-               << " of them, direction " << c.direction << ", radius " << c.radius
-               << ", index bits " << c.index_bits << ", whole windows " << c.whole_windows_only;
+               << " of them, " << c.steps_per_px << " per pixel, direction " << c.direction
+               << ", radius " << c.radius << ", index bits " << c.index_bits << ", whole windows "
+               << c.whole_windows_only;
   }
 };
 
