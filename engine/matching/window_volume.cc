@@ -15,8 +15,13 @@ void write_window(const WindowState& state, int x, int y, int count, bool are_pr
   const kernels::WindowCells support = state.support.at(x, y);
   const int start = state.start.at(x, y);
   const int lanes = std::min(kernels::kWindowCandidates, count - start);
+  const int winner = state.winner.at(x, y) - start;
+  // Cells are rounded: of those that are equal to the winner's, none was larger.
+  constexpr double kTie = 0.25;
   const auto nats = [&](int k) {
-    return (state.ceiling - kernels::window_cell(support, k)) * state.nats_per_step;
+    const int cell = kernels::window_cell(support, k);
+    const bool is_tie = k != winner && cell == kernels::window_cell(support, winner);
+    return (state.ceiling - cell + (is_tie ? kTie : 0)) * state.nats_per_step;
   };
   double sum = 0;
   for (int k = 0; are_probabilities && k < lanes; ++k) {

@@ -129,6 +129,7 @@ TEST(FineWindows, PresetsDropThemWhereTheyCannotBe) {
         +[](MatchOptions& o) { o.parameters.prior_smoothing = PriorSmoothing::kSum; },
         +[](MatchOptions& o) { o.parameters.candidate_blocks = 2; },
         +[](MatchOptions& o) { o.parameters.selection = Selection::kScanline; },
+        +[](MatchOptions& o) { o.parameters.final_iterations = 0; },
         +[](MatchOptions& o) {
           o.disparities_y = DisparityRange{-1, 1};
         }}) {

@@ -226,8 +226,8 @@ MethodParameters MatchOptions::resolved() const {
     result.search_size = SearchSize::kFull;
   }
   const bool chooses_blocks = parameters.candidate_blocks || parameters.pruned_levels;
-  if (!parameters.window_levels &&
-      (disparities_y || chooses_blocks || !can_search_windows(result))) {
+  if (!parameters.window_levels && (disparities_y || chooses_blocks ||
+                                    result.final_iterations == 0 || !can_search_windows(result))) {
     result.window_levels = 0;
   }
   if (!parameters.candidate_blocks && (disparities_y || !can_prune(result))) {
