@@ -4,7 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstddef>
+#include <cstdint>
+#include <utility>
 
 #include "engine/error.h"
 #include "engine/matching/stereo_matcher.h"
@@ -107,8 +108,12 @@ TEST(FineWindows, AreIdenticalForAnyExecutionAndRequest) {
 
 TEST(FineWindows, PriorPullsToItsDisparities) {
   // Without texture nothing but the prior says anything.
-  test::PhotographPair pair{Photograph{Image<std::uint8_t>(64, 48)},
-                            Photograph{Image<std::uint8_t>(64, 48)}};
+  const auto grey = [] {
+    Image<std::uint8_t> image(64, 48);
+    image.fill(90);
+    return Photograph{std::move(image)};
+  };
+  const test::PhotographPair pair{grey(), grey()};
   DisparityMap prior_px(64, 48);
   prior_px.fill(11);
   const MatchRequest request{.prior = {prior_px.view(), prior_px.view(), 1}};
