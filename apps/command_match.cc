@@ -270,7 +270,9 @@ int command_match(const Arguments& arguments) {
   const MatchedMap& map = maps.of(job.is_left() ? Side::kLeft : Side::kRight);
   const auto along_px =
       (job.vertical && job.match.disparities_y ? map.disparity_y_px : map.disparity_px).view();
-  report_depth_resolution(along_px, scale, job.disparity_resolution_px(), report);
+  if (!job.common.report.empty()) {
+    report_depth_resolution(along_px, scale, job.disparity_resolution_px(), report);
+  }
   Image<float> depth_resolution;
   if (!job.depth.resolution_file.empty()) {
     depth_resolution_map(along_px, *scale, job.disparity_resolution_px(), chosen, depth_resolution);
