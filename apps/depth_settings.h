@@ -22,8 +22,8 @@ struct DepthSettings {
 
   /// Throws UsageError where fields are wrong or do not go together.
   void validate(bool is_vertical) const;
-  /// Of images of this size; empty if the focal length is not known. Throws Error for a calibration
-  /// that cannot be read or is of other images.
+  /// The scale of images of this size. Empty: the focal length is not known. Throws Error if the
+  /// calibration cannot be read, or belongs to images of another size.
   [[nodiscard]] std::optional<DepthScale> scale(int width_px, int height_px) const;
 };
 

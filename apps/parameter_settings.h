@@ -7,7 +7,8 @@ namespace vantage::apps {
 
 /// An option for each field of MethodParameters, in groups.
 void add_method_parameters(Settings& settings, MethodOverrides& parameters);
-/// The same without iterations: a command that compares methods has an option of its own for them.
+/// add_method_parameters() without `iterations`. For commands that compare methods: they have their
+/// own option of that name.
 void add_shared_method_parameters(Settings& settings, MethodOverrides& parameters);
 /// An option for each field that only the cost gradient reads, in the current group.
 void add_gradient_settings(Settings& settings, MethodOverrides& parameters);

@@ -27,7 +27,7 @@ void check_volume(const VolumeOutput& output, const MatchOptions& options,
 
 /// What a reader of the file has to know: shape, candidates, meaning of the values.
 SettingValue volume_report(const VolumeOutput& output, const NpyVolumeFile& volume);
-/// The same in one line.
+/// volume_report() as one line of text.
 std::string volume_summary(const VolumeOutput& output, const NpyVolumeFile& volume);
 
 }  // namespace vantage::apps

@@ -31,7 +31,8 @@ SheetPicture map_picture(const FigureImages& images, std::string title,
 
 /// "3.1 % bad (over 1 px), RMS 0.8 px of the visible pixels with truth"; empty without truth.
 std::string score_text(const FigureImages& images, ImageView<const float> left_disparity);
-/// The same as numbers for a table: bad 1/2, bad 1, bad 2, RMS; empty texts without truth.
+/// The scores as fields of a table: bad ½, bad 1 and bad 2 in percent, RMS in px. Without truth the
+/// fields are empty.
 std::vector<std::string> score_fields(const FigureImages& images,
                                       ImageView<const float> left_disparity);
 

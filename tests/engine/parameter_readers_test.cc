@@ -28,12 +28,15 @@
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/pair_exposure.h"
 #include "engine/refinement/refinement_fields.h"
+#include "tests/engine/option_complaint.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/engine/table_keys.h"
 #include "tests/test_sample.h"
 
 namespace vantage {
 namespace parameter_readers_test {
+
+using test::complaint;
 
 using testing::HasSubstr;
 
@@ -373,15 +376,6 @@ TEST(ParameterReaders, AreThoseWhoseMapsChange) {
       EXPECT_EQ(is_changed, is_expected) << field.option << " with " << summary_of(before);
     }
   }
-}
-
-std::string complaint(const MatchOptions& options) {
-  try {
-    options.validate();
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(ParameterReaders, WhatNothingReadsIsRefusedUnlessAPresetSetsIt) {

@@ -13,11 +13,14 @@
 #include "engine/matching/stereo_matcher.h"
 #include "tests/engine/identical_maps.h"
 #include "tests/engine/method_cases.h"
+#include "tests/engine/option_complaint.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/engine/plain_matching.h"
 
 namespace vantage {
 namespace scanline_selection_test {
+
+using test::complaint;
 
 using test::identical;
 using test::PixelKind;
@@ -210,15 +213,6 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Range(0, static_cast<int>(test::method_cases({}).size())), [](const auto& instance) {
       return test::method_cases({})[static_cast<std::size_t>(instance.param)].name;
     });
-
-std::string complaint(const MatchOptions& options) {
-  try {
-    options.validate();
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 TEST(ScanlineSelectionOptions, AreCheckedTogether) {
   MatchOptions options;

@@ -16,10 +16,13 @@
 #include "engine/matching/stereo_matcher.h"
 #include "tests/engine/identical_maps.h"
 #include "tests/engine/method_cases.h"
+#include "tests/engine/option_complaint.h"
 #include "tests/engine/oracle_comparison.h"
 
 namespace vantage {
 namespace symmetric_selection_test {
+
+using test::complaint;
 
 using test::identical;
 using test::PhotographPair;
@@ -215,15 +218,6 @@ TEST(SymmetricSelectionMaps, AreFilledWhereUnmatched) {
       EXPECT_EQ(filled.right.unmatched.at(x, y), raw.right.unmatched.at(x, y));
     }
   }
-}
-
-std::string complaint(const MatchOptions& options) {
-  try {
-    options.validate();
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(SymmetricSelectionOptions, AreCheckedTogether) {
