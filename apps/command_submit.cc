@@ -117,8 +117,9 @@ void require_work_for_all(const SlurmOptions& slurm, const FrameSelection& selec
 /// Unless --chunk-frames is given, makes chunks small enough for every task to have one.
 void divide_for_all(const Settings& settings, SubmitJob& job) {
   FrameSelection selection;
-  selection.frame_count = open_pair_source(job.run.input)->pair_count();
-  selection.frames = job.run.frames;
+  const std::unique_ptr<PairSource> pairs = open_pair_source(job.run.input);
+  selection.frame_count = pairs->pair_count();
+  selection.frames = selected_pairs(job.run, *pairs);
   selection.chunk_frames = job.run.sequence.chunk_frames;
   const int share = selection.all().empty() ? 0 : selection.all().count() / job.slurm.shards;
   if (settings.is_set("chunk-frames") || share < 1 || chunk_count(selection) >= job.slurm.shards) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "apps/automatic_disparities.h"
+#include "apps/frame_step_setting.h"
 #include "apps/rectification_check.h"
 #include "apps/resumed_run.h"
 #include "engine/error.h"
@@ -162,6 +163,10 @@ std::string RunSession::part_name(const RunJob& job) {
   return name.empty() ? "all" : name;
 }
 
+std::optional<FrameRange> selected_pairs(const RunJob& job, const PairSource& pairs) {
+  return job.frames ? std::optional(pairs.pairs_of(*job.frames)) : std::nullopt;
+}
+
 RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   FileChecks files = check_files(job, settings);
   RunSession session;
@@ -177,12 +182,16 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   session.shape.pair_count = session.pairs->pair_count();
   session.selection = {.frame_count = session.pairs->pair_count(),
                        .chunk_frames = job.sequence.chunk_frames,
-                       .frames = job.frames,
+                       .frames = selected_pairs(job, *session.pairs),
                        .shard = job.shard};
   if (job.frames && session.selection.all().empty()) {
-    throw Error(fmt::format("--frames starts at {} but the input has {} frames (0 to {})",
-                            job.frames->first, session.selection.frame_count,
-                            session.selection.frame_count - 1));
+    throw Error(job.input.every.takes_all()
+                    ? fmt::format("--frames starts at {} but the input has {} frames (0 to {})",
+                                  job.frames->first, session.selection.frame_count,
+                                  session.selection.frame_count - 1)
+                    : fmt::format("--frames {}-{} has none of the {} frames that --every {} takes",
+                                  job.frames->first, job.frames->end - 1,
+                                  session.selection.frame_count, to_text(job.input.every)));
   }
   Execution execution(job.common.execution);
   if (!job.calibration.empty()) {
@@ -227,8 +236,10 @@ std::string describe_plan(const RunJob& job, const RunSession& session) {
   std::string text;
   const auto line = [&](const std::string& content) { text += "run: " + content + "\n"; };
   line(fmt::format(
-      "{} pairs of {}x{} pixels{}{}", session.selection.frame_count, session.shape.source.width_px,
-      session.shape.source.height_px, session.rectifier ? ", rectified on the fly" : "",
+      "{} pairs of {}x{} pixels{}{}{}", session.selection.frame_count,
+      session.shape.source.width_px, session.shape.source.height_px,
+      job.input.every.takes_all() ? "" : ", one every " + to_text(job.input.every),
+      session.rectifier ? ", rectified on the fly" : "",
       own == FrameRange{0, session.selection.frame_count}
           ? ""
           : fmt::format("; this part: {}", own.empty() ? "none" : "frames " + to_string({own}))));

@@ -34,6 +34,9 @@ struct RunSession {
   [[nodiscard]] static std::string part_name(const RunJob& job);
 };
 
+/// The pairs of --frames, which counts the frames of the input; empty: all.
+std::optional<FrameRange> selected_pairs(const RunJob& job, const PairSource& pairs);
+
 /// Opens the input of `job`, which is complete(), and fills in what follows from it: the range of
 /// disparities where it is automatic, the frame rate, the plan. Throws Error, UsageError where a
 /// result would replace an input.

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "apps/frame_rate_setting.h"
+#include "apps/frame_step_setting.h"
 #include "apps/input_limits.h"
 #include "apps/match_settings.h"
 #include "apps/rectification_check.h"
@@ -21,6 +22,7 @@ namespace {
 constexpr std::string_view kAutomatic = "auto";
 constexpr int kMaxInFlight = 64;
 constexpr int kMaxShards = 100000;
+constexpr int kMaxStepOfFrames = 1000000;
 
 std::string known_outputs() {
   std::string names;
@@ -108,6 +110,7 @@ void add_input_settings(Settings& settings, RunJob& job) {
   path("sequence", job.input.sequence, "SOURCE", "Frames of one moving camera; see --step");
   settings.integer("step", job.input.step, "K",
                    "Frame t is the left image, frame t + K the right image");
+  add_frame_step_setting(settings, job.input.every);
   path("calibration", job.calibration, "FILE",
        "Cameras, to rectify the pairs first: OpenCV, Middlebury or KITTI file");
   add_rectification_check_setting(settings, job.check_rectification);
@@ -201,23 +204,56 @@ void add_steadiness_settings(Settings& settings, SequenceOptions& options) {
                 "Measure how much results change where the images do not");
 }
 
-void add_part_settings(Settings& settings, RunJob& job) {
-  settings.start_group("Parts of a run, and resuming", false);
-  Setting& frames = settings.add("frames", "A-B", "Process frames A to B only, counted from 0");
+void add_frames_setting(Settings& settings, RunJob& job) {
+  Setting& frames = settings.add("frames", "A-B[:N]",
+                                 "Process frames A to B of the input only, counted from 0; with :N "
+                                 "only A, A + N, A + 2 N …");
   frames.set = [&job](const SettingValue& value) {
+    job.frames.reset();
+    job.step_of_frames.reset();
     if (value == "all") {
-      job.frames.reset();
       return;
     }
-    const auto range = two_numbers(to_text(value), '-');
-    if (!range || range->first > range->second) {
-      reject_value(value, "a range of frames such as 100-199, or all");
+    const auto parts = split(to_text(value), ':');
+    const auto range = two_numbers(parts.front(), '-');
+    const auto step = parts.size() == 2 ? whole_number(parts[1]) : std::nullopt;
+    if (!range || range->first > range->second || parts.size() > 2 ||
+        (parts.size() == 2 && (!step || *step < 1 || *step > kMaxStepOfFrames))) {
+      reject_value(value, "a range of frames such as 100-199 or 100-199:10, or all");
     }
     job.frames = FrameRange{range->first, range->second + 1};
+    if (step) {
+      job.step_of_frames = static_cast<int>(*step);
+    }
   };
   frames.get = [&job]() -> SettingValue {
-    return job.frames ? fmt::format("{}-{}", job.frames->first, job.frames->end - 1) : "all";
+    if (!job.frames) {
+      return "all";
+    }
+    const std::string range = fmt::format("{}-{}", job.frames->first, job.frames->end - 1);
+    return job.step_of_frames ? fmt::format("{}:{}", range, *job.step_of_frames) : range;
   };
+}
+
+/// --frames A-B:N also says which frames are taken, for all parts of the run.
+void apply_step_of_frames(RunJob& job) {
+  if (!job.step_of_frames) {
+    return;
+  }
+  const FrameStep step{.pairs = *job.step_of_frames,
+                       .first = job.frames->first % *job.step_of_frames,
+                       .seconds = std::nullopt};
+  if (!job.input.every.takes_all() && job.input.every != step) {
+    throw UsageError(fmt::format("--every is {} and --frames {}-{}:{}, expected one of the two",
+                                 to_text(job.input.every), job.frames->first, job.frames->end - 1,
+                                 *job.step_of_frames));
+  }
+  job.input.every = step;
+}
+
+void add_part_settings(Settings& settings, RunJob& job) {
+  settings.start_group("Parts of a run, and resuming", false);
+  add_frames_setting(settings, job);
   Setting& shard =
       settings.add("shard", "I/N", "Process part I of N only; all parts share one output folder");
   shard.set = [&job](const SettingValue& value) {
@@ -318,7 +354,7 @@ void add_run_settings(Settings& settings, RunJob& job) {
   add_pixel_limit_setting(settings);
   settings.set_short_help(
       {"left", "right", "stereo", "packing", "pairs", "calibration", "output", "save", "video",
-       "view", "frames", "resume", "disparities", "preset", "quiet"},
+       "view", "every", "frames", "resume", "disparities", "preset", "quiet"},
       {"vantage run --left left/ --right right/ -o results",
        "vantage run --stereo film.mp4 --packing sbsl --save preview --video preview -o results",
        "vantage run -o results --resume"});
@@ -349,6 +385,7 @@ void complete(RunJob& job, const Settings& settings) {
     settings.refuse_idle({"tuning"}, "with --memory, for which the cost model plans");
   }
   check_views(job.views, job.sequence.views, job.sequence.look_at_px, !job.calibration.empty());
+  apply_step_of_frames(job);
   job.input.validate();
   job.rectification.validate();
   if (job.rectification.kept_outline > 0 && job.calibration.empty()) {

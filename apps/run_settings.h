@@ -33,7 +33,8 @@ struct RunJob {
   std::optional<std::vector<SequenceOutput>> save;
   SequenceViews views;
   std::optional<FrameRate> frame_rate;  ///< empty: the input's, else 25
-  std::optional<FrameRange> frames;
+  std::optional<FrameRange> frames;     ///< of the input
+  std::optional<int> step_of_frames;    ///< N of --frames A-B:N
   std::optional<Shard> shard;
   std::optional<int> in_flight;  ///< 1..64; empty: from threads and memory
   std::optional<std::size_t> memory_bytes;

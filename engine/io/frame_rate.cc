@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numeric>
@@ -71,6 +72,16 @@ std::optional<FrameRate> parse_frame_rate(std::string_view text) {
   return point == std::string_view::npos
              ? parse_decimal(text, "")
              : parse_decimal(text.substr(0, point), text.substr(point + 1));
+}
+
+FrameRate slowed_down(FrameRate rate, int factor) {
+  const std::int64_t denominator = rate.denominator * factor;
+  if (const auto exact = make_rate(rate.numerator, denominator)) {
+    return *exact;
+  }
+  const double value = static_cast<double>(rate.numerator) / static_cast<double>(denominator);
+  const auto millionths = static_cast<std::int64_t>(std::llround(value * kLargestTerm));
+  return make_rate(std::max<std::int64_t>(1, millionths), kLargestTerm).value_or(FrameRate());
 }
 
 std::string to_string(FrameRate rate) {

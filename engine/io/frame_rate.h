@@ -21,6 +21,8 @@ struct FrameRate {
 /// Parses "25", "29.97" or "30000/1001"; empty for any other form or out of range. Decimals within
 /// 5 millionths of N·1000/1001 (integer N) are read as that: 29.97 is 30000/1001.
 std::optional<FrameRate> parse_frame_rate(std::string_view text);
+/// rate / factor (factor ≥ 1); terms beyond the limits are rounded.
+FrameRate slowed_down(FrameRate rate, int factor);
 /// "25" or "30000/1001".
 std::string to_string(FrameRate rate);
 

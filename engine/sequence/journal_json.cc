@@ -219,7 +219,7 @@ RunIdentity identity_of(const std::string& text, const std::filesystem::path& fi
     identity.inputs = json.at("inputs").get<std::vector<std::string>>();
     identity.frame_count = count_of(json.at("frame_count"));
     identity.sound_file = name_of_stored(json.at("sound").at("file").get<std::string>());
-    identity.sound_first_frame = json.at("sound").at("first_frame").get<int>();
+    identity.sound_first_frame = json.at("sound").at("first_frame").get<double>();
     identity.sound_rate =
         parse_frame_rate(json.at("sound").at("rate").get<std::string>()).value_or(FrameRate());
     return identity;

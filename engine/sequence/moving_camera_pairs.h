@@ -21,7 +21,7 @@ class MovingCameraPairs : public PairSource {
   [[nodiscard]] int unpaired_frames() const final { return 0; }
   [[nodiscard]] std::optional<FrameRate> frame_rate() const final { return source_->frame_rate(); }
   [[nodiscard]] Sound sound() const final {
-    return {source_->video_file(), later_is_left_ ? distance_ : 0};
+    return {source_->video_file(), later_is_left_ ? distance_ : 0.0};
   }
   [[nodiscard]] std::vector<std::filesystem::path> files() const final { return source_->files(); }
   [[nodiscard]] std::vector<std::string> identities() const final { return {source_->identity()}; }

@@ -23,7 +23,7 @@ class PackedPairs : public PairSource {
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override {
     return source_->frame_rate();
   }
-  [[nodiscard]] Sound sound() const override { return {source_->video_file(), 0}; }
+  [[nodiscard]] Sound sound() const override { return {source_->video_file(), 0.0}; }
   [[nodiscard]] std::vector<std::filesystem::path> files() const override {
     return source_->files();
   }

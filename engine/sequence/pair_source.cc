@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "engine/error.h"
 #include "engine/io/image_sequence.h"
+#include "engine/sequence/every_nth_pair.h"
 #include "engine/sequence/moving_camera_pairs.h"
 #include "engine/sequence/packed_pairs.h"
 #include "engine/sequence/pair_list.h"
@@ -16,6 +20,9 @@ namespace {
 
 constexpr int kMaxOffset = 1000000;
 constexpr int kMaxStep = 1000;
+constexpr int kMaxTakenStep = 1000000;
+constexpr double kMinTakenSeconds = 0.001;
+constexpr double kMaxTakenSeconds = 86400;
 
 std::unique_ptr<PairSource> open_pair_list(const std::filesystem::path& file) {
   std::vector<std::filesystem::path> left;
@@ -30,6 +37,52 @@ std::unique_ptr<PairSource> open_pair_list(const std::filesystem::path& file) {
   };
   return std::make_unique<TwoCameraPairs>(open_column("left", std::move(left)),
                                           open_column("right", std::move(right)), 0, false);
+}
+
+void validate_step(const FrameStep& every) {
+  if (every.pairs < 1 || every.pairs > kMaxTakenStep) {
+    throw UsageError(fmt::format("every is {}, expected 1 to {} frames, or seconds such as 4s",
+                                 every.pairs, kMaxTakenStep));
+  }
+  if (every.first < 0 || every.first > std::numeric_limits<int>::max() - 1 - kMaxTakenStep) {
+    throw UsageError(fmt::format("every starts at frame {}, expected 0 to {}", every.first,
+                                 std::numeric_limits<int>::max() - 1 - kMaxTakenStep));
+  }
+  if (every.seconds &&
+      !(*every.seconds >= kMinTakenSeconds && *every.seconds <= kMaxTakenSeconds)) {
+    throw UsageError(fmt::format("every is {}s, expected {} to {} seconds", *every.seconds,
+                                 kMinTakenSeconds, kMaxTakenSeconds));
+  }
+}
+
+/// In pairs.
+int taken_step(const FrameStep& every, const PairSource& pairs) {
+  if (!every.seconds) {
+    return every.pairs;
+  }
+  const std::optional<FrameRate> rate = pairs.frame_rate();
+  if (!rate) {
+    throw UsageError(
+        fmt::format("every is {}s, but images have no frame rate; expected a number of frames",
+                    *every.seconds));
+  }
+  const double frames = std::round(*every.seconds * rate->per_second());
+  return static_cast<int>(std::clamp(frames, 1.0, static_cast<double>(kMaxTakenStep)));
+}
+
+std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
+  if (!options.stereo.empty()) {
+    return std::make_unique<PackedPairs>(open_frame_source(options.stereo), *options.packing);
+  }
+  if (!options.pairs.empty()) {
+    return open_pair_list(options.pairs);
+  }
+  if (!options.sequence.empty()) {
+    return make_moving_camera_pairs(open_frame_source(options.sequence), options.step);
+  }
+  return std::make_unique<TwoCameraPairs>(open_frame_source(options.left),
+                                          open_frame_source(options.right), options.offset_frames,
+                                          true);
 }
 
 }  // namespace
@@ -67,6 +120,7 @@ void PairSourceOptions::validate() const {
   if (step != 1 && sequence.empty()) {
     throw UsageError(fmt::format("step is {}, expected 1 without sequence", step));
   }
+  validate_step(every);
 }
 
 void PairSource::decode(FramePair& pair) const {
@@ -80,18 +134,12 @@ void PairSource::decode(FramePair& pair) const {
 
 std::unique_ptr<PairSource> open_pair_source(const PairSourceOptions& options) {
   options.validate();
-  if (!options.stereo.empty()) {
-    return std::make_unique<PackedPairs>(open_frame_source(options.stereo), *options.packing);
+  std::unique_ptr<PairSource> all = open_all_pairs(options);
+  if (options.every.takes_all()) {
+    return all;
   }
-  if (!options.pairs.empty()) {
-    return open_pair_list(options.pairs);
-  }
-  if (!options.sequence.empty()) {
-    return make_moving_camera_pairs(open_frame_source(options.sequence), options.step);
-  }
-  return std::make_unique<TwoCameraPairs>(open_frame_source(options.left),
-                                          open_frame_source(options.right), options.offset_frames,
-                                          true);
+  const int step = taken_step(options.every, *all);
+  return std::make_unique<EveryNthPair>(std::move(all), options.every.first, step);
 }
 
 }  // namespace vantage

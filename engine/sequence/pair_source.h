@@ -9,6 +9,7 @@
 
 #include "engine/image/stereo_packing.h"
 #include "engine/io/frame_source.h"
+#include "engine/sequence/frame_range.h"
 
 namespace vantage {
 
@@ -24,11 +25,23 @@ struct FramePair {
   /// Whether the right image is needed. If not, fetch() and decode() save work where they can:
   /// `right` is then undefined, and its errors may go unnoticed.
   bool wants_right = true;
-  int index = 0;                        ///< of the pair, counted from 0
+  int index = 0;                        ///< of the pair in its source, counted from 0
   std::array<FetchedFrame, 2> fetched;  ///< decode() makes the pair from it
   Photograph left;
   Photograph right;
   std::vector<std::string> remarks;  ///< about both frames, and about the pair
+};
+
+/// Pairs of the input that a run takes: pair `first` and every `pairs`-th after it.
+struct FrameStep {
+  int pairs = 1;  ///< 1..1000000
+  int first = 0;  ///< below 2³¹ − 1000001
+  /// Instead of `pairs`: the time between two of them, 0.001 to 86400 s, rounded to whole frames
+  /// and at least one. Needs an input with a frame rate.
+  std::optional<double> seconds;
+
+  [[nodiscard]] bool takes_all() const { return pairs == 1 && first == 0 && !seconds; }
+  friend bool operator==(const FrameStep&, const FrameStep&) = default;
 };
 
 /// Source of the pairs of a run: exactly one of the four.
@@ -50,6 +63,7 @@ struct PairSourceOptions {
   /// camera moved to the left). |step| in 1..1000.
   std::string sequence;
   int step = 1;
+  FrameStep every;
 
   /// Throws UsageError naming the field, its value and what was expected.
   void validate() const;
@@ -76,6 +90,8 @@ class PairSource {
   virtual void skip_to(int index) = 0;
   /// Total number of pairs: frames that have a partner.
   [[nodiscard]] virtual int pair_count() const = 0;
+  /// The pairs that are made of these frames of the input; the range may be empty.
+  [[nodiscard]] virtual FrameRange pairs_of(FrameRange input_frames) const { return input_frames; }
   /// Number of decoded frames, no larger than photographs, that the source itself keeps in memory.
   [[nodiscard]] virtual int frames_kept() const { return 0; }
   /// "left/000012.png, right/000012.png" or "film.mp4 frame 12".
@@ -92,7 +108,7 @@ class PairSource {
   /// Video file with the sound, and its frame that is pair 0; the file is empty if there is none.
   struct Sound {
     std::filesystem::path file;
-    int first_frame = 0;
+    double first_frame = 0;  ///< in pairs: not a whole number where not all pairs are taken
   };
   [[nodiscard]] virtual Sound sound() const = 0;
   /// All files that frames are read from.

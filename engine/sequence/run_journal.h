@@ -28,7 +28,7 @@ struct RunIdentity {
   std::vector<std::string> inputs;
   int frame_count = 0;               ///< of the whole input
   std::filesystem::path sound_file;  ///< video that the sound is taken from; empty: none
-  int sound_first_frame = 0;         ///< its frame that is frame 0 of the run
+  double sound_first_frame = 0;      ///< its frame that is frame 0 of the run
   FrameRate sound_rate;              ///< of the frames of that video
 };
 

@@ -152,9 +152,9 @@ std::optional<FrameRate> TwoCameraPairs::frame_rate() const {
 
 PairSource::Sound TwoCameraPairs::sound() const {
   if (const std::filesystem::path file = left_->video_file(); !file.empty()) {
-    return {file, first_left_};
+    return {file, static_cast<double>(first_left_)};
   }
-  return {right_->video_file(), first_right_};
+  return {right_->video_file(), static_cast<double>(first_right_)};
 }
 
 std::vector<std::filesystem::path> TwoCameraPairs::files() const {

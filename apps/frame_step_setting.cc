@@ -1,0 +1,60 @@
+#include "apps/frame_step_setting.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <optional>
+#include <string_view>
+
+namespace vantage::apps {
+namespace {
+
+template <typename Number>
+std::optional<Number> parsed(std::string_view text) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool whole = error == std::errc{} && end == text.data() + text.size();
+  return whole ? std::optional(number) : std::nullopt;
+}
+
+FrameStep to_frame_step(const SettingValue& value) {
+  const std::string text = value.is_number() ? value.dump() : apps::to_text(value);
+  FrameStep step;
+  if (text.ends_with('s')) {
+    if (const auto seconds = parsed<double>(std::string_view(text).substr(0, text.size() - 1))) {
+      step.seconds = *seconds;
+      return step;
+    }
+  }
+  const auto parts = split(text, '+');
+  const auto pairs = parts.size() <= 2 ? parsed<int>(parts.front()) : std::nullopt;
+  const auto first = parts.size() == 2 ? parsed<int>(parts[1]) : std::optional(0);
+  if (!pairs || !first) {
+    reject_value(value,
+                 "a number of frames such as 10, 10+5 (from frame 5 on), or seconds such as 4s");
+  }
+  step.pairs = *pairs;
+  step.first = *first;
+  return step;
+}
+
+}  // namespace
+
+std::string to_text(const FrameStep& every) {
+  if (every.seconds) {
+    return fmt::format("{}s", *every.seconds);
+  }
+  return every.first == 0 ? fmt::format("{}", every.pairs)
+                          : fmt::format("{}+{}", every.pairs, every.first);
+}
+
+void add_frame_step_setting(Settings& settings, FrameStep& every) {
+  Setting& setting =
+      settings.add("every", "N|Ts",
+                   "Take every N-th frame (N+P: from frame P on) or a frame every T seconds, such "
+                   "as 4s. Results are numbered 0, 1, 2 …; videos keep the duration of the input");
+  setting.set = [&every](const SettingValue& value) { every = to_frame_step(value); };
+  setting.get = [&every] { return to_text(every); };
+}
+
+}  // namespace vantage::apps
