@@ -444,6 +444,48 @@ TEST_F(InputRunCommand, JobFilesHoldEverything) {
             2);
 }
 
+TEST_F(RunCommand, EveryNthFrame) {
+  ASSERT_EQ(run(folder_ / "all").exit_code, 0);
+  const FolderContent all = results_in(folder_ / "all");
+  const auto of_frames = [&](const std::vector<int>& frames) {
+    FolderContent content;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      content["disparity/" + frame_file(static_cast<int>(i), "pfm")] =
+          all.at("disparity/" + frame_file(frames[i], "pfm"));
+    }
+    return content;
+  };
+  ASSERT_EQ(run(folder_ / "every", {"--every", "2"}).exit_code, 0);
+  EXPECT_EQ(results_in(folder_ / "every"), of_frames({0, 2, 4}));
+  ASSERT_EQ(run(folder_ / "step", {"--frames", "1-4:3"}).exit_code, 0);
+  EXPECT_EQ(results_in(folder_ / "step"), of_frames({1, 4}));
+  // Parts count the frames of the input, and a part is continued by its folder alone.
+  const std::string parts = folder_ / "parts";
+  ASSERT_EQ(run(parts, {"--every", "2", "--frames", "3-5"}).exit_code, 0);
+  EXPECT_EQ(journalled_frames(parts), (std::vector<int>{2}));
+  ASSERT_EQ(run(parts, {"--every", "2", "--frames", "0-2"}).exit_code, 0);
+  EXPECT_EQ(results_in(parts), of_frames({0, 2, 4}));
+  std::filesystem::remove(folder_ / "step/disparity/000001.pfm");
+  ASSERT_EQ(run_vantage({"run", "-o", folder_ / "step", "--resume"}).exit_code, 0);
+  EXPECT_EQ(results_in(folder_ / "step"), of_frames({1, 4}));
+  EXPECT_THAT(run(parts, {"--resume"}).err, HasSubstr("every was"));
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {{"--every", "0"}, "every is 0, expected 1 to"},
+      {{"--every", "2x"}, "--every is '2x', expected a number of frames"},
+      {{"--every", "4s"}, "every is 4s, but images have no frame rate"},
+      {{"--every", "0s"}, "every is 0s, expected 0.001"},
+      {{"--frames", "0-5:0"}, "--frames is '0-5:0', expected a range"},
+      {{"--frames", "0-5:2", "--every", "3"}, "expected one of the two"}};
+  for (const auto& [options, message] : cases) {
+    const ProcessResult result = run(folder_ / "wrong", options);
+    EXPECT_EQ(result.exit_code, 2) << message;
+    EXPECT_TRUE(is_one_line(result, "run"));
+    EXPECT_THAT(result.err, HasSubstr(message));
+  }
+  EXPECT_THAT(run(folder_ / "wrong", {"--every", "3", "--frames", "1-2"}).err,
+              HasSubstr("--frames 1-2 has none of the 2 frames that --every 3 takes"));
+}
+
 TEST_F(RunCommand, MergeChecksAndJoinsWhatPartsHaveMade) {
   const std::vector<std::string> outputs = {"--save",  "disparity,preview", "--video",
                                             "preview", "--chunk-frames",    "2"};

@@ -387,6 +387,64 @@ TEST(PairSource, ListOfPairs) {
   EXPECT_THAT(error_of([&] { open_pair_source(options); }), HasSubstr("pairs.csv line 1: 1 field"));
 }
 
+/// Every kind of source, and the pairs that --every takes of it.
+TEST(PairSource, EveryNthPair) {
+  const TemporaryFolder folder;
+  put_images(folder / "l", {0, 1, 2, 3, 4, 5, 6});
+  put_images(folder / "r", {100, 101, 102, 103, 104, 105, 106});
+  put_video(folder / "l.mp4", counting(20, 7));
+  put_video(folder / "r.mp4", counting(30, 7));
+  put_text(folder / "list.csv",
+           "l/000000.png,r/000001.png\nl/000001.png,r/000002.png\n"
+           "l/000002.png,r/000003.png\nl/000003.png,r/000004.png\n");
+  for (PairSourceOptions options :
+       {two_cameras(folder / "l", folder / "r", -1),
+        two_cameras(folder / "l.mp4", folder / "r.mp4"), listed_in(folder / "list.csv"),
+        moving_camera(folder / "r", 2), moving_camera(folder / "r.mp4", -1)}) {
+    const Values all = pairs_of(options);
+    for (const int step : {2, 3, 50}) {
+      for (const int first : {0, 1}) {
+        Values expected;
+        for (std::size_t i = static_cast<std::size_t>(first); i < all.size();
+             i += static_cast<std::size_t>(step)) {
+          expected.push_back(all[i]);
+        }
+        options.every = {.pairs = step, .first = first, .seconds = std::nullopt};
+        EXPECT_EQ(pairs_of(options), expected) << step << " " << first;
+        EXPECT_EQ(open_pair_source(options)->pair_count(), static_cast<int>(expected.size()));
+        EXPECT_EQ(open_pair_source(options)->describe(0), [&] {
+          PairSourceOptions whole = options;
+          whole.every = {};
+          return open_pair_source(whole)->describe(first);
+        }());
+      }
+    }
+  }
+}
+
+TEST(PairSource, EveryNthPairKeepsTimeAndNumbers) {
+  const TemporaryFolder folder;
+  put_images(folder / "l", {0, 1, 2, 3, 4, 5, 6});
+  put_video(folder / "l.mp4", counting(20, 7));
+  PairSourceOptions options = two_cameras(folder / "l.mp4", folder / "l.mp4");
+  const FrameRate rate = open_pair_source(options)->frame_rate().value();
+  options.every.seconds = 3 / rate.per_second();
+  options.every.first = 1;
+  const auto source = open_pair_source(options);
+  EXPECT_EQ(source->pair_count(), 2);  // 1 and 4
+  EXPECT_EQ(source->frame_rate(), slowed_down(rate, 3));
+  EXPECT_DOUBLE_EQ(source->sound().first_frame, 1.0 / 3);
+  EXPECT_EQ(source->pairs_of({0, 7}), (FrameRange{0, 2}));
+  EXPECT_EQ(source->pairs_of({1, 2}), (FrameRange{0, 1}));
+  EXPECT_EQ(source->pairs_of({2, 4}), (FrameRange{1, 1}));
+  EXPECT_EQ(source->pairs_of({2, 100}), (FrameRange{1, 2}));
+  options.every.first = 7;
+  EXPECT_THAT(error_of([&] { open_pair_source(options); }), HasSubstr("from frame 7 on"));
+  options.every.first = 0;
+  options.left = options.right = folder / "l";
+  EXPECT_THAT(error_of([&] { open_pair_source(options); }), HasSubstr("no frame rate"));
+}
+
 TEST(PairSource, OneMovingCameraFromImages) {
   const TemporaryFolder folder;
   put_images(folder / "s", {0, 1, 2, 3, 4});
