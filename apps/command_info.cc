@@ -18,12 +18,16 @@ std::string counted(int count, const std::string& what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-void print_table(const BuildInfo& build, const scheduler::Topology& topology) {
+void print_table(const BuildInfo& build, const SystemInfo& system,
+                 const scheduler::Topology& topology) {
   const scheduler::Machine& machine = topology.machine;
   constexpr std::size_t kKib = 1024;
   fmt::print("Vantage            {}\n", build.version);
   fmt::print("compiler           {}\n", build.compiler);
-  fmt::print("libraries          OpenCV {}, TBB {}\n", build.opencv, build.tbb);
+  fmt::print("libraries          OpenCV {}, TBB {}, FFmpeg {}\n", build.opencv, build.tbb,
+             build.ffmpeg);
+  fmt::print("system             {}, {}\n", system.distribution, system.kernel);
+  fmt::print("processor          {}\n", system.processor);
   fmt::print("instruction sets   {} in use\n", instruction_set_in_use());
   fmt::print("  available here   {}\n", fmt::join(available_instruction_sets(), " "));
   fmt::print("  in this build    {}\n", fmt::join(built_instruction_sets(), " "));
@@ -61,7 +65,8 @@ SettingValue ceilings_json(const MachineCeilings& ceilings) {
           {"all_memory_gb_per_s", ceilings.all_memory_gb_per_s}};
 }
 
-SettingValue machine_json(const BuildInfo& build, const scheduler::Topology& topology) {
+SettingValue machine_json(const BuildInfo& build, const SystemInfo& system,
+                          const scheduler::Topology& topology) {
   const scheduler::Machine& machine = topology.machine;
   SettingValue nodes = SettingValue::array();
   for (const scheduler::NumaNode& node : topology.nodes) {
@@ -74,6 +79,10 @@ SettingValue machine_json(const BuildInfo& build, const scheduler::Topology& top
           {"compiler", build.compiler},
           {"opencv", build.opencv},
           {"tbb", build.tbb},
+          {"ffmpeg", build.ffmpeg},
+          {"distribution", system.distribution},
+          {"kernel", system.kernel},
+          {"processor", system.processor},
           {"isa", instruction_set_in_use()},
           {"isa_available", available_instruction_sets()},
           {"isa_built", built_instruction_sets()},
@@ -93,7 +102,10 @@ SettingValue machine_json(const BuildInfo& build, const scheduler::Topology& top
 int command_info(const Arguments& arguments) {
   bool json = false;
   bool measure = false;
-  Settings settings("info", "Prints the version and what the program can use of this machine.");
+  Settings settings(
+      "info",
+      "Prints the versions of the program and its libraries, the system, and what the "
+      "program can use of this machine.");
   settings.flag("json", json, "Write JSON instead of a table");
   settings.flag("measure", measure,
                 "Measure the peak performance of arithmetic, caches and memory (2 seconds)");
@@ -101,6 +113,7 @@ int command_info(const Arguments& arguments) {
     return kExitDone;
   }
   const BuildInfo build = build_info();
+  const SystemInfo system = system_info();
   const scheduler::Topology topology = scheduler::detect_topology();
   std::optional<MachineCeilings> ceilings;
   if (measure) {
@@ -109,13 +122,13 @@ int command_info(const Arguments& arguments) {
     ceilings = measure_ceilings(execution, kSeconds);
   }
   if (json) {
-    SettingValue document = machine_json(build, topology);
+    SettingValue document = machine_json(build, system, topology);
     if (ceilings) {
       document["ceilings"] = ceilings_json(*ceilings);
     }
     fmt::print("{}\n", document.dump(2));
   } else {
-    print_table(build, topology);
+    print_table(build, system, topology);
     if (ceilings) {
       print_table(*ceilings);
     }

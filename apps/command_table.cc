@@ -29,7 +29,7 @@ constexpr std::array kCommands = {
     Command{"experiment", "Reproduces figures of the book", command_experiment},
     Command{"tune", "Finds the fastest plan on this machine", command_tune},
     Command{"profile", "Shows where the time of match or run goes, and why", command_profile},
-    Command{"info", "Version, instruction sets, threads and caches", command_info}};
+    Command{"info", "Versions, system, instruction sets, threads and caches", command_info}};
 
 }  // namespace
 

@@ -25,17 +25,34 @@ using vantage::apps::Arguments;
 using vantage::apps::Command;
 using vantage::apps::commands;
 
+constexpr const char* kSummary = "disparity maps and new views of stereo pairs and sequences";
+constexpr const char* kExitCodes =
+    "0 done, 1 failed, 2 wrong usage, 3 frames skipped, 130 interrupted.";
+
 std::string help() {
-  std::string text =
-      "Vantage: disparity maps and new views of stereo pairs and sequences\n\n"
-      "Usage: vantage COMMAND [OPTIONS]\n\n";
+  std::string text = fmt::format("Vantage: {}\n\nUsage: vantage COMMAND [OPTIONS]\n\n", kSummary);
   for (const Command& command : commands()) {
     text += fmt::format("  {:<15} {}\n", command.name, command.summary);
   }
   return text +
-         "\n'vantage help COMMAND' shows the most used options of a command, 'vantage COMMAND "
-         "--help-all' all.\n'vantage --version' prints the version.\nExit codes: 0 done, 1 failed, "
-         "2 wrong usage, 3 frames skipped, 130 interrupted.\n";
+         fmt::format(
+             "\n'vantage help COMMAND' shows the most used options of a command, 'vantage COMMAND "
+             "--help-all' all.\n'vantage --version' prints the version, 'vantage --version "
+             "--verbose' what a bug report needs.\nExit codes: {}\n",
+             kExitCodes);
+}
+
+/// All commands, for programs; 'vantage COMMAND --help-json' has the options.
+std::string help_json() {
+  vantage::apps::SettingValue list = vantage::apps::SettingValue::array();
+  for (const Command& command : commands()) {
+    list.push_back({{"name", command.name}, {"title", command.summary}});
+  }
+  const vantage::apps::SettingValue document = {{"version", vantage::build_info().version},
+                                                {"summary", kSummary},
+                                                {"exit_codes", kExitCodes},
+                                                {"commands", list}};
+  return document.dump(2) + '\n';
 }
 
 /// The command at the start of the arguments, which are shortened by its words. Null if there is
@@ -93,7 +110,20 @@ int run(Arguments arguments, std::string& name) {
     std::fputs(help().c_str(), stdout);
     return vantage::apps::kExitDone;
   }
+  if (arguments.front() == "--help-json") {
+    std::fputs(help_json().c_str(), stdout);
+    return vantage::apps::kExitDone;
+  }
   if (arguments.front() == "--version") {
+    if (arguments.size() == 2 && arguments.back() == "--verbose") {
+      return vantage::apps::command_info({});
+    }
+    if (arguments.size() > 1) {
+      throw vantage::UsageError(
+          fmt::format("unexpected argument '{}' after --version, expected "
+                      "nothing or --verbose",
+                      vantage::quotable(arguments.back())));
+    }
     fmt::print("vantage {}\n", vantage::build_info().version);
     return vantage::apps::kExitDone;
   }

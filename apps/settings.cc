@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "apps/option_reference.h"
 #include "apps/suggestions.h"
 #include "apps/toml_file.h"
 #include "engine/error.h"
@@ -99,6 +100,9 @@ void print_help(CLI::App& app, const std::vector<CLI::Option*>& options,
       option->group("Options");
     }
   }
+  if (!names.empty()) {
+    app.get_option("--help-json")->group("");
+  }
   for (std::size_t i = 0; i < options.size(); ++i) {
     options[i]->required(settings[i].required);  // only now: settings are also read from a file
     if (!names.empty() && std::ranges::find(names, settings[i].name) == names.end()) {
@@ -111,6 +115,26 @@ void print_help(CLI::App& app, const std::vector<CLI::Option*>& options,
     text.erase(at, 1);  // one blank line between groups
   }
   std::fputs(text.c_str(), stdout);
+}
+
+/// Appends the options of `app` that every command has, which are not those of its settings.
+void append_general_options(const CLI::App& app, const std::vector<CLI::Option*>& of_settings,
+                            SettingValue& reference) {
+  for (const CLI::Option* const option : app.get_options()) {
+    if (std::ranges::find(of_settings, option) != of_settings.end()) {
+      continue;
+    }
+    Setting setting;
+    setting.positional = option->get_positional();
+    setting.name = setting.positional ? option->get_name() : option->get_lnames().front();
+    setting.short_name = option->get_snames().empty() ? '\0' : option->get_snames().front().front();
+    setting.value_name = option->get_type_name();
+    setting.help = option->get_description();
+    setting.group = option->get_group();
+    setting.flag = option->get_items_expected_max() == 0;
+    setting.get = [] { return SettingValue(); };
+    reference.push_back(option_reference(setting, true));
+  }
 }
 
 std::string examples_text(const std::vector<std::string_view>& examples) {
@@ -345,7 +369,9 @@ bool Settings::read(const std::vector<std::string>& arguments) {
   app.allow_extras();
   std::string config_path;
   bool print_config = false;
-  std::vector<std::string> known = {"--help", "--help-all", "--config", "--print-config"};
+  bool help_json = false;
+  std::vector<std::string> known = {"--help", "--help-all", "--help-json", "--config",
+                                    "--print-config"};
   std::vector<CLI::Option*> options;
   for (const Setting& setting : settings_) {
     options.push_back(add_option(app, setting));
@@ -372,6 +398,7 @@ bool Settings::read(const std::vector<std::string>& arguments) {
                                                      : "Print the most used options and exit")
       ->group("Settings");
   app.set_help_all_flag("--help-all", "Print all options and exit")->group("Settings");
+  app.add_flag("--help-json", help_json, "Print all options as JSON and exit")->group("Settings");
   app.footer(examples_text(examples_));
   std::vector<std::string> reversed = arguments;  // as CLI11 wants them
   std::reverse(reversed.begin(), reversed.end());
@@ -389,6 +416,13 @@ bool Settings::read(const std::vector<std::string>& arguments) {
     throw UsageError(first_line(error.what()));
   }
   require_known(command_, app.remaining(), known);
+  if (help_json) {
+    SettingValue reference =
+        command_reference(command_, summary_, settings_, short_help_, examples_);
+    append_general_options(app, options, reference["options"]);
+    std::fputs((reference.dump(2) + '\n').c_str(), stdout);
+    return false;
+  }
 
   if (!job_file.empty() && !config_path.empty()) {
     throw UsageError(

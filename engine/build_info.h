@@ -10,8 +10,19 @@ struct BuildInfo {
   std::string compiler;  ///< "GCC 12.2.0"
   std::string opencv;    ///< version in use
   std::string tbb;       ///< version in use
+  std::string ffmpeg;    ///< version in use
 };
 
 BuildInfo build_info();
+
+/// What this process runs on. A field is empty if the system does not tell.
+struct SystemInfo {
+  std::string distribution;  ///< "Debian GNU/Linux 12 (bookworm)"
+  std::string kernel;        ///< "Linux 6.1.0 x86_64"
+  std::string processor;     ///< "AMD EPYC 9B14"
+};
+
+/// Reads /etc/os-release, uname and /proc/cpuinfo. Thread rule: may be used concurrently.
+SystemInfo system_info();
 
 }  // namespace vantage

@@ -19,6 +19,10 @@ readonly TEST_PACKAGES=(slurmctld slurmd slurm-client munge)
 # shellcheck disable=SC2034
 readonly BROWSER_PACKAGES=(chromium)
 
+# What scripts/package needs beside BUILD_PACKAGES.
+# shellcheck disable=SC2034
+readonly PACKAGING_PACKAGES=(dpkg-dev file)
+
 can_be_root() {
   [[ $(id -u) -eq 0 ]] || command -v sudo >/dev/null
 }

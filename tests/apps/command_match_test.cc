@@ -263,6 +263,11 @@ TEST(InputCommandLine, UnknownCommandsAndHelp) {
   EXPECT_EQ(result.out.find("--trace FILE"), std::string::npos);
   EXPECT_THAT(run_vantage({"help", "match", "--help-all"}).out, HasSubstr("--trace FILE"));
   EXPECT_EQ(run_vantage({"--version"}).out.rfind("vantage ", 0), 0U);
+  EXPECT_THAT(run_vantage({"--version", "--verbose"}).out,
+              AllOf(HasSubstr("FFmpeg"), HasSubstr("processor"), HasSubstr("instruction sets")));
+  result = run_vantage({"--version", "--all"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("'--all' after --version, expected nothing or --verbose"));
 }
 
 }  // namespace command_match_test

@@ -1,0 +1,13 @@
+# A container with the program and the Python module: docker build -t vantage .
+#   docker run --rm -v "$PWD:/data" -w /data vantage match left.png right.png -o map.pfm
+FROM debian:12-slim AS build
+WORKDIR /vantage
+COPY . .
+RUN scripts/package
+
+FROM debian:12-slim
+COPY --from=build /vantage/build/packages/*vantage_*.deb /tmp/packages/
+RUN apt-get update \
+ && apt-get install -y --no-install-recommends /tmp/packages/*.deb \
+ && rm -rf /tmp/packages /var/lib/apt/lists/*
+ENTRYPOINT ["vantage"]

@@ -1,0 +1,68 @@
+# Debian packages, one per component: cpack in the build folder, or scripts/package.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGE_CONTACT "Vantage developers <maintainers@vantage.invalid>")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+
+# depends_of_late_libraries(VARIABLE): the packages of the libraries that are opened at run time
+# (engine/late_library.h), which dpkg-shlibdeps does not see.
+function(depends_of_late_libraries variable)
+  get_target_property(imgcodecs opencv_imgcodecs LOCATION)
+  get_target_property(video opencv_video LOCATION)
+  set(packages "")
+  foreach(library IN ITEMS ${imgcodecs} ${video} ${libav_codecs_LINK_LIBRARIES})
+    file(REAL_PATH ${library} file)
+    cmake_path(GET file FILENAME name)
+    execute_process(COMMAND dpkg-query -S "*/${name}"
+      OUTPUT_VARIABLE owner ERROR_QUIET RESULT_VARIABLE result)
+    if(result EQUAL 0)
+      string(REGEX REPLACE "[:,].*" "" package "${owner}")
+      list(APPEND packages ${package})
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES packages)
+  list(JOIN packages ", " packages)
+  set(${variable} "${packages}" PARENT_SCOPE)
+endfunction()
+
+# debian_package(COMPONENT NAME SECTION DEPENDS SUMMARY TEXT)
+macro(debian_package component name section depends summary text)
+  string(TOUPPER ${component} key)
+  list(APPEND CPACK_COMPONENTS_ALL ${component})
+  set(CPACK_DEBIAN_${key}_PACKAGE_NAME ${name})
+  set(CPACK_DEBIAN_${key}_PACKAGE_SECTION ${section})
+  set(CPACK_DEBIAN_${key}_PACKAGE_DEPENDS "${depends}")
+  set(CPACK_DEBIAN_${key}_DESCRIPTION "${summary}\n${text}")
+  set(document_dir ${CMAKE_INSTALL_DATADIR}/doc/${name})
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/debian/copyright DESTINATION ${document_dir}
+    COMPONENT ${component})
+  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${document_dir}
+    COMPONENT ${component})
+endmacro()
+
+find_program(DPKG_QUERY dpkg-query)
+if(NOT DPKG_QUERY)
+  return()  # not a Debian system
+endif()
+configure_file(cmake/debian/changelog.in changelog @ONLY)
+execute_process(COMMAND gzip -9nf ${PROJECT_BINARY_DIR}/changelog COMMAND_ERROR_IS_FATAL ANY)
+
+depends_of_late_libraries(late_libraries)
+debian_package(program vantage graphics "${late_libraries}"
+  "disparity maps and new views of stereo pairs and sequences"
+  "Turns rectified stereo pairs, folders of pairs and stereo videos into
+disparity maps and new views, on all cores of ordinary processors. Results do
+not depend on the number of threads.")
+debian_package(development libvantage-dev libdevel
+  "libtbb-dev, libopencv-dev, libeigen3-dev, libfmt-dev, libhwy-dev, libhwloc-dev, libdeflate-dev, \
+libjpeg-dev, libpng-dev, libswscale-dev, libswresample-dev, libavutil-dev, pkg-config, ${late_libraries}"
+  "C++ library of the stereo engine Vantage"
+  "Static libraries, headers and the CMake package Vantage: find_package(Vantage)
+gives the target vantage::engine.")
+# What cpack puts into packages; it would build all targets itself, tests among them.
+add_custom_target(vantage_packaged DEPENDS vantage vantage_reference vantage_engine)
+include(CPack)
