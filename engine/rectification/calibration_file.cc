@@ -8,6 +8,7 @@
 #include "engine/io/file_bytes.h"
 #include "engine/rectification/calibration_entries.h"
 #include "engine/rectification/stereo_calibration.h"
+#include "engine/view_geometry/camera_pose.h"
 
 namespace vantage {
 namespace {
@@ -94,14 +95,6 @@ int whole_pixels(double value) {
   return static_cast<int>(value);
 }
 
-/// The nearest rotation, because files have few digits. Returns matrices that are far from a
-/// rotation unchanged.
-Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
-  return (rotation - matrix).cwiseAbs().maxCoeff() <= 1e-3 ? rotation : matrix;
-}
-
 StereoCalibration from_opencv(const CalibrationFile& file) {
   file.refuse_fisheyes();
   StereoCalibration calibration{.format = "OpenCV"};
@@ -118,7 +111,8 @@ StereoCalibration from_opencv(const CalibrationFile& file) {
         "it has no R and T, expected intrinsics (M1, D1, M2, D2) and extrinsics (R, T) in one "
         "file");
   }
-  calibration.rotation = nearest_rotation(file.matrix({"R"}));
+  const Eigen::Matrix3d rotation = file.matrix({"R"});
+  calibration.rotation = nearest_rotation(rotation).value_or(rotation);
   calibration.translation = Eigen::Map<const Eigen::Vector3d>(file.values({"T", "t"}, 3, 1).data());
   if (file.find({"image_width"}) != nullptr) {
     calibration.image_size = {whole_pixels(file.number("image_width")),

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/view_geometry/camera_pose.h"
+#include "engine/view_geometry/sized_camera.h"
+
+namespace vantage {
+
+/// Parses the intrinsics of one camera; the content tells the format:
+///  - OpenCV YAML or XML, and camera_info of ROS: camera_matrix, K, cameraMatrix or K1, M1, …
+///  (3×3); distortion_coefficients, distCoeffs or D (absent: none); image_width and image_height,
+///  or image_size.
+///  - COLMAP's cameras.txt with one camera.
+///  - KITTI's calib.txt: P0, or its first line.
+///  - Numbers: fx fy cx cy, or fx fy cx cy k1 k2 p1 p2 [k3].
+/// The camera is valid; its size is 0×0 if the file does not tell. Fisheye models are refused.
+/// Throws Error naming `file`. Thread rule: may be called concurrently.
+SizedCamera parse_intrinsics(std::string_view text, const std::string& file);
+/// parse_intrinsics() of a file. Throws Error, also when it cannot be read.
+SizedCamera read_intrinsics(const std::filesystem::path& file);
+
+/// Whether a text is OpenCV's YAML or XML with extrinsic_parameters.
+bool has_opencv_poses(std::string_view text);
+/// Parses the poses that OpenCV's calibration writes: extrinsic_parameters, N×6, rows rx ry rz tx
+/// ty tz (rotation vector, translation), world to camera. Throws Error naming `file`.
+std::vector<CameraPose> parse_opencv_poses(std::string_view text, const std::string& file);
+
+}  // namespace vantage

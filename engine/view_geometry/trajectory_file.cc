@@ -1,0 +1,87 @@
+#include "engine/view_geometry/trajectory_file.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/error.h"
+#include "engine/io/file_bytes.h"
+#include "engine/io/text_lines.h"
+
+namespace vantage {
+namespace {
+
+constexpr std::size_t kTumNumbers = 8;
+constexpr std::size_t kKittiNumbers = 12;
+constexpr std::size_t kWholeMatrixNumbers = 16;
+
+CameraPose pose_of_tum(const std::vector<double>& numbers, const TextLines& lines) {
+  const auto rotation = rotation_of_quaternion({numbers[7], numbers[4], numbers[5], numbers[6]});
+  if (!rotation) {
+    lines.fail("the quaternion does not have length 1, expected time tx ty tz qx qy qz qw");
+  }
+  return CameraPose::from_camera_to_world(*rotation, {numbers[1], numbers[2], numbers[3]});
+}
+
+CameraPose pose_of_kitti(const std::vector<double>& numbers, const TextLines& lines) {
+  using Matrix34 = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+  const Eigen::Map<const Matrix34> matrix(numbers.data());
+  const auto rotation = nearest_rotation(matrix.leftCols<3>());
+  if (!rotation) {
+    lines.fail("the matrix does not start with a rotation, expected rows (R | t) of 3x4 numbers");
+  }
+  constexpr std::array<double, 4> kLastRow = {0, 0, 0, 1};
+  for (std::size_t i = kKittiNumbers; i < numbers.size(); ++i) {
+    if (numbers[i] != kLastRow[i - kKittiNumbers]) {
+      lines.fail("the last row of the 4x4 matrix is not 0 0 0 1");
+    }
+  }
+  return CameraPose::from_camera_to_world(*rotation, matrix.col(3));
+}
+
+}  // namespace
+
+Trajectory parse_trajectory(std::string_view text, const std::string& file) {
+  TextLines lines(text, file);
+  Trajectory trajectory;
+  std::size_t expected = 0;
+  std::vector<double> numbers;
+  while (const auto line = lines.next_with_words()) {
+    const std::vector<std::string_view> words = words_of(*line);
+    if (expected == 0 && words.size() != kTumNumbers && words.size() != kKittiNumbers &&
+        words.size() != kWholeMatrixNumbers) {
+      lines.fail(fmt::format("holds {} values, expected 8 (TUM) or 12 (KITTI)", words.size()));
+    }
+    if (expected != 0 && words.size() != expected) {
+      lines.fail(
+          fmt::format("holds {} values, expected {} as the first pose", words.size(), expected));
+    }
+    expected = words.size();
+    numbers.clear();
+    for (const std::string_view word : words) {
+      numbers.push_back(lines.number(word, fmt::format("value {}", numbers.size() + 1)));
+    }
+    const bool is_tum = expected == kTumNumbers;
+    trajectory.format = is_tum ? "TUM" : "KITTI";
+    trajectory.poses.push_back(is_tum ? pose_of_tum(numbers, lines)
+                                      : pose_of_kitti(numbers, lines));
+    if (is_tum) {
+      trajectory.times_s.push_back(numbers[0]);
+    }
+  }
+  if (trajectory.poses.empty()) {
+    throw Error(
+        fmt::format("{}: holds no poses, expected lines of 8 (TUM) or 12 (KITTI) numbers", file));
+  }
+  return trajectory;
+}
+
+Trajectory read_trajectory(const std::filesystem::path& file) {
+  const std::vector<std::uint8_t> bytes = read_file_bytes(file);
+  return parse_trajectory({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
+                          file.string());
+}
+
+}  // namespace vantage
