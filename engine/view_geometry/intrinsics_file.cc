@@ -181,7 +181,11 @@ SizedCamera parse_intrinsics(std::string_view text, const std::string& file) {
   } else {
     sized = camera_of_entries(yaml_entries(text), file);
   }
-  sized.camera.validate(file + ": camera");
+  try {
+    sized.camera.validate("camera");
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", file, error.what()));
+  }
   return sized;
 }
 

@@ -101,7 +101,8 @@ TEST(ColmapModel, SaysWhatIsWrongWithCameras) {
               HasSubstr("PINHOLE has 3 parameters, expected 4"));
   EXPECT_THAT(problem_of_cameras("1 OPENCV_FISHEYE 64 48 1 1 1 1 0 0 0 0\n"),
               HasSubstr("'OPENCV_FISHEYE', expected SIMPLE_PINHOLE"));
-  EXPECT_THAT(problem_of_cameras("1 PINHOLE 64 48 -50 51 32 24\n"), HasSubstr("line 1: camera 1"));
+  EXPECT_THAT(problem_of_cameras("1 PINHOLE 64 48 -50 51 32 24\n"),
+              HasSubstr("line 1: the camera 1's fx is -50"));
   EXPECT_THAT(problem_of_cameras("x PINHOLE 64 48 50 51 32 24\n"), HasSubstr("CAMERA_ID is 'x'"));
   EXPECT_THAT(problem_of_cameras("1 PINHOLE 0 48 50 51 32 24\n"), HasSubstr("WIDTH is '0'"));
   EXPECT_THAT(problem_of_cameras("1 PINHOLE 64 48 50 51 32 24\n1 PINHOLE 64 48 50 51 32 24\n"),
@@ -186,7 +187,7 @@ TEST(IntrinsicsFile, SaysWhatIsWrong) {
   };
   EXPECT_THAT(problem("nothing\n"), HasSubstr("camera.yml: holds no camera_matrix"));
   EXPECT_THAT(problem("K: [1, 2]\n"), HasSubstr("camera_matrix has 2 values, expected 9"));
-  EXPECT_THAT(problem("-500 510 320 240\n"), HasSubstr("camera.yml: camera"));
+  EXPECT_THAT(problem("-500 510 320 240\n"), HasSubstr("camera.yml: the camera's fx is -500"));
   EXPECT_THAT(problem("1 PINHOLE 4 4 1 1 1 1\n2 PINHOLE 4 4 1 1 1 1\n"),
               HasSubstr("holds 2 cameras, expected one"));
   EXPECT_THAT(problem("distortion_model: equidistant\nK: [9,0,1,0,9,1,0,0,1]\n"),
