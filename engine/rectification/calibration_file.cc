@@ -7,8 +7,8 @@
 #include "engine/error.h"
 #include "engine/io/file_bytes.h"
 #include "engine/rectification/calibration_entries.h"
+#include "engine/rectification/camera_pose.h"
 #include "engine/rectification/stereo_calibration.h"
-#include "engine/view_geometry/camera_pose.h"
 
 namespace vantage {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/view_geometry/camera_pose.h"
+#include "engine/rectification/camera_pose.h"
 #include "engine/view_geometry/sized_camera.h"
 
 namespace vantage {

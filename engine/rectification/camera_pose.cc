@@ -1,4 +1,4 @@
-#include "engine/view_geometry/camera_pose.h"
+#include "engine/rectification/camera_pose.h"
 
 #include <Eigen/Dense>
 #include <cmath>
