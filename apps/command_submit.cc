@@ -77,9 +77,20 @@ void check(const SubmitJob& job) {
 /// Paths become absolute because tasks start in another folder.
 void make_paths_absolute(SubmitJob& job) {
   PairSourceOptions& input = job.run.input;
-  for (std::string* path : {&input.left, &input.right, &input.stereo, &input.pairs, &input.sequence,
-                            &job.run.calibration, &job.run.views.poses.file,
-                            &job.run.views.path.file, &job.run.output, &job.slurm.program}) {
+  std::vector<std::string*> paths = {&input.left,
+                                     &input.right,
+                                     &input.stereo,
+                                     &input.pairs,
+                                     &input.sequence,
+                                     &job.run.calibration,
+                                     &job.run.views.poses.file,
+                                     &job.run.views.path.file,
+                                     &job.run.output,
+                                     &job.slurm.program};
+  for (std::string& source : input.more) {
+    paths.push_back(&source);
+  }
+  for (std::string* path : paths) {
     if (!path->empty()) {
       *path = fs::absolute(*path).lexically_normal().string();
     }

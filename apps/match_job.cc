@@ -31,24 +31,10 @@ void add_several_settings(Settings& settings, MatchJob& job) {
     job.more = std::move(files);
   };
   more.get = [&job] { return job.more; };
-  Setting& baselines =
-      settings.add("baselines", "B1,B2,...",
-                   "Positions of the cameras of all images but the first, relative to the first, "
-                   "positive to the right; disparities are those between the first two images");
-  baselines.set = [&job](const SettingValue& value) {
-    std::vector<double> numbers;
-    for (const SettingValue& member : to_list(value)) {
-      if (member.is_string()) {
-        for (const std::string& part : split(member.get<std::string>(), ',')) {
-          numbers.push_back(to_number(part));
-        }
-      } else {
-        numbers.push_back(to_number(member));
-      }
-    }
-    job.baselines = std::move(numbers);
-  };
-  baselines.get = [&job] { return job.baselines; };
+  add_baselines_setting(settings, job.baselines,
+                        "Positions of the cameras of all images but the first, relative to the "
+                        "first, positive to the "
+                        "right; disparities are those between the first two images");
 }
 
 void add_file_settings(Settings& settings, MatchJob& job) {
@@ -92,15 +78,7 @@ void add_file_settings(Settings& settings, MatchJob& job) {
 }
 
 void check_several(const MatchJob& job, const Settings& settings) {
-  settings.refuse_idle({"cross-check", "cross-check-level"},
-                       "with several images: there is no second map to compare with");
-  settings.refuse_idle({"tuning"}, "with several images: tuning is for pairs");
-  const std::size_t others = 1 + job.more.size();
-  if (job.baselines.size() != others) {
-    throw UsageError(
-        fmt::format("--baselines has {} number{}, expected {}: one for each image but the first",
-                    job.baselines.size(), job.baselines.size() == 1 ? "" : "s", others));
-  }
+  check_baselines(settings, job.baselines, 1 + job.more.size());
   if (job.match.reference == Side::kRight) {
     throw UsageError(
         "--reference right cannot be used with --baselines: the first image is the reference");

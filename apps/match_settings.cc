@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "apps/parameter_settings.h"
 #include "engine/error.h"
 #include "engine/matching/options/method_fields.h"
@@ -110,6 +114,36 @@ void add_match_settings(Settings& settings, MatchOptions& options) {
   add_method_settings(settings, options);
   add_parameter_settings(settings, options);
   settings.show_resolved([&options] { return resolved_parameters(options); });
+}
+
+void add_baselines_setting(Settings& settings, std::vector<double>& baselines, std::string help) {
+  Setting& setting = settings.add("baselines", "B1,B2,...", std::move(help));
+  setting.set = [&baselines](const SettingValue& value) {
+    std::vector<double> numbers;
+    for (const SettingValue& member : to_list(value)) {
+      if (member.is_string()) {
+        for (const std::string& part : split(member.get<std::string>(), ',')) {
+          numbers.push_back(to_number(part));
+        }
+      } else {
+        numbers.push_back(to_number(member));
+      }
+    }
+    baselines = std::move(numbers);
+  };
+  setting.get = [&baselines] { return baselines; };
+}
+
+void check_baselines(const Settings& settings, const std::vector<double>& baselines,
+                     std::size_t others) {
+  settings.refuse_idle({"cross-check", "cross-check-level"},
+                       "with several images: there is no second map to compare with");
+  settings.refuse_idle({"tuning"}, "with several images: tuning is for pairs");
+  if (baselines.size() != others) {
+    throw UsageError(
+        fmt::format("--baselines has {} number{}, expected {}: one for each image but the first",
+                    baselines.size(), baselines.size() == 1 ? "" : "s", others));
+  }
 }
 
 void add_reference_setting(Settings& settings, MatchOptions& options) {

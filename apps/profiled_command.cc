@@ -71,6 +71,7 @@ ProfiledChoices ProfiledCommand::choices() const {
     has_several = match_job->has_several();
     needs_both = match_job->wants_right() && match_job->is_left();
   } else {
+    has_several = !run_job->sequence.baselines.empty();
     needs_both = !run_job->sequence.views.empty();
     for (const SequenceOutput output : {SequenceOutput::kRightDisparity,
                                         SequenceOutput::kRightUnmatched, SequenceOutput::kStereo}) {

@@ -18,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kSources = {"left", "right", "stereo", "pairs", "sequence", "calibration"};
+constexpr std::array kSources = {"left",  "right",    "more",       "stereo",
+                                 "pairs", "sequence", "calibration"};
 constexpr const char* kKeepGoing = "keep-going";
 
 bool names_input(const PairSourceOptions& input) {
@@ -47,8 +48,16 @@ std::string sources_of(const RunJob& job, const Settings& settings) {
   const SettingValue values = settings.values();
   SettingValue sources = {{kKeepGoing, job.keep_going}};
   for (const char* name : kSources) {
+    const auto stored = [](const SettingValue& path) {
+      return stored_name(fs::absolute(path.get<std::string>()).string());
+    };
     if (values[name].is_string()) {
-      sources[name] = stored_name(fs::absolute(values[name].get<std::string>()).string());
+      sources[name] = stored(values[name]);
+    } else if (values[name].is_array()) {
+      sources[name] = SettingValue::array();
+      for (const SettingValue& path : values[name]) {
+        sources[name].push_back(stored(path));
+      }
     }
   }
   return sources.dump();

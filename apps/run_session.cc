@@ -110,6 +110,9 @@ std::string strips_text(const scheduler::ChainPlan& plan) {
 }
 
 AppliedTuning find_tuning(const RunJob& job, const FramePair& first, const Settings& settings) {
+  if (!job.sequence.baselines.empty()) {
+    return no_tuning("tuning is for pairs, but there are more images");
+  }
   if (job.memory_bytes) {
     return no_tuning("--memory is given, so the cost model plans");
   }
@@ -226,8 +229,8 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
                                  execution.executor().name());
   const std::optional<int> in_flight =
       job.in_flight ? job.in_flight : session.tuning.settings.frames_in_flight;
-  session.memory = plan_memory(job.sequence, {in_flight, job.memory_bytes}, session.shape,
-                               first.left, first.right, session.execution);
+  session.memory = plan_memory(job.sequence, {in_flight, job.memory_bytes}, session.shape, first,
+                               session.execution);
   return session;
 }
 
@@ -236,7 +239,10 @@ std::string describe_plan(const RunJob& job, const RunSession& session) {
   std::string text;
   const auto line = [&](const std::string& content) { text += "run: " + content + "\n"; };
   line(fmt::format(
-      "{} pairs of {}x{} pixels{}{}{}", session.selection.frame_count,
+      "{} {} of {}x{} pixels{}{}{}", session.selection.frame_count,
+      job.sequence.baselines.size() < 2
+          ? std::string("pairs")
+          : fmt::format("frames of {} images", job.sequence.baselines.size() + 1),
       session.shape.source.width_px, session.shape.source.height_px,
       job.input.every.takes_all() ? "" : ", one every " + to_text(job.input.every),
       session.rectifier ? ", rectified on the fly" : "",

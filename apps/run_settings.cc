@@ -102,6 +102,24 @@ void add_input_settings(Settings& settings, RunJob& job) {
   path("right", job.input.right, "SOURCE", "Right frames");
   settings.integer("offset", job.input.offset_frames, "N",
                    "Pair left frame i with right frame i + N");
+  Setting& more =
+      settings.add("more", "SOURCE",
+                   "With --left and --right: frames of a camera on the same line, whose "
+                   "frame i belongs to left frame i; repeatable, needs --baselines");
+  more.path = PathRole::kInput;
+  more.list = true;
+  more.changes_results = false;
+  more.set = [&job](const SettingValue& value) {
+    job.input.more.clear();
+    for (const SettingValue& member : to_list(value)) {
+      job.input.more.push_back(to_text(member));
+    }
+  };
+  more.get = [&job] { return job.input.more; };
+  add_baselines_setting(settings, job.sequence.baselines,
+                        "Positions of the right camera and of those of --more, relative to the "
+                        "left camera, positive to the right: all images of a frame are matched at "
+                        "once; disparities are those of left and right");
   path("stereo", job.input.stereo, "SOURCE", "Frames that hold both images; needs --packing");
   add_packing(settings, "packing", job.input.packing,
               "Stereo layout (ffmpeg's stereo3d names): sbsl side by side, left first; abl "
@@ -337,6 +355,22 @@ void refuse_idle_outputs(const Settings& settings, const SequenceOptions& sequen
   }
 }
 
+/// Several cameras per frame.
+void check_several(const RunJob& job, const Settings& settings) {
+  if (job.sequence.baselines.empty() && job.input.more.empty()) {
+    return;
+  }
+  if (job.input.left.empty() && !job.resume) {
+    throw UsageError("--baselines has no effect without --left and --right");
+  }
+  check_baselines(settings, job.sequence.baselines, 1 + job.input.more.size());
+  if (!job.calibration.empty()) {
+    throw UsageError(
+        "--calibration cannot be used with --baselines: it rectifies the images of two cameras "
+        "only");
+  }
+}
+
 }  // namespace
 
 void add_run_settings(Settings& settings, RunJob& job) {
@@ -384,6 +418,7 @@ void complete(RunJob& job, const Settings& settings) {
   if (job.memory_bytes) {
     settings.refuse_idle({"tuning"}, "with --memory, for which the cost model plans");
   }
+  check_several(job, settings);
   check_views(job.views, job.sequence.views, job.sequence.look_at_px, !job.calibration.empty());
   apply_step_of_frames(job);
   job.input.validate();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 namespace vantage::kernels {
 
@@ -26,7 +27,14 @@ struct CandidateGeometry {
   int count = 0;
   int direction = -1;
   int steps_per_px = 1;  ///< candidates per pixel of disparity, ≥ 1
+  /// Several other images, whose partners are x + direction · disparity_px · ratio: the smallest
+  /// ratio of those on the side of the first (≤ 1), and the smallest magnitude of those on the
+  /// other side (0: none). A candidate then has a partner if it has one in any image.
+  double near_ratio = 1;
+  double opposite_ratio = 0;
 
+  /// Whether there is one other image.
+  [[nodiscard]] bool is_of_one() const { return near_ratio == 1 && opposite_ratio == 0; }
   [[nodiscard]] int lanes() const {
     return (count + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
   }
@@ -41,6 +49,11 @@ struct CandidateGeometry {
   }
   /// Candidates for which every column first..last has a partner inside the other image.
   [[nodiscard]] CandidateRange with_partners(int first, int last, int margin = 0) const {
+    if (!is_of_one()) {
+      const CandidateRange of_first = in_any_image(first, margin);
+      const CandidateRange of_last = in_any_image(last, margin);
+      return {std::max(of_first.begin, of_last.begin), std::min(of_first.end, of_last.end)};
+    }
     const int low = steps_per_px * margin;
     const int high = steps_per_px * (width - 1 - margin);
     const int first_step = steps_per_px * first;
@@ -54,6 +67,9 @@ struct CandidateGeometry {
   /// Columns [begin, end) where every candidate has a partner for all columns within `radius` that
   /// lie in the reference image. `begin` may exceed `end`; both may exceed the image width.
   [[nodiscard]] CandidateRange columns_with_all_partners(int radius = 0) const {
+    if (!is_of_one()) {
+      return columns_with_all_in_any_image(radius);
+    }
     // partner = x − shift for shifts in [min, max], which are widened to whole columns.
     const int min_steps = direction < 0 ? disparity_min : -(disparity_min + count - 1);
     const int min = whole_columns(min_steps);
@@ -64,6 +80,49 @@ struct CandidateGeometry {
   [[nodiscard]] int whole_columns(int steps) const {
     const int columns = steps / steps_per_px;
     return columns - (columns * steps_per_px > steps ? 1 : 0);
+  }
+
+ private:
+  /// Ratios are inexact: partners may lie this far outside, in pixels.
+  static constexpr double kRounding = 1e-6;
+
+  /// Candidates of column x whose partner lies inside at least one of several images. Those of one
+  /// image are an interval with disparity 0 in it, so those of all are one, too.
+  [[nodiscard]] CandidateRange in_any_image(int x, int margin) const {
+    const double to_first = x - margin;
+    const double to_last = width - 1 - margin - x;
+    if (to_first < 0 || to_last < 0) {
+      return {};
+    }
+    // Room along growing and along falling disparities in the first image.
+    const double room = direction < 0 ? to_first : to_last;
+    const double other_room = direction < 0 ? to_last : to_first;
+    const auto reach_px = [&](double near, double opposite) {
+      const double reach = (near + kRounding) / near_ratio;
+      return opposite_ratio > 0 ? std::max(reach, (opposite + kRounding) / opposite_ratio) : reach;
+    };
+    const auto steps_within = [&](double reach) {
+      return static_cast<int>(std::min(std::floor(reach * steps_per_px), 1e9));
+    };
+    return {std::clamp(-steps_within(reach_px(other_room, room)) - disparity_min, 0, count),
+            std::clamp(steps_within(reach_px(room, other_room)) - disparity_min + 1, 0, count)};
+  }
+  /// At most those of columns_with_all_partners(): where cameras on both sides leave out columns in
+  /// the middle, only those on one side of them.
+  [[nodiscard]] CandidateRange columns_with_all_in_any_image(int radius) const {
+    const double max_px = static_cast<double>(disparity_min + count - 1) / steps_per_px;
+    const double min_px = static_cast<double>(disparity_min) / steps_per_px;
+    // Columns from the border that the first image lacks, less those that the other side has.
+    const auto missing = [&](double px) {
+      const double enough = std::ceil(near_ratio * px);
+      const double of_other = opposite_ratio > 0 ? std::floor(width - opposite_ratio * px) : 0;
+      const bool has_all = std::max(of_other, 0.0) >= enough;
+      return has_all ? 0 : static_cast<int>(std::min<double>(enough, width)) + radius;
+    };
+    const int before = missing(max_px);
+    const int after = missing(-min_px);
+    return direction < 0 ? CandidateRange{before, width - after}
+                         : CandidateRange{after, width - before};
   }
 };
 

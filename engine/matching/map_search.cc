@@ -42,6 +42,25 @@ scheduler::ChainPlan chain_plan(const MatchChain& chain, const ExecutionOptions&
   return scheduler::plan_chain(chain.stages(), machine, request);
 }
 
+namespace {
+
+/// `geometry` with the candidates that any of `partners` sees.
+kernels::CandidateGeometry seen_by_any(kernels::CandidateGeometry geometry,
+                                       std::span<const CostPartner> partners) {
+  for (const CostPartner& partner : partners) {
+    const double ratio = partner.baseline_ratio;
+    if (ratio > 0) {
+      geometry.near_ratio = std::min(geometry.near_ratio, ratio);
+    } else {
+      geometry.opposite_ratio =
+          geometry.opposite_ratio > 0 ? std::min(geometry.opposite_ratio, -ratio) : -ratio;
+    }
+  }
+  return geometry;
+}
+
+}  // namespace
+
 void MapSearch::compute(Side reference, const ChainInput& input, const MapOutputs& outputs,
                         const CoarseMap& coarse, const CheckMap& check,
                         std::span<const VolumeRequest> volumes) {
@@ -49,13 +68,15 @@ void MapSearch::compute(Side reference, const ChainInput& input, const MapOutput
   const int height = outputs.disparity_px.height();
   const auto grid = displacement_grid(options_, reference, width, height);
   ChainInput searched = input;
-  kernels::CandidateGeometry geometry = candidate_geometry(options_, reference, width, height);
+  const kernels::CandidateGeometry along_rows =
+      seen_by_any(candidate_geometry(options_, reference, width, height), input.partners);
+  kernels::CandidateGeometry geometry = along_rows;
   if (grid) {
     searched.grid = &*grid;
     geometry = grid->columns();
   }
   search(geometry, searched, outputs, coarse, check,
-         start_writers(reference, {width, height}, volumes));
+         start_writers(reference, {width, height}, along_rows, volumes));
   if (geometry.steps_per_px > 1) {
     const bool has_own_map = !coarse.is_all && !check.is_all;
     for (const ImageView<float>& map :
@@ -111,6 +132,7 @@ void MapSearch::search(const kernels::CandidateGeometry& geometry, const ChainIn
 
 /// One writer for all volumes of the same cells.
 std::vector<VolumeWriter> MapSearch::start_writers(Side reference, scheduler::Extent image,
+                                                   const kernels::CandidateGeometry& along_rows,
                                                    std::span<const VolumeRequest> volumes) const {
   std::vector<VolumeWriter> writers;
   std::map<std::pair<int, VolumeKind>, std::vector<VolumeSink*>> sinks;
@@ -135,7 +157,7 @@ std::vector<VolumeWriter> MapSearch::start_writers(Side reference, scheduler::Ex
                                    parameters_.border == Border::kValid;
     writers.emplace_back(
         VolumeWriter::Space{
-            .geometry = candidate_geometry(options_, reference, image.columns, image.rows),
+            .geometry = along_rows,
             .grid = displacement_grid(options_, reference, image.columns, image.rows),
             .height_px = image.rows,
             .level = level,

@@ -11,6 +11,7 @@
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/volume/volume_request.h"
 #include "engine/matching/volume/volume_writer.h"
+#include "kernels/candidates.h"
 #include "scheduler/range.h"
 #include "scheduler/strip_plan.h"
 
@@ -50,7 +51,8 @@ class MapSearch {
               const MapOutputs& outputs, const CoarseMap& coarse, const CheckMap& check,
               const std::vector<VolumeWriter>& writers);
   [[nodiscard]] std::vector<VolumeWriter> start_writers(
-      Side reference, scheduler::Extent image, std::span<const VolumeRequest> volumes) const;
+      Side reference, scheduler::Extent image, const kernels::CandidateGeometry& along_rows,
+      std::span<const VolumeRequest> volumes) const;
   void run_chain(const MatchChain& chain);
 
   const ResolvedMatchOptions& options_;

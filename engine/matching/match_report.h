@@ -30,6 +30,18 @@ struct MatchReport {
   std::optional<PairExposure> exposure;
   /// With MatchRequest::previous: the share of tiles that were searched, of the map with more.
   std::optional<double> searched_share;
+
+  /// Adds the work of another map of the same images; keeps the first plan and exposure.
+  void add(const MatchReport& other) {
+    stages.insert(stages.end(), other.stages.begin(), other.stages.end());
+    if (plan.passes.empty()) {
+      plan = other.plan;
+    }
+    cells += other.cells;
+    finest_cells += other.finest_cells;
+    finest_pixels += other.finest_pixels;
+    exposure = exposure ? exposure : other.exposure;
+  }
 };
 
 }  // namespace vantage

@@ -161,29 +161,51 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
     of_left.input.grid = &*grid;
     geometry = grid->columns();
   }
+  return plans_of(in_force_.parameters, of_left, geometry, executions);
+}
+
+/// Of the task's finest level.
+std::vector<scheduler::ChainPlan> StereoMatcher::plans_of(
+    const MethodParameters& parameters, const MapTask& task,
+    const kernels::CandidateGeometry& geometry,
+    std::span<const ExecutionOptions> executions) const {
   const LevelVolume coarser;  // never read
-  const auto extents = level_extents({left.width(), left.height()}, in_force_.parameters.levels);
-  const bool has_windows = in_force_.parameters.window_levels > 0 && extents.size() > 1;
+  const auto extents =
+      level_extents({task.image->width(), task.image->height()}, parameters.levels);
+  const bool has_windows = parameters.window_levels > 0 && extents.size() > 1;
   LevelVolume costs;  // never written
-  const bool is_pruned =
-      !has_windows && in_force_.parameters.candidate_blocks > 0 && extents.size() > 1;
+  const bool is_pruned = !has_windows && parameters.candidate_blocks > 0 && extents.size() > 1;
   CandidateBlocks blocks;
   if (is_pruned) {
-    blocks.resize(extents.front(), geometry.count, in_force_.parameters.candidate_blocks,
+    blocks.resize(extents.front(), geometry.count, parameters.candidate_blocks,
                   geometry.steps_per_px);
   }
-  const MatchChain chain(in_force_.parameters, geometry, of_left.input,
-                         {.disparity_px = maps.left.disparity_px.view()},
-                         has_windows
-                             ? ChainLevel{.reduced = &costs}
-                             : ChainLevel{.coarser = extents.size() > 1 ? &coarser : nullptr,
-                                          .blocks = is_pruned ? &blocks : nullptr});
+  const MatchChain chain(
+      parameters, geometry, task.input, {.disparity_px = task.map->disparity_px.view()},
+      has_windows ? ChainLevel{.reduced = &costs}
+                  : ChainLevel{.coarser = extents.size() > 1 ? &coarser : nullptr,
+                               .blocks = is_pruned ? &blocks : nullptr});
   std::vector<scheduler::ChainPlan> plans;
   for (const ExecutionOptions& execution : executions) {
     plans.push_back(chain_plan(chain, execution, thread_count(execution, execution_.machine()),
                                execution_.machine()));
   }
   return plans;
+}
+
+scheduler::ChainPlan StereoMatcher::plan_several(const Photograph& reference,
+                                                 std::span<const OtherView> others) const {
+  require_several(reference, others);
+  const auto prepared = prepared_.borrow();
+  prepared->parameters = in_force_.parameters;
+  prepared->parameters.window_levels = 0;
+  MatchedMap map;  // never read
+  map.disparity_px.resize(reference.width(), reference.height());
+  MapTask task{.side = Side::kLeft, .image = &reference, .map = &map};
+  prepare_several(task, others, std::vector<IntensityChanges>(others.size()), *prepared);
+  const auto geometry =
+      candidate_geometry(in_force_, Side::kLeft, reference.width(), reference.height());
+  return plans_of(prepared->parameters, task, geometry, {&execution_.options(), 1}).front();
 }
 
 bool StereoMatcher::uses_check_maps(scheduler::Extent image) const {
@@ -359,9 +381,9 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
               [&](std::string_view step) { clock.start(step); });
 }
 
-void StereoMatcher::match_several(const Photograph& reference, std::span<const OtherView> others,
-                                  const MatchRequest& request, DisparityMaps& maps,
-                                  MatchReport* report) const {
+/// Throws where images cannot be matched at once.
+void StereoMatcher::require_several(const Photograph& reference,
+                                    std::span<const OtherView> others) const {
   if (in_force_.parameters.selection == Selection::kSymmetric) {
     throw UsageError(
         "selection is symmetric, expected winner or scanline with several baselines: a symmetric "
@@ -372,13 +394,43 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
     require_equal_sizes(reference, "reference image", *others[k].photograph,
                         fmt::format("image {}", k + 1));
   }
+}
+
+/// Prepares the input of the reference's chain.
+void StereoMatcher::prepare_several(MapTask& task, std::span<const OtherView> others,
+                                    std::span<const IntensityChanges> changes,
+                                    Prepared& prepared) const {
+  const Photograph& reference = *task.image;
+  const auto geometry =
+      candidate_geometry(in_force_, Side::kLeft, reference.width(), reference.height());
+  prepared.images.resize(others.size() + 1);
+  prepared.images[0].prepare(reference, prepared.parameters, geometry, {true, false, false},
+                             execution_);
+  task.input = {nullptr, prepared.images.data(), {}};
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    CostImage& image = prepared.images[k + 1];
+    const double ratio = others[k].baseline / others.front().baseline;
+    image.prepare(*others[k].photograph, prepared.parameters, geometry,
+                  {.as_reference = false,
+                   .as_partner_of_left = (task.side == Side::kLeft) == (ratio > 0),
+                   .as_partner_of_right = (task.side == Side::kLeft) != (ratio > 0),
+                   .intensity_changes = changes[k],
+                   .phases = sample_phases(ratio, geometry.steps_per_px)},
+                  execution_);
+    task.input.partners.push_back({&image, ratio});
+  }
+}
+
+void StereoMatcher::match_several(const Photograph& reference, std::span<const OtherView> others,
+                                  const MatchRequest& request, DisparityMaps& maps,
+                                  MatchReport* report) const {
+  require_several(reference, others);
+  require_usable(request.prior, reference);
   MatchReport own_report;
   MatchReport& times = report != nullptr ? *report : own_report;
   times = {};
   StageClock clock(times);
   clock.start("prepare");
-  const auto geometry =
-      candidate_geometry(in_force_, Side::kLeft, reference.width(), reference.height());
   const auto prepared = prepared_.borrow();
   prepared->parameters = in_force_.parameters;
   prepared->parameters.window_levels = 0;  // windows compare two images
@@ -388,25 +440,14 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
     changes = estimate_exposure(reference, others, *prepared, times);
     clock.start("prepare");
   }
-  prepared->images.resize(others.size() + 1);
-  prepared->images[0].prepare(reference, prepared->parameters, geometry, {true, false, false},
-                              execution_);
   maps = {};
   const Side side = others.front().baseline > 0 ? Side::kLeft : Side::kRight;
   MapTask task{.side = side, .image = &reference, .map = &maps.of(side)};
   task.need = {.whole = true};
-  task.input = {nullptr, prepared->images.data(), {}};
-  for (std::size_t k = 0; k < others.size(); ++k) {
-    CostImage& image = prepared->images[k + 1];
-    const double ratio = others[k].baseline / others.front().baseline;
-    image.prepare(*others[k].photograph, prepared->parameters, geometry,
-                  {.as_reference = false,
-                   .as_partner_of_left = (side == Side::kLeft) == (ratio > 0),
-                   .as_partner_of_right = (side == Side::kLeft) != (ratio > 0),
-                   .intensity_changes = changes[k],
-                   .phases = sample_phases(ratio, geometry.steps_per_px)},
-                  execution_);
-    task.input.partners.push_back({&image, ratio});
+  prepare_several(task, others, changes, *prepared);
+  if (!request.prior.empty() && request.prior.weight > 0) {
+    task.input.prior_px = side == Side::kLeft ? request.prior.left_px : request.prior.right_px;
+    task.input.prior_weight = request.prior.weight;
   }
   compute(task, "match", wants_confidence(request), 0, *prepared, clock, times, request.volumes);
 

@@ -37,7 +37,7 @@ struct MatchRequest {
   /// Volumes written to their sinks while maps are computed, not for a reduced search-size. Maps do
   /// not depend on them.
   std::span<const VolumeRequest> volumes = {};
-  DisparityPrior prior = {};  ///< for match() without a vertical search only
+  DisparityPrior prior = {};  ///< without a vertical search only
   /// For match() with a reduced search-size: tiles keep the maps of the pair before. Replaced by
   /// the maps of this pair; a request with it runs alone. Ignored where images are too small to be
   /// reduced.
@@ -69,13 +69,16 @@ class StereoMatcher {
   [[nodiscard]] std::vector<scheduler::ChainPlan> plans(
       const Photograph& left, const Photograph& right,
       std::span<const ExecutionOptions> executions) const;
+  /// The same for match_several(). Errors as match_several().
+  [[nodiscard]] scheduler::ChainPlan plan_several(const Photograph& reference,
+                                                  std::span<const OtherView> others) const;
 
   /// Matches `reference` against all of `others` at once (6.6): the partner of column x in the k-th
   /// of them is x − d · baseline_k / |baseline_1|, so candidates are disparities between the
-  /// reference and the first. The result is maps.left if the first is to the right of the
-  /// reference, maps.right if it is to the left. At least one other; all images of equal size;
-  /// baselines distinct and not 0. Errors as match(), and UsageError for selection symmetric, which
-  /// is of two images.
+  /// reference and the first. A candidate counts if any of them sees it. The result is maps.left if
+  /// the first is to the right of the reference, maps.right if it is to the left. At least one
+  /// other; all images of equal size; baselines distinct and not 0. Errors as match(), and
+  /// UsageError for selection symmetric, which is of two images.
   void match_several(const Photograph& reference, std::span<const OtherView> others,
                      const MatchRequest& request, DisparityMaps& maps,
                      MatchReport* report = nullptr) const;
@@ -132,6 +135,13 @@ class StereoMatcher {
                       std::span<const VolumeRequest> volumes = {}) const;
   void estimate_exposure(const Photograph& left, const Photograph& right, Prepared& prepared,
                          MatchReport& report) const;
+  [[nodiscard]] std::vector<scheduler::ChainPlan> plans_of(
+      const MethodParameters& parameters, const MapTask& task,
+      const kernels::CandidateGeometry& geometry,
+      std::span<const ExecutionOptions> executions) const;
+  void require_several(const Photograph& reference, std::span<const OtherView> others) const;
+  void prepare_several(MapTask& task, std::span<const OtherView> others,
+                       std::span<const IntensityChanges> changes, Prepared& prepared) const;
   [[nodiscard]] std::vector<IntensityChanges> estimate_exposure(const Photograph& reference,
                                                                 std::span<const OtherView> others,
                                                                 Prepared& prepared,

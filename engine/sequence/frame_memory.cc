@@ -8,6 +8,9 @@ std::size_t held_bytes(const FrameSlot& slot) {
   std::size_t bytes = held_bytes(slot.pair.left) + held_bytes(slot.pair.right) +
                       held_bytes(slot.maps) + held_bytes(slot.preview) + held_bytes(slot.stereo) +
                       held_bytes(slot.encoded);
+  for (const Photograph& photograph : slot.pair.more) {
+    bytes += held_bytes(photograph);
+  }
   for (const Photograph& photograph : slot.rectified) {
     bytes += held_bytes(photograph);
   }

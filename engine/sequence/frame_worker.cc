@@ -117,6 +117,9 @@ void FrameWorker::prepare(FrameSlot& slot) const {
   if (frame_size_) {
     require_size(slot.pair.left, "left", *frame_size_);
     require_size(slot.pair.right, "right", *frame_size_);
+    for (std::size_t k = 0; k < slot.pair.more.size(); ++k) {
+      require_size(slot.pair.more[k], fmt::format("camera {}'s", k + 3), *frame_size_);
+    }
   }
   slot.left = &slot.pair.left;
   slot.right = &slot.pair.right;
@@ -180,7 +183,7 @@ void FrameWorker::match(FrameSlot& slot) {
                        .right = right_is_primary || both,
                        .confidence = options_.saves(SequenceOutput::kConfidence)};
   if (!computes_in_order()) {
-    matcher_.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
+    match_images(slot, request);
     return;
   }
   // A chunk has no state from before it, whichever of its frames is the first good one.
@@ -194,13 +197,44 @@ void FrameWorker::match(FrameSlot& slot) {
   }
 }
 
+void FrameWorker::match_images(FrameSlot& slot, const MatchRequest& request) const {
+  if (options_.baselines.empty()) {
+    matcher_.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
+    return;
+  }
+  std::vector<const Photograph*> images = {slot.left, slot.right};
+  for (const Photograph& image : slot.pair.more) {
+    images.push_back(&image);
+  }
+  std::vector<double> positions = {0};
+  positions.insert(positions.end(), options_.baselines.begin(), options_.baselines.end());
+  slot.match = {};
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    if (!(side == Side::kLeft ? request.left : request.right)) {
+      continue;
+    }
+    // The other image of the pair is the first: disparities are those of the pair.
+    const std::size_t reference = index_of(side);
+    std::vector<OtherView> others = {
+        {images[1 - reference], positions[1 - reference] - positions[reference]}};
+    for (std::size_t k = 2; k < images.size(); ++k) {
+      others.push_back({images[k], positions[k] - positions[reference]});
+    }
+    DisparityMaps maps;
+    MatchReport report;
+    matcher_.match_several(*images[reference], others, request, maps, &report);
+    slot.maps.of(side) = std::move(maps.of(side));
+    slot.match.add(report);
+  }
+}
+
 void FrameWorker::match_with_prior(FrameSlot& slot, MatchRequest request, bool is_first) {
   if (is_first) {
     temporal_.restart();
   }
   request.left = request.right = true;  // both are stored for the next frame
   request.prior = temporal_.priors_for(*slot.left, *slot.right, execution_);
-  matcher_.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
+  match_images(slot, request);
   temporal_.remember(*slot.left, *slot.right, slot.maps, execution_);
 }
 
@@ -216,6 +250,10 @@ void FrameWorker::match_with_reuse(FrameSlot& slot, MatchRequest request, bool i
 }
 
 void FrameWorker::check_range(FrameSlot& slot) {
+  if (!options_.baselines.empty()) {
+    slot.may_be_cut = false;
+    return;
+  }
   const MatchesAtEnds matches = matches_at_ends(slot.maps, options_.match);
   slot.may_be_cut = may_be_cut(matches, options_.match, false);
   slot.cut.reset();

@@ -81,6 +81,8 @@ class FrameWorker {
 
  private:
   void match(FrameSlot& slot);
+  /// By all images of the frame.
+  void match_images(FrameSlot& slot, const MatchRequest& request) const;
   void match_with_prior(FrameSlot& slot, MatchRequest request, bool is_first);
   void match_with_reuse(FrameSlot& slot, MatchRequest request, bool is_first);
   /// Looks at the first few frames for which the range may be too narrow.

@@ -8,6 +8,7 @@
 
 #include "engine/error.h"
 #include "engine/matching/coarse_to_fine.h"
+#include "engine/matching/costs/cost_image.h"
 #include "engine/matching/reduced_matcher.h"
 #include "engine/matching/selection/symmetric_energies.h"
 #include "engine/matching/stereo_matcher.h"
@@ -40,9 +41,10 @@ std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) 
   const std::size_t pixels = pixels_of(shape.source);
   const std::size_t photograph = photograph_bytes(shape.source, shape);
   // Fetched and decoded; a packed frame holds both images once more.
-  std::size_t bytes = 4 * photograph;
+  const std::size_t more = options.baselines.empty() ? 0 : options.baselines.size() - 1;
+  std::size_t bytes = (4 + 2 * more) * photograph;
   if (shape.is_video) {
-    bytes += 2 * photograph;  // decoder output, upper bound
+    bytes += (2 + more) * photograph;  // decoder output, upper bound
   }
   if (shape.is_rectified_here) {
     bytes += 2 * photograph;
@@ -90,7 +92,7 @@ std::size_t rectification_bytes(const SequenceOptions& options, const PairShape&
 /// Matching one frame, except its strips: images for the costs, coarse levels.
 std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) {
   const scheduler::Extent extent{shape.source.width_px, shape.source.height_px};
-  if (search_reductions(options.match.in_force(), extent) > 0) {
+  if (options.baselines.empty() && search_reductions(options.match.in_force(), extent) > 0) {
     return ReducedMatcher::working_bytes(options.match.in_force(), extent);
   }
   const std::size_t pixels = pixels_of(shape.source);
@@ -98,11 +100,16 @@ std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) 
                                    ? static_cast<std::size_t>(shape.channels)
                                    : 1;
   // Levels with lower and upper bounds or gradients, of both images, and mirrored copies.
-  constexpr std::size_t kPlanes = 4 * 2;
+  std::size_t planes = 4 * 2;
+  for (std::size_t k = 1; k < options.baselines.size(); ++k) {
+    planes +=
+        4 * static_cast<std::size_t>(sample_phases(options.baselines[k] / options.baselines.front(),
+                                                   steps_per_px(options.match.resolved())));
+  }
   constexpr std::size_t kCheckedMaps = 2;  // of coarse levels
   const int check_level = options.match.resolved_refinement().cross_check_level;
   const int candidates = candidate_count(options.match.disparities, options.match.resolved());
-  return pixels * channels * kPlanes * sizeof(float) +
+  return pixels * channels * planes * sizeof(float) +
          (check_level > 0 ? kCheckedMaps : 0) * (pixels >> 2 * check_level) * sizeof(std::int32_t) +
          edge_weight_bytes(options.match.resolved(), pixels) +
          coarse_level_bytes(options.match.resolved(), extent, candidates) +
@@ -212,12 +219,26 @@ std::size_t video_bytes(const SequenceOptions& options, const PairShape& shape) 
   return bytes;
 }
 
+/// Plan of one map.
+scheduler::ChainPlan chain_of(const SequenceOptions& options, const FramePair& first,
+                              Execution& execution) {
+  const StereoMatcher matcher(options.match, execution);
+  if (options.baselines.empty()) {
+    return matcher.plan(first.left, first.right);
+  }
+  std::vector<OtherView> others = {{&first.right, options.baselines.front()}};
+  for (std::size_t k = 0; k < first.more.size(); ++k) {
+    others.push_back({&first.more[k], options.baselines[k + 1]});
+  }
+  return matcher.plan_several(first.left, others);
+}
+
 }  // namespace
 
 int default_frames_in_flight(int threads) { return std::min(threads + 2, kDefaultMaxInFlight); }
 
 MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& request,
-                       const PairShape& shape, const Photograph& left, const Photograph& right,
+                       const PairShape& shape, const FramePair& first,
                        const ExecutionOptions& execution) {
   ExecutionOptions limited = execution;
   MemoryPlan plan;
@@ -250,7 +271,7 @@ MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& requ
     }
     limited.chain_memory_bytes = plan.chain_bytes;
     Execution probe(limited);
-    plan.chain = StereoMatcher(options.match, probe).plan(left, right);
+    plan.chain = chain_of(options, first, probe);
     std::size_t scratch = 0;
     for (const scheduler::PassPlan& pass : plan.chain.passes) {
       scratch = std::max(scratch, pass.scratch_bytes);

@@ -42,11 +42,11 @@ struct MemoryRequest {
 int default_frames_in_flight(int threads);
 
 /// Chooses the number of frames in flight and the memory of each, within the request: reduces the
-/// frames first, then the memory for iterations. `left` and `right` are the first pair, ready for
-/// matching. Throws Error when one frame does not fit, naming its size; for views that cannot be
-/// rendered, naming the frame.
+/// frames first, then the memory for iterations. `first` is the first pair, ready for matching.
+/// Throws Error when one frame does not fit, naming its size; for views that cannot be rendered,
+/// naming the frame.
 MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& request,
-                       const PairShape& shape, const Photograph& left, const Photograph& right,
+                       const PairShape& shape, const FramePair& first,
                        const ExecutionOptions& execution);
 
 }  // namespace vantage

@@ -13,6 +13,7 @@
 #include "engine/sequence/moving_camera_pairs.h"
 #include "engine/sequence/packed_pairs.h"
 #include "engine/sequence/pair_list.h"
+#include "engine/sequence/several_cameras.h"
 #include "engine/sequence/two_camera_pairs.h"
 
 namespace vantage {
@@ -80,9 +81,17 @@ std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
   if (!options.sequence.empty()) {
     return make_moving_camera_pairs(open_frame_source(options.sequence), options.step);
   }
-  return std::make_unique<TwoCameraPairs>(open_frame_source(options.left),
-                                          open_frame_source(options.right), options.offset_frames,
-                                          true);
+  auto pairs = std::make_unique<TwoCameraPairs>(open_frame_source(options.left),
+                                                open_frame_source(options.right),
+                                                options.offset_frames, true);
+  if (options.more.empty()) {
+    return pairs;
+  }
+  std::vector<std::unique_ptr<FrameSource>> more;
+  for (const std::string& source : options.more) {
+    more.push_back(open_frame_source(source));
+  }
+  return std::make_unique<SeveralCameras>(std::move(pairs), std::move(more));
 }
 
 }  // namespace
@@ -106,6 +115,9 @@ void PairSourceOptions::validate() const {
   }
   if (offset_frames != 0 && !two_cameras) {
     throw UsageError(fmt::format("offset is {}, expected 0 without left and right", offset_frames));
+  }
+  if (!more.empty() && !two_cameras) {
+    throw UsageError("more is given, expected it with left and right only");
   }
   if (!stereo.empty() && !packing) {
     throw UsageError("stereo is given without packing");

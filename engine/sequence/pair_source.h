@@ -29,7 +29,10 @@ struct FramePair {
   std::array<FetchedFrame, 2> fetched;  ///< decode() makes the pair from it
   Photograph left;
   Photograph right;
-  std::vector<std::string> remarks;  ///< about both frames, and about the pair
+  /// Of PairSourceOptions::more; empty if the right image is not needed.
+  std::vector<FetchedFrame> more_fetched;
+  std::vector<Photograph> more;
+  std::vector<std::string> remarks;  ///< about the frames, and about the pair
 };
 
 /// Pairs of the input that a run takes: pair `first` and every `pairs`-th after it.
@@ -52,6 +55,9 @@ struct PairSourceOptions {
   std::string left;
   std::string right;
   int offset_frames = 0;
+  /// With left and right: sources of more cameras, whose frame i belongs to frame i of the left
+  /// one.
+  std::vector<std::string> more;
   /// One source whose frames hold both images.
   std::string stereo;
   std::optional<StereoPacking> packing;

@@ -9,6 +9,7 @@
 #include "engine/error.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/map_formats.h"
+#include "engine/matching/match_inputs.h"
 #include "engine/quoted_text.h"
 
 namespace vantage {
@@ -60,7 +61,8 @@ void require_near(const ViewPose& pose) {
 }
 
 void check_temporal(const SequenceOptions& options) {
-  const bool is_reduced = options.match.resolved().search_size != SearchSize::kFull;
+  const bool is_reduced =
+      options.match.resolved().search_size != SearchSize::kFull && options.baselines.empty();
   if (options.temporal.weight > 0 && is_reduced) {
     throw UsageError(
         fmt::format("temporal-prior is {}, expected 0 with a reduced search-size (preset realtime)",
@@ -68,7 +70,31 @@ void check_temporal(const SequenceOptions& options) {
   }
   if (options.temporal.reuse != Reuse::kNone && !is_reduced) {
     throw UsageError(
-        "reuse is frame with search-size full, expected a reduced search-size (preset realtime)");
+        options.baselines.empty()
+            ? "reuse is frame with search-size full, expected a reduced search-size (preset "
+              "realtime)"
+            : "reuse is frame, expected none with baselines, which search the full size");
+  }
+}
+
+void check_baselines(const SequenceOptions& options) {
+  if (options.baselines.empty()) {
+    return;
+  }
+  std::vector<OtherView> others;
+  for (const double baseline : options.baselines) {
+    others.push_back({nullptr, baseline});
+  }
+  require_different_baselines(others);
+  if (options.baselines.front() < 0) {
+    throw UsageError(
+        fmt::format("the baseline of the right camera is {}, expected a positive number",
+                    options.baselines.front()));
+  }
+  if (options.match.resolved().selection == Selection::kSymmetric) {
+    throw UsageError(
+        "selection is symmetric, expected winner or scanline with baselines: a symmetric solution "
+        "is of two images");
   }
 }
 
@@ -166,6 +192,7 @@ void SequenceOptions::validate() const {
   synthesis.validate();
   temporal.validate();
   check_temporal(*this);
+  check_baselines(*this);
   if (match.disparities_y) {
     throw UsageError("disparities-y is set, expected none: sequences consist of rectified pairs");
   }

@@ -48,6 +48,10 @@ enum class FitScope {
 /// Everything that determines which files a sequence run writes and their content.
 struct SequenceOptions {
   MatchOptions match;  ///< without disparities_y
+  /// Of the right camera and those of FramePair::more, relative to the left one; the first is
+  /// positive. Empty: pairs. Maps are then of all images at once (StereoMatcher::match_several()),
+  /// without a cross-check.
+  std::vector<double> baselines;
   SynthesisOptions synthesis;
   std::vector<SequenceOutput> save = {SequenceOutput::kDisparity};  ///< at least one
   /// Outputs of `save` written as one H.264 video each instead of an image per frame; not maps of

@@ -17,6 +17,10 @@ class TwoCameraPairs final : public PairSource {
   TwoCameraPairs(std::unique_ptr<FrameSource> left, std::unique_ptr<FrameSource> right,
                  int offset_frames, bool numbers_matter);
 
+  [[nodiscard]] const FrameSource& left() const { return *left_; }
+  /// Frame of the left camera in pair 0.
+  [[nodiscard]] int first_left() const { return first_left_; }
+
   bool fetch(FramePair& pair) override;
   void skip_to(int index) override;
   [[nodiscard]] int pair_count() const override { return pair_count_; }

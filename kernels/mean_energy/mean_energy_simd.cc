@@ -49,7 +49,7 @@ HWY_INLINE void border_column(const WinnerRow& row, const EnergyUnit& unit, int 
     std::fill_n(energies, lanes, 0.0F);
     return;
   }
-  if (row.geometry.steps_per_px > 1) {
+  if (row.geometry.steps_per_px > 1 || !row.geometry.is_of_one()) {
     std::fill_n(energies, lanes, 0.0F);
     for (int i = candidates.begin; i < candidates.end; ++i) {
       const double factor = unit.scale / (unit.window_rows * row.window_columns(x, i));

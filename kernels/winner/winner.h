@@ -36,7 +36,7 @@ struct WinnerRow {
   }
   /// Candidates of column x for which every window column has a partner.
   [[nodiscard]] CandidateRange full_window_candidates(int x) const {
-    if (whole_windows_only) {
+    if (whole_windows_only || !geometry.is_of_one()) {
       return candidates(x);
     }
     return geometry.with_partners(window_begin(x), window_last(x));
@@ -47,6 +47,9 @@ struct WinnerRow {
   }
   /// Window columns that lie inside both images, for a candidate of column x; ≥ 1 for candidates().
   [[nodiscard]] int window_columns(int x, int candidate) const {
+    if (!geometry.is_of_one()) {
+      return full_window_columns(x);
+    }
     const int shift = geometry.steps_per_px * x - geometry.partner(x, candidate);
     return std::min(window_last(x), geometry.width - 1 + geometry.whole_columns(shift)) -
            std::max(window_begin(x), -geometry.whole_columns(-shift)) + 1;

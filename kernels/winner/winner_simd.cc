@@ -232,8 +232,8 @@ class BorderWinners {
       const int room_after = left ? last_column - last : begin;
       const int full_end = std::clamp(steps * room - min + 1, 0, count);
       // Of candidates between pixels, several in a row have windows of the same size.
-      const bool is_irregular =
-          whole_only || steps * room_after < -min || (steps > 1 && full_end < count);
+      const bool is_irregular = whole_only || !geometry.is_of_one() || steps * room_after < -min ||
+                                (steps > 1 && full_end < count);
       shape.full_end[k] = is_irregular ? 0 : full_end;
       shape.candidates_end[k] =
           std::clamp(steps * (left ? x : last_column - x) - min + 1, 0, count);

@@ -7,6 +7,9 @@ namespace vantage {
 
 void clear_without_partner(const kernels::CandidateGeometry& geometry, int radius,
                            scheduler::Range columns, int pitch, std::int32_t* sums) {
+  if (!geometry.is_of_one()) {
+    return;  // all samples count
+  }
   radius *= geometry.steps_per_px;
   const auto clear = [&](int x) {
     const kernels::CandidateRange inside = geometry.with_partner(x);

@@ -34,6 +34,8 @@ PartnerRows::PartnerRows(const CostImage& reference, const CostPartner& partner,
       partner_(*partner.image),
       geometry_(geometry),
       rows_down_(geometry.direction * partner.disparity_y_px) {
+  geometry_.near_ratio = 1;
+  geometry_.opposite_ratio = 0;
   const double ratio = partner.baseline_ratio;
   constexpr double kMaxRatio = 1000;
   if (!(ratio != 0 && std::abs(ratio) <= kMaxRatio)) {

@@ -114,6 +114,8 @@ class CoarserSelectionStage final : public scheduler::RowStage {
     kernels::CandidateGeometry wide = geometry_;
     const int middle = geometry_.count + std::abs(geometry_.disparity_min) + coarser_columns;
     wide.width = 2 * middle;
+    wide.near_ratio = 1;
+    wide.opposite_ratio = 0;
     Selected of_blocks;
     selector_.select(wide,
                      {.cells = cells,
