@@ -19,6 +19,7 @@
 #include "engine/io/displacement_io.h"
 #include "engine/io/photograph_io.h"
 #include "engine/matching/options/method_names.h"
+#include "engine/matching/selection/cyclopean_map.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/matching/volume/posterior_moments.h"
 #include "engine/sequence/preview_range.h"
@@ -91,6 +92,22 @@ void transpose(DisparityMaps& maps) {
   }
 }
 
+void transpose(CyclopeanMap& map) {
+  if (!map.disparity_px.empty()) {
+    map.disparity_px = transposed(std::as_const(map.disparity_px).view());
+    map.seen_by = transposed(std::as_const(map.seen_by).view());
+  }
+}
+
+void write_cyclopean(const MatchJob& job, const CyclopeanMap& map) {
+  if (!job.cyclopean.empty()) {
+    write_disparity(job.cyclopean, map.disparity_px.view());
+  }
+  if (!job.cyclopean_occlusion.empty()) {
+    write_mask(job.cyclopean_occlusion, map.seen_by.view());
+  }
+}
+
 void require_equal_sizes(const MatchJob& job, const std::vector<Photograph>& images) {
   const std::vector<std::string> names = job.inputs();
   const Photograph& first = images.front();
@@ -149,11 +166,12 @@ void write_space(const MatchJob& job, SpaceOutputs& space, RunReport& report) {
 void match_images(const MatchJob& job, const StereoMatcher& matcher,
                   const std::vector<Photograph>& images, std::span<const VolumeRequest> volumes,
                   DisparityMaps& maps, MatchReport& report) {
-  const MatchRequest request{.left = job.is_left(),
-                             .right = job.wants_right(),
-                             .unmatched = !(job.unmatched.empty() && job.unmatched_right.empty()),
-                             .confidence = !job.confidence.empty(),
-                             .volumes = volumes};
+  const MatchRequest request{
+      .left = job.is_left() || job.wants_cyclopean(),
+      .right = job.wants_right(),
+      .unmatched = !(job.unmatched.empty() && job.unmatched_right.empty()) || job.wants_cyclopean(),
+      .confidence = !job.confidence.empty(),
+      .volumes = volumes};
   if (!job.has_several()) {
     matcher.match(images[0], images[1], request, maps, &report);
     return;
@@ -261,8 +279,13 @@ int command_match(const Arguments& arguments) {
     warn_of_cut_range(settings, job.common, left, right, maps, job.match, is_range_found, chosen,
                       report);
   }
+  CyclopeanMap cyclopean;
+  if (job.wants_cyclopean()) {
+    make_cyclopean_map(maps.left, chosen, cyclopean);
+  }
   if (job.vertical) {
     transpose(maps);
+    transpose(cyclopean);
   }
   report.add_match(match);
   report.set_memory(memory_use(images, maps, matcher, chosen));
@@ -280,6 +303,7 @@ int command_match(const Arguments& arguments) {
   report.timed_file_access("write", [&] {
     write_results(job, maps, depth_resolution);
     write_space(job, space, report);
+    write_cyclopean(job, cyclopean);
   });
 
   report.write(job.common.report);

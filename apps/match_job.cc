@@ -73,6 +73,14 @@ void add_file_settings(Settings& settings, MatchJob& job) {
   settings.path("posterior-variance", job.posterior_variance, "FILE",
                 fmt::format("The same for the variance of p(d) in square pixels: {}",
                             listed_map_formats(MapContent::kConfidence)));
+  settings.path("cyclopean", job.cyclopean, "FILE",
+                fmt::format("With --selection symmetric: write the disparities of a camera in the "
+                            "middle of both, unknown where one camera sees nothing: {}",
+                            listed_map_formats(MapContent::kDisparity)));
+  settings.path(
+      "cyclopean-occlusion", job.cyclopean_occlusion, "MASK.png",
+      "With --selection symmetric: write what sees the pixels of that camera: 0 both, 128 "
+      "the left camera alone, 255 the right one alone, 64 no match");
   add_volume_settings(settings, job.volume);
   add_rectification_check_setting(settings, job.check_rectification);
 }
@@ -118,6 +126,18 @@ void check_posterior(const MatchJob& job, FileChecks& files) {
   files.add_output(job.posterior_variance, "--posterior-variance", OutputKind::kConfidence);
 }
 
+void check_cyclopean(const MatchJob& job, FileChecks& files) {
+  if (!job.wants_cyclopean()) {
+    return;
+  }
+  if (job.has_several() || job.match.resolved().selection != Selection::kSymmetric) {
+    throw UsageError(fmt::format("--{} is given, expected it with --selection symmetric only",
+                                 job.cyclopean.empty() ? "cyclopean-occlusion" : "cyclopean"));
+  }
+  files.add_output(job.cyclopean, "--cyclopean", OutputKind::kDisparity);
+  files.add_output(job.cyclopean_occlusion, "--cyclopean-occlusion", OutputKind::kMask);
+}
+
 }  // namespace
 
 void add_match_job_settings(Settings& settings, MatchJob& job) {
@@ -145,7 +165,8 @@ void require_files_hold_search(const MatchJob& job) {
   if (job.match.disparities_auto) {
     return;
   }
-  for (const std::string& file : {job.output, job.output_right, job.posterior_mean}) {
+  for (const std::string& file :
+       {job.output, job.output_right, job.posterior_mean, job.cyclopean}) {
     require_holds_search(file, job.match.disparities.min, job.match.disparities.max);
   }
 }
@@ -190,6 +211,7 @@ void check(const MatchJob& job, const Settings& settings) {
   files.add_output(job.volume.file, "--volume", OutputKind::kVolume);
   check_volume(job.volume, job.match, settings);
   check_posterior(job, files);
+  check_cyclopean(job, files);
   check_common_files(job.common, files);
   require_files_hold_search(job);
 }

@@ -32,6 +32,8 @@ struct MatchJob {
   VolumeOutput volume;
   std::string posterior_mean;
   std::string posterior_variance;
+  std::string cyclopean;
+  std::string cyclopean_occlusion;
   /// Cameras stand one above the other, the left image's above: columns are searched.
   bool vertical = false;
   bool check_rectification = true;
@@ -46,6 +48,9 @@ struct MatchJob {
   }
   [[nodiscard]] bool wants_posterior() const {
     return !posterior_mean.empty() || !posterior_variance.empty();
+  }
+  [[nodiscard]] bool wants_cyclopean() const {
+    return !cyclopean.empty() || !cyclopean_occlusion.empty();
   }
   /// Whether the map of the first image is one of a left image.
   [[nodiscard]] bool is_left() const {

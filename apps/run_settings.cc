@@ -179,7 +179,8 @@ void add_output_settings(Settings& settings, RunJob& job) {
   save.get = [&job] { return job.save ? output_names(*job.save) : SettingValue(kAutomatic); };
   Setting& video = settings.add("video", "LIST",
                                 "Outputs of --save to write as one video each, from unmatched, "
-                                "right-unmatched, preview, views, holes, sources, stereo");
+                                "right-unmatched, preview, views, holes, sources, stereo, "
+                                "cyclopean-occlusion");
   video.list = true;
   video.set = [&job](const SettingValue& value) { job.sequence.video = to_outputs(value); };
   video.get = [&job] { return output_names(job.sequence.video); };
@@ -327,12 +328,17 @@ void refuse_idle_outputs(const Settings& settings, const SequenceOptions& sequen
   if (sequence.video.empty()) {
     settings.refuse_idle({"fps", "crf", "no-sound"}, "without --video");
   }
-  if (!saves_any({Output::kDisparity, Output::kRightDisparity, Output::kConfidence})) {
-    settings.refuse_idle({"format"}, "where --save has no disparity, right-disparity, confidence");
+  if (!saves_any({Output::kDisparity, Output::kRightDisparity, Output::kConfidence,
+                  Output::kPosteriorMean, Output::kPosteriorVariance, Output::kCyclopean})) {
+    settings.refuse_idle({"format"},
+                         "where --save has no disparity, right-disparity, confidence, "
+                         "posterior-mean, posterior-variance, cyclopean");
   }
-  if (!saves_any({Output::kDisparity, Output::kConfidence, Output::kUnmatched, Output::kPreview})) {
+  if (!saves_any({Output::kDisparity, Output::kConfidence, Output::kUnmatched, Output::kPreview,
+                  Output::kPosteriorMean, Output::kPosteriorVariance})) {
     settings.refuse_idle({"reference"},
-                         "where --save has no disparity, confidence, unmatched, preview");
+                         "where --save has no disparity, confidence, unmatched, preview, "
+                         "posterior-mean, posterior-variance");
   }
   if (!sequence.saves(Output::kPreview)) {
     settings.refuse_idle({"preview-range"}, "where --save has no preview");

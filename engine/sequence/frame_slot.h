@@ -9,7 +9,9 @@
 
 #include "engine/image/photograph.h"
 #include "engine/matching/range_check.h"
+#include "engine/matching/selection/cyclopean_map.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/matching/volume/posterior_moments.h"
 #include "engine/sequence/pair_source.h"
 #include "engine/sequence/pending_files.h"
 #include "engine/sequence/run_journal.h"
@@ -34,6 +36,8 @@ struct FrameSlot {
   DisparityMaps maps;
   /// The maps on the grids of `pair`, if views use its colours (PhotographGrid).
   std::array<Image<float>, 2> photograph_maps;
+  PosteriorMoments posterior;  ///< of the reference's pixels
+  CyclopeanMap cyclopean;
   MatchReport match;
   bool may_be_cut = false;      ///< the range, by where matches lie
   std::optional<CutRange> cut;  ///< what a look at such a frame found

@@ -145,6 +145,10 @@ void FrameWorker::compute(FrameSlot& slot) {
     const scheduler::ProcessorCharge charge(accounts_.of(RunStep::kMatch));
     match(slot);
     check_range(slot);
+    if (options_.saves_cyclopean()) {
+      const TimedStep step(slot, "cyclopean map", accounts_.of(RunStep::kMatch));
+      make_cyclopean_map(slot.maps.left, execution_, slot.cyclopean);
+    }
   }
   if (slot.is_lead_in && !options_.measure_flicker) {
     return;
@@ -182,6 +186,11 @@ void FrameWorker::match(FrameSlot& slot) {
   MatchRequest request{.left = !right_is_primary || both,
                        .right = right_is_primary || both,
                        .confidence = options_.saves(SequenceOutput::kConfidence)};
+  request.left = request.left || options_.saves_cyclopean();
+  const VolumeRequest posterior{.side = options_.match.reference, .sink = &slot.posterior};
+  if (options_.saves_posterior()) {
+    request.volumes = {&posterior, 1};
+  }
   if (!computes_in_order()) {
     match_images(slot, request);
     return;
@@ -343,6 +352,9 @@ const Mask& FrameWorker::mask_of(const FrameSlot& slot, const OutputStream& stre
   if (stream.output == SequenceOutput::kSources) {
     return slot.views[static_cast<std::size_t>(stream.view)].sources;
   }
+  if (stream.output == SequenceOutput::kCyclopeanOcclusion) {
+    return slot.cyclopean.seen_by;
+  }
   const bool left =
       options_.match.reference == Side::kLeft && stream.output == SequenceOutput::kUnmatched;
   return left ? slot.maps.left.unmatched : slot.maps.right.unmatched;
@@ -377,6 +389,9 @@ std::string FrameWorker::extension_of(const FrameSlot& slot, const OutputStream&
     case SequenceOutput::kDisparity:
     case SequenceOutput::kRightDisparity:
     case SequenceOutput::kConfidence:
+    case SequenceOutput::kPosteriorMean:
+    case SequenceOutput::kPosteriorVariance:
+    case SequenceOutput::kCyclopean:
       return options_.map_format;
     default:
       break;
@@ -400,6 +415,15 @@ void FrameWorker::encode_stream(FrameSlot& slot, const OutputStream& stream,
     case SequenceOutput::kConfidence:
       encode_disparity(path, slot.maps.of(options_.match.reference).confidence.view(),
                        slot.encoded);
+      return;
+    case SequenceOutput::kPosteriorMean:
+      encode_disparity(path, slot.posterior.mean_px().view(), slot.encoded);
+      return;
+    case SequenceOutput::kPosteriorVariance:
+      encode_disparity(path, slot.posterior.variance_px2().view(), slot.encoded);
+      return;
+    case SequenceOutput::kCyclopean:
+      encode_disparity(path, slot.cyclopean.disparity_px.view(), slot.encoded);
       return;
     default:
       break;

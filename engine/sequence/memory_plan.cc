@@ -68,6 +68,12 @@ std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) 
   if (options.saves(SequenceOutput::kPreview)) {
     bytes += 3 * pixels;
   }
+  if (options.saves_posterior()) {
+    bytes += 2 * pixels * sizeof(float);
+  }
+  if (options.saves_cyclopean()) {
+    bytes += pixels * (sizeof(float) + 1);
+  }
   // A map being written: with unknown pixels replaced, and encoded.
   bytes += 2 * pixels * sizeof(float) + photograph;
   return bytes;

@@ -9,6 +9,7 @@
 #include "engine/error.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/map_formats.h"
+#include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/match_inputs.h"
 #include "engine/quoted_text.h"
 
@@ -21,7 +22,8 @@ constexpr double kFarthestView = 16;  // baselines
 
 bool holds_floats(SequenceOutput output) {
   return output == SequenceOutput::kDisparity || output == SequenceOutput::kRightDisparity ||
-         output == SequenceOutput::kConfidence;
+         output == SequenceOutput::kConfidence || output == SequenceOutput::kPosteriorMean ||
+         output == SequenceOutput::kPosteriorVariance || output == SequenceOutput::kCyclopean;
 }
 
 bool contains(const std::vector<SequenceOutput>& outputs, SequenceOutput output) {
@@ -98,6 +100,31 @@ void check_baselines(const SequenceOptions& options) {
   }
 }
 
+void check_method_of_outputs(const SequenceOptions& options) {
+  const MethodParameters parameters = options.match.resolved();
+  if (options.saves_posterior()) {
+    const std::string_view name =
+        name_of(options.saves(SequenceOutput::kPosteriorMean) ? SequenceOutput::kPosteriorMean
+                                                              : SequenceOutput::kPosteriorVariance);
+    if (!has_likelihoods(parameters)) {
+      throw UsageError(
+          fmt::format("save has {} with {}, expected the aggregation bayes, which "
+                      "alone has p(d)",
+                      name, options.match.chosen()));
+    }
+    if (parameters.search_size != SearchSize::kFull && options.baselines.empty()) {
+      throw UsageError(
+          fmt::format("save has {} with a reduced search-size (preset realtime), "
+                      "expected search-size full",
+                      name));
+    }
+  }
+  if (options.saves_cyclopean() && parameters.selection != Selection::kSymmetric) {
+    throw UsageError(
+        "save has cyclopean or cyclopean-occlusion, expected them with selection symmetric only");
+  }
+}
+
 void check_views(const SequenceOptions& options) {
   const bool wanted = std::ranges::any_of(options.save, is_per_view);
   if (wanted && options.views.empty()) {
@@ -133,21 +160,25 @@ void check_formats(const SequenceOptions& options) {
                                  listed_map_formats(MapContent::kDisparity, "")));
   }
   const bool saves_maps =
-      options.saves(SequenceOutput::kDisparity) || options.saves(SequenceOutput::kRightDisparity);
+      options.saves(SequenceOutput::kDisparity) || options.saves(SequenceOutput::kRightDisparity) ||
+      options.saves(SequenceOutput::kPosteriorMean) || options.saves(SequenceOutput::kCyclopean);
   if (saves_maps && !options.match.disparities_auto) {
     require_holds_search(map_name, options.match.disparities.min, options.match.disparities.max);
   }
-  if (options.saves(SequenceOutput::kConfidence) &&
-      find_map_format(map_name, MapContent::kConfidence) == nullptr) {
-    throw UsageError(
-        fmt::format("format is {}, which holds no floats, but save has confidence; expected {}",
-                    options.map_format, listed_map_formats(MapContent::kConfidence, "")));
+  for (const SequenceOutput output :
+       {SequenceOutput::kConfidence, SequenceOutput::kPosteriorVariance}) {
+    if (options.saves(output) && find_map_format(map_name, MapContent::kConfidence) == nullptr) {
+      throw UsageError(fmt::format(
+          "format is {}, which holds no floats, but save has {}; expected "
+          "{}",
+          options.map_format, name_of(output), listed_map_formats(MapContent::kConfidence, "")));
+    }
   }
   for (const SequenceOutput output : options.video) {
     if (holds_floats(output)) {
       throw UsageError(fmt::format(
           "video has {}, whose values a video cannot hold; expected unmatched, right-unmatched, "
-          "preview, views, holes, sources or stereo",
+          "preview, views, holes, sources, stereo or cyclopean-occlusion",
           name_of(output)));
     }
     if (!options.saves(output)) {
@@ -178,7 +209,11 @@ const std::vector<std::pair<std::string_view, SequenceOutput>>& sequence_output_
       {"views", SequenceOutput::kViews},
       {"holes", SequenceOutput::kHoles},
       {"sources", SequenceOutput::kSources},
-      {"stereo", SequenceOutput::kStereo}};
+      {"stereo", SequenceOutput::kStereo},
+      {"posterior-mean", SequenceOutput::kPosteriorMean},
+      {"posterior-variance", SequenceOutput::kPosteriorVariance},
+      {"cyclopean", SequenceOutput::kCyclopean},
+      {"cyclopean-occlusion", SequenceOutput::kCyclopeanOcclusion}};
   return names;
 }
 
@@ -193,6 +228,7 @@ void SequenceOptions::validate() const {
   temporal.validate();
   check_temporal(*this);
   check_baselines(*this);
+  check_method_of_outputs(*this);
   if (match.disparities_y) {
     throw UsageError("disparities-y is set, expected none: sequences consist of rectified pairs");
   }

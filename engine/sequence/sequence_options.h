@@ -23,11 +23,15 @@ enum class SequenceOutput {
   kConfidence,      ///< of the reference's map
   kUnmatched,       ///< mask of the filled pixels of the reference's map
   kRightUnmatched,
-  kPreview,  ///< the reference's map in colours
-  kViews,    ///< new views
-  kHoles,    ///< masks of view pixels that no image shows
-  kSources,  ///< masks of the source images of view pixels, see SynthesizedView
-  kStereo    ///< two views in one picture
+  kPreview,            ///< the reference's map in colours
+  kViews,              ///< new views
+  kHoles,              ///< masks of view pixels that no image shows
+  kSources,            ///< masks of the source images of view pixels, see SynthesizedView
+  kStereo,             ///< two views in one picture
+  kPosteriorMean,      ///< of p(d) of the reference's pixels (PosteriorMoments)
+  kPosteriorVariance,  ///< likewise
+  kCyclopean,          ///< map of a camera in the middle of both, see CyclopeanMap
+  kCyclopeanOcclusion  ///< mask of what each camera sees of it
 };
 
 /// Names of the outputs on the command line, which are also those of their folders.
@@ -83,6 +87,12 @@ struct SequenceOptions {
   void validate() const;
   [[nodiscard]] bool saves(SequenceOutput output) const;
   [[nodiscard]] bool saves_as_video(SequenceOutput output) const;
+  [[nodiscard]] bool saves_posterior() const {
+    return saves(SequenceOutput::kPosteriorMean) || saves(SequenceOutput::kPosteriorVariance);
+  }
+  [[nodiscard]] bool saves_cyclopean() const {
+    return saves(SequenceOutput::kCyclopean) || saves(SequenceOutput::kCyclopeanOcclusion);
+  }
   /// Whether shots must be found before the run.
   [[nodiscard]] bool needs_shots() const {
     return intensity_fit == FitScope::kShot || preview_range_per_shot;

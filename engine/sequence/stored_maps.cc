@@ -17,6 +17,7 @@ bool videos_show_views(const SequenceOptions& options) {
 bool maps_are_stored(const SequenceOptions& options) {
   const bool needs_masks = options.temporal.uses_past() ||
                            options.saves_as_video(SequenceOutput::kUnmatched) ||
+                           options.saves_as_video(SequenceOutput::kCyclopeanOcclusion) ||
                            options.saves_as_video(SequenceOutput::kRightUnmatched);
   const bool needs_both =
       videos_show_views(options) || (options.measure_flicker && !options.views.empty());

@@ -47,9 +47,9 @@ TEST_F(RunCamerasTest, FramesAreWhatMatchMakesOfThem) {
     for (const int frame : {0, 3}) {
       const std::string name = frame_file(frame);
       const std::string map = folder_ / (preset + ".pfm");
-      const ProcessResult matched = run_vantage(
-          {"match", left_ + "/" + name, right_ + "/" + name, third_ + "/" + name, "-o", map,
-           "--baselines=1,-0.7", "--disparities=0:9", "--preset", preset});
+      const ProcessResult matched =
+          run_vantage({"match", left_ + "/" + name, right_ + "/" + name, third_ + "/" + name, "-o",
+                       map, "--baselines=1,-0.7", "--disparities=0:9", "--preset", preset});
       ASSERT_EQ(matched.exit_code, 0) << matched.err;
       EXPECT_EQ(results_in(out)["disparity/" + frame_file(frame, "pfm")], read_file(map)) << preset;
     }
