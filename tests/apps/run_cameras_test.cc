@@ -27,6 +27,13 @@ class RunCamerasTest : public RunTest {
     }
   }
 
+  /// With the default preset.
+  [[nodiscard]] ProcessResult run(const std::string& out,
+                                  const std::vector<std::string>& more) const {
+    return run_vantage(joined(
+        {"run", "--left", left_, "--right", right_, "-o", out, "--disparities=0:9", "--quiet"},
+        more));
+  }
   /// Of the first frames.
   [[nodiscard]] ProcessResult run_three(const std::string& out,
                                         const std::vector<std::string>& more) const {
@@ -51,7 +58,8 @@ TEST_F(RunCamerasTest, FramesAreWhatMatchMakesOfThem) {
           run_vantage({"match", left_ + "/" + name, right_ + "/" + name, third_ + "/" + name, "-o",
                        map, "--baselines=1,-0.7", "--disparities=0:9", "--preset", preset});
       ASSERT_EQ(matched.exit_code, 0) << matched.err;
-      EXPECT_EQ(results_in(out)["disparity/" + frame_file(frame, "pfm")], read_file(map)) << preset;
+      EXPECT_TRUE(results_in(out)["disparity/" + frame_file(frame, "pfm")] == read_file(map))
+          << preset << " frame " << frame;
     }
   }
 }
@@ -85,7 +93,7 @@ TEST_F(RunCamerasTest, RightMapIsOfTheRightImage) {
                          "-o", map, "--baselines=-1,-1.7", "--disparities=0:9"})
                 .exit_code,
             0);
-  EXPECT_EQ(results_in(folder_ / "out")["disparity/000001.pfm"], read_file(map));
+  EXPECT_TRUE(results_in(folder_ / "out")["disparity/000001.pfm"] == read_file(map));
 }
 
 TEST_F(RunCamerasTest, ConfigurationFileAndReportNameTheCameras) {

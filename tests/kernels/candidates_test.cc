@@ -55,6 +55,9 @@ std::vector<Images> cases() {
 TEST(Candidates, CountWhereAnyOfSeveralImagesSeesThem) {
   for (const Images& images : cases()) {
     const CandidateGeometry& geometry = images.geometry;
+    if (geometry.is_of_one()) {
+      continue;  // the first image sees what the others see
+    }
     for (const int margin : {0, 2}) {
       for (int x = 0; x < geometry.width; ++x) {
         const CandidateRange range = geometry.with_partner(x, margin);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace vantage {
 namespace {
@@ -46,14 +47,20 @@ class Row {
                [&](int x) { offer(x, match.disparity_px); });
   }
 
-  void mark_unseen() {
+  /// `left`, `right`: disparities of the matches by column of either image.
+  void mark_unseen(const std::vector<float>& left, const std::vector<float>& right) {
     int end = 0;
     for (int begin = 0; begin < width_; begin = end) {
       const bool is_seen = !std::isnan(disparity_px_[begin]);
       for (end = begin + 1; end < width_ && std::isnan(disparity_px_[end]) != is_seen; ++end) {
       }
-      std::fill(seen_by_ + begin, seen_by_ + end,
-                static_cast<std::uint8_t>(is_seen ? SeenBy::kBoth : hidden_from(begin, end)));
+      const float behind = is_seen ? kNaN : background(begin, end);
+      for (int x = begin; x < end; ++x) {
+        seen_by_[x] = static_cast<std::uint8_t>(
+            is_seen              ? SeenBy::kBoth
+            : std::isnan(behind) ? SeenBy::kNone
+                                 : seen_by(x, static_cast<double>(behind), left, right));
+      }
     }
   }
 
@@ -71,17 +78,25 @@ class Row {
       disparity_px_[x] = offered;
     }
   }
-  /// Who sees the pixels between two surfaces, or between one and the border.
-  [[nodiscard]] SeenBy hidden_from(int begin, int end) const {
-    if (begin == 0 && end == width_) {
-      return SeenBy::kNone;
-    }
-    // Beyond the left border of the right image for disparities above 0.
-    const float before = begin > 0 ? disparity_px_[begin - 1] : -disparity_px_[end];
-    const float after = end < width_ ? disparity_px_[end] : -disparity_px_[begin - 1];
-    const bool is_edge =
-        begin == 0 || end == width_ ? before != after : std::abs(after - before) > kMaxSlope;
-    return !is_edge ? SeenBy::kNone : after > before ? SeenBy::kLeft : SeenBy::kRight;
+  /// Disparity of the farther surface beside pixels without a match; NaN if there is none.
+  [[nodiscard]] float background(int begin, int end) const {
+    const float before = begin > 0 ? disparity_px_[begin - 1] : kNaN;
+    const float after = end < width_ ? disparity_px_[end] : kNaN;
+    return std::fmin(before, after);
+  }
+  /// Who sees a point of the background: a camera does not where something nearer has a match, or
+  /// outside its image.
+  [[nodiscard]] SeenBy seen_by(int x, double behind_px, const std::vector<float>& left,
+                               const std::vector<float>& right) const {
+    const auto is_hidden = [&](double column, const std::vector<float>& matches) {
+      const double nearest = std::floor(column + 0.5);
+      return !(nearest >= 0 && nearest < width_) ||
+             static_cast<double>(matches[static_cast<std::size_t>(nearest)]) >
+                 behind_px + kMaxSlope;
+    };
+    const bool from_left = is_hidden(x + behind_px / 2, left);
+    const bool from_right = is_hidden(x - behind_px / 2, right);
+    return from_left == from_right ? SeenBy::kNone : from_left ? SeenBy::kRight : SeenBy::kLeft;
   }
 
   float* disparity_px_;
@@ -92,13 +107,21 @@ class Row {
 void make_row(const MatchedMap& left, int y, Row& row) {
   const float* const disparity_px = left.disparity_px.row(y);
   const std::uint8_t* const unmatched = left.unmatched.row(y);
+  const int width = left.disparity_px.width();
+  std::vector<float> of_left(static_cast<std::size_t>(width), kNaN);
+  std::vector<float> of_right(static_cast<std::size_t>(width), kNaN);
   Match last;
   bool has_last = false;
-  for (int x = 0; x < left.disparity_px.width(); ++x) {
+  for (int x = 0; x < width; ++x) {
     if (unmatched[x] != 0 || !std::isfinite(disparity_px[x])) {
       continue;
     }
     const auto at = static_cast<double>(disparity_px[x]);
+    of_left[static_cast<std::size_t>(x)] = disparity_px[x];
+    if (const double partner = std::floor(x - at + 0.5); partner >= 0 && partner < width) {
+      float& nearest = of_right[static_cast<std::size_t>(partner)];
+      nearest = std::fmax(nearest, disparity_px[x]);
+    }
     const Match match{x, x - at / 2, at};
     const bool is_one_surface = has_last && x <= last.left_column + kMaxColumnsApart &&
                                 std::abs(at - last.disparity_px) <= kMaxSlope;
@@ -116,7 +139,7 @@ void make_row(const MatchedMap& left, int y, Row& row) {
   if (has_last) {
     row.extend_after(last);
   }
-  row.mark_unseen();
+  row.mark_unseen(of_left, of_right);
 }
 
 }  // namespace

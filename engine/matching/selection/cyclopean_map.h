@@ -11,7 +11,7 @@ namespace vantage {
 /// What the two cameras see of a pixel of the cyclopean map: values of its mask.
 enum class SeenBy : std::uint8_t {
   kBoth = 0,
-  kNone = 64,   ///< no match, although no edge hides it
+  kNone = 64,   ///< no match, although nothing hides it from one camera
   kLeft = 128,  ///< hidden from the right camera, or outside its image
   kRight = 255
 };
