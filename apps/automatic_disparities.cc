@@ -6,7 +6,6 @@
 
 #include "apps/match_settings.h"
 #include "apps/tell.h"
-#include "engine/error.h"
 #include "engine/matching/range_check.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/vertical_range.h"
@@ -20,19 +19,14 @@ void choose_vertical_disparities(const Settings& settings, const CommonOptions& 
   if (!options.disparities_y_auto) {
     return;
   }
-  const std::optional<DisparityRange> range = report.timed_compute(
-      "range of rows", [&] { return find_vertical_range(left, right, execution); });
-  if (!range) {
-    throw Error(
-        "the images have too few points in common to estimate the vertical range, expected texture "
-        "that both show; give --disparities-y MIN:MAX");
-  }
-  options.disparities_y = *range;
+  const DisparityRange range = require_vertical_range(report.timed_compute(
+      "range of rows", [&] { return find_vertical_range(left, right, execution); }));
+  options.disparities_y = range;
   options.disparities_y_auto = false;
   options.validate();
   report.set_settings(reported_settings(settings, options));
   if (!common.quiet) {
-    tell("{}: --disparities-y auto is {}\n", settings.command(), to_text(*range));
+    tell("{}: --disparities-y auto is {}\n", settings.command(), to_text(range));
   }
 }
 
@@ -44,19 +38,14 @@ void choose_disparities(const Settings& settings, const CommonOptions& common,
   if (!options.disparities_auto) {
     return;
   }
-  const std::optional<DisparityRange> range = report.timed_compute("range", find);
-  if (!range) {
-    throw Error(
-        "no disparity range can be estimated from the images, expected texture that both show; "
-        "give --disparities MIN:MAX");
-  }
-  options.disparities = *range;
+  const DisparityRange range = require_disparity_range(report.timed_compute("range", find));
+  options.disparities = range;
   options.disparities_auto = false;
   options.validate();
   report.set_settings(reported_settings(settings, options));
   if (!common.quiet) {
-    tell("{}: --disparities auto is {}{}\n", settings.command(), to_text(*range),
-         -range->min > 2 * range->max ? ", mostly negative: left and right look exchanged" : "");
+    tell("{}: --disparities auto is {}{}\n", settings.command(), to_text(range),
+         -range.min > 2 * range.max ? ", mostly negative: left and right look exchanged" : "");
   }
 }
 

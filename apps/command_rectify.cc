@@ -20,6 +20,7 @@
 #include "engine/io/atomic_file.h"
 #include "engine/io/photograph_io.h"
 #include "engine/rectification/feature_matches.h"
+#include "engine/rectification/improved_rectification.h"
 #include "engine/rectification/rectification_file.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/rectification/uncalibrated_rig.h"
@@ -43,8 +44,6 @@ struct RectifyJob {
 };
 
 constexpr int kMaxSamplePairs = 1000;
-/// With a larger row error an estimate is rejected.
-constexpr double kMaxRemaining_px = 2;
 
 void add_rectify_settings(Settings& settings, RectifyJob& job) {
   settings.start_group("Input");
@@ -154,67 +153,6 @@ Mask valid_mask(const Rectifier& rectifier) {
   return mask;
 }
 
-/// Estimates again from points found in the images rectified by `rectifier`: there they are in
-/// nearly the same rows, so that wrong matches are easy to detect and positions are exact. Kept if
-/// rows correspond better.
-void improve(Rectification& rectification, Rectifier& rectifier,
-             const std::vector<PointMatch>& found, const RectificationOptions& options) {
-  constexpr double kNearRowsPerSide = 10.0 / 640;
-  const RectifiedPair& pair = rectifier.pair();
-  const double near_px = kNearRowsPerSide * std::max(pair.width_px, pair.height_px);
-  std::vector<PointMatch> in_photographs;
-  std::vector<PointMatch> near;
-  for (const PointMatch& match : found) {
-    const auto left = rectifier.source_position(Side::kLeft, match.left);
-    const auto right = rectifier.source_position(Side::kRight, match.right);
-    if (left && right) {
-      in_photographs.push_back({*left, *right});
-      if (std::abs(match.left.y() - match.right.y()) <= near_px) {
-        near.push_back(in_photographs.back());
-      }
-    }
-  }
-  try {
-    UncalibratedRig rig = estimate_rig(near, pair.width_px, pair.height_px);
-    Rectifier better(rig.calibration, pair.width_px, pair.height_px, options);
-    std::vector<PointMatch> rectified;
-    for (const PointMatch& match : in_photographs) {
-      const auto left = better.rectified_position(Side::kLeft, match.left);
-      const auto right = better.rectified_position(Side::kRight, match.right);
-      if (left && right) {
-        rectified.push_back({*left, *right});
-      }
-    }
-    const auto remaining = vertical_error(rectified);
-    if (remaining &&
-        (!rectification.remaining || remaining->rms_px < rectification.remaining->rms_px)) {
-      rectification.matches = std::move(near);
-      rectification.calibration = rig.calibration;
-      rectification.estimate = std::move(rig);
-      rectification.remaining = remaining;
-      rectifier = std::move(better);
-    }
-  } catch (const Error&) {
-    // The first estimate stays; the caller checks whether it is good enough.
-  }
-}
-
-/// Throws Error if the estimate does not rectify the images.
-void require_success(const Rectification& rectification, std::size_t matches,
-                     const std::string& inputs) {
-  if (!rectification.remaining) {
-    throw Error(
-        fmt::format("{}: the rectified images have {} points in common, expected at least {}",
-                    inputs, matches, kMinMatches));
-  }
-  if (rectification.remaining->rms_px > kMaxRemaining_px) {
-    throw Error(
-        fmt::format("{}: the remaining row error is {:.1f} px RMS, expected at most {}: the images "
-                    "show too little to estimate the cameras, use --calibration",
-                    inputs, rectification.remaining->rms_px, kMaxRemaining_px));
-  }
-}
-
 }  // namespace
 
 int command_rectify(const Arguments& arguments) {
@@ -280,8 +218,9 @@ int command_rectify(const Arguments& arguments) {
       });
   rectification.remaining = vertical_error(found);
   if (rectification.estimate) {
-    report.timed_compute("estimate",
-                         [&] { improve(rectification, rectifier, found, job.rectification); });
+    report.timed_compute("estimate", [&] {
+      improve_rectification(rectification, rectifier, found, job.rectification);
+    });
     require_success(rectification, found.size(), inputs);
     report.timed_compute("validate", [&] {
       rectification.validation = validate_rig(*rectification.estimate, rectification.matches,

@@ -17,10 +17,10 @@
 #include "apps/tell.h"
 #include "apps/view_output.h"
 #include "apps/view_pipeline.h"
-#include "apps/view_renderer.h"
 #include "apps/wanted_views.h"
 #include "engine/image/memory_use.h"
 #include "engine/simd.h"
+#include "engine/synthesis/view_renderer.h"
 #include "engine/view_geometry/view_pose.h"
 
 namespace vantage::apps {

@@ -9,10 +9,9 @@
 #include "apps/run_report.h"
 #include "apps/settings.h"
 #include "engine/execution.h"
-#include "engine/image/photograph.h"
-#include "engine/matching/stereo_matcher.h"
+#include "engine/matching/options/match_options.h"
 #include "engine/rectification/rectified_pair.h"
-#include "engine/rectification/rectifier.h"
+#include "engine/synthesis/pair_with_maps.h"
 
 namespace vantage::apps {
 
@@ -30,22 +29,6 @@ struct PairInput {
   bool check_rectification = true;
 
   [[nodiscard]] bool has_maps() const { return !left_disparity.empty(); }
-};
-
-/// The images as they were read, and how they became rectified ones.
-struct UnrectifiedImages {
-  Rectifier rectifier;
-  Photograph left;
-  Photograph right;
-};
-
-/// What PairInput names, in memory, rectified.
-struct PairWithMaps {
-  std::optional<UnrectifiedImages> unrectified;  ///< where they had to be rectified
-  std::optional<RectifiedPair> cameras;          ///< with a calibration
-  Photograph left;
-  Photograph right;
-  DisparityMaps maps;
 };
 
 /// LEFT, RIGHT, and the options of the calibration and of maps in files, in the group that has

@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "apps/frame_rate_setting.h"
-#include "apps/frame_step_setting.h"
 #include "apps/input_limits.h"
 #include "apps/match_settings.h"
+#include "apps/pair_source_settings.h"
 #include "apps/rectification_check.h"
 #include "apps/slurm_scripts.h"
 #include "engine/error.h"
@@ -81,27 +81,9 @@ std::optional<std::pair<int, int>> two_numbers(const std::string& text, char sep
   return std::pair(static_cast<int>(*first), static_cast<int>(*second));
 }
 
-void add_packing(Settings& settings, std::string name, std::optional<StereoPacking>& field,
-                 std::string help) {
-  std::vector<std::pair<std::string_view, StereoPacking>> names = stereo_packing_names();
-  settings.choice<StereoPacking>(std::move(name), field, names, std::move(help), "none");
-}
-
 void add_input_settings(Settings& settings, RunJob& job) {
   settings.start_group("Input: one of --left with --right, --stereo, --pairs, --sequence");
-  const auto path = [&](std::string name, std::string& field, std::string value_name,
-                        std::string help) -> Setting& {
-    Setting& setting =
-        settings.input_path(std::move(name), field, std::move(value_name), std::move(help));
-    // The journal identifies inputs by their content.
-    setting.changes_results = false;
-    return setting;
-  };
-  path("left", job.input.left, "SOURCE",
-       "Left frames: a folder, pattern (left/%06d.png), glob or video");
-  path("right", job.input.right, "SOURCE", "Right frames");
-  settings.integer("offset", job.input.offset_frames, "N",
-                   "Pair left frame i with right frame i + N");
+  add_pair_source_settings(settings, job.input);
   Setting& more =
       settings.add("more", "SOURCE",
                    "With --left and --right: frames of a camera on the same line, whose "
@@ -120,17 +102,10 @@ void add_input_settings(Settings& settings, RunJob& job) {
                         "Positions of the right camera and of those of --more, relative to the "
                         "left camera, positive to the right: all images of a frame are matched at "
                         "once; disparities are those of left and right");
-  path("stereo", job.input.stereo, "SOURCE", "Frames that hold both images; needs --packing");
-  add_packing(settings, "packing", job.input.packing,
-              "Stereo layout (ffmpeg's stereo3d names): sbsl side by side, left first; abl "
-              "above/below, left on top; sbs2l, ab2l half size");
-  path("pairs", job.input.pairs, "FILE.csv", "List of image files, one line left,right per pair");
-  path("sequence", job.input.sequence, "SOURCE", "Frames of one moving camera; see --step");
-  settings.integer("step", job.input.step, "K",
-                   "Frame t is the left image, frame t + K the right image");
-  add_frame_step_setting(settings, job.input.every);
-  path("calibration", job.calibration, "FILE",
-       "Cameras, to rectify the pairs first: OpenCV, Middlebury or KITTI file");
+  settings
+      .input_path("calibration", job.calibration, "FILE",
+                  "Cameras, to rectify the pairs first: OpenCV, Middlebury or KITTI file")
+      .changes_results = false;  // the journal identifies inputs by their content
   add_rectification_check_setting(settings, job.check_rectification);
   settings.number("kept-outline", job.rectification.kept_outline, "SHARE",
                   "Area of rectified images: 0 only what both cameras see, 1 everything, with "

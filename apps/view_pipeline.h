@@ -7,8 +7,8 @@
 #include "apps/run_report.h"
 #include "apps/setting_value.h"
 #include "apps/view_output.h"
-#include "apps/view_renderer.h"
 #include "engine/execution.h"
+#include "engine/synthesis/view_renderer.h"
 
 namespace vantage::apps {
 

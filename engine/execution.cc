@@ -6,6 +6,7 @@
 
 #include "engine/error.h"
 #include "engine/thread_placement.h"
+#include "scheduler/interruption.h"
 
 namespace vantage {
 namespace {
@@ -47,7 +48,8 @@ Execution::Execution(const ExecutionOptions& options) : options_(options) {
   options_.validate();
   const scheduler::Topology topology = scheduler::detect_topology();
   machine_ = topology.machine;
-  executor_ = scheduler::make_executor(options_.executor, thread_places(options_, topology));
+  executor_ = scheduler::interruptible(
+      scheduler::make_executor(options_.executor, thread_places(options_, topology)));
 }
 
 void Execution::for_each_band(int rows,
@@ -55,6 +57,12 @@ void Execution::for_each_band(int rows,
   executor_->parallel_for((rows + kBandRows - 1) / kBandRows, [&](int band) {
     body(band * kBandRows, std::min((band + 1) * kBandRows, rows));
   });
+}
+
+Execution& default_execution() {
+  // Never freed: other threads may use it until the process ends.
+  static auto* const execution = new Execution(ExecutionOptions{});
+  return *execution;
 }
 
 }  // namespace vantage

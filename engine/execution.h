@@ -36,9 +36,11 @@ struct ExecutionOptions {
 int thread_count(const ExecutionOptions& options, const scheduler::Machine& machine);
 
 /// Threads, scratch memory and machine properties that matchers and synthesisers share. Must
-/// outlive everything that uses it. Thread rule: several frames may use it at once.
+/// outlive everything that uses it. Thread rule: several frames may use it at once; its threads are
+/// then shared. A scheduler::InterruptibleScope ends its loops early.
 class Execution {
  public:
+  /// Throws UsageError for invalid options.
   explicit Execution(const ExecutionOptions& options);
 
   [[nodiscard]] const ExecutionOptions& options() const { return options_; }
@@ -56,5 +58,9 @@ class Execution {
   std::unique_ptr<scheduler::Executor> executor_;
   scheduler::ScratchPool scratch_;
 };
+
+/// The execution of whoever names none: one for the whole process, with default options, made at
+/// the first call and kept until the process ends. Thread rule: any thread.
+Execution& default_execution();
 
 }  // namespace vantage

@@ -48,9 +48,9 @@ class ImageView {
   std::size_t stride_ = 0;
 };
 
-/// Owns pixels. Move-only; copy() makes copies. Rows are 64-byte aligned, and their pitch is never
-/// a multiple of 2 KiB, so that neighbouring rows do not compete for the same cache sets. T is
-/// uint8_t, uint16_t or float. Thread rule: as for a plain array.
+/// Owns pixels, unless borrowed(). Move-only; copy() makes copies. Rows of its own are 64-byte
+/// aligned, and their pitch is never a multiple of 2 KiB, so that neighbouring rows do not compete
+/// for the same cache sets. T is uint8_t, uint16_t or float. Thread rule: as for a plain array.
 template <typename T>
 class Image {
  public:
@@ -93,6 +93,14 @@ class Image {
       std::fill_n(row(y), static_cast<std::size_t>(width()) * static_cast<std::size_t>(channels()),
                   value);
     }
+  }
+
+  /// An image whose pixels are those of `source`, which must outlive it: only to be read.
+  [[nodiscard]] static Image borrowed(ImageView<const T> source) {
+    Image result;
+    result.view_ = ImageView<T>(const_cast<T*>(source.data()), source.width(), source.height(),
+                                source.channels(), source.stride());
+    return result;
   }
 
   [[nodiscard]] Image copy() const { return copy_of(view()); }

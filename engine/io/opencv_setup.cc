@@ -1,5 +1,6 @@
 #include "engine/io/opencv_setup.h"
 
+#include <atomic>
 #include <cstdlib>
 #include <iostream>
 #include <opencv2/core.hpp>
@@ -9,6 +10,8 @@
 namespace vantage {
 namespace {
 
+std::atomic<bool> is_host_of_opencv =
+    true;                          // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 thread_local int quiet_depth = 0;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 /// Forwards the output of threads that are not quiet to another buffer.
@@ -38,10 +41,12 @@ void prepare_opencv() {
   static const bool prepared = [] {
     // OpenCV reads this when it first opens such a file. A value set by the user is kept.
     ::setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 0);
-    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-    // cv::error() would print every exception before throwing it.
-    cv::redirectError([](int, const char*, const char*, const char*, int, void*) { return 0; });
-    cv::setNumThreads(1);
+    if (is_host_of_opencv) {
+      cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+      // cv::error() would print every exception before throwing it.
+      cv::redirectError([](int, const char*, const char*, const char*, int, void*) { return 0; });
+      cv::setNumThreads(1);
+    }
     if (std::cerr.rdbuf() != nullptr) {
       // Never freed: std::cerr is used until the process ends.
       std::cerr.rdbuf(new ThreadFilter(std::cerr.rdbuf()));
@@ -50,6 +55,8 @@ void prepare_opencv() {
   }();
   (void)prepared;
 }
+
+void leave_opencv_to_host() { is_host_of_opencv = false; }
 
 QuietOpenCv::QuietOpenCv() { ++quiet_depth; }
 QuietOpenCv::~QuietOpenCv() { --quiet_depth; }

@@ -215,15 +215,18 @@ std::optional<DisparityRange> find_disparity_range(const Photograph& left, const
   return range;
 }
 
+DisparityRange require_disparity_range(const std::optional<DisparityRange>& found) {
+  if (!found) {
+    throw Error(
+        "no disparity range can be estimated from the images, expected texture that both show; "
+        "give --disparities MIN:MAX");
+  }
+  return *found;
+}
+
 DisparityRange estimate_disparity_range(const Photograph& left, const Photograph& right,
                                         Execution& execution) {
-  const std::optional<DisparityRange> range = find_disparity_range(left, right, execution);
-  if (!range) {
-    throw Error(
-        "the images give no evidence for any range of disparities, expected texture that both of "
-        "them show; give --disparities MIN:MAX");
-  }
-  return *range;
+  return require_disparity_range(find_disparity_range(left, right, execution));
 }
 
 DisparitiesBeyond disparities_beyond(const Photograph& left, const Photograph& right,

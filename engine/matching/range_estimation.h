@@ -25,6 +25,9 @@ std::optional<DisparityRange> find_disparity_range(const Photograph& left, const
                                                    Execution& execution,
                                                    DisparityRange vertical = {0, 0});
 
+/// The range found; throws Error where there is none.
+DisparityRange require_disparity_range(const std::optional<DisparityRange>& found);
+
 /// As find_disparity_range(); throws Error instead of returning an empty result.
 DisparityRange estimate_disparity_range(const Photograph& left, const Photograph& right,
                                         Execution& execution);

@@ -53,7 +53,7 @@ struct MatchRequest {
 class StereoMatcher {
  public:
   /// Throws UsageError for invalid options. `execution` must outlive the matcher.
-  StereoMatcher(const MatchOptions& options, Execution& execution);
+  explicit StereoMatcher(const MatchOptions& options, Execution& execution = default_execution());
 
   /// left and right: equal size, at least 1×1, any depth and channels; depths may differ. Throws
   /// Error when sizes differ or no pixel has a candidate in the range, UsageError for a prior's

@@ -101,4 +101,13 @@ std::optional<DisparityRange> find_vertical_range(const Photograph& left, const 
                      : range;
 }
 
+DisparityRange require_vertical_range(const std::optional<DisparityRange>& found) {
+  if (!found) {
+    throw Error(
+        "the images have too few points in common to estimate the vertical range, expected texture "
+        "that both show; give --disparities-y MIN:MAX");
+  }
+  return *found;
+}
+
 }  // namespace vantage

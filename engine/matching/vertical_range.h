@@ -19,4 +19,7 @@ namespace vantage {
 std::optional<DisparityRange> find_vertical_range(const Photograph& left, const Photograph& right,
                                                   Execution& execution);
 
+/// The range found; throws Error where there is none.
+DisparityRange require_vertical_range(const std::optional<DisparityRange>& found);
+
 }  // namespace vantage

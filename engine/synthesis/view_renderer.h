@@ -4,14 +4,14 @@
 #include <optional>
 #include <vector>
 
-#include "apps/pair_input.h"
 #include "engine/execution.h"
 #include "engine/image/stereo_display.h"
+#include "engine/synthesis/pair_with_maps.h"
 #include "engine/synthesis/photograph_grid.h"
 #include "engine/synthesis/pose_renderer.h"
 #include "engine/view_geometry/view_pose.h"
 
-namespace vantage::apps {
+namespace vantage {
 
 /// Settings for two eyes per pose, packed in one image.
 struct TwoEyes {
@@ -63,4 +63,4 @@ class ViewRenderer {
   std::optional<std::array<IntensityFit, 4>> fit_;
 };
 
-}  // namespace vantage::apps
+}  // namespace vantage

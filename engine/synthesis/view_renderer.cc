@@ -1,4 +1,4 @@
-#include "apps/view_renderer.h"
+#include "engine/synthesis/view_renderer.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "engine/error.h"
 
-namespace vantage::apps {
+namespace vantage {
 
 ViewRenderer::ViewRenderer(const PairWithMaps& pair, const SynthesisOptions& options,
                            std::optional<TwoEyes> two_eyes, Execution& execution)
@@ -73,4 +73,4 @@ void ViewRenderer::synthesize(const ViewPose& pose, SynthesizedView& view) const
   renderer_.render(source_, pose, view, fit_ ? &*fit_ : nullptr);
 }
 
-}  // namespace vantage::apps
+}  // namespace vantage

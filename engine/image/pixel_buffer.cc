@@ -1,0 +1,122 @@
+#include "engine/image/pixel_buffer.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+#include "engine/error.h"
+
+namespace vantage {
+namespace {
+
+// Widths of images of files end here, too; sums of positions stay far from the limits of int.
+constexpr int kMaxSidePx = 65500;
+
+template <typename T>
+void check(const PixelBuffer<T>& buffer) {
+  if (buffer.width_px < 1 || buffer.height_px < 1 || buffer.width_px > kMaxSidePx ||
+      buffer.height_px > kMaxSidePx) {
+    throw Error(fmt::format("the image has {}x{} pixels, expected 1 to {} columns and rows",
+                            buffer.width_px, buffer.height_px, kMaxSidePx));
+  }
+  if (buffer.channels != 1 && buffer.channels != 3 && buffer.channels != 4) {
+    throw Error(fmt::format(
+        "the image has {} channels, expected 1 (grey), 3 (colours) or 4 (colours and alpha)",
+        buffer.channels));
+  }
+  if (buffer.data == nullptr) {
+    throw Error("the image has no pixels, expected a pointer to the upper left one");
+  }
+}
+
+/// The buffer with all distances.
+template <typename T>
+PixelBuffer<T> complete(PixelBuffer<T> buffer) {
+  const auto or_next = [](std::ptrdiff_t& distance, std::ptrdiff_t next) {
+    distance = distance == 0 ? next : distance;
+  };
+  or_next(buffer.channel_bytes, sizeof(T));
+  or_next(buffer.pixel_bytes, buffer.channels * static_cast<std::ptrdiff_t>(sizeof(T)));
+  or_next(buffer.row_bytes, buffer.width_px * buffer.pixel_bytes);
+  return buffer;
+}
+
+template <typename T>
+bool is_like_image(const PixelBuffer<T>& buffer) {
+  constexpr auto kBytes = static_cast<std::ptrdiff_t>(sizeof(T));
+  const std::ptrdiff_t pixel_bytes = buffer.channels * kBytes;
+  return (buffer.channels == 1 ||
+          (buffer.channel_bytes == kBytes && buffer.order == ChannelOrder::kRgb)) &&
+         (buffer.pixel_bytes == pixel_bytes || buffer.width_px == 1) &&
+         (buffer.height_px == 1 ||
+          (buffer.row_bytes >= buffer.width_px * pixel_bytes && buffer.row_bytes % kBytes == 0)) &&
+         reinterpret_cast<std::uintptr_t>(buffer.data) % alignof(T) == 0;
+}
+
+template <typename T>
+void require_finite(const Image<T>& image) {
+  if constexpr (std::is_floating_point_v<T>) {
+    const int values = image.width() * image.channels();
+    for (int y = 0; y < image.height(); ++y) {
+      for (int i = 0; i < values; ++i) {
+        if (!std::isfinite(image.row(y)[i])) {
+          throw Error(fmt::format("the image is {} at pixel ({}, {}), expected finite values",
+                                  image.row(y)[i], i / image.channels(), y));
+        }
+      }
+    }
+  }
+}
+
+template <typename T>
+Photograph copy_of(const PixelBuffer<T>& buffer) {
+  Image<T> image(buffer.width_px, buffer.height_px, buffer.channels);
+  const bool is_reversed = buffer.order == ChannelOrder::kBgr && buffer.channels >= 3;
+  const auto* const first = reinterpret_cast<const std::byte*>(buffer.data);
+  for (int y = 0; y < buffer.height_px; ++y) {
+    T* out = image.row(y);
+    for (int x = 0; x < buffer.width_px; ++x) {
+      const std::byte* const pixel = first + y * buffer.row_bytes + x * buffer.pixel_bytes;
+      for (int c = 0; c < buffer.channels; ++c) {
+        const int from = is_reversed && c < 3 ? 2 - c : c;
+        std::memcpy(out++, pixel + from * buffer.channel_bytes, sizeof(T));
+      }
+    }
+  }
+  require_finite(image);
+  return {std::move(image)};
+}
+
+}  // namespace
+
+template <typename T>
+Photograph photograph_of(const PixelBuffer<T>& given) {
+  check(given);
+  const PixelBuffer<T> buffer = complete(given);
+  if (!is_like_image(buffer)) {
+    return copy_of(buffer);
+  }
+  Image<T> image =
+      Image<T>::borrowed({buffer.data, buffer.width_px, buffer.height_px, buffer.channels,
+                          static_cast<std::size_t>(buffer.row_bytes) / sizeof(T)});
+  require_finite(image);
+  return {std::move(image)};
+}
+
+template <typename T>
+Photograph copied_photograph(const PixelBuffer<T>& buffer) {
+  check(buffer);
+  return copy_of(complete(buffer));
+}
+
+template Photograph photograph_of(const PixelBuffer<std::uint8_t>& buffer);
+template Photograph photograph_of(const PixelBuffer<std::uint16_t>& buffer);
+template Photograph photograph_of(const PixelBuffer<float>& buffer);
+template Photograph copied_photograph(const PixelBuffer<std::uint8_t>& buffer);
+template Photograph copied_photograph(const PixelBuffer<std::uint16_t>& buffer);
+template Photograph copied_photograph(const PixelBuffer<float>& buffer);
+
+}  // namespace vantage

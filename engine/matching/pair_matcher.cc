@@ -1,0 +1,50 @@
+#include "engine/matching/pair_matcher.h"
+
+#include "engine/matching/range_estimation.h"
+#include "engine/matching/vertical_range.h"
+
+namespace vantage {
+
+MatchOptions with_found_ranges(MatchOptions options, const Photograph& left,
+                               const Photograph& right, Execution& execution) {
+  const bool finds_any = options.disparities_auto || options.disparities_y_auto;
+  if (options.disparities_y_auto) {
+    options.disparities_y = require_vertical_range(find_vertical_range(left, right, execution));
+    options.disparities_y_auto = false;
+  }
+  if (options.disparities_auto) {
+    options.disparities = require_disparity_range(find_disparity_range(
+        left, right, execution, options.disparities_y.value_or(DisparityRange{0, 0})));
+    options.disparities_auto = false;
+  }
+  if (finds_any) {
+    options.validate();
+  }
+  return options;
+}
+
+PairMatcher::PairMatcher(const MatchOptions& options, Execution& execution)
+    : options_(options), execution_(execution) {
+  options_.validate();
+}
+
+MatchOptions PairMatcher::match(const Photograph& left, const Photograph& right,
+                                const MatchRequest& request, DisparityMaps& maps,
+                                MatchReport* report) const {
+  const auto ready = ready_for(with_found_ranges(options_, left, right, execution_));
+  ready->matcher.match(left, right, request, maps, report);
+  return ready->options;
+}
+
+std::shared_ptr<const PairMatcher::Ready> PairMatcher::ready_for(
+    const MatchOptions& options) const {
+  const std::lock_guard lock(mutex_);
+  // All else is as in options_.
+  if (!ready_ || ready_->options.disparities != options.disparities ||
+      ready_->options.disparities_y != options.disparities_y) {
+    ready_ = std::make_shared<const Ready>(options, execution_);
+  }
+  return ready_;
+}
+
+}  // namespace vantage

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "engine/execution.h"
+#include "engine/image/disparity_maps.h"
+#include "engine/image/disparity_range.h"
+#include "engine/image/photograph.h"
+#include "engine/matching/match_report.h"
+#include "engine/matching/options/match_options.h"
+#include "engine/matching/stereo_matcher.h"
+
+namespace vantage {
+
+/// `options` with the ranges that are auto replaced by those that the images suggest, as 'vantage
+/// match' does. Throws Error where the images suggest none.
+MatchOptions with_found_ranges(MatchOptions options, const Photograph& left,
+                               const Photograph& right, Execution& execution);
+
+/// A StereoMatcher that finds the range of each pair where `disparities` or `disparities_y` is
+/// auto. Thread rule: match() may be called concurrently for different results.
+class PairMatcher {
+ public:
+  /// Throws UsageError for invalid options. `execution` must outlive the matcher.
+  explicit PairMatcher(const MatchOptions& options, Execution& execution = default_execution());
+
+  /// StereoMatcher::match() with the ranges of this pair; returns the options that it used. Throws
+  /// as that does, and Error where no range is found.
+  MatchOptions match(const Photograph& left, const Photograph& right, const MatchRequest& request,
+                     DisparityMaps& maps, MatchReport* report = nullptr) const;
+
+  [[nodiscard]] const MatchOptions& options() const { return options_; }
+
+ private:
+  /// A matcher of a range. The last one is kept, with its working memory.
+  struct Ready {
+    Ready(const MatchOptions& with_range, Execution& execution)
+        : options(with_range), matcher(with_range, execution) {}
+    MatchOptions options;
+    StereoMatcher matcher;
+  };
+  [[nodiscard]] std::shared_ptr<const Ready> ready_for(const MatchOptions& options) const;
+
+  MatchOptions options_;
+  Execution& execution_;
+  mutable std::mutex mutex_;
+  mutable std::shared_ptr<const Ready> ready_;
+};
+
+}  // namespace vantage

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/rectification/feature_matches.h"
+#include "engine/rectification/rectifier.h"
+#include "engine/rectification/rig_validation.h"
+#include "engine/rectification/stereo_calibration.h"
+#include "engine/rectification/uncalibrated_rig.h"
+#include "engine/rectification/vertical_error.h"
+
+namespace vantage {
+
+/// Inputs and results of a rectification.
+struct Rectification {
+  StereoCalibration calibration;
+  std::optional<UncalibratedRig> estimate;  ///< without a calibration file
+  std::vector<PointMatch> matches = {};     ///< in the photographs, that the estimate is made from
+  std::optional<VerticalError> remaining;
+  std::optional<RigValidation> validation;  ///< of the estimate
+};
+
+/// Estimates again from points found in the images rectified by `rectifier`: there they are in
+/// nearly the same rows, so that wrong matches are easy to detect and positions are exact. Kept if
+/// rows correspond better.
+void improve_rectification(Rectification& rectification, Rectifier& rectifier,
+                           const std::vector<PointMatch>& found,
+                           const RectificationOptions& options);
+
+/// Throws Error, whose text starts with `inputs`, if the estimate does not rectify the images.
+/// `matches`: points found in the rectified images.
+void require_success(const Rectification& rectification, std::size_t matches,
+                     const std::string& inputs);
+
+}  // namespace vantage
