@@ -65,4 +65,13 @@ libjpeg-dev, libpng-dev, libswscale-dev, libswresample-dev, libavutil-dev, pkg-c
 gives the target vantage::engine.")
 # What cpack puts into packages; it would build all targets itself, tests among them.
 add_custom_target(vantage_packaged DEPENDS vantage vantage_reference vantage_engine)
+if(TARGET vantage_python)
+  debian_package(python python3-vantage python
+    "python3 (>= ${VANTAGE_PYTHON_VERSION}), \
+python3 (<< ${VANTAGE_NEXT_PYTHON}), python3-numpy, ${late_libraries}"
+    "Python module of the stereo engine Vantage"
+    "The module vantage: disparity maps, new views and points of stereo pairs in
+NumPy arrays.")
+  add_dependencies(vantage_packaged vantage_python)
+endif()
 include(CPack)

@@ -18,7 +18,7 @@ namespace vantage {
 namespace {
 
 constexpr std::size_t kMaxMatches = 3000;
-constexpr double kMinShare = 0.3;
+constexpr double kMinInlierShare = 0.3;
 constexpr double kRigDeviations = 4.5;
 constexpr double kMinParallax_px = 0.5;
 /// Matches below this distance count as exact.
@@ -210,10 +210,10 @@ void require_sideways_move(const StereoCalibration& calibration, int width_px, i
 }
 
 void require_enough(int inliers, std::size_t matches) {
-  if (inliers < kMinMatches || inliers < kMinShare * static_cast<double>(matches)) {
+  if (inliers < kMinMatches || inliers < kMinInlierShare * static_cast<double>(matches)) {
     throw Error(
         fmt::format("{} of {} common points agree with one rig, expected at least {} and {} %",
-                    inliers, matches, kMinMatches, 100 * kMinShare));
+                    inliers, matches, kMinMatches, 100 * kMinInlierShare));
   }
 }
 

@@ -10,7 +10,7 @@ readonly BUILD_PACKAGES=(
   libdeflate-dev libjpeg-dev libpng-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libfmt-dev
   libgtest-dev libgmock-dev libbenchmark-dev
-  python3
+  python3 python3-dev python3-numpy python3-opencv python3-pytest pybind11-dev
 )
 
 # What some tests need beside that; without these they are skipped.

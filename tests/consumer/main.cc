@@ -1,41 +1,50 @@
-// Matches a generated pair with the installed library and checks the disparity.
+// Matches a generated pair in memory with the installed library and checks the disparity.
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <random>
-#include <utility>
+#include <vector>
 
 #include "engine/vantage.h"
 
-int main() {
-  constexpr int kWidth = 97;
-  constexpr int kHeight = 61;
-  constexpr int kDisparityPx = 5;
+namespace {
 
-  vantage::Image<std::uint8_t> left(kWidth, kHeight);
-  vantage::Image<std::uint8_t> right(kWidth, kHeight);
+constexpr int kWidth = 97;
+constexpr int kHeight = 61;
+constexpr int kDisparityPx = 5;
+/// Bytes from row to row: BGR, and some that belong to no pixel.
+constexpr std::ptrdiff_t kRowBytes = 3 * kWidth + 13;
+
+vantage::Photograph photograph(const std::vector<std::uint8_t>& bytes) {
+  return vantage::photograph_of(
+      vantage::PixelBuffer<std::uint8_t>{.data = bytes.data(),
+                                         .width_px = kWidth,
+                                         .height_px = kHeight,
+                                         .channels = 3,
+                                         .row_bytes = kRowBytes,
+                                         .order = vantage::ChannelOrder::kBgr});
+}
+
+}  // namespace
+
+int main() {
+  std::vector<std::uint8_t> left(static_cast<std::size_t>(kRowBytes * kHeight));
+  std::vector<std::uint8_t> right(left.size());
   std::mt19937 random(1);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      left.at(x, y) = static_cast<std::uint8_t>(random() >> 24U);
-    }
-    for (int x = 0; x < kWidth; ++x) {
-      const int source_x = x + kDisparityPx;
-      right.at(x, y) = source_x < kWidth ? left.at(source_x, y) : std::uint8_t{0};
-    }
+  for (std::uint8_t& byte : left) {
+    byte = static_cast<std::uint8_t>(random() >> 24U);
+  }
+  for (std::size_t i = 0; i + 3 * kDisparityPx < left.size(); ++i) {
+    right[i] = left[i + 3 * kDisparityPx];
   }
 
-  vantage::ExecutionOptions execution_options;
-  execution_options.threads = 2;
-  vantage::Execution execution(execution_options);
-
   vantage::MatchOptions options;
-  options.disparities = {0, 15};
-  options.parameters.iterations = 4;
-  const vantage::StereoMatcher matcher(options, execution);
-
+  options.disparities_auto = true;
+  const vantage::PairMatcher matcher(options);
   vantage::DisparityMaps maps;
-  matcher.match({std::move(left)}, {std::move(right)}, {}, maps);
+  const vantage::DisparityRange range =
+      matcher.match(photograph(left), photograph(right), {.right = false}, maps).disparities;
 
   int wrong = 0;
   for (int y = 0; y < kHeight; ++y) {
@@ -44,7 +53,7 @@ int main() {
       wrong += error_px <= 0.25F ? 0 : 1;  // NaN, an unknown disparity, counts as wrong
     }
   }
-  std::printf("consumer: %d of %d pixels off the true disparity of %d px\n", wrong,
-              (kWidth - kDisparityPx - 6) * kHeight, kDisparityPx);
+  std::printf("consumer: disparities %d:%d, %d of %d pixels off the true disparity of %d px\n",
+              range.min, range.max, wrong, (kWidth - kDisparityPx - 6) * kHeight, kDisparityPx);
   return wrong == 0 ? 0 : 1;
 }

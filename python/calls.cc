@@ -1,0 +1,60 @@
+#include "python/calls.h"
+
+#include <exception>
+
+#include "engine/error.h"
+
+namespace vantage::python {
+namespace py = pybind11;
+namespace {
+
+unsigned long main_thread() {
+  return py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();
+}
+
+}  // namespace
+
+bool has_raised_signal() {
+  // Only the main thread runs signal handlers.
+  static const unsigned long main = [] {
+    const py::gil_scoped_acquire acquire;
+    return main_thread();
+  }();
+  if (PyThread_get_thread_ident() != main) {
+    return false;
+  }
+  const py::gil_scoped_acquire acquire;
+  return PyErr_CheckSignals() != 0;
+}
+
+void raise_interruption() { throw py::error_already_set(); }
+
+void bind_errors(py::module_& module) {
+  // Kept for as long as the interpreter lives.
+  static PyObject* const error =
+      PyErr_NewExceptionWithDoc("vantage.Error",
+                                "The input cannot be processed. The text is one line: what, where, "
+                                "what was expected.",
+                                PyExc_RuntimeError, nullptr);
+  static PyObject* const usage_error = [] {
+    const py::tuple bases = py::make_tuple(py::handle(error), py::handle(PyExc_ValueError));
+    return PyErr_NewExceptionWithDoc("vantage.UsageError",
+                                     "An option or an argument that is invalid for any data.",
+                                     bases.ptr(), nullptr);
+  }();
+  module.attr("Error") = py::handle(error);
+  module.attr("UsageError") = py::handle(usage_error);
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) {
+        std::rethrow_exception(thrown);
+      }
+    } catch (const UsageError& problem) {
+      PyErr_SetString(usage_error, problem.what());
+    } catch (const Error& problem) {
+      PyErr_SetString(error, problem.what());
+    }
+  });
+}
+
+}  // namespace vantage::python

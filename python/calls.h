@@ -1,0 +1,39 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <functional>
+
+#include "engine/execution.h"
+#include "scheduler/interruption.h"
+
+namespace vantage::python {
+
+/// Whether a signal handler of Python has raised, as that of Ctrl-C does. Called without the GIL,
+/// by the thread that released it.
+bool has_raised_signal();
+/// Throws the exception of that handler.
+[[noreturn]] void raise_interruption();
+
+/// Runs `work`, which touches no Python object, without the GIL. Ctrl-C in the main thread ends the
+/// loops of executions in it.
+template <typename Work>
+auto without_gil(const Work& work) {
+  try {
+    const pybind11::gil_scoped_release release;
+    scheduler::InterruptibleScope scope(has_raised_signal);
+    return work();
+  } catch (const scheduler::Interrupted&) {
+    raise_interruption();
+  }
+}
+
+/// Registers vantage.Error and vantage.UsageError.
+void bind_errors(pybind11::module_& module);
+void bind_files(pybind11::module_& module);
+void bind_matcher(pybind11::module_& module);
+void bind_rectification(pybind11::module_& module);
+void bind_sequence(pybind11::module_& module);
+void bind_views(pybind11::module_& module);
+
+}  // namespace vantage::python

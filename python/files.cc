@@ -1,0 +1,67 @@
+// Images and maps in files.
+#include <pybind11/pybind11.h>
+
+#include <optional>
+#include <string>
+
+#include "engine/io/preview.h"
+#include "engine/vantage.h"
+#include "python/arrays.h"
+#include "python/calls.h"
+
+namespace vantage::python {
+namespace py = pybind11;
+namespace {
+
+std::string path_of(const py::object& path) {
+  const py::object text = py::module_::import("os").attr("fspath")(path);
+  return py::module_::import("os").attr("fsdecode")(text).cast<std::string>();
+}
+
+ChannelOrder order_of(bool bgr) { return bgr ? ChannelOrder::kBgr : ChannelOrder::kRgb; }
+
+py::array read_image(const py::object& path, bool bgr) {
+  const std::string file = path_of(path);
+  return array_of(without_gil([&] { return read_photograph(file); }), order_of(bgr));
+}
+
+void write_image(const py::object& path, const py::object& image, bool bgr) {
+  const std::string file = path_of(path);
+  const PixelArray pixels(image, order_of(bgr), "image");
+  without_gil([&] { write_photograph(file, pixels.copy()); });
+}
+
+py::array read_map(const py::object& path, double scale) {
+  const std::string file = path_of(path);
+  return array_of(without_gil([&] { return read_disparity(file, scale); }));
+}
+
+void write_map(const py::object& path, const py::object& disparity) {
+  const std::string file = path_of(path);
+  const DisparityMap map = map_from(disparity, "disparity");
+  without_gil([&] { write_disparity(file, map.view()); });
+}
+
+py::array colours(const py::object& disparity, const py::object& limits) {
+  const DisparityMap map = map_from(disparity, "disparity");
+  PreviewRange range;
+  if (limits.is_none()) {
+    range = choose_preview_range(map.view());
+  } else {
+    const auto given = limits.cast<std::pair<float, float>>();
+    range = {given.first, given.second};
+  }
+  return array_of({colour_preview(map.view(), range.min_px, range.max_px)}, ChannelOrder::kRgb);
+}
+
+}  // namespace
+
+void bind_files(py::module_& module) {
+  module.def("read_image", &read_image);
+  module.def("write_image", &write_image);
+  module.def("read_disparity", &read_map);
+  module.def("write_disparity", &write_map);
+  module.def("colours", &colours);
+}
+
+}  // namespace vantage::python

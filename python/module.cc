@@ -1,0 +1,18 @@
+// vantage._vantage: what the package vantage is made of. The interface that users see, with its
+// documentation, is python/vantage/__init__.py.
+#include <pybind11/pybind11.h>
+
+#include "engine/io/opencv_setup.h"
+#include "python/calls.h"
+
+PYBIND11_MODULE(_vantage, module) {
+  // cv2 may be in this process, with settings of its own.
+  vantage::leave_opencv_to_host();
+  module.attr("__version__") = VANTAGE_VERSION;
+  vantage::python::bind_errors(module);
+  vantage::python::bind_rectification(module);
+  vantage::python::bind_matcher(module);
+  vantage::python::bind_views(module);
+  vantage::python::bind_files(module);
+  vantage::python::bind_sequence(module);
+}

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "apps/settings.h"
+#include "engine/execution.h"
+
+namespace vantage::python {
+
+/// Sets settings from keyword arguments: names as on the command line with _ in place of -, values
+/// as in a TOML file; two numbers stand for a range MIN:MAX, None for what is not given. Throws
+/// UsageError for unknown names and for values.
+void set_options(apps::Settings& settings, const pybind11::dict& options);
+
+/// Options of threads (`threads`, `executor`, …) taken out of `options`, and their execution: one
+/// for all who give the same, so that their threads are shared. It is never freed.
+Execution& take_execution(pybind11::dict& options);
+
+/// A setting's value as a Python object.
+pybind11::object to_python(const apps::SettingValue& value);
+
+}  // namespace vantage::python

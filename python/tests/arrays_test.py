@@ -1,0 +1,111 @@
+"""What arrays are taken, of any layout, and what is refused."""
+
+import numpy as np
+import pytest
+from conftest import same
+
+import vantage
+
+MATCHER = vantage.Matcher("realtime", (0, 15), search_size="full")
+
+
+def disparity(left, right, **options):
+    return MATCHER.compute(left, right, **options).disparity
+
+
+def layouts(image):
+    """The same pixels in other places."""
+    yield "contiguous", image
+    padded = np.zeros((image.shape[0] + 2, image.shape[1] + 5, *image.shape[2:]), image.dtype)
+    padded[1:-1, 3:-2] = image
+    yield "part of rows", padded[1:-1, 3:-2]
+    yield "Fortran order", np.asfortranarray(image)
+    yield "upside down", np.ascontiguousarray(image[::-1])[::-1]
+    yield "mirrored", np.ascontiguousarray(image[:, ::-1])[:, ::-1]
+    yield "every second column", np.repeat(image, 2, axis=1)[:, ::2]
+    frozen = image.copy()
+    frozen.flags.writeable = False
+    yield "read-only", frozen
+    if image.ndim == 3:
+        yield "reversed channels", np.ascontiguousarray(image[..., ::-1])[..., ::-1]
+        yield "planes", np.ascontiguousarray(image.transpose(2, 0, 1)).transpose(1, 2, 0)
+
+
+@pytest.mark.parametrize("kind", ["colour", "grey", "uint16", "float32", "one channel"])
+def test_layouts(pair, kind):
+    def convert(image):
+        if kind == "colour":
+            return image
+        if kind == "uint16":
+            return image.astype(np.uint16) * 257
+        if kind == "float32":
+            return image.astype(np.float32) / 255
+        grey = np.ascontiguousarray(image[..., 1])
+        return grey[..., None] if kind == "one channel" else grey
+
+    left, right = map(convert, pair)
+    expected = disparity(left.copy(), right.copy())
+    assert np.isfinite(expected).mean() > 0.9
+    for name, image in layouts(left):
+        assert same(disparity(image, right), expected), name
+    for name, image in layouts(right):
+        assert same(disparity(left, image), expected), name
+
+
+def test_bgr(pair):
+    left, right = (image[..., ::-1] for image in pair)
+    assert same(disparity(left, right, bgr=True), disparity(*pair))
+    # Colours matter: their luma differs.
+    assert not same(disparity(left, right), disparity(*pair))
+
+
+def test_results_outlive_what_they_come_from(pair):
+    result = MATCHER.compute(*(image.copy() for image in pair))
+    array = result.disparity
+    expected = array.copy()
+    del result
+    MATCHER.compute(*pair)
+    assert same(array, expected)
+
+
+@pytest.mark.parametrize("change, error, message", [
+    (lambda left: left.astype(np.float64), ValueError,
+     r"left: the array is of float64, expected uint8, uint16 or float32"),
+    (lambda left: left.astype(bool), ValueError, "left: the array is of bool"),
+    (lambda left: left.astype(">u2"), ValueError, "left: the array is of >u2"),
+    (lambda left: left[0, 0], ValueError, r"left: the array has 1 dimensions \(3\), expected HxW"),
+    (lambda left: left[None], ValueError, "left: the array has 4 dimensions"),
+    (lambda left: left[..., :2], ValueError, "left: the image has 2 channels, expected 1"),
+    (lambda left: left[:0], ValueError, "left: the image has 160x0 pixels"),
+    (lambda left: left[:-1], vantage.Error, "160x119"),
+    (lambda left: "left.png", TypeError, "left is of type str, expected a NumPy array"),
+    (lambda left: None, TypeError, "left is of type NoneType"),
+])
+def test_bad_arrays(pair, change, error, message):
+    with pytest.raises(error, match=message) as problem:
+        MATCHER.compute(change(pair[0]), pair[1])
+    assert "\n" not in str(problem.value)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_floats_that_are_not_finite(pair, value):
+    left = pair[0].astype(np.float32) / 255
+    left[7, 5, 1] = value
+    with pytest.raises(ValueError, match=rf"left: the image is {value} at pixel \(5, 7\)"):
+        MATCHER.compute(left, pair[1])
+
+
+def test_files(tmp_path, pair):
+    vantage.write_image(tmp_path / "image.png", pair[0])
+    assert same(vantage.read_image(tmp_path / "image.png"), pair[0])
+    assert same(vantage.read_image(tmp_path / "image.png", bgr=True), pair[0][..., ::-1])
+    disparity_px = np.array([[1.5, np.nan], [0, 3]], np.float32)
+    for name in ["map.pfm", "map.npy", "map.tiff"]:
+        vantage.write_disparity(tmp_path / name, disparity_px.astype(np.float64))
+        assert same(vantage.read_disparity(tmp_path / name), disparity_px)
+    with pytest.raises(vantage.Error, match="missing.png"):
+        vantage.read_image(tmp_path / "missing.png")
+    with pytest.raises(ValueError, match="map.txt"):
+        vantage.write_disparity(tmp_path / "map.txt", disparity_px)
+    with pytest.raises(ValueError, match=r"disparity: the array has the shape 3, expected HxW"):
+        vantage.write_disparity(tmp_path / "map.pfm", np.zeros(3, np.float32))

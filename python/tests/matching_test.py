@@ -1,0 +1,125 @@
+"""The maps of a pair are those of `vantage match`, byte for byte."""
+
+import re
+
+import numpy as np
+import pytest
+from conftest import complaint_of_program, run_program, same
+
+import vantage
+
+
+def names_of(option):
+    """The values of an option, from its message."""
+    with pytest.raises(ValueError) as problem:
+        vantage.Matcher(**{"preset": None, option: "?"})
+    return re.search(r"one of (\S+)", str(problem.value)).group(1).split("|")
+
+
+def choices():
+    for preset in names_of("preset"):
+        yield {"preset": preset}
+    for method in names_of("method"):
+        yield {"method": method}
+    for cost in names_of("cost"):
+        yield {"preset": None, "cost": cost}
+    yield {"method": "ssd", "disparities_y": (-1, 1)}
+    yield {"reference": "right", "fill": "none", "cross_check_level": 1}
+    yield {"preset": "realtime", "disparities": "auto"}
+
+
+@pytest.mark.parametrize("options", choices(), ids=str)
+def test_same_bytes_as_the_program(scene, pair, tmp_path, options):
+    options = {"disparities": (0, 15), **options}
+    arguments = []
+    for name, value in options.items():
+        if value is not None:
+            text = ":".join(map(str, value)) if isinstance(value, tuple) else str(value)
+            arguments.append(f"--{name.replace('_', '-')}={text}")
+    displacements = "disparities_y" in options
+    output = tmp_path / ("map.flo" if displacements else "map.npy")
+    files = ["-o", output]
+    if not displacements:
+        files += ["--confidence", tmp_path / "confidence.npy", "--unmatched", tmp_path / "mask.png"]
+        if "reference" not in options:
+            files += ["--output-right", tmp_path / "right.npy"]
+    run_program("match", scene / "left.png", scene / "right.png", *arguments, *files,
+                "--no-tuning")
+    result = vantage.Matcher(**options)(*pair)
+    if displacements:
+        # .flo holds where the partner is: to the left, and above.
+        flow = np.frombuffer(output.read_bytes(), "<f4", offset=12).reshape(120, 160, 2)
+        known = np.isfinite(result.disparity)
+        assert same(-result.disparity[known], flow[..., 0][known])
+        assert same(-result.disparity_y[known], flow[..., 1][known])
+        return
+    assert same(result.disparity, np.load(output))
+    assert same(result.confidence, np.load(tmp_path / "confidence.npy"))
+    assert np.array_equal(result.unmatched, vantage.read_image(tmp_path / "mask.png") == 255)
+    if "reference" not in options:
+        assert same(result.right_disparity, np.load(tmp_path / "right.npy"))
+        assert result.disparity_y is None
+
+
+def test_near_the_truth(pair, truth):
+    result = vantage.Matcher(disparities=(0, 15)).compute(*pair)
+    assert np.mean(np.abs(result.disparity - truth) > 1) < 0.1
+    assert result.disparities == (0, 15)
+    assert 0 <= vantage.Matcher().compute(*pair).disparities[0] <= 2
+
+
+def test_what_is_computed_later_is_the_same(pair):
+    matcher = vantage.Matcher(disparities=(0, 15))
+    at_once = matcher.compute(*pair, right_disparity=True, confidence=True)
+    later = matcher.compute(*pair)
+    for name in ["right_disparity", "confidence", "right_unmatched", "disparity", "unmatched"]:
+        assert same(getattr(later, name), getattr(at_once, name))
+    assert later.disparity.dtype == np.float32 and later.unmatched.dtype == bool
+
+
+def test_images_that_changed_are_refused(pair):
+    left, right = pair[0].copy(), pair[1]
+    result = vantage.Matcher(disparities=(0, 15)).compute(left, right)
+    left[60, 80, 1] ^= 1
+    with pytest.raises(vantage.Error, match="images have changed since compute"):
+        result.right_disparity
+    assert result.disparity.shape == (120, 160)
+
+
+def test_preview_is_that_of_the_program(scene, pair, tmp_path):
+    run_program("match", scene / "left.png", scene / "right.png", "--disparities", "0:15", "-o",
+                tmp_path / "map.npy", "--preview", tmp_path / "preview.png")
+    result = vantage.Matcher(disparities=(0, 15))(*pair)
+    preview = vantage.read_image(tmp_path / "preview.png")
+    assert same(result.preview(), preview)
+    assert same(vantage.colours(result.disparity, (-0.5, 15.5)), preview)
+
+
+@pytest.mark.parametrize("option, value", [
+    ("window", 4), ("preset", "best"), ("disparities", "15:0"), ("levels", 99), ("fill", 3)])
+def test_messages_are_those_of_the_program(scene, tmp_path, option, value):
+    with pytest.raises(ValueError) as problem:
+        vantage.Matcher(**{"preset": None, option: value})
+    said = complaint_of_program("match", scene / "left.png", scene / "right.png", "-o",
+                                tmp_path / "map.npy", f"--{option}={value}")
+    expected = str(problem.value).split(", expected")[-1]
+    assert expected in said
+    assert isinstance(problem.value, vantage.Error)
+    assert "\n" not in str(problem.value)
+
+
+def test_options_are_checked():
+    with pytest.raises(ValueError, match="unknown option 'cross_chek'.*did you mean cross-check"):
+        vantage.Matcher(cross_chek=2)
+    with pytest.raises(ValueError, match="preset is 3"):
+        vantage.Matcher(preset=3)
+    with pytest.raises(ValueError, match="window is of type object"):
+        vantage.Matcher(window=object())
+    with pytest.raises(ValueError, match="unknown option 'report'"):
+        vantage.Matcher(report="file.json")
+    assert vantage.Matcher(fill="none").options["fill"] == "none"
+
+
+def test_no_range(pair):
+    with pytest.raises(vantage.Error, match="no disparity range can be estimated"):
+        vantage.Matcher().compute(np.zeros_like(pair[0]), np.zeros_like(pair[1]))

@@ -1,0 +1,79 @@
+"""Threads of Python share those of the engine; Ctrl-C ends a call."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from conftest import same
+
+import vantage
+
+
+def test_calls_at_a_time_share_the_threads(pair):
+    matcher = vantage.Matcher(disparities=(0, 15), threads=2)
+    assert matcher.threads == 2
+    expected = matcher.compute(*pair).disparity
+    before = len(os.listdir("/proc/self/task"))
+    with ThreadPoolExecutor(6) as pool:
+        maps = list(pool.map(lambda _: matcher.compute(*pair).disparity, range(24)))
+        # The six threads of Python and, at most, the pool of the engine.
+        assert len(os.listdir("/proc/self/task")) <= before + 6 + 2
+    assert all(same(map_px, expected) for map_px in maps)
+
+
+def test_other_threads_run_meanwhile():
+    matcher = vantage.Matcher(disparities=(0, 255), threads=1)
+    left = np.random.default_rng(1).integers(0, 256, (480, 640), np.uint8)
+    done = threading.Event()
+
+    def compute():
+        matcher.compute(left, left)
+        done.set()
+
+    thread = threading.Thread(target=compute)
+    thread.start()
+    steps = 0
+    while not done.is_set():
+        time.sleep(0.001)
+        steps += 1
+    thread.join()
+    assert steps > 5
+
+
+SCRIPT = """
+import sys, numpy as np, vantage
+image = np.random.default_rng(1).integers(0, 256, (800, 1200, 3), np.uint8)
+slow = vantage.Matcher(method="diffusion", disparities=(0, 255), iterations=2000)
+quick = vantage.Matcher("realtime", (0, 15))
+before = quick.compute(image, image).disparity.copy()
+print("ready", flush=True)
+try:
+    slow.compute(image, image)
+except KeyboardInterrupt:
+    print("interrupted", np.array_equal(quick.compute(image, image).disparity, before, True))
+"""
+
+
+def test_ctrl_c_interrupts():
+    process = subprocess.Popen([sys.executable, "-c", SCRIPT], stdout=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "ready\n"
+    time.sleep(0.3)
+    start = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    output, _ = process.communicate(timeout=60)
+    assert output == "interrupted True\n"
+    assert time.monotonic() - start < 10
+
+
+def test_cv2_keeps_its_settings(scene):
+    import cv2
+    cv2.setNumThreads(3)
+    vantage.read_image(scene / "left.png")
+    vantage.rectify(*(vantage.read_image(scene / f"{side}.png") for side in ["left", "right"]),
+                    scene / "calib.txt")
+    assert cv2.getNumThreads() == 3

@@ -1,0 +1,185 @@
+"""Views, rectification, points, sequences, and OpenCV's interface."""
+
+import cv2
+import numpy as np
+import pytest
+from conftest import run_program, same
+
+import vantage
+import vantage.opencv
+
+RANGE = {"disparities": (0, 15)}
+
+
+def test_view_is_that_of_the_program(scene, pair, tmp_path):
+    files = scene / "left.png", scene / "right.png"
+    run_program("synth", *files, "--view", "0.25", "--disparities", "0:15", "--holes", "texture",
+                "-o", tmp_path / "view.png")
+    view = vantage.synthesize(*pair, 0.25, holes="texture", **RANGE)
+    assert same(view, vantage.read_image(tmp_path / "view.png"))
+    bgr = vantage.synthesize(*(image[..., ::-1] for image in pair), 0.25, holes="texture", bgr=True,
+                             **RANGE)
+    assert same(bgr[..., ::-1], view)
+
+
+def test_several_views(scene, pair, tmp_path):
+    run_program("synth", scene / "left.png", scene / "right.png", "--sweep", "0:1:3",
+                "--disparities", "0:15", "-o", tmp_path / "views")
+    expected = [vantage.read_image(file) for file in sorted((tmp_path / "views").iterdir())]
+    maps = vantage.Matcher(**RANGE)(*pair)
+    for views in [vantage.synthesize(*pair, sweep="0:1:3", **RANGE),
+                  vantage.synthesize(*pair, [0, 0.5, (1.0, 0)], disparity=maps.disparity,
+                                     right_disparity=maps.right_disparity)]:
+        assert len(views) == 3 and all(map(same, views, expected))
+
+
+def test_view_of_a_camera(scene, pair, tmp_path):
+    calibration = vantage.Calibration.load(scene / "calib.txt")
+    pose = {"K": calibration.K1, "R": np.eye(3), "t": [-0.5, 0, 0.1]}
+    (tmp_path / "pose.toml").write_text(
+        f"[[view]]\nK = {calibration.K1.tolist()}\nR = {np.eye(3).tolist()}\nt = [-0.5, 0, 0.1]\n")
+    run_program("synth", scene / "left.png", scene / "right.png", "--pose", tmp_path / "pose.toml",
+                "--calibration", scene / "calib.txt", "--disparities", "0:15", "-o",
+                tmp_path / "view.png")
+    view = vantage.synthesize(*pair, pose, calibration=calibration, **RANGE)
+    assert same(view, vantage.read_image(tmp_path / "view.png"))
+    with pytest.raises(ValueError, match="calibrat"):
+        vantage.synthesize(*pair, pose, **RANGE)
+
+
+def test_views_of_bad_input(pair):
+    with pytest.raises(ValueError, match="within ±16"):
+        vantage.synthesize(*pair, 99)
+    with pytest.raises(ValueError, match="one of disparity and right_disparity is missing"):
+        vantage.synthesize(*pair, disparity=np.zeros((120, 160), np.float32))
+    with pytest.raises(ValueError, match="disparity: the map has 2x2 pixels, expected 160x120"):
+        vantage.synthesize(*pair, disparity=np.zeros((2, 2), np.float32),
+                           right_disparity=np.zeros((2, 2), np.float32))
+
+
+def tilted(scene):
+    """A calibration whose right camera is turned, so that pairs need rectification."""
+    load = vantage.Calibration.load(scene / "calib.txt")
+    angle = 0.02
+    turn = np.array([[1, 0, 0], [0, np.cos(angle), -np.sin(angle)],
+                     [0, np.sin(angle), np.cos(angle)]])
+    return vantage.Calibration(K1=load.K1, K2=load.K2, R=turn, T=load.T, D1=[-0.1, 0.01, 0, 0],
+                               image_size=load.image_size)
+
+
+def test_rectification_is_that_of_the_program(scene, pair, tmp_path):
+    calibration = tilted(scene)
+    storage = cv2.FileStorage(str(tmp_path / "rig.yml"), cv2.FILE_STORAGE_WRITE)
+    for name, value in [("M1", calibration.K1), ("D1", np.array(calibration.D1)),
+                        ("M2", calibration.K2), ("R", calibration.R), ("T", calibration.T)]:
+        storage.write(name, np.asarray(value, float))
+    storage.release()
+    run_program("rectify", scene / "left.png", scene / "right.png", "--calibration",
+                tmp_path / "rig.yml", "-o", tmp_path / "rectified", "--matrices",
+                tmp_path / "out.yml")
+    rectified = vantage.rectify(*pair, calibration)
+    left, right = rectified
+    assert same(left, vantage.read_image(tmp_path / "rectified/left.png"))
+    assert same(right, vantage.read_image(tmp_path / "rectified/right.png"))
+    assert rectified.row_error_px is None and not calibration.rectified
+    # Q is the one of cv2.stereoRectify's convention, up to scale.
+    q = cv2.FileStorage(str(tmp_path / "out.yml"), cv2.FILE_STORAGE_READ).getNode("Q").mat()
+    ours = rectified.calibration.Q
+    assert np.allclose(ours / ours[3, 2], q / q[3, 2], rtol=1e-6, atol=1e-9)
+    view = vantage.synthesize(*pair, calibration=tmp_path / "rig.yml", **RANGE)
+    run_program("synth", scene / "left.png", scene / "right.png", "--calibration",
+                tmp_path / "rig.yml", "--view", "0.5", "--disparities", "0:15", "-o",
+                tmp_path / "view.png")
+    assert same(view, vantage.read_image(tmp_path / "view.png"))
+
+
+def test_rectification_without_cameras():
+    rng = np.random.default_rng(1)
+    texture = cv2.GaussianBlur(rng.integers(0, 256, (240, 400), np.uint8), (0, 0), 1)
+    rows, columns = np.indices((240, 320), np.float32)
+    shift = 4 + 8 * ((columns // 60 + rows // 60) % 3)
+    left = cv2.remap(texture, columns + 40 - shift / 2, rows, cv2.INTER_LINEAR)
+    right = cv2.remap(texture, columns + 40 + shift / 2, rows + 2, cv2.INTER_LINEAR)
+    rectified = vantage.rectify(left, right)
+    assert rectified.row_error_px < 0.5
+    assert rectified.left.shape == left.shape and rectified.calibration.rectified
+    with pytest.raises(vantage.Error, match="matches|points"):
+        vantage.rectify(np.zeros_like(left), np.zeros_like(left))
+    with pytest.raises(vantage.Error, match="expected equal sizes"):
+        vantage.rectify(left, right[:-1])
+
+
+def test_points(scene, truth):
+    calibration = vantage.Calibration.load(scene / "calib.txt")
+    disparity = truth.copy()
+    disparity[3, 4] = np.nan
+    disparity[5, 6] = 0
+    points = vantage.reproject(disparity, calibration)
+    assert points.shape == (120, 160, 3) and points.dtype == np.float32
+    assert np.isnan(points[3, 4]).all() and np.isnan(points[5, 6]).all()
+    f, cx, cy = calibration.K1[0, 0], calibration.K1[0, 2], calibration.K1[1, 2]
+    z = f * calibration.baseline / (truth[50, 70] + calibration.doffs)
+    assert np.allclose(points[50, 70], [(70 - cx) * z / f, (50 - cy) * z / f, z], rtol=1e-5)
+    # Projected back, they are where they were.
+    z = points[..., 2]
+    back = np.stack([f * points[..., 0] / z + cx, f * points[..., 1] / z + cy], axis=-1)
+    rows, columns = np.indices(truth.shape)
+    known = np.isfinite(z)
+    assert np.allclose(back[known], np.stack([columns, rows], -1)[known], atol=1e-3)
+    opencv = cv2.reprojectImageTo3D(truth, calibration.Q)
+    assert np.allclose(vantage.reproject(truth, calibration.Q), opencv, rtol=1e-4)
+    for bad, message in [(truth.astype(int), "expected floats of HxW"), (truth[0], "HxW")]:
+        with pytest.raises(ValueError, match=message):
+            vantage.reproject(bad, calibration)
+    with pytest.raises(vantage.Error, match="not one of rectified images"):
+        vantage.reproject(truth, tilted(scene))
+    with pytest.raises(vantage.Error, match="missing.yml"):
+        vantage.Calibration.load("missing.yml")
+
+
+def test_sequence_has_the_maps_of_a_run(sequence, tmp_path):
+    run_program("run", "--left", sequence / "left", "--right", sequence / "right", "-o",
+                tmp_path / "run", "--format", "npy")
+    frames = vantage.Sequence(sequence / "left", sequence / "right")
+    assert len(frames) == 4
+    for frame in frames:
+        expected = np.load(tmp_path / f"run/disparity/{frame.index:06}.npy")
+        assert same(frame.disparity, expected)
+        assert f"{frame.index:06}.png" in frame.name
+        assert same(frame.left, vantage.read_image(sequence / f"left/{frame.index:06}.png"))
+        assert frame.result.right_disparity.shape == expected.shape
+    some = vantage.Sequence(sequence / "left", sequence / "right", frames=slice(1, None, 2),
+                            disparities=(0, 7))
+    assert [frame.index for frame in some] == [1, 3] == [frame.index for frame in some]
+    with pytest.raises(ValueError, match="expected numbers from 0 to 3"):
+        vantage.Sequence(sequence / "left", sequence / "right", frames=range(9))
+    with pytest.raises(vantage.Error, match="missing"):
+        vantage.Sequence(sequence / "missing", sequence / "right")
+    with pytest.raises(ValueError, match="--stereo|--left|stereo"):
+        vantage.Sequence()
+
+
+def test_interface_of_opencv(scene):
+    left, right = (cv2.imread(str(scene / f"{side}.png")) for side in ["left", "right"])
+    arguments = {"minDisparity": -3, "numDisparities": 16, "blockSize": 5, "P1": 8, "P2": 32}
+    ours = vantage.opencv.StereoVantage_create(**arguments)
+    theirs = cv2.StereoSGBM_create(**arguments)
+    fixed = ours.compute(left, right)
+    reference = theirs.compute(left, right)
+    assert fixed.dtype == reference.dtype and fixed.shape == reference.shape
+    unknown = (-3 - 1) * 16
+    assert unknown in fixed and unknown in reference
+    both = (fixed != unknown) & (reference != unknown)
+    assert np.median(np.abs(fixed[both].astype(int) - reference[both])) <= 8
+    map_px = vantage.Matcher(disparities=(-3, 12), fill="none").compute(left, right, bgr=True)
+    known = np.isfinite(map_px.disparity)
+    assert np.array_equal(known, fixed != unknown)
+    assert np.allclose(fixed[known] / 16, map_px.disparity[known], atol=1 / 32)
+    into = np.empty_like(fixed)
+    assert ours.compute(left, right, into) is into and np.array_equal(into, fixed)
+    ours.setMinDisparity(0)
+    ours.setNumDisparities(32)
+    assert (ours.getMinDisparity(), ours.getNumDisparities()) == (0, 32)
+    assert ours.compute(left, right).min() == -16
+    with pytest.raises(ValueError, match="numDisparities is 0"):
+        ours.setNumDisparities(0)

@@ -1,0 +1,258 @@
+"""Disparity maps and new views of stereo pairs.
+
+    import vantage
+    result = vantage.Matcher(disparities=(0, 63)).compute(left, right)
+    result.disparity  # float32, HxW, pixels; NaN: unknown
+
+Images are NumPy arrays of uint8, uint16 or float32 (0 to 1), HxW or HxWx3, in RGB order unless
+bgr=True, of any strides; where the layout allows they are read in place. Options are those of the
+command line, with _ in place of - (cross_check_level=2). Errors of data are vantage.Error, invalid
+options vantage.UsageError, which is a ValueError, too; each is one line. Calls release the GIL and
+share one pool of threads; Ctrl-C interrupts them. docs/python.md is a tutorial.
+"""
+
+import numpy as _np
+
+from vantage import _vantage
+from vantage._vantage import Calibration, Error, MatchResult, UsageError, __version__
+
+__all__ = [
+    "Calibration", "Error", "Frame", "MatchResult", "Matcher", "RectifiedImages", "Sequence",
+    "UsageError", "colours", "read_disparity", "read_image", "rectify", "reproject", "synthesize",
+    "write_disparity", "write_image",
+]
+
+
+class Matcher:
+    """Matches rectified pairs, as `vantage match` does.
+
+    preset: "realtime", "fast", "balanced" or "quality"; None: that of the other options, as without
+    --preset on the command line.
+    disparities: (MIN, MAX) or "MIN:MAX" in pixels, ends included; "auto": estimated for each pair.
+    options: those of `vantage match` that concern matching, reference and threads.
+
+    Several threads may use one matcher at a time.
+    """
+
+    def __init__(self, preset="balanced", disparities="auto", **options):
+        # A method is another choice than a preset.
+        if preset == "balanced" and {"method", "aggregate", "disparities_y"} & options.keys():
+            preset = None
+        self._native = _vantage.Matcher(
+            {"preset": preset, "disparities": disparities, **options})
+
+    def compute(self, left, right, *, bgr=False, right_disparity=False, confidence=False):
+        """The maps of a pair of equal size, a MatchResult.
+
+        The map of the left image (of the right one with reference="right") is computed now; the
+        right one and the confidence when they are asked for, or now if wanted. Until then the
+        result needs the arrays as they are: it refuses arrays that have changed.
+        """
+        return self._native.compute(left, right, bgr, right_disparity, confidence)
+
+    __call__ = compute
+
+    @property
+    def options(self):
+        """All options as a dict; "auto" where preset, method or pair decide."""
+        return self._native.options()
+
+    @property
+    def threads(self):
+        """Number of threads that calls share."""
+        return self._native.threads
+
+    def __repr__(self):
+        return repr(self._native)
+
+
+class RectifiedImages:
+    """What rectify() returns; left, right = rectify(...) takes it apart.
+
+    left, right: arrays as the given ones, whose rows correspond.
+    calibration: Calibration of the rectified images, for reproject() and synthesize().
+    cameras: Calibration of the given images.
+    row_error_px: remaining RMS error of rows if the cameras were estimated, else None.
+    valid_region: (x, y, width, height) of the part without black pixels.
+    """
+
+    def __init__(self, left, right, calibration, cameras, row_error_px, valid_region):
+        self.left = left
+        self.right = right
+        self.calibration = calibration
+        self.cameras = cameras
+        self.row_error_px = row_error_px
+        self.valid_region = valid_region
+
+    def __iter__(self):
+        return iter((self.left, self.right))
+
+
+def rectify(left, right, calibration=None, *, kept_outline=0.0, bgr=False, **options):
+    """Rectifies a pair; without a calibration (or the path of one) the cameras are estimated from
+    the images, up to scale: the baseline then has length 1.
+
+    options: threads. Returns RectifiedImages. Raises Error where the images show too little.
+    """
+    return RectifiedImages(*_vantage.rectify(
+        left, right, _calibration_of(calibration), kept_outline, bgr, options))
+
+
+def synthesize(left, right, view=None, *, disparity=None, right_disparity=None, calibration=None,
+               bgr=False, **options):
+    """New views of a pair, as `vantage synth` makes them: an array like `left`, or a list of them.
+
+    view: a position in baselines (0: left camera, 1: right camera) or (x, y), or a camera as a dict
+    of K, R and t, which needs a calibration; a list of these gives a list. Default 0.5.
+    options: those of `vantage synth` instead of view (sweep, orbit, pose, path), and how views are
+    made (holes, look_at, …); without maps also those of Matcher.
+    disparity, right_disparity: both maps of the rectified pair; None: they are computed.
+    calibration: Calibration or a path; images that are not rectified are rectified first.
+    """
+    if view is None and not {"sweep", "orbit", "pose", "path"} & options.keys():
+        view = 0.5
+    single = view is not None and not isinstance(view, list)
+    if view is not None:
+        views = [view] if single else view
+        if all(isinstance(one, dict) for one in views) and views:
+            options["pose"] = views
+        else:
+            options["view"] = [
+                ",".join(str(float(part)) for part in one) if isinstance(one, tuple) else one
+                for one in views]
+    arrays = _vantage.synthesize(
+        left, right, disparity, right_disparity, _calibration_of(calibration), bgr, options)
+    return arrays[0] if single else arrays
+
+
+def reproject(disparity, calibration):
+    """Points of a disparity map of the left image: float32, HxWx3, in the unit of the calibration.
+
+    X is to the right, Y down and Z ahead of the rectified left camera. NaN where the disparity is
+    unknown or at infinity or beyond.
+
+    calibration: Calibration of rectified images (or the path of one), or OpenCV's 4x4 matrix Q.
+    """
+    disparity = _np.asarray(disparity)
+    if disparity.ndim != 2 or disparity.dtype.kind != "f":
+        raise UsageError(f"disparity: the array is {disparity.dtype} of shape {disparity.shape}, "
+                         "expected floats of HxW")
+    is_matrix = isinstance(calibration, (_np.ndarray, list, tuple))
+    q = (_np.asarray(calibration, dtype=float) if is_matrix
+         else _calibration_of(calibration).Q)
+    if q.shape != (4, 4):
+        raise UsageError(f"the matrix Q has shape {q.shape}, expected (4, 4)")
+    rows, columns = _np.indices(disparity.shape, dtype=_np.float64, sparse=True)
+    position = [columns, rows, disparity.astype(_np.float64), 1.0]
+
+    def row_of(number):
+        return sum(q[number, k] * position[k] for k in range(4))
+
+    scale = row_of(3)
+    with _np.errstate(divide="ignore", invalid="ignore"):
+        depth = row_of(2) / scale
+        is_ahead = _np.isfinite(depth) & (depth > 0)
+        points = _np.empty((*disparity.shape, 3), _np.float32)
+        for axis in range(3):
+            points[..., axis] = _np.where(is_ahead, row_of(axis) / scale, _np.nan)
+    return points
+
+
+class Frame:
+    """A pair of a Sequence: index, name, left and right (RGB, rectified) and result, a MatchResult.
+    """
+
+    def __init__(self, index, name, left, right, result):
+        self.index = index
+        self.name = name
+        self.left = left
+        self.right = right
+        self.result = result
+
+    @property
+    def disparity(self):
+        """That of the result."""
+        return self.result.disparity
+
+    def __repr__(self):
+        return f"<vantage.Frame {self.index}: {self.name}>"
+
+
+class Sequence:
+    """The frames of a run: pairs of a sequence, matched one after the other.
+
+    options: inputs as for `vantage run` (left and right, stereo and packing, pairs, or sequence and
+    step; offset), and those of Matcher. disparities="auto" is the range of the whole sequence.
+    frames: range or slice of the pairs to go through; default all.
+    calibration: Calibration or a path, to rectify the pairs first.
+
+    Iterating starts at the first frame each time. Maps are those that `vantage run` writes without
+    its temporal options. For thousands of frames use `vantage run`: it keeps several in flight and
+    can be resumed.
+    """
+
+    def __init__(self, left=None, right=None, *, frames=None, calibration=None, kept_outline=0.0,
+                 preset=None, disparities="auto", **options):
+        self._native = _vantage.Sequence(
+            _calibration_of(calibration), kept_outline,
+            {"left": left, "right": right, "preset": preset, "disparities": disparities,
+             **options})
+        count = len(self._native)
+        if frames is None:
+            frames = slice(None)
+        if not isinstance(frames, (slice, range)):
+            raise UsageError(f"frames is {frames!r}, expected a range or a slice")
+        self._frames = range(count)[frames] if isinstance(frames, slice) else frames
+        if self._frames and not (0 <= min(self._frames) and max(self._frames) < count):
+            raise UsageError(f"frames is {frames!r}, expected numbers from 0 to {count - 1}")
+
+    def __len__(self):
+        return len(self._frames)
+
+    def __iter__(self):
+        at = None
+        for index in self._frames:
+            if index != at:
+                self._native.skip_to(index)
+            found = self._native.next()
+            if found is None:  # the source is shorter than its header says
+                return
+            at = index + 1
+            yield Frame(*found)
+
+
+def read_image(path, *, bgr=False):
+    """Reads PNG, JPEG, TIFF, PNM, BMP, WebP, EXR or PFM: uint8, uint16 or float32."""
+    return _vantage.read_image(path, bgr)
+
+
+def write_image(path, image, *, bgr=False):
+    """Writes an image; the extension is the format."""
+    _vantage.write_image(path, image, bgr)
+
+
+def read_disparity(path, scale=0.0):
+    """Reads a disparity map (PFM, PNG, TIFF, EXR, NPY): float32, NaN where it is unknown.
+
+    scale divides the values of integer files; 0: 256 for 16-bit PNG.
+    """
+    return _vantage.read_disparity(path, scale)
+
+
+def write_disparity(path, disparity):
+    """Writes a disparity map; the extension is the format: .pfm .png .tiff .exr .npy."""
+    _vantage.write_disparity(path, disparity)
+
+
+def colours(disparity, limits=None):
+    """The map in false colours (Turbo; unknown is black): uint8, HxWx3, RGB.
+
+    limits: disparities of the first and the last colour; default: from the map.
+    """
+    return _vantage.colours(disparity, limits)
+
+
+def _calibration_of(calibration):
+    if calibration is None or isinstance(calibration, Calibration):
+        return calibration
+    return Calibration.load(calibration)
