@@ -134,13 +134,14 @@ class Matcher {
         Wanted{.right = right_disparity, .confidence = confidence});
   }
 
-  /// Option → value, as reports of 'vantage match' have them; those in force under `resolved`.
+  /// Option → value.
   [[nodiscard]] py::dict options() {
     apps::Settings settings("", "");
     apps::add_reference_setting(settings, setup_.options);
     apps::add_match_settings(settings, setup_.options);
+    const apps::SettingValue values = settings.values();
     py::dict result;
-    for (const auto& [name, value] : settings.values().items()) {
+    for (const auto& [name, value] : values.items()) {
       std::string keyword = name;
       std::replace(keyword.begin(), keyword.end(), '-', '_');
       result[keyword.c_str()] = to_python(value);
