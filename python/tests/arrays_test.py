@@ -1,5 +1,8 @@
 """What arrays are taken, of any layout, and what is refused."""
 
+import ctypes
+import mmap
+
 import numpy as np
 import pytest
 from conftest import same
@@ -57,6 +60,32 @@ def test_bgr(pair):
     assert same(disparity(left, right, bgr=True), disparity(*pair))
     # Colours matter: their luma differs.
     assert not same(disparity(left, right), disparity(*pair))
+
+
+def at_end_of_memory(image):
+    """The pixels in the last bytes before a page that nobody may read."""
+    size = -(-image.nbytes // mmap.PAGESIZE) * mmap.PAGESIZE
+    memory = np.frombuffer(mmap.mmap(-1, size + mmap.PAGESIZE), np.uint8)
+    library = ctypes.CDLL(None)
+    assert library.mprotect(ctypes.c_void_p(memory.ctypes.data + size), mmap.PAGESIZE, 0) == 0
+    array = memory[size - image.nbytes:size].view(image.dtype).reshape(image.shape)
+    array[...] = image
+    return array
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float32])
+@pytest.mark.parametrize("channels", [1, 3, 4])
+def test_nothing_beyond_an_array_is_read(dtype, channels):
+    largest = 1 if dtype is np.float32 else np.iinfo(dtype).max
+    values = np.random.default_rng(1).random((37, 65, channels)) * largest
+    left, right = (np.ascontiguousarray(values[:, x:x + 61].astype(dtype)) for x in [0, 4])
+    for options in [{"preset": "quality"}, {"preset": "realtime", "disparities": "auto"},
+                    {"preset": None, "cost": "gradient"}, {"preset": None, "cost": "census"}]:
+        matcher = vantage.Matcher(**{"disparities": (0, 15), **options})
+        guarded = matcher.compute(at_end_of_memory(left), at_end_of_memory(right))
+        plain = matcher.compute(left, right)
+        assert same(guarded.disparity, plain.disparity)
+        assert same(guarded.confidence, plain.confidence)
 
 
 def test_results_outlive_what_they_come_from(pair):
