@@ -54,11 +54,12 @@ MatchRequest MatchResult::request(Wanted wanted) const {
 
 void MatchResult::compute_rest(Wanted wanted, const char* asked_for) {
   const PairMatcher matcher(options_, execution_);
+  DisparityMaps rest;
   const Wanted all = {.right = wanted.right || has_.right,
                       .confidence = wanted.confidence || has_.confidence};
   without_gil([&] {
     if (images_) {
-      matcher.match(images_->first, images_->second, request(all), rest_);
+      matcher.match(images_->first, images_->second, request(all), rest);
       return;
     }
     const auto& [left, right] = *arrays_;
@@ -68,15 +69,17 @@ void MatchResult::compute_rest(Wanted wanted, const char* asked_for) {
           "right, {0}=True) computes it at once",
           asked_for));
     }
-    matcher.match(left.photograph(), right.photograph(), request(all), rest_);
+    matcher.match(left.photograph(), right.photograph(), request(all), rest);
   });
-  if (wanted.right) {
-    maps_.right = std::move(rest_.right);
+  // Another thread may have been faster meanwhile, and arrays then show its maps.
+  if (wanted.right && !has_.right) {
+    maps_.right = std::move(rest.right);
+    has_.right = true;
   }
-  if (wanted.confidence) {
-    maps_.of(options_.reference).confidence = std::move(rest_.of(options_.reference).confidence);
+  if (wanted.confidence && !has_.confidence) {
+    maps_.of(options_.reference).confidence = std::move(rest.of(options_.reference).confidence);
+    has_.confidence = true;
   }
-  has_ = all;
 }
 
 py::array_t<float> MatchResult::disparity(const py::object& self) const {

@@ -64,7 +64,6 @@ class MatchResult {
   std::pair<std::uint32_t, std::uint32_t> checksums_;  ///< of arrays_
   Wanted has_;
   DisparityMaps maps_;
-  DisparityMaps rest_;  ///< what was computed later
 };
 
 }  // namespace vantage::python

@@ -26,6 +26,17 @@ def test_calls_at_a_time_share_the_threads(pair):
     assert all(same(map_px, expected) for map_px in maps)
 
 
+def test_one_result_in_several_threads(pair):
+    matcher = vantage.Matcher(disparities=(0, 15))
+    expected = matcher.compute(*pair, right_disparity=True, confidence=True)
+    for _ in range(5):
+        result = matcher.compute(*pair)
+        names = ["right_disparity", "confidence"] * 4
+        with ThreadPoolExecutor(8) as pool:
+            maps = list(pool.map(lambda name: getattr(result, name), names))
+        assert all(same(map_px, getattr(expected, name)) for map_px, name in zip(maps, names))
+
+
 def test_other_threads_run_meanwhile():
     matcher = vantage.Matcher(disparities=(0, 255), threads=1)
     left = np.random.default_rng(1).integers(0, 256, (480, 640), np.uint8)
