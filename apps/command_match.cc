@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <optional>
 #include <span>
 #include <utility>
@@ -21,7 +22,10 @@
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/selection/cyclopean_map.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/matching/unrectified/unrectified_matcher.h"
 #include "engine/matching/volume/posterior_moments.h"
+#include "engine/rectification/rectifier.h"
+#include "engine/rectification/stereo_calibration.h"
 #include "engine/sequence/preview_range.h"
 #include "engine/simd.h"
 
@@ -183,6 +187,17 @@ void match_images(const MatchJob& job, const StereoMatcher& matcher,
   matcher.match_several(images[0], others, request, maps, &report);
 }
 
+void match_unrectified(const MatchJob& job, const Rectifier& rectifier,
+                       const std::vector<Photograph>& images, Execution& execution,
+                       DisparityMaps& maps, MatchReport& report) {
+  UnrectifiedMatcher(job.match, rectifier, execution)
+      .match(images[0], images[1],
+             {.left = job.is_left(),
+              .right = job.wants_right(),
+              .confidence = !job.confidence.empty()},
+             maps, &report);
+}
+
 MemoryUse memory_use(const std::vector<Photograph>& images, const DisparityMaps& maps,
                      const StereoMatcher& matcher, Execution& execution) {
   MemoryUse use;
@@ -239,21 +254,29 @@ int command_match(const Arguments& arguments) {
   if (job.vertical) {
     transpose(images);
   }
+  std::optional<Rectifier> rectifier;
+  std::array<Photograph, 2> rectified;  // for the search range
+  if (!job.unrectified.empty()) {
+    rectifier.emplace(read_stereo_calibration(job.unrectified), size.columns, size.rows);
+    rectifier->apply(images[0], Side::kLeft, rectified[0], execution);
+    rectifier->apply(images[1], Side::kRight, rectified[1], execution);
+  }
   const bool first_is_left = !job.has_several() || job.is_left();
-  const Photograph& left = images[first_is_left ? 0 : 1];
-  const Photograph& right = images[first_is_left ? 1 : 0];
+  const Photograph& left = rectifier ? rectified[0] : images[first_is_left ? 0 : 1];
+  const Photograph& right = rectifier ? rectified[1] : images[first_is_left ? 1 : 0];
   const bool expects_negative = expects_negative_disparities(job.match);
   const bool is_range_found = job.match.disparities_auto;
   choose_disparities(settings, job.common, left, right, job.match, execution, report);
   require_files_hold_search(job);
   const AppliedTuning tuning = job.has_several()
                                    ? no_tuning("tuning is for pairs, but there are more images")
-                                   : apply_tuning(job.tuning,
-                                                  {.match = job.match,
-                                                   .execution = job.common.execution,
-                                                   .left = left,
-                                                   .right = right},
-                                                  settings.command(), job.common.quiet);
+                               : rectifier ? no_tuning("tuning is for rectified pairs")
+                                           : apply_tuning(job.tuning,
+                                                          {.match = job.match,
+                                                           .execution = job.common.execution,
+                                                           .left = left,
+                                                           .right = right},
+                                                          settings.command(), job.common.quiet);
   report.set_tuning(tuning.report, tuning.summary);
   std::optional<Execution> tuned_execution;
   if (tuning.settings != TunedSettings{}) {
@@ -267,15 +290,21 @@ int command_match(const Arguments& arguments) {
   SpaceOutputs space(job);
   const std::vector<VolumeRequest> volumes = space.requests(job);
   const auto compute = [&] {
-    report.timed_compute([&] { match_images(job, matcher, images, volumes, maps, match); });
+    report.timed_compute([&] {
+      if (rectifier) {
+        match_unrectified(job, *rectifier, images, chosen, maps, match);
+      } else {
+        match_images(job, matcher, images, volumes, maps, match);
+      }
+    });
   };
-  if (job.check_rectification && !job.match.disparities_y) {
+  if (job.check_rectification && !job.match.disparities_y && !rectifier) {
     warn_unless_rectified_beside(compute, settings, job.common, expects_negative,
                                  job.vertical ? "columns" : "rows", left, right, chosen, report);
   } else {
     compute();
   }
-  if (!job.has_several()) {
+  if (!job.has_several() && !rectifier) {
     warn_of_cut_range(settings, job.common, left, right, maps, job.match, is_range_found, chosen,
                       report);
   }

@@ -47,6 +47,11 @@ void add_file_settings(Settings& settings, MatchJob& job) {
                 "Cameras one above the other: LEFT is the image of the upper one, --disparities "
                 "are y_upper - y_lower, --disparities-y are x_upper - x_lower, and --baselines are "
                 "positive downwards");
+  settings.input_path("unrectified", job.unrectified, "FILE",
+                      "Cameras of photographs that are not rectified (OpenCV, Middlebury or KITTI "
+                      "file, or the matrices of 'vantage rectify'): epipolar lines are searched "
+                      "instead of rows. Maps are on the pixels of the photographs, disparities "
+                      "those of the rectified pair");
   Setting& output = settings.path(
       "output", job.output, "FILE",
       fmt::format("Path to the disparity map: {}; with --disparities-y displacements: {}",
@@ -138,6 +143,29 @@ void check_cyclopean(const MatchJob& job, FileChecks& files) {
   files.add_output(job.cyclopean_occlusion, "--cyclopean-occlusion", OutputKind::kMask);
 }
 
+void check_unrectified(const MatchJob& job, const Settings& settings) {
+  if (job.unrectified.empty()) {
+    return;
+  }
+  settings.refuse_idle({"cross-check-level"}, "with --unrectified: whole maps are compared");
+  settings.refuse_idle({"tuning", "no-tuning"},
+                       "with --unrectified: tuning is for rectified pairs");
+  settings.refuse_idle({"no-rectification-check"}, "with --unrectified");
+  const auto refuse = [](bool is_given, std::string_view option, std::string_view why) {
+    if (is_given) {
+      throw UsageError(fmt::format("--{} cannot be used with --unrectified: {}", option, why));
+    }
+  };
+  refuse(job.has_several(), "baselines", "a calibration is of two cameras");
+  refuse(job.vertical, "vertical", "the calibration says where the cameras are");
+  refuse(job.match.disparities_y.has_value(), "disparities-y", "epipolar lines are known");
+  refuse(job.match.resolved().selection == Selection::kSymmetric, "selection symmetric",
+         "pixels of both photographs lie on different epipolar lines");
+  refuse(!job.volume.file.empty(), "volume", "candidates differ by fractions from pixel to pixel");
+  refuse(job.wants_posterior(), "posterior-mean and --posterior-variance",
+         "candidates differ by fractions from pixel to pixel");
+}
+
 }  // namespace
 
 void add_match_job_settings(Settings& settings, MatchJob& job) {
@@ -175,6 +203,7 @@ void check(const MatchJob& job, const Settings& settings) {
   job.match.validate();
   job.common.execution.validate();
   job.depth.validate(job.vertical);
+  check_unrectified(job, settings);
   if (job.has_several()) {
     check_several(job, settings);
   } else if (job.match.reference == Side::kRight &&

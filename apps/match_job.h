@@ -29,6 +29,7 @@ struct MatchJob {
   std::string unmatched;
   std::string unmatched_right;
   std::string preview;
+  std::string unrectified;  ///< calibration of photographs that are not rectified; empty: they are
   VolumeOutput volume;
   std::string posterior_mean;
   std::string posterior_variance;

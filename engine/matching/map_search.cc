@@ -49,7 +49,11 @@ kernels::CandidateGeometry seen_by_any(kernels::CandidateGeometry geometry,
                                        std::span<const CostPartner> partners) {
   for (const CostPartner& partner : partners) {
     const double ratio = partner.baseline_ratio;
-    if (ratio > 0) {
+    if (partner.epipolar != nullptr) {
+      // Which candidates have a partner differs from pixel to pixel; costs know.
+      constexpr double kAll = 1e-12;
+      geometry.near_ratio = kAll;
+    } else if (ratio > 0) {
       geometry.near_ratio = std::min(geometry.near_ratio, ratio);
     } else {
       geometry.opposite_ratio =

@@ -77,7 +77,7 @@ CostBounds bounds_of(const MethodParameters& parameters, const ChainInput& input
 bool has_byte_energies(const MethodParameters& parameters, const ChainInput& input) {
   return has_likelihoods(parameters) && cost_of(parameters).byte_energies &&
          parameters.colour == ColourUse::kLuma && input.partners.size() == 1 &&
-         input.prior_px.empty();
+         input.partners.front().epipolar == nullptr && input.prior_px.empty();
 }
 
 /// Cells of all displacements; of_partner makes the stage of one vertical disparity.

@@ -6,83 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "engine/error.h"
+#include "engine/rectification/rectified_positions.h"
 
 namespace vantage {
-namespace {
-
-constexpr int kPatchPx = 8;
-/// Deviation up to which a patch counts as bilinear; small against half a pixel, which changes the
-/// nearest pixel.
-constexpr double kLargestBend = 0.03;  // px
-
-/// The rectified positions of a photograph's pixels. Lenses are smooth: positions are interpolated
-/// between the corners of small patches, unless the lens bends even those.
-class PatchRow {
- public:
-  PatchRow(const Rectifier& rectifier, Side side)
-      : rectifier_(rectifier),
-        side_(side),
-        patches_(static_cast<std::size_t>((rectifier.pair().width_px - 1) / kPatchPx + 1)) {}
-
-  /// NaN where the lens model has no position.
-  [[nodiscard]] Eigen::Vector2d position(int x, int y) {
-    if (y / kPatchPx != row_) {
-      row_ = y / kPatchPx;
-      make_patches();
-    }
-    const Patch& patch = patches_[static_cast<std::size_t>(x / kPatchPx)];
-    return patch.is_smooth ? patch.position(static_cast<double>(x % kPatchPx) / kPatchPx,
-                                            static_cast<double>(y % kPatchPx) / kPatchPx)
-                           : exact(x, y);
-  }
-
- private:
-  struct Patch {
-    bool is_smooth;
-    std::array<Eigen::Vector2d, 4> corners;  // upper left and right, lower left and right
-
-    [[nodiscard]] Eigen::Vector2d position(double along, double down) const {
-      return (1 - down) * ((1 - along) * corners[0] + along * corners[1]) +
-             down * ((1 - along) * corners[2] + along * corners[3]);
-    }
-  };
-
-  [[nodiscard]] Eigen::Vector2d exact(double x, double y) const {
-    constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
-    return rectifier_.rectified_position(side_, {x, y})
-        .value_or(Eigen::Vector2d::Constant(kNowhere));
-  }
-
-  void make_patches() {
-    const double top = kPatchPx * row_;
-    Eigen::Vector2d upper_right = exact(0, top);
-    Eigen::Vector2d lower_right = exact(0, top + kPatchPx);
-    double left = 0;
-    for (Patch& patch : patches_) {
-      patch.corners[0] = upper_right;
-      patch.corners[2] = lower_right;
-      upper_right = exact(left + kPatchPx, top);
-      lower_right = exact(left + kPatchPx, top + kPatchPx);
-      patch.corners[1] = upper_right;
-      patch.corners[3] = lower_right;
-      const Eigen::Vector2d centre = exact(left + kPatchPx / 2.0, top + kPatchPx / 2.0);
-      patch.is_smooth = (patch.position(0.5, 0.5) - centre).norm() <= kLargestBend;  // false for
-                                                                                     // NaN
-      left += kPatchPx;
-    }
-  }
-
-  const Rectifier& rectifier_;
-  Side side_;
-  std::vector<Patch> patches_;
-  int row_ = -1;
-};
-
-}  // namespace
-
 PhotographGrid::PhotographGrid(const Rectifier& rectifier, Execution& execution)
     : rectifier_(rectifier),
       execution_(execution),
@@ -104,12 +32,12 @@ std::vector<kernels::PixelPlace> PhotographGrid::find_nearest_pixels(Side side) 
     return static_cast<int>(std::clamp(std::floor(position + 0.5), 0.0, size - 1.0));
   };
   execution_.for_each_band(height, [&](int first_row, int end_row) {
-    PatchRow patches(rectifier_, side);
+    RectifiedPositions positions(rectifier_, side);
     for (int y = first_row; y < end_row; ++y) {
       kernels::PixelPlace* row =
           places.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
       for (int x = 0; x < width; ++x) {
-        const Eigen::Vector2d at = patches.position(x, y);
+        const Eigen::Vector2d at = positions.position(x, y);
         row[x] = at.hasNaN()
                      ? kernels::kNoPlace
                      : kernels::pixel_place(nearest(at.x(), width), nearest(at.y(), height));

@@ -10,17 +10,23 @@ CostImage::CostImage(CostImage&&) noexcept = default;
 CostImage& CostImage::operator=(CostImage&&) noexcept = default;
 CostImage::~CostImage() = default;
 
-void CostImage::prepare(const Photograph& photograph, const MethodParameters& parameters,
-                        const kernels::CandidateGeometry& geometry, CostImageUse use,
-                        Execution& execution) {
+void CostImage::set_up(const Photograph& photograph, const MethodParameters& parameters,
+                       int phases) {
   if (cost_ != parameters.cost) {
     planes_ = cost_of(parameters).make_planes();
     cost_ = parameters.cost;
   }
+  width_ = photograph.width();
   height_ = photograph.height();
   channels_ = parameters.colour == ColourUse::kChannels && photograph.channels() >= 3 ? 3 : 1;
+  phases_ = phases;
+}
+
+void CostImage::prepare(const Photograph& photograph, const MethodParameters& parameters,
+                        const kernels::CandidateGeometry& geometry, CostImageUse use,
+                        Execution& execution) {
   const bool is_partner = use.as_partner_of_left || use.as_partner_of_right;
-  phases_ = is_partner ? use.phases : 1;
+  set_up(photograph, parameters, is_partner ? use.phases : 1);
   // Whole columns last: those are what the image is as a reference.
   for (int phase = phases_ - 1; phase >= 0; --phase) {
     planes_->prepare({photograph,
@@ -31,6 +37,25 @@ void CostImage::prepare(const Photograph& photograph, const MethodParameters& pa
                       use.as_partner_of_right,
                       {phase, phases_},
                       execution},
+                     parameters);
+  }
+}
+
+void CostImage::prepare_samples(std::span<const Photograph> at_phases,
+                                const MethodParameters& parameters,
+                                const kernels::CandidateGeometry& geometry, CostImageUse use,
+                                Execution& execution) {
+  set_up(at_phases.front(), parameters, static_cast<int>(at_phases.size()));
+  for (int phase = phases_ - 1; phase >= 0; --phase) {
+    planes_->prepare({at_phases[static_cast<std::size_t>(phase)],
+                      use.intensity_changes,
+                      channels_,
+                      margins_of(geometry),
+                      use.as_partner_of_left,
+                      use.as_partner_of_right,
+                      {phase, phases_},
+                      execution,
+                      true},
                      parameters);
   }
 }

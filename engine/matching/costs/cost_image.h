@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
@@ -13,6 +14,7 @@
 namespace vantage {
 
 class CostPlanes;
+class EpipolarGrid;
 
 /// Role of a photograph in matching; determines which planes it needs.
 struct CostImageUse {
@@ -43,6 +45,13 @@ class CostImage {
   void prepare(const Photograph& photograph, const MethodParameters& parameters,
                const kernels::CandidateGeometry& geometry, CostImageUse use, Execution& execution);
 
+  /// For a partner that is sampled where the reference needs it: `at_phases` are the image at x +
+  /// index / at_phases.size(), of equal size.
+  void prepare_samples(std::span<const Photograph> at_phases, const MethodParameters& parameters,
+                       const kernels::CandidateGeometry& geometry, CostImageUse use,
+                       Execution& execution);
+
+  [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] int channels() const { return channels_; }  ///< number of compared channels: 1 or 3
   [[nodiscard]] int phases() const { return phases_; }      ///< CostImageUse::phases
@@ -52,6 +61,9 @@ class CostImage {
   [[nodiscard]] std::size_t held_bytes() const;
 
  private:
+  void set_up(const Photograph& photograph, const MethodParameters& parameters, int phases);
+
+  int width_ = 0;
   int height_ = 0;
   int channels_ = 1;
   int phases_ = 1;
@@ -66,6 +78,7 @@ int sample_phases(double baseline_ratio, int steps_per_px);
 
 /// An image that the reference is compared with.
 struct CostPartner {
+  /// With `epipolar` the first of its kPhases images, that of whole rows.
   const CostImage* image = nullptr;
   /// The partner of column x is x + direction · disparity · baseline_ratio (6.6; Okutomi & Kanade),
   /// rounded to the samples of the image. ≠ 0, of magnitude ≤ 1000; negative: a camera on the other
@@ -74,6 +87,8 @@ struct CostPartner {
   /// The partner's row is y + direction · disparity_y_px (5.5.3). Partners in rows outside the
   /// image are treated like those in columns outside.
   int disparity_y_px = 0;
+  /// Where the partners of photographs that are not rectified lie; null: in rows.
+  const EpipolarGrid* epipolar = nullptr;
 };
 
 }  // namespace vantage

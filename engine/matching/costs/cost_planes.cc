@@ -19,7 +19,7 @@ void change_intensities(const IntensityChange& change, int width, float* intensi
 /// Calls write(row) for the row of whole columns, then moves it to the columns of the phase.
 template <typename Write>
 void write_at_phase(const PlaneSource& source, float* intensities, const Write& write) {
-  if (source.phase.is_whole()) {
+  if (source.phase.is_whole() || source.is_at_phase) {
     write(intensities);
     return;
   }

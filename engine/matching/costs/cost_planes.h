@@ -44,6 +44,7 @@ struct PlaneSource {
   bool has_unmirrored;  ///< of samples between pixels
   SamplePhase phase;
   Execution& execution;
+  bool is_at_phase = false;  ///< the photograph has been sampled at the columns of its phase
 
   [[nodiscard]] int width() const { return photograph.width(); }
   [[nodiscard]] int height() const { return photograph.height(); }

@@ -33,7 +33,7 @@ class GradientModel final : public CostModel {
     }
     for (int x = row.columns.begin; x < row.columns.end; ++x, cells += geometry.lanes()) {
       // A geometry whose column end − 1 has just these candidates.
-      const auto [begin, end] = row.partner.with_partner(x);
+      const auto [begin, end] = row.partner.with_partner(x, row.y);
       convert({{.width = end - begin, .disparity_min = 0, .count = geometry.count}, end - 1, 1},
               cells);
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/matching/unrectified/epipolar_grid.h"
 
 namespace vantage {
 
@@ -32,6 +33,7 @@ PartnerRows::PartnerRows(const CostImage& reference, const CostPartner& partner,
                          const kernels::CandidateGeometry& geometry)
     : reference_(reference),
       partner_(*partner.image),
+      epipolar_(partner.epipolar),
       geometry_(geometry),
       rows_down_(geometry.direction * partner.disparity_y_px) {
   geometry_.near_ratio = 1;
@@ -48,7 +50,8 @@ PartnerRows::PartnerRows(const CostImage& reference, const CostPartner& partner,
     geometry_.direction = -geometry_.direction;
   }
   const int phases = partner_.phases();
-  if (std::abs(std::abs(ratio) * phases / geometry.steps_per_px - 1) < kRounding) {
+  if (epipolar_ == nullptr &&
+      std::abs(std::abs(ratio) * phases / geometry.steps_per_px - 1) < kRounding) {
     geometry_.steps_per_px = phases;
     return;
   }
@@ -66,7 +69,16 @@ std::size_t PartnerRows::gather_bytes(int columns) const {
 
 int PartnerRows::channels() const { return std::max(reference_.channels(), partner_.channels()); }
 
-bool PartnerRows::has_row(int y) const { return partner_row(y) == y + rows_down_; }
+bool PartnerRows::has_row(int y) const {
+  return epipolar_ != nullptr || partner_row(y) == y + rows_down_;
+}
+
+PartnerRows::LineSample PartnerRows::line_sample(int x, int y) const {
+  const EpipolarGrid::Place& place = epipolar_->place(x, y);
+  return {.phase = place.line % EpipolarGrid::kPhases,
+          .row = place.line / EpipolarGrid::kPhases,
+          .sample = mirrored() ? last_sample() - place.sample : place.sample};
+}
 
 int PartnerRows::partner_row(int y) const {
   return std::clamp(y + rows_down_, 0, partner_.height() - 1);
@@ -76,7 +88,19 @@ int PartnerRows::sample(int x) const {
   return partner_.phases() * (mirrored() ? geometry_.width - 1 - x : x);
 }
 
-CandidateRange PartnerRows::with_partner(int x) const {
+CandidateRange PartnerRows::with_partner(int x, int y) const {
+  if (epipolar_ != nullptr) {
+    const EpipolarGrid::Place& place = epipolar_->place(x, y);
+    const scheduler::Range seen = epipolar_->seen_samples(place.line);
+    if (!place.has_line || seen.size() <= 0) {
+      return {};
+    }
+    // As if the line began and ended with what is seen.
+    const int to_end = seen.end - 1 - place.sample;
+    const int from_begin = place.sample - seen.begin;
+    return kernels::candidates_inside(offsets_.data(), geometry_.count, seen.size() - 1,
+                                      mirrored() ? to_end : from_begin);
+  }
   if (!is_gathered()) {
     return geometry_.with_partner(x);
   }

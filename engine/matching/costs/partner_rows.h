@@ -53,8 +53,8 @@ class PartnerRows {
 
   /// Whether the partners of row y lie inside the other image.
   [[nodiscard]] bool has_row(int y) const;
-  /// Candidates of column x whose partner's column lies inside.
-  [[nodiscard]] kernels::CandidateRange with_partner(int x) const;
+  /// Candidates of pixel (x, y) whose partner's column lies inside.
+  [[nodiscard]] kernels::CandidateRange with_partner(int x, int y) const;
   /// Columns where the partners of all candidates lie inside; begin may exceed end.
   [[nodiscard]] kernels::CandidateRange columns_with_all_partners() const;
   /// Candidates as counted in this partner, whose direction may be opposite. Of a gathered partner,
@@ -70,12 +70,16 @@ class PartnerRows {
       std::array<std::array<FeaturePlane<T>, kPlanes>, 3> Planes::*planes,
       std::size_t used = kPlanes) const {
     const auto& of_reference = static_cast<const Planes&>(reference_.planes()).*planes;
-    const auto& of_partner = static_cast<const Planes&>(partner_.planes()).*planes;
     auto row = empty_pairs<T, kPlanes>(columns, channels());
     for (int c = 0; c < row.channels; ++c) {
       // With a colour image, a grey image has the same intensity in all channels.
-      set_channel(of_reference[channel_of(reference_, c)], of_partner[channel_of(partner_, c)], y,
-                  columns, used, memory, row.channel[static_cast<std::size_t>(c)]);
+      set_channel(
+          of_reference[channel_of(reference_, c)],
+          [&](int phase) -> const auto& {
+            const CostImage& image = (&partner_)[phase];
+            return (static_cast<const Planes&>(image.planes()).*planes)[channel_of(image, c)];
+          },
+          y, columns, used, memory, row.channel[static_cast<std::size_t>(c)]);
     }
     return row;
   }
@@ -85,9 +89,12 @@ class PartnerRows {
       int y, scheduler::Range columns, GatherMemory* memory,
       std::array<FeaturePlane<T>, kPlanes> Planes::*planes) const {
     auto row = empty_pairs<T, kPlanes>(columns, 1);
-    set_channel(static_cast<const Planes&>(reference_.planes()).*planes,
-                static_cast<const Planes&>(partner_.planes()).*planes, y, columns, kPlanes, memory,
-                row.channel[0]);
+    set_channel(
+        static_cast<const Planes&>(reference_.planes()).*planes,
+        [&](int phase) -> const auto& {
+          return static_cast<const Planes&>((&partner_)[phase].planes()).*planes;
+        },
+        y, columns, kPlanes, memory, row.channel[0]);
     return row;
   }
 
@@ -103,17 +110,24 @@ class PartnerRows {
     row.count = geometry_.count;
     return row;
   }
-  template <typename T, std::size_t kPlanes, typename Channel>
-  void set_channel(const PlaneSet<T, kPlanes>& of_reference, const PlaneSet<T, kPlanes>& of_partner,
-                   int y, scheduler::Range columns, std::size_t used, GatherMemory* memory,
+  /// of_partner(phase): the planes of a line between rows; phase 0 unless there are epipolar lines.
+  template <typename T, std::size_t kPlanes, typename OfPartner, typename Channel>
+  void set_channel(const PlaneSet<T, kPlanes>& of_reference, const OfPartner& of_partner, int y,
+                   scheduler::Range columns, std::size_t used, GatherMemory* memory,
                    Channel& channel) const {
+    const auto samples = [&](int phase, std::size_t p, int row) -> const T* {
+      return of_partner(phase)[p].of_partner(mirrored(), partner_.phases()).row(row);
+    };
     for (std::size_t p = 0; p < used; ++p) {
       channel.reference[p] = of_reference[p].plain.row(y) + columns.begin;
-      const T* const samples =
-          of_partner[p].of_partner(mirrored(), partner_.phases()).row(partner_row(y));
-      channel.partner[p] = is_gathered()
-                               ? gathered(samples, columns, *memory)
-                               : samples + sample(columns.begin) + geometry_.disparity_min;
+      if (epipolar_ != nullptr) {
+        channel.partner[p] = gathered_along_lines<T>(
+            [&](int phase, int row) { return samples(phase, p, row); }, y, columns, *memory);
+        continue;
+      }
+      const T* const row = samples(0, p, partner_row(y));
+      channel.partner[p] = is_gathered() ? gathered(row, columns, *memory)
+                                         : row + sample(columns.begin) + geometry_.disparity_min;
     }
   }
   template <typename T>
@@ -125,11 +139,32 @@ class PartnerRows {
         offsets_.data(), samples, values);
     return values;
   }
+  /// Each pixel's partners lie on a line of its own.
+  template <typename T, typename Line>
+  [[nodiscard]] const T* gathered_along_lines(const Line& line, int y, scheduler::Range columns,
+                                              GatherMemory& memory) const {
+    T* const values = memory.take<T>(static_cast<std::size_t>(columns.size()) * offsets_.size());
+    for (int x = columns.begin; x < columns.end; ++x) {
+      const LineSample place = line_sample(x, y);
+      kernels::gather_candidates(
+          {last_sample(), place.sample, step(), 1, geometry_.lanes()}, offsets_.data(),
+          line(place.phase, place.row),
+          values + static_cast<std::size_t>(x - columns.begin) * offsets_.size());
+    }
+    return values;
+  }
   static std::size_t channel_of(const CostImage& image, int channel) {
     return static_cast<std::size_t>(std::min(channel, image.channels() - 1));
   }
   [[nodiscard]] int partner_row(int y) const;
-  [[nodiscard]] int last_sample() const { return partner_.phases() * (geometry_.width - 1); }
+  [[nodiscard]] int last_sample() const { return partner_.phases() * (partner_.width() - 1); }
+  /// The sample of a pixel at disparity 0, mirrored or not, and its line: row + phase / kPhases.
+  struct LineSample {
+    int phase = 0;
+    int row = 0;
+    int sample = 0;
+  };
+  [[nodiscard]] LineSample line_sample(int x, int y) const;
   /// Number of the sample at column x and shift 0 in a row of the partner, mirrored or not.
   [[nodiscard]] int sample(int x) const;
   /// Samples from column to column.
@@ -138,6 +173,7 @@ class PartnerRows {
 
   const CostImage& reference_;
   const CostImage& partner_;
+  const EpipolarGrid* epipolar_;
   /// One step is one sample unless is_gathered().
   kernels::CandidateGeometry geometry_;
   int rows_down_;

@@ -77,8 +77,8 @@ class CostStage final : public scheduler::RowStage {
         for (std::size_t k = 0; k < partners_.size(); ++k) {
           compare(partners_[k], task.y, block, memory, of_partners + k * stride);
           for (int column = block.begin; column < block.end; ++column) {
-            *next++ =
-                partners_[k].has_row(task.y) ? partners_[k].with_partner(column) : CandidateRange{};
+            *next++ = partners_[k].has_row(task.y) ? partners_[k].with_partner(column, task.y)
+                                                   : CandidateRange{};
           }
         }
         choose({.cells = of_partners,
@@ -139,16 +139,16 @@ class CostStage final : public scheduler::RowStage {
     } else {
       model_->likelihoods(row, cells);
     }
-    fill_without_partner(partner, columns, cells);
+    fill_without_partner(partner, y, columns, cells);
   }
 
   /// Only columns near the borders have such cells.
-  void fill_without_partner(const PartnerRows& partner, Range columns, float* cells) const {
+  void fill_without_partner(const PartnerRows& partner, int y, Range columns, float* cells) const {
     if (!without_partner_) {
       return;
     }
     const auto fill = [&](int x) {
-      const CandidateRange inside = partner.with_partner(x);
+      const CandidateRange inside = partner.with_partner(x, y);
       float* column = cells + static_cast<std::size_t>(x - columns.begin) * lanes();
       std::fill(column, column + inside.begin, *without_partner_);
       std::fill(column + std::max(inside.begin, inside.end), column + count_, *without_partner_);

@@ -58,7 +58,7 @@ class RayCensusEnergyStage final : public scheduler::RowStage {
   void close_columns(scheduler::Range columns, const scheduler::RowTask& task,
                      std::uint8_t* cells) const {
     for (int x = columns.begin; x < columns.end; ++x) {
-      const kernels::CandidateRange inside = partner_.with_partner(x);
+      const kernels::CandidateRange inside = partner_.with_partner(x, task.y);
       std::uint8_t* const column = column_at(x, task, cells);
       std::fill(column, column + inside.begin, energies_.without_partner);
       std::fill(column + std::max(inside.begin, inside.end), column + count_,

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "engine/execution.h"
+#include "engine/image/disparity_maps.h"
+#include "engine/image/photograph.h"
+#include "engine/matching/match_report.h"
+#include "engine/matching/options/match_options.h"
+#include "engine/matching/pair_exposure.h"
+#include "engine/matching/unrectified/epipolar_grid.h"
+#include "engine/rectification/rectifier.h"
+
+namespace vantage {
+
+/// What is made of a pair that is not rectified.
+struct UnrectifiedRequest {
+  bool left = true;
+  bool right = true;
+  bool confidence = false;
+};
+
+/// Matches photographs of a calibrated pair as they are, with rectification folded into the search
+/// (5.3.2, EQUATIONS §3.20): maps are on the pixels of the photographs, disparities those of the
+/// rectified pair. The photograph of a map is not resampled, the other one once.
+///
+/// Thread rule: match() may be called concurrently for different results. Results are identical for
+/// any execution.
+class UnrectifiedMatcher {
+ public:
+  /// Throws UsageError for invalid options, and for those that need rows: a search in two
+  /// dimensions, selection symmetric, a cross-check of coarse levels. `rectifier` and `execution`
+  /// must outlive it. Takes 16 bytes per pixel and image.
+  UnrectifiedMatcher(const MatchOptions& options, const Rectifier& rectifier, Execution& execution);
+
+  /// Photographs of the rectifier's size. Always makes the masks. Errors as StereoMatcher::match().
+  void match(const Photograph& left, const Photograph& right, const UnrectifiedRequest& request,
+             DisparityMaps& maps, MatchReport* report = nullptr) const;
+
+  [[nodiscard]] const ResolvedMatchOptions& in_force() const { return in_force_; }
+
+ private:
+  void search(Side side, const std::array<const Photograph*, 2>& photographs,
+              const MethodParameters& parameters, const IntensityChanges& of_right,
+              bool wants_confidence, MatchedMap& map, MatchReport& report) const;
+  /// Erases the disparities of `side` that the other map contradicts.
+  void check(Side side, const DisparityMap& other_px, double tolerance_px,
+             DisparityMap& map_px) const;
+
+  ResolvedMatchOptions in_force_;
+  const Rectifier& rectifier_;
+  Execution& execution_;
+  std::unique_ptr<PairExposureEstimator> exposure_;  ///< null: nothing is estimated
+  std::array<EpipolarGrid, 2> grids_;                ///< of the left and of the right reference
+};
+
+}  // namespace vantage
