@@ -1,5 +1,6 @@
 #include "engine/matching/unrectified/unrectified_matcher.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string_view>
@@ -38,13 +39,15 @@ ResolvedMatchOptions along_lines(const MatchOptions& options) {
   return resolved;
 }
 
-/// Adds what rounding to samples took from the disparities.
-void add_rests(const EpipolarGrid& grid, Execution& execution, DisparityMap& map_px) {
+/// Adds what rounding to samples took from the disparities, within the range.
+void add_rests(const EpipolarGrid& grid, DisparityRange range, Execution& execution,
+               DisparityMap& map_px) {
   execution.for_each_band(map_px.height(), [&](int first, int end) {
     for (int y = first; y < end; ++y) {
       float* const row = map_px.row(y);
       for (int x = 0; x < map_px.width(); ++x) {
-        row[x] += grid.place(x, y).rest_px;
+        row[x] = std::clamp(row[x] + grid.place(x, y).rest_px, static_cast<float>(range.min),
+                            static_cast<float>(range.max));  // NaN stays
       }
     }
   });
@@ -110,7 +113,7 @@ void UnrectifiedMatcher::search(Side side, const std::array<const Photograph*, 2
   MapSearch(in_force_, parameters, execution_, work, report)
       .compute(side, input,
                {.disparity_px = map.disparity_px.view(), .confidence = map.confidence.view()}, {});
-  add_rests(grid, execution_, map.disparity_px);
+  add_rests(grid, in_force_.disparities, execution_, map.disparity_px);
 }
 
 void UnrectifiedMatcher::check(Side side, const DisparityMap& other_px, double tolerance_px,
