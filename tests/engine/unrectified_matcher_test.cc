@@ -45,9 +45,7 @@ class UnrectifiedMatching : public testing::Test {
   /// The point seen at a pixel of the left photograph, in the left camera's frame.
   [[nodiscard]] Eigen::Vector3d point_at(int x, int y) const {
     const Eigen::Vector3d ray = left_camera_.matrix.inverse() * Eigen::Vector3d(x, y, 1);
-    const Eigen::Vector3d in_world = left_camera_.rotation.transpose() * ray;
-    const double z = scene_.focal_length_px() / left_.disparity.at(x, y);
-    return ray * (z / in_world.z());
+    return ray * (scene_.focal_length_px() / left_.disparity.at(x, y));
   }
   /// Of the rectified pair.
   [[nodiscard]] double true_disparity_px(const Rectifier& rectifier, int x, int y) const {
@@ -92,12 +90,12 @@ TEST_F(UnrectifiedMatching, LinesPassThroughWhatBothCamerasSee) {
       const Eigen::Vector3d seen =
           calibration_.right.matrix *
           (calibration_.rotation * point_at(x, y) + calibration_.translation);
-      const double steps = true_disparity_px(rectifier, x, y) - place.rest_px;
+      const double steps = true_disparity_px(rectifier, x, y);
       const Eigen::Vector2d at =
           grid.position_of(place.line, place.sample - steps * EpipolarGrid::kPhases);
       if (!at.hasNaN()) {
         // Lines are a quarter of a rectified pixel apart.
-        EXPECT_LT((at - seen.hnormalized()).norm(), 0.2) << x << ", " << y;
+        EXPECT_LT((at - seen.hnormalized()).norm(), 0.25) << x << ", " << y;
         ++compared;
       }
     }

@@ -145,9 +145,6 @@ void EpipolarGrid::find_places(const Rectifier& rectifier, Execution& execution)
         place.has_line = line >= 0 && line < lines;
         place.line = static_cast<std::int32_t>(std::clamp<double>(line, 0, lines - 1));
         place.sample = static_cast<std::int32_t>(sample);
-        // d = u − s of a left reference, s − u of a right one.
-        const double rest = (along - sample) / kPhases;
-        place.rest_px = static_cast<float>(reference_ == Side::kLeft ? rest : -rest);
       }
     }
   });

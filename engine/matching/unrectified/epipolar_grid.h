@@ -24,12 +24,11 @@ class EpipolarGrid {
  public:
   static constexpr int kPhases = 4;
 
-  /// The sample that a pixel of the reference has at disparity 0.
+  /// The sample nearest to what a pixel of the reference has at disparity 0. Rounding is an eighth
+  /// of a pixel at most, and of either sign in the support of a pixel.
   struct Place {
     std::int32_t line = 0;  ///< 0 .. line_count() − 1
     std::int32_t sample = 0;
-    /// Disparity of the pixel is that to the sample plus this: positions are rounded to samples.
-    float rest_px = 0;
     bool has_line = false;  ///< false: no line passes through the pixel, `line` is the nearest one
   };
 

@@ -1,6 +1,5 @@
 #include "engine/matching/unrectified/unrectified_matcher.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string_view>
@@ -37,20 +36,6 @@ ResolvedMatchOptions along_lines(const MatchOptions& options) {
   }
   resolved.parameters.window_levels = 0;
   return resolved;
-}
-
-/// Adds what rounding to samples took from the disparities, within the range.
-void add_rests(const EpipolarGrid& grid, DisparityRange range, Execution& execution,
-               DisparityMap& map_px) {
-  execution.for_each_band(map_px.height(), [&](int first, int end) {
-    for (int y = first; y < end; ++y) {
-      float* const row = map_px.row(y);
-      for (int x = 0; x < map_px.width(); ++x) {
-        row[x] = std::clamp(row[x] + grid.place(x, y).rest_px, static_cast<float>(range.min),
-                            static_cast<float>(range.max));  // NaN stays
-      }
-    }
-  });
 }
 
 }  // namespace
@@ -113,7 +98,6 @@ void UnrectifiedMatcher::search(Side side, const std::array<const Photograph*, 2
   MapSearch(in_force_, parameters, execution_, work, report)
       .compute(side, input,
                {.disparity_px = map.disparity_px.view(), .confidence = map.confidence.view()}, {});
-  add_rests(grid, in_force_.disparities, execution_, map.disparity_px);
 }
 
 void UnrectifiedMatcher::check(Side side, const DisparityMap& other_px, double tolerance_px,
@@ -125,7 +109,7 @@ void UnrectifiedMatcher::check(Side side, const DisparityMap& other_px, double t
       for (int x = 0; x < map_px.width(); ++x) {
         float& own_px = map_px.at(x, y);
         const EpipolarGrid::Place& place = grid.place(x, y);
-        const double shift = static_cast<double>(own_px - place.rest_px) * EpipolarGrid::kPhases;
+        const double shift = static_cast<double>(own_px) * EpipolarGrid::kPhases;
         const Eigen::Vector2d partner =
             grid.position_of(place.line, place.sample + direction * shift);
         const double column = std::floor(partner.x() + 0.5);

@@ -1,0 +1,87 @@
+// match --unrectified: what it accepts, reports and refuses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/apps/pair_fixture.h"
+
+namespace vantage {
+namespace match_unrectified_test {
+
+using testing::HasSubstr;
+
+/// Cameras of the size of the pair, turned and distorting.
+constexpr const char* kRig = R"(%YAML:1.0
+M1: [70, 0, 35, 0, 70, 26, 0, 0, 1]
+D1: [-0.1, 0.02, 0.001, -0.002]
+M2: [71, 0, 36, 0, 71, 25, 0, 0, 1]
+D2: [0.05, -0.01, 0.001, 0.001]
+R: [1, 0, 0, 0, 0.99920011, -0.03998933, 0, 0.03998933, 0.99920011]
+T: [-1, 0.02, 0.01]
+)";
+
+class MatchUnrectified : public PairTest {
+ protected:
+  MatchUnrectified() { write_file(rig_, kRig); }
+  std::string rig_ = folder_ / "rig.yml";
+};
+
+TEST_F(MatchUnrectified, MapsAreOnThePhotographs) {
+  const ProcessResult result =
+      match(folder_ / "m.pfm",
+            {"--unrectified", rig_, "--output-right", folder_ / "r.pfm", "--confidence",
+             folder_ / "c.pfm", "--unmatched", folder_ / "u.png", "--preview", folder_ / "p.png",
+             "--report", folder_ / "report.json", "--preset", "realtime"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  for (const std::string file : {"m.pfm", "r.pfm", "c.pfm"}) {
+    EXPECT_THAT(read_file(folder_ / file).substr(0, 9), HasSubstr("Pf\n71 53")) << file;
+  }
+  const auto report = nlohmann::json::parse(read_file(folder_ / "report.json"));
+  EXPECT_EQ(report["settings"]["unrectified"], rig_);
+}
+
+TEST_F(MatchUnrectified, MatricesOfRectifyAreACalibration) {
+  const std::string matrices = folder_ / "matrices.yml";
+  ASSERT_EQ(run_vantage({"rectify", left_, right_, "--calibration", rig_, "-o",
+                         folder_ / "rectified", "--matrices", matrices})
+                .exit_code,
+            0);
+  ASSERT_EQ(match(folder_ / "a.pfm", {"--unrectified", rig_}).exit_code, 0);
+  ASSERT_EQ(match(folder_ / "b.pfm", {"--unrectified", matrices}).exit_code, 0);
+  EXPECT_EQ(read_file(folder_ / "a.pfm"), read_file(folder_ / "b.pfm"));
+}
+
+TEST_F(MatchUnrectified, RefusesInOneLineAndLeavesNothing) {
+  struct Case {
+    std::vector<std::string> more;
+    std::string why;
+  };
+  write_file(folder_ / "wrong.yml", "M1: [1]\n");
+  for (const Case& test : std::vector<Case>{
+           {{"--vertical"}, "--vertical cannot be used with --unrectified"},
+           {{"--baselines", "1"}, "--baselines cannot be used with --unrectified"},
+           {{"--disparities-y=-1:1"}, "--disparities-y cannot be used with --unrectified"},
+           {{"--selection", "symmetric"}, "--selection symmetric cannot be used with"},
+           {{"--volume", folder_ / "v.npy"}, "--volume cannot be used with --unrectified"},
+           {{"--posterior-mean", folder_ / "v.npy"}, "cannot be used with --unrectified"},
+           {{"--unrectified", folder_ / "wrong.yml"}, "wrong.yml"},
+           {{"--unrectified", folder_ / "missing.yml"}, "missing.yml"}}) {
+    std::vector<std::string> arguments = {"--unrectified", rig_};
+    if (test.more.front() == "--unrectified") {
+      arguments.clear();
+    }
+    arguments.insert(arguments.end(), test.more.begin(), test.more.end());
+    const ProcessResult result = match(folder_ / "m.pfm", arguments);
+    EXPECT_NE(result.exit_code, 0);
+    EXPECT_TRUE(is_one_line(result, "match"));
+    EXPECT_THAT(result.err, HasSubstr(test.why));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "m.pfm"));
+  }
+}
+
+}  // namespace match_unrectified_test
+}  // namespace vantage
