@@ -22,6 +22,7 @@
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/selection/cyclopean_map.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/matching/unrectified/rectified_map.h"
 #include "engine/matching/unrectified/unrectified_matcher.h"
 #include "engine/matching/volume/posterior_moments.h"
 #include "engine/rectification/rectifier.h"
@@ -196,6 +197,10 @@ void match_unrectified(const MatchJob& job, const Rectifier& rectifier,
               .right = job.wants_right(),
               .confidence = !job.confidence.empty()},
              maps, &report);
+  if (job.rectified_pixels) {
+    bring_to_rectified(rectifier, Side::kLeft, execution, maps.left);
+    bring_to_rectified(rectifier, Side::kRight, execution, maps.right);
+  }
 }
 
 MemoryUse memory_use(const std::vector<Photograph>& images, const DisparityMaps& maps,

@@ -52,6 +52,9 @@ void add_file_settings(Settings& settings, MatchJob& job) {
                       "file, or the matrices of 'vantage rectify'): epipolar lines are searched "
                       "instead of rows. Maps are on the pixels of the photographs, disparities "
                       "those of the rectified pair");
+  settings.flag("rectified-pixels", job.rectified_pixels,
+                "With --unrectified: bring maps to the pixels of the rectified images, as 'vantage "
+                "synth --calibration' takes them");
   Setting& output = settings.path(
       "output", job.output, "FILE",
       fmt::format("Path to the disparity map: {}; with --disparities-y displacements: {}",
@@ -145,6 +148,7 @@ void check_cyclopean(const MatchJob& job, FileChecks& files) {
 
 void check_unrectified(const MatchJob& job, const Settings& settings) {
   if (job.unrectified.empty()) {
+    settings.refuse_idle({"rectified-pixels"}, "without --unrectified");
     return;
   }
   settings.refuse_idle({"cross-check-level"}, "with --unrectified: whole maps are compared");

@@ -30,6 +30,7 @@ struct MatchJob {
   std::string unmatched_right;
   std::string preview;
   std::string unrectified;  ///< calibration of photographs that are not rectified; empty: they are
+  bool rectified_pixels = false;  ///< with `unrectified`: maps are on the rectified images
   VolumeOutput volume;
   std::string posterior_mean;
   std::string posterior_variance;

@@ -55,6 +55,17 @@ TEST_F(MatchUnrectified, MatricesOfRectifyAreACalibration) {
   EXPECT_EQ(read_file(folder_ / "a.pfm"), read_file(folder_ / "b.pfm"));
 }
 
+TEST_F(MatchUnrectified, MapsOnRectifiedPixelsMakeViews) {
+  ASSERT_EQ(match(folder_ / "m.pfm", {"--unrectified", rig_, "--rectified-pixels", "--output-right",
+                                      folder_ / "r.pfm"})
+                .exit_code,
+            0);
+  const ProcessResult view = run_vantage(
+      {"synth", left_, right_, "--calibration", rig_, "--left-disparity", folder_ / "m.pfm",
+       "--right-disparity", folder_ / "r.pfm", "--view", "0.5", "-o", folder_ / "view.png"});
+  EXPECT_EQ(view.exit_code, 0) << view.err;
+}
+
 TEST_F(MatchUnrectified, RefusesInOneLineAndLeavesNothing) {
   struct Case {
     std::vector<std::string> more;
@@ -62,6 +73,7 @@ TEST_F(MatchUnrectified, RefusesInOneLineAndLeavesNothing) {
   };
   write_file(folder_ / "wrong.yml", "M1: [1]\n");
   for (const Case& test : std::vector<Case>{
+           {{"--rectified-pixels"}, "--rectified-pixels has no effect without --unrectified"},
            {{"--vertical"}, "--vertical cannot be used with --unrectified"},
            {{"--baselines", "1"}, "--baselines cannot be used with --unrectified"},
            {{"--disparities-y=-1:1"}, "--disparities-y cannot be used with --unrectified"},
@@ -71,7 +83,7 @@ TEST_F(MatchUnrectified, RefusesInOneLineAndLeavesNothing) {
            {{"--unrectified", folder_ / "wrong.yml"}, "wrong.yml"},
            {{"--unrectified", folder_ / "missing.yml"}, "missing.yml"}}) {
     std::vector<std::string> arguments = {"--unrectified", rig_};
-    if (test.more.front() == "--unrectified") {
+    if (test.more.front() == "--unrectified" || test.more.front() == "--rectified-pixels") {
       arguments.clear();
     }
     arguments.insert(arguments.end(), test.more.begin(), test.more.end());

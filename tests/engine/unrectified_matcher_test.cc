@@ -12,6 +12,7 @@
 #include "engine/generation/layered_scene.h"
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/matching/unrectified/rectified_map.h"
 #include "tests/engine/identical_maps.h"
 
 namespace vantage {
@@ -68,12 +69,26 @@ class UnrectifiedMatching : public testing::Test {
     return static_cast<double>(bad) / all;
   }
 
+  /// Rendered once.
+  struct Pair {
+    Execution execution{{.threads = 2}};
+    LayeredScene scene{{.width_px = kWidth, .height_px = kHeight}, execution};
+    PosedCamera left_camera = turned(scene, {0, 0}, {1, 1.5, 2});
+    PosedCamera right_camera = turned(scene, {1, 0}, {-0.5, -1, -1.5});
+    SceneRendering left = scene.render(left_camera, 0);
+    SceneRendering right = scene.render(right_camera, 0);
+  };
+  static const Pair& pair() {
+    static const Pair made;
+    return made;
+  }
+
   Execution execution_{{.threads = 2}};
-  LayeredScene scene_{{.width_px = kWidth, .height_px = kHeight}, execution_};
-  PosedCamera left_camera_ = turned(scene_, {0, 0}, {1, 1.5, 2});
-  PosedCamera right_camera_ = turned(scene_, {1, 0}, {-0.5, -1, -1.5});
-  SceneRendering left_ = scene_.render(left_camera_, 0);
-  SceneRendering right_ = scene_.render(right_camera_, 0);
+  const LayeredScene& scene_ = pair().scene;
+  const PosedCamera& left_camera_ = pair().left_camera;
+  const PosedCamera& right_camera_ = pair().right_camera;
+  const SceneRendering& left_ = pair().left;
+  const SceneRendering& right_ = pair().right;
   StereoCalibration calibration_;
 };
 
@@ -158,6 +173,31 @@ TEST_F(UnrectifiedMatching, OfARectifiedPairIsItsMap) {
       }
     }
     EXPECT_EQ(different, 0) << name_of(method);
+  }
+}
+
+TEST_F(UnrectifiedMatching, MapsCanBeBroughtToTheRectifiedImages) {
+  const Rectifier rectifier(calibration_, kWidth, kHeight);
+  MatchedMap map;
+  map.disparity_px.resize(kWidth, kHeight);
+  map.unmatched.resize(kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      map.disparity_px.at(x, y) = static_cast<float>(1000 * y + x);
+      map.unmatched.at(x, y) = 0;
+    }
+  }
+  bring_to_rectified(rectifier, Side::kLeft, execution_, map);
+  EXPECT_TRUE(map.confidence.empty());
+  for (int y = 0; y < kHeight; y += 9) {
+    for (int x = 0; x < kWidth; x += 7) {
+      const auto source = rectifier.source_position(Side::kLeft, {x, y});
+      ASSERT_TRUE(source);
+      const int value = static_cast<int>(map.disparity_px.at(x, y));
+      EXPECT_NEAR(value % 1000, source->x(), 0.5);
+      EXPECT_NEAR(value / 1000, source->y(), 0.5);
+      EXPECT_EQ(map.unmatched.at(x, y), 0);
+    }
   }
 }
 
