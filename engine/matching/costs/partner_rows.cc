@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "engine/error.h"
-#include "engine/matching/unrectified/epipolar_grid.h"
+#include "engine/rectification/epipolar_grid.h"
 
 namespace vantage {
 

@@ -9,7 +9,7 @@
 #include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/pair_exposure.h"
-#include "engine/matching/unrectified/epipolar_grid.h"
+#include "engine/rectification/epipolar_grid.h"
 #include "engine/rectification/rectifier.h"
 
 namespace vantage {

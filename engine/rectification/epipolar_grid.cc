@@ -1,4 +1,4 @@
-#include "engine/matching/unrectified/epipolar_grid.h"
+#include "engine/rectification/epipolar_grid.h"
 
 #include <fmt/format.h>
 
