@@ -139,9 +139,8 @@ void add_output_settings(Settings& settings, RunJob& job) {
   output.short_name = 'o';
   output.required = true;
   output.changes_results = false;
-  Setting& save = settings.add("save", "LIST",
-                               "Outputs to write per frame, from " + known_outputs() +
-                                   "; auto: disparity, and views if there are any");
+  Setting& save = settings.add(
+      "save", "LIST", "Outputs per frame: " + known_outputs() + "; auto: disparity and any views");
   save.list = true;
   save.set = [&job](const SettingValue& value) {
     const auto members = to_list(value);
@@ -369,7 +368,7 @@ void add_run_settings(Settings& settings, RunJob& job) {
   add_pixel_limit_setting(settings);
   settings.set_short_help(
       {"left", "right", "stereo", "packing", "pairs", "calibration", "output", "save", "video",
-       "view", "every", "frames", "resume", "disparities", "preset", "quiet"},
+       "view", "resume", "disparities", "preset"},
       {"vantage run --left left/ --right right/ -o results",
        "vantage run --stereo film.mp4 --packing sbsl --save preview --video preview -o results",
        "vantage run -o results --resume"});
