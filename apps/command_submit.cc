@@ -50,8 +50,8 @@ void add_submit_settings(Settings& settings, SubmitJob& job) {
   settings.choice("engine", job.engine, {{"slurm", BatchEngine::kSlurm}}, "Batch system");
   settings.flag("no-submit", job.no_submit, "Write the job scripts, but do not submit them");
   settings.set_short_help(
-      {"left", "right", "stereo", "packing", "pairs", "output", "save", "disparities", "preset",
-       "shards", "partition", "time", "cpus", "slurm-memory", "no-submit"},
+      {"left", "right", "stereo", "packing", "output", "save", "disparities", "preset", "shards",
+       "partition", "time", "cpus", "slurm-memory", "no-submit"},
       {"vantage submit --shards 40 --left left/ --right right/ -o results",
        "vantage submit --shards 40 --time 4:00:00 --cpus 16 --left left/ --right right/ -o results",
        "vantage submit --shards 4 --no-submit --pairs pairs.csv -o results"});
