@@ -180,7 +180,7 @@ TEST(DisparityRange, RepeatedTextureIsNoEvidence) {
     views[view] = std::move(noise);
   }
   EXPECT_THAT(test::error_of([&] { estimate_disparity_range(views[0], views[1], execution); }),
-              HasSubstr("no evidence"));
+              HasSubstr("no disparity range can be estimated"));
 }
 
 TEST(DisparityRange, ReducesLargeImages) {
@@ -216,15 +216,15 @@ TEST(DisparityRange, SaysThatThereIsNoEvidence) {
   const auto error_of = [&](const Photograph& left, const Photograph& right) {
     return test::error_of([&] { estimate_disparity_range(left, right, execution); });
   };
-  EXPECT_THAT(error_of(constant, constant), HasSubstr("no evidence"));
+  EXPECT_THAT(error_of(constant, constant), HasSubstr("no disparity range can be estimated"));
   EXPECT_THAT(error_of(constant, constant), HasSubstr("--disparities MIN:MAX"));
   EXPECT_THAT(error_of(test::noise<std::uint8_t>(200, 100, 1, 1),
                        test::noise<std::uint8_t>(200, 100, 1, 2)),
-              HasSubstr("no evidence"));
+              HasSubstr("no disparity range can be estimated"));
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 40}, {2, 2}}) {
     EXPECT_THAT(error_of(test::noise<std::uint8_t>(width, height, 1, 1),
                          test::noise<std::uint8_t>(width, height, 1, 2)),
-                HasSubstr("no evidence"));
+                HasSubstr("no disparity range can be estimated"));
   }
   EXPECT_THAT(error_of(constant, test::noise<std::uint8_t>(100, 61, 1)),
               HasSubstr("expected equal sizes"));
