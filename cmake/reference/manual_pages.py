@@ -5,6 +5,7 @@ from program import default_text, groups, page_name, usage
 def roff(text):
     """`text` with everything escaped that roff would take for a request or an escape."""
     text = text.replace("\\", "\\e").replace("-", "\\-")
+    text = "".join(letter if letter.isascii() else f"\\[u{ord(letter):04X}]" for letter in text)
     return "\n".join("\\&" + line if line[:1] in (".", "'") else line for line in text.split("\n"))
 
 
