@@ -29,15 +29,7 @@ void CostImage::prepare(const Photograph& photograph, const MethodParameters& pa
   set_up(photograph, parameters, is_partner ? use.phases : 1);
   // Whole columns last: those are what the image is as a reference.
   for (int phase = phases_ - 1; phase >= 0; --phase) {
-    planes_->prepare({photograph,
-                      use.intensity_changes,
-                      channels_,
-                      margins_of(geometry),
-                      use.as_partner_of_left,
-                      use.as_partner_of_right,
-                      {phase, phases_},
-                      execution},
-                     parameters);
+    prepare_phase(phase, photograph, false, parameters, geometry, use, execution);
   }
 }
 
@@ -47,17 +39,25 @@ void CostImage::prepare_samples(std::span<const Photograph> at_phases,
                                 Execution& execution) {
   set_up(at_phases.front(), parameters, static_cast<int>(at_phases.size()));
   for (int phase = phases_ - 1; phase >= 0; --phase) {
-    planes_->prepare({at_phases[static_cast<std::size_t>(phase)],
-                      use.intensity_changes,
-                      channels_,
-                      margins_of(geometry),
-                      use.as_partner_of_left,
-                      use.as_partner_of_right,
-                      {phase, phases_},
-                      execution,
-                      true},
-                     parameters);
+    prepare_phase(phase, at_phases[static_cast<std::size_t>(phase)], true, parameters, geometry,
+                  use, execution);
   }
+}
+
+void CostImage::prepare_phase(int phase, const Photograph& photograph, bool is_at_phase,
+                              const MethodParameters& parameters,
+                              const kernels::CandidateGeometry& geometry, const CostImageUse& use,
+                              Execution& execution) {
+  planes_->prepare({photograph,
+                    use.intensity_changes,
+                    channels_,
+                    margins_of(geometry),
+                    use.as_partner_of_left,
+                    use.as_partner_of_right,
+                    {phase, phases_},
+                    execution,
+                    is_at_phase},
+                   parameters);
 }
 
 std::size_t CostImage::held_bytes() const { return planes_ ? planes_->held_bytes() : 0; }
