@@ -22,7 +22,6 @@ namespace {
 constexpr std::string_view kAutomatic = "auto";
 constexpr int kMaxInFlight = 64;
 constexpr int kMaxShards = 100000;
-constexpr int kMaxStepOfFrames = 1000000;
 
 std::string known_outputs() {
   std::string names;
@@ -209,13 +208,13 @@ void add_frames_setting(Settings& settings, RunJob& job) {
     }
     const auto parts = split(to_text(value), ':');
     const auto range = two_numbers(parts.front(), '-');
-    const auto step = parts.size() == 2 ? whole_number(parts[1]) : std::nullopt;
-    if (!range || range->first > range->second || parts.size() > 2 ||
-        (parts.size() == 2 && (!step || *step < 1 || *step > kMaxStepOfFrames))) {
+    const auto step = whole_number(parts.size() == 2 ? parts[1] : "1");
+    const bool is_step = step && *step >= 1 && *step <= FrameStep::kMaxPairs;
+    if (!range || range->first > range->second || parts.size() > 2 || !is_step) {
       reject_value(value, "a range of frames such as 100-199 or 100-199:10, or all");
     }
     job.frames = FrameRange{range->first, range->second + 1};
-    if (step) {
+    if (parts.size() == 2) {
       job.step_of_frames = static_cast<int>(*step);
     }
   };

@@ -96,7 +96,8 @@ class Settings {
   void show_resolved(std::function<SettingValue()> values) { resolved_ = std::move(values); }
 
   /// Reads the command line and --config. Returns false if nothing is left to do, because --help,
-  /// --help-all, --help-json or --print-config has been printed. Throws UsageError, and Error if the file of
+  /// --help-all, --help-json or --print-config has been printed. Throws UsageError, and Error if
+  /// the file of
   /// --config cannot be read.
   [[nodiscard]] bool read(const std::vector<std::string>& arguments);
 

@@ -164,7 +164,7 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
   return plans_of(in_force_.parameters, of_left, geometry, executions);
 }
 
-/// Of the task's finest level.
+/// Plans for the finest level of `task`, one for each of `executions`.
 std::vector<scheduler::ChainPlan> StereoMatcher::plans_of(
     const MethodParameters& parameters, const MapTask& task,
     const kernels::CandidateGeometry& geometry,

@@ -69,7 +69,7 @@ class StereoMatcher {
   [[nodiscard]] std::vector<scheduler::ChainPlan> plans(
       const Photograph& left, const Photograph& right,
       std::span<const ExecutionOptions> executions) const;
-  /// The same for match_several(). Errors as match_several().
+  /// The plan that match_several() uses for these images. Throws as match_several() does.
   [[nodiscard]] scheduler::ChainPlan plan_several(const Photograph& reference,
                                                   std::span<const OtherView> others) const;
 

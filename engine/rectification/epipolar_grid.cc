@@ -16,7 +16,7 @@ namespace {
 
 /// Lenses are smooth: over so few pixels, positions are linear to some thousandths of a pixel.
 constexpr int kKnotPx = 4;
-/// Of wide lenses, what is farther out is left out: rectified images grow without limit.
+/// Pixels farther outside are not used: the rectified image of a wide lens has no limit.
 constexpr int kMaxOutside = 1;  // image sizes
 
 struct Bounds {
@@ -60,13 +60,13 @@ EpipolarGrid::EpipolarGrid(const Rectifier& rectifier, Side reference, Execution
     : reference_(reference),
       reference_width_(rectifier.pair().width_px),
       reference_height_(rectifier.pair().height_px) {
-  find_window(rectifier, execution);
+  find_window(rectifier);
   find_positions(rectifier, execution);
   find_places(rectifier, execution);
 }
 
 /// All that the other photograph shows of the lines through the reference.
-void EpipolarGrid::find_window(const Rectifier& rectifier, Execution& /*execution*/) {
+void EpipolarGrid::find_window(const Rectifier& rectifier) {
   const Outline own = outline_of(rectifier, reference_);
   const Outline other = outline_of(rectifier, other_side(reference_));
   const double top = std::max(own.y.min, other.y.min);

@@ -56,7 +56,7 @@ class EpipolarGrid {
               Execution& execution) const;
 
  private:
-  void find_window(const Rectifier& rectifier, Execution& execution);
+  void find_window(const Rectifier& rectifier);
   void find_places(const Rectifier& rectifier, Execution& execution);
   void find_positions(const Rectifier& rectifier, Execution& execution);
 

@@ -21,7 +21,6 @@ namespace {
 
 constexpr int kMaxOffset = 1000000;
 constexpr int kMaxStep = 1000;
-constexpr int kMaxTakenStep = 1000000;
 constexpr double kMinTakenSeconds = 0.001;
 constexpr double kMaxTakenSeconds = 86400;
 
@@ -41,13 +40,13 @@ std::unique_ptr<PairSource> open_pair_list(const std::filesystem::path& file) {
 }
 
 void validate_step(const FrameStep& every) {
-  if (every.pairs < 1 || every.pairs > kMaxTakenStep) {
+  if (every.pairs < 1 || every.pairs > FrameStep::kMaxPairs) {
     throw UsageError(fmt::format("every is {}, expected 1 to {} frames, or seconds such as 4s",
-                                 every.pairs, kMaxTakenStep));
+                                 every.pairs, FrameStep::kMaxPairs));
   }
-  if (every.first < 0 || every.first > std::numeric_limits<int>::max() - 1 - kMaxTakenStep) {
+  if (every.first < 0 || every.first > std::numeric_limits<int>::max() - 1 - FrameStep::kMaxPairs) {
     throw UsageError(fmt::format("every starts at frame {}, expected 0 to {}", every.first,
-                                 std::numeric_limits<int>::max() - 1 - kMaxTakenStep));
+                                 std::numeric_limits<int>::max() - 1 - FrameStep::kMaxPairs));
   }
   if (every.seconds &&
       !(*every.seconds >= kMinTakenSeconds && *every.seconds <= kMaxTakenSeconds)) {
@@ -68,7 +67,7 @@ int taken_step(const FrameStep& every, const PairSource& pairs) {
                     *every.seconds));
   }
   const double frames = std::round(*every.seconds * rate->per_second());
-  return static_cast<int>(std::clamp(frames, 1.0, static_cast<double>(kMaxTakenStep)));
+  return static_cast<int>(std::clamp(frames, 1.0, static_cast<double>(FrameStep::kMaxPairs)));
 }
 
 std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {

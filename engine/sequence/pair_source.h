@@ -37,8 +37,10 @@ struct FramePair {
 
 /// Pairs of the input that a run takes: pair `first` and every `pairs`-th after it.
 struct FrameStep {
-  int pairs = 1;  ///< 1..1000000
-  int first = 0;  ///< below 2³¹ − 1000001
+  static constexpr int kMaxPairs = 1000000;
+
+  int pairs = 1;  ///< 1..kMaxPairs
+  int first = 0;  ///< below 2³¹ − 1 − kMaxPairs
   /// Instead of `pairs`: the time between two of them, 0.001 to 86400 s, rounded to whole frames
   /// and at least one. Needs an input with a frame rate.
   std::optional<double> seconds;

@@ -95,7 +95,7 @@ Eigen::Matrix3d matrix_of_projection(const std::vector<double>& rows) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(rows.data()).leftCols<3>();
 }
 
-/// The number of values, if the text holds nothing but numbers; else 0.
+/// The numbers of a text that holds nothing else; none for any other text.
 std::vector<double> numbers_alone(std::string_view text, const std::string& file) {
   TextLines lines(text, file);
   std::vector<double> numbers;

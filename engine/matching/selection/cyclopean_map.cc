@@ -11,7 +11,7 @@ namespace {
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 /// Larger differences of neighbours are edges of surfaces.
 constexpr double kMaxSlope = 1.5;
-/// Of a slanted surface, the solution leaves out one column where disparities grow by one.
+/// Where the disparities of a slanted surface grow by one, one column has no match.
 constexpr int kMaxColumnsApart = 2;
 
 /// A match as the middle camera sees it.
