@@ -30,11 +30,16 @@ struct SceneBuildJob {
   std::string output;
   bool copy_images = false;
   bool check_rectification = true;
+  int neighbours = SceneBuildOptions{}.neighbours;
 };
 
 void add_file_settings(Settings& settings, SceneBuildJob& job) {
   settings.start_group("Files");
   add_scene_images_settings(settings, job.images);
+  settings.integer(
+      "neighbours", job.neighbours, "N",
+      "Neighbours that each image of --poses is matched with, the nearest in different "
+      "directions");
   Setting& output = settings.path("output", job.output, "SCENE",
                                   "Folder of the scene; existing results are kept");
   output.short_name = 'o';
@@ -73,22 +78,36 @@ void check_files(const SceneBuildJob& job, const Settings& settings,
   check_common_files(job.common, files);
 }
 
-SettingValue describe_edge(const StoredEdge& edge, SettingValue rectification) {
-  return {{"first", edge.edge.first},
-          {"second", edge.edge.second},
-          {"length", edge.edge.length},
-          {"disparities", fmt::format("{}:{}", edge.disparities.min, edge.disparities.max)},
-          {"matched_share", edge.matched_share},
-          {"rectification", std::move(rectification)}};
+SettingValue describe_edge(const SceneBuilder::BuiltEdge& built, SettingValue rectification) {
+  const StoredEdge& edge = built.stored;
+  if (!built.refusal.empty()) {
+    return {{"first", edge.edge.first},
+            {"second", edge.edge.second},
+            {"length", edge.edge.length},
+            {"refused", built.refusal}};
+  }
+  SettingValue values = {
+      {"first", edge.edge.first},
+      {"second", edge.edge.second},
+      {"length", edge.edge.length},
+      {"disparities", fmt::format("{}:{}", edge.disparities.min, edge.disparities.max)},
+      {"matched_share", edge.matched_share},
+      {"rectification", std::move(rectification)}};
+  if (edge.corrected_degrees) {
+    values["pose_corrected_degrees"] = *edge.corrected_degrees;
+  }
+  return values;
 }
 
 }  // namespace
 
 int command_scene_build(const Arguments& arguments) {
   SceneBuildJob job;
-  Settings settings("scene build",
-                    "Matches neighbouring images of a row or grid of cameras. --disparities is for "
-                    "the nearest neighbours.");
+  Settings settings(
+      "scene build",
+      "Matches neighbouring images of a row or grid of cameras, or of hand-held cameras "
+      "with poses. --disparities is for the nearest neighbours; with --poses for "
+      "those at the median distance.");
   add_file_settings(settings, job);
   add_match_settings(settings, job.match);
   settings.start_group("Check");
@@ -98,11 +117,12 @@ int command_scene_build(const Arguments& arguments) {
   add_common_settings(settings, job.common);
   add_input_limit_settings(settings, job.common.execution);
   settings.set_short_help(
-      {"images", "grid", "spacing", "positions", "output", "disparities", "preset", "threads",
-       "quiet"},
+      {"images", "grid", "spacing", "positions", "poses", "output", "disparities", "preset",
+       "threads", "quiet"},
       {"vantage scene build --images photographs/ --spacing 0.2,1 -o scene",
        "vantage scene build --images photographs/ --grid 5x3 --spacing 10,12.5 -o scene",
-       "vantage scene build --positions positions.csv --preset quality -o scene"});
+       "vantage scene build --positions positions.csv --preset quality -o scene",
+       "vantage scene build --poses sparse/ --images photographs/ -o scene"});
   if (!settings.read(arguments)) {
     return kExitDone;
   }
@@ -112,7 +132,8 @@ int command_scene_build(const Arguments& arguments) {
   const SceneBuildOptions options{.match = job.match,
                                   .settings = match_settings_of(job.match),
                                   .copy_images = job.copy_images,
-                                  .check_rectification = job.check_rectification};
+                                  .check_rectification = job.check_rectification,
+                                  .neighbours = job.neighbours};
   options.validate();
   force_instruction_set(job.common.isa);
   Execution execution(job.common.execution);
@@ -124,9 +145,11 @@ int command_scene_build(const Arguments& arguments) {
     return SceneBuilder(job.output, std::move(images), options, execution);
   });
   const std::atomic<bool>& interrupted = interrupt_flag();
-  const int edges = static_cast<int>(builder.layout().edges().size());
+  const int edges = static_cast<int>(builder.edges().size());
   const int to_match = static_cast<int>(builder.edges_to_match().size());
   SettingValue matched = SettingValue::array();
+  int refused = 0;
+  int corrected = 0;
   SceneRectification rectification(builder, job.match);
   {
     Progress progress("scene build", "edges",
@@ -138,13 +161,17 @@ int command_scene_build(const Arguments& arguments) {
       }
       MatchReport match;
       const auto built = report.timed_compute([&] { return builder.build(edge, &match); });
-      report.add_match(match);
+      if (built.refusal.empty()) {
+        report.add_match(match);
+      }
       if (job.check_rectification) {
         report.add_stage("check", built.check_seconds);
         report.add_compute_seconds(-built.check_seconds);
       }
       cells += match.cells;
-      matched.push_back(describe_edge(built.stored, rectification.add(built)));
+      refused += built.refusal.empty() ? 0 : 1;
+      corrected += built.stored.corrected_degrees && built.refusal.empty() ? 1 : 0;
+      matched.push_back(describe_edge(built, rectification.add(built)));
       progress.update(static_cast<int>(matched.size()), to_match, cells);
     }
   }
@@ -159,15 +186,24 @@ int command_scene_build(const Arguments& arguments) {
     }
     return kExitInterrupted;
   }
-  report.set_results({{"images", builder.layout().positions().size()},
-                      {"triangles", builder.layout().triangles().size()},
+  builder.require_all_joined();
+  report.set_results({{"images", builder.images()},
+                      {"triangles", builder.triangles()},
                       {"edges", edges},
+                      {"edges_refused", refused},
+                      {"poses_corrected", corrected},
                       {"edges_kept", edges - to_match},
                       {"edges_matched", matched}});
   report.write(job.common.report);
   if (!job.common.quiet) {
-    tell("scene build: {} images, {} edges, {} of them matched now -> {}\n",
-         builder.layout().positions().size(), edges, done, job.output);
+    tell("scene build: {} images, {} edges, {} of them matched now -> {}\n", builder.images(),
+         edges, done - refused, job.output);
+    if (refused + corrected > 0) {
+      tell(
+          "scene build: {} edges were refused and left out, of {} the pose was corrected; "
+          "'vantage scene info' lists them\n",
+          refused, corrected);
+    }
     report.print_summary();
   }
   return kExitDone;

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "apps/posed_scene_images.h"
 #include "engine/error.h"
 #include "engine/io/frame_source.h"
 #include "engine/scene_graph/position_list.h"
@@ -96,9 +97,22 @@ void add_scene_images_settings(Settings& settings, SceneImagesInput& input) {
   settings.input_path("positions", input.positions, "FILE.csv",
                       "List of images with positions instead of --images: lines image,x,y, with y "
                       "downwards; paths are relative to the folder of the list");
+  settings.input_path(
+      "poses", input.poses, "PATH",
+      "Poses of hand-held cameras: a folder with a COLMAP model as text, whose "
+      "images are in --images; a TUM or KITTI trajectory; OpenCV's YAML or XML with "
+      "extrinsic_parameters");
+  settings.input_path("intrinsics", input.intrinsics, "FILE",
+                      "Camera of a trajectory: OpenCV's YAML or XML, COLMAP's cameras.txt, KITTI's "
+                      "calib.txt, or a text fx fy cx cy [k1 k2 p1 p2 [k3]]");
 }
 
 std::vector<SceneImage> scene_images(const SceneImagesInput& input, const Settings& settings) {
+  if (!input.poses.empty()) {
+    settings.refuse_idle({"grid", "spacing", "positions"}, "with --poses");
+    return posed_scene_images(input.poses, input.images, input.intrinsics);
+  }
+  settings.refuse_idle({"intrinsics", "neighbours"}, "without --poses");
   if (input.images.empty() == input.positions.empty()) {
     throw UsageError(input.images.empty()
                          ? "no images are given, expected --images or --positions"

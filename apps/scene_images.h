@@ -16,15 +16,18 @@ struct GridSize {
   int rows = 0;
 };
 
-/// Which images a scene is made of and where they stand: a sequence of files on a grid, or a list.
+/// Which images a scene is made of and where they stand: a sequence of files on a grid, a list, or
+/// images with poses.
 struct SceneImagesInput {
   std::string images;
   std::optional<GridSize> grid;  ///< empty: one row
   ScenePosition spacing{1, 1};
-  std::string positions;  ///< file; empty: `images` on a grid
+  std::string positions;   ///< file; empty: `images` on a grid
+  std::string poses;       ///< file or COLMAP model; empty: no poses
+  std::string intrinsics;  ///< file; of the camera of a trajectory
 };
 
-/// --images, --grid, --spacing and --positions, in the group that has begun.
+/// --images, --grid, --spacing, --positions, --poses and --intrinsics, in the group that has begun.
 void add_scene_images_settings(Settings& settings, SceneImagesInput& input);
 
 /// Throws UsageError when options do not go together, Error when there are no such files, or not

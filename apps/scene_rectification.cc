@@ -22,6 +22,12 @@ SceneRectification::SceneRectification(const SceneBuilder& builder, const MatchO
     : builder_(builder), expects_negative_disparities_(expects_negative_disparities(options)) {}
 
 SettingValue SceneRectification::add(const SceneBuilder::BuiltEdge& edge) {
+  if (!edge.refusal.empty()) {
+    warnings_.push_back({std::numeric_limits<double>::infinity(),
+                         fmt::format("edge {}-{} is left out: {}", edge.stored.edge.first,
+                                     edge.stored.edge.second, edge.refusal)});
+    return {};
+  }
   if (!edge.rectification) {
     return {};
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "engine/error.h"
 #include "engine/rectification/shared_window.h"
@@ -22,20 +23,19 @@ double degrees_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
 }
 
-/// Rectified frame ← left camera's frame.
-Eigen::Matrix3d rectifying_rotation(const StereoCalibration& calibration) {
-  const Eigen::Matrix3d& right_axes = calibration.rotation;  // rows, in the left camera's frame
-  const Eigen::Vector3d x_axis =
-      (-calibration.rotation.transpose() * calibration.translation).normalized();
-  const Eigen::Vector3d mean_x = Eigen::Vector3d::UnitX() + right_axes.row(0).transpose();
-  const Eigen::Vector3d mean_view = Eigen::Vector3d::UnitZ() + right_axes.row(2).transpose();
+/// Direction of the right camera, in the left one's frame.
+Eigen::Vector3d baseline_direction(const StereoCalibration& calibration) {
+  return (-calibration.rotation.transpose() * calibration.translation).normalized();
+}
 
-  const double view_angle = degrees_between(Eigen::Vector3d::UnitZ(), right_axes.row(2));
-  if (!(view_angle <= kMaxViewingAngleDegrees)) {
-    throw Error(fmt::format("the cameras' viewing directions are {:.1f} degrees apart, limit {}",
-                            view_angle, kMaxViewingAngleDegrees));
-  }
-  const double angle = degrees_between(x_axis, mean_x);
+/// The mean of both cameras' x axes, in the left one's frame.
+Eigen::Vector3d mean_x_axis(const StereoCalibration& calibration) {
+  return Eigen::Vector3d::UnitX() + calibration.rotation.row(0).transpose();
+}
+
+/// Throws Error unless the cameras are side by side.
+void require_side_by_side(const StereoCalibration& calibration) {
+  const double angle = degrees_between(baseline_direction(calibration), mean_x_axis(calibration));
   if (angle >= 180 - kMaxBaselineAngleDegrees) {
     throw Error("the right camera is to the left of the left one, expected the cameras swapped");
   }
@@ -44,6 +44,29 @@ Eigen::Matrix3d rectifying_rotation(const StereoCalibration& calibration) {
         fmt::format("the baseline is turned {:.1f} degrees from the cameras' x axes, limit {}: "
                     "expected cameras side by side",
                     angle, kMaxBaselineAngleDegrees));
+  }
+}
+
+/// Whether the baseline is nearer to the cameras' y axes than to their x axes.
+bool is_upright(const StereoCalibration& calibration) {
+  const double angle = degrees_between(baseline_direction(calibration), mean_x_axis(calibration));
+  return angle > kMaxBaselineAngleDegrees && angle < 180 - kMaxBaselineAngleDegrees;
+}
+
+/// Rectified frame ← left camera's frame.
+Eigen::Matrix3d rectifying_rotation(const StereoCalibration& calibration,
+                                    const RectificationOptions& options) {
+  const Eigen::Matrix3d& right_axes = calibration.rotation;  // rows, in the left camera's frame
+  const Eigen::Vector3d x_axis = baseline_direction(calibration);
+  const Eigen::Vector3d mean_view = Eigen::Vector3d::UnitZ() + right_axes.row(2).transpose();
+
+  const double view_angle = degrees_between(Eigen::Vector3d::UnitZ(), right_axes.row(2));
+  if (!(view_angle <= kMaxViewingAngleDegrees)) {
+    throw Error(fmt::format("the cameras' viewing directions are {:.1f} degrees apart, limit {}",
+                            view_angle, kMaxViewingAngleDegrees));
+  }
+  if (!options.any_direction) {
+    require_side_by_side(calibration);
   }
   const Eigen::Vector3d z_axis = (mean_view - mean_view.dot(x_axis) * x_axis).normalized();
   Eigen::Matrix3d rotation;
@@ -99,7 +122,7 @@ RectifiedPair pair_of(const StereoCalibration& calibration, int width_px, int he
     return unchanged_pair(calibration, width_px, height_px);
   }
 
-  const Eigen::Matrix3d left_rotation = rectifying_rotation(calibration);
+  const Eigen::Matrix3d left_rotation = rectifying_rotation(calibration, options);
   const Eigen::Matrix3d right_rotation = left_rotation * calibration.rotation.transpose();
   const auto left_seen =
       turned(seen_rays(LensModel(calibration.left), width_px, height_px), left_rotation);
@@ -111,6 +134,9 @@ RectifiedPair pair_of(const StereoCalibration& calibration, int width_px, int he
         "that look across their baseline");
   }
   const std::array<RayPolygon, 2> seen = {*left_seen, *right_seen};
+  if (options.any_direction && is_upright(calibration)) {
+    std::swap(width_px, height_px);
+  }
   const auto inner = largest_window_inside(seen, width_px, height_px);
   const RayWindow outer = smallest_window_around(seen, width_px, height_px);
   const double share = inner ? inner->scale / outer.scale : 0;

@@ -11,6 +11,10 @@ struct RectificationOptions {
   /// 0: the largest window without pixels that the cameras did not see (default); 1: everything
   /// that either camera saw, with black around it; in between, the window is interpolated.
   double kept_outline = 0;
+  /// Accepts cameras in any direction from each other, as above or swapped: rows of the rectified
+  /// images follow the baseline from left to right, turned from the photographs as needed, with
+  /// width and height exchanged where it is nearer to the cameras' y axes.
+  bool any_direction = false;
 
   /// Throws UsageError naming the field, its value and its limit.
   void validate() const;
@@ -49,7 +53,8 @@ struct RectifiedPair {
   }
 };
 
-/// The rectified cameras of images of this size, which is also the size of the rectified images.
+/// The rectified cameras of images of this size, which is also the size of the rectified images
+/// (but see RectificationOptions::any_direction).
 ///
 /// X is the direction of the baseline, Z the part of the mean viewing direction orthogonal to it, Y
 /// = Z × X (EQUATIONS §6), so both cameras rotate by about the same angle. Both rectified cameras

@@ -14,7 +14,8 @@ namespace vantage {
 
 Rectifier::Rectifier(const StereoCalibration& calibration, int width_px, int height_px,
                      const RectificationOptions& options)
-    : pair_(rectified_pair(calibration, width_px, height_px, options)),
+    : photograph_size_{width_px, height_px},
+      pair_(rectified_pair(calibration, width_px, height_px, options)),
       needs_rectification_(!calibration.is_rectified),
       views_{make_view(calibration.left, Side::kLeft), make_view(calibration.right, Side::kRight)} {
 }
@@ -71,9 +72,11 @@ void Rectifier::apply(const Photograph& source, Side side, Photograph& result,
                       Execution& execution) const {
   const int width = pair_.width_px;
   const int height = pair_.height_px;
-  if (source.width() != width || source.height() != height) {
+  if (source.width() != photograph_size_.width_px ||
+      source.height() != photograph_size_.height_px) {
     throw Error(fmt::format("the image to rectify is {}x{}, expected {}x{}", source.width(),
-                            source.height(), width, height));
+                            source.height(), photograph_size_.width_px,
+                            photograph_size_.height_px));
   }
   std::visit(
       [&]<typename T>(const Image<T>& from) {
@@ -91,8 +94,8 @@ void Rectifier::apply(const Photograph& source, Side side, Photograph& result,
             kernels::remap_bicubic_row(
                 kernels::RemapRow<T>{.pixels = from.row(0),
                                      .stride = static_cast<std::ptrdiff_t>(from.view().stride()),
-                                     .width = width,
-                                     .height = height,
+                                     .width = from.width(),
+                                     .height = from.height(),
                                      .channels = from.channels(),
                                      .x_px = view(side).x_px.row(y),
                                      .y_px = view(side).y_px.row(y),

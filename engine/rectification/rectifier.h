@@ -53,7 +53,7 @@ class Rectifier {
   /// alpha like a colour; 0 in all channels where the camera saw nothing. `result` gets the depth
   /// and channels of `source` and reuses its memory, so nothing is allocated from the second frame
   /// on; it must not be `source`. Parallel over rows; bit-identical for every executor and
-  /// instruction set. Throws Error if `source` has another size than the rectifier's.
+  /// instruction set. Throws Error if `source` has another size than the photographs.
   void apply(const Photograph& source, Side side, Photograph& result, Execution& execution) const;
 
  private:
@@ -69,6 +69,7 @@ class Rectifier {
       const View& view, const Eigen::Vector2d& rectified_px);
   [[nodiscard]] const View& view(Side side) const { return views_[index_of(side)]; }
 
+  ImageSize photograph_size_;
   RectifiedPair pair_;
   bool needs_rectification_;
   std::array<View, 2> views_;

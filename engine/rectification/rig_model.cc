@@ -31,12 +31,6 @@ constexpr std::array<double, RigModel::kParameters> kUsual = {
 /// Over the longer side; a field of view of 49 degrees.
 constexpr double kUsualFocal = 1.1;
 
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& t) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
-  return matrix;
-}
-
 /// An undistorted position, and the local magnification of the photograph there.
 struct IdealPosition {
   Eigen::Vector3d ray;

@@ -19,6 +19,8 @@ namespace vantage {
 struct SceneImage {
   std::filesystem::path file;
   ScenePosition position;
+  std::optional<SceneCamera> camera = std::nullopt;  ///< of all images of a scene, or of none
+  ImageSize camera_size = {};                        ///< that the camera is for; 0×0: unknown
 };
 
 struct SceneBuildOptions {
@@ -31,6 +33,8 @@ struct SceneBuildOptions {
   /// Refuses edges whose rows or columns do not correspond, or of which few pixels match
   /// (edge_check.h).
   bool check_rectification = true;
+  /// Neighbours that every posed camera is joined to, 1 to kMaxNeighbours.
+  int neighbours = 4;
 
   /// Throws UsageError as MatchOptions does, and for a search in two dimensions.
   void validate() const;
@@ -47,6 +51,11 @@ struct SceneBuildOptions {
 /// (sheared_images.h). Both maps of an edge are on the grids of its images and count pixels along
 /// the edge: d ≥ 0 for usual scenes, larger is nearer.
 ///
+/// Posed cameras are joined by posed_edges(). Each edge is rectified on its own from their poses;
+/// if rows are off nevertheless, the pose between the two cameras is corrected from points in
+/// common (refine_relative_pose()). Maps are on the grids of the undistorted images and hold focal
+/// length · length of the edge / depth. An edge that the check refuses is left out of the scene.
+///
 /// Thread rule: one thread at a time; one process per folder, which locks it.
 class SceneBuilder {
  public:
@@ -57,11 +66,16 @@ class SceneBuilder {
   SceneBuilder(std::filesystem::path folder, std::vector<SceneImage> images,
                SceneBuildOptions options, Execution& execution);
 
-  [[nodiscard]] const SceneLayout& layout() const { return layout_; }
+  [[nodiscard]] const std::vector<SceneEdge>& edges() const { return edges_; }
+  [[nodiscard]] int images() const { return static_cast<int>(images_.size()); }
+  /// Triangles of views; none for posed cameras.
+  [[nodiscard]] int triangles() const {
+    return layout_ ? static_cast<int>(layout_->triangles().size()) : 0;
+  }
   [[nodiscard]] const std::filesystem::path& image_file(int vertex) const {
     return images_.at(static_cast<std::size_t>(vertex)).file;
   }
-  /// Indices into layout().edges() of the edges still to match.
+  /// Indices into edges() of the edges still to match.
   [[nodiscard]] const std::vector<int>& edges_to_match() const { return edges_to_match_; }
 
   /// Result for one edge.
@@ -71,31 +85,47 @@ class SceneBuilder {
     /// None unless requested, or if too few points were found.
     std::optional<VerticalError> rectification;
     double check_seconds = 0;  ///< duration of this check
+    /// Why an edge between posed cameras is left out; empty if it was stored.
+    std::string refusal;
   };
 
-  /// Matches and stores an edge of the layout. Throws Error naming the images, also for those that
+  /// Matches and stores an edge. Throws Error naming the images, also for those without poses that
   /// the check refuses; nothing of such an edge is stored.
   BuiltEdge build(int edge, MatchReport* report = nullptr);
 
+  /// Throws Error for the first image all of whose edges were refused.
+  void require_all_joined() const;
+
  private:
   [[nodiscard]] StoredImage stored_image(const SceneImage& image) const;
+  void find_edges();
   void remove_leftovers() const;
   void keep_finished_edges();
+  [[nodiscard]] bool is_same_image(const StoredScene& before, int vertex) const;
+  [[nodiscard]] bool is_finished(const StoredEdge& stored, const StoredScene& before,
+                                 const SceneEdge& edge) const;
+  /// Removes the maps that no longer belong to the scene.
+  void remove_outdated_maps(const StoredScene& before) const;
+  [[nodiscard]] std::array<Photograph, 2> photographs_of(const SceneEdge& edge) const;
   /// The maps of `built.stored.edge` on the grids of its images; sets the other values of `built`
   /// but the files.
   [[nodiscard]] DisparityMaps maps_of(BuiltEdge& built, MatchReport* report) const;
-  /// Checks and matches images whose rows correspond.
-  [[nodiscard]] DisparityMaps match(const std::array<Photograph, 2>& images, BuiltEdge& built,
-                                    MatchReport* report) const;
-  [[nodiscard]] MatchOptions options_for(const SceneEdge& edge, const Photograph& first,
+  /// Likewise for posed cameras.
+  [[nodiscard]] DisparityMaps posed_maps_of(BuiltEdge& built, MatchReport* report) const;
+  /// Matches images whose rows correspond; `scale`: factor of the given disparities.
+  [[nodiscard]] DisparityMaps match(const std::array<Photograph, 2>& images, double scale,
+                                    BuiltEdge& built, MatchReport* report) const;
+  [[nodiscard]] MatchOptions options_for(double scale, const Photograph& first,
                                          const Photograph& second) const;
+  void store(const DisparityMaps& maps, StoredEdge& result);
 
   std::filesystem::path folder_;
   std::vector<SceneImage> images_;
   SceneBuildOptions options_;
   Execution& execution_;
   StoredScene scene_;
-  SceneLayout layout_;
+  std::optional<SceneLayout> layout_;  // of cameras without poses
+  std::vector<SceneEdge> edges_;
   FileLock lock_;
   std::vector<int> edges_to_match_;
 };

@@ -9,6 +9,7 @@
 
 #include "engine/error.h"
 #include "engine/scene_graph/fused_map.h"
+#include "engine/scene_graph/scene_view_options.h"
 
 namespace vantage {
 namespace {
@@ -18,14 +19,6 @@ constexpr double kSameDirection = 1e-9;  // of an edge
 // to six, and sources.
 constexpr std::size_t kMaxLoaded = 8;
 constexpr std::size_t kMaxSources = 2;
-
-SynthesisOptions with_moving_brightness(SynthesisOptions options) {
-  if (options.warp == WarpColour::kForward) {
-    throw UsageError("warp is forward, expected one-pass for views of a scene");
-  }
-  options.gamma.reset();
-  return options;
-}
 
 std::vector<int> vertices_of(const ScenePlace& place) {
   return {place.vertices.begin(), place.vertices.begin() + place.count};

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "engine/matching/options/match_options.h"
+#include "engine/scene_graph/posed_pair.h"
 #include "engine/scene_graph/scene_layout.h"
 #include "engine/scene_graph/scene_viewer.h"
 
@@ -15,9 +17,10 @@ namespace vantage {
 
 /// An image of a stored scene.
 struct StoredImage {
-  std::string file;     ///< relative to the scene's folder, or absolute
-  std::string content;  ///< content_of_file() of it
-  ScenePosition position;
+  std::string file;        ///< relative to the scene's folder, or absolute
+  std::string content;     ///< content_of_file() of it
+  ScenePosition position;  ///< of scenes without poses
+  std::optional<SceneCamera> camera = std::nullopt;  ///< of scenes with poses
 };
 
 /// A file of a scene's maps.
@@ -36,19 +39,39 @@ struct StoredEdge {
   /// Misalignment of rows (columns): VerticalError::systematic_px. None if not measured, or too few
   /// points were found.
   std::optional<double> rectification_error_px;
+  /// Angle by which the pose between posed cameras was corrected; none if it was used as given.
+  std::optional<double> corrected_degrees = std::nullopt;
   /// Maps of the first and second image (.pfm) and their masks of unmatched pixels (.png).
   std::array<StoredFile, 2> maps;
   std::array<StoredFile, 2> unmatched;
 };
 
-/// Content of FOLDER/scene.json: images, positions, and the edges matched so far.
+/// An edge between posed cameras that the check refused: the scene does without it.
+struct RefusedEdge {
+  int first = 0;
+  int second = 0;
+  std::string reason;
+};
+
+/// Content of FOLDER/scene.json: images, their positions or cameras, and the edges matched so far.
 struct StoredScene {
   std::string settings = "{}";  ///< a JSON object: the settings that affect maps
   int width_px = 0;             ///< of all images
   int height_px = 0;
-  double unit_length = 1;  ///< SceneLayout::unit_length()
+  /// SceneLayout::unit_length(), or median_length() of posed cameras.
+  double unit_length = 1;
+  /// Of posed cameras: maps hold focal_length_px · length of the edge / depth in the own camera.
+  double focal_length_px = 1;
   std::vector<StoredImage> images;
   std::vector<StoredEdge> edges;
+  /// Of posed cameras: all edges, matched or not, and those that were refused.
+  std::vector<SceneEdge> graph = {};
+  std::vector<RefusedEdge> refused = {};
+
+  [[nodiscard]] bool is_posed() const { return !images.empty() && images[0].camera.has_value(); }
+  /// Of a posed scene.
+  [[nodiscard]] std::vector<SceneCamera> cameras() const;
+  [[nodiscard]] const RefusedEdge* find_refused(const SceneEdge& edge) const;
 
   /// The finished edge between these vertices, if there is one.
   [[nodiscard]] const StoredEdge* find(const SceneEdge& edge) const;
@@ -70,12 +93,13 @@ StoredScene read_scene(const std::filesystem::path& folder);
 /// Writes atomically. Throws Error.
 void write_scene(const std::filesystem::path& folder, const StoredScene& scene);
 
-/// Throws Error with the number of edges of `layout` missing in `scene`, if any.
-void require_complete(const StoredScene& scene, const SceneLayout& layout,
+/// Throws Error with the number of these edges that are neither matched nor refused, if any.
+void require_complete(const StoredScene& scene, std::span<const SceneEdge> edges,
                       const std::filesystem::path& folder);
 
-/// A vertex of a stored scene. Throws Error naming the file for an image that has changed since it
-/// was matched, and for maps that are missing or of another size.
+/// A vertex of a stored scene; of posed cameras, the image as its photograph, still distorted.
+/// Throws Error naming the file for an image that has changed since it was matched, and for maps
+/// that are missing or of another size.
 SceneVertex load_vertex(const std::filesystem::path& folder, const StoredScene& scene, int vertex);
 
 }  // namespace vantage

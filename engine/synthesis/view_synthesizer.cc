@@ -14,6 +14,7 @@
 #include "engine/error.h"
 #include "engine/synthesis/row_pair_warper.h"
 #include "engine/synthesis/surface_warper.h"
+#include "engine/synthesis/view_assembly.h"
 #include "engine/synthesis/view_finisher.h"
 #include "engine/synthesis/view_sampling.h"
 #include "engine/synthesis/warped_pair_layout.h"
@@ -24,11 +25,6 @@ namespace vantage {
 namespace {
 
 constexpr double kFarthestView = 16;  // baselines
-
-/// Warped rows are kept between the two passes over an image as long as they largely fit in the
-/// caches: more would take several times the memory of all inputs, and as much time as warping
-/// again.
-constexpr std::size_t kMaxKeptBytes = std::size_t{32} << 20;
 
 void require_size_of_left(const Photograph& left, const char* what, int width, int height) {
   if (width != left.width() || height != left.height()) {
@@ -61,199 +57,6 @@ void require_map(const Photograph& left, const char* what, ImageView<const float
     throw Error("disparity map has several channels, expected one");
   }
 }
-
-// Results of the parallel passes per row; reduced in row order.
-struct RowRecord {
-  kernels::IntensitySums sums;
-  int holes = 0;
-};
-
-// (3.12): each image's colours are adjusted towards the other's by its share of γ.
-kernels::BlendWeights blend_weights(const std::array<IntensityFit, 4>& intensity, double alpha,
-                                    std::optional<double> chosen_gamma,
-                                    double grey_levels_per_unit) {
-  const double gamma = chosen_gamma.value_or(alpha);
-
-  kernels::BlendWeights weights;
-  weights.alpha = static_cast<float>(alpha);
-  for (std::size_t c = 0; c < intensity.size(); ++c) {
-    const double a = intensity[c].offset / grey_levels_per_unit;
-    const double b = intensity[c].gain;
-    weights.left_scale[c] = static_cast<float>(gamma + (1 - gamma) * b);
-    weights.left_offset[c] = static_cast<float>((1 - gamma) * a);
-    weights.right_scale[c] = static_cast<float>(gamma / b + (1 - gamma));
-    weights.right_offset[c] = static_cast<float>(-gamma * a / b);
-  }
-  return weights;
-}
-
-/// Makes one view from the rows of `Warper`, RowPairWarper or SurfaceWarper.
-template <typename T, typename Warper>
-class Synthesis {
- public:
-  Synthesis(const Warper& warper, const SynthesisOptions& options, int channels,
-            Execution& execution)
-      : warper_(warper),
-        options_(options),
-        execution_(execution),
-        width_(warper.width()),
-        height_(warper.height()),
-        channels_(channels),
-        layout_(width_, channels),
-        records_memory_(
-            execution.scratch().lease(sizeof(RowRecord) * static_cast<std::size_t>(height_))),
-        records_(reinterpret_cast<RowRecord*>(records_memory_.data()),
-                 static_cast<std::size_t>(height_)) {
-    std::uninitialized_fill(records_.begin(), records_.end(), RowRecord{});
-  }
-
-  void run(Image<T>& image, SynthesizedView& view, const std::array<IntensityFit, 4>* given_fit) {
-    view.intensity = {};
-    if (given_fit != nullptr) {
-      view.intensity = *given_fit;
-    } else if (options_.match_intensities) {
-      keep_warped_rows();
-      view.intensity = fit_channels(intensity_sums(), channels_, double{kGreyLevelsPerUnit<T>});
-    }
-    image.resize(width_, height_, channels_);
-    view.holes.resize(width_, height_);
-    view.sources.resize(width_, height_);
-    combine(image, view);
-    if (options_.holes == HoleFilling::kMirror || options_.holes == HoleFilling::kSpread) {
-      fill_empty_rows(image);
-    }
-    std::int64_t holes = 0;
-    for (const RowRecord& record : records_) {
-      holes += record.holes;
-    }
-    view.hole_fraction = static_cast<double>(holes) / (static_cast<double>(width_) * height_);
-  }
-
-  kernels::IntensitySums intensity_sums() {
-    for_each_warped_row([&](int y, const kernels::WarpedPairRow& pair) {
-      records_[static_cast<std::size_t>(y)].sums = kernels::intensity_sums_row(pair);
-    });
-    kernels::IntensitySums total;
-    for (const RowRecord& record : records_) {
-      total.add(record.sums);
-    }
-    return total;
-  }
-
- private:
-  // Avoids warping them a second time.
-  void keep_warped_rows() {
-    const std::size_t bytes = ViewSynthesizer::working_bytes(width_, height_, channels_);
-    if (bytes > 0) {
-      kept_memory_ = execution_.scratch().lease(bytes);
-      kept_ = reinterpret_cast<float*>(kept_memory_.data());
-    }
-  }
-
-  [[nodiscard]] float* kept_row(int y) const {
-    return kept_ + layout_.floats * static_cast<std::size_t>(y);
-  }
-  [[nodiscard]] kernels::WarpedPairRow warped_in(const float* memory) const {
-    return layout_.row_in(memory, options_.disparity_gradient_limit_px);
-  }
-
-  // Calls body(y, warped scanline pair) for all rows.
-  template <typename Body>
-  void for_each_warped_row(const Body& body) {
-    const std::size_t scratch_floats = warper_.scratch_floats();
-    execution_.for_each_band(height_, [&](int first_row, int end_row) {
-      const auto memory =
-          execution_.scratch().lease((scratch_floats + layout_.floats) * sizeof(float));
-      auto* scratch = reinterpret_cast<float*>(memory.data());
-      for (int y = first_row; y < end_row; ++y) {
-        float* pair = kept_ != nullptr ? kept_row(y) : scratch + scratch_floats;
-        warper_.warp(y, {scratch, scratch_floats}, pair);
-        body(y, warped_in(pair));
-      }
-    });
-  }
-
-  // As for_each_warped_row() in a second pass; reads the rows if they were kept.
-  template <typename Body>
-  void for_each_warped_row_again(const Body& body) {
-    if (kept_ == nullptr) {
-      for_each_warped_row(body);
-      return;
-    }
-    execution_.for_each_band(height_, [&](int first_row, int end_row) {
-      for (int y = first_row; y < end_row; ++y) {
-        body(y, warped_in(kept_row(y)));
-      }
-    });
-  }
-
-  void combine(Image<T>& image, SynthesizedView& view) {
-    const double alpha = warper_.alpha();
-    kernels::BlendWeights weights =
-        blend_weights(view.intensity, alpha, options_.gamma, double{kGreyLevelsPerUnit<T>});
-    weights.trust_at_ends = ViewFinisher<T>::trust_at_ends(options_, alpha);
-    ViewFinisher<T> finisher(options_, alpha, outline_places(), image.view(), view.sources.view(),
-                             execution_);
-    for_each_warped_row_again([&](int y, const kernels::WarpedPairRow& pair) {
-      const auto memory =
-          execution_.scratch().lease(static_cast<std::size_t>(width_) * sizeof(float));
-      auto* disparity_px = reinterpret_cast<float*>(memory.data());
-      const int row_holes =
-          kernels::blend_row(pair, weights, channels_,
-                             kernels::BlendedRow<T>{.pixels = image.row(y),
-                                                    .disparity_px = disparity_px,
-                                                    .holes = view.holes.row(y),
-                                                    .sources = view.sources.row(y)});
-      records_[static_cast<std::size_t>(y)].holes = row_holes;
-      finisher.finish_row({y, pair, disparity_px, row_holes});
-    });
-    finisher.finish_view();
-  }
-
-  [[nodiscard]] OutlinePlaces outline_places() const {
-    if constexpr (requires { warper_.camera_offsets(); }) {
-      return warper_.camera_offsets();
-    } else {
-      return [this](const SurfaceEdge& edge) { return warper_.coverage(edge); };
-    }
-  }
-
-  [[nodiscard]] bool empty_row(int y) const {
-    return records_[static_cast<std::size_t>(y)].holes == width_;
-  }
-
-  // A row without pixels copies the nearest row that has some; the upper one on a tie.
-  void fill_empty_rows(Image<T>& image) {
-    const std::size_t values =
-        static_cast<std::size_t>(width_) * static_cast<std::size_t>(channels_);
-    int y = 0;
-    while (y < height_) {
-      const int begin = y;
-      while (y < height_ && empty_row(y)) {
-        ++y;
-      }
-      const bool has_upper = begin > 0;
-      const bool has_lower = y < height_;
-      for (int row = begin; row < y && (has_upper || has_lower); ++row) {
-        const bool from_upper = has_upper && (!has_lower || row - (begin - 1) <= y - row);
-        std::copy_n(image.row(from_upper ? begin - 1 : y), values, image.row(row));
-      }
-      ++y;
-    }
-  }
-
-  const Warper& warper_;
-  const SynthesisOptions& options_;
-  Execution& execution_;
-  int width_;
-  int height_;
-  int channels_;
-  WarpedPairLayout layout_;
-  scheduler::ScratchPool::Lease records_memory_;
-  std::span<RowRecord> records_;
-  scheduler::ScratchPool::Lease kept_memory_;
-  float* kept_ = nullptr;  // warped scanline pairs of all rows, if kept
-};
 
 /// The photographs and maps of one call.
 struct PairOfMaps {
@@ -340,7 +143,8 @@ void with_source(const PairOfMaps& pair, const Body& body) {
       pair.left.pixels);
 }
 
-/// Checks the pair and the position, then calls body(synthesis) with a Synthesis of its pixel type.
+/// Checks the pair and the position, then calls body(synthesis) with a ViewAssembly of its pixel
+/// type.
 template <typename Body>
 void with_synthesis(const PairOfMaps& pair, const SynthesisOptions& options, double view_x,
                     Execution& execution, const Body& body) {
@@ -350,7 +154,7 @@ void with_synthesis(const PairOfMaps& pair, const SynthesisOptions& options, dou
   }
   with_source(pair, [&]<typename T>(const StereoSource<T>& source) {
     const RowPairWarper<T> warper(source, options, view_x);
-    body(Synthesis<T, RowPairWarper<T>>(warper, options, source.left.channels(), execution));
+    body(ViewAssembly<T, RowPairWarper<T>>(warper, options, source.left.channels(), execution));
   });
 }
 
@@ -364,11 +168,11 @@ void with_synthesis(const PairOfMaps& pair, const SynthesisOptions& options, con
   }
   with_source(pair, [&]<typename T>(const StereoSource<T>& source) {
     const SurfaceWarper<T> warper(source, options, view, execution);
-    body(Synthesis<T, SurfaceWarper<T>>(warper, options, source.left.channels(), execution));
+    body(ViewAssembly<T, SurfaceWarper<T>>(warper, options, source.left.channels(), execution));
   });
 }
 
-/// Checks the triple, then calls body(synthesis) with a Synthesis of its pixel type.
+/// Checks the triple, then calls body(synthesis) with a ViewAssembly of its pixel type.
 template <typename Body>
 void with_synthesis(const PhotographTriple& triple, const SynthesisOptions& options,
                     const TripleView& view, const std::array<IntensityFit, 4>& second_on_first,
@@ -386,7 +190,7 @@ void with_synthesis(const PhotographTriple& triple, const SynthesisOptions& opti
           source.images[k] = std::get<Image<T>>(triple.images[k]->pixels).view();
         }
         const TripleWarper<T> warper(source, second_on_first, options, view, execution);
-        body(Synthesis<T, TripleWarper<T>>(warper, options, first.channels(), execution));
+        body(ViewAssembly<T, TripleWarper<T>>(warper, options, first.channels(), execution));
       },
       first.pixels);
 }
@@ -397,7 +201,7 @@ void sample_at(const PairOfMaps& pair, const SynthesisOptions& options, const Po
                Execution& execution, SynthesizedView& view,
                const std::array<IntensityFit, 4>* given_fit) {
   with_synthesis(pair, options, position, execution,
-                 [&]<typename T, typename Warper>(Synthesis<T, Warper>&& synthesis) {
+                 [&]<typename T, typename Warper>(ViewAssembly<T, Warper>&& synthesis) {
                    if (!std::holds_alternative<Image<T>>(view.image.pixels)) {
                      view.image.pixels.template emplace<Image<T>>();
                    }
@@ -424,26 +228,12 @@ void synthesize_at(const PairOfMaps& pair, const SynthesisOptions& options, cons
   reduce_view(fine, sampling, view, execution);
 }
 
-/// Sums in grey levels.
-template <typename T, typename Warper>
-kernels::IntensitySums grey_level_sums(Synthesis<T, Warper>& synthesis) {
-  kernels::IntensitySums sums = synthesis.intensity_sums();
-  const double unit{kGreyLevelsPerUnit<T>};
-  for (int c = 0; c < 4; ++c) {
-    sums.left[c] *= unit;
-    sums.right[c] *= unit;
-    sums.left_right[c] *= unit * unit;
-    sums.left_left[c] *= unit * unit;
-  }
-  return sums;
-}
-
 template <typename Position>
 kernels::IntensitySums sampled_sums_at(const PairOfMaps& pair, const SynthesisOptions& options,
                                        const Position& position, Execution& execution) {
   kernels::IntensitySums sums;
   with_synthesis(pair, options, position, execution,
-                 [&]<typename T, typename Warper>(Synthesis<T, Warper>&& synthesis) {
+                 [&]<typename T, typename Warper>(ViewAssembly<T, Warper>&& synthesis) {
                    sums = grey_level_sums(synthesis);
                  });
   return sums;
@@ -473,7 +263,7 @@ std::size_t ViewSynthesizer::working_bytes(int width, int height, int channels) 
   // Independent of the pixel type: rows are floats.
   const std::size_t bytes =
       WarpedPairLayout(width, channels).floats * sizeof(float) * static_cast<std::size_t>(height);
-  return bytes <= kMaxKeptBytes ? bytes : 0;
+  return bytes <= kMaxKeptRowBytes ? bytes : 0;
 }
 
 std::size_t ViewSynthesizer::working_bytes(const NewView& view, int width, int height,
@@ -533,7 +323,7 @@ void ViewSynthesizer::synthesize(const PhotographTriple& triple, const TripleVie
   SynthesisOptions options = options_;
   options.gamma.reset();
   with_synthesis(triple, options, new_view, fit.second_on_first, execution_,
-                 [&]<typename T, typename Warper>(Synthesis<T, Warper>&& synthesis) {
+                 [&]<typename T, typename Warper>(ViewAssembly<T, Warper>&& synthesis) {
                    if (!std::holds_alternative<Image<T>>(view.image.pixels)) {
                      view.image.pixels.template emplace<Image<T>>();
                    }
@@ -557,7 +347,7 @@ TripleFit ViewSynthesizer::fit_triple(const PhotographTriple& triple,
                                   triple.disparity_px[1], first_two),
                    first.channels(), 1);
   with_synthesis(triple, options_, new_view, fit.second_on_first, execution_,
-                 [&]<typename T, typename Warper>(Synthesis<T, Warper>&& synthesis) {
+                 [&]<typename T, typename Warper>(ViewAssembly<T, Warper>&& synthesis) {
                    fit.third_on_others =
                        fit_channels(grey_level_sums(synthesis), first.channels(), 1);
                  });

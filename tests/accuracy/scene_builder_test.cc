@@ -97,7 +97,7 @@ TEST_F(SceneBuilderTest, AViewLeftOutIsMadeFromItsNeighbours) {
   build(row({0, 0.5, 1.5, 2}));
   const StoredScene stored = read_scene(place_);
   const SceneLayout layout(stored.positions(), stored.names());
-  require_complete(stored, layout, place_);
+  require_complete(stored, layout.edges(), place_);
   SceneViewer viewer(
       layout, [&](int vertex) { return load_vertex(place_, stored, vertex); }, {}, threads());
   SynthesizedView view;
@@ -211,7 +211,8 @@ TEST_F(SceneBuilderTest, FinishedEdgesAreKept) {
   }
   EXPECT_THAT(error_of([&] {
                 const StoredScene stored = read_scene(place_);
-                require_complete(stored, SceneLayout(stored.positions(), stored.names()), place_);
+                require_complete(stored, SceneLayout(stored.positions(), stored.names()).edges(),
+                                 place_);
               }),
               HasSubstr("1 of 3 edges are not matched yet"));
   EXPECT_THAT(builder(images).edges_to_match(), ElementsAre(1));
@@ -306,8 +307,8 @@ TEST_F(SceneBuilderTest, ObliqueNeighboursAreMatched) {
     fs::remove_all(place_);
     std::optional<SceneBuilder> one(
         builder({photograph("oblique0", places[0]), photograph("oblique1", places[1])}));
-    ASSERT_EQ(one->layout().edges().size(), 1U);
-    const SceneEdge edge = one->layout().edges()[0];
+    ASSERT_EQ(one->edges().size(), 1U);
+    const SceneEdge edge = one->edges()[0];
     EXPECT_NE(edge.slope, 0);
     const StoredEdge stored = one->build(0).stored;
     one.reset();  // it has the folder for itself

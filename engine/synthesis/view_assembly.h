@@ -1,0 +1,241 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "engine/execution.h"
+#include "engine/image/image.h"
+#include "engine/image/photograph.h"
+#include "engine/synthesis/intensity_fit.h"
+#include "engine/synthesis/synthesis_options.h"
+#include "engine/synthesis/view_finisher.h"
+#include "engine/synthesis/view_synthesizer.h"
+#include "engine/synthesis/warped_pair_layout.h"
+#include "kernels/intensity_sums/intensity_sums.h"
+#include "kernels/view_blend/view_blend.h"
+
+namespace vantage {
+
+/// Warped rows are kept between the two passes over an image as long as they largely fit in the
+/// caches: more would take several times the memory of all inputs, and as much time as warping
+/// again.
+inline constexpr std::size_t kMaxKeptRowBytes = std::size_t{32} << 20;
+
+// Results of the parallel passes per row; reduced in row order.
+struct ViewRowRecord {
+  kernels::IntensitySums sums;
+  int holes = 0;
+};
+
+// (3.12): each image's colours are adjusted towards the other's by its share of γ.
+inline kernels::BlendWeights blend_weights(const std::array<IntensityFit, 4>& intensity,
+                                           double alpha, std::optional<double> chosen_gamma,
+                                           double grey_levels_per_unit) {
+  const double gamma = chosen_gamma.value_or(alpha);
+
+  kernels::BlendWeights weights;
+  weights.alpha = static_cast<float>(alpha);
+  for (std::size_t c = 0; c < intensity.size(); ++c) {
+    const double a = intensity[c].offset / grey_levels_per_unit;
+    const double b = intensity[c].gain;
+    weights.left_scale[c] = static_cast<float>(gamma + (1 - gamma) * b);
+    weights.left_offset[c] = static_cast<float>((1 - gamma) * a);
+    weights.right_scale[c] = static_cast<float>(gamma / b + (1 - gamma));
+    weights.right_offset[c] = static_cast<float>(-gamma * a / b);
+  }
+  return weights;
+}
+
+/// Makes one view from the rows of `Warper`, RowPairWarper or SurfaceWarper.
+template <typename T, typename Warper>
+class ViewAssembly {
+ public:
+  ViewAssembly(const Warper& warper, const SynthesisOptions& options, int channels,
+               Execution& execution)
+      : warper_(warper),
+        options_(options),
+        execution_(execution),
+        width_(warper.width()),
+        height_(warper.height()),
+        channels_(channels),
+        layout_(width_, channels),
+        records_memory_(
+            execution.scratch().lease(sizeof(ViewRowRecord) * static_cast<std::size_t>(height_))),
+        records_(reinterpret_cast<ViewRowRecord*>(records_memory_.data()),
+                 static_cast<std::size_t>(height_)) {
+    std::uninitialized_fill(records_.begin(), records_.end(), ViewRowRecord{});
+  }
+
+  void run(Image<T>& image, SynthesizedView& view, const std::array<IntensityFit, 4>* given_fit) {
+    view.intensity = {};
+    if (given_fit != nullptr) {
+      view.intensity = *given_fit;
+    } else if (options_.match_intensities) {
+      keep_warped_rows();
+      view.intensity = fit_channels(intensity_sums(), channels_, double{kGreyLevelsPerUnit<T>});
+    }
+    image.resize(width_, height_, channels_);
+    view.holes.resize(width_, height_);
+    view.sources.resize(width_, height_);
+    combine(image, view);
+    if (options_.holes == HoleFilling::kMirror || options_.holes == HoleFilling::kSpread) {
+      fill_empty_rows(image);
+    }
+    std::int64_t holes = 0;
+    for (const ViewRowRecord& record : records_) {
+      holes += record.holes;
+    }
+    view.hole_fraction = static_cast<double>(holes) / (static_cast<double>(width_) * height_);
+  }
+
+  kernels::IntensitySums intensity_sums() {
+    for_each_warped_row([&](int y, const kernels::WarpedPairRow& pair) {
+      records_[static_cast<std::size_t>(y)].sums = kernels::intensity_sums_row(pair);
+    });
+    kernels::IntensitySums total;
+    for (const ViewRowRecord& record : records_) {
+      total.add(record.sums);
+    }
+    return total;
+  }
+
+ private:
+  [[nodiscard]] std::size_t kept_bytes() const {
+    const std::size_t bytes = layout_.floats * sizeof(float) * static_cast<std::size_t>(height_);
+    return bytes <= kMaxKeptRowBytes ? bytes : 0;
+  }
+
+  // Avoids warping them a second time.
+  void keep_warped_rows() {
+    const std::size_t bytes = kept_bytes();
+    if (bytes > 0) {
+      kept_memory_ = execution_.scratch().lease(bytes);
+      kept_ = reinterpret_cast<float*>(kept_memory_.data());
+    }
+  }
+
+  [[nodiscard]] float* kept_row(int y) const {
+    return kept_ + layout_.floats * static_cast<std::size_t>(y);
+  }
+  [[nodiscard]] kernels::WarpedPairRow warped_in(const float* memory) const {
+    return layout_.row_in(memory, options_.disparity_gradient_limit_px);
+  }
+
+  // Calls body(y, warped scanline pair) for all rows.
+  template <typename Body>
+  void for_each_warped_row(const Body& body) {
+    const std::size_t scratch_floats = warper_.scratch_floats();
+    execution_.for_each_band(height_, [&](int first_row, int end_row) {
+      const auto memory =
+          execution_.scratch().lease((scratch_floats + layout_.floats) * sizeof(float));
+      auto* scratch = reinterpret_cast<float*>(memory.data());
+      for (int y = first_row; y < end_row; ++y) {
+        float* pair = kept_ != nullptr ? kept_row(y) : scratch + scratch_floats;
+        warper_.warp(y, {scratch, scratch_floats}, pair);
+        body(y, warped_in(pair));
+      }
+    });
+  }
+
+  // As for_each_warped_row() in a second pass; reads the rows if they were kept.
+  template <typename Body>
+  void for_each_warped_row_again(const Body& body) {
+    if (kept_ == nullptr) {
+      for_each_warped_row(body);
+      return;
+    }
+    execution_.for_each_band(height_, [&](int first_row, int end_row) {
+      for (int y = first_row; y < end_row; ++y) {
+        body(y, warped_in(kept_row(y)));
+      }
+    });
+  }
+
+  void combine(Image<T>& image, SynthesizedView& view) {
+    const double alpha = warper_.alpha();
+    kernels::BlendWeights weights =
+        blend_weights(view.intensity, alpha, options_.gamma, double{kGreyLevelsPerUnit<T>});
+    weights.trust_at_ends = ViewFinisher<T>::trust_at_ends(options_, alpha);
+    ViewFinisher<T> finisher(options_, alpha, outline_places(), image.view(), view.sources.view(),
+                             execution_);
+    for_each_warped_row_again([&](int y, const kernels::WarpedPairRow& pair) {
+      const auto memory =
+          execution_.scratch().lease(static_cast<std::size_t>(width_) * sizeof(float));
+      auto* disparity_px = reinterpret_cast<float*>(memory.data());
+      const int row_holes =
+          kernels::blend_row(pair, weights, channels_,
+                             kernels::BlendedRow<T>{.pixels = image.row(y),
+                                                    .disparity_px = disparity_px,
+                                                    .holes = view.holes.row(y),
+                                                    .sources = view.sources.row(y)});
+      records_[static_cast<std::size_t>(y)].holes = row_holes;
+      finisher.finish_row({y, pair, disparity_px, row_holes});
+    });
+    finisher.finish_view();
+  }
+
+  [[nodiscard]] OutlinePlaces outline_places() const {
+    if constexpr (requires { warper_.camera_offsets(); }) {
+      return warper_.camera_offsets();
+    } else {
+      return [this](const SurfaceEdge& edge) { return warper_.coverage(edge); };
+    }
+  }
+
+  [[nodiscard]] bool empty_row(int y) const {
+    return records_[static_cast<std::size_t>(y)].holes == width_;
+  }
+
+  // A row without pixels copies the nearest row that has some; the upper one on a tie.
+  void fill_empty_rows(Image<T>& image) {
+    const std::size_t values =
+        static_cast<std::size_t>(width_) * static_cast<std::size_t>(channels_);
+    int y = 0;
+    while (y < height_) {
+      const int begin = y;
+      while (y < height_ && empty_row(y)) {
+        ++y;
+      }
+      const bool has_upper = begin > 0;
+      const bool has_lower = y < height_;
+      for (int row = begin; row < y && (has_upper || has_lower); ++row) {
+        const bool from_upper = has_upper && (!has_lower || row - (begin - 1) <= y - row);
+        std::copy_n(image.row(from_upper ? begin - 1 : y), values, image.row(row));
+      }
+      ++y;
+    }
+  }
+
+  const Warper& warper_;
+  const SynthesisOptions& options_;
+  Execution& execution_;
+  int width_;
+  int height_;
+  int channels_;
+  WarpedPairLayout layout_;
+  scheduler::ScratchPool::Lease records_memory_;
+  std::span<ViewRowRecord> records_;
+  scheduler::ScratchPool::Lease kept_memory_;
+  float* kept_ = nullptr;  // warped scanline pairs of all rows, if kept
+};
+
+/// Sums in grey levels.
+template <typename T, typename Warper>
+kernels::IntensitySums grey_level_sums(ViewAssembly<T, Warper>& synthesis) {
+  kernels::IntensitySums sums = synthesis.intensity_sums();
+  const double unit{kGreyLevelsPerUnit<T>};
+  for (int c = 0; c < 4; ++c) {
+    sums.left[c] *= unit;
+    sums.right[c] *= unit;
+    sums.left_right[c] *= unit * unit;
+    sums.left_left[c] *= unit * unit;
+  }
+  return sums;
+}
+
+}  // namespace vantage

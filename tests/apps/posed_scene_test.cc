@@ -1,0 +1,217 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "engine/evaluation/view_evaluation.h"
+#include "engine/generation/layered_scene.h"
+#include "engine/io/photograph_io.h"
+#include "tests/apps/vantage_process.h"
+#include "tests/temporary_folder.h"
+
+namespace vantage {
+namespace posed_scene_test {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// Four hand-held cameras about a square, turned by some degrees, with their poses as a COLMAP
+/// model in DIR/model; a fifth one between them for the truth.
+class PosedScene : public testing::Test {
+ protected:
+  static LayeredSceneOptions small_scene() {
+    LayeredSceneOptions options;
+    options.width_px = 160;
+    options.height_px = 120;
+    options.samples_per_side = 2;
+    return options;
+  }
+  static Eigen::Matrix3d turn(double x, double y, double z) {
+    constexpr double kDegree = std::numbers::pi / 180;
+    const Eigen::Vector3d radians = Eigen::Vector3d(x, y, z) * kDegree;
+    return Eigen::AngleAxisd(radians.norm(), radians.normalized()).toRotationMatrix();
+  }
+
+  PosedScene() {
+    fs::create_directory(images_);
+    add({0, 0, 0.05}, turn(0.5, -0.8, 2));
+    add({1, 0.1, 0}, turn(-0.4, 0.6, -3));
+    add({0.1, 0.9, -0.1}, turn(0.7, 0.3, 1));
+    add({0.9, 1, 0.1}, turn(-0.6, -0.5, 4));
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      write_photograph(fmt::format("{}/{}.png", images_, i), truth(cameras_[i]));
+    }
+    write_model(model_, {0, 0, 0, 0});
+  }
+
+  void add(const Eigen::Vector3d& centre, const Eigen::Matrix3d& rotation) {
+    cameras_.push_back(camera(centre, rotation));
+  }
+  [[nodiscard]] PosedCamera camera(const Eigen::Vector3d& centre,
+                                   const Eigen::Matrix3d& rotation) const {
+    PosedCamera made = scene_.camera({});
+    made.rotation = rotation;
+    made.translation = -rotation * centre;
+    return made;
+  }
+  [[nodiscard]] Photograph truth(const PosedCamera& at) const { return scene_.render(at, 0).image; }
+  [[nodiscard]] double psnr(const std::string& file, const PosedCamera& at) const {
+    return evaluate_view(read_photograph(file), truth(at), execution_).psnr_db;
+  }
+
+  /// With camera i turned by errors[i] degrees about its X axis from where it is.
+  void write_model(const std::string& folder, const std::vector<double>& errors) const {
+    fs::create_directories(folder);
+    const Eigen::Matrix3d& k = cameras_[0].matrix;
+    write_file(folder + "/cameras.txt", fmt::format("1 PINHOLE 160 120 {} {} {} {}\n", k(0, 0),
+                                                    k(1, 1), k(0, 2) + 0.5, k(1, 2) + 0.5));
+    std::string images;
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      Eigen::Matrix3d rotation = cameras_[i].rotation;
+      if (errors[i] != 0) {
+        rotation = turn(errors[i], 0, 0) * rotation;
+      }
+      const Eigen::Quaterniond q(rotation);
+      const Eigen::Vector3d t = -rotation * cameras_[i].centre();
+      images += fmt::format("{} {} {} {} {} {} {} {} 1 {}.png\n\n", i + 1, q.w(), q.x(), q.y(),
+                            q.z(), t.x(), t.y(), t.z(), i);
+    }
+    write_file(folder + "/images.txt", images);
+  }
+
+  [[nodiscard]] ProcessResult build(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"scene",    "build",    "-o",
+                                          place_,     "--images", images_,
+                                          "--preset", "fast",     "--disparities=0:14"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_vantage(arguments);
+  }
+  [[nodiscard]] ProcessResult view(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {"scene", "view", place_, "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_vantage(arguments);
+  }
+  void write_pose(const PosedCamera& at) const {
+    const Eigen::Matrix3d& r = at.rotation;
+    const Eigen::Matrix3d& k = at.matrix;
+    const Eigen::Vector3d& t = at.translation;
+    const nlohmann::json json = {
+        {"view",
+         {{{"K", {k(0, 0), 0, k(0, 2), 0, k(1, 1), k(1, 2), 0, 0, 1}},
+           {"R", {r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)}},
+           {"t", {t.x(), t.y(), t.z()}}}}}};
+    write_file(pose_, json.dump());
+  }
+
+  mutable Execution execution_{{.threads = 2}};
+  LayeredScene scene_{small_scene(), execution_};
+  TemporaryFolder folder_;
+  std::string images_ = folder_ / "images";
+  std::string model_ = folder_ / "model";
+  std::string place_ = folder_ / "scene";
+  std::string pose_ = folder_ / "pose.json";
+  std::vector<PosedCamera> cameras_;
+};
+
+TEST_F(PosedScene, ViewsOfAColmapModelComeFromSeveralImages) {
+  const ProcessResult built = build({"--poses", model_});
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  EXPECT_THAT(run_vantage({"scene", "info", place_}).out,
+              AllOf(HasSubstr("images 4, 160x120 pixels"), HasSubstr("0 refused")));
+
+  const PosedCamera wanted = camera({0.5, 0.5, 0.05}, turn(0.2, 0.3, 1));
+  write_pose(wanted);
+  const auto psnr_of = [&](const std::string& sources) {
+    const ProcessResult seen =
+        view({"--pose", pose_, "--sources", sources, "-o", folder_ / "v.png"});
+    EXPECT_EQ(seen.exit_code, 0) << seen.err;
+    return psnr(folder_ / "v.png", wanted);
+  };
+  const double of_two = psnr_of("2");
+  const double of_four = psnr_of("4");
+  EXPECT_GT(of_two, 21);
+  EXPECT_GT(of_four, of_two + 0.5);
+
+  // At an image the view is that image, but for what its map does not know.
+  ASSERT_EQ(view({"--between", "1:2:0", "-o", folder_ / "same.png"}).exit_code, 0);
+  EXPECT_GT(psnr(folder_ / "same.png", cameras_[1]), 30);
+  ASSERT_EQ(view({"--sweep", "0:3:3", "-o", folder_ / "s%d.png"}).exit_code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "s2.png"));
+}
+
+TEST_F(PosedScene, WrongPosesAreCorrectedAndHopelessEdgesLeftOut) {
+  const std::string noisy = folder_ / "noisy";
+  write_model(noisy, {0, 0.5, 0, 0});  // a pixel and a half
+  const ProcessResult built = build({"--poses", noisy, "--report", folder_ / "build.json"});
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  const auto results = nlohmann::json::parse(read_file(folder_ / "build.json")).at("results");
+  EXPECT_GE(results.at("poses_corrected"), 1);
+  for (const auto& edge : results.at("edges_matched")) {
+    if (edge.contains("pose_corrected_degrees")) {
+      EXPECT_NEAR(edge.at("pose_corrected_degrees"), 0.5, 0.4);
+      EXPECT_LT(edge.at("rectification").at("systematic_px"), 0.6);
+    }
+  }
+
+  write_model(noisy, {0, 0, 0, 25});
+  const ProcessResult refused = build({"--poses", noisy});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("3.png: all its edges were refused, expected at least one"));
+}
+
+TEST_F(PosedScene, TumPosesBelongToImagesNamedAfterTheirTimes) {
+  const auto write_trajectory = [&](double start) {
+    std::string text = "# time tx ty tz qx qy qz qw\n";
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Eigen::Quaterniond q(Eigen::Matrix3d(cameras_[i].rotation.transpose()));
+      const Eigen::Vector3d c = cameras_[i].centre();
+      text += fmt::format("{} {} {} {} {} {} {} {}\n", start + static_cast<double>(i), c.x(), c.y(),
+                          c.z(), q.x(), q.y(), q.z(), q.w());
+    }
+    write_file(folder_ / "tum.txt", text);
+  };
+  write_trajectory(0.01);  // images are 0.png to 3.png, the last one without a pose
+  const Eigen::Matrix3d& k = cameras_[0].matrix;
+  write_file(folder_ / "camera.txt",
+             fmt::format("{} {} {} {}\n", k(0, 0), k(1, 1), k(0, 2), k(1, 2)));
+  EXPECT_THAT(build({"--poses", folder_ / "tum.txt"}).err, HasSubstr("expected --intrinsics too"));
+  const ProcessResult built =
+      build({"--poses", folder_ / "tum.txt", "--intrinsics", folder_ / "camera.txt"});
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  EXPECT_THAT(built.err, HasSubstr("3 images, 3 edges"));
+  EXPECT_THAT(read_file(place_ + "/scene.json"),
+              testing::Not(HasSubstr("corrected_degrees")));  // the poses fit
+
+  write_trajectory(100);
+  EXPECT_THAT(build({"--poses", folder_ / "tum.txt", "--intrinsics", folder_ / "camera.txt"}).err,
+              HasSubstr("no pose is within 0.02 s of an image"));
+}
+
+TEST_F(PosedScene, SaysWhatIsWrong) {
+  const auto problem = [&](const std::vector<std::string>& more) {
+    const ProcessResult result = build(more);
+    EXPECT_NE(result.exit_code, 0);
+    return result.err;
+  };
+  EXPECT_THAT(problem({"--poses", model_, "--grid", "2x2"}), HasSubstr("grid"));
+  EXPECT_THAT(problem({"--poses", model_, "--intrinsics", model_ + "/cameras.txt"}),
+              HasSubstr("--intrinsics is given with a COLMAP model"));
+  EXPECT_THAT(problem({"--poses", model_, "--neighbours", "0"}), HasSubstr("--neighbours is 0"));
+  EXPECT_THAT(problem({"--neighbours", "3"}), HasSubstr("neighbours"));
+  fs::rename(images_ + "/3.png", images_ + "/x.png");
+  EXPECT_THAT(problem({"--poses", model_}), HasSubstr("3.png is missing, expected an image of"));
+  fs::rename(images_ + "/x.png", images_ + "/3.png");
+  write_file(model_ + "/cameras.txt", "1 PINHOLE 320 240 600 600 160 120\n");
+  EXPECT_THAT(problem({"--poses", model_}), HasSubstr("expected 320×240 as its camera"));
+}
+
+}  // namespace posed_scene_test
+}  // namespace vantage
