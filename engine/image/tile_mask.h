@@ -75,6 +75,19 @@ class TileMask {
     return result;
   }
 
+  /// The tiles that are set and lie in set tiles of `others`, whose side is a multiple of this
+  /// one's.
+  [[nodiscard]] TileMask within(const TileMask& others) const {
+    TileMask result = *this;
+    const int ratio = others.side_px_ / side_px_;
+    for (int row = 0; row < rows_; ++row) {
+      for (int column = 0; column < columns_; ++column) {
+        result.set(column, row, at(column, row) && others.at(column / ratio, row / ratio));
+      }
+    }
+    return result;
+  }
+
   /// Tiles of side_px of an image whose pixels stand for px_per_column² pixels of this one: those
   /// with pixels in, or within margin_px (of the result's pixels) of, tiles that are set.
   [[nodiscard]] TileMask widened(scheduler::Extent image, int px_per_column, int margin_px,

@@ -37,16 +37,28 @@ int pruned_level_count(const MethodParameters& parameters, std::size_t levels) {
 int cell_bytes(const MethodParameters& parameters) { return has_likelihoods(parameters) ? 1 : 2; }
 
 /// Reduces the costs of a coarse level to the next coarser one. Rows need no strips, because a cell
-/// reads one block only.
+/// reads one block only. regions: of the coarser level, for Bayesian diffusion; null: all.
 void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
-                  LevelVolume& coarser, Execution& execution) {
+                  const std::vector<scheduler::Region>* regions, LevelVolume& coarser,
+                  Execution& execution) {
   const bool is_bayes = has_likelihoods(parameters);
   const auto weight = static_cast<float>(parameters.level_weight);
+  if (regions != nullptr) {
+    execution.executor().parallel_for(static_cast<int>(regions->size()), [&](int index) {
+      const scheduler::Region& region = (*regions)[static_cast<std::size_t>(index)];
+      std::vector<std::uint16_t> work(static_cast<std::size_t>(finer.lanes()));
+      for (int y = region.rows.begin; y < region.rows.end; ++y) {
+        reduce_float_energy_row(finer, y, region.columns, weight, work.data(), coarser);
+      }
+    });
+    return;
+  }
   execution.for_each_band(coarser.extent().rows, [&](int first_row, int end_row) {
     std::vector<std::uint16_t> work(is_bayes ? static_cast<std::size_t>(finer.lanes()) : 0);
     for (int y = first_row; y < end_row; ++y) {
       if (is_bayes) {
-        reduce_float_energy_row(finer, y, weight, work.data(), coarser);
+        reduce_float_energy_row(finer, y, {0, coarser.extent().columns}, weight, work.data(),
+                                coarser);
       } else {
         reduce_half_energy_row(finer, y, coarser);
       }
@@ -59,25 +71,40 @@ CandidateBlocks::SmoothTiles use_of_smooth_tiles(const CheckMap& check_map) {
   return check_map.disparity_px.empty() ? kIgnored : check_map.is_all ? kLeftOut : kMarked;
 }
 
-/// `map_px` may be `check_px`.
-void make_check_map(const TileMask& smooth, ImageView<const std::int32_t> winners,
-                    int disparity_min, ImageView<const float> map_px, ImageView<float> check_px,
+/// `map_px` may be `check_px`. tiles: the only ones to write; null: all.
+void make_check_map(const TileMask& smooth, const TileMask* tiles,
+                    ImageView<const std::int32_t> winners, int disparity_min,
+                    ImageView<const float> map_px, ImageView<float> check_px,
                     Execution& execution) {
+  const TileMask from_level = tiles != nullptr ? smooth.within(*tiles) : smooth;
+  const TileMask from_map = tiles != nullptr ? smooth.inverse().within(*tiles) : smooth.inverse();
   execution.for_each_band(check_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
       const std::int32_t* const of_row = winners.row(y / 2);
       float* const row = check_px.row(y);
       const int tile_y = smooth.row_of_pixel(y);
-      smooth.for_each_run(tile_y, false, [&](scheduler::Range columns) {
+      from_map.for_each_run(tile_y, true, [&](scheduler::Range columns) {
         std::copy(map_px.row(y) + columns.begin, map_px.row(y) + columns.end, row + columns.begin);
       });
-      smooth.for_each_run(tile_y, true, [&](scheduler::Range columns) {
+      from_level.for_each_run(tile_y, true, [&](scheduler::Range columns) {
         for (int x = columns.begin; x < columns.end; ++x) {
           row[x] = static_cast<float>(of_row[x / 2] + disparity_min);
         }
       });
     }
   });
+}
+
+/// Share of a level's pixels that are searched. parts: null: all.
+double share_of(const SearchedParts::OfLevel* parts, scheduler::Extent extent) {
+  if (parts == nullptr) {
+    return 1;
+  }
+  double pixels = 0;
+  for (const scheduler::Region& region : parts->winners) {
+    pixels += static_cast<double>(region.columns.size()) * region.rows.size();
+  }
+  return pixels / (static_cast<double>(extent.columns) * extent.rows);
 }
 
 /// What a check map is made from.
@@ -93,7 +120,7 @@ CheckSource search_fine_levels(const MethodParameters& parameters,
                                const std::vector<scheduler::Extent>& extents, CoarseLevels& levels,
                                Execution& execution, const CoarseMap& coarse_map,
                                const CheckMap& check_map, const std::vector<VolumeWriter>& volumes,
-                               LevelCells& cells, TileMask& smooth) {
+                               const SearchedParts* parts, LevelCells& cells, TileMask& smooth) {
   const int from = levels.window_levels();
   const EnergyFormat format(parameters);
   const LevelBeliefs coarse(levels.result(from), levels.blocks(from),
@@ -109,31 +136,36 @@ CheckSource search_fine_levels(const MethodParameters& parameters,
     const scheduler::Span span(kLevelNames[1]);
     Image<std::int32_t>& winners =
         coarse_map.level == 1 ? *coarse_map.winners : levels.windows().winners;
-    windows.search_level_1(coarse, extents[1], winners);
+    const auto* const of_level = parts != nullptr ? parts->of(1) : nullptr;
+    windows.search_level_1(coarse, extents[1], of_level != nullptr ? &of_level->winners : nullptr,
+                           winners);
     source.winners = std::as_const(winners).view();
     if (const auto* const writer = find_writer(volumes, VolumeKind::kAggregated, 1)) {
       write_window_volume(levels.windows().state, geometry.count, *writer, execution);
     }
-    count(extents[1], 1);
+    count(extents[1], share_of(of_level, extents[1]));
   }
   if (coarse_map.is_all) {
     return source;
   }
   const scheduler::Span span(kLevelNames[0]);
-  std::optional<TileMask> rough;
+  std::optional<TileMask> tiles;
+  if (parts != nullptr) {
+    tiles = parts->map;
+  }
   if (!check_map.disparity_px.empty()) {
     smooth = smooth_tiles(source.winners, extents[0], geometry.steps_per_px, execution);
     if (check_map.is_all) {
-      rough = smooth.inverse();
+      tiles = tiles ? smooth.inverse().within(*tiles) : smooth.inverse();
     }
   }
   const auto* const writer = find_writer(volumes, VolumeKind::kAggregated, 0);
   WindowState* const state = writer != nullptr ? &levels.windows().finest : nullptr;
-  windows.search_level_0(from == 1 ? &coarse : nullptr, outputs, rough ? &*rough : nullptr, state);
+  windows.search_level_0(from == 1 ? &coarse : nullptr, outputs, tiles ? &*tiles : nullptr, state);
   if (writer != nullptr) {
     write_window_volume(*state, geometry.count, *writer, execution);
   }
-  count(extents[0], rough ? rough->share() : 1);
+  count(extents[0], tiles ? tiles->share() : 1);
   return source;
 }
 
@@ -146,6 +178,7 @@ void CoarseLevels::resize(const MethodParameters& parameters,
   for (std::size_t i = 0; i < costs_.size(); ++i) {
     costs_[i].resize(extents[i + 1], lanes, cell_bytes(parameters));
   }
+  winners_.resize(costs_.size());
   window_levels_ = window_level_count(parameters, extents.size());
   blocks_.resize(static_cast<std::size_t>(pruned_level_count(parameters, extents.size())));
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
@@ -173,7 +206,7 @@ void CoarseLevels::choose_blocks(int level, const kernels::CandidateGeometry& ge
 
 Image<std::int32_t>& CoarseLevels::start_winners(int level, Image<std::int32_t>* kept) {
   const scheduler::Extent extent = costs(level).extent();
-  coarser_winners_ = kept != nullptr ? kept : &winners_;
+  coarser_winners_ = kept != nullptr ? kept : &winners_[static_cast<std::size_t>(level) - 1];
   coarser_winners_->resize(extent.columns, extent.rows);
   return *coarser_winners_;
 }
@@ -186,7 +219,10 @@ std::size_t CoarseLevels::held_bytes() const {
   for (const CandidateBlocks& blocks : blocks_) {
     bytes += blocks.held_bytes();
   }
-  return bytes + vantage::held_bytes(winners_) + windows_.held_bytes();
+  for (const Image<std::int32_t>& winners : winners_) {
+    bytes += vantage::held_bytes(winners);
+  }
+  return bytes + windows_.held_bytes();
 }
 
 std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
@@ -226,19 +262,25 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
                                 Execution& execution,
                                 const std::function<void(const MatchChain&)>& run,
                                 const CoarseMap& coarse_map, const CheckMap& check_map,
-                                const std::vector<VolumeWriter>& volumes) {
+                                const std::vector<VolumeWriter>& volumes,
+                                const SearchedParts* parts) {
   const auto extents =
       level_extents({geometry.width, outputs.disparity_px.height()}, parameters.levels);
   const int coarsest = static_cast<int>(extents.size()) - 1;
   levels.resize(parameters, extents, geometry.count);
-  const CoarseMapParts* const parts = coarse_map.is_all ? coarse_map.parts : nullptr;
+  const auto parts_of = [parts](int level) {
+    return parts != nullptr ? parts->of(level) : nullptr;
+  };
   if (coarsest > 0) {
     const scheduler::Span span("reduce");
-    run(MatchChain(
-        parameters, geometry, input, outputs,
-        {.reduced = &levels.costs(1), .regions = parts != nullptr ? &parts->costs : nullptr}));
+    run(MatchChain(parameters, geometry, input, outputs,
+                   {.reduced = &levels.costs(1),
+                    .regions = parts != nullptr ? &parts->of(1)->costs : nullptr}));
     for (int level = 2; level <= coarsest; ++level) {
-      reduce_level(parameters, levels.costs(level - 1), levels.costs(level), execution);
+      const auto* const of_level = parts_of(level);
+      reduce_level(parameters, levels.costs(level - 1),
+                   of_level != nullptr ? &of_level->costs : nullptr, levels.costs(level),
+                   execution);
     }
   }
   for (int level = 0; level <= coarsest; ++level) {
@@ -276,27 +318,34 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
       place.costs = &levels.costs(level);
       place.result = &levels.start_result(level);
     }
-    if (level == finest && parts != nullptr) {
-      place.regions = &parts->winners;
+    const auto* const searched = parts_of(level);
+    std::vector<scheduler::Region> of_map;
+    if (searched != nullptr) {
+      place.regions = &searched->winners;
+    } else if (level == 0 && parts != nullptr) {
+      of_map = parts->map.regions();
+      place.regions = &of_map;
     }
     place.volume = find_writer(volumes, VolumeKind::kAggregated, level);
     run(MatchChain(parameters, of_level, input, outputs, place));
     cells.finest_level = place.blocks != nullptr
                              ? place.blocks->cells()
                              : static_cast<double>(extent.columns) * extent.rows * geometry.count;
+    cells.finest_level *=
+        level == 0 && parts != nullptr ? parts->map.share() : share_of(searched, extent);
     cells.all_levels += cells.finest_level;
   }
   TileMask smooth;
   CheckSource source;
   if (finest < levels.window_levels()) {
     source = search_fine_levels(parameters, geometry, input, outputs, extents, levels, execution,
-                                coarse_map, check_map, volumes, cells, smooth);
+                                coarse_map, check_map, volumes, parts, cells, smooth);
   } else if (!check_map.disparity_px.empty()) {
     source = {&levels.blocks(0)->smooth(), std::as_const(levels.coarser_winners()).view()};
   }
   if (!check_map.disparity_px.empty()) {
-    make_check_map(*source.smooth, source.winners, geometry.disparity_min, outputs.disparity_px,
-                   check_map.disparity_px, execution);
+    make_check_map(*source.smooth, parts != nullptr ? &parts->map : nullptr, source.winners,
+                   geometry.disparity_min, outputs.disparity_px, check_map.disparity_px, execution);
   }
   return cells;
 }

@@ -12,6 +12,7 @@
 #include "engine/matching/levels/candidate_blocks.h"
 #include "engine/matching/levels/level_volume.h"
 #include "engine/matching/match_chain.h"
+#include "engine/matching/searched_parts.h"
 #include "kernels/candidates.h"
 #include "scheduler/range.h"
 
@@ -65,8 +66,8 @@ class CoarseLevels {
 
   std::vector<LevelVolume> costs_;
   std::array<LevelVolume, 2> results_;
-  std::vector<CandidateBlocks> blocks_;  ///< of pruned levels
-  Image<std::int32_t> winners_;          ///< of the previous (coarser) level, unless kept elsewhere
+  std::vector<CandidateBlocks> blocks_;             ///< of pruned levels
+  std::vector<Image<std::int32_t>> winners_;        ///< of levels from 1 on, unless kept elsewhere
   Image<std::int32_t>* coarser_winners_ = nullptr;  ///< of the previous level
   int window_levels_ = 0;
   FineWindowsWork windows_;
@@ -82,15 +83,6 @@ struct LevelCells {
 std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
                                int candidates);
 
-/// Parts of the finest stored level. In each image regions do not overlap.
-struct CoarseMapParts {
-  /// The level's costs are computed here; elsewhere they are those of the last call with these
-  /// CoarseLevels, whose images had the same size and candidates.
-  std::vector<scheduler::Region> costs;
-  /// Winners and result are computed here; elsewhere they are undefined.
-  std::vector<scheduler::Region> winners;
-};
-
 /// The map of a coarse level, in addition to the image's own or instead of it.
 struct CoarseMap {
   int level = 0;  ///< 1 to the coarsest level; 0: not requested
@@ -98,8 +90,6 @@ struct CoarseMap {
   Image<std::int32_t>* winners = nullptr;
   /// No finer level is computed; of the outputs, only the size is used.
   bool is_all = false;
-  /// With is_all and level 1: the only parts to compute; null: all.
-  const CoarseMapParts* parts = nullptr;
 };
 
 /// What the other image's map is checked against, beside the map: the disparities of the map, but
@@ -136,13 +126,15 @@ bool has_check_map(const MethodParameters& parameters, scheduler::Extent extent)
 ///
 /// `coarse_map` (Bayesian diffusion only) does not depend on whether finer levels are computed, nor
 /// `check_map` on whether the map is. `volumes`: take the cells of their levels; costs of a level
-/// are computed once more for them.
+/// are computed once more for them. `parts`: the only ones to compute, without volumes; null: all.
+/// Levels, winners and outputs must then be those of the last call.
 LevelCells match_coarse_to_fine(const MethodParameters& parameters,
                                 const kernels::CandidateGeometry& geometry, const ChainInput& input,
                                 const MapOutputs& outputs, CoarseLevels& levels,
                                 Execution& execution,
                                 const std::function<void(const MatchChain&)>& run,
                                 const CoarseMap& coarse_map = {}, const CheckMap& check_map = {},
-                                const std::vector<VolumeWriter>& volumes = {});
+                                const std::vector<VolumeWriter>& volumes = {},
+                                const SearchedParts* parts = nullptr);
 
 }  // namespace vantage

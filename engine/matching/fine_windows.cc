@@ -32,11 +32,14 @@ std::size_t FineWindowsWork::held_bytes() const {
 }
 
 void FineWindows::search_level_1(const CoarseBeliefs& coarse, scheduler::Extent extent,
+                                 const std::vector<scheduler::Region>* regions,
                                  Image<std::int32_t>& winners) {
   const MethodParameters of_level = at_level(parameters_, 1);
   work_.coarse_px.resize(extent.columns, extent.rows);
-  search_windows(level_input(of_level, 1, geometry_, input_, coarse), parameters_.subpixel,
-                 {.disparity_px = work_.coarse_px.view(), .state = &work_.state}, execution_);
+  search_windows(
+      level_input(of_level, 1, geometry_, input_, coarse), parameters_.subpixel,
+      {.disparity_px = work_.coarse_px.view(), .state = &work_.state, .regions = regions},
+      execution_);
   winners.resize(extent.columns, extent.rows);
   execution_.for_each_band(extent.rows, [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "engine/execution.h"
 #include "engine/image/disparity_maps.h"
@@ -39,9 +40,10 @@ class FineWindows {
         execution_(execution),
         work_(work) {}
 
-  /// Searches level 1 from the beliefs of level 2. winners: numbers of candidates, resized.
+  /// Searches level 1 from the beliefs of level 2. regions: the only ones to search; null: all.
+  /// winners: numbers of candidates, resized.
   void search_level_1(const CoarseBeliefs& coarse, scheduler::Extent extent,
-                      Image<std::int32_t>& winners);
+                      const std::vector<scheduler::Region>* regions, Image<std::int32_t>& winners);
   /// Searches level 0. coarse: of level 1; null: those of search_level_1(). tiles: the only ones to
   /// write; null: all. state: null: not requested.
   void search_level_0(const CoarseBeliefs* coarse, const MapOutputs& outputs, const TileMask* tiles,

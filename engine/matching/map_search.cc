@@ -67,7 +67,7 @@ kernels::CandidateGeometry seen_by_any(kernels::CandidateGeometry geometry,
 
 void MapSearch::compute(Side reference, const ChainInput& input, const MapOutputs& outputs,
                         const CoarseMap& coarse, const CheckMap& check,
-                        std::span<const VolumeRequest> volumes) {
+                        std::span<const VolumeRequest> volumes, const SearchedParts* parts) {
   const int width = outputs.disparity_px.width();
   const int height = outputs.disparity_px.height();
   const auto grid = displacement_grid(options_, reference, width, height);
@@ -80,7 +80,7 @@ void MapSearch::compute(Side reference, const ChainInput& input, const MapOutput
     geometry = grid->columns();
   }
   search(geometry, searched, outputs, coarse, check,
-         start_writers(reference, {width, height}, along_rows, volumes));
+         start_writers(reference, {width, height}, along_rows, volumes), parts);
   if (geometry.steps_per_px > 1) {
     const bool has_own_map = !coarse.is_all && !check.is_all;
     for (const ImageView<float>& map :
@@ -92,7 +92,7 @@ void MapSearch::compute(Side reference, const ChainInput& input, const MapOutput
 
 void MapSearch::search(const kernels::CandidateGeometry& geometry, const ChainInput& searched,
                        const MapOutputs& outputs, const CoarseMap& coarse, const CheckMap& check,
-                       const std::vector<VolumeWriter>& writers) {
+                       const std::vector<VolumeWriter>& writers, const SearchedParts* parts) {
   const double candidates = candidate_count(options_.disparities, parameters_) *
                             (options_.disparities_y ? options_.disparities_y->count() : 1.0);
   const double pixels =
@@ -119,7 +119,7 @@ void MapSearch::search(const kernels::CandidateGeometry& geometry, const ChainIn
           is_first = false;
         }
       },
-      coarse, check, writers);
+      coarse, check, writers, parts);
   report_.cells += cells.all_levels;
   if (coarse.is_all) {
     if (!plan_before.passes.empty()) {
@@ -127,11 +127,12 @@ void MapSearch::search(const kernels::CandidateGeometry& geometry, const ChainIn
     }
     return;
   }
-  if (parameters_.window_levels > 0) {
-    report_.plan = std::move(plan_of_costs);  // windows have no chain
+  // Windows have no chain. Costs of parts have no plan.
+  if (parameters_.window_levels > 0 && !plan_of_costs.passes.empty()) {
+    report_.plan = std::move(plan_of_costs);
   }
   report_.finest_cells += cells.finest_level;
-  report_.finest_pixels += pixels;
+  report_.finest_pixels += pixels * (parts != nullptr ? parts->map.share() : 1);
 }
 
 /// One writer for all volumes of the same cells.

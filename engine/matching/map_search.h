@@ -40,16 +40,18 @@ class MapSearch {
         report_(report) {}
 
   /// `outputs` have the image's size; with coarse.is_all only that size is used. `volumes`: those
-  /// whose side is `reference` are written; none with coarse.is_all. Throws Error when no pixel has
-  /// a candidate, UsageError for a level of a volume that the image does not have.
+  /// whose side is `reference` are written; none with coarse.is_all. `parts`: the only ones to
+  /// compute, see match_coarse_to_fine(), with candidates of whole pixels; null: all. Throws Error
+  /// when no pixel has a candidate, UsageError for a level of a volume that the image does not
+  /// have.
   void compute(Side reference, const ChainInput& input, const MapOutputs& outputs,
                const CoarseMap& coarse, const CheckMap& check = {},
-               std::span<const VolumeRequest> volumes = {});
+               std::span<const VolumeRequest> volumes = {}, const SearchedParts* parts = nullptr);
 
  private:
   void search(const kernels::CandidateGeometry& geometry, const ChainInput& searched,
               const MapOutputs& outputs, const CoarseMap& coarse, const CheckMap& check,
-              const std::vector<VolumeWriter>& writers);
+              const std::vector<VolumeWriter>& writers, const SearchedParts* parts);
   [[nodiscard]] std::vector<VolumeWriter> start_writers(
       Side reference, scheduler::Extent image, const kernels::CandidateGeometry& along_rows,
       std::span<const VolumeRequest> volumes) const;

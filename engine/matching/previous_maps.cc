@@ -1,32 +1,69 @@
 #include "engine/matching/previous_maps.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <variant>
 
 #include "engine/image/memory_use.h"
+#include "engine/matching/aggregation/aggregation_table.h"
+#include "engine/matching/options/method_rules.h"
 
 namespace vantage {
 
-void PreviousMaps::choose(const Photograph& left, const Photograph& right) {
-  const auto has_map = [&](const OfSide& side) {
-    const DisparityMap& map_px = side.winners.disparity_px;
-    return map_px.width() == left.width() && map_px.height() == left.height();
-  };
-  choose_tiles(std::get<Image<std::uint8_t>>(left.pixels),
-               std::get<Image<std::uint8_t>>(right.pixels),
-               !has_map(sides_[0]) && !has_map(sides_[1]));
-  for (OfSide& side : sides_) {
-    if (!has_map(side)) {  // perhaps only the other map was requested before
-      side.searched.assign(left.width(), left.height(), true);
-      side.refinement.restart();
-    }
-    side.refinement.start(side.searched);
+std::string_view reuse_obstacle(const ResolvedMatchOptions& options) {
+  const MethodParameters& parameters = options.parameters;
+  if (parameters.levels == 1 || !has_likelihoods(parameters)) {
+    return "a method without coarse levels of Bayesian diffusion";
   }
+  if (options.disparities_y) {
+    return "disparities-y";
+  }
+  if (parameters.selection != Selection::kWinner) {
+    return "a selection other than winner";
+  }
+  if (steps_per_px(parameters) > 1) {
+    return "candidates between pixels";
+  }
+  return uses_pair_exposure(parameters) ? "grey levels estimated from each pair" : "";
+}
+
+void copy_winners(const MatchedMap& map, Execution& execution, MatchedMap& copy) {
+  const auto copy_rows = [&execution](const Image<float>& from, Image<float>& to) {
+    to.resize(from.width(), from.height());
+    execution.for_each_band(from.height(), [&](int first_row, int end_row) {
+      for (int y = first_row; y < end_row; ++y) {
+        std::copy_n(from.row(y), from.width(), to.row(y));
+      }
+    });
+  };
+  copy_rows(map.disparity_px, copy.disparity_px);
+  copy_rows(map.confidence, copy.confidence);
+}
+
+void PreviousMaps::choose(const Photograph& left, const Photograph& right, const Content& content) {
+  const bool is_first = content_ != content;
+  if (is_first) {
+    forget();
+  }
+  choose_tiles(std::get<Image<std::uint8_t>>(left.pixels),
+               std::get<Image<std::uint8_t>>(right.pixels), is_first, half_size_);
+  const int scale = content.map.columns > left.width() ? 2 : 1;
+  for (std::size_t i = 0; i < sides_.size(); ++i) {
+    TileMask& searched = sides_[i].searched;
+    searched.assign(content.map.columns, content.map.rows, false, scale * TileMask::kSidePx);
+    for (int row = 0; row < searched.rows(); ++row) {
+      for (int column = 0; column < searched.columns(); ++column) {
+        searched.set(column, row, half_size_[i].at(column, row));
+      }
+    }
+    sides_[i].refinement.start(searched);
+  }
+  content_ = content;
 }
 
 void PreviousMaps::forget() {
+  content_.reset();
   for (OfSide& side : sides_) {
-    side.winners.disparity_px.resize(0, 0);
     side.refinement.restart();
   }
 }
@@ -35,7 +72,8 @@ std::size_t PreviousMaps::held_bytes() const {
   std::size_t bytes = 0;
   for (const OfSide& side : sides_) {
     bytes += vantage::held_bytes(side.winners) + side.refinement.held_bytes() +
-             side.search.levels.held_bytes();
+             side.search.levels.held_bytes() + vantage::held_bytes(side.check_px) +
+             vantage::held_bytes(side.coarse_winners);
   }
   return bytes;
 }

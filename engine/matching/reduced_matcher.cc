@@ -42,39 +42,31 @@ DisparityRange possible_range(const ResolvedMatchOptions& options, const Photogr
 }
 
 /// What is computed of each level to write some tiles of the map.
-struct SearchedParts {
-  CoarseMapParts search;
+struct ReducedParts {
+  SearchedParts search;
   std::vector<scheduler::Region> coarse_windows;  ///< of the level of windows before the map's
   std::vector<scheduler::Region> maps;
 };
 
-/// searched: size of the images that are searched. iterations: of levels of windows.
-SearchedParts parts_of(const TileMask& tiles, scheduler::Extent searched, int reductions,
-                       int iterations) {
-  constexpr int kSidePx = 4;
+/// searched: size of the images that are searched, with `parameters`.
+ReducedParts parts_of(const TileMask& tiles, scheduler::Extent searched, int reductions,
+                      const MethodParameters& parameters) {
   const scheduler::Extent level = coarser_extent(searched);
   const int columns_per_column = 1 << reductions;
-  const int reach = coarse_reach(iterations);
-  SearchedParts parts;
-  parts.search.costs = tiles.widened(level, columns_per_column, 0, kSidePx).regions();
+  const int reach = coarse_reach(parameters.final_iterations);
+  ReducedParts parts;
   parts.maps = tiles.regions();
+  TileMask winners;
   if (reductions == 1) {
-    parts.search.winners = tiles.widened(level, columns_per_column, reach, kSidePx).regions();
-    return parts;
+    winners = tiles.widened(level, columns_per_column, reach, kPartSidePx);
+  } else {
+    const TileMask windows = tiles.widened(searched, 2, reach, kPartSidePx);
+    parts.coarse_windows = windows.regions();
+    winners = windows.widened(level, 2, reach, kPartSidePx);
   }
-  const TileMask windows = tiles.widened(searched, 2, reach, kSidePx);
-  parts.coarse_windows = windows.regions();
-  parts.search.winners = windows.widened(level, 2, reach, kSidePx).regions();
+  parts.search.levels = coarse_parts(tiles.widened(level, columns_per_column, 0, kPartSidePx),
+                                     winners, searched, parameters);
   return parts;
-}
-
-void copy_rows(const Image<float>& image, Execution& execution, Image<float>& copy) {
-  copy.resize(image.width(), image.height());
-  execution.for_each_band(image.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      std::copy_n(image.row(y), image.width(), copy.row(y));
-    }
-  });
 }
 
 /// Refinement of maps of half the size, whose columns are two pixels wide.
@@ -154,17 +146,14 @@ void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence,
   input.edges = work.search_edges.prepare(searched, search.parameters, execution_);
   // Only the size counts.
   const ImageView<float> size(nullptr, searched.width(), searched.height(), 1, 0);
-  SearchedParts parts;
+  ReducedParts parts;
   if (tiles != nullptr) {
-    parts = parts_of(*tiles, {searched.width(), searched.height()}, reductions,
-                     options_.parameters.final_iterations);
+    parts = parts_of(*tiles, {searched.width(), searched.height()}, reductions, search.parameters);
   }
   MapSearch(search, search.parameters, execution_, search_work, report)
       .compute(side, input, {.disparity_px = size},
-               {.level = kSearchLevel,
-                .winners = &work.winners,
-                .is_all = true,
-                .parts = tiles != nullptr ? &parts.search : nullptr});
+               {.level = kSearchLevel, .winners = &work.winners, .is_all = true}, {}, {},
+               tiles != nullptr ? &parts.search : nullptr);
 
   const auto searched_geometry =
       candidate_geometry(search, side, searched.width(), searched.height());
@@ -236,13 +225,10 @@ void ReducedMatcher::compute_changed(Side side, int reductions, bool wants_confi
                                      PreviousMaps& previous, Work& work,
                                      MatchReport& report) const {
   PreviousMaps::OfSide& kept = previous.of(side);
-  const bool is_all = kept.searched.count() == kept.searched.size();
-  compute(side, reductions, wants_confidence, is_all ? nullptr : &kept.searched, kept.search, work,
+  compute(side, reductions, wants_confidence, previous.searched_tiles(side), kept.search, work,
           kept.winners, report);
   report.searched_share = std::max(report.searched_share.value_or(0), kept.searched.share());
-  MatchedMap& half = work.halves.of(side);
-  copy_rows(kept.winners.disparity_px, execution_, half.disparity_px);
-  copy_rows(kept.winners.confidence, execution_, half.confidence);
+  copy_winners(kept.winners, execution_, work.halves.of(side));
 }
 
 void ReducedMatcher::refine(const Outputs& outputs, PreviousMaps* previous, Work& work,
@@ -278,7 +264,11 @@ void ReducedMatcher::match(const Photograph& left, const Photograph& right, cons
       outputs.confidence || (options_.refinement && uses_confidence(*options_.refinement));
   if (previous != nullptr) {
     clock.start("changes");
-    previous->choose(work->images[0].reduced(1), work->images[1].reduced(1));
+    const Photograph& half = work->images[0].reduced(1);
+    const std::uint32_t wanted =
+        (outputs.left || is_checked ? 1U : 0U) | (outputs.right || is_checked ? 2U : 0U) |
+        (outputs.left ? 4U : 0U) | (outputs.right ? 8U : 0U) | (wants_confidence ? 16U : 0U);
+    previous->choose(half, work->images[1].reduced(1), {{half.width(), half.height()}, wanted});
   }
   for (const Side side : {Side::kLeft, Side::kRight}) {
     MatchedMap& half = work->halves.of(side);

@@ -229,6 +229,22 @@ std::pair<StereoMatcher::MapNeed, StereoMatcher::MapNeed> StereoMatcher::needs(
   return {need(request.left, request.right), need(request.right, request.left)};
 }
 
+/// Chooses the tiles of both maps that are searched.
+void StereoMatcher::choose_tiles(MapTask& left, MapTask& right, bool wants_confidence,
+                                 PreviousMaps& previous, Prepared& prepared) const {
+  std::uint32_t needed = wants_confidence ? 1 : 0;
+  for (MapTask* const task : {&left, &right}) {
+    prepared.halves[index_of(task->side)].prepare(*task->image, 1, execution_);
+    task->previous = &previous;
+    for (const bool is_needed :
+         {task->need.whole, task->need.coarse, task->need.check, task->need.check_is_all}) {
+      needed = 2 * needed + (is_needed ? 1 : 0);
+    }
+  }
+  previous.choose(prepared.halves[0].reduced(1), prepared.halves[1].reduced(1),
+                  {{left.image->width(), left.image->height()}, needed});
+}
+
 /// Resizes the images of the task's map and computes what is needed of it.
 void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_confidence,
                             int check_level, Prepared& prepared, StageClock& clock,
@@ -236,11 +252,14 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
   const auto resize = [&](Image<float>& image, bool is_wanted) {
     image.resize(is_wanted ? task.image->width() : 0, is_wanted ? task.image->height() : 0);
   };
-  MatchedMap& map = *task.map;
+  PreviousMaps::OfSide* const kept =
+      task.previous != nullptr ? &task.previous->of(task.side) : nullptr;
+  MatchedMap& map = kept != nullptr ? kept->winners : *task.map;
   resize(map.disparity_px, task.need.whole);
   resize(map.confidence, task.need.whole && wants_confidence);
   resize(map.disparity_y_px, task.need.whole && in_force_.disparities_y);
-  DisparityMap& check_px = prepared.check_px[index_of(task.side)];
+  DisparityMap& check_px =
+      kept != nullptr ? kept->check_px : prepared.check_px[index_of(task.side)];
   resize(check_px, task.need.check && !task.need.check_is_all);
   if (!task.need.any()) {
     return;
@@ -250,7 +269,8 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
   CoarseMap coarse;
   if (task.need.coarse) {
     coarse = {.level = check_level,
-              .winners = &prepared.coarse_winners[index_of(task.side)],
+              .winners = kept != nullptr ? &kept->coarse_winners
+                                         : &prepared.coarse_winners[index_of(task.side)],
               .is_all = !task.need.whole};
   }
   CheckMap check;
@@ -261,12 +281,26 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
   }
   // Without a map of its own only the size is used.
   const ImageView<float> size_alone(nullptr, task.image->width(), task.image->height(), 1, 0);
-  MapSearch(in_force_, prepared.parameters, execution_, prepared.search, report)
+  const TileMask* const tiles =
+      kept != nullptr ? task.previous->searched_tiles(task.side) : nullptr;
+  SearchedParts parts;
+  if (tiles != nullptr) {
+    parts = searched_parts(*tiles, prepared.parameters);
+  }
+  MapSearch(in_force_, prepared.parameters, execution_,
+            kept != nullptr ? kept->search : prepared.search, report)
       .compute(task.side, task.input,
                {.disparity_px = task.need.whole ? map.disparity_px.view() : size_alone,
                 .confidence = map.confidence.view(),
                 .disparity_y_px = map.disparity_y_px.view()},
-               coarse, check, task.need.whole ? volumes : std::span<const VolumeRequest>());
+               coarse, check, task.need.whole ? volumes : std::span<const VolumeRequest>(),
+               tiles != nullptr ? &parts : nullptr);
+  if (kept != nullptr) {
+    report.searched_share = std::max(report.searched_share.value_or(0), kept->searched.share());
+    if (task.need.whole && !task.need.check_is_all) {
+      copy_winners(kept->winners, execution_, *task.map);
+    }
+  }
   if (coarse.winners != nullptr) {
     const auto geometry =
         candidate_geometry(in_force_, task.side, task.image->width(), task.image->height());
@@ -304,7 +338,19 @@ MapToRefine StereoMatcher::to_refine(const MapTask& task, bool is_result) const 
           .check_px = task.check_px,
           .is_result = is_result,
           .search = in_force_.disparities,
-          .search_y = in_force_.disparities_y.value_or(kAnyDisparity)};
+          .search_y = in_force_.disparities_y.value_or(kAnyDisparity),
+          .kept = task.previous != nullptr ? &task.previous->of(task.side).refinement : nullptr};
+}
+
+/// Throws UsageError where maps cannot keep anything from the pair before.
+void StereoMatcher::require_reuse(const MatchRequest& request, bool uses_prior) const {
+  const std::string_view obstacle = uses_prior                 ? "a prior"
+                                    : !request.volumes.empty() ? "volumes"
+                                                               : reuse_obstacle(in_force_);
+  if (!obstacle.empty()) {
+    throw UsageError(
+        fmt::format("there are maps of the pair before with {}, expected none", obstacle));
+  }
 }
 
 void StereoMatcher::match(const Photograph& left, const Photograph& right,
@@ -316,6 +362,9 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     throw UsageError("there is a prior beside disparities-y, expected a search along rows only");
   }
   const bool uses_prior = !request.prior.empty() && request.prior.weight > 0;
+  if (request.previous != nullptr) {
+    require_reuse(request, uses_prior);
+  }
   MatchReport own_report;
   MatchReport& times = report != nullptr ? *report : own_report;
   times = {};
@@ -358,6 +407,10 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     of_left.input.prior_weight = of_right.input.prior_weight = request.prior.weight;
   }
   const bool confidence = wants_confidence(request);
+  if (request.previous != nullptr) {
+    clock.start("changes");
+    choose_tiles(of_left, of_right, confidence, *request.previous, *prepared);
+  }
   if (is_symmetric) {
     compute_symmetric(of_left, of_right, confidence, *prepared, clock, times, request.volumes);
   } else {
@@ -477,6 +530,7 @@ void StereoMatcher::add_memory_use(MemoryUse& use) const {
              held_bytes(prepared.check_px[0]) + held_bytes(prepared.check_px[1]);
     use.add("prepared images", bytes);
     use.add("coarse levels", prepared.search.levels.held_bytes());
+    use.add("prepared images", prepared.halves[0].held_bytes() + prepared.halves[1].held_bytes());
     use.add("symmetric energies", prepared.right_energies.held_bytes());
   });
   refinement_works_.for_each_idle(

@@ -17,8 +17,10 @@
 #include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/pair_exposure.h"
+#include "engine/matching/previous_maps.h"
 #include "engine/matching/reduced_matcher.h"
 #include "engine/matching/volume/volume_request.h"
+#include "engine/matching/windows/reduced_images.h"
 #include "engine/object_pool.h"
 #include "engine/refinement/refine_maps.h"
 #include "scheduler/strip_plan.h"
@@ -38,9 +40,8 @@ struct MatchRequest {
   /// not depend on them.
   std::span<const VolumeRequest> volumes = {};
   DisparityPrior prior = {};  ///< without a vertical search only
-  /// For match() with a reduced search-size: tiles keep the maps of the pair before. Replaced by
-  /// the maps of this pair; a request with it runs alone. Ignored where images are too small to be
-  /// reduced.
+  /// For match() without reuse_obstacle(), prior and volumes: tiles keep the maps of the pair
+  /// before. Replaced by the maps of this pair; a request with it runs alone.
   PreviousMaps* previous = nullptr;
 };
 
@@ -104,6 +105,7 @@ class StereoMatcher {
     std::array<DisparityMap, 2> check_px;
     /// Symmetric selection: energies of the right image.
     LevelVolume right_energies;
+    std::array<ReducedImages, 2> halves;  ///< of both images, to find what changed
   };
   /// What is computed of an image's map: the map, and what is used to check the other one.
   struct MapNeed {
@@ -122,6 +124,7 @@ class StereoMatcher {
     ChainInput input = {};
     CoarseWinners coarse = {};             ///< empty: not needed
     ImageView<const float> check_px = {};  ///< empty: not needed
+    PreviousMaps* previous = nullptr;      ///< of both maps; null: everything is searched
   };
 
   /// Level that maps are checked against; 0: the maps themselves.
@@ -130,6 +133,7 @@ class StereoMatcher {
   [[nodiscard]] bool uses_check_maps(scheduler::Extent image) const;
   [[nodiscard]] std::pair<MapNeed, MapNeed> needs(const MatchRequest& request,
                                                   scheduler::Extent image) const;
+  void require_reuse(const MatchRequest& request, bool uses_prior) const;
   [[nodiscard]] bool wants_confidence(const MatchRequest& request) const;
   void prepare_inputs(MapTask& left, MapTask& right, bool uses_prior, Prepared& prepared,
                       std::span<const VolumeRequest> volumes = {}) const;
@@ -149,6 +153,8 @@ class StereoMatcher {
   void compute(MapTask& task, std::string_view name, bool wants_confidence, int check_level,
                Prepared& prepared, StageClock& clock, MatchReport& report,
                std::span<const VolumeRequest> volumes) const;
+  void choose_tiles(MapTask& left, MapTask& right, bool wants_confidence, PreviousMaps& previous,
+                    Prepared& prepared) const;
   void compute_symmetric(MapTask& left, MapTask& right, bool wants_confidence, Prepared& prepared,
                          StageClock& clock, MatchReport& report,
                          std::span<const VolumeRequest> volumes) const;

@@ -69,7 +69,8 @@ void fit_each_pixel(const Mask& unmatched, int radius_px, DisparityRange search,
 }
 
 void fit_each_block(const Mask& unmatched, int radius_px, DisparityRange search,
-                    Execution& execution, SurfaceFitWork& work, DisparityMap& map_px) {
+                    const TileMask* tiles, Execution& execution, SurfaceFitWork& work,
+                    DisparityMap& map_px) {
   const int height = map_px.height();
   const int columns = kernels::surface_blocks(map_px.width());
   const int rows = kernels::surface_blocks(height);
@@ -89,8 +90,21 @@ void fit_each_block(const Mask& unmatched, int radius_px, DisparityRange search,
   });
   execution.for_each_band(rows, [&](int first_row, int end_row) {
     for (int row = first_row; row < end_row; ++row) {
-      kernels::fit_surface_block_row(
-          surface_row(work.samples_px, margin, row, radius_px, columns, search), pixels(row));
+      const kernels::SurfaceRow blocks =
+          surface_row(work.samples_px, margin, row, radius_px, columns, search);
+      const kernels::SurfaceBlockRow of_row = pixels(row);
+      for_each_run_in_row(tiles, map_px.width(), 2 * row, [&](scheduler::Range run) {
+        kernels::SurfaceRow of_run = blocks;
+        of_run.disparity_px += run.begin / 2;
+        const auto from = [&run](auto* values) {
+          return values != nullptr ? values + run.begin : nullptr;
+        };
+        kernels::fit_surface_block_row(of_run, {.upper_px = from(of_row.upper_px),
+                                                .lower_px = from(of_row.lower_px),
+                                                .upper_unmatched = from(of_row.upper_unmatched),
+                                                .lower_unmatched = from(of_row.lower_unmatched),
+                                                .width = run.size()});
+      });
     }
   });
 }
@@ -103,7 +117,7 @@ void fit_surface(const Mask& unmatched, int radius_px, int step_px, DisparityRan
   if (step_px == 1) {
     fit_each_pixel(unmatched, radius_px, search, tiles, execution, work, map_px);
   } else {
-    fit_each_block(unmatched, radius_px, search, execution, work, map_px);
+    fit_each_block(unmatched, radius_px, search, tiles, execution, work, map_px);
   }
 }
 

@@ -23,8 +23,8 @@ inline std::size_t held_bytes(const SurfaceFitWork& work) { return held_bytes(wo
 /// the order. Values stay within `search`, the map's search range: a slope at its end would leave
 /// it. radius_px from 1 to kernels::kMaxSurfaceRadiusPx. step_px: 1, a plane for each pixel; 2, for
 /// each block of 2×2 pixels (kernels/surface_fit/surface_blocks.h). `unmatched` has the size of the
-/// map, whose matched pixels are finite. tiles: the only ones whose values are needed; those of
-/// others are the map's or fitted; null: all. Identical for any `execution`.
+/// map, whose matched pixels are finite. tiles, of an even side: the only ones whose values are
+/// needed; those of others are the map's or fitted; null: all. Identical for any `execution`.
 void fit_surface(const Mask& unmatched, int radius_px, int step_px, DisparityRange search,
                  Execution& execution, SurfaceFitWork& work, DisparityMap& map_px,
                  const TileMask* tiles = nullptr);

@@ -45,15 +45,15 @@ void FrameReuse::start_frame(int frame_of_chunk, bool is_first) {
 }
 
 /// Whether enough of a tile's pixels, or of the pixels that they were matched with, changed.
-bool FrameReuse::has_changed(Side side, int column, int row) const {
-  const TileMask& tiles = of(side).searched;
+bool FrameReuse::has_changed(Side side, const scheduler::Region& pixels) const {
   const Mask& own = still_[index_of(side)];
   const Mask& other = still_[index_of(other_side(side))];
   const DisparityMap& disparity_px = of(side).refinement.refined_px();
+  const int map_columns = disparity_px.width() > own.width() ? 2 : 1;
   const float columns_per_px = static_cast<float>(direction_of(side)) / 2;
   int changed = 0;
   int changed_partners = 0;
-  const auto [columns, rows] = tiles.pixels(column, row);
+  const auto [columns, rows] = pixels;
   const auto [begin, end] = columns;
   for (int y = rows.begin; y < rows.end; ++y) {
     const std::uint8_t* const is_still = own.row(y);
@@ -65,8 +65,10 @@ bool FrameReuse::has_changed(Side side, int column, int row) const {
       continue;
     }
     for (int x = begin; x < end; x += kPartnerStep) {
-      const float partner = static_cast<float>(x) + columns_per_px * disparity_px.at(x, y) + 0.5F;
-      if (partner >= 0 && partner < static_cast<float>(tiles.width())) {  // false for NaN
+      const float partner = static_cast<float>(x) +
+                            columns_per_px * disparity_px.at(map_columns * x, map_columns * y) +
+                            0.5F;
+      if (partner >= 0 && partner < static_cast<float>(own.width())) {  // false for NaN
         changed_partners += other.at(static_cast<int>(partner), y) == 0 ? 1 : 0;
       }
     }
@@ -75,10 +77,10 @@ bool FrameReuse::has_changed(Side side, int column, int row) const {
 }
 
 void FrameReuse::choose_tiles(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
-                              bool is_first) {
+                              bool is_first, std::array<TileMask, 2>& masks) {
   const std::array<const Image<std::uint8_t>*, 2> images = {&left, &right};
   for (const Side side : {Side::kLeft, Side::kRight}) {
-    of(side).searched.assign(left.width(), left.height(), is_first);
+    masks[index_of(side)].assign(left.width(), left.height(), is_first);
     if (is_first) {
       searched_in_[index_of(side)].resize(left.width(), left.height());
     } else {
@@ -87,11 +89,11 @@ void FrameReuse::choose_tiles(const Image<std::uint8_t>& left, const Image<std::
     }
   }
   for (const Side side : {Side::kLeft, Side::kRight}) {
-    TileMask& searched = of(side).searched;
+    TileMask& searched = masks[index_of(side)];
     if (!is_first) {
       execution_.executor().parallel_for(searched.rows(), [&](int row) {
         for (int column = 0; column < searched.columns(); ++column) {
-          searched.set(column, row, has_changed(side, column, row));
+          searched.set(column, row, has_changed(side, searched.pixels(column, row)));
         }
       });
     }
@@ -107,7 +109,7 @@ void FrameReuse::choose_tiles(const Image<std::uint8_t>& left, const Image<std::
     }
   }
   for (const Side side : {Side::kLeft, Side::kRight}) {
-    copy_tiles(of(side).searched, *images[index_of(side)], searched_in_[index_of(side)]);
+    copy_tiles(masks[index_of(side)], *images[index_of(side)], searched_in_[index_of(side)]);
   }
 }
 

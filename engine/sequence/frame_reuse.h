@@ -26,8 +26,8 @@ class FrameReuse final : public PreviousMaps {
 
  private:
   void choose_tiles(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
-                    bool is_first) override;
-  [[nodiscard]] bool has_changed(Side side, int column, int row) const;
+                    bool is_first, std::array<TileMask, 2>& searched) override;
+  [[nodiscard]] bool has_changed(Side side, const scheduler::Region& pixels) const;
 
   StillPixels still_pixels_;
   Execution& execution_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <variant>
 
 #include "engine/error.h"
@@ -11,6 +12,7 @@
 #include "engine/io/map_formats.h"
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/match_inputs.h"
+#include "engine/matching/previous_maps.h"
 #include "engine/quoted_text.h"
 
 namespace vantage {
@@ -70,12 +72,16 @@ void check_temporal(const SequenceOptions& options) {
         fmt::format("temporal-prior is {}, expected 0 with a reduced search-size (preset realtime)",
                     options.temporal.weight));
   }
-  if (options.temporal.reuse != Reuse::kNone && !is_reduced) {
-    throw UsageError(
-        options.baselines.empty()
-            ? "reuse is frame with search-size full, expected a reduced search-size (preset "
-              "realtime)"
-            : "reuse is frame, expected none with baselines, which search the full size");
+  if (options.temporal.reuse == Reuse::kNone) {
+    return;
+  }
+  const std::string_view obstacle = !options.baselines.empty() ? "baselines"
+                                    : options.saves_posterior()
+                                        ? "moments of p(d)"
+                                        : reuse_obstacle(options.match.in_force());
+  if (!obstacle.empty()) {
+    throw UsageError(fmt::format(
+        "reuse is frame with {}, expected pairs and a preset, or a method like theirs", obstacle));
   }
 }
 

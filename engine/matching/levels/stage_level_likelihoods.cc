@@ -130,10 +130,14 @@ std::unique_ptr<scheduler::RowStage> make_byte_energy_reduction_stage(
   return std::make_unique<ByteEnergyReductionStage>(geometry, step, weight, coarser);
 }
 
-void reduce_float_energy_row(const LevelVolume& finer, int y, float weight, std::uint16_t* work,
-                             LevelVolume& coarser) {
-  kernels::reduce_compact_energies_row(block_row<std::uint8_t>(finer, y), weight, work,
-                                       coarser.column<std::uint8_t>(0, y));
+void reduce_float_energy_row(const LevelVolume& finer, int y, scheduler::Range columns,
+                             float weight, std::uint16_t* work, LevelVolume& coarser) {
+  auto row = block_row<std::uint8_t>(finer, y);
+  row.columns = std::min(2 * columns.end, row.columns) - 2 * columns.begin;
+  row.upper = finer.column<std::uint8_t>(2 * columns.begin, 2 * y);
+  row.lower += row.upper - finer.column<std::uint8_t>(0, 2 * y);
+  kernels::reduce_compact_energies_row(row, weight, work,
+                                       coarser.column<std::uint8_t>(columns.begin, y));
 }
 
 std::unique_ptr<scheduler::RowStage> make_level_likelihood_stage(

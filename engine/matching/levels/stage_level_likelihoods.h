@@ -6,6 +6,7 @@
 #include "engine/image/image.h"
 #include "engine/matching/levels/level_volume.h"
 #include "kernels/candidates.h"
+#include "scheduler/range.h"
 #include "scheduler/row_stage.h"
 
 namespace vantage {
@@ -23,9 +24,9 @@ std::unique_ptr<scheduler::RowStage> make_likelihood_reduction_stage(
 /// of compact energies. Padding lanes hold at least as much as any candidate.
 std::unique_ptr<scheduler::RowStage> make_byte_energy_reduction_stage(
     const kernels::CandidateGeometry& geometry, float step, float weight, LevelVolume& coarser);
-/// Row y of `coarser` from the energies of a coarse level. `work`: one number per lane.
-void reduce_float_energy_row(const LevelVolume& finer, int y, float weight, std::uint16_t* work,
-                             LevelVolume& coarser);
+/// Columns of row y of `coarser` from the energies of a coarse level. `work`: one number per lane.
+void reduce_float_energy_row(const LevelVolume& finer, int y, scheduler::Range columns,
+                             float weight, std::uint16_t* work, LevelVolume& coarser);
 
 /// Source stage: the likelihoods of a coarse level, computed from its energies.
 std::unique_ptr<scheduler::RowStage> make_level_likelihood_stage(
