@@ -189,9 +189,9 @@ void add_steadiness_settings(Settings& settings, SequenceOptions& options) {
                   "A pixel counts as unchanged if it differs by at most this many grey levels");
   settings.choice<Reuse>("reuse", options.temporal.reuse,
                          {{"none", Reuse::kNone}, {"frame", Reuse::kFrame}},
-                         "With a reduced search-size, as of preset realtime: frame keeps the "
-                         "disparities of the frame before where the images do not change, which is "
-                         "faster and steadier");
+                         "With presets and methods like theirs: frame keeps the disparities of the "
+                         "frame before where the images do not change, which is faster and "
+                         "steadier");
   settings.flag("measure-flicker", options.measure_flicker,
                 "Measure how much results change where the images do not");
 }

@@ -240,7 +240,7 @@ std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Ex
     bytes += (has_result ? 2 : 1) * of_level;
   }
   if (extents.size() > 1 && (windows > 0 || pruned_level_count(parameters, extents.size()) > 0)) {
-    // Winners; with two levels of windows also the state of level 1.
+    // Winners of level 1; with two levels of windows also its state.
     constexpr std::size_t kState =
         sizeof(kernels::WindowCells) + 2 * sizeof(std::int16_t) + sizeof(float);
     bytes += static_cast<std::size_t>(extents[1].columns) *

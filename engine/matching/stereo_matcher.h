@@ -30,7 +30,8 @@ namespace vantage {
 class StageClock;
 
 /// Requested outputs. A map that is not requested may still be computed for the cross-check of the
-/// other one; its contents are undefined. Maps do not depend on whether the other is requested.
+/// other one; its contents are undefined. Without `previous`, maps do not depend on whether the
+/// other is requested.
 struct MatchRequest {
   bool left = true;
   bool right = true;

@@ -185,6 +185,25 @@ std::size_t view_bytes(const SequenceOptions& options, const PairShape& shape) {
   return max;
 }
 
+/// What both maps keep from the previous frame.
+std::size_t reuse_bytes(const SequenceOptions& options, const PairShape& shape) {
+  const scheduler::Extent extent{shape.source.width_px, shape.source.height_px};
+  const std::size_t pixels = pixels_of(shape.source);
+  // Of images of half the size: levels, mask of changes. Of maps: pixels without a match; winners,
+  // refined, confidence.
+  constexpr std::size_t kHalfSizeBytes = 2;
+  constexpr std::size_t kMapBytes = 1 + 3 * sizeof(float);
+  const ResolvedMatchOptions match = options.match.in_force();
+  if (search_reductions(match, extent) > 0) {
+    return 2 *
+           ((kHalfSizeBytes + kMapBytes) * pixels / 4 + ReducedMatcher::level_bytes(match, extent));
+  }
+  // Also the images of half the size, and check maps.
+  const int candidates = candidate_count(match.disparities, match.parameters);
+  return 2 * ((kHalfSizeBytes + 1) * pixels / 4 + (kMapBytes + sizeof(float)) * pixels +
+              coarse_level_bytes(match.parameters, extent, candidates));
+}
+
 /// State of the previous frame, and the comparison with it.
 std::size_t past_bytes(const SequenceOptions& options, const PairShape& shape) {
   const std::size_t pixels = pixels_of(shape.source);
@@ -192,10 +211,7 @@ std::size_t past_bytes(const SequenceOptions& options, const PairShape& shape) {
   const std::size_t side = 5 + 2 * sizeof(float);
   std::size_t bytes = options.temporal.weight > 0 ? 2 * side * pixels : 0;
   if (options.temporal.reuse != Reuse::kNone) {
-    // Half size, two maps: image, mask of changes and of pixels without a match; winners, refined.
-    bytes += 2 * (3 + 2 * sizeof(float)) * pixels / 4 +
-             2 * ReducedMatcher::level_bytes(options.match.in_force(),
-                                             {shape.source.width_px, shape.source.height_px});
+    bytes += reuse_bytes(options, shape);
   }
   if (options.measure_flicker) {
     bytes += side * pixels;

@@ -17,7 +17,7 @@ struct TemporalOptions {
   /// most this, at the pixel and its neighbours; grey levels, 0..255. Noise of σ gives σ · √2/3 in
   /// such means, nine of which are checked: 3 accepts nearly all pixels with noise of σ = 2.
   double threshold = 3;
-  /// For a reduced search-size (MethodParametersOf::search_size), without a weight.
+  /// Without reuse_obstacle() and weight.
   Reuse reuse = Reuse::kNone;
 
   /// Whether a frame depends on those before it in its chunk.

@@ -58,23 +58,24 @@ Pair pair_with_square(int square_x, unsigned seed = 1) {
   return {view(0, 0), view(kFar, kNear)};
 }
 
-class FrameReuseTest : public ::testing::Test {
+class FrameReuseTest : public ::testing::TestWithParam<MatchPreset> {
  protected:
   static MatchOptions options() {
     MatchOptions options;
-    options.preset = MatchPreset::kRealtime;
+    options.preset = GetParam();
     options.disparities = {0, 31};
     return options;
   }
-  DisparityMaps match(const Pair& pair, bool reuses) {
+  DisparityMaps match(const Pair& pair, bool reuses, bool with_right = true) {
     DisparityMaps maps;
-    matcher_.match(pair.left, pair.right, {.previous = reuses ? &reuse_ : nullptr}, maps, &report_);
+    matcher_.match(pair.left, pair.right,
+                   {.right = with_right, .previous = reuses ? &reuse_ : nullptr}, maps, &report_);
     return maps;
   }
-  DisparityMaps next(const Pair& pair) {
+  DisparityMaps next(const Pair& pair, bool with_right = true) {
     reuse_.start_frame(frame_, frame_ == 0);
     ++frame_;
-    return match(pair, true);
+    return match(pair, true, with_right);
   }
   /// Share of the pixels of the left map, borders aside, within a pixel of the truth.
   static double share_right(const DisparityMap& map, int square_x) {
@@ -102,7 +103,7 @@ class FrameReuseTest : public ::testing::Test {
   int frame_ = 0;
 };
 
-TEST_F(FrameReuseTest, TheFirstFrameIsSearchedAndUnchangedOnesStay) {
+TEST_P(FrameReuseTest, TheFirstFrameIsSearchedAndUnchangedOnesStay) {
   const Pair pair = pair_with_square(120);
   const DisparityMaps expected = match(pair, false);
   EXPECT_FALSE(report_.searched_share);
@@ -118,7 +119,7 @@ TEST_F(FrameReuseTest, TheFirstFrameIsSearchedAndUnchangedOnesStay) {
   }
 }
 
-TEST_F(FrameReuseTest, WhatMovesAppearsAndDisappearsIsSearched) {
+TEST_P(FrameReuseTest, WhatMovesAppearsAndDisappearsIsSearched) {
   next(pair_with_square(-1));
   for (const int square_x : {100, 103, 110, 190, 60}) {
     const Pair pair = pair_with_square(square_x);
@@ -132,7 +133,7 @@ TEST_F(FrameReuseTest, WhatMovesAppearsAndDisappearsIsSearched) {
 }
 
 /// What is alike in the lower third is so by chance.
-TEST_F(FrameReuseTest, AfterACutAllIsSearched) {
+TEST_P(FrameReuseTest, AfterACutAllIsSearched) {
   const Pair before = pair_with_square(100);
   next(before);
   Pair after = pair_with_square(100, 7);
@@ -147,7 +148,7 @@ TEST_F(FrameReuseTest, AfterACutAllIsSearched) {
   EXPECT_TRUE(test::identical(maps, match(after, false)));
 }
 
-TEST_F(FrameReuseTest, TilesWhosePartnersChangedAreSearched) {
+TEST_P(FrameReuseTest, TilesWhosePartnersChangedAreSearched) {
   Pair pair = pair_with_square(-1);
   next(pair);
   const auto& searched = reuse_.of(Side::kLeft).searched;
@@ -163,7 +164,7 @@ TEST_F(FrameReuseTest, TilesWhosePartnersChangedAreSearched) {
 }
 
 /// Each frame differs from the one before by less than the threshold.
-TEST_F(FrameReuseTest, SlowChangesAddUp) {
+TEST_P(FrameReuseTest, SlowChangesAddUp) {
   const auto brighter = [](Pair pair, int levels) {
     for (Photograph* photograph : {&pair.left, &pair.right}) {
       auto& image = std::get<Bytes>(photograph->pixels);
@@ -184,7 +185,7 @@ TEST_F(FrameReuseTest, SlowChangesAddUp) {
   EXPECT_TRUE(was_searched);
 }
 
-TEST_F(FrameReuseTest, EachTileIsSearchedOnceInSixteenFrames) {
+TEST_P(FrameReuseTest, EachTileIsSearchedOnceInSixteenFrames) {
   const Pair pair = pair_with_square(100);
   next(pair);
   double sum = 0;
@@ -195,7 +196,7 @@ TEST_F(FrameReuseTest, EachTileIsSearchedOnceInSixteenFrames) {
   EXPECT_NEAR(sum, 1, 1e-9);
 }
 
-TEST_F(FrameReuseTest, ImagesOfAnotherSizeAndOtherMapsStartAgain) {
+TEST_P(FrameReuseTest, ImagesOfAnotherSizeAndOtherMapsStartAgain) {
   next(pair_with_square(100));
   const auto lower_half = [](const Photograph& photograph) {
     Bytes half(kWidth, kHeight / 2);
@@ -210,12 +211,14 @@ TEST_F(FrameReuseTest, ImagesOfAnotherSizeAndOtherMapsStartAgain) {
   EXPECT_TRUE(test::identical(next(whole), match(whole, false)));
 }
 
-TEST_F(FrameReuseTest, ResultsDoNotDependOnTheExecution) {
+TEST_P(FrameReuseTest, ResultsDoNotDependOnTheExecution) {
   const auto maps_of = [](const ExecutionOptions& how) {
     Execution execution(how);
-    MatchOptions quarter = options();
-    quarter.parameters.search_size = SearchSize::kQuarter;
-    const StereoMatcher matcher(quarter, execution);
+    MatchOptions used = options();
+    if (GetParam() == MatchPreset::kRealtime) {
+      used.parameters.search_size = SearchSize::kQuarter;
+    }
+    const StereoMatcher matcher(used, execution);
     FrameReuse reuse(3, execution);
     DisparityMaps maps;
     for (int frame = 0; frame < 4; ++frame) {
@@ -230,6 +233,36 @@ TEST_F(FrameReuseTest, ResultsDoNotDependOnTheExecution) {
   EXPECT_TRUE(test::identical(maps_of({.threads = 3}), expected));
   EXPECT_TRUE(test::identical(maps_of({.threads = 2, .strip_width_px = 11, .band_height_px = 5}),
                               expected));
+}
+
+TEST_P(FrameReuseTest, TheLeftMapAloneStaysToo) {
+  const Pair pair = pair_with_square(120);
+  const DisparityMap expected = match(pair, false, false).left.disparity_px.copy();
+  for (int frame = 0; frame <= kFrames; ++frame) {
+    EXPECT_TRUE(test::identical(next(pair, false).left.disparity_px, expected)) << frame;
+  }
+  const DisparityMaps both = match(pair, false);
+  EXPECT_TRUE(test::identical(next(pair), both));
+  EXPECT_EQ(report_.searched_share, 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Presets, FrameReuseTest,
+                         ::testing::Values(MatchPreset::kRealtime, MatchPreset::kFast,
+                                           MatchPreset::kBalanced));
+
+TEST(FrameReuse, RefusesMethodsWithoutCoarseLevels) {
+  const Pair pair = pair_with_square(120);
+  Execution execution({.threads = 1});
+  FrameReuse reuse(3, execution);
+  const auto match = [&](MatchMethod method) {
+    MatchOptions options;
+    options.method = method;
+    options.disparities = {0, 3};
+    DisparityMaps maps;
+    StereoMatcher(options, execution).match(pair.left, pair.right, {.previous = &reuse}, maps);
+  };
+  EXPECT_THROW(match(MatchMethod::kSsd), UsageError);
+  EXPECT_THROW(match(MatchMethod::kBayes), UsageError);
 }
 
 TEST(FrameReuse, RefusesThresholdsOutsideGreyLevels) {

@@ -55,8 +55,11 @@ TEST(SequenceOptions, WhatIsWrongIsNamed) {
   EXPECT_THAT(refusal([](Options& o) { o.chunk_frames = 0; }), HasSubstr("chunk-frames is 0"));
   EXPECT_THAT(refusal([](Options& o) { o.stereo_views_x = {0, 17}; }), HasSubstr("stereo-views"));
   EXPECT_THAT(refusal([](Options& o) { o.temporal.weight = -1; }), HasSubstr("-1"));
-  EXPECT_THAT(refusal([](Options& o) { o.temporal.reuse = Reuse::kFrame; }),
-              HasSubstr("reuse is frame"));
+  EXPECT_THAT(refusal([](Options& o) {
+                o.match.method = MatchMethod::kSsd;
+                o.temporal.reuse = Reuse::kFrame;
+              }),
+              HasSubstr("reuse is frame with a method without"));
 }
 
 }  // namespace sequence_options_test

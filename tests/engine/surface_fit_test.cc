@@ -77,6 +77,31 @@ TEST(FitSurface, OnlyMatchedPixelsCountAndChange) {
   }
 }
 
+TEST(FitSurface, TilesHaveTheValuesOfAWholeFit) {
+  Execution execution({.threads = 2});
+  SurfaceFitWork work;
+  const SteppedMap stepped = stepped_map(53, 41);
+  TileMask tiles(53, 41, false, 8);
+  for (const int tile : {0, 3, 5, 6}) {
+    tiles.set(tile, 1);
+    tiles.set(tile, 5);
+  }
+  for (const int step : {1, 2}) {
+    DisparityMap whole = stepped.map.copy();
+    fit_surface(stepped.unmatched, 10, step, kAnyDisparity, execution, work, whole);
+    DisparityMap parts = stepped.map.copy();
+    fit_surface(stepped.unmatched, 10, step, kAnyDisparity, execution, work, parts, &tiles);
+    for (int y = 0; y < 41; ++y) {
+      for (int x = 0; x < 53; ++x) {
+        const float expected = tiles.at(x / 8, y / 8) ? whole.at(x, y) : stepped.map.at(x, y);
+        if (!std::isnan(expected)) {
+          ASSERT_EQ(parts.at(x, y), expected) << x << ", " << y << ", step " << step;
+        }
+      }
+    }
+  }
+}
+
 TEST(FitSurface, ValuesStayWithinTheSearch) {
   // Winners at the ends of the search stand for half a pixel beyond them, where the plane goes on.
   Execution execution({.threads = 2});

@@ -45,6 +45,18 @@ TEST(TileMask, EqualRunsOfRowsBelowEachOtherAreOneRegion) {
   EXPECT_EQ(TileMask(40, 50, true).regions(), (std::vector<scheduler::Region>{{{0, 40}, {0, 50}}}));
 }
 
+TEST(TileMask, TilesWithinLargerOnesAreThoseInBoth) {
+  std::mt19937 random(3);
+  const TileMask mask = random_mask(67, 45, 8, random);
+  const TileMask others = random_mask(67, 45, 32, random);
+  const TileMask within = mask.within(others);
+  for (int y = 0; y < 45; ++y) {
+    for (int x = 0; x < 67; ++x) {
+      EXPECT_EQ(within.at(x / 8, y / 8), mask.at(x / 8, y / 8) && others.at(x / 32, y / 32));
+    }
+  }
+}
+
 TEST(TileMask, WidenedTilesAreThoseWithPixelsWithinTheMargin) {
   std::mt19937 random(2);
   const int px_per_column = 2;
