@@ -40,29 +40,39 @@ void copy_winners(const MatchedMap& map, Execution& execution, MatchedMap& copy)
   copy_rows(map.confidence, copy.confidence);
 }
 
-void PreviousMaps::choose(const Photograph& left, const Photograph& right, const Content& content) {
+bool PreviousMaps::choose(const Photograph& left, const Photograph& right, const Content& content) {
   const bool is_first = content_ != content;
   if (is_first) {
     forget();
   }
-  choose_tiles(std::get<Image<std::uint8_t>>(left.pixels),
-               std::get<Image<std::uint8_t>>(right.pixels), is_first, half_size_);
+  content_ = content;
+  if (!choose_tiles(std::get<Image<std::uint8_t>>(left.pixels),
+                    std::get<Image<std::uint8_t>>(right.pixels), is_first, half_size_)) {
+    forget_maps();
+    return false;
+  }
   const int scale = content.map.columns > left.width() ? 2 : 1;
   for (std::size_t i = 0; i < sides_.size(); ++i) {
     TileMask& searched = sides_[i].searched;
     searched.assign(content.map.columns, content.map.rows, false, scale * TileMask::kSidePx);
     for (int row = 0; row < searched.rows(); ++row) {
       for (int column = 0; column < searched.columns(); ++column) {
-        searched.set(column, row, half_size_[i].at(column, row));
+        searched.set(column, row, !has_maps_ || half_size_[i].at(column, row));
       }
     }
     sides_[i].refinement.start(searched);
   }
-  content_ = content;
+  has_maps_ = true;
+  return true;
 }
 
 void PreviousMaps::forget() {
   content_.reset();
+  forget_maps();
+}
+
+void PreviousMaps::forget_maps() {
+  has_maps_ = false;
   for (OfSide& side : sides_) {
     side.refinement.restart();
   }

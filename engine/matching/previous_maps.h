@@ -48,8 +48,11 @@ class PreviousMaps {
   virtual ~PreviousMaps() = default;
 
   /// Chooses the tiles that the next pair searches. `left`, `right`: 8-bit grey, half the size of
-  /// the images. All tiles if the pair before had another content, or there is none.
-  void choose(const Photograph& left, const Photograph& right, const Content& content);
+  /// the images. All tiles if the pair before had another content, or kept nothing, or there is
+  /// none. False: the images moved, and this pair is searched as if alone and keeps nothing, which
+  /// costs less.
+  [[nodiscard]] bool choose(const Photograph& left, const Photograph& right,
+                            const Content& content);
 
   [[nodiscard]] OfSide& of(Side side) { return sides_[index_of(side)]; }
   [[nodiscard]] const OfSide& of(Side side) const { return sides_[index_of(side)]; }
@@ -63,12 +66,16 @@ class PreviousMaps {
   [[nodiscard]] std::size_t held_bytes() const;
 
  private:
-  /// Sets the tiles to search, of images of half the size. is_first: there are no maps before.
-  virtual void choose_tiles(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+  /// Sets the tiles to search, of images of half the size; false: the images moved. is_first: there
+  /// are no images before.
+  virtual bool choose_tiles(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
                             bool is_first, std::array<TileMask, 2>& searched) = 0;
+
+  void forget_maps();
 
   std::array<OfSide, 2> sides_;
   std::optional<Content> content_;  ///< of the pair before
+  bool has_maps_ = false;           ///< of the pair before
   std::array<TileMask, 2> half_size_;
 };
 

@@ -268,7 +268,11 @@ void ReducedMatcher::match(const Photograph& left, const Photograph& right, cons
     const std::uint32_t wanted =
         (outputs.left || is_checked ? 1U : 0U) | (outputs.right || is_checked ? 2U : 0U) |
         (outputs.left ? 4U : 0U) | (outputs.right ? 8U : 0U) | (wants_confidence ? 16U : 0U);
-    previous->choose(half, work->images[1].reduced(1), {{half.width(), half.height()}, wanted});
+    if (!previous->choose(half, work->images[1].reduced(1),
+                          {{half.width(), half.height()}, wanted})) {
+      previous = nullptr;
+      report.searched_share = 1;
+    }
   }
   for (const Side side : {Side::kLeft, Side::kRight}) {
     MatchedMap& half = work->halves.of(side);

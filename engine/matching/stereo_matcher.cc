@@ -231,18 +231,22 @@ std::pair<StereoMatcher::MapNeed, StereoMatcher::MapNeed> StereoMatcher::needs(
 
 /// Chooses the tiles of both maps that are searched.
 void StereoMatcher::choose_tiles(MapTask& left, MapTask& right, bool wants_confidence,
-                                 PreviousMaps& previous, Prepared& prepared) const {
+                                 PreviousMaps& previous, Prepared& prepared,
+                                 MatchReport& report) const {
   std::uint32_t needed = wants_confidence ? 1 : 0;
   for (MapTask* const task : {&left, &right}) {
     prepared.halves[index_of(task->side)].prepare(*task->image, 1, execution_);
-    task->previous = &previous;
     for (const bool is_needed :
          {task->need.whole, task->need.coarse, task->need.check, task->need.check_is_all}) {
       needed = 2 * needed + (is_needed ? 1 : 0);
     }
   }
-  previous.choose(prepared.halves[0].reduced(1), prepared.halves[1].reduced(1),
-                  {{left.image->width(), left.image->height()}, needed});
+  if (previous.choose(prepared.halves[0].reduced(1), prepared.halves[1].reduced(1),
+                      {{left.image->width(), left.image->height()}, needed})) {
+    left.previous = right.previous = &previous;
+  } else {
+    report.searched_share = 1;
+  }
 }
 
 /// Resizes the images of the task's map and computes what is needed of it.
@@ -409,7 +413,7 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   const bool confidence = wants_confidence(request);
   if (request.previous != nullptr) {
     clock.start("changes");
-    choose_tiles(of_left, of_right, confidence, *request.previous, *prepared);
+    choose_tiles(of_left, of_right, confidence, *request.previous, *prepared, times);
   }
   if (is_symmetric) {
     compute_symmetric(of_left, of_right, confidence, *prepared, clock, times, request.volumes);

@@ -155,7 +155,7 @@ class StereoMatcher {
                Prepared& prepared, StageClock& clock, MatchReport& report,
                std::span<const VolumeRequest> volumes) const;
   void choose_tiles(MapTask& left, MapTask& right, bool wants_confidence, PreviousMaps& previous,
-                    Prepared& prepared) const;
+                    Prepared& prepared, MatchReport& report) const;
   void compute_symmetric(MapTask& left, MapTask& right, bool wants_confidence, Prepared& prepared,
                          StageClock& clock, MatchReport& report,
                          std::span<const VolumeRequest> volumes) const;

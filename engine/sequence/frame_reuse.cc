@@ -10,8 +10,8 @@ namespace {
 constexpr int kRefreshFrames = 16;
 /// Neighbouring tiles that are searched anew together.
 constexpr int kRefreshTiles = 4;
-/// With a larger share of changed tiles all are searched: the camera moves, or there was a cut, and
-/// the others are alike by chance.
+/// With a larger share of changed tiles of a map the images moved: the camera does, or there was a
+/// cut, and the others are alike by chance.
 constexpr double kMaxChangedShare = 0.5;
 /// Pixels that changed, from which on a tile has; fewer are noise.
 constexpr int kMinChangedPixels = 4;
@@ -76,7 +76,7 @@ bool FrameReuse::has_changed(Side side, const scheduler::Region& pixels) const {
   return changed_partners >= kMinChangedPartners;
 }
 
-void FrameReuse::choose_tiles(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+bool FrameReuse::choose_tiles(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
                               bool is_first, std::array<TileMask, 2>& masks) {
   const std::array<const Image<std::uint8_t>*, 2> images = {&left, &right};
   for (const Side side : {Side::kLeft, Side::kRight}) {
@@ -88,6 +88,7 @@ void FrameReuse::choose_tiles(const Image<std::uint8_t>& left, const Image<std::
                          still_[index_of(side)]);
     }
   }
+  bool has_moved = false;
   for (const Side side : {Side::kLeft, Side::kRight}) {
     TileMask& searched = masks[index_of(side)];
     if (!is_first) {
@@ -96,13 +97,13 @@ void FrameReuse::choose_tiles(const Image<std::uint8_t>& left, const Image<std::
           searched.set(column, row, has_changed(side, searched.pixels(column, row)));
         }
       });
+      has_moved = has_moved || searched.share() > kMaxChangedShare;
     }
-    if (searched.share() > kMaxChangedShare) {
-      searched.assign(left.width(), left.height(), true);
-    }
+  }
+  for (TileMask& searched : masks) {
     for (int row = 0; row < searched.rows(); ++row) {
       for (int column = 0; column < searched.columns(); ++column) {
-        if (is_refreshed(column, row, frame_of_chunk_)) {
+        if (has_moved || is_refreshed(column, row, frame_of_chunk_)) {
           searched.set(column, row);
         }
       }
@@ -111,6 +112,7 @@ void FrameReuse::choose_tiles(const Image<std::uint8_t>& left, const Image<std::
   for (const Side side : {Side::kLeft, Side::kRight}) {
     copy_tiles(masks[index_of(side)], *images[index_of(side)], searched_in_[index_of(side)]);
   }
+  return !has_moved;
 }
 
 }  // namespace vantage

@@ -25,7 +25,7 @@ class FrameReuse final : public PreviousMaps {
   void start_frame(int frame_of_chunk, bool is_first);
 
  private:
-  void choose_tiles(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
+  bool choose_tiles(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
                     bool is_first, std::array<TileMask, 2>& searched) override;
   [[nodiscard]] bool has_changed(Side side, const scheduler::Region& pixels) const;
 

@@ -132,7 +132,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Outputs{"Reuse", 1,
                             joined(kVideoOutputs, {"--method", "bayes", "--cost", "census-rays",
                                                    "--prior-smoothing", "maximum", "--levels", "3",
-                                                   "--search-size", "half", "--reuse", "frame"})}),
+                                                   "--search-size", "half", "--reuse", "frame"})},
+                    Outputs{"ReuseOfBalanced", 1,
+                            joined(kVideoOutputs, {"--preset", "balanced", "--reuse", "frame"})}),
     [](const auto& instance) { return instance.param.name; });
 
 }  // namespace run_identity_test

@@ -145,7 +145,13 @@ TEST_P(FrameReuseTest, AfterACutAllIsSearched) {
   }
   const DisparityMaps maps = next(after);
   EXPECT_EQ(report_.searched_share, 1);
-  EXPECT_TRUE(test::identical(maps, match(after, false)));
+  const DisparityMaps expected = match(after, false);
+  EXPECT_TRUE(test::identical(maps, expected));
+  // Its maps were not kept, those of the next frame are.
+  EXPECT_TRUE(test::identical(next(after), expected));
+  EXPECT_EQ(report_.searched_share, 1);
+  EXPECT_TRUE(test::identical(next(after), expected));
+  EXPECT_LT(*report_.searched_share, 0.2);
 }
 
 TEST_P(FrameReuseTest, TilesWhosePartnersChangedAreSearched) {
