@@ -129,7 +129,7 @@ MatchChain::MatchChain(const MethodParameters& parameters,
     : geometry_(geometry),
       outputs_(outputs),
       height_(level.costs != nullptr ? level.costs->extent().rows : outputs.disparity_px.height()),
-      regions_(level.regions) {
+      regions_(level.regions != nullptr ? std::optional(*level.regions) : std::nullopt) {
   const bool is_cost_volume = level.volume != nullptr && level.volume->kind() == VolumeKind::kCosts;
   if (input.pair != nullptr && !is_cost_volume) {
     add_column_ssd(parameters, input, level);
@@ -148,6 +148,12 @@ MatchChain::MatchChain(const MethodParameters& parameters,
     add(make_coarser_selection_stage(
         geometry_, height_, energy_selector(parameters), EnergyFormat(parameters),
         {.volume = level.coarser, .blocks = level.coarser_blocks}, level.blocks));
+    if (regions_) {  // that stage's rows and columns are those of the coarser level
+      for (scheduler::Region& region : *regions_) {
+        region = {{region.columns.begin / 2, (region.columns.end + 1) / 2},
+                  {region.rows.begin / 2, (region.rows.end + 1) / 2}};
+      }
+    }
     return;
   }
   add_costs(parameters, input, level);

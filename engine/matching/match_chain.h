@@ -129,8 +129,10 @@ class MatchChain {
   /// Stage counts at which to cut the chain so that each pass holds `iterations`; see
   /// scheduler::PlanRequest.
   [[nodiscard]] std::vector<int> pass_ends(int iterations) const;
-  /// ChainLevel::regions.
-  [[nodiscard]] const std::vector<scheduler::Region>* regions() const { return regions_; }
+  /// ChainLevel::regions, on the grid of the last stage; null: everything is computed.
+  [[nodiscard]] const std::vector<scheduler::Region>* regions() const {
+    return regions_ ? &*regions_ : nullptr;
+  }
 
  private:
   void add(std::unique_ptr<scheduler::RowStage> stage);
@@ -178,7 +180,7 @@ class MatchChain {
   kernels::CandidateGeometry geometry_;
   MapOutputs outputs_;
   int height_;  ///< of the level
-  const std::vector<scheduler::Region>* regions_;
+  std::optional<std::vector<scheduler::Region>> regions_;
   float half_scale_ = 1;  ///< of volumes that hold energies
   int first_iteration_ = 0;
   int iterations_ = 0;

@@ -48,12 +48,12 @@ struct ReducedParts {
   std::vector<scheduler::Region> maps;
 };
 
-/// searched: size of the images that are searched, with `parameters`.
+/// searched: size of the images that are searched. iterations: of levels of windows.
 ReducedParts parts_of(const TileMask& tiles, scheduler::Extent searched, int reductions,
-                      const MethodParameters& parameters) {
+                      int iterations) {
   const scheduler::Extent level = coarser_extent(searched);
   const int columns_per_column = 1 << reductions;
-  const int reach = coarse_reach(parameters.final_iterations);
+  const int reach = coarse_reach(iterations);
   ReducedParts parts;
   parts.maps = tiles.regions();
   TileMask winners;
@@ -64,8 +64,9 @@ ReducedParts parts_of(const TileMask& tiles, scheduler::Extent searched, int red
     parts.coarse_windows = windows.regions();
     winners = windows.widened(level, 2, reach, kPartSidePx);
   }
-  parts.search.levels = coarse_parts(tiles.widened(level, columns_per_column, 0, kPartSidePx),
-                                     winners, searched, parameters);
+  // Level 2 is so small that parts of it would take longer than all of it.
+  parts.search.levels = {
+      {tiles.widened(level, columns_per_column, 0, kPartSidePx).regions(), winners.regions()}};
   return parts;
 }
 
@@ -148,7 +149,8 @@ void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence,
   const ImageView<float> size(nullptr, searched.width(), searched.height(), 1, 0);
   ReducedParts parts;
   if (tiles != nullptr) {
-    parts = parts_of(*tiles, {searched.width(), searched.height()}, reductions, search.parameters);
+    parts = parts_of(*tiles, {searched.width(), searched.height()}, reductions,
+                     options_.parameters.final_iterations);
   }
   MapSearch(search, search.parameters, execution_, search_work, report)
       .compute(side, input, {.disparity_px = size},

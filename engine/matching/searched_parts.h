@@ -30,12 +30,6 @@ struct SearchedParts {
 /// Side of tiles of coarse levels in their pixels.
 inline constexpr int kPartSidePx = 4;
 
-/// What of coarse levels is read to compute `winners` of level 1, where costs changed in `costs`.
-/// image: of level 0.
-std::vector<SearchedParts::OfLevel> coarse_parts(TileMask costs, TileMask winners,
-                                                 scheduler::Extent image,
-                                                 const MethodParameters& parameters);
-
 /// The parts that are computed for `tiles` of the map, where the images changed.
 SearchedParts searched_parts(const TileMask& tiles, const MethodParameters& parameters);
 

@@ -8,7 +8,8 @@ namespace {
 
 /// Every tile is searched once in so many frames.
 constexpr int kRefreshFrames = 16;
-/// Neighbouring tiles that are searched anew together.
+/// Tiles of squares of so many along one direction are searched together: coarse levels read around
+/// them.
 constexpr int kRefreshTiles = 4;
 /// With a larger share of changed tiles of a map the images moved: the camera does, or there was a
 /// cut, and the others are alike by chance.
@@ -20,7 +21,7 @@ constexpr int kPartnerStep = 2;
 constexpr int kMinChangedPartners = 2;
 
 bool is_refreshed(int column, int row, int frame) {
-  return (column / kRefreshTiles + 7 * row + frame) % kRefreshFrames == 0;
+  return (column / kRefreshTiles + 7 * (row / kRefreshTiles) + frame) % kRefreshFrames == 0;
 }
 
 void copy_tiles(const TileMask& tiles, const Image<std::uint8_t>& image,
