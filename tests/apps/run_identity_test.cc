@@ -133,8 +133,10 @@ INSTANTIATE_TEST_SUITE_P(
                             joined(kVideoOutputs, {"--method", "bayes", "--cost", "census-rays",
                                                    "--prior-smoothing", "maximum", "--levels", "3",
                                                    "--search-size", "half", "--reuse", "frame"})},
-                    Outputs{"ReuseOfBalanced", 1,
-                            joined(kVideoOutputs, {"--preset", "balanced", "--reuse", "frame"})}),
+                    Outputs{"ReuseAtFullSize", 1,
+                            joined(kVideoOutputs, {"--method", "bayes", "--cost", "census-rays",
+                                                   "--prior-smoothing", "maximum", "--levels", "3",
+                                                   "--window-levels", "1", "--reuse", "frame"})}),
     [](const auto& instance) { return instance.param.name; });
 
 }  // namespace run_identity_test
