@@ -80,8 +80,7 @@ void check_temporal(const SequenceOptions& options) {
                                         ? "moments of p(d)"
                                         : reuse_obstacle(options.match.in_force());
   if (!obstacle.empty()) {
-    throw UsageError(fmt::format(
-        "reuse is frame with {}, expected pairs and a preset, or a method like theirs", obstacle));
+    throw UsageError(fmt::format("reuse is frame, expected none with {}", obstacle));
   }
 }
 

@@ -59,7 +59,7 @@ TEST(SequenceOptions, WhatIsWrongIsNamed) {
                 o.match.method = MatchMethod::kSsd;
                 o.temporal.reuse = Reuse::kFrame;
               }),
-              HasSubstr("reuse is frame with a method without"));
+              HasSubstr("reuse is frame, expected none with a method without"));
 }
 
 }  // namespace sequence_options_test
