@@ -43,7 +43,7 @@ void write_map(const MatchJob& job, const std::string& path, const DisparityMaps
 }
 
 void write_results(const MatchJob& job, const DisparityMaps& maps,
-                   const Image<float>& depth_resolution) {
+                   const Image<float>& depth_resolution, const DepthFiles& depth_files) {
   const Side side = job.is_left() ? Side::kLeft : Side::kRight;
   const MatchedMap& map = maps.of(side);
   write_map(job, job.output, maps, side);
@@ -56,6 +56,7 @@ void write_results(const MatchJob& job, const DisparityMaps& maps,
   if (!job.depth.resolution_file.empty()) {
     write_disparity(job.depth.resolution_file, depth_resolution.view());
   }
+  write_depth_files(job.depth.outputs, depth_files);
   if (!job.unmatched.empty()) {
     write_mask(job.unmatched, map.unmatched.view());
   }
@@ -125,6 +126,46 @@ void require_equal_sizes(const MatchJob& job, const std::vector<Photograph>& ima
   }
 }
 
+/// Rectifies a pair in place if its calibration says so.
+void rectify(const MatchJob& job, const DepthGeometry& geometry, std::vector<Photograph>& images,
+             Execution& execution, RunReport& report) {
+  const Rectifier* const rectifier = geometry.rectifier();
+  if (rectifier == nullptr) {
+    return;
+  }
+  if (job.has_several()) {
+    throw Error(
+        fmt::format("{}: is of cameras that are not rectified, expected one of rectified "
+                    "images with --baselines",
+                    job.depth.calibration));
+  }
+  report.timed_compute("rectify", [&] {
+    for (const Side side : {Side::kLeft, Side::kRight}) {
+      Photograph rectified;
+      Photograph& image = images[index_of(side)];
+      rectifier->apply(image, side, rectified, execution);
+      image = std::move(rectified);
+    }
+  });
+}
+
+DepthFiles depth_files(const MatchJob& job, const std::optional<MapCamera>& camera,
+                       const Photograph& colours, const MatchedMap& map,
+                       ImageView<const float> along_px, Execution& execution, RunReport& report) {
+  if (!job.depth.outputs.any()) {
+    return {};
+  }
+  const CloudSource source{.disparity_px = along_px,
+                           .colours = &colours,
+                           .unmatched = job.depth.outputs.reads_unmatched()
+                                            ? map.unmatched.view()
+                                            : ImageView<const std::uint8_t>(),
+                           .confidence = map.confidence.view(),
+                           .camera = *camera};
+  return report.timed_compute(
+      "depth", [&] { return make_depth_files(job.depth.outputs, source, execution, report); });
+}
+
 /// Outputs of the disparity space.
 struct SpaceOutputs {
   std::optional<NpyVolumeFile> volume;
@@ -174,8 +215,9 @@ void match_images(const MatchJob& job, const StereoMatcher& matcher,
   const MatchRequest request{
       .left = job.is_left() || job.wants_cyclopean(),
       .right = job.wants_right(),
-      .unmatched = !(job.unmatched.empty() && job.unmatched_right.empty()) || job.wants_cyclopean(),
-      .confidence = !job.confidence.empty(),
+      .unmatched = !(job.unmatched.empty() && job.unmatched_right.empty()) ||
+                   job.wants_cyclopean() || job.depth.outputs.reads_unmatched(),
+      .confidence = !job.confidence.empty() || job.depth.outputs.reads_confidence(),
       .volumes = volumes};
   if (!job.has_several()) {
     matcher.match(images[0], images[1], request, maps, &report);
@@ -255,7 +297,10 @@ int command_match(const Arguments& arguments) {
   }
   require_equal_sizes(job, images);
   const scheduler::Extent size{images[0].width(), images[0].height()};
-  const std::optional<DepthScale> scale = job.depth.scale(size.columns, size.rows);
+  const DepthGeometry geometry(job.depth, size.columns, size.rows, job.vertical);
+  const Side side = job.is_left() ? Side::kLeft : Side::kRight;
+  const std::optional<MapCamera> camera = geometry.camera(side);
+  rectify(job, geometry, images, execution, report);
   if (job.vertical) {
     transpose(images);
   }
@@ -324,9 +369,10 @@ int command_match(const Arguments& arguments) {
   report.add_match(match);
   report.set_memory(memory_use(images, maps, matcher, chosen));
   // Along the baseline.
-  const MatchedMap& map = maps.of(job.is_left() ? Side::kLeft : Side::kRight);
+  const MatchedMap& map = maps.of(side);
   const auto along_px =
       (job.vertical && job.match.disparities_y ? map.disparity_y_px : map.disparity_px).view();
+  const std::optional<DepthScale> scale = camera ? std::optional(camera->scale) : std::nullopt;
   if (!job.common.report.empty()) {
     report_depth_resolution(along_px, scale, job.disparity_resolution_px(), report);
   }
@@ -334,8 +380,13 @@ int command_match(const Arguments& arguments) {
   if (!job.depth.resolution_file.empty()) {
     depth_resolution_map(along_px, *scale, job.disparity_resolution_px(), chosen, depth_resolution);
   }
+  if (job.vertical && job.depth.outputs.has_points()) {
+    transpose(images);
+  }
+  const Photograph& reference = job.has_several() ? images[0] : images[index_of(side)];
+  const DepthFiles depths = depth_files(job, camera, reference, map, along_px, chosen, report);
   report.timed_file_access("write", [&] {
-    write_results(job, maps, depth_resolution);
+    write_results(job, maps, depth_resolution, depths);
     write_space(job, space, report);
     write_cyclopean(job, cyclopean);
   });
@@ -346,6 +397,9 @@ int command_match(const Arguments& arguments) {
          summary_of(job.match.resolved()), size.columns, size.rows, job.match.disparities.min,
          job.match.disparities.max, job.left, job.output);
     print_exposure(match);
+    for (const std::string& summary : depths.summaries) {
+      tell("match: {}\n", summary);
+    }
     if (space.volume) {
       tell("match: {}\n", volume_summary(job.volume, *space.volume));
     }

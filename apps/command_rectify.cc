@@ -5,12 +5,12 @@
 #include <filesystem>
 
 #include "apps/commands.h"
-#include "apps/generated_files.h"
 #include "apps/input_limits.h"
 #include "apps/interrupt.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
+#include "apps/rectified_files.h"
 #include "apps/rectify_results.h"
 #include "apps/run_report.h"
 #include "apps/sampled_matches.h"
@@ -37,7 +37,8 @@ struct RectifyJob {
   std::string calibration;  ///< file; empty: from the images alone
   int sample_pairs = 10;
   RectificationOptions rectification;
-  std::string output;  ///< folder
+  std::optional<double> baseline_m;  ///< empty: that of the calibration
+  std::string output;                ///< folder
   std::string matrices;
   std::string valid_mask;
   CommonOptions common;
@@ -57,14 +58,18 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
   settings.input_path(
       "calibration", job.calibration, "FILE",
       "Cameras: OpenCV, Middlebury or KITTI file; default: estimated from the images");
+  settings.number("baseline", job.baseline_m, "METRES",
+                  "Distance of the cameras: gives estimated cameras their scale; auto: that of "
+                  "--calibration");
   settings.integer(
       "sample-pairs", job.sample_pairs, "N",
       "Maximum number of pairs to estimate the cameras from and to measure row errors in");
   settings.start_group("Output: at least one of these");
   settings
-      .path("output", job.output, "DIR",
-            "Folder for the rectified images: DIR/left.png and DIR/right.png; for several pairs "
-            "DIR/left/000000.png and so on")
+      .path(
+          "output", job.output, "DIR",
+          "Folder for the rectified images, which keep the names of the photographs: DIR/NAME.png; "
+          "for several pairs, or equal names, DIR/left/NAME.png and DIR/right/NAME.png")
       .short_name = 'o';
   settings.path(
       "matrices", job.matrices, "FILE",
@@ -84,6 +89,9 @@ void check(const RectifyJob& job) {
   if (job.sample_pairs < 1 || job.sample_pairs > kMaxSamplePairs) {
     throw UsageError(fmt::format("--sample-pairs is {}, expected a number from 1 to {}",
                                  job.sample_pairs, kMaxSamplePairs));
+  }
+  if (job.baseline_m && !(*job.baseline_m > 0 && std::isfinite(*job.baseline_m))) {
+    throw UsageError(fmt::format("--baseline is {}, expected a number above 0", *job.baseline_m));
   }
   if (job.output.empty() && job.matrices.empty() && job.valid_mask.empty()) {
     throw UsageError(
@@ -106,12 +114,15 @@ FileChecks check_files(const RectifyJob& job, const Settings& settings) {
   return files;
 }
 
-void check_pairs(const RectifyJob& job, const PairSource& pairs, FileChecks& files) {
+void check_pairs(const PairSource& pairs, FileChecks& files) {
   for (const fs::path& file : pairs.files()) {
     files.add_input(file);
   }
-  if (!job.output.empty()) {
-    GeneratedFiles::check(job.output, pairs.pair_count() > 1, {"left", "right"}, files);
+}
+
+void set_baseline(const RectifyJob& job, StereoCalibration& calibration) {
+  if (job.baseline_m) {
+    calibration.set_baseline_m(*job.baseline_m);
   }
 }
 
@@ -181,10 +192,15 @@ int command_rectify(const Arguments& arguments) {
   report.set_execution(execution);
 
   const std::unique_ptr<PairSource> pairs = open_pair_source(job.input);
-  check_pairs(job, *pairs, files);
+  check_pairs(*pairs, files);
   const int pair_count = pairs->pair_count();
   FramePair pair;
   report.timed_file_access("read", [&] { read_equal_pair(*pairs, 0, pair); });
+  std::optional<RectifiedFiles> results;
+  if (!job.output.empty()) {
+    results.emplace(job.output, *pairs, pair);
+    results->check(*pairs, files);
+  }
   const ImageSize size = {pair.left.width(), pair.left.height()};
   const std::vector<int> sample = sampled_pairs(pair_count, job.sample_pairs);
   const std::string inputs = fmt::format("{} and {}", job.input.left, job.input.right);
@@ -203,6 +219,7 @@ int command_rectify(const Arguments& arguments) {
   } else {
     rectification.calibration = read_stereo_calibration(job.calibration);
   }
+  set_baseline(job, rectification.calibration);
   const auto rectifier_of_all = [&] {
     return report.timed_compute("maps", [&] {
       return Rectifier(rectification.calibration, size.width_px, size.height_px, job.rectification);
@@ -240,8 +257,7 @@ int command_rectify(const Arguments& arguments) {
     }
   });
   const std::atomic<bool>& interrupted = interrupt_flag();
-  if (!job.output.empty()) {
-    const GeneratedFiles results(job.output, pair_count > 1);
+  if (results) {
     Progress progress(
         "rectify", "pairs",
         job.common.quiet || pair_count == 1 ? ProgressStyle::kNone : ProgressStyle::kAuto);
@@ -251,8 +267,8 @@ int command_rectify(const Arguments& arguments) {
         report.timed_compute("remap", [&] { rectify_pair(rectifier, pair, execution); });
       });
       report.timed_file_access("write", [&] {
-        results.write("left", index, pair.left);
-        results.write("right", index, pair.right);
+        results->write(Side::kLeft, pair);
+        results->write(Side::kRight, pair);
       });
       progress.update(index + 1, pair_count, 0);
     }

@@ -9,6 +9,8 @@ constexpr std::array kCommands = {
     Command{"match", "Disparity maps of a rectified pair", command_match},
     Command{"synth", "New views of a rectified pair", command_synth},
     Command{"view", "A web page that renders new views of a pair", command_view},
+    Command{"reproject", "Depths, points or a surface in metres from a disparity map",
+            command_reproject},
     Command{"rectify", "Rectifies photographs of two cameras", command_rectify},
     Command{"run", "Disparity maps and new views of a sequence or video", command_run},
     Command{"merge", "Checks that all parts of a run are complete, and joins its videos",

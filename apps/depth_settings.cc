@@ -10,81 +10,67 @@
 
 #include "engine/error.h"
 #include "engine/io/map_formats.h"
-#include "engine/rectification/stereo_calibration.h"
 
 namespace vantage::apps {
-namespace {
-
-void require_above_0(const char* option, const std::optional<double>& value) {
-  if (value && !(*value > 0 && std::isfinite(*value))) {
-    throw UsageError(fmt::format("{} is {}, expected a number above 0", option, *value));
-  }
-}
-
-}  // namespace
 
 void DepthSettings::validate(bool is_vertical) const {
-  require_above_0("focal-length", focal_length_px);
-  require_above_0("baseline-length", baseline);
-  require_above_0("disparity-resolution", step_px);
-  if (doffs_px && !std::isfinite(*doffs_px)) {
-    throw UsageError(fmt::format("doffs is {}, expected a finite number", *doffs_px));
-  }
-  if (!calibration.empty() && (focal_length_px || baseline || doffs_px)) {
+  if (step_px && !(*step_px > 0 && std::isfinite(*step_px))) {
     throw UsageError(
-        "--calibration is given with --focal-length, --baseline-length or --doffs, expected one of "
-        "both: a calibration has all three");
+        fmt::format("disparity-resolution is {}, expected a number above 0", *step_px));
   }
+  rig.validate(calibration);
+  rectification.validate();
   if (!calibration.empty() && is_vertical) {
     throw UsageError(
-        "--calibration is given with --vertical, expected --focal-length and --baseline-length: "
+        "--calibration is given with --vertical, expected --focal-length and --baseline: "
         "calibrations are of cameras side by side");
   }
-  if (calibration.empty() && !focal_length_px) {
-    if (baseline || doffs_px) {
-      throw UsageError(fmt::format("--{} has no effect without --focal-length",
-                                   baseline ? "baseline-length" : "doffs"));
-    }
-    if (!resolution_file.empty()) {
-      throw UsageError("--depth-resolution needs --calibration or --focal-length");
-    }
+  if (!resolution_file.empty() && !has_geometry()) {
+    throw UsageError("--depth-resolution needs --calibration or --focal-length");
+  }
+  if (outputs.any()) {
+    rig.require_given(calibration, outputs.first_option());
   }
 }
 
-std::optional<DepthScale> DepthSettings::scale(int width_px, int height_px) const {
-  if (calibration.empty()) {
-    return focal_length_px ? std::optional(DepthScale{.focal_length_px = *focal_length_px,
-                                                      .baseline = baseline.value_or(1),
-                                                      .doffs_px = doffs_px.value_or(0)})
-                           : std::nullopt;
+DepthGeometry::DepthGeometry(const DepthSettings& depth, int width_px, int height_px,
+                             bool is_vertical)
+    : depth_(depth), width_px_(width_px), height_px_(height_px), is_vertical_(is_vertical) {
+  if (depth.calibration.empty()) {
+    return;
   }
-  const StereoCalibration cameras = read_stereo_calibration(calibration);
-  if (!cameras.is_rectified) {
-    throw Error(
-        fmt::format("{} is of cameras that are not rectified, expected one of rectified images; or "
-                    "give --focal-length, --baseline-length and --doffs",
-                    calibration));
+  const StereoCalibration cameras = depth.rig.read(depth.calibration);
+  metres_per_unit_ = depth.outputs.any() ? depth.rig.required_unit_of(cameras)
+                                         : depth.rig.unit_of(cameras).value_or(1);
+  rectifier_.emplace(cameras, width_px, height_px, depth.rectification);
+}
+
+std::optional<MapCamera> DepthGeometry::camera(Side side) const {
+  if (rectifier_) {
+    return map_camera(rectifier_->pair(), side, metres_per_unit_);
   }
-  cameras.check_image_size(width_px, height_px);
-  return DepthScale{.focal_length_px = cameras.left.matrix(0, 0),
-                    .baseline = cameras.baseline(),
-                    .doffs_px = cameras.doffs_px()};
+  return depth_.rig.focal_length_px
+             ? std::optional(depth_.rig.camera(width_px_, height_px_, side, is_vertical_))
+             : std::nullopt;
 }
 
 void add_depth_settings(Settings& settings, DepthSettings& depth) {
-  settings.start_group("Depth");
-  settings.path("depth-resolution", depth.resolution_file, "FILE",
-                fmt::format("Write the distance from each pixel's depth to the next one that can "
-                            "be told from it, in the unit of the baseline: {}",
-                            listed_map_formats(MapContent::kConfidence)));
+  settings.start_group("Depth, in metres");
   settings.input_path("calibration", depth.calibration, "FILE",
-                      "Calibration of the rectified images: Middlebury, KITTI or OpenCV");
-  settings.number("focal-length", depth.focal_length_px, "PX",
-                  "In place of a calibration: focal length of the rectified images");
-  settings.number("baseline-length", depth.baseline, "B",
-                  "Distance of the cameras, in the unit that depths are wanted in; auto: 1");
-  settings.number("doffs", depth.doffs_px, "PX",
-                  "cx of the right image minus cx of the left one; auto: 0");
+                      "Cameras, to rectify the pair first if needed, and for depths: OpenCV, "
+                      "Middlebury or KITTI file");
+  settings.number("kept-outline", depth.rectification.kept_outline, "SHARE",
+                  "Area of images that are rectified first: 0 only what both cameras see, 1 "
+                  "everything, with black borders");
+  add_rig_scale_settings(settings, depth.rig);
+  add_depth_output_settings(settings, depth.outputs);
+  add_cloud_settings(settings, depth.outputs.options);
+  settings.path(
+      "depth-resolution", depth.resolution_file, "FILE",
+      fmt::format(
+          "Write the distance from each pixel's depth to the next one that can be told from "
+          "it, in metres, or in the calibration's unit where that is not known: {}",
+          listed_map_formats(MapContent::kConfidence)));
   settings.number("disparity-resolution", depth.step_px, "PX",
                   "Difference of disparities that can be told apart; auto: 0.1, or 1 with "
                   "--subpixel none");

@@ -165,6 +165,8 @@ void check_unrectified(const MatchJob& job, const Settings& settings) {
   refuse(job.match.disparities_y.has_value(), "disparities-y", "epipolar lines are known");
   refuse(job.match.resolved().selection == Selection::kSymmetric, "selection symmetric",
          "pixels of both photographs lie on different epipolar lines");
+  refuse(job.depth.has_geometry(), job.depth.calibration.empty() ? "focal-length" : "calibration",
+         "depths belong to rectified pixels, which --calibration alone makes");
   refuse(!job.volume.file.empty(), "volume", "candidates differ by fractions from pixel to pixel");
   refuse(job.wants_posterior(), "posterior-mean and --posterior-variance",
          "candidates differ by fractions from pixel to pixel");
@@ -181,11 +183,12 @@ void add_match_job_settings(Settings& settings, MatchJob& job) {
   add_common_settings(settings, job.common);
   add_input_limit_settings(settings, job.common.execution);
   settings.set_short_help(
-      {"left", "right", "more", "output", "output-right", "unmatched", "preview", "disparities",
-       "preset", "fill", "threads", "quiet"},
+      {"left", "right", "more", "output", "output-right", "unmatched", "preview", "calibration",
+       "depth", "cloud", "disparities", "preset", "threads", "quiet"},
       {"vantage match left.png right.png -o disparity.pfm --preview preview.png",
        "vantage match left.png right.png -o disparity.npy --disparities 0:127 --preset fast",
-       "vantage match left.png right.png -o disparity.png --fill none --unmatched mask.png"});
+       "vantage match left.png right.png -o disparity.png --fill none --unmatched mask.png",
+       "vantage match left.png right.png -o map.pfm --calibration calib.txt --cloud cloud.ply"});
 }
 
 double MatchJob::disparity_resolution_px() const {
@@ -220,6 +223,9 @@ void check(const MatchJob& job, const Settings& settings) {
   if (job.tuning.ignored) {
     settings.refuse_idle({"tuning"}, "with --no-tuning");
   }
+  if (job.depth.calibration.empty()) {
+    settings.refuse_idle({"kept-outline"}, "without --calibration");
+  }
   for (const auto& [option, file, content] :
        {std::tuple{"confidence", &job.confidence, "confidences"},
         std::tuple{"depth-resolution", &job.depth.resolution_file, "distances"}}) {
@@ -238,6 +244,7 @@ void check(const MatchJob& job, const Settings& settings) {
   files.add_output(job.output_right, "--output-right", map_kind);
   files.add_output(job.confidence, "--confidence", OutputKind::kConfidence);
   files.add_output(job.depth.resolution_file, "--depth-resolution", OutputKind::kConfidence);
+  check_depth_outputs(job.depth.outputs, settings, files);
   files.add_output(job.unmatched, "--unmatched", OutputKind::kMask);
   files.add_output(job.unmatched_right, "--unmatched-right", OutputKind::kMask);
   files.add_output(job.preview, "--preview", OutputKind::kPhotograph);

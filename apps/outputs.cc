@@ -47,6 +47,10 @@ std::vector<std::string> extensions_of(OutputKind kind) {
       return {".csv", ".npy"};
     case OutputKind::kVolume:
       return {".npy"};
+    case OutputKind::kDepth:
+      return map_extensions(MapContent::kDepth);
+    case OutputKind::kPoints:
+      return {".ply"};
     case OutputKind::kPage:
       return {".html", ".htm"};
     case OutputKind::kPlot:

@@ -22,6 +22,8 @@ enum class OutputKind {
   kVideo,
   kTable,   ///< numbers: .csv or .npy
   kVolume,  ///< .npy
+  kDepth,
+  kPoints,  ///< .ply
   kPage,    ///< .html
   kPlot,    ///< a chart: .svg or a picture
   kText

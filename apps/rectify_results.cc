@@ -33,6 +33,16 @@ void print_validation(const RigValidation& validation) {
   }
 }
 
+void print_scale(const StereoCalibration& calibration) {
+  if (!calibration.has_scale) {
+    tell(
+        "rectify: the cameras have no scale: images alone do not show it; --baseline METRES gives "
+        "it, for depths in metres\n");
+  } else if (calibration.metres_per_unit) {
+    tell("rectify: baseline {:.6g} m\n", calibration.baseline() * *calibration.metres_per_unit);
+  }
+}
+
 }  // namespace
 
 SettingValue results_of(const Rectification& rectification, const RectifiedPair& pair,
@@ -47,6 +57,7 @@ SettingValue results_of(const Rectification& rectification, const RectifiedPair&
       {"held_out_vertical_error", nullptr},
       {"covered_share", nullptr},
       {"disparities", nullptr},
+      {"baseline_m", nullptr},
       {"looks_exchanged", nullptr},
       {"valid",
        {{"x", pair.valid.x},
@@ -67,6 +78,10 @@ SettingValue results_of(const Rectification& rectification, const RectifiedPair&
       results["held_out_vertical_error"] =
           vertical_error_values(*rectification.validation->held_out);
     }
+  }
+  const StereoCalibration& calibration = rectification.calibration;
+  if (calibration.has_scale && calibration.metres_per_unit) {
+    results["baseline_m"] = calibration.baseline() * *calibration.metres_per_unit;
   }
   if (rectification.remaining) {
     results["vertical_error"] = vertical_error_values(*rectification.remaining);
@@ -100,6 +115,7 @@ void print_results(const Rectification& rectification, const RectifiedPair& pair
   } else {
     tell("rectify: too few points in common to measure row errors\n");
   }
+  print_scale(rectification.calibration);
   tell("rectify: valid region {}x{} pixels from ({}, {})\n", pair.valid.width, pair.valid.height,
        pair.valid.x, pair.valid.y);
 }

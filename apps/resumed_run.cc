@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kSources = {"left",  "right",    "more",       "stereo",
-                                 "pairs", "sequence", "calibration"};
+constexpr std::array kSources = {"left",  "right",    "more",        "stereo",
+                                 "pairs", "sequence", "calibration", "poses"};
 constexpr const char* kKeepGoing = "keep-going";
 
 bool names_input(const PairSourceOptions& input) {

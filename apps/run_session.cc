@@ -71,6 +71,11 @@ RunIdentity identity_of(const RunJob& job, const Settings& settings, const RunSe
     calibration.add(fs::path(job.calibration).filename().string(), job.calibration);
     identity.inputs.push_back("calibration: " + calibration.to_string());
   }
+  if (!job.poses.empty()) {
+    FileIdentity poses;
+    poses.add(fs::path(job.poses).filename().string(), job.poses);
+    identity.inputs.push_back("poses: " + poses.to_string());
+  }
   identity.frame_count = session.pairs->pair_count();
   const PairSource::Sound sound = session.pairs->sound();
   if (job.sequence.sound && !sound.file.empty()) {
@@ -142,12 +147,14 @@ void RunSession::rectify(FramePair& pair, Execution& pool) const {
 SequenceRun RunSession::run(const RunJob& job, const ShotTable* shots) const {
   // Pairs of a list may be unrelated.
   const bool any_size = !job.input.pairs.empty() && job.sequence.video.empty() &&
-                        !job.sequence.temporal.uses_past() && !shape.cameras;
+                        !job.sequence.temporal.uses_past() && !shape.cameras && !map_camera;
   return {.pairs = *pairs,
           .selection = selection,
           .frame_size = any_size ? std::nullopt : std::optional(shape.source),
           .rectifier = rectifier ? &*rectifier : nullptr,
           .cameras = shape.cameras ? &*shape.cameras : nullptr,
+          .map_camera = map_camera ? &*map_camera : nullptr,
+          .poses = poses ? &*poses : nullptr,
           .shots = shots,
           .in_flight = memory.in_flight,
           .keep_going = job.keep_going,
@@ -198,14 +205,25 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   }
   Execution execution(job.common.execution);
   if (!job.calibration.empty()) {
-    const StereoCalibration calibration = read_stereo_calibration(job.calibration);
+    const StereoCalibration calibration = job.rig.read(job.calibration);
     Rectifier rectifier(calibration, first.left.width(), first.left.height(), job.rectification);
     session.shape.cameras = rectifier.pair();
+    if (job.sequence.is_metric()) {
+      session.map_camera = map_camera(rectifier.pair(), job.sequence.match.reference,
+                                      job.rig.required_unit_of(calibration));
+    }
     if (rectifier.needs_rectification()) {
       session.rectifier.emplace(std::move(rectifier));
       session.shape.is_rectified_here = true;
       session.rectify(first, execution);
     }
+  }
+  if (!job.poses.empty()) {
+    session.poses.emplace(read_trajectory(job.poses), job.poses);
+  }
+  if (job.calibration.empty() && job.sequence.is_metric()) {
+    session.map_camera = job.rig.camera(first.left.width(), first.left.height(),
+                                        job.sequence.match.reference, false);
   }
   if (job.check_rectification) {
     warn_unless_rectified(settings, job.common, expects_negative_disparities(job.sequence.match),

@@ -17,8 +17,10 @@ namespace vantage::apps {
 /// A run whose input has been opened and examined; nothing is written yet.
 struct RunSession {
   std::unique_ptr<PairSource> pairs;
-  std::optional<Rectifier> rectifier;  ///< if a calibration must be applied
-  PairShape shape;                     ///< of the first pair that could be read
+  std::optional<Rectifier> rectifier;   ///< if a calibration must be applied
+  std::optional<MapCamera> map_camera;  ///< of outputs in metres
+  std::optional<FramePoses> poses;
+  PairShape shape;  ///< of the first pair that could be read
   FrameSelection selection;
   RunIdentity identity;
   AppliedTuning tuning;

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "apps/depth_outputs.h"
 #include "apps/frame_rate_setting.h"
+#include "apps/frame_step_setting.h"
 #include "apps/input_limits.h"
 #include "apps/match_settings.h"
 #include "apps/pair_source_settings.h"
@@ -174,6 +176,22 @@ void add_output_settings(Settings& settings, RunJob& job) {
   no_sound.get = [&job] { return !job.sequence.sound; };
 }
 
+void add_metric_settings(Settings& settings, RunJob& job) {
+  settings.start_group("Depth, in metres");
+  add_rig_scale_settings(settings, job.rig);
+  settings.text(
+      "depth-format", job.sequence.depth_format, "EXT",
+      fmt::format("File format of depths: {}; png in millimetres (16 bits, 0 unknown), the "
+                  "others in metres",
+                  listed_map_formats(MapContent::kDepth, "")));
+  add_cloud_settings(settings, job.sequence.cloud);
+  settings
+      .input_path("poses", job.poses, "FILE",
+                  "Poses of the left camera in metres, one per pair (TUM or KITTI trajectory): "
+                  "clouds and meshes are in their world")
+      .changes_results = false;  // the journal identifies inputs by their content
+}
+
 void add_steadiness_settings(Settings& settings, SequenceOptions& options) {
   settings.start_group("Temporal stability");
   settings.choice<FitScope>("intensity-fit", options.intensity_fit,
@@ -308,10 +326,23 @@ void refuse_idle_outputs(const Settings& settings, const SequenceOptions& sequen
                          "posterior-mean, posterior-variance, cyclopean");
   }
   if (!saves_any({Output::kDisparity, Output::kConfidence, Output::kUnmatched, Output::kPreview,
-                  Output::kPosteriorMean, Output::kPosteriorVariance})) {
+                  Output::kPosteriorMean, Output::kPosteriorVariance, Output::kDepth,
+                  Output::kCloud, Output::kMesh})) {
     settings.refuse_idle({"reference"},
                          "where --save has no disparity, confidence, unmatched, preview, "
-                         "posterior-mean, posterior-variance");
+                         "posterior-mean, posterior-variance, depth, cloud, mesh");
+  }
+  if (!sequence.saves(Output::kDepth)) {
+    settings.refuse_idle({"depth-format"}, "where --save has no depth");
+  }
+  if (!sequence.is_metric()) {
+    settings.refuse_idle(
+        {"max-depth", "baseline", "focal-length", "principal-point", "doffs", "calibration-unit"},
+        "where --save has no depth, cloud, mesh");
+  }
+  if (!sequence.saves_points()) {
+    refuse_idle_cloud_options(settings, "where --save has no cloud, mesh");
+    settings.refuse_idle({"poses"}, "where --save has no cloud, mesh");
   }
   if (!sequence.saves(Output::kPreview)) {
     settings.refuse_idle({"preview-range"}, "where --save has no preview");
@@ -356,6 +387,7 @@ void add_run_settings(Settings& settings, RunJob& job) {
   settings.take_job_file();
   add_input_settings(settings, job);
   add_output_settings(settings, job);
+  add_metric_settings(settings, job);
   add_steadiness_settings(settings, job.sequence);
   add_part_settings(settings, job);
   add_pipeline_settings(settings, job);
@@ -402,6 +434,10 @@ void complete(RunJob& job, const Settings& settings) {
   apply_step_of_frames(job);
   job.input.validate();
   job.rectification.validate();
+  job.rig.validate(job.calibration);
+  if (job.sequence.is_metric()) {
+    job.rig.require_given(job.calibration, "save depth, cloud or mesh");
+  }
   if (job.rectification.kept_outline > 0 && job.calibration.empty()) {
     throw UsageError("--kept-outline has no effect without --calibration");
   }

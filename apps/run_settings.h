@@ -10,6 +10,7 @@
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
+#include "apps/rig_scale.h"
 #include "apps/sequence_views.h"
 #include "apps/settings.h"
 #include "engine/rectification/rectified_pair.h"
@@ -27,6 +28,8 @@ struct RunJob {
   PairSourceOptions input;
   std::string calibration;  ///< file, empty = rectified pairs
   RectificationOptions rectification;
+  RigScale rig;        ///< of depths
+  std::string poses;   ///< file of a trajectory; empty: points are in the frame of the camera
   std::string output;  ///< folder
   SequenceOptions sequence;
   /// Empty: the disparity map, and the views if there are any.

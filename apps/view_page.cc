@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <string_view>
+#include <vector>
 
 #include "apps/embedded_files.h"
 #include "apps/page_template.h"
@@ -103,11 +105,49 @@ std::string_view name_of(HoleFilling holes) {
   }
 }
 
+/// What turns disparities of the left map into points: from the cameras, or else from a usual lens
+/// with all disparities before infinity.
+SettingValue cloud_of(const PairWithMaps& pair) {
+  std::vector<float> known;
+  const ImageView<const float> map = pair.maps.left.disparity_px.view();
+  for (int y = 0; y < map.height(); ++y) {
+    std::copy_if(map.row(y), map.row(y) + map.width(), std::back_inserter(known),
+                 [](float d) { return std::isfinite(d); });
+  }
+  if (known.empty()) {
+    known.push_back(1);
+  }
+  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+  std::nth_element(known.begin(), middle, known.end());
+  const auto median = static_cast<double>(*middle);
+  const auto [smallest, largest] = std::minmax_element(known.begin(), known.end());
+  double focal_px = map.width();
+  double doffs_px = 0;
+  SettingValue centre = {(map.width() - 1) / 2.0, (map.height() - 1) / 2.0};
+  if (pair.cameras) {
+    const Eigen::Matrix3d& matrix = pair.cameras->left.matrix;
+    focal_px = matrix(0, 0);
+    doffs_px = pair.cameras->doffs_px;
+    centre = {matrix(0, 2), matrix(1, 2)};
+  }
+  if (!pair.cameras || !(median + doffs_px > 0)) {
+    constexpr double kNearerThanInfinity = 0.1;  // of the range
+    const double margin =
+        std::max(kNearerThanInfinity * static_cast<double>(*largest - *smallest), 0.5);
+    doffs_px = std::max(doffs_px, margin - static_cast<double>(*smallest));
+  }
+  return {{"focal", focal_px},
+          {"centre", centre},
+          {"doffs", doffs_px},
+          {"pivotDisparity", median},
+          {"calibrated", pair.cameras.has_value()}};
+}
+
 std::string shader_elements() {
   std::string result;
   for (const std::string_view name :
        {"disparity.glsl", "warp.vert", "warp.frag", "screen.vert", "combine.frag", "fill.frag",
-        "soften.frag", "outlines.frag", "rows.frag", "show.frag"}) {
+        "soften.frag", "outlines.frag", "rows.frag", "show.frag", "cloud.vert", "cloud.frag"}) {
     result += fmt::format("<script type=\"text/plain\" id=\"{}\">\n{}</script>\n", name,
                           embedded_file(fmt::format("view_page/{}", name)));
   }
@@ -175,6 +215,7 @@ std::string make_view_page(const PairWithMaps& pair, const std::string& names,
       {"rangeY", {options.range_y.first, options.range_y.last}},
       {"disparity", {{"smallest", numbers.smallest_px}, {"step", numbers.step_px}}},
       {"paletteRange", {palette_range.min_px, palette_range.max_px}},
+      {"cloud", cloud_of(pair)},
       {"gradientLimit", synthesis.disparity_gradient_limit_px},
       {"gamma", synthesis.gamma ? SettingValue(*synthesis.gamma) : SettingValue()},
       {"intensity", intensity},
@@ -199,6 +240,7 @@ std::string make_view_page(const PairWithMaps& pair, const std::string& names,
        {"scene", json_in_html(scene.dump())},
        {"shaders", shader_elements()},
        {"renderer", std::string(embedded_file("view_page/renderer.js"))},
+       {"orbit", std::string(embedded_file("view_page/orbit.js"))},
        {"script", std::string(embedded_file("view_page/page.js"))}});
 }
 

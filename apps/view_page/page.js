@@ -12,6 +12,7 @@
 // The address may say what is shown, "page.html#x=0.5,y=0,mode=disparity" (or with ? and &):
 //   x, y     the position; the view then stands still until somebody moves it with the mouse
 //   mode     a value of the list of modes
+//   yaw, pitch, zoom   of the point cloud: degrees to the right and upwards, and how much nearer
 //   eyes     distance of the eyes in baselines, for the modes of two views
 //   sway=1   sways from the start;  bare=1  hides the controls
 //   render=native  renders a view for every x that is given, with the y of the same number or the
@@ -28,6 +29,8 @@
 
   const SMOOTHING_SECONDS = 0.06;  // hides the steps of a mouse or a tracker
   const SWAY_SECONDS = 5;          // there and back
+  const SWAY_DEGREES = 20;         // of the point cloud, to each side
+  const KEY_DEGREES = 5;
   const TRACKER_HOLDS_MS = 1000;   // a mouse that lies on the desk must not fight a head tracker
   const TILT_DEGREES = 25;         // of a phone, from the middle to the end of the range
 
@@ -40,6 +43,7 @@
     tiltOrigin: null, lastTime: 0, scheduled: false,
   };
   let renderer = null;
+  const orbit = new Orbit(canvas, () => state.mode === "cloud", () => schedule());
 
   function fail(text) {
     element("message").textContent = text;
@@ -48,7 +52,7 @@
   }
 
   function makeRenderer() {
-    const gl = canvas.getContext("webgl2", {alpha: false, antialias: false, depth: false});
+    const gl = canvas.getContext("webgl2", {alpha: false, antialias: false});
     if (!gl) {
       fail("This page draws with WebGL 2, which this browser does not have or has switched off. " +
            "Any current browser has it; look for hardware or graphics acceleration in the settings.");
@@ -96,6 +100,9 @@
       const high = Math.min(scene.rangeX[1], 1);
       const [from, to] = low < high ? [low, high] : scene.rangeX;
       state.targetX = clamp((from + to) / 2 + (to - from) / 2 * Math.sin(phase), scene.rangeX);
+      if (state.mode === "cloud") {
+        orbit.yaw = SWAY_DEGREES * Math.sin(phase);
+      }
     }
     const seconds = Math.min((time - state.lastTime) / 1000, 0.1);
     state.lastTime = time;
@@ -157,6 +164,8 @@
       const crossed = state.mode === "crossed";
       renderer.show("view", sides[crossed ? 1 : 0], columns[0]);
       renderer.show("rightView", sides[crossed ? 0 : 1], columns[1]);
+    } else if (state.mode === "cloud") {
+      renderer.showCloud(orbit, width, height);
     } else {
       const shape = [columns[0]?.[1] ?? scene.width, scene.height];
       renderer.show(state.mode, fit(...shape, [0, 0, width, height]), ...columns);
@@ -201,6 +210,9 @@
     state.mode = mode;
     element("mode").value = mode;
     element("eyes-group").hidden = !isStereo(mode);
+    element("cloud-group").hidden = mode !== "cloud";
+    canvas.classList.toggle("cloud", mode === "cloud");
+    document.body.classList.toggle("in-cloud", mode === "cloud");
     schedule();
   }
 
@@ -210,7 +222,7 @@
   }
 
   function followPointer(event) {
-    if (state.swaying || (state.held && event.pointerType === "mouse")
+    if (state.mode === "cloud" || state.swaying || (state.held && event.pointerType === "mouse")
         || performance.now() - state.trackedAt < TRACKER_HOLDS_MS) {
       return;
     }
@@ -227,7 +239,7 @@
       if (state.swaying) {
         setSway(false);
         hold(false);
-      } else if (event.pointerType === "mouse") {
+      } else if (event.pointerType === "mouse" && state.mode !== "cloud") {
         hold(!state.held);
       }
       followPointer(event);
@@ -249,6 +261,7 @@
     });
     element("mode").addEventListener("change", () => setMode(element("mode").value));
     element("sway").addEventListener("click", () => setSway(!state.swaying));
+    element("reset").addEventListener("click", () => orbit.reset());
     element("full").addEventListener("click", toggleFullScreen);
     element("hide").addEventListener("click", toggleControls);
   }
@@ -271,13 +284,18 @@
     const stepY = (scene.rangeY[1] - scene.rangeY[0]) / 40;
     const move = (dx, dy) => {
       setSway(false);
+      if (state.mode === "cloud") {
+        orbit.turn(KEY_DEGREES * Math.sign(dx), -KEY_DEGREES * Math.sign(dy));
+        return;
+      }
       hold(true);
       moveTo(state.targetX + dx, state.targetY + dy);
     };
     const actions = {
       "ArrowLeft": () => move(-stepX, 0), "ArrowRight": () => move(stepX, 0),
       "ArrowUp": () => move(0, -stepY), "ArrowDown": () => move(0, stepY),
-      " ": () => setSway(!state.swaying), "h": toggleControls, "f": toggleFullScreen,
+      "+": () => orbit.approach(0.9), "-": () => orbit.approach(1 / 0.9),
+      "0": () => orbit.reset(), " ": () => setSway(!state.swaying), "h": toggleControls, "f": toggleFullScreen,
     };
     modes.forEach((mode, index) => {
       actions[String(index + 1)] = () => setMode(mode);
@@ -362,6 +380,12 @@
       hold(true);
       jumpTo(x, y);
     }
+    const [yaw, pitch, zoom] = ["yaw", "pitch", "zoom"].map((name) => numbers(parameters, name)[0]);
+    if (yaw !== undefined || pitch !== undefined || zoom > 0) {
+      orbit.reset();
+      orbit.turn(yaw ?? 0, pitch ?? 0);
+      orbit.approach(zoom > 0 ? 1 / zoom : 1);
+    }
     if (eyes !== undefined) {
       state.eyes = clamp(eyes, [0.05, 1]);
     }
@@ -407,6 +431,9 @@
     }
     element("y-group").hidden = scene.rangeY[0] === scene.rangeY[1];
     element("eyes").value = state.eyes;
+    if (!scene.cloud.calibrated) {
+      element("cloud-note").textContent += "; without a calibration depths are only roughly to scale";
+    }
     setMode(state.mode);
     makeRenderer();
     if (!renderer) {

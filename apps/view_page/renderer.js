@@ -27,6 +27,7 @@ class Renderer {
       outlines: this.makeProgram(screen, shaderText("outlines.frag")),
       rows: this.makeProgram(screen, shaderText("rows.frag")),
       show: this.makeProgram(screen, shaderText("show.frag")),
+      cloud: this.makeProgram(shaderText("cloud.vert"), shaderText("cloud.frag")),
     };
     this.textures = {};
     for (const name of ["left", "right", "leftMap", "rightMap", "palette"]) {
@@ -154,6 +155,7 @@ class Renderer {
         case gl.FLOAT: gl.uniform1f(location, value); break;
         case gl.FLOAT_VEC2: gl.uniform2fv(location, value); break;
         case gl.FLOAT_VEC3: gl.uniform3fv(location, value); break;
+        case gl.FLOAT_MAT3: gl.uniformMatrix3fv(location, false, value); break;
         case gl.INT_VEC2: gl.uniform2iv(location, value); break;
         default: gl.uniform1i(location, value);  // int and bool
       }
@@ -276,6 +278,30 @@ class Renderer {
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
+  // Draws the left photograph's pixels as points, seen from the place of an Orbit.
+  showCloud(orbit, width, height) {
+    const gl = this.gl;
+    const {focal, centre, doffs, pivotDisparity} = this.scene.cloud;
+    const depth = focal / (pivotDisparity + doffs);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.DEPTH_TEST);
+    this.use(this.programs.cloud, {
+      uMap: this.textures.leftMap,
+      uPicture: this.textures.left,
+      uRotation: orbit.rotation(),
+      uPivot: [0, 0, depth],
+      uEye: [orbit.shift[0] * depth, orbit.shift[1] * depth, -orbit.distance * depth],
+      uFocal: focal,
+      uCentre: centre,
+      uDoffs: doffs,
+      uFarthest: Renderer.FARTHEST_IN_CLOUD * depth,
+      uCanvas: [width, height],
+      uScale: Math.min(width / this.scene.width, height / this.scene.height),
+    });
+    gl.drawArrays(gl.POINTS, 0, this.scene.width * this.scene.height);
+    gl.disable(gl.DEPTH_TEST);
+  }
+
   // The pixels of the last view, RGB, row by row from the top.
   pixels() {
     const gl = this.gl;
@@ -295,6 +321,9 @@ class Renderer {
 
 // Of a pixel at the end of its surface: how much it counts beside one whose surface goes on.
 Renderer.TRUST_AT_ENDS = 0.1;
+
+// In depths of the pivot, the median: disparities near 0 would be anywhere.
+Renderer.FARTHEST_IN_CLOUD = 30;
 
 // Of disparity.glsl's UNKNOWN.
 Renderer.UNKNOWN_BITS = new Uint32Array(new Float32Array([1.0e30]).buffer)[0];

@@ -66,6 +66,29 @@ void disparity_as_png(const fs::path& path, Disparity disparity, Bytes& bytes) {
   encode_image(path, Photograph{std::move(image)}, bytes);
 }
 
+void depth_as_png(const fs::path& path, ImageView<const float> depth_m, Bytes& bytes) {
+  Image<std::uint16_t> image(depth_m.width(), depth_m.height());
+  for (int y = 0; y < depth_m.height(); ++y) {
+    for (int x = 0; x < depth_m.width(); ++x) {
+      const double depth = static_cast<double>(depth_m.at(x, y));
+      if (!std::isfinite(depth)) {
+        image.at(x, y) = 0;
+        continue;
+      }
+      const double millimetres = std::max(std::round(depth * kIntegerDepthScale), 1.0);
+      if (millimetres > 65535) {
+        throw Error(fmt::format(
+            "cannot write {}: depth {} m at pixel ({}, {}) does not fit a 16-bit PNG of "
+            "millimetres, expected at most {}, or a file in {}",
+            path.string(), depth, x, y, kLargestIntegerDepth_m,
+            listed_map_formats(MapContent::kConfidence)));
+      }
+      image.at(x, y) = static_cast<std::uint16_t>(millimetres);
+    }
+  }
+  encode_image(path, Photograph{std::move(image)}, bytes);
+}
+
 /// (u, v) interleaved; both `unknown` where one of them is not finite.
 Image<float> interleaved(const DisplacementView& displacements, Side side, float unknown) {
   const float sign = side == Side::kLeft ? -1.0F : 1.0F;
@@ -124,30 +147,44 @@ void displacements_as_floats(const fs::path& path, const DisplacementView& displ
 
 constexpr MapFormat kFormats[] = {
     {.extension = ".flo", .encode_displacements = displacements_as_flo},
-    {.extension = ".pfm", .encode_disparity = disparity_as_pfm},
-    {.extension = ".png", .holds_any_value = false, .encode_disparity = disparity_as_png},
+    {.extension = ".pfm", .encode_disparity = disparity_as_pfm, .encode_depth = disparity_as_pfm},
+    {.extension = ".png",
+     .holds_any_value = false,
+     .encode_disparity = disparity_as_png,
+     .encode_depth = depth_as_png},
     {.extension = ".tiff",
      .encode_disparity = disparity_as_floats,
+     .encode_depth = disparity_as_floats,
      .encode_displacements = displacements_as_floats},
     {.extension = ".tif",
      .is_listed = false,
      .encode_disparity = disparity_as_floats,
+     .encode_depth = disparity_as_floats,
      .encode_displacements = displacements_as_floats},
     {.extension = ".exr",
      .encode_disparity = disparity_as_floats,
+     .encode_depth = disparity_as_floats,
      .encode_displacements = displacements_as_floats},
     {.extension = ".npy",
      .encode_disparity = disparity_as_npy,
+     .encode_depth = disparity_as_npy,
      .encode_displacements = displacements_as_npy},
 };
 
 }  // namespace
 
 bool MapFormat::can_hold(MapContent content) const {
-  return content == MapContent::kDisplacements
-             ? encode_displacements != nullptr
-             : encode_disparity != nullptr &&
-                   (holds_any_value || content == MapContent::kDisparity);
+  switch (content) {
+    case MapContent::kDisplacements:
+      return encode_displacements != nullptr;
+    case MapContent::kDepth:
+      return encode_depth != nullptr;
+    case MapContent::kConfidence:
+      return encode_disparity != nullptr && holds_any_value;
+    case MapContent::kDisparity:
+      break;
+  }
+  return encode_disparity != nullptr;
 }
 
 std::span<const MapFormat> map_formats() { return kFormats; }

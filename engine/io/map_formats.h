@@ -18,6 +18,7 @@ enum class MapContent {
   kDisparity,      ///< one component
   kDisplacements,  ///< both components
   kConfidence,     ///< floats of any range
+  kDepth,          ///< metres
 };
 
 /// A file format of maps. To add one: a line in the table of map_formats.cc. Encoders write the
@@ -33,6 +34,9 @@ struct MapFormat {
   /// Null: does not support maps of one component.
   void (*encode_disparity)(const std::filesystem::path& path, ImageView<const float> disparity,
                            std::vector<std::uint8_t>& bytes) = nullptr;
+  /// Null: does not support depths in metres, NaN = unknown.
+  void (*encode_depth)(const std::filesystem::path& path, ImageView<const float> depth_m,
+                       std::vector<std::uint8_t>& bytes) = nullptr;
   /// Null: does not support maps of two components.
   void (*encode_displacements)(const std::filesystem::path& path,
                                const DisplacementView& displacements, Side side,
@@ -44,6 +48,10 @@ struct MapFormat {
 /// Steps per pixel of a 16-bit PNG, and its maximum value in steps.
 constexpr double kIntegerDisparityScale = 256;
 constexpr double kLargestIntegerDisparity = 65535;
+
+/// Steps per metre of a depth in a 16-bit PNG; it holds depths up to 65.535 m.
+constexpr double kIntegerDepthScale = 1000;
+constexpr double kLargestIntegerDepth_m = 65535 / kIntegerDepthScale;
 
 /// All formats, in the order of messages.
 std::span<const MapFormat> map_formats();

@@ -95,10 +95,89 @@ int whole_pixels(double value) {
   return static_cast<int>(value);
 }
 
-StereoCalibration from_opencv(const CalibrationFile& file) {
+/// Which cameras are wanted of a file that has those of photographs and of rectified images.
+enum class CameraChoice { kPhotographs, kRectified };
+
+/// Two cameras of a rig, each given as P = K · (I | t).
+StereoCalibration from_projections(const Matrix34& left, const Matrix34& right) {
+  StereoCalibration calibration{.is_rectified = true};
+  calibration.left.matrix = left.leftCols<3>();
+  calibration.right.matrix = right.leftCols<3>();
+  calibration.left.validate("left camera");
+  calibration.right.validate("right camera");
+  calibration.translation = calibration.right.matrix.inverse() * right.col(3) -
+                            calibration.left.matrix.inverse() * left.col(3);
+  return calibration;
+}
+
+/// Q of cv::stereoRectify: (X, Y, Z, 1) ~ Q · (x, y, d, 1).
+StereoCalibration from_depth_matrix(const std::vector<double>& q) {
+  const double cx = -q[3];
+  const double cy = -q[7];
+  const double focal_length_px = q[11];
+  const double per_baseline = q[14];
+  if (q[0] != 1 || q[5] != 1 || !(focal_length_px > 0) || !(per_baseline > 0)) {
+    throw Error(
+        "Q is not that of cameras side by side, expected rows (1 0 0 -cx), (0 1 0 -cy), "
+        "(0 0 0 f), (0 0 1/B doffs/B)");
+  }
+  StereoCalibration calibration{.is_rectified = true};
+  calibration.left.matrix << focal_length_px, 0, cx, 0, focal_length_px, cy, 0, 0, 1;
+  calibration.right.matrix = calibration.left.matrix;
+  calibration.right.matrix(0, 2) += q[15] / per_baseline;
+  calibration.translation = {-1 / per_baseline, 0, 0};
+  return calibration;
+}
+
+/// The cameras of images that OpenCV has rectified; empty if the file does not have them.
+std::optional<StereoCalibration> from_rectified_opencv(const CalibrationFile& file) {
+  std::optional<StereoCalibration> calibration;
+  const auto projection = [&](std::string_view name) -> Matrix34 {
+    return Eigen::Map<const Matrix34>(file.values({name}, 3, 4).data());
+  };
+  if (file.find({"P1"}) != nullptr && file.find({"P2"}) != nullptr) {
+    calibration = from_projections(projection("P1"), projection("P2"));
+    calibration->format = "OpenCV, P1 and P2";
+  } else if (file.find({"Q"}) != nullptr) {
+    calibration = from_depth_matrix(file.values({"Q"}, 4, 4));
+    calibration->format = "OpenCV, Q";
+  }
+  return calibration;
+}
+
+void read_opencv_size_and_unit(const CalibrationFile& file, StereoCalibration& calibration) {
+  if (file.find({"image_width"}) != nullptr) {
+    calibration.image_size = {whole_pixels(file.number("image_width")),
+                              whole_pixels(file.number("image_height"))};
+  } else if (file.find({"imageSize", "image_size"}) != nullptr) {
+    const std::vector<double>& size = file.values({"imageSize", "image_size"}, 2, 1);
+    calibration.image_size = {whole_pixels(size[0]), whole_pixels(size[1])};
+  }
+  if (file.find({"metres_per_unit"}) != nullptr) {
+    const double length = file.number("metres_per_unit");
+    if (!(length >= 0 && std::isfinite(length))) {
+      throw Error(fmt::format("metres_per_unit is {}, expected a number above 0, or 0 for no scale",
+                              length));
+    }
+    calibration.has_scale = length > 0;
+    if (length > 0) {
+      calibration.metres_per_unit = length;
+    }
+  }
+}
+
+StereoCalibration from_opencv(const CalibrationFile& file, CameraChoice choice) {
+  static const std::initializer_list<std::string_view> kLeftNames = {"M1", "K1", "cameraMatrix1",
+                                                                  "camera_matrix_1"};
+  if (choice == CameraChoice::kRectified || file.find(kLeftNames) == nullptr) {
+    if (std::optional<StereoCalibration> rectified = from_rectified_opencv(file)) {
+      read_opencv_size_and_unit(file, *rectified);
+      return *rectified;
+    }
+  }
   file.refuse_fisheyes();
   StereoCalibration calibration{.format = "OpenCV"};
-  calibration.left.matrix = file.matrix({"M1", "K1", "cameraMatrix1", "camera_matrix_1"});
+  calibration.left.matrix = file.matrix(kLeftNames);
   calibration.right.matrix = file.matrix({"M2", "K2", "cameraMatrix2", "camera_matrix_2"});
   if (const CalibrationEntry* d = file.find({"D1", "distCoeffs1", "dist_coeffs_1"})) {
     calibration.left.distortion = d->values;
@@ -114,13 +193,7 @@ StereoCalibration from_opencv(const CalibrationFile& file) {
   const Eigen::Matrix3d rotation = file.matrix({"R"});
   calibration.rotation = nearest_rotation(rotation).value_or(rotation);
   calibration.translation = Eigen::Map<const Eigen::Vector3d>(file.values({"T", "t"}, 3, 1).data());
-  if (file.find({"image_width"}) != nullptr) {
-    calibration.image_size = {whole_pixels(file.number("image_width")),
-                              whole_pixels(file.number("image_height"))};
-  } else if (file.find({"imageSize", "image_size"}) != nullptr) {
-    const std::vector<double>& size = file.values({"imageSize", "image_size"}, 2, 1);
-    calibration.image_size = {whole_pixels(size[0]), whole_pixels(size[1])};
-  }
+  read_opencv_size_and_unit(file, calibration);
   Eigen::Matrix3d difference = calibration.left.matrix - calibration.right.matrix;
   difference(0, 2) = 0;
   calibration.is_rectified = difference.isZero(0) && calibration.left.is_without_distortion() &&
@@ -132,7 +205,8 @@ StereoCalibration from_opencv(const CalibrationFile& file) {
 }
 
 StereoCalibration from_middlebury(const CalibrationFile& file) {
-  StereoCalibration calibration{.is_rectified = true, .format = "Middlebury"};
+  StereoCalibration calibration{
+      .metres_per_unit = 0.001, .is_rectified = true, .format = "Middlebury"};
   calibration.left.matrix = file.matrix({"cam0"});
   calibration.right.matrix = file.matrix({"cam1"});
   calibration.translation = {-file.number("baseline"), 0, 0};
@@ -146,18 +220,6 @@ StereoCalibration from_middlebury(const CalibrationFile& file) {
   return calibration;
 }
 
-/// Two cameras of a rig, each given as P = K · (I | t).
-StereoCalibration from_projections(const Matrix34& left, const Matrix34& right) {
-  StereoCalibration calibration{.is_rectified = true};
-  calibration.left.matrix = left.leftCols<3>();
-  calibration.right.matrix = right.leftCols<3>();
-  calibration.left.validate("left camera");
-  calibration.right.validate("right camera");
-  calibration.translation = calibration.right.matrix.inverse() * right.col(3) -
-                            calibration.left.matrix.inverse() * left.col(3);
-  return calibration;
-}
-
 StereoCalibration from_kitti(const CalibrationFile& file) {
   const auto projection = [&](std::string_view name, std::string_view other_name) -> Matrix34 {
     return Eigen::Map<const Matrix34>(file.values({name, other_name}, 3, 4).data());
@@ -166,6 +228,7 @@ StereoCalibration from_kitti(const CalibrationFile& file) {
   StereoCalibration calibration =
       is_grey ? from_projections(projection("P0", "P_rect_00"), projection("P1", "P_rect_01"))
               : from_projections(projection("P2", "P_rect_02"), projection("P3", "P_rect_03"));
+  calibration.metres_per_unit = 1;
   calibration.format = is_grey ? "KITTI, cameras 0 and 1" : "KITTI, cameras 2 and 3";
   const char* size_name = is_grey ? "S_rect_00" : "S_rect_02";
   if (file.find({size_name}) != nullptr) {
@@ -189,14 +252,14 @@ CalibrationEntries nameless_projections(std::string_view text) {
   return entries;
 }
 
-StereoCalibration parse(std::string_view text) {
+StereoCalibration parse(std::string_view text, CameraChoice choice) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (text.starts_with(kByteOrderMark)) {
     text.remove_prefix(kByteOrderMark.size());
   }
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first != std::string_view::npos && text[first] == '<') {
-    return from_opencv(CalibrationFile(xml_entries(text)));
+    return from_opencv(CalibrationFile(xml_entries(text)), choice);
   }
   if (CalibrationEntries entries = assignment_entries(text); entries.contains("cam0")) {
     return from_middlebury(CalibrationFile(std::move(entries)));
@@ -205,15 +268,20 @@ StereoCalibration parse(std::string_view text) {
     return from_kitti(CalibrationFile(std::move(entries)));
   }
   CalibrationEntries entries = yaml_entries(text);
+  // OpenCV numbers its cameras from 1, KITTI from 0.
+  const bool has_opencv_projections = entries.contains("P1") && entries.contains("P2") &&
+                                      !entries.contains("P0") && !entries.contains("P3");
+  if (has_opencv_projections || entries.contains("Q")) {
+    return from_opencv(CalibrationFile(std::move(entries)), choice);
+  }
   for (const char* name : {"P0", "P1", "P2", "P3", "P_rect_00", "P_rect_02"}) {
-    // OpenCV's files contain their own P1 and P2 besides the cameras they come from.
     if (entries.contains(name) && !entries.contains("R") && !entries.contains("T")) {
       return from_kitti(CalibrationFile(std::move(entries)));
     }
   }
   for (const char* name : {"M1", "K1", "cameraMatrix1", "camera_matrix_1", "R", "T"}) {
     if (entries.contains(name)) {
-      return from_opencv(CalibrationFile(std::move(entries)));
+      return from_opencv(CalibrationFile(std::move(entries)), choice);
     }
   }
   throw Error(
@@ -221,9 +289,7 @@ StereoCalibration parse(std::string_view text) {
       "or KITTI");
 }
 
-}  // namespace
-
-StereoCalibration read_stereo_calibration(const std::filesystem::path& path) {
+StereoCalibration read_calibration(const std::filesystem::path& path, CameraChoice choice) {
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
   try {
     if (bytes.size() > kMaxBytes) {
@@ -231,13 +297,23 @@ StereoCalibration read_stereo_calibration(const std::filesystem::path& path) {
           fmt::format("it has {} bytes, expected a text of at most {}", bytes.size(), kMaxBytes));
     }
     StereoCalibration calibration =
-        parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+        parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, choice);
     calibration.validate();
     calibration.file = path.string();
     return calibration;
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path.string(), error.what()));
   }
+}
+
+}  // namespace
+
+StereoCalibration read_stereo_calibration(const std::filesystem::path& path) {
+  return read_calibration(path, CameraChoice::kPhotographs);
+}
+
+StereoCalibration read_rectified_calibration(const std::filesystem::path& path) {
+  return read_calibration(path, CameraChoice::kRectified);
 }
 
 }  // namespace vantage

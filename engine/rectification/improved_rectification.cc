@@ -36,6 +36,9 @@ void improve_rectification(Rectification& rectification, Rectifier& rectifier,
   }
   try {
     UncalibratedRig rig = estimate_rig(near, pair.width_px, pair.height_px);
+    if (rectification.calibration.has_scale) {
+      rig.calibration.set_baseline_m(rectification.calibration.baseline());
+    }
     Rectifier better(rig.calibration, pair.width_px, pair.height_px, options);
     std::vector<PointMatch> rectified;
     for (const PointMatch& match : in_photographs) {

@@ -25,7 +25,7 @@ struct Rectification {
 
 /// Estimates again from points found in the images rectified by `rectifier`: there they are in
 /// nearly the same rows, so that wrong matches are easy to detect and positions are exact. Kept if
-/// rows correspond better.
+/// rows correspond better. A baseline in metres is kept, if there is one.
 void improve_rectification(Rectification& rectification, Rectifier& rectifier,
                            const std::vector<PointMatch>& found,
                            const RectificationOptions& options);

@@ -70,6 +70,9 @@ std::string rectification_text(const std::filesystem::path& path,
   file << "Q" << depth_from_disparity(pair);
   file << "H1" << to_opencv(pair.left.homography) << "H2" << to_opencv(pair.right.homography);
   file << "baseline" << pair.baseline << "doffs" << pair.doffs_px;
+  if (!calibration.has_scale || calibration.metres_per_unit) {
+    file << "metres_per_unit" << (calibration.has_scale ? *calibration.metres_per_unit : 0);
+  }
   file << "valid_region"
        << std::vector<int>{pair.valid.x, pair.valid.y, pair.valid.width, pair.valid.height};
   return file.releaseAndGetString();

@@ -31,6 +31,12 @@ void require_equal_in_rectified(const char* field, double left, double right) {
 
 }  // namespace
 
+void StereoCalibration::set_baseline_m(double metres) {
+  translation *= metres / baseline();
+  metres_per_unit = 1;
+  has_scale = true;
+}
+
 void StereoCalibration::validate() const {
   left.validate("left camera");
   right.validate("right camera");

@@ -25,6 +25,10 @@ struct StereoCalibration {
   /// in the left one's frame.
   Eigen::Vector3d translation = Eigen::Vector3d(-1, 0, 0);
   std::optional<ImageSize> image_size = std::nullopt;  ///< of both images, if given in the file
+  /// Length of the calibration's unit: 0.001 for millimetres. Empty where the file does not say it.
+  std::optional<double> metres_per_unit = std::nullopt;
+  /// False: the cameras were estimated from images alone, and their baseline has length 1.
+  bool has_scale = true;
   /// The images are rectified: rows of both images correspond.
   bool is_rectified = false;
   std::string format = "calibration";  ///< for messages: "KITTI, cameras 0 and 1"
@@ -32,6 +36,8 @@ struct StereoCalibration {
 
   /// Distance of the cameras, in the calibration's unit.
   [[nodiscard]] double baseline() const { return translation.norm(); }
+  /// Gives the baseline a length, in metres, which are then the calibration's unit.
+  void set_baseline_m(double metres);
   /// cx of the right camera − cx of the left one. In a rectified pair the disparity at infinity is
   /// −doffs_px(): Z = fx · baseline / (d + doffs_px()).
   [[nodiscard]] double doffs_px() const { return right.matrix(0, 2) - left.matrix(0, 2); }
@@ -48,15 +54,20 @@ struct StereoCalibration {
 ///  - OpenCV YAML or XML: matrices M1 or K1 or cameraMatrix1 (3×3), D1 or distCoeffs1 (absent: no
 ///  distortion), the same with 2, R (3×3) and T (3×1 or 1×3), all in one file; optionally
 ///  image_width and image_height, or imageSize, or image_size. Rectified if the cameras are equal
-///  up to cx, without distortion, and displaced along x only.
+///  up to cx, without distortion, and displaced along x only. Without M1, the rectified cameras of
+///  P1 and P2 (3×4), or else of Q (4×4). metres_per_unit, if in the file; 0 means no scale.
 ///  - Middlebury calib.txt: cam0, cam1, baseline, width, height, and doffs, which must agree with
-///  the cameras to 0.1 px. Rectified.
+///  the cameras to 0.1 px. Rectified, in millimetres.
 ///  - KITTI calib.txt: P0 and P1 (grey) if present, else P2 and P3 (colour), or the same under the
-///  names P_rect_00 …, or two or four lines of 12 numbers without names. Rectified.
+///  names P_rect_00 …, or two or four lines of 12 numbers without names. Rectified, in metres.
 /// Fisheye models are refused if the file names them (fisheye_model of OpenCV's samples,
 /// distortion_model, camera_model or model); their four coefficients alone look like those of other
 /// lenses. The result is valid. Throws Error of one line naming the file for anything it cannot
 /// read. Thread rule: may be called concurrently.
 StereoCalibration read_stereo_calibration(const std::filesystem::path& path);
+
+/// The same for images that were rectified with the calibration of a file: of an OpenCV file with
+/// P1 and P2, or with Q, the cameras of the rectified images, although it has M1 and M2 too.
+StereoCalibration read_rectified_calibration(const std::filesystem::path& path);
 
 }  // namespace vantage

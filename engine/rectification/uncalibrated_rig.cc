@@ -251,6 +251,7 @@ UncalibratedRig estimate_rig(const std::vector<PointMatch>& matches, int width_p
   }
   require_enough(best.inliers(), used.size());
   UncalibratedRig rig{.calibration = model.calibration(best.parameters)};
+  rig.calibration.has_scale = false;
   require_parallax(model, used, best, tolerance_px);
   require_sideways_move(rig.calibration, width_px, height_px);
 

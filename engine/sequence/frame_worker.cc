@@ -14,9 +14,12 @@
 #include "engine/image/content_hash.h"
 #include "engine/image/stereo_display.h"
 #include "engine/io/checksum.h"
+#include "engine/io/depth_io.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/photograph_io.h"
 #include "engine/io/preview.h"
+#include "engine/reprojection/ply_file.h"
+#include "engine/reprojection/point_cloud.h"
 #include "engine/sequence/preview_range.h"
 #include "engine/sequence/stored_maps.h"
 #include "scheduler/trace.h"
@@ -90,6 +93,8 @@ FrameWorker::FrameWorker(const FrameTools& tools)
       frame_size_(tools.frame_size),
       rectifier_(tools.rectifier),
       cameras_(tools.cameras),
+      map_camera_(tools.map_camera),
+      poses_(tools.poses),
       shots_(tools.shots),
       execution_(tools.execution),
       accounts_(tools.accounts),
@@ -183,9 +188,11 @@ void FrameWorker::match(FrameSlot& slot) {
   const bool both = !options_.views.empty() || options_.saves(SequenceOutput::kStereo) ||
                     options_.saves(SequenceOutput::kRightDisparity) ||
                     options_.saves(SequenceOutput::kRightUnmatched);
-  MatchRequest request{.left = !right_is_primary || both,
-                       .right = right_is_primary || both,
-                       .confidence = options_.saves(SequenceOutput::kConfidence)};
+  MatchRequest request{
+      .left = !right_is_primary || both,
+      .right = right_is_primary || both,
+      .confidence = options_.saves(SequenceOutput::kConfidence) ||
+                    (options_.saves_points() && options_.cloud.reads_confidence())};
   request.left = request.left || options_.saves_cyclopean();
   const VolumeRequest posterior{.side = options_.match.reference, .sink = &slot.posterior};
   if (options_.saves_posterior()) {
@@ -393,6 +400,11 @@ std::string FrameWorker::extension_of(const FrameSlot& slot, const OutputStream&
     case SequenceOutput::kPosteriorVariance:
     case SequenceOutput::kCyclopean:
       return options_.map_format;
+    case SequenceOutput::kDepth:
+      return options_.depth_format;
+    case SequenceOutput::kCloud:
+    case SequenceOutput::kMesh:
+      return "ply";
     default:
       break;
   }
@@ -400,6 +412,37 @@ std::string FrameWorker::extension_of(const FrameSlot& slot, const OutputStream&
   const Photograph* picture = stored_picture(slot, stream);
   return picture != nullptr && std::holds_alternative<Image<float>>(picture->pixels) ? "tiff"
                                                                                      : "png";
+}
+
+MapCamera FrameWorker::point_camera(const FrameSlot& slot) const {
+  if (poses_ == nullptr) {
+    return *map_camera_;
+  }
+  const CameraPose& pose = poses_->of(slot.pair);
+  return in_world(*map_camera_, pose.rotation.transpose(), pose.centre(),
+                  cameras_ != nullptr ? cameras_->left.rotation : Eigen::Matrix3d::Identity());
+}
+
+void FrameWorker::encode_metric(FrameSlot& slot, const OutputStream& stream,
+                                const std::filesystem::path& path) const {
+  const MatchedMap& map = slot.maps.of(options_.match.reference);
+  if (stream.output == SequenceOutput::kDepth) {
+    Image<float> depth_m;
+    depth_map(map.disparity_px.view(), map_camera_->scale,
+              options_.cloud.max_depth.value_or(largest_depth_m(path)), execution_, depth_m);
+    encode_depth(path, depth_m.view(), slot.encoded);
+    return;
+  }
+  const CloudSource source{
+      .disparity_px = map.disparity_px.view(),
+      .colours = options_.match.reference == Side::kLeft ? slot.left : slot.right,
+      .unmatched = map.unmatched.view(),
+      .confidence = map.confidence.view(),
+      .camera = point_camera(slot)};
+  const std::string_view frame = poses_ != nullptr ? kWorldFrame : kCameraFrame;
+  slot.encoded = stream.output == SequenceOutput::kCloud
+                     ? encode_ply(point_cloud(source, options_.cloud, execution_), frame)
+                     : encode_ply(triangle_mesh(source, options_.cloud, execution_), frame);
 }
 
 /// Writes to the slot's `encoded`.
@@ -424,6 +467,11 @@ void FrameWorker::encode_stream(FrameSlot& slot, const OutputStream& stream,
       return;
     case SequenceOutput::kCyclopean:
       encode_disparity(path, slot.cyclopean.disparity_px.view(), slot.encoded);
+      return;
+    case SequenceOutput::kDepth:
+    case SequenceOutput::kCloud:
+    case SequenceOutput::kMesh:
+      encode_metric(slot, stream, path);
       return;
     default:
       break;

@@ -11,6 +11,7 @@
 #include "engine/matching/stereo_matcher.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/sequence/busy_clock.h"
+#include "engine/sequence/frame_poses.h"
 #include "engine/sequence/frame_reuse.h"
 #include "engine/sequence/frame_slot.h"
 #include "engine/sequence/pair_source.h"
@@ -39,6 +40,8 @@ struct FrameTools {
   std::optional<ImageExtent> frame_size;  ///< required for all frames; empty: any
   const Rectifier* rectifier;             ///< null: the pairs are rectified
   const RectifiedPair* cameras;           ///< of the pairs; null if no view needs them
+  const MapCamera* map_camera;            ///< of the reference's map, in metres; null if not needed
+  const FramePoses* poses;                ///< of the left camera; null: points are in its frame
   const ShotTable* shots;                 ///< null if the options need no shots
   Execution& execution;
   StepAccounts& accounts;
@@ -96,6 +99,11 @@ class FrameWorker {
   void paint_preview(FrameSlot& slot) const;
   void pack_stereo_picture(FrameSlot& slot) const;
   [[nodiscard]] const Photograph* photograph_at(const FrameSlot& slot, double view_x) const;
+  /// Of the points of a frame.
+  [[nodiscard]] MapCamera point_camera(const FrameSlot& slot) const;
+  /// Writes a depth map, cloud or mesh to the slot's `encoded`.
+  void encode_metric(FrameSlot& slot, const OutputStream& stream,
+                     const std::filesystem::path& path) const;
   void encode_stream(FrameSlot& slot, const OutputStream& stream,
                      const std::filesystem::path& path) const;
   [[nodiscard]] std::string extension_of(const FrameSlot& slot, const OutputStream& stream) const;
@@ -109,6 +117,8 @@ class FrameWorker {
   std::optional<ImageExtent> frame_size_;
   const Rectifier* rectifier_;
   const RectifiedPair* cameras_;
+  const MapCamera* map_camera_;
+  const FramePoses* poses_;
   const ShotTable* shots_;
   Execution& execution_;
   StepAccounts& accounts_;

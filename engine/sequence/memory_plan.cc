@@ -74,6 +74,13 @@ std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) 
   if (options.saves_cyclopean()) {
     bytes += pixels * (sizeof(float) + 1);
   }
+  if (options.is_metric()) {
+    // Points, colours and outlines of all pixels; those that are kept, in vectors that grow, and as
+    // a file; triangles of a mesh.
+    const auto step = static_cast<std::size_t>(options.cloud.step_px);
+    const std::size_t of_point = options.saves(SequenceOutput::kMesh) ? 156 : 57;
+    bytes += pixels * 16 + (options.saves_points() ? pixels / (step * step) * of_point : 0);
+  }
   // A map being written: with unknown pixels replaced, and encoded.
   bytes += 2 * pixels * sizeof(float) + photograph;
   return bytes;

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "engine/error.h"
+#include "engine/io/depth_io.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/map_formats.h"
 #include "engine/matching/aggregation/aggregation_table.h"
@@ -25,7 +26,8 @@ constexpr double kFarthestView = 16;  // baselines
 bool holds_floats(SequenceOutput output) {
   return output == SequenceOutput::kDisparity || output == SequenceOutput::kRightDisparity ||
          output == SequenceOutput::kConfidence || output == SequenceOutput::kPosteriorMean ||
-         output == SequenceOutput::kPosteriorVariance || output == SequenceOutput::kCyclopean;
+         output == SequenceOutput::kPosteriorVariance || output == SequenceOutput::kCyclopean ||
+         is_metric(output);
 }
 
 bool contains(const std::vector<SequenceOutput>& outputs, SequenceOutput output) {
@@ -179,6 +181,19 @@ void check_formats(const SequenceOptions& options) {
           options.map_format, name_of(output), listed_map_formats(MapContent::kConfidence, "")));
     }
   }
+  const std::string depth_name = "depth." + options.depth_format;
+  if (find_map_format(depth_name, MapContent::kDepth) == nullptr) {
+    throw UsageError(fmt::format("depth-format is '{}', expected {}",
+                                 quotable(options.depth_format),
+                                 listed_map_formats(MapContent::kDepth, "")));
+  }
+  options.cloud.validate();
+  if (options.saves(SequenceOutput::kDepth) && options.cloud.max_depth &&
+      *options.cloud.max_depth > largest_depth_m(depth_name)) {
+    throw UsageError(fmt::format("max-depth is {}, expected at most {} with depth-format {}",
+                                 *options.cloud.max_depth, largest_depth_m(depth_name),
+                                 options.depth_format));
+  }
   for (const SequenceOutput output : options.video) {
     if (holds_floats(output)) {
       throw UsageError(fmt::format(
@@ -218,7 +233,10 @@ const std::vector<std::pair<std::string_view, SequenceOutput>>& sequence_output_
       {"posterior-mean", SequenceOutput::kPosteriorMean},
       {"posterior-variance", SequenceOutput::kPosteriorVariance},
       {"cyclopean", SequenceOutput::kCyclopean},
-      {"cyclopean-occlusion", SequenceOutput::kCyclopeanOcclusion}};
+      {"cyclopean-occlusion", SequenceOutput::kCyclopeanOcclusion},
+      {"depth", SequenceOutput::kDepth},
+      {"cloud", SequenceOutput::kCloud},
+      {"mesh", SequenceOutput::kMesh}};
   return names;
 }
 

@@ -10,6 +10,7 @@
 #include "engine/image/stereo_display.h"
 #include "engine/io/frame_rate.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/reprojection/point_cloud.h"
 #include "engine/sequence/temporal_options.h"
 #include "engine/synthesis/synthesis_options.h"
 #include "engine/view_geometry/view_path.h"
@@ -23,15 +24,18 @@ enum class SequenceOutput {
   kConfidence,      ///< of the reference's map
   kUnmatched,       ///< mask of the filled pixels of the reference's map
   kRightUnmatched,
-  kPreview,            ///< the reference's map in colours
-  kViews,              ///< new views
-  kHoles,              ///< masks of view pixels that no image shows
-  kSources,            ///< masks of the source images of view pixels, see SynthesizedView
-  kStereo,             ///< two views in one picture
-  kPosteriorMean,      ///< of p(d) of the reference's pixels (PosteriorMoments)
-  kPosteriorVariance,  ///< likewise
-  kCyclopean,          ///< map of a camera in the middle of both, see CyclopeanMap
-  kCyclopeanOcclusion  ///< mask of what each camera sees of it
+  kPreview,             ///< the reference's map in colours
+  kViews,               ///< new views
+  kHoles,               ///< masks of view pixels that no image shows
+  kSources,             ///< masks of the source images of view pixels, see SynthesizedView
+  kStereo,              ///< two views in one picture
+  kPosteriorMean,       ///< of p(d) of the reference's pixels (PosteriorMoments)
+  kPosteriorVariance,   ///< likewise
+  kCyclopean,           ///< map of a camera in the middle of both, see CyclopeanMap
+  kCyclopeanOcclusion,  ///< mask of what each camera sees of it
+  kDepth,               ///< of the reference's map, in metres
+  kCloud,               ///< points of the reference's map
+  kMesh                 ///< the points as triangles
 };
 
 /// Names of the outputs on the command line, which are also those of their folders.
@@ -41,6 +45,12 @@ const std::vector<std::pair<std::string_view, SequenceOutput>>& sequence_output_
 constexpr bool is_per_view(SequenceOutput output) {
   return output == SequenceOutput::kViews || output == SequenceOutput::kHoles ||
          output == SequenceOutput::kSources;
+}
+
+/// Whether it is in metres: such runs need the camera of the maps.
+constexpr bool is_metric(SequenceOutput output) {
+  return output == SequenceOutput::kDepth || output == SequenceOutput::kCloud ||
+         output == SequenceOutput::kMesh;
 }
 
 /// Frames over which a fitted quantity is estimated.
@@ -76,6 +86,9 @@ struct SequenceOptions {
   /// Extension of the disparity and confidence files without the dot, one of map_formats() that can
   /// hold them: all except png can hold confidences.
   std::string map_format = "pfm";
+  /// Extension of the depth files without the dot, one of map_formats() that can hold them.
+  std::string depth_format = "png";
+  CloudOptions cloud;    ///< of kCloud and kMesh; its max_depth in metres also of kDepth
   FrameRate frame_rate;  ///< of written videos
   int crf = 18;          ///< of written videos, see VideoEncoding
   bool sound = true;     ///< videos include the sound of the input
@@ -93,6 +106,11 @@ struct SequenceOptions {
   [[nodiscard]] bool saves_cyclopean() const {
     return saves(SequenceOutput::kCyclopean) || saves(SequenceOutput::kCyclopeanOcclusion);
   }
+  [[nodiscard]] bool saves_points() const {
+    return saves(SequenceOutput::kCloud) || saves(SequenceOutput::kMesh);
+  }
+  /// Whether the camera of the maps must be known.
+  [[nodiscard]] bool is_metric() const { return saves(SequenceOutput::kDepth) || saves_points(); }
   /// Whether shots must be found before the run.
   [[nodiscard]] bool needs_shots() const {
     return intensity_fit == FitScope::kShot || preview_range_per_shot;

@@ -11,6 +11,8 @@
 #include "engine/matching/range_check.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/rectification/rectifier.h"
+#include "engine/reprojection/map_camera.h"
+#include "engine/sequence/frame_poses.h"
 #include "engine/sequence/pair_source.h"
 #include "engine/sequence/run_journal.h"
 #include "engine/sequence/sequence_layout.h"
@@ -90,6 +92,8 @@ struct SequenceRun {
   std::optional<ImageExtent> frame_size;   ///< required for all frames; must be set for videos
   const Rectifier* rectifier = nullptr;    ///< null: the pairs are rectified
   const RectifiedPair* cameras = nullptr;  ///< of the pairs; must be set for camera views
+  const MapCamera* map_camera = nullptr;   ///< of the reference's map; must be set if is_metric()
+  const FramePoses* poses = nullptr;       ///< with map_camera: points are in their world
   const ShotTable* shots = nullptr;        ///< must be set if the options need shots
   int in_flight = 1;                       ///< frames processed at the same time, 1..64
   bool keep_going = false;                 ///< frames that fail are skipped and recorded

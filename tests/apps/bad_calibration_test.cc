@@ -54,13 +54,16 @@ class InputBadCalibration : public PairTest {
   void expect_refused(const std::string& content, const std::string& says,
                       bool by_all_commands = false) {
     write_file(calibration_, content);
+    write_disparity(folder_ / "map.pfm", pair_.left_disparity.view());
     const auto before = files_below(folder_.path());
     std::size_t turn = 0;
     ++refusals_;
     const std::vector<std::vector<std::string>> commands = {
         {"rectify", left_, right_, "-o", folder_ / "out", "--matrices", folder_ / "out.yml"},
         {"synth", left_, right_, "-o", folder_ / "out.png", "--view", "0.5", "--disparities=0:9"},
-        {"run", "--left", left_, "--right", right_, "-o", folder_ / "out", "--disparities=0:9"}};
+        {"run", "--left", left_, "--right", right_, "-o", folder_ / "out", "--disparities=0:9"},
+        {"match", left_, right_, "-o", folder_ / "out.pfm", "--disparities=0:9"},
+        {"reproject", folder_ / "map.pfm", "--depth", folder_ / "out.npy", "--baseline", "1"}};
     for (std::vector<std::string> arguments : commands) {
       if (turn++ != refusals_ % commands.size() && !by_all_commands) {
         continue;

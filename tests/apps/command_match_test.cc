@@ -46,10 +46,10 @@ TEST_F(MatchCommand, WritesEverythingAskedFor) {
 }
 
 TEST_F(MatchCommand, WritesAndReportsDepthResolution) {
-  const ProcessResult result = match(
-      folder_ / "map.pfm", {"--method", "ssd", "--subpixel", "none", "--focal-length", "500",
-                            "--baseline-length", "0.1", "--depth-resolution", folder_ / "z.npy",
-                            "--report", folder_ / "report.json", "--fill", "canonical"});
+  const ProcessResult result =
+      match(folder_ / "map.pfm", {"--method", "ssd", "--subpixel", "none", "--focal-length", "500",
+                                  "--baseline", "0.1", "--depth-resolution", folder_ / "z.npy",
+                                  "--report", folder_ / "report.json", "--fill", "canonical"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const DisparityMap map = read_disparity(folder_ / "map.pfm");
   const DisparityMap resolution = read_disparity(folder_ / "z.npy");

@@ -77,8 +77,8 @@ TEST_F(RectifyTest, FromTheImagesAlone) {
   EXPECT_EQ(results["homographies"]["left"].size(), 3U);
 
   // What was written is as good as was said.
-  const Photograph left = read_photograph(fs::path(out) / "left.png");
-  const Photograph right = read_photograph(fs::path(out) / "right.png");
+  const Photograph left = read_photograph(fs::path(out) / "raw-left.png");
+  const Photograph right = read_photograph(fs::path(out) / "raw-right.png");
   EXPECT_EQ(left.width(), 320);
   EXPECT_LT(measure_vertical_error(left, right).systematic_px, 0.2);
   const Photograph valid = read_photograph(mask);
@@ -92,8 +92,9 @@ TEST_F(RectifyTest, FromTheImagesAlone) {
   const ProcessResult second =
       rectify({left_, right_, "-o", again, "--calibration", rig, "--kept-outline", "1"});
   ASSERT_EQ(second.exit_code, 0) << second.err;
-  EXPECT_EQ(read_file(fs::path(again) / "left.png"), read_file(fs::path(out) / "left.png"));
-  EXPECT_EQ(read_file(fs::path(again) / "right.png"), read_file(fs::path(out) / "right.png"));
+  EXPECT_EQ(read_file(fs::path(again) / "raw-left.png"), read_file(fs::path(out) / "raw-left.png"));
+  EXPECT_EQ(read_file(fs::path(again) / "raw-right.png"),
+            read_file(fs::path(out) / "raw-right.png"));
 }
 
 TEST_F(RectifyTest, SeveralPairsGetOneRectificationWhateverTheThreads) {
@@ -112,16 +113,79 @@ TEST_F(RectifyTest, SeveralPairsGetOneRectificationWhateverTheThreads) {
                  threads, "--matrices", rig});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_THAT(result.err, HasSubstr("3 pairs of 320x240 pixels"));
-    for (const char* name : {"left/000000.png", "left/000002.png", "right/000001.png"}) {
+    for (const char* name : {"left/000.png", "left/002.png", "right/001.png"}) {
       EXPECT_TRUE(fs::exists(fs::path(out) / name)) << name;
     }
-    const std::string all = read_file(rig) + read_file(fs::path(out) / "left/000002.png") +
-                            read_file(fs::path(out) / "right/000000.png");
+    const std::string all = read_file(rig) + read_file(fs::path(out) / "left/002.png") +
+                            read_file(fs::path(out) / "right/000.png");
     if (first.empty()) {
       first = all;
     }
     EXPECT_TRUE(all == first) << threads << " threads";
   }
+}
+
+/// Names of the photographs, in folders of their sides where both have one name.
+TEST_F(RectifyTest, ImagesKeepTheirNames) {
+  const std::string rig = folder_ / "rig.yml";
+  ASSERT_EQ(rectify({left_, right_, "--matrices", rig}).exit_code, 0);
+  for (const char* side : {"a", "b"}) {
+    fs::create_directory(folder_ / side);
+    fs::copy_file(std::string(side) == "a" ? left_ : right_, fs::path(folder_ / side) / "7 x.png");
+  }
+  const std::string out = folder_ / "out";
+  const ProcessResult result =
+      rectify({folder_ / "a/7 x.png", folder_ / "b", "-o", out, "--calibration", rig});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(files_below(out), testing::ElementsAre("left/7 x.png", "right/7 x.png"));
+
+  fs::copy_file(left_, folder_ / "a/7 x.PNG");
+  fs::copy_file(right_, folder_ / "b/8.png");
+  const ProcessResult doubled =
+      rectify({folder_ / "a", folder_ / "b", "-o", folder_ / "no", "--calibration", rig});
+  EXPECT_EQ(doubled.exit_code, 2);
+  EXPECT_TRUE(is_one_line(doubled, "rectify"));
+  EXPECT_THAT(doubled.err, HasSubstr("would get one name"));
+  EXPECT_FALSE(fs::exists(folder_ / "no"));
+  EXPECT_EQ(rectify({left_, right_, "-o", folder_ / "a/..", "--calibration", rig}).exit_code, 2)
+      << "it would replace the photographs";
+}
+
+/// Estimated cameras have no scale, and depths in metres are refused, until the baseline is given.
+TEST_F(RectifyTest, BaselineGivesTheScale) {
+  const std::string rig = folder_ / "rig.yml";
+  const std::string report = folder_ / "report.json";
+  const ProcessResult without = rectify({left_, right_, "--matrices", rig, "--report", report});
+  EXPECT_THAT(without.err, HasSubstr("the cameras have no scale"));
+  EXPECT_TRUE(json_of(report)["results"]["baseline_m"].is_null());
+  EXPECT_FALSE(read_stereo_calibration(rig).has_scale);
+  const std::vector<std::string> match = {
+      "match",         left_, right_,     "-o", folder_ / "map.pfm", "--depth", folder_ / "z.npy",
+      "--calibration", rig,   "--method", "ssd"};
+  const ProcessResult refused = run_vantage(match);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_TRUE(is_one_line(refused, "match"));
+  EXPECT_THAT(refused.err, HasSubstr("has no scale, because its cameras were estimated"));
+  EXPECT_FALSE(fs::exists(folder_ / "map.pfm"));
+
+  const ProcessResult with = rectify({left_, right_, "--matrices", rig, "--report", report,
+                                      "--baseline", "0.25", "-o", folder_ / "out"});
+  ASSERT_EQ(with.exit_code, 0) << with.err;
+  EXPECT_THAT(with.err, HasSubstr("baseline 0.25 m"));
+  EXPECT_DOUBLE_EQ(json_of(report)["results"]["baseline_m"].get<double>(), 0.25);
+  EXPECT_NEAR(read_stereo_calibration(rig).baseline(), 0.25, 1e-12);
+  EXPECT_EQ(read_stereo_calibration(rig).metres_per_unit, 1);
+  // Photographs that `match` rectifies itself, and those that `rectify` did.
+  ASSERT_EQ(run_vantage(match).exit_code, 0);
+  const std::string depths = read_file(folder_ / "z.npy");
+  std::vector<std::string> again = match;
+  again[1] = folder_ / "out/raw-left.png";
+  again[2] = folder_ / "out/raw-right.png";
+  again.emplace_back("--already-rectified");
+  const ProcessResult rectified = run_vantage(again);
+  ASSERT_EQ(rectified.exit_code, 0) << rectified.err;
+  EXPECT_EQ(read_file(folder_ / "z.npy"), depths);
+  EXPECT_EQ(rectify({left_, right_, "--matrices", rig, "--baseline", "0"}).exit_code, 2);
 }
 
 TEST_F(RectifyTest, ExchangedImagesAreWarnedOf) {
@@ -140,8 +204,8 @@ TEST_F(RectifyTest, ExchangedImagesAreWarnedOf) {
   EXPECT_TRUE(json_of(report)["results"]["looks_exchanged"].get<bool>());
   EXPECT_TRUE(warned({"rectify", right_, left_, "-o", folder_ / "wrong", "--calibration", rig}));
 
-  const std::string left = folder_ / "pair/left.png";
-  const std::string right = folder_ / "pair/right.png";
+  const std::string left = folder_ / "pair/raw-left.png";
+  const std::string right = folder_ / "pair/raw-right.png";
   const std::string map = folder_ / "map.pfm";
   EXPECT_FALSE(warned({"match", left, right, "-o", map, "--disparities=0:30", "--method", "ssd"}));
   EXPECT_TRUE(warned({"match", right, left, "-o", map, "--disparities=0:30", "--method", "ssd"}));

@@ -112,6 +112,8 @@ TEST_F(Config, PrintedSettingsFedBackAreTheSame) {
       {"generate", "book", "-o", "d", "--pattern", "real-bars", "--noise", "0.25", "--seed", "7"},
       {"generate", "scene", "-o", "d", "--frames", "9", "--near", "33.5"},
       {"eval", "a.pfm", "b.pfm", "--scale", "4", "--ignore-border", "3"},
+      {"reproject", "a.pfm", "--cloud", "c.ply", "--cloud-min-confidence", "0.5",
+       "--principal-point", "3,4.5", "--calibration-unit", "cm", "--cloud-filled"},
       {"match"}};
   for (auto arguments : commands) {
     const bool two_words = arguments.front() == "generate";

@@ -92,6 +92,8 @@ class OutputChecks : public RunTest {
         {with({"scene", "build", "--positions", at("places.csv"), "-o", at("scene")}),
          joined(pair, {at("places.csv")})},
         {{"eval", left, right, "--views"}, {left, right}},
+        {{"reproject", at("map.pfm"), "--depth", at("z.png"), "--calibration", at("calib.txt")},
+         {at("map.pfm"), at("calib.txt")}},
         {{"response", left, right, "-o", at("r.csv")}, {left, right}},
         {{"generate", "scene", "-o", at("made"), "--pose", at("camera.toml")}, {at("camera.toml")}},
         {{"generate", "book", "-o", at("made"), "--config", at("config.toml")},

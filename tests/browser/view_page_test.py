@@ -90,6 +90,12 @@ class ViewPageTest(unittest.TestCase):
                          (tab.text("message"), tab.complaints()))
         return tab
 
+    def rgb_of(self, name):
+        """Of a picture of the scene: width, height, RGB bytes."""
+        converted = self.folder / "converted.ppm"
+        vantage("synth", *self.pair, "--view", "0" if name == "left.png" else "1", "-o", converted)
+        return read_pnm(converted)
+
     def arrives_at(self, tab, x, y):
         """Movement is smooth, so it takes some frames; they must come to an end."""
         wanted = f"{x:.3f},{y:.3f}"
@@ -238,7 +244,7 @@ class ViewPageTest(unittest.TestCase):
 
     def test_every_mode_draws_something_else(self):
         tab = self.open("#x=0.25")
-        modes = ["view", "disparity", "left", "right", "parallel", "crossed", "anaglyph"]
+        modes = ["view", "disparity", "left", "right", "parallel", "crossed", "anaglyph", "cloud"]
         drawn = {}
         for mode in modes:
             # In the frame in which the page draws, after it: the canvas still holds the picture.
@@ -252,6 +258,61 @@ class ViewPageTest(unittest.TestCase):
                                  "return canvas.toDataURL().length; })()")
             self.assertGreater(len(drawn[mode]), 3 * blank, mode)
         self.assertEqual(len(set(drawn.values())), len(modes))
+        self.assertEqual(tab.complaints(), [])
+
+    def cloud_pixels(self, tab, address):
+        """RGBA of the canvas, row by row from the bottom, once it shows the cloud as addressed."""
+        return base64.b64decode(tab.evaluate(
+            "new Promise((resolve) => { addEventListener('hashchange', () => "
+            "requestAnimationFrame(() => { const canvas = document.getElementById('canvas');"
+            "const gl = canvas.getContext('webgl2');"
+            "const bytes = new Uint8Array(4 * canvas.width * canvas.height);"
+            "gl.bindFramebuffer(gl.FRAMEBUFFER, null);"
+            "gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);"
+            "let text = ''; bytes.forEach((byte) => { text += String.fromCharCode(byte); });"
+            f"resolve(btoa(text)); }}), {{once: true}}); location.hash = 'mode=cloud,{address}'; }})"))
+
+    def test_the_cloud_starts_as_the_photograph(self):
+        tab = self.open("#mode=cloud")
+        width, height = tab.evaluate("[document.getElementById('canvas').width,"
+                                     "document.getElementById('canvas').height]")
+        scale = min(width / SIZE["width"], height / SIZE["height"])
+        pixels = self.cloud_pixels(tab, "yaw=0")
+        _, _, photograph = self.rgb_of("left.png")
+        near, shown = 0, 0
+        for y in range(4, SIZE["height"] - 4, 3):
+            for x in range(4, SIZE["width"] - 4, 3):
+                column = int(width / 2 + (x - (SIZE["width"] - 1) / 2) * scale)
+                row = int(height / 2 - (y - (SIZE["height"] - 1) / 2) * scale)
+                at = 4 * (row * width + column)
+                truth = photograph[3 * (y * SIZE["width"] + x):][:3]
+                drawn = pixels[at:at + 3]
+                shown += any(drawn)
+                near += all(abs(a - b) <= 40 for a, b in zip(drawn, truth))
+        self.assertGreater(near, 0.9 * shown)
+        self.assertGreater(shown, 0.8 * (SIZE["width"] - 8) * (SIZE["height"] - 8) / 9)
+        self.assertEqual(tab.complaints(), [])
+
+    def test_the_cloud_follows_the_mouse(self):
+        tab = self.open("#mode=cloud")
+        orbit = ("(() => { const seen = {}; const turn = Orbit.prototype.turn;"
+                 "Orbit.prototype.turn = function(...a) { turn.apply(this, a); window.seen = this; };"
+                 "return true; })()")
+        tab.evaluate(orbit)
+        for kind, x, y, buttons in [("mousePressed", 100, 100, 1), ("mouseMoved", 150, 100, 1),
+                                    ("mouseMoved", 150, 120, 1), ("mouseReleased", 150, 120, 0),
+                                    ("mouseMoved", 250, 220, 0)]:
+            tab.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left",
+                     buttons=buttons, clickCount=1)
+        yaw, pitch, distance = tab.evaluate("[seen.yaw, seen.pitch, seen.distance]")
+        self.assertLess(yaw, -10)  # the near side moves with the mouse
+        self.assertGreater(pitch, 4)
+        self.assertEqual(distance, 1)
+        tab.call("Input.dispatchMouseEvent", type="mouseWheel", x=100, y=100, deltaX=0, deltaY=-100)
+        self.assertLess(tab.evaluate("new Promise((resolve) => setTimeout(() => "
+                                     "resolve(seen.distance), 100))"), 0.9)
+        tab.evaluate("document.getElementById('reset').click()")
+        self.assertEqual(tab.evaluate("[seen.yaw, seen.pitch, seen.distance]"), [0, 0, 1])
         self.assertEqual(tab.complaints(), [])
 
     def test_graphics_that_go_away_may_come_back(self):

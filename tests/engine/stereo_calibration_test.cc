@@ -196,10 +196,46 @@ TEST_F(CalibrationFiles, OpenCvOfRectifiedCameras) {
   EXPECT_FALSE(read(replaced(text, "-0.1, 0", "-0.1, 0.001")).is_rectified);
 }
 
+/// Files with the cameras of rectified images alone, or beside those of the photographs.
+TEST_F(CalibrationFiles, OpenCvOfRectifiedImages) {
+  const std::string projections =
+      "P1: [500, 0, 320, 0, 0, 500, 240, 0, 0, 0, 1, 0]\n"
+      "P2: [500, 0, 330, -60, 0, 500, 240, 0, 0, 0, 1, 0]\n";
+  const std::string q = "Q: [1, 0, 0, -320, 0, 1, 0, -240, 0, 0, 0, 500, 0, 0, 8, 80]\n";
+  for (const std::string& text : {projections, q, projections + q}) {
+    const StereoCalibration calibration = read(text);
+    EXPECT_TRUE(calibration.is_rectified);
+    EXPECT_EQ(calibration.left.matrix(0, 0), 500);
+    EXPECT_EQ(calibration.left.matrix(0, 2), 320);
+    EXPECT_EQ(calibration.left.matrix(1, 2), 240);
+    EXPECT_NEAR(calibration.doffs_px(), 10, 1e-9);
+    EXPECT_NEAR(calibration.baseline(), text == q ? 0.125 : 0.12, 1e-12);
+    EXPECT_FALSE(calibration.metres_per_unit);
+    EXPECT_TRUE(calibration.has_scale);
+  }
+  EXPECT_NEAR(read(q).baseline(), 0.125, 1e-12);
+  EXPECT_EQ(read(q + "metres_per_unit: 0.01\n").metres_per_unit, 0.01);
+  EXPECT_FALSE(read(q + "metres_per_unit: 0\n").has_scale);
+  EXPECT_NE(error(q + "metres_per_unit: -1\n").find("expected a number above 0"),
+            std::string::npos);
+  EXPECT_NE(error(replaced(q, "8, 80", "-8, 80")).find("Q is not that of cameras"),
+            std::string::npos);
+
+  // kYaml has P1 too.
+  const std::string both =
+      std::string(kYaml) +
+      "P2: [518.86240175, 0, 337.7, -43, 0, 518.86240175, 243.914, 0, 0, 0, 1, 0]\n";
+  EXPECT_FALSE(read(both).is_rectified);
+  EXPECT_NEAR(read_rectified_calibration(file_).baseline(), 43 / 518.86240175, 1e-6);
+  put_text(file_, kYaml);
+  EXPECT_FALSE(read_rectified_calibration(file_).is_rectified);
+}
+
 TEST_F(CalibrationFiles, Middlebury) {
   const StereoCalibration calibration = read(kMiddlebury);
   EXPECT_EQ(calibration.format, "Middlebury");
   EXPECT_TRUE(calibration.is_rectified);
+  EXPECT_EQ(calibration.metres_per_unit, 0.001);
   EXPECT_EQ(calibration.left.matrix(0, 0), 999.421);
   EXPECT_EQ(calibration.left.matrix(1, 2), 252.932);
   EXPECT_EQ(calibration.baseline(), 193.001);
@@ -212,6 +248,7 @@ TEST_F(CalibrationFiles, Kitti) {
   const StereoCalibration grey = read(kKitti);
   EXPECT_EQ(grey.format, "KITTI, cameras 0 and 1");
   EXPECT_TRUE(grey.is_rectified);
+  EXPECT_EQ(grey.metres_per_unit, 1);
   EXPECT_EQ(grey.left.matrix(0, 0), 700);
   EXPECT_NEAR(grey.baseline(), 0.5, 1e-12);
   EXPECT_NEAR(grey.translation.x(), -0.5, 1e-12);

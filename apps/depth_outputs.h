@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "apps/outputs.h"
+#include "apps/rig_scale.h"
+#include "apps/run_report.h"
+#include "apps/settings.h"
+#include "engine/execution.h"
+#include "engine/reprojection/point_cloud.h"
+
+namespace vantage::apps {
+
+/// Files in metres that one disparity map is turned into.
+struct DepthOutputs {
+  std::string depth;  ///< empty, as the next two: not wanted
+  std::string cloud;
+  std::string mesh;
+  CloudOptions options;
+
+  [[nodiscard]] bool any() const { return !(depth.empty() && cloud.empty() && mesh.empty()); }
+  [[nodiscard]] bool has_points() const { return !(cloud.empty() && mesh.empty()); }
+  [[nodiscard]] bool reads_confidence() const { return has_points() && options.reads_confidence(); }
+  [[nodiscard]] bool reads_unmatched() const { return has_points() && !options.keeps_filled; }
+  /// "depth", the first that is wanted.
+  [[nodiscard]] std::string first_option() const {
+    return !depth.empty() ? "depth" : !cloud.empty() ? "cloud" : "mesh";
+  }
+};
+
+/// --depth, --cloud and --mesh.
+void add_depth_output_settings(Settings& settings, DepthOutputs& outputs);
+/// Which pixels become points, and --max-depth.
+void add_cloud_settings(Settings& settings, CloudOptions& options);
+
+/// Throws UsageError for wrong fields and for options without effect. Adds the files to `files`.
+void check_depth_outputs(const DepthOutputs& outputs, const Settings& settings, FileChecks& files);
+/// Refuses options of points where there are none; `why` such as "without --cloud and --mesh".
+void refuse_idle_cloud_options(const Settings& settings, std::string_view why);
+
+/// The content of the wanted files: made before any is written.
+struct DepthFiles {
+  std::vector<std::uint8_t> depth;
+  std::vector<std::uint8_t> cloud;
+  std::vector<std::uint8_t> mesh;
+  std::vector<std::string> summaries;  ///< a line for each
+};
+
+/// Makes them, and adds what they hold to the report. Throws Error for an empty cloud.
+DepthFiles make_depth_files(const DepthOutputs& outputs, const CloudSource& source,
+                            Execution& execution, RunReport& report);
+void write_depth_files(const DepthOutputs& outputs, const DepthFiles& files);
+
+}  // namespace vantage::apps

@@ -1,0 +1,73 @@
+#include "engine/io/depth_io.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "engine/io/disparity_io.h"
+#include "engine/io/map_formats.h"
+#include "engine/io/photograph_io.h"
+#include "tests/engine/io_test_support.h"
+
+namespace vantage {
+namespace depth_io_test {
+
+Image<float> some_depths() {
+  Image<float> depths(3, 2);
+  const float values[] = {1.2344F, 65.535F, 0.0001F, std::numeric_limits<float>::quiet_NaN(),
+                          12,      3};
+  std::copy(values, values + 3, depths.row(0));
+  std::copy(values + 3, values + 6, depths.row(1));
+  return depths;
+}
+
+TEST(DepthIo, PngHoldsMillimetres) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "z.png";
+  write_depth(path, some_depths().view());
+  const Photograph read = read_photograph(path);
+  const auto& image = std::get<Image<std::uint16_t>>(read.pixels);
+  EXPECT_EQ(image.at(0, 0), 1234);
+  EXPECT_EQ(image.at(1, 0), 65535);
+  EXPECT_EQ(image.at(2, 0), 1);  // not unknown
+  EXPECT_EQ(image.at(0, 1), 0);
+  EXPECT_EQ(image.at(1, 1), 12000);
+  Image<float> far(1, 1);
+  far.at(0, 0) = 65.6F;
+  EXPECT_NE(test::error_of([&] { write_depth(path, far.view()); }).find("expected at most 65.535"),
+            std::string::npos);
+  EXPECT_TRUE(test::same(read_photograph(path), read));  // as it was
+}
+
+TEST(DepthIo, OtherFormatsHoldMetres) {
+  const TemporaryFolder folder;
+  const Image<float> depths = some_depths();
+  for (const MapFormat& format : map_formats()) {
+    if (!format.can_hold(MapContent::kDepth) || format.extension == ".png") {
+      continue;
+    }
+    const auto path = folder / ("z" + std::string(format.extension));
+    write_depth(path, depths.view());
+    const DisparityMap read = read_disparity(path);
+    for (int y = 0; y < 2; ++y) {
+      for (int x = 0; x < 3; ++x) {
+        EXPECT_TRUE(read.at(x, y) == depths.at(x, y) ||
+                    (std::isnan(read.at(x, y)) && std::isnan(depths.at(x, y))))
+            << format.extension;
+      }
+    }
+    EXPECT_EQ(largest_depth_m(path), std::numeric_limits<double>::infinity());
+  }
+  EXPECT_EQ(largest_depth_m("a.PNG"), 65.535);
+}
+
+TEST(DepthIo, SaysWhatIsWrong) {
+  EXPECT_EQ(test::error_of([] { write_depth("z.flo", some_depths().view()); }),
+            "cannot write z.flo: unknown depth extension '.flo', expected .pfm, .png, .tiff, .exr "
+            "or .npy");
+  EXPECT_NE(test::error_of([] { write_depth("z.npy", Image<float>(0, 0).view()); }), "");
+}
+
+}  // namespace depth_io_test
+}  // namespace vantage
