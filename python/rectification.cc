@@ -110,6 +110,8 @@ RectifiedImages rectify(const Photograph& left, const Photograph& right,
   }
   result.calibration = calibration_of(rectifier.pair());
   result.cameras = rectification.calibration;
+  result.calibration.metres_per_unit = result.cameras.metres_per_unit;
+  result.calibration.has_scale = result.cameras.has_scale;
   result.valid = rectifier.pair().valid;
   return result;
 }
@@ -163,6 +165,8 @@ void bind_rectification(py::module_& module) {
       .def_property_readonly("rectified", [](const StereoCalibration& c) { return c.is_rectified; })
       .def_property_readonly("baseline", &StereoCalibration::baseline)
       .def_property_readonly("doffs", &StereoCalibration::doffs_px)
+      .def_property_readonly("metres_per_unit",
+                             [](const StereoCalibration& c) { return c.metres_per_unit; })
       .def("__repr__", [](const StereoCalibration& c) {
         return fmt::format("<vantage.Calibration: {}, focal length {:.6g} px, baseline {:.6g}>",
                            c.is_rectified ? "rectified" : "not rectified", c.left.matrix(0, 0),

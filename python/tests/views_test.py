@@ -78,6 +78,7 @@ def test_rectification_is_that_of_the_program(scene, pair, tmp_path):
                 tmp_path / "rig.yml", "-o", tmp_path / "rectified", "--matrices",
                 tmp_path / "out.yml")
     rectified = vantage.rectify(*pair, calibration)
+    assert rectified.calibration.metres_per_unit == calibration.metres_per_unit
     left, right = rectified
     assert same(left, vantage.read_image(tmp_path / "rectified/left.png"))
     assert same(right, vantage.read_image(tmp_path / "rectified/right.png"))
@@ -127,6 +128,9 @@ def test_points(scene, truth):
     rows, columns = np.indices(truth.shape)
     known = np.isfinite(z)
     assert np.allclose(back[known], np.stack([columns, rows], -1)[known], atol=1e-3)
+    assert calibration.metres_per_unit == 0.001  # Middlebury's
+    assert vantage.Calibration(K1=calibration.K1, K2=calibration.K2,
+                               T=calibration.T).metres_per_unit is None
     opencv = cv2.reprojectImageTo3D(truth, calibration.Q)
     assert np.allclose(vantage.reproject(truth, calibration.Q), opencv, rtol=1e-4)
     for bad, message in [(truth.astype(int), "expected floats of HxW"), (truth[0], "HxW")]:
