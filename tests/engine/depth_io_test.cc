@@ -15,7 +15,7 @@ namespace depth_io_test {
 
 Image<float> some_depths() {
   Image<float> depths(3, 2);
-  const float values[] = {1.2344F, 65.535F, 0.0001F, std::numeric_limits<float>::quiet_NaN(),
+  const float values[] = {1.2346F, 65.535F, 0.0001F, std::numeric_limits<float>::quiet_NaN(),
                           12,      3};
   std::copy(values, values + 3, depths.row(0));
   std::copy(values + 3, values + 6, depths.row(1));
@@ -28,7 +28,7 @@ TEST(DepthIo, PngHoldsMillimetres) {
   write_depth(path, some_depths().view());
   const Photograph read = read_photograph(path);
   const auto& image = std::get<Image<std::uint16_t>>(read.pixels);
-  EXPECT_EQ(image.at(0, 0), 1234);
+  EXPECT_EQ(image.at(0, 0), 1235);
   EXPECT_EQ(image.at(1, 0), 65535);
   EXPECT_EQ(image.at(2, 0), 1);  // not unknown
   EXPECT_EQ(image.at(0, 1), 0);
