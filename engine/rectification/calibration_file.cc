@@ -168,7 +168,7 @@ void read_opencv_size_and_unit(const CalibrationFile& file, StereoCalibration& c
 
 StereoCalibration from_opencv(const CalibrationFile& file, CameraChoice choice) {
   static const std::initializer_list<std::string_view> kLeftNames = {"M1", "K1", "cameraMatrix1",
-                                                                  "camera_matrix_1"};
+                                                                     "camera_matrix_1"};
   if (choice == CameraChoice::kRectified || file.find(kLeftNames) == nullptr) {
     if (std::optional<StereoCalibration> rectified = from_rectified_opencv(file)) {
       read_opencv_size_and_unit(file, *rectified);
