@@ -15,6 +15,7 @@ namespace vantage {
 namespace {
 
 constexpr int kReachPx = kernels::kFilledMedianReachPx;
+constexpr int kMarginPx = kernels::kFilledMedianMarginPx;
 static_assert(kernels::kFilledPixelBytes == 4);
 
 template <typename T>
@@ -32,8 +33,7 @@ std::uint8_t grey_level(T value) {
 template <typename T, class WriteRow>
 void frame(int width, int height, int channels, T outside, const WriteRow& write_row,
            Execution& execution, Image<T>& framed) {
-  framed.resize(kReachPx + width + kReachPx + kernels::kFilledRowSlack,
-                kReachPx + height + kReachPx, channels);
+  framed.resize(kMarginPx + width + kMarginPx, kReachPx + height + kReachPx, channels);
   execution.for_each_band(framed.height(), [&](int first_row, int end_row) {
     for (int row = first_row; row < end_row; ++row) {
       T* const values = framed.row(row);
@@ -43,9 +43,9 @@ void frame(int width, int height, int channels, T outside, const WriteRow& write
         std::fill(values, end, outside);
         continue;
       }
-      std::fill_n(values, kReachPx * channels, outside);
-      write_row(y, values + kReachPx * channels);
-      std::fill(values + (kReachPx + width) * channels, end, outside);
+      std::fill_n(values, kMarginPx * channels, outside);
+      write_row(y, values + kMarginPx * channels);
+      std::fill(values + (kMarginPx + width) * channels, end, outside);
     }
   });
 }
@@ -74,7 +74,7 @@ void write_pixels(const T* photograph, int width, int channels, std::uint8_t* pi
 
 template <typename T>
 T* inside(Image<T>& framed, int y) {
-  return framed.row(kReachPx + y) + kReachPx * framed.channels();
+  return framed.row(kReachPx + y) + kMarginPx * framed.channels();
 }
 
 }  // namespace

@@ -10,8 +10,9 @@ namespace vantage::kernels {
 constexpr int kFilledMedianSamples = 7;
 constexpr int kFilledMedianStepPx = 3;
 constexpr int kFilledMedianReachPx = kFilledMedianSamples / 2 * kFilledMedianStepPx;
-/// Columns read beyond the samples: a vector less one lane.
+/// Columns read beyond the samples on both sides: a vector less one lane.
 constexpr int kFilledRowSlack = 15;
+constexpr int kFilledMedianMarginPx = kFilledMedianReachPx + kFilledRowSlack;
 /// Three channels and a 0.
 constexpr int kFilledPixelBytes = 4;
 
@@ -25,8 +26,9 @@ struct FilledMedianGrid {
 /// One row of a filled disparity map and its neighbourhood.
 struct FilledRow {
   /// Column 0 of the row; NaN = unknown, not used. Must be readable, and NaN beyond the map:
-  /// kFilledMedianReachPx rows above and below, each from column −kFilledMedianReachPx to width − 1
-  /// + kFilledMedianReachPx + kFilledRowSlack.
+  /// kFilledMedianReachPx rows above and below, each from column −kFilledMedianMarginPx to width −
+  /// 1
+  /// + kFilledMedianMarginPx.
   const float* disparity_px = nullptr;
   std::ptrdiff_t disparity_pitch = 0;  ///< values between rows
   /// The map's own image, 0..255: [x · kFilledPixelBytes + c], grey as three equal channels.

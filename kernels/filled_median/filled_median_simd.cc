@@ -23,6 +23,7 @@ void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
 #else
 using TagF = hn::ScalableTag<float>;
 using TagI = hn::ScalableTag<std::int32_t>;
+using Tag8 = hn::Repartition<std::uint8_t, TagI>;
 using Vec = hn::VFromD<TagF>;
 using VecI = hn::VFromD<TagI>;
 constexpr int kStep = static_cast<int>(hn::MaxLanes(TagF()));
@@ -30,7 +31,7 @@ static_assert(kStep - 1 <= kFilledRowSlack);
 constexpr int kSamples = kFilledMedianSamples * kFilledMedianSamples;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// Samples of one vector of neighbouring pixels: [sample · kStep + lane]. Unused samples have weight
+// Samples of the pixels of one group: [sample · kStep + lane]. Unused samples have weight
 // 0 and are infinite, so they do not widen any bracket.
 struct Samples {
   HWY_ALIGN float disparity_px[kSamples * kStep];
@@ -44,12 +45,89 @@ struct Brackets {
   VecI total;  // weight of all samples
 };
 
+// Unmatched pixels of a row that fill a vector: runs of neighbours one after the other, because
+// runs alone are shorter than vectors. Lanes after the last run are neighbours of its pixels, too.
+class Group {
+ public:
+  // Takes the first unmatched pixels from column x on. Returns the column after them.
+  int take(const std::uint8_t* unmatched, int width, int x) {
+    runs_ = 0;
+    lanes_ = 0;
+    while (lanes_ < kStep) {
+      for (; x < width && unmatched[x] == 0; ++x) {
+      }
+      if (x == width) {
+        break;
+      }
+      const int first = x;
+      for (; x < width && unmatched[x] != 0 && lanes_ + x - first < kStep; ++x) {
+      }
+      add(first, x - first);
+    }
+    return x;
+  }
+
+  [[nodiscard]] bool empty() const { return runs_ == 0; }
+
+  // The values at the group's pixels; `values` at column 0.
+  [[nodiscard]] HWY_INLINE Vec load(const float* values) const {
+    const TagF d;
+    Vec loaded = hn::LoadU(d, values + offset_[0]);
+    for (int run = 1; run < runs_; ++run) {
+      loaded = hn::IfThenElse(from_[run], hn::LoadU(d, values + offset_[run]), loaded);
+    }
+    return loaded;
+  }
+  [[nodiscard]] HWY_INLINE VecI load_pixels(const std::uint8_t* pixels) const {
+    const TagI d;
+    const auto load_run = [&](int run) HWY_ATTR {
+      return hn::BitCast(
+          d, hn::LoadU(Tag8(), pixels + std::ptrdiff_t{kFilledPixelBytes} * offset_[run]));
+    };
+    VecI loaded = load_run(0);
+    for (int run = 1; run < runs_; ++run) {
+      loaded = hn::IfThenElse(hn::RebindMask(d, from_[run]), load_run(run), loaded);
+    }
+    return loaded;
+  }
+  // Stores the lanes whose `taken` is not 0.
+  void store(const float* lanes, const std::int32_t* taken, float* values) const {
+    for (int run = 0; run < runs_; ++run) {
+      const int end = run + 1 < runs_ ? lane_[run + 1] : lanes_;
+      for (int lane = lane_[run]; lane < end; ++lane) {
+        if (taken[lane] != 0) {
+          values[offset_[run] + lane] = lanes[lane];
+        }
+      }
+    }
+  }
+  [[nodiscard]] hn::MFromD<TagI> has_lanes() const {
+    return hn::FirstN(TagI(), static_cast<std::size_t>(lanes_));
+  }
+
+ private:
+  void add(int x, int columns) {
+    const TagF d;
+    offset_[runs_] = x - lanes_;
+    lane_[runs_] = lanes_;
+    from_[runs_] = hn::Not(hn::FirstN(d, static_cast<std::size_t>(lanes_)));
+    ++runs_;
+    lanes_ += columns;
+  }
+
+  int runs_ = 0;
+  int lanes_ = 0;
+  int lane_[kStep];               // first lane of each run
+  std::ptrdiff_t offset_[kStep];  // its column less that lane
+  hn::MFromD<TagF> from_[kStep];  // its lanes and all after them
+};
+
 // Sums of absolute differences of channels.
-HWY_INLINE VecI differences(const std::uint8_t* a, const std::uint8_t* b) {
+HWY_INLINE VecI differences(VecI a, VecI b) {
   const TagI d;
-  const hn::Repartition<std::uint8_t, TagI> d8;
-  const auto of_a = hn::LoadU(d8, a);
-  const auto of_b = hn::LoadU(d8, b);
+  const Tag8 d8;
+  const auto of_a = hn::BitCast(d8, a);
+  const auto of_b = hn::BitCast(d8, b);
   // One of the two is 0.
   const VecI of_bytes =
       hn::BitCast(d, hn::Or(hn::SaturatedSub(of_a, of_b), hn::SaturatedSub(of_b, of_a)));
@@ -84,23 +162,23 @@ HWY_INLINE VecI weights_of(VecI differences) {
   return hn::Sub(hn::BitCast(di, hn::Add(weight, shift)), hn::BitCast(di, shift));
 }
 
-HWY_INLINE Brackets take_samples(const FilledRow& row, int x, Samples& samples) {
+HWY_INLINE Brackets take_samples(const FilledRow& row, const Group& group, Samples& samples) {
   const TagF d;
   const TagI di;
-  const std::uint8_t* own = row.pixels + x * kFilledPixelBytes;
+  const VecI own = group.load_pixels(row.pixels);
   const Vec infinity = hn::Set(d, kInfinity);
   Brackets brackets{infinity, hn::Neg(infinity), hn::Zero(di)};
   float* sample_px = samples.disparity_px;
   std::int32_t* sample_weight = samples.weight;
   for (int j = -row.grid.count / 2; j <= row.grid.count / 2; ++j) {
     const std::ptrdiff_t dy = j * row.grid.step_px;
-    const float* row_px = row.disparity_px + dy * row.disparity_pitch + x;
-    const std::uint8_t* row_pixels = own + dy * row.pixel_pitch;
+    const float* row_px = row.disparity_px + dy * row.disparity_pitch;
+    const std::uint8_t* row_pixels = row.pixels + dy * row.pixel_pitch;
     for (int i = -row.grid.count / 2; i <= row.grid.count / 2; ++i) {
       const std::ptrdiff_t dx = i * row.grid.step_px;
-      const Vec disparity_px = hn::LoadU(d, row_px + dx);
+      const Vec disparity_px = group.load(row_px + dx);
       const auto is_known = hn::RebindMask(di, hn::Eq(disparity_px, disparity_px));
-      const VecI unlike = differences(row_pixels + dx * kFilledPixelBytes, own);
+      const VecI unlike = differences(group.load_pixels(row_pixels + dx * kFilledPixelBytes), own);
       const VecI weight = hn::IfThenElseZero(is_known, weights_of(unlike));
       const auto counts = hn::RebindMask(d, hn::Gt(weight, hn::Zero(di)));
       const Vec counted_px = hn::IfThenElse(counts, disparity_px, infinity);
@@ -144,20 +222,13 @@ void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
   const Vec half = hn::Set(d, 0.5F);
   const int count = row.grid.count * row.grid.count;
   Samples samples;
-  HWY_ALIGN std::int32_t taken[kStep] = {};
+  Group group;
+  HWY_ALIGN std::int32_t taken[kStep];
   HWY_ALIGN float medians_px[kStep];
-  for (int x = 0; x < row.width;) {
-    if (row.unmatched[x] == 0) {
-      ++x;
-      continue;
-    }
-    // Pixels from x on, including matched ones: unmatched pixels mostly come in runs.
-    const int lanes = std::min(kStep, row.width - x);
-    std::fill_n(taken, kStep, 0);
-    std::copy_n(row.unmatched + x, lanes, taken);
-    Brackets brackets = take_samples(row, x, samples);
-    const auto is_taken =
-        hn::And(hn::Gt(hn::Load(di, taken), hn::Zero(di)), hn::Gt(brackets.total, hn::Zero(di)));
+  for (int x = group.take(row.unmatched, row.width, 0); !group.empty();
+       x = group.take(row.unmatched, row.width, x)) {
+    Brackets brackets = take_samples(row, group, samples);
+    const auto is_taken = hn::And(group.has_lanes(), hn::Gt(brackets.total, hn::Zero(di)));
     // Pixels that keep their values need no search.
     brackets.max = hn::IfThenElse(hn::RebindMask(d, is_taken), brackets.max, brackets.min);
     while (!hn::AllFalse(d, hn::Lt(brackets.min, brackets.max))) {
@@ -170,10 +241,7 @@ void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
     hn::Store(hn::VecFromMask(di, is_taken), di, taken);
     // The addition turns −0 into 0.
     hn::Store(hn::Add(brackets.max, hn::Zero(d)), d, medians_px);
-    for (int i = 0; i < lanes; ++i) {
-      filled_px[x + i] = taken[i] != 0 ? medians_px[i] : filled_px[x + i];
-    }
-    x += lanes;
+    group.store(medians_px, taken, filled_px);
   }
 }
 #endif

@@ -44,7 +44,8 @@ struct Rows {
 struct FilledRows {
   static constexpr int kReach = kernels::kFilledMedianReachPx;
   static constexpr int kRows = 2 * kReach + 1;
-  static constexpr int kPitch = kReach + kWidth + kReach + kernels::kFilledRowSlack;
+  static constexpr int kMargin = kernels::kFilledMedianMarginPx;
+  static constexpr int kPitch = kMargin + kWidth + kMargin;
   static constexpr int kFirstRun = 5;
   static constexpr int kEveryRun = 40;  // columns between the starts of runs
   /// Alternately a run that fills a vector partly and one of a few vectors.
@@ -62,7 +63,7 @@ struct FilledRows {
     for (int y = 0; y < kRows; ++y) {
       for (int x = 0; x < kWidth; ++x) {
         const bool is_front = x >= kWidth / 2;
-        const int place = y * kPitch + kReach + x;
+        const int place = y * kPitch + kMargin + x;
         // Sub-pixel positions on slightly slanted surfaces.
         map_px[static_cast<std::size_t>(place)] = (is_front ? 30.0F : 8.0F) +
                                                   0.01F * static_cast<float>(x) +
@@ -85,7 +86,7 @@ struct FilledRows {
   }
   template <class Kernel>
   void take_medians(Kernel kernel) {
-    constexpr int kFirst = kReach * kPitch + kReach;
+    constexpr int kFirst = kReach * kPitch + kMargin;
     const kernels::FilledRow row{
         .disparity_px = map_px.data() + kFirst,
         .disparity_pitch = kPitch,

@@ -37,7 +37,7 @@ struct Filled {
 template <class Kernel>
 std::vector<float> medians(const Filled& map, Kernel kernel) {
   constexpr int kReach = kFilledMedianReachPx;
-  const int pitch = kReach + map.width + kReach + kFilledRowSlack;
+  const int pitch = kFilledMedianMarginPx + map.width + kFilledMedianMarginPx;
   const auto size = static_cast<std::size_t>(pitch * (kReach + map.height + kReach));
   UnalignedRow<float> disparity_px(size, 1);
   UnalignedRow<std::uint8_t> pixels(size * kFilledPixelBytes, 3);
@@ -46,7 +46,7 @@ std::vector<float> medians(const Filled& map, Kernel kernel) {
   std::generate_n(pixels.data(), pixels.size(),
                   [&] { return static_cast<std::uint8_t>(random() % 256); });
   const auto place = [&](int x, int y) {
-    return static_cast<std::size_t>((kReach + y) * pitch + kReach + x);
+    return static_cast<std::size_t>((kReach + y) * pitch + kFilledMedianMarginPx + x);
   };
   for (std::size_t i = 0; i < size; ++i) {
     pixels[i * kFilledPixelBytes + 3] = 0;
