@@ -24,7 +24,8 @@ inline constexpr int kWindowTotalUnits = 4;
 /// Rises are given for at most this many offsets.
 inline constexpr int kMaxWindowPriorRadius = kWindowCandidates - 1;
 
-/// The windows of one row, first and second.
+/// The windows of one row, first and second. Rows whose windows begin at the same candidates should
+/// share `start`: their support need not be moved.
 struct WindowRow {
   std::array<const WindowCells*, kWindows> support = {};
   std::array<const std::int16_t*, kWindows> start =

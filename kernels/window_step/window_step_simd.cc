@@ -117,9 +117,20 @@ HWY_INLINE void add(Vec64 support, Vec16 weight, Totals& totals) {
 // The largest word of each 64-bit lane, in all its words.
 HWY_INLINE Vec16 max_of_lane(Vec16 words) {
   const Tag16 d16;
+  const Tag32 d32;
+#if HWY_TARGET <= HWY_AVX3
   const Vec16 halves =
       hn::Max(words, hn::BitCast(d16, hn::RotateRight<32>(hn::BitCast(Tag64(), words))));
-  return hn::Max(halves, hn::BitCast(d16, hn::RotateRight<16>(hn::BitCast(Tag32(), halves))));
+  return hn::Max(halves, hn::BitCast(d16, hn::RotateRight<16>(hn::BitCast(d32, halves))));
+#else
+  // Shuffles, because rotations would be two shifts and more.
+  alignas(16) static constexpr std::uint8_t kOtherWords[16] = {2,  3,  0, 1, 6,  7,  4,  5,
+                                                               10, 11, 8, 9, 14, 15, 12, 13};
+  const Tag8 d8;
+  const Vec16 halves = hn::Max(words, hn::BitCast(d16, hn::Shuffle2301(hn::BitCast(d32, words))));
+  return hn::Max(halves, hn::BitCast(d16, hn::TableLookupBytes(hn::BitCast(d8, halves),
+                                                               hn::LoadDup128(d8, kOtherWords))));
+#endif
 }
 
 // T of kColumns columns. kBoth: neighbours may have second windows.
@@ -133,38 +144,45 @@ class ColumnTotals {
         left_(words_of(row.beside + x)),
         right_(words_of(row.beside + x + 1)),
         up_(words_of(row.above + x)),
-        down_(words_of(row.below + x)) {}
+        down_(words_of(row.below + x)),
+        up_is_alike_(row.up.start == row.centre.start),
+        down_is_alike_(row.down.start == row.centre.start) {}
 
   [[nodiscard]] HWY_INLINE Totals of(std::size_t window) const {
     Totals totals = evidence_of(row_.evidence[window] + x_);
     const VecS16 own = hn::LoadDup128(TagS16(), row_.centre.start[window] + x_);
-    if constexpr (kBoth) {
-      add(support(row_.centre, x_, own), mu_, totals);
-    } else {
-      add(hn::LoadU(Tag64(), row_.centre.support[0] + x_), mu_, totals);
-    }
+    add(alike_support(row_.centre, window, own), mu_, totals);
     add(support(row_.centre, x_ - 1, own), left_, totals);
     add(support(row_.centre, x_ + 1, own), right_, totals);
-    add(support(row_.up, x_, own), up_, totals);
-    add(support(row_.down, x_, own), down_, totals);
+    add(up_is_alike_ ? alike_support(row_.up, window, own) : support(row_.up, x_, own), up_,
+        totals);
+    add(down_is_alike_ ? alike_support(row_.down, window, own) : support(row_.down, x_, own), down_,
+        totals);
     return totals;
   }
 
  private:
   [[nodiscard]] static HWY_INLINE Vec64 support(const WindowRow& row, int x, VecS16 own) {
+    const Vec64 first = moved(hn::LoadU(Tag64(), row.support[0] + x), row.start[0] + x, own);
+    return kBoth ? larger(first, row, 1, x, own) : first;
+  }
+  // Same for rows whose windows begin where those of the centre do: that of `window` is not moved.
+  [[nodiscard]] HWY_INLINE Vec64 alike_support(const WindowRow& row, std::size_t window,
+                                               VecS16 own) const {
+    const Vec64 same = hn::LoadU(Tag64(), row.support[window] + x_);
+    return kBoth ? larger(same, row, 1 - window, x_, own) : same;
+  }
+  // The larger of `cells` and the support of a window.
+  [[nodiscard]] static HWY_INLINE Vec64 larger(Vec64 cells, const WindowRow& row,
+                                               std::size_t window, int x, VecS16 own) {
     const Tag64 d64;
-    const Vec64 first = moved(hn::LoadU(d64, row.support[0] + x), row.start[0] + x, own);
-    if constexpr (!kBoth) {
-      return first;
-    } else {
-      const Tag8 d8;
-      const Vec64 cells = hn::LoadU(d64, row.support[1] + x);
-      if (hn::AllTrue(d64, hn::Eq(cells, hn::Zero(d64)))) {
-        return first;
-      }
-      const Vec64 second = moved(cells, row.start[1] + x, own);
-      return hn::BitCast(d64, hn::Max(hn::BitCast(d8, first), hn::BitCast(d8, second)));
+    const Tag8 d8;
+    const Vec64 other = hn::LoadU(d64, row.support[window] + x);
+    if (hn::AllTrue(d64, hn::Eq(other, hn::Zero(d64)))) {
+      return cells;
     }
+    const Vec64 there = moved(other, row.start[window] + x, own);
+    return hn::BitCast(d64, hn::Max(hn::BitCast(d8, cells), hn::BitCast(d8, there)));
   }
 
   const WindowStepRow& row_;
@@ -174,6 +192,8 @@ class ColumnTotals {
   Vec16 right_;
   Vec16 up_;
   Vec16 down_;
+  bool up_is_alike_;
+  bool down_is_alike_;
 };
 
 // Cells from quarters of a step, at most 255 after rounding.
@@ -320,16 +340,16 @@ struct Beside {
 };
 
 HWY_INLINE Beside beside_winner(const Totals& totals, const Codes& codes, Vec16 best) {
-  const Vec16 none = hn::Zero(Tag16());
+  const auto even_wins = hn::Eq(codes.even, best);
+  const auto odd_wins = hn::Eq(codes.odd, best);
+  const Vec16 before = hn::Max(hn::IfThenElseZero(even_wins, from_beside<1>(totals.odd)),
+                               hn::IfThenElseZero(odd_wins, totals.even));
+  const Vec16 after = hn::Max(hn::IfThenElseZero(even_wins, totals.odd),
+                              hn::IfThenElseZero(odd_wins, from_beside<-1>(totals.even)));
   // Without a winner all codes are 0.
-  const auto where = [&](Vec16 code, Vec16 value) HWY_ATTR {
-    return hn::IfThenElse(hn::Eq(code, none), none, hn::IfThenElseZero(hn::Eq(code, best), value));
-  };
-  const Vec16 before =
-      hn::Max(where(codes.even, from_beside<1>(totals.odd)), where(codes.odd, totals.even));
-  const Vec16 after =
-      hn::Max(where(codes.even, totals.odd), where(codes.odd, from_beside<-1>(totals.even)));
-  return {max_of_lane(before), max_of_lane(after)};
+  const auto is_none = hn::Eq(best, hn::Zero(Tag16()));
+  return {hn::IfThenZeroElse(is_none, max_of_lane(before)),
+          hn::IfThenZeroElse(is_none, max_of_lane(after))};
 }
 
 HWY_INLINE Vec64 selectable_of(const WindowCells* selectable, int x, WindowCells lanes) {
