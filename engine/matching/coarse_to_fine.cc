@@ -187,6 +187,12 @@ void CoarseLevels::resize(const MethodParameters& parameters,
   }
 }
 
+LevelVolume& CoarseLevels::start_other_costs() {
+  const LevelVolume& like = costs(1);
+  other_costs_.resize(like.extent(), like.lanes(), like.cell_bytes());
+  return other_costs_;
+}
+
 LevelVolume& CoarseLevels::start_result(int level) {
   const LevelVolume& like = costs(level);
   LevelVolume& volume = result(level);
@@ -212,7 +218,8 @@ Image<std::int32_t>& CoarseLevels::start_winners(int level, Image<std::int32_t>*
 }
 
 std::size_t CoarseLevels::held_bytes() const {
-  std::size_t bytes = results_[0].held_bytes() + results_[1].held_bytes();
+  std::size_t bytes =
+      results_[0].held_bytes() + results_[1].held_bytes() + other_costs_.held_bytes();
   for (const LevelVolume& volume : costs_) {
     bytes += volume.held_bytes();
   }
@@ -237,7 +244,8 @@ std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Ex
                                  static_cast<std::size_t>(extents[level].rows) *
                                  static_cast<std::size_t>(lanes * cell_bytes(parameters));
     const bool has_result = level >= first_result && level < first_result + 2;
-    bytes += (has_result ? 2 : 1) * of_level;
+    const bool is_shared = level == 1 && can_share_costs(parameters);
+    bytes += (1 + (has_result ? 1 : 0) + (is_shared ? 1 : 0)) * of_level;
   }
   if (extents.size() > 1 && (windows > 0 || pruned_level_count(parameters, extents.size()) > 0)) {
     // Winners of level 1; with two levels of windows also its state.
@@ -273,9 +281,16 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
   };
   if (coarsest > 0) {
     const scheduler::Span span("reduce");
-    run(MatchChain(parameters, geometry, input, outputs,
-                   {.reduced = &levels.costs(1),
-                    .regions = parts != nullptr ? &parts->of(1)->costs : nullptr}));
+    if (input.sharing == CostSharing::kUses) {
+      levels.use_other_costs();
+    } else {
+      run(MatchChain(
+          parameters, geometry, input, outputs,
+          {.reduced = &levels.costs(1),
+           .reduced_right =
+               input.sharing == CostSharing::kStores ? &levels.start_other_costs() : nullptr,
+           .regions = parts != nullptr ? &parts->of(1)->costs : nullptr}));
+    }
     for (int level = 2; level <= coarsest; ++level) {
       const auto* const of_level = parts_of(level);
       reduce_level(parameters, levels.costs(level - 1),

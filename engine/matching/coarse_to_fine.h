@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "engine/execution.h"
@@ -30,6 +31,10 @@ class CoarseLevels {
   [[nodiscard]] LevelVolume& costs(int level) {
     return costs_[static_cast<std::size_t>(level) - 1];
   }
+  /// Resizes the costs of level 1 of the other image's map.
+  LevelVolume& start_other_costs();
+  /// Those become the costs of level 1. Sizes must be the same.
+  void use_other_costs() { std::swap(costs_.front(), other_costs_); }
   /// Shares its memory with level + 2, whose result is no longer needed.
   [[nodiscard]] LevelVolume& result(int level) {
     return results_[static_cast<std::size_t>(level) % 2];
@@ -65,6 +70,7 @@ class CoarseLevels {
   [[nodiscard]] int pruned_levels() const { return static_cast<int>(blocks_.size()); }
 
   std::vector<LevelVolume> costs_;
+  LevelVolume other_costs_;  ///< empty unless shared
   std::array<LevelVolume, 2> results_;
   std::vector<CandidateBlocks> blocks_;             ///< of pruned levels
   std::vector<Image<std::int32_t>> winners_;        ///< of levels from 1 on, unless kept elsewhere
@@ -115,8 +121,9 @@ bool has_check_map(const MethodParameters& parameters, scheduler::Extent extent)
 /// same on all levels. The finest level's costs are computed from the images twice and never
 /// stored. Iterations and σP depend on the level (at_level).
 ///
-/// `run` is called with one chain after the other: the first reduces the image's costs, the last,
-/// without windows, selects winners into `outputs`. parameters.levels > 1; geometry and outputs are
+/// `run` is called with one chain after the other: the first reduces the image's costs unless
+/// stored ones are used (ChainInput::sharing), the last, without windows, selects winners into
+/// `outputs`. parameters.levels > 1; geometry and outputs are
 /// the image's; input without ChainInput::pair.
 ///
 /// With parameters.candidate_blocks > 0 the finest `pruned_levels` levels (never the coarsest)

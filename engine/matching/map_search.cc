@@ -109,10 +109,11 @@ void MapSearch::search(const kernels::CandidateGeometry& geometry, const ChainIn
     return;
   }
   scheduler::ChainPlan plan_before = report_.plan;
-  scheduler::ChainPlan plan_of_costs;
+  const bool makes_costs = searched.sharing != CostSharing::kUses;
+  scheduler::ChainPlan plan_of_costs = makes_costs ? scheduler::ChainPlan() : plan_before;
   const LevelCells cells = match_coarse_to_fine(
       parameters_, geometry, searched, outputs, work_.levels, execution_,
-      [&, is_first = true](const MatchChain& chain) mutable {
+      [&, is_first = makes_costs](const MatchChain& chain) mutable {
         run_chain(chain);
         if (is_first) {
           plan_of_costs = report_.plan;

@@ -39,6 +39,17 @@ bool uses_column_ssd(const MethodParameters& parameters) {
          !parameters.match_exposure && steps_per_px(parameters) == 1;
 }
 
+bool can_share_costs(const MethodParameters& parameters) {
+  return has_likelihoods(parameters) && parameters.levels > 1 &&
+         cost_of(parameters).byte_energies && parameters.colour == ColourUse::kLuma &&
+         steps_per_px(parameters) == 1;
+}
+
+bool shares_costs(const MethodParameters& parameters, const ChainInput& input) {
+  return can_share_costs(parameters) && input.partners.size() == 1 && input.prior_px.empty() &&
+         input.partners.front().baseline_ratio == 1 && input.grid == nullptr;
+}
+
 namespace {
 
 /// Half the number of index bits that fit below the sums of an 8-bit window within 31 bits, or 0.
@@ -201,10 +212,17 @@ void MatchChain::add_reduction(const MethodParameters& parameters, const ChainIn
                                const ChainLevel& level) {
   const auto weight = static_cast<float>(parameters.level_weight);
   if (has_byte_energies(parameters, input)) {
-    add(byte_energies(parameters, input, 0, geometry_.count));
-    add(make_byte_energy_reduction_stage(
-        geometry_, cost_of(parameters).byte_energies->nats_per_step(parameters), weight,
-        *level.reduced));
+    const ByteEnergies& energies = *cost_of(parameters).byte_energies;
+    const float step = energies.nats_per_step(parameters);
+    auto costs = byte_energies(parameters, input, 0, geometry_.count);
+    if (level.reduced_right != nullptr) {
+      add(make_pair_energy_reduction_stage(std::move(costs), geometry_,
+                                           energies.without_partner(parameters), step, weight,
+                                           {*level.reduced, *level.reduced_right}));
+      return;
+    }
+    add(std::move(costs));
+    add(make_byte_energy_reduction_stage(geometry_, step, weight, *level.reduced));
     return;
   }
   add(plain_costs(parameters, input, 0, geometry_.count));

@@ -26,6 +26,13 @@ namespace vantage {
 /// faster than computing and then summing costs. Not with several levels, which need the costs.
 bool uses_column_ssd(const MethodParameters& parameters);
 
+/// Whether the costs of coarse levels are made once for both images of a pair.
+enum class CostSharing : std::uint8_t {
+  kNone,
+  kStores,  ///< the left image's map: those of the right image are stored, too
+  kUses,    ///< the right image's map, after the left one's: the stored ones are used
+};
+
 /// The chains of both images in a symmetric selection: that of the right image stores its energies,
 /// that of the left one selects both maps.
 struct SymmetricPlace {
@@ -49,6 +56,8 @@ struct ChainInput {
   std::span<const EdgeWeights> edges = {};
   /// Selection symmetric: the place of this chain; null: for plans only.
   const SymmetricPlace* symmetric = nullptr;
+  /// Only if shares_costs().
+  CostSharing sharing = CostSharing::kNone;
   /// Grid of a two-dimensional search with one partner (its disparity_y_px is ignored) and no
   /// prior; the geometry is then that of the grid's columns. Null: search along rows only.
   const DisplacementGrid* grid = nullptr;
@@ -66,6 +75,9 @@ struct ChainLevel {
   LevelVolume* result = nullptr;         ///< output for cells, instead of winners
   /// Output for costs, reduced to the next coarser level; nothing else is computed.
   LevelVolume* reduced = nullptr;
+  /// With `reduced`, for the left image: output for the right image's costs, too. Null: not
+  /// requested. Only if shares_costs().
+  LevelVolume* reduced_right = nullptr;
   /// Bayesian diffusion: the candidates processed, here and on the coarser level; null: all. If
   /// this level is pruned, there is a coarser one.
   const CandidateBlocks* blocks = nullptr;
@@ -78,6 +90,11 @@ struct ChainLevel {
   /// them. Null: not requested.
   const VolumeWriter* volume = nullptr;
 };
+
+/// Whether the costs of both images' coarse levels can be reduced together, in the method and in
+/// the search of `input`.
+bool can_share_costs(const MethodParameters& parameters);
+bool shares_costs(const MethodParameters& parameters, const ChainInput& input);
 
 // Cells of a row are [x][candidate]: floats (energies or likelihoods), bytes (energies in steps),
 // fixed point of 16 bits (EnergyFormat), window sums of 32 bits. Stored levels hold bytes or half
@@ -106,6 +123,7 @@ struct ChainLevel {
 //  coarser half energy            float, coarser row y/2                                    float
 //  start from coarser             coarser row y/2                                           as level
 //  reduction                      rows 2y and 2y + 1                 last row repeated      stored
+//  pair reduction                 a cost stage, 2y and 2y + 1        last row repeated      2 stored
 //  store, result                  cells of the level                                        stored
 //  window selection               32 bits                 r columns  border: valid or clip  map
 //  cell, displacement selection   float                              NaN if no candidate    map

@@ -135,8 +135,8 @@ void ReducedMatcher::prepare(const Photograph& left, const Photograph& right, in
 }
 
 void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence,
-                             const TileMask* tiles, MapSearchWork& search_work, Work& work,
-                             MatchedMap& half, MatchReport& report) const {
+                             const TileMask* tiles, CostSharing sharing, MapSearchWork& search_work,
+                             Work& work, MatchedMap& half, MatchReport& report) const {
   const std::size_t own = index_of(side);
   const std::size_t other = index_of(other_side(side));
   const DisparityRange range = possible_range(options_, work.images[own].reduced(0));
@@ -144,6 +144,7 @@ void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence,
   const Photograph& searched = work.images[own].reduced(reductions);
   const auto& costs = work.costs[static_cast<std::size_t>(reductions)];
   ChainInput input{nullptr, &costs[own], {CostPartner{&costs[other]}}};
+  input.sharing = shares_costs(search.parameters, input) ? sharing : CostSharing::kNone;
   input.edges = work.search_edges.prepare(searched, search.parameters, execution_);
   // Only the size counts.
   const ImageView<float> size(nullptr, searched.width(), searched.height(), 1, 0);
@@ -227,8 +228,8 @@ void ReducedMatcher::compute_changed(Side side, int reductions, bool wants_confi
                                      PreviousMaps& previous, Work& work,
                                      MatchReport& report) const {
   PreviousMaps::OfSide& kept = previous.of(side);
-  compute(side, reductions, wants_confidence, previous.searched_tiles(side), kept.search, work,
-          kept.winners, report);
+  compute(side, reductions, wants_confidence, previous.searched_tiles(side), CostSharing::kNone,
+          kept.search, work, kept.winners, report);
   report.searched_share = std::max(report.searched_share.value_or(0), kept.searched.share());
   copy_winners(kept.winners, execution_, work.halves.of(side));
 }
@@ -276,6 +277,7 @@ void ReducedMatcher::match(const Photograph& left, const Photograph& right, cons
       report.searched_share = 1;
     }
   }
+  const bool has_both = is_checked || (outputs.left && outputs.right);
   for (const Side side : {Side::kLeft, Side::kRight}) {
     MatchedMap& half = work->halves.of(side);
     half.disparity_px.resize(0, 0);
@@ -286,7 +288,11 @@ void ReducedMatcher::match(const Photograph& left, const Photograph& right, cons
     if (previous != nullptr) {
       compute_changed(side, reductions, wants_confidence, *previous, *work, report);
     } else {
-      compute(side, reductions, wants_confidence, nullptr, work->search, *work, half, report);
+      const CostSharing sharing = !has_both             ? CostSharing::kNone
+                                  : side == Side::kLeft ? CostSharing::kStores
+                                                        : CostSharing::kUses;
+      compute(side, reductions, wants_confidence, nullptr, sharing, work->search, *work, half,
+              report);
     }
   }
   refine(outputs, previous, *work, clock);

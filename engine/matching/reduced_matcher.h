@@ -82,7 +82,8 @@ class ReducedMatcher {
   /// Winners at half size. `tiles`: the only ones to write; null: all. search: of the last
   /// call for this side, if there are `tiles`.
   void compute(Side side, int reductions, bool wants_confidence, const TileMask* tiles,
-               MapSearchWork& search, Work& work, MatchedMap& half, MatchReport& report) const;
+               CostSharing sharing, MapSearchWork& search, Work& work, MatchedMap& half,
+               MatchReport& report) const;
   /// compute() of the tiles to search; the others' winners are those of `previous`.
   void compute_changed(Side side, int reductions, bool wants_confidence, PreviousMaps& previous,
                        Work& work, MatchReport& report) const;

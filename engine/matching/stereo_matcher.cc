@@ -173,7 +173,8 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans_of(
   const auto extents =
       level_extents({task.image->width(), task.image->height()}, parameters.levels);
   const bool has_windows = parameters.window_levels > 0 && extents.size() > 1;
-  LevelVolume costs;  // never written
+  LevelVolume costs;        // never written
+  LevelVolume right_costs;  // likewise
   const bool is_pruned = !has_windows && parameters.candidate_blocks > 0 && extents.size() > 1;
   CandidateBlocks blocks;
   if (is_pruned) {
@@ -182,7 +183,9 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans_of(
   }
   const MatchChain chain(
       parameters, geometry, task.input, {.disparity_px = task.map->disparity_px.view()},
-      has_windows ? ChainLevel{.reduced = &costs}
+      has_windows ? ChainLevel{.reduced = &costs,
+                               .reduced_right =
+                                   shares_costs(parameters, task.input) ? &right_costs : nullptr}
                   : ChainLevel{.coarser = extents.size() > 1 ? &coarser : nullptr,
                                .blocks = is_pruned ? &blocks : nullptr});
   std::vector<scheduler::ChainPlan> plans;
@@ -414,6 +417,11 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   if (request.previous != nullptr) {
     clock.start("changes");
     choose_tiles(of_left, of_right, confidence, *request.previous, *prepared, times);
+  }
+  if (of_left.need.any() && of_right.need.any() && of_left.previous == nullptr && !is_symmetric &&
+      !in_force_.disparities_y && shares_costs(prepared->parameters, of_left.input)) {
+    of_left.input.sharing = CostSharing::kStores;
+    of_right.input.sharing = CostSharing::kUses;
   }
   if (is_symmetric) {
     compute_symmetric(of_left, of_right, confidence, *prepared, clock, times, request.volumes);

@@ -65,7 +65,7 @@ class StereoMatcher {
              DisparityMaps& maps, MatchReport* report = nullptr) const;
 
   /// Execution plan for the left map (its finest level, if there are several), as match() reports
-  /// it. Errors as match().
+  /// it if both maps are computed. Errors as match().
   [[nodiscard]] scheduler::ChainPlan plan(const Photograph& left, const Photograph& right) const;
   /// One plan for each of `executions` instead of the matcher's own, on the same machine.
   [[nodiscard]] std::vector<scheduler::ChainPlan> plans(

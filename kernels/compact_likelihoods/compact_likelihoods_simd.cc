@@ -14,6 +14,7 @@
 #include "kernels/cells/exp_log-inl.h"
 #include "kernels/cells/lane_sums-inl.h"
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
+#include "kernels/compact_likelihoods/reduced_sums-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
@@ -67,8 +68,6 @@ void reduce_compact_energies(const BlockRow<std::uint8_t>& row, float weight,
   reduce_compact_energies_row_ref(row, weight, energies);
 }
 #else
-using SumTag = hn::CappedTag<std::uint16_t, 8>;
-
 // 16-bit sums of byte cells, even and odd lanes separately; neither leaves its 128-bit block.
 template <class D8>
 struct BlockSums {
@@ -92,17 +91,6 @@ HWY_INLINE BlockSums<D8> block_sums(D8 d, const BlockRow<std::uint8_t>& row, int
                   hn::Add(hn::ShiftRight<8>(c), hn::ShiftRight<8>(e)))};
 }
 
-// Minimum per lane over the 128-bit blocks.
-template <class D16>
-HWY_INLINE VecOf<SumTag> fold_min(D16 d16, VecOf<D16> sums) {
-  if constexpr (hn::MaxLanes(D16()) == hn::MaxLanes(SumTag())) {
-    return sums;
-  } else {
-    const hn::Half<D16> half;
-    return fold_min(half, hn::Min(hn::LowerHalf(half, sums), hn::UpperHalf(half, sums)));
-  }
-}
-
 // Writes the sums of one block to `work`, in vectors of D8's size while whole vectors fit. `lane`
 // becomes the first remaining lane, `min` the minimum per lane.
 template <class D8>
@@ -123,29 +111,6 @@ HWY_INLINE void sum_block(D8 d, const BlockRow<std::uint8_t>& row, int block, st
   min = hn::Min(min, fold_min(d16, of_lanes));
 }
 
-// (sums in `work` − `bottom`) · units / kCompactWeightUnits.
-template <class D8>
-HWY_INLINE void weigh_block(D8 d, const std::uint16_t* work, int lanes, std::uint16_t bottom,
-                            std::int16_t units, int& lane, std::uint8_t* energies) {
-  const Tag16<D8> d16;
-  const hn::RebindToSigned<Tag16<D8> > di16;
-  const int step = static_cast<int>(hn::Lanes(d));
-  const auto of_bottom = hn::Set(d16, bottom);
-  const auto factor = hn::Set(di16, units);
-  const auto max = hn::Set(d16, static_cast<std::uint16_t>(kMaxCompact));
-  // At most 4 · 255, doubled: the product's fixed point is at 2^15.
-  const auto energy = [&](const std::uint16_t* sums) HWY_ATTR {
-    const auto above = hn::ShiftLeft<1>(hn::Sub(hn::LoadU(d16, sums), of_bottom));
-    const auto product = hn::MulFixedPoint15(hn::BitCast(di16, above), factor);
-    return hn::Min(hn::BitCast(d16, product), max);
-  };
-  for (; lane + step <= lanes; lane += step) {
-    const auto even = energy(work + lane);
-    const auto odd = energy(work + lane + step / 2);
-    hn::StoreU(hn::BitCast(d, hn::Or(even, hn::ShiftLeft<8>(odd))), d, energies + lane);
-  }
-}
-
 void reduce_compact_energies(const BlockRow<std::uint8_t>& row, float weight, std::uint16_t* work,
                              std::uint8_t* energies) {
   const hn::ScalableTag<std::uint8_t> widest;
@@ -159,10 +124,7 @@ void reduce_compact_energies(const BlockRow<std::uint8_t>& row, float weight, st
     sum_block(middle, row, b, work, lane, min);
     sum_block(narrow, row, b, work, lane, min);
     const std::uint16_t bottom = hn::GetLane(hn::MinOfLanes(SumTag(), min));
-    lane = 0;
-    weigh_block(widest, work, row.lanes, bottom, units, lane, energies);
-    weigh_block(middle, work, row.lanes, bottom, units, lane, energies);
-    weigh_block(narrow, work, row.lanes, bottom, units, lane, energies);
+    weigh_sums(work, row.lanes, bottom, units, energies);
   }
 }
 #endif

@@ -7,6 +7,7 @@
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
 #include "kernels/fixed_energies/fixed_energies.h"
 #include "kernels/half_energies/half_energies.h"
+#include "kernels/pair_reduction/pair_reduction.h"
 #include "perf/kernels_benchmark/kernel_benchmark.h"
 
 namespace vantage::perf {
@@ -27,6 +28,14 @@ class Rows {
   void reduce_compact_energies() {
     kernels::reduce_compact_energies_row({compact_.data(), lower_compact_.data(), kColumns, kLanes},
                                          0.6F, sums_.data(), bytes_.data());
+  }
+  void reduce_pair_energies() {
+    const kernels::PairRow row{
+        .columns = kColumns, .lanes = kLanes, .count = kColumns, .work = pair_sums_.data()};
+    kernels::start_pair_row(row);
+    kernels::reduce_left_part(row, {compact_.data(), lower_compact_.data(), kColumns, kLanes}, 0,
+                              bytes_.data());
+    kernels::reduce_right_row(row, right_bytes_.data());
   }
   void likelihoods_of_compact() {
     kernels::likelihoods_of_compact_row({compact_.data(), kColumns, kLanes, kLanes},
@@ -66,11 +75,13 @@ class Rows {
   AlignedValues<std::uint8_t> compact_{kFineCells, 256, 1, 3};
   AlignedValues<std::uint8_t> lower_compact_{kFineCells, 256, 1, 6};
   AlignedValues<std::uint16_t> sums_{kLanes};
+  AlignedValues<std::uint16_t> pair_sums_{kernels::pair_row_work(kColumns, kLanes, 0)};
   AlignedValues<std::uint16_t> stored_{kCoarseCells, 15360, 1, 4};
   AlignedValues<kernels::FixedEnergy> stored_fixed_{kFineCells, 10000, 1, 5};
   AlignedValues<float> work_{kLanes};
   AlignedValues<float> output_{kFineCells};
   AlignedValues<std::uint8_t> bytes_{kFineCells};
+  AlignedValues<std::uint8_t> right_bytes_{kCoarseCells};
   AlignedValues<std::uint16_t> halves_{kFineCells};
   AlignedValues<kernels::FixedEnergy> fixed_{kFineCells};
 };
@@ -89,6 +100,8 @@ KernelBenchmarks level_kernels() {
           [](Rows& d) { d.reduce_likelihoods(); }),
       row("reduce_compact_energies_row", kCoarseCells, kernels::kReduceCompactEnergiesWork,
           [](Rows& d) { d.reduce_compact_energies(); }),
+      row("reduce_pair_row", kCoarseCells, kernels::kReducePairEnergiesWork,
+          [](Rows& d) { d.reduce_pair_energies(); }),
       row("reduce_energies_row", kCoarseCells, kernels::kReduceEnergiesWork,
           [](Rows& d) { d.reduce_energies(); }),
       row("likelihoods_of_compact_row", kFineCells, kernels::kExpandCompactWork,

@@ -87,6 +87,8 @@ struct ByteEnergies {
                                                      const CostImage& reference,
                                                      const CostPartner& partner,
                                                      int height) = nullptr;
+  /// Energy of candidates without a partner, in steps.
+  std::uint8_t (*without_partner)(const MethodParameters& parameters) = nullptr;
 };
 
 /// A matching cost: everything known about it outside its own file.

@@ -112,25 +112,30 @@ void RayCensusPlanes::prepare_byte_codes(const PlaneSource& source,
 }
 
 MatchingCost ray_census_cost() {
-  return {.key = MatchCost::kRayCensus,
-          .name = "census-rays",
-          .description = "census codes of 24 pixels in eight directions",
-          .options = {"census-thresholds"},
-          .unit = ResidualUnit::kCensusBits,
-          .jump_limit = 8,
-          .occlusion_penalty = 6,
-          .make_planes = make_planes_as<RayCensusPlanes>,
-          .make_model = make_model_as<RayCensusModel>,
-          .byte_energies = ByteEnergies{.nats_per_step =
-                                            [](const MethodParameters& parameters) {
-                                              return ray_census_energies(parameters).step;
-                                            },
-                                        .make_stage = make_ray_census_energy_stage},
-          .work_class = [](const MethodParameters& parameters) {
-            return parameters.census_thresholds > 1
-                       ? fmt::format(", {} thresholds", parameters.census_thresholds)
-                       : std::string();
-          }};
+  return {
+      .key = MatchCost::kRayCensus,
+      .name = "census-rays",
+      .description = "census codes of 24 pixels in eight directions",
+      .options = {"census-thresholds"},
+      .unit = ResidualUnit::kCensusBits,
+      .jump_limit = 8,
+      .occlusion_penalty = 6,
+      .make_planes = make_planes_as<RayCensusPlanes>,
+      .make_model = make_model_as<RayCensusModel>,
+      .byte_energies = ByteEnergies{.nats_per_step =
+                                        [](const MethodParameters& parameters) {
+                                          return ray_census_energies(parameters).step;
+                                        },
+                                    .make_stage = make_ray_census_energy_stage,
+                                    .without_partner =
+                                        [](const MethodParameters& parameters) {
+                                          return ray_census_energies(parameters).without_partner;
+                                        }},
+      .work_class = [](const MethodParameters& parameters) {
+        return parameters.census_thresholds > 1
+                   ? fmt::format(", {} thresholds", parameters.census_thresholds)
+                   : std::string();
+      }};
 }
 
 }  // namespace vantage

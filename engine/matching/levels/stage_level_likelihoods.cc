@@ -4,11 +4,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
+#include <utility>
 
 #include "engine/column_work.h"
 #include "engine/matching/levels/level_stages.h"
 #include "kernels/cell_winner/cell_winner.h"
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
+#include "kernels/pair_reduction/pair_reduction.h"
 
 namespace vantage {
 namespace {
@@ -38,11 +41,14 @@ class LikelihoodReductionStage final : public LevelReductionStage {
   float weight_;
 };
 
+/// Of sums in steps of `step`, relative to compact ones.
+float compact_weight(float step, float weight) { return weight * (step / kernels::kEnergyStep); }
+
 class ByteEnergyReductionStage final : public LevelReductionStage {
  public:
   ByteEnergyReductionStage(const kernels::CandidateGeometry& geometry, float step, float weight,
                            LevelVolume& coarser)
-      : LevelReductionStage(geometry, coarser), weight_(weight * (step / kernels::kEnergyStep)) {}
+      : LevelReductionStage(geometry, coarser), weight_(compact_weight(step, weight)) {}
 
   /// One block.
   [[nodiscard]] std::size_t state_bytes(scheduler::Range /*columns*/,
@@ -60,7 +66,96 @@ class ByteEnergyReductionStage final : public LevelReductionStage {
   }
 
  private:
-  float weight_;  ///< of sums in steps of `step`, relative to compact ones
+  float weight_;
+};
+
+class PairEnergyReductionStage final : public scheduler::RowStage {
+ public:
+  PairEnergyReductionStage(std::unique_ptr<scheduler::RowStage> costs,
+                           const kernels::CandidateGeometry& geometry, std::uint8_t without_partner,
+                           float step, float weight, const PairLevels& levels)
+      : RowStage(levels.left.extent()),
+        costs_(std::move(costs)),
+        geometry_(geometry),
+        without_partner_(without_partner),
+        weight_(compact_weight(step, weight)),
+        levels_(levels) {}
+
+  [[nodiscard]] std::string_view name() const override { return "reduce"; }
+  [[nodiscard]] std::size_t bytes_per_column() const override { return 0; }
+  [[nodiscard]] bool needs_whole_rows() const override { return true; }
+  /// What is kept of a row, the costs of a part of two rows, and the memory to compute them.
+  [[nodiscard]] std::size_t state_bytes(scheduler::Range columns,
+                                        scheduler::Extent input) const override {
+    return row_bytes() + 2 * part_bytes() + costs_->state_bytes(columns, input);
+  }
+  /// Of one block.
+  [[nodiscard]] scheduler::ColumnWork column_work() const override {
+    const scheduler::ColumnWork costs = costs_->column_work();
+    scheduler::ColumnWork work =
+        vantage::column_work(kernels::kReducePairEnergiesWork, geometry_.count);
+    work.operations += 4 * costs.operations;
+    work.bytes += 4 * costs.bytes;
+    return work;
+  }
+
+  void make_row(const scheduler::RowTask& task) const override {
+    const int lanes = geometry_.lanes();
+    const kernels::PairRow row{.columns = geometry_.width,
+                               .lanes = lanes,
+                               .disparity_min = geometry_.disparity_min,
+                               .count = geometry_.count,
+                               .without_partner = without_partner_,
+                               .weight = weight_,
+                               .work = reinterpret_cast<std::uint16_t*>(task.state)};
+    std::byte* const upper = task.state + row_bytes();
+    const bool has_lower = 2 * task.y + 1 < costs_->extent().rows;
+    std::byte* const lower = has_lower ? upper + part_bytes() : upper;
+    scheduler::RowTask part = task;
+    part.state = task.state + row_bytes() + 2 * part_bytes();
+    kernels::start_pair_row(row);
+    for (int x = 0; x < geometry_.width; x = part.columns.end) {
+      part.columns = {x, std::min(x + part_columns(), geometry_.width)};
+      part.y = 2 * task.y;
+      part.output = upper;
+      costs_->make_row(part);
+      if (has_lower) {
+        ++part.y;
+        part.output = lower;
+        costs_->make_row(part);
+      }
+      kernels::reduce_left_part(row,
+                                {.upper = reinterpret_cast<const std::uint8_t*>(upper),
+                                 .lower = reinterpret_cast<const std::uint8_t*>(lower),
+                                 .columns = part.columns.size(),
+                                 .lanes = lanes},
+                                x, levels_.left.column<std::uint8_t>(x / 2, task.y));
+    }
+    kernels::reduce_right_row(row, levels_.right.column<std::uint8_t>(0, task.y));
+  }
+
+ private:
+  /// An even number, whose costs are still in the level-1 cache when they are read.
+  [[nodiscard]] int part_columns() const {
+    constexpr int kPartBytes = 8192;
+    constexpr int kMaxColumns = 64;
+    return std::clamp(kPartBytes / geometry_.lanes() / 2 * 2, 2, kMaxColumns);
+  }
+  static std::size_t aligned(std::size_t bytes) { return (bytes + 63) / 64 * 64; }
+  [[nodiscard]] std::size_t part_bytes() const {
+    return aligned(static_cast<std::size_t>(part_columns()) * costs_->bytes_per_column());
+  }
+  [[nodiscard]] std::size_t row_bytes() const {
+    return aligned(sizeof(std::uint16_t) * kernels::pair_row_work(geometry_.width,
+                                                                  geometry_.lanes(),
+                                                                  geometry_.disparity_min));
+  }
+
+  std::unique_ptr<scheduler::RowStage> costs_;
+  kernels::CandidateGeometry geometry_;
+  std::uint8_t without_partner_;
+  float weight_;
+  PairLevels levels_;
 };
 
 class LevelLikelihoodStage final : public LevelSourceStage {
@@ -128,6 +223,13 @@ std::unique_ptr<scheduler::RowStage> make_likelihood_reduction_stage(
 std::unique_ptr<scheduler::RowStage> make_byte_energy_reduction_stage(
     const kernels::CandidateGeometry& geometry, float step, float weight, LevelVolume& coarser) {
   return std::make_unique<ByteEnergyReductionStage>(geometry, step, weight, coarser);
+}
+
+std::unique_ptr<scheduler::RowStage> make_pair_energy_reduction_stage(
+    std::unique_ptr<scheduler::RowStage> costs, const kernels::CandidateGeometry& geometry,
+    std::uint8_t without_partner, float step, float weight, const PairLevels& levels) {
+  return std::make_unique<PairEnergyReductionStage>(std::move(costs), geometry, without_partner,
+                                                    step, weight, levels);
 }
 
 void reduce_float_energy_row(const LevelVolume& finer, int y, scheduler::Range columns,

@@ -24,6 +24,18 @@ std::unique_ptr<scheduler::RowStage> make_likelihood_reduction_stage(
 /// of compact energies. Padding lanes hold at least as much as any candidate.
 std::unique_ptr<scheduler::RowStage> make_byte_energy_reduction_stage(
     const kernels::CandidateGeometry& geometry, float step, float weight, LevelVolume& coarser);
+/// The next coarser level of both images.
+struct PairLevels {
+  LevelVolume& left;
+  LevelVolume& right;
+};
+/// As make_byte_energy_reduction_stage(), for both images, from the left one's energies, which
+/// `costs` makes: those of the right one are the same at other columns. The only stage of its
+/// chain; sweeps whole rows. `geometry`: of the left image, one candidate per pixel of disparity.
+/// without_partner: energy of candidates without a partner.
+std::unique_ptr<scheduler::RowStage> make_pair_energy_reduction_stage(
+    std::unique_ptr<scheduler::RowStage> costs, const kernels::CandidateGeometry& geometry,
+    std::uint8_t without_partner, float step, float weight, const PairLevels& levels);
 /// Columns of row y of `coarser` from the energies of a coarse level. `work`: one number per lane.
 void reduce_float_energy_row(const LevelVolume& finer, int y, scheduler::Range columns,
                              float weight, std::uint16_t* work, LevelVolume& coarser);
