@@ -26,9 +26,8 @@ struct FilledMedianGrid {
 /// One row of a filled disparity map and its neighbourhood.
 struct FilledRow {
   /// Column 0 of the row; NaN = unknown, not used. Must be readable, and NaN beyond the map:
-  /// kFilledMedianReachPx rows above and below, each from column −kFilledMedianMarginPx to width −
-  /// 1
-  /// + kFilledMedianMarginPx.
+  /// kFilledMedianReachPx rows above and below, each kFilledMedianMarginPx columns wider than the
+  /// map on both sides.
   const float* disparity_px = nullptr;
   std::ptrdiff_t disparity_pitch = 0;  ///< values between rows
   /// The map's own image, 0..255: [x · kFilledPixelBytes + c], grey as three equal channels.
