@@ -74,7 +74,7 @@ class PairEnergyReductionStage final : public scheduler::RowStage {
   PairEnergyReductionStage(std::unique_ptr<scheduler::RowStage> costs,
                            const kernels::CandidateGeometry& geometry, std::uint8_t without_partner,
                            float step, float weight, const PairLevels& levels)
-      : RowStage(levels.left.extent()),
+      : RowStage(coarser_extent(costs->extent())),  // plans have no levels yet
         costs_(std::move(costs)),
         geometry_(geometry),
         without_partner_(without_partner),
