@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/commands.h"
+#include "apps/film_reports.h"
 #include "apps/outputs.h"
 #include "apps/run_report.h"
 #include "apps/run_results.h"
@@ -98,6 +99,10 @@ int command_merge(const Arguments& arguments) {
     report.timed_file_access("join", [&] {
       sound_problem = join_segments(run.sequence, layout, identity, frames, true, journal);
     });
+  }
+  const auto comfort = write_film_reports(run.sequence, layout, identity, frames);
+  if (comfort && !job.quiet) {
+    print_comfort("merge", *comfort, layout);
   }
   const std::vector<int> skipped = delivered.skipped(frames);
   SettingValue results = {{"frames", frames.count() - static_cast<int>(skipped.size())},

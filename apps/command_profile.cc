@@ -166,7 +166,7 @@ std::vector<int> thread_counts(const ProfileJob& job, const ProfiledCommand& com
   return counts;
 }
 
-std::string now_as_text() {
+std::string start_time_text() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
 }
 
@@ -191,7 +191,7 @@ Profile make_profile(const ProfiledCommand& command, const std::vector<Contestan
   Profile profile;
   profile.version = max.version;
   profile.command = command.text();
-  profile.date = now_as_text();
+  profile.date = start_time_text();
   profile.processor = machine.processor;
   profile.isa = max.isa;
   profile.hardware_threads = machine.hardware_threads;

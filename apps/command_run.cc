@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "apps/commands.h"
+#include "apps/film_reports.h"
 #include "apps/interrupt.h"
 #include "apps/progress.h"
 #include "apps/resumed_run.h"
@@ -11,6 +12,7 @@
 #include "apps/run_results.h"
 #include "apps/run_session.h"
 #include "apps/run_settings.h"
+#include "apps/stream_run.h"
 #include "apps/tell.h"
 #include "engine/error.h"
 #include "engine/image/memory_use.h"
@@ -55,20 +57,26 @@ std::optional<ShotTable> find_shots(const RunJob& job, RunSession& session,
   return keep_shot_table(path, *shots);
 }
 
-/// Joins the videos once all frames of the folder are done. Returns why they have no sound, as
-/// join_segments() does.
-std::string join_if_whole(const RunJob& job, const RunSession& session,
-                          const SequenceLayout& layout, const SequenceReport& sequence,
-                          RunJournal& journal, RunReport& report) {
-  if (job.shard || sequence.interrupted || !layout.has_videos()) {
+/// Joins the videos and writes what is of all frames, once those of the folder are done. Returns
+/// why videos have no sound, as join_segments() does.
+std::string finish_if_whole(const RunJob& job, const RunSession& session,
+                            const SequenceLayout& layout, const SequenceReport& sequence,
+                            RunJournal& journal, RunReport& report) {
+  const bool has_report = job.sequence.saves(SequenceOutput::kComfort);
+  if (job.shard || sequence.interrupted || (!layout.has_videos() && !has_report)) {
     return "";
   }
   const DeliveredFrames delivered(layout);
   const FrameRange frames = contiguous_frames(delivered, session.selection.frame_count);
-  return report.timed_file_access("join", [&] {
+  const std::string sound_problem = report.timed_file_access("join", [&] {
     return join_segments(job.sequence, layout, session.identity, frames,
                          sequence.frames + sequence.pictures_again > 0, journal);
   });
+  const auto comfort = write_film_reports(job.sequence, layout, session.identity, frames);
+  if (comfort && !job.common.quiet) {
+    print_comfort("run", *comfort, layout);
+  }
+  return sound_problem;
 }
 
 }  // namespace
@@ -100,6 +108,9 @@ int command_run(const Arguments& arguments) {
   report.set_execution(execution);
   report.set_tuning(session.tuning.report, session.tuning.summary);
 
+  if (is_stream(job)) {
+    return run_to_stream(job, session, execution, report);
+  }
   const SequenceLayout layout(job.output, job.sequence);
   RunJournal journal(layout.journal_folder(), session.identity, opening_of(job),
                      RunSession::part_name(job));
@@ -126,7 +137,8 @@ int command_run(const Arguments& arguments) {
   }
   add_scratch_use(execution, sequence.memory);
   report.set_memory(sequence.memory);
-  const std::string sound_problem = join_if_whole(job, session, layout, sequence, journal, report);
+  const std::string sound_problem =
+      finish_if_whole(job, session, layout, sequence, journal, report);
   fill_report(job, session, sequence, DeliveredFrames(layout), sound_problem, report);
   report.write(job.common.report);
   if (!job.common.quiet) {

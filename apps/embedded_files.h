@@ -4,7 +4,7 @@
 
 namespace vantage::apps {
 
-/// The text of a file of apps/figure_page, apps/profile_page or apps/view_page
+/// The text of a file of apps/comfort_page, apps/figure_page, apps/profile_page or apps/view_page
 /// ("view_page/page.html") at the time the program was built. Throws std::logic_error when there is
 /// none of that name.
 std::string_view embedded_file(std::string_view name);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "apps/frame_step_setting.h"
+#include "apps/stream_run.h"
 
 namespace vantage::apps {
 
@@ -18,12 +19,13 @@ void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
        "Left frames: a folder, pattern (left/%06d.png), glob or video");
   path("right", input.right, "SOURCE", "Right frames");
   settings.integer("offset", input.offset_frames, "N", "Pair left frame i with right frame i + N");
-  path("stereo", input.stereo, "SOURCE", "Frames that hold both images; needs --packing");
+  path("stereo", input.stereo, "SOURCE", "Frames that hold both images; needs --packing. - is a y4m video on standard input");
   settings.choice<StereoPacking>(
       "packing", input.packing, stereo_packing_names(),
       "Stereo layout (ffmpeg's stereo3d names): sbsl side by side, left first; abl "
       "above/below, left on top; sbs2l, ab2l half size",
       "none");
+  add_raw_video_setting(settings, input.raw_video);
   path("pairs", input.pairs, "FILE.csv", "List of image files, one line left,right per pair");
   path("sequence", input.sequence, "SOURCE", "Frames of one moving camera; see --step");
   settings.integer("step", input.step, "K",

@@ -5,7 +5,7 @@
 
 namespace vantage::apps {
 
-/// --left, --right, --offset, --stereo, --packing, --pairs, --sequence and --step, in the group
+/// --left, --right, --offset, --stereo, --packing, --raw-video, --pairs, --sequence and --step, in the group
 /// that has begun.
 void add_pair_source_settings(Settings& settings, PairSourceOptions& input);
 

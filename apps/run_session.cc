@@ -13,6 +13,7 @@
 #include "engine/error.h"
 #include "engine/io/file_identity.h"
 #include "engine/io/json_text.h"
+#include "engine/matching/range_estimation.h"
 #include "engine/sequence/delivered_frames.h"
 #include "engine/sequence/sequence_layout.h"
 #include "engine/sequence/sequence_range.h"
@@ -95,7 +96,11 @@ std::string outputs_text(const RunJob& job) {
   std::string text;
   const SequenceLayout layout(job.output, job.sequence);
   for (const OutputStream& stream : layout.streams()) {
-    text += (text.empty() ? "" : ", ") + stream.name + (stream.as_video ? ".mp4" : "");
+    text +=
+        (text.empty() ? "" : ", ") + stream.name + (stream.as_video ? "." + stream.extension : "");
+  }
+  if (job.sequence.saves(SequenceOutput::kComfort)) {
+    text += (text.empty() ? "" : ", ") + layout.comfort_report("html").filename().string();
   }
   return text;
 }
@@ -129,6 +134,16 @@ AppliedTuning find_tuning(const RunJob& job, const FramePair& first, const Setti
                        .left = first.left,
                        .right = first.right},
                       settings.command(), job.common.quiet);
+}
+
+std::string counted_frames(const RunJob& job, int frame_count) {
+  if (job.input.stereo == "-") {
+    return "a stream of pairs";
+  }
+  return job.sequence.baselines.size() < 2
+             ? fmt::format("{} pairs", frame_count)
+             : fmt::format("{} frames of {} images", frame_count,
+                           job.sequence.baselines.size() + 1);
 }
 
 }  // namespace
@@ -233,6 +248,9 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   const auto find_range = [&] {
     // Estimating the range of a video without an index decodes the whole video.
     const std::optional<DisparityRange> known = range_of_run_to_resume(job);
+    if (job.input.stereo == "-") {
+      return find_disparity_range(first.left, first.right, execution);  // others are not there yet
+    }
     return known ? known : find_sequence_range(*session.pairs, rectify, execution);
   };
   choose_disparities(settings, job.common, find_range, job.sequence.match, report);
@@ -257,10 +275,7 @@ std::string describe_plan(const RunJob& job, const RunSession& session) {
   std::string text;
   const auto line = [&](const std::string& content) { text += "run: " + content + "\n"; };
   line(fmt::format(
-      "{} {} of {}x{} pixels{}{}{}", session.selection.frame_count,
-      job.sequence.baselines.size() < 2
-          ? std::string("pairs")
-          : fmt::format("frames of {} images", job.sequence.baselines.size() + 1),
+      "{} of {}x{} pixels{}{}{}", counted_frames(job, session.selection.frame_count),
       session.shape.source.width_px, session.shape.source.height_px,
       job.input.every.takes_all() ? "" : ", one every " + to_text(job.input.every),
       session.rectifier ? ", rectified on the fly" : "",
@@ -281,7 +296,8 @@ std::string describe_plan(const RunJob& job, const RunSession& session) {
     line(fmt::format("{} ({})", session.tuning.summary,
                      session.tuning.report["file"].get<std::string>()));
   }
-  line(fmt::format("writes {} to {}", outputs_text(job), job.output));
+  line(fmt::format("writes {} to {}", outputs_text(job),
+                   job.output == "-" ? "standard output" : job.output));
   return text;
 }
 
@@ -299,7 +315,8 @@ RunIdentity read_run(const std::string& folder, RunJob& job, FileChecks& files) 
                             (journal / "run.json").string(), error.what()));
   }
   job.sequence.frame_rate = job.frame_rate.value_or(FrameRate());
-  add_run_outputs(SequenceLayout(folder, job.sequence), "DIR", files);
+  add_run_outputs(SequenceLayout(folder, job.sequence),
+                  job.sequence.saves(SequenceOutput::kComfort), "DIR", files);
   return identity;
 }
 

@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <limits>
 
 #include "apps/depth_outputs.h"
+#include "apps/depth_video_settings.h"
 #include "apps/frame_rate_setting.h"
 #include "apps/frame_step_setting.h"
 #include "apps/input_limits.h"
@@ -15,6 +14,7 @@
 #include "apps/pair_source_settings.h"
 #include "apps/rectification_check.h"
 #include "apps/slurm_scripts.h"
+#include "apps/stream_run.h"
 #include "engine/error.h"
 #include "engine/io/map_formats.h"
 
@@ -58,28 +58,6 @@ SettingValue output_names(const std::vector<SequenceOutput>& outputs) {
                         ->first);
   }
   return names;
-}
-
-std::optional<long long> whole_number(std::string_view text) {
-  long long number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool whole = error == std::errc{} && end == text.data() + text.size();
-  return whole ? std::optional(number) : std::nullopt;
-}
-
-/// Two whole numbers with a separator between them.
-std::optional<std::pair<int, int>> two_numbers(const std::string& text, char separator) {
-  const auto parts = split(text, separator);
-  if (parts.size() != 2) {
-    return std::nullopt;
-  }
-  const auto first = whole_number(parts[0]);
-  const auto second = whole_number(parts[1]);
-  constexpr int kMax = std::numeric_limits<int>::max() - 1;
-  if (!first || !second || *first < 0 || *second < 0 || *first > kMax || *second > kMax) {
-    return std::nullopt;
-  }
-  return std::pair(static_cast<int>(*first), static_cast<int>(*second));
 }
 
 void add_input_settings(Settings& settings, RunJob& job) {
@@ -134,9 +112,10 @@ void add_stereo_views_setting(Settings& settings, std::array<double, 2>& views_x
 
 void add_output_settings(Settings& settings, RunJob& job) {
   settings.start_group("Output");
-  Setting& output =
-      settings.path("output", job.output, "DIR",
-                    "Output folder: DIR/disparity/000000.pfm, DIR/views.mp4 and so on");
+  Setting& output = settings.path(
+      "output", job.output, "DIR",
+      "Output folder: DIR/disparity/000000.pfm, DIR/views.mp4 and so on; - writes the "
+      "only output of --save to standard output as a video");
   output.short_name = 'o';
   output.required = true;
   output.changes_results = false;
@@ -155,7 +134,7 @@ void add_output_settings(Settings& settings, RunJob& job) {
   Setting& video = settings.add("video", "LIST",
                                 "Outputs of --save to write as one video each, from unmatched, "
                                 "right-unmatched, preview, views, holes, sources, stereo, "
-                                "cyclopean-occlusion");
+                                "cyclopean-occlusion; depth-video always is one");
   video.list = true;
   video.set = [&job](const SettingValue& value) { job.sequence.video = to_outputs(value); };
   video.get = [&job] { return output_names(job.sequence.video); };
@@ -170,6 +149,12 @@ void add_output_settings(Settings& settings, RunJob& job) {
   add_frame_rate_setting(settings, "fps", job.frame_rate,
                          "Frames per second of videos; auto: as the input, 25 for images");
   settings.integer("crf", job.sequence.crf, "N", "Constant rate factor of videos, 0 (best) to 51");
+  add_depth_video_settings(settings, job.sequence.depth_scale, job.sequence.depth_coding);
+  settings.choice<StreamFormat>(
+      "stream-format", job.stream_format,
+      {{"y4m", StreamFormat::kY4m}, {"rawvideo", StreamFormat::kRawVideo}},
+      "Video on standard output: y4m (yuv420p, depth as mono16), or rawvideo (rgb24, depth as "
+      "gray16le)");
   Setting& no_sound = settings.add("no-sound", "", "Do not copy the sound of the input");
   no_sound.flag = true;
   no_sound.set = [&job](const SettingValue& value) { job.sequence.sound = !to_truth(value); };
@@ -192,11 +177,17 @@ void add_metric_settings(Settings& settings, RunJob& job) {
       .changes_results = false;  // the journal identifies inputs by their content
 }
 
-void add_steadiness_settings(Settings& settings, SequenceOptions& options) {
+void add_steadiness_settings(Settings& settings, RunJob& job) {
+  SequenceOptions& options = job.sequence;
   settings.start_group("Temporal stability");
   settings.choice<FitScope>("intensity-fit", options.intensity_fit,
                             {{"frame", FitScope::kFrame}, {"shot", FitScope::kShot}},
                             "Match the brightness of both images once per frame or once per shot");
+  settings.choice<bool>("search-range", job.search_range_per_shot,
+                        {{"film", false}, {"shot", true}},
+                        "Search all frames in one range of disparities, or each shot in the range "
+                        "found there; auto: shot for depth-video and comfort with --disparities "
+                        "auto");
   settings.choice<bool>("preview-range", options.preview_range_per_shot,
                         {{"search", false}, {"shot", true}},
                         "Colour scale of previews: the search range or the disparities of a shot");
@@ -212,37 +203,6 @@ void add_steadiness_settings(Settings& settings, SequenceOptions& options) {
                          "steadier");
   settings.flag("measure-flicker", options.measure_flicker,
                 "Measure how much results change where the images do not");
-}
-
-void add_frames_setting(Settings& settings, RunJob& job) {
-  Setting& frames = settings.add("frames", "A-B[:N]",
-                                 "Process frames A to B of the input only, counted from 0; with :N "
-                                 "only A, A + N, A + 2 N …");
-  frames.set = [&job](const SettingValue& value) {
-    job.frames.reset();
-    job.step_of_frames.reset();
-    if (value == "all") {
-      return;
-    }
-    const auto parts = split(to_text(value), ':');
-    const auto range = two_numbers(parts.front(), '-');
-    const auto step = whole_number(parts.size() == 2 ? parts[1] : "1");
-    const bool is_step = step && *step >= 1 && *step <= FrameStep::kMaxPairs;
-    if (!range || range->first > range->second || parts.size() > 2 || !is_step) {
-      reject_value(value, "a range of frames such as 100-199 or 100-199:10, or all");
-    }
-    job.frames = FrameRange{range->first, range->second + 1};
-    if (parts.size() == 2) {
-      job.step_of_frames = static_cast<int>(*step);
-    }
-  };
-  frames.get = [&job]() -> SettingValue {
-    if (!job.frames) {
-      return "all";
-    }
-    const std::string range = fmt::format("{}-{}", job.frames->first, job.frames->end - 1);
-    return job.step_of_frames ? fmt::format("{}:{}", range, *job.step_of_frames) : range;
-  };
 }
 
 /// --frames A-B:N also says which frames are taken, for all parts of the run.
@@ -263,7 +223,7 @@ void apply_step_of_frames(RunJob& job) {
 
 void add_part_settings(Settings& settings, RunJob& job) {
   settings.start_group("Parts of a run, and resuming", false);
-  add_frames_setting(settings, job);
+  add_frames_setting(settings, job.frames, job.step_of_frames);
   Setting& shard =
       settings.add("shard", "I/N", "Process part I of N only; all parts share one output folder");
   shard.set = [&job](const SettingValue& value) {
@@ -311,13 +271,21 @@ void add_pipeline_settings(Settings& settings, RunJob& job) {
 }
 
 /// Refuses options of outputs that are not written.
-void refuse_idle_outputs(const Settings& settings, const SequenceOptions& sequence) {
+void refuse_idle_outputs(const Settings& settings, const SequenceOptions& sequence,
+                         bool is_stream) {
   using Output = SequenceOutput;
   const auto saves_any = [&](std::initializer_list<Output> outputs) {
     return std::ranges::any_of(outputs, [&](Output output) { return sequence.saves(output); });
   };
-  if (sequence.video.empty()) {
-    settings.refuse_idle({"fps", "crf", "no-sound"}, "without --video");
+  const bool has_depth_video = sequence.saves(Output::kDepthVideo);
+  if (sequence.video.empty() && !has_depth_video) {
+    settings.refuse_idle({"crf", "no-sound"}, "without --video");
+    if (!is_stream) {
+      settings.refuse_idle({"fps"}, "without --video");
+    }
+  }
+  if (!has_depth_video) {
+    settings.refuse_idle({"depth-range", "depth-codec"}, "where --save has no depth-video");
   }
   if (!saves_any({Output::kDisparity, Output::kRightDisparity, Output::kConfidence,
                   Output::kPosteriorMean, Output::kPosteriorVariance, Output::kCyclopean})) {
@@ -327,10 +295,11 @@ void refuse_idle_outputs(const Settings& settings, const SequenceOptions& sequen
   }
   if (!saves_any({Output::kDisparity, Output::kConfidence, Output::kUnmatched, Output::kPreview,
                   Output::kPosteriorMean, Output::kPosteriorVariance, Output::kDepth,
-                  Output::kCloud, Output::kMesh})) {
+                  Output::kCloud, Output::kMesh, Output::kDepthVideo, Output::kComfort})) {
     settings.refuse_idle({"reference"},
                          "where --save has no disparity, confidence, unmatched, preview, "
-                         "posterior-mean, posterior-variance, depth, cloud, mesh");
+                         "posterior-mean, posterior-variance, depth, cloud, mesh, depth-video, "
+                         "comfort");
   }
   if (!sequence.saves(Output::kDepth)) {
     settings.refuse_idle({"depth-format"}, "where --save has no depth");
@@ -388,7 +357,7 @@ void add_run_settings(Settings& settings, RunJob& job) {
   add_input_settings(settings, job);
   add_output_settings(settings, job);
   add_metric_settings(settings, job);
-  add_steadiness_settings(settings, job.sequence);
+  add_steadiness_settings(settings, job);
   add_part_settings(settings, job);
   add_pipeline_settings(settings, job);
   add_reference_setting(settings, job.sequence.match);
@@ -416,13 +385,27 @@ void complete_sequence(RunJob& job) {
       sequence.save.push_back(SequenceOutput::kViews);
     }
   }
+  const bool is_film =
+      sequence.saves(SequenceOutput::kDepthVideo) || sequence.saves(SequenceOutput::kComfort);
+  if (!job.search_range_per_shot && is_film) {
+    // Stays as it is when the range has been found, or the run is continued.
+    job.search_range_per_shot =
+        sequence.match.disparities_auto && !sequence.temporal.uses_past() && !is_stream(job);
+  }
+  sequence.search_range_per_shot = job.search_range_per_shot.value_or(false);
   sequence.validate();
 }
 
 void complete(RunJob& job, const Settings& settings) {
   read_pose_files(job.views);
   complete_sequence(job);
-  refuse_idle_outputs(settings, job.sequence);
+  refuse_idle_outputs(settings, job.sequence, is_stream(job));
+  check_stream(job, settings);
+  job.input.raw_rate = job.frame_rate.value_or(FrameRate());
+  if (job.sequence.search_range_per_shot && settings.is_set("disparities") &&
+      !job.sequence.match.disparities_auto) {
+    throw UsageError("search-range is shot, expected film with a range in --disparities");
+  }
   if (job.tuning.ignored) {
     settings.refuse_idle({"tuning"}, "with --no-tuning");
   }
@@ -457,7 +440,8 @@ void complete(RunJob& job, const Settings& settings) {
   }
 }
 
-void add_run_outputs(const SequenceLayout& layout, const std::string& option, FileChecks& files) {
+void add_run_outputs(const SequenceLayout& layout, bool has_comfort, const std::string& option,
+                     FileChecks& files) {
   files.add_made_folder(layout.journal_folder(), option);
   for (const OutputStream& stream : layout.streams()) {
     if (stream.as_video) {
@@ -465,14 +449,25 @@ void add_run_outputs(const SequenceLayout& layout, const std::string& option, Fi
     } else {
       files.add_made_folder(layout.folder() / stream.name, option);
     }
+    if (stream.output == SequenceOutput::kDepthVideo) {
+      files.add_made_file(layout.depth_description(), option);
+    }
+  }
+  if (has_comfort) {
+    files.add_made_file(layout.comfort_report("json"), option);
+    files.add_made_file(layout.comfort_report("html"), option);
   }
 }
 
 FileChecks check_files(const RunJob& job, const Settings& settings) {
   FileChecks files(settings);
   files.add_input(file_of(job.tuning));
+  if (is_stream(job)) {
+    check_common_files(job.common, files);
+    return files;
+  }
   const SequenceLayout layout(job.output, job.sequence);
-  add_run_outputs(layout, "--output", files);
+  add_run_outputs(layout, job.sequence.saves(SequenceOutput::kComfort), "--output", files);
   if (job.overwrite) {
     files.add_made_folder(slurm_folder(job.output), "--overwrite");  // goes with the journal
   }

@@ -35,9 +35,13 @@ struct RunJob {
   /// Empty: the disparity map, and the views if there are any.
   std::optional<std::vector<SequenceOutput>> save;
   SequenceViews views;
-  std::optional<FrameRate> frame_rate;  ///< empty: the input's, else 25
-  std::optional<FrameRange> frames;     ///< of the input
-  std::optional<int> step_of_frames;    ///< N of --frames A-B:N
+  /// Of sequence.search_range_per_shot; empty: per shot for depth videos and comfort, if no range
+  /// is given and frames are independent.
+  std::optional<bool> search_range_per_shot;
+  StreamFormat stream_format = StreamFormat::kY4m;  ///< of standard output
+  std::optional<FrameRate> frame_rate;              ///< empty: the input's, else 25
+  std::optional<FrameRange> frames;                 ///< of the input
+  std::optional<int> step_of_frames;                ///< N of --frames A-B:N
   std::optional<Shard> shard;
   std::optional<int> in_flight;  ///< 1..64; empty: from threads and memory
   std::optional<std::size_t> memory_bytes;
@@ -69,7 +73,8 @@ void complete_sequence(RunJob& job);
 void complete(RunJob& job, const Settings& settings);
 
 /// Adds to `files` what runs write to the folder of `layout`, which `option` names.
-void add_run_outputs(const SequenceLayout& layout, const std::string& option, FileChecks& files);
+void add_run_outputs(const SequenceLayout& layout, bool has_comfort, const std::string& option,
+                     FileChecks& files);
 /// All files that a run reads and writes, except the frames, which are unknown before the input is
 /// opened.
 FileChecks check_files(const RunJob& job, const Settings& settings);

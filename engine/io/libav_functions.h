@@ -28,6 +28,7 @@ class LibavFunctions {
 
  public:
   VANTAGE_LATE_FUNCTION(format_, av_find_best_stream);
+  VANTAGE_LATE_FUNCTION(format_, av_find_input_format);
   VANTAGE_LATE_FUNCTION(format_, av_interleaved_write_frame);
   VANTAGE_LATE_FUNCTION(format_, av_read_frame);
   VANTAGE_LATE_FUNCTION(format_, av_seek_frame);

@@ -6,6 +6,7 @@
 
 #include "engine/image/photograph.h"
 #include "engine/io/frame_rate.h"
+#include "engine/io/video_coding.h"
 #include "engine/io/video_picture.h"
 
 namespace vantage {
@@ -65,25 +66,26 @@ class VideoReader {
 /// Encoding parameters of videos.
 struct VideoEncoding {
   FrameRate rate = {};
-  /// H.264 constant rate factor, 0 (lossless but for the colour conversion) to 51 (worst).
+  /// Constant rate factor of H.264 and HEVC, 0 (best) to 51 (worst).
   int crf = 18;
+  VideoCoding coding = VideoCoding::kH264;
 };
 
-/// Writes an MP4 (H.264, yuv420p, for browsers). H.264 in this format has even sizes only: an odd
-/// last column or row is repeated once. The file appears under its name at finish(); without it
-/// nothing is left. One thread encodes, so that the bytes depend on the frames only. Thread rule:
-/// one thread at a time.
+/// Writes an MP4 (H.264, yuv420p, for browsers), or another coding. All but FFV1 have even sizes
+/// only: an odd last column or row is repeated once. The file appears under its name at finish();
+/// without it nothing is left. One thread encodes, so that the bytes depend on the frames only.
+/// Thread rule: one thread at a time.
 class VideoWriter {
  public:
-  /// `path` ends in .mp4; width and height in 2..16384 pixels. Throws UsageError for values
-  /// outside, Error when the file cannot be written.
+  /// `path` ends in .mp4, or what else extension_of() the coding is; width and height in 2..16384
+  /// pixels. Throws UsageError for values outside, Error when the file cannot be written.
   VideoWriter(const std::filesystem::path& path, int width, int height,
               const VideoEncoding& encoding);
   ~VideoWriter();
 
   /// Appends a frame: 8-bit, 16-bit or float (0..1, clamped), 1, 3 or 4 channels (alpha is
-  /// dropped). Throws Error when its size is not the one given at construction, or the disk is
-  /// full.
+  /// dropped); of a grey coding 16-bit with one channel. Throws Error when its size is not the one
+  /// given at construction, or the disk is full.
   void write(const Photograph& frame);
 
   /// Encodes the delayed frames and releases the encoder's memory: no frame may follow. finish()

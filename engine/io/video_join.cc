@@ -11,8 +11,8 @@
 #include "engine/error.h"
 #include "engine/io/libav.h"
 #include "engine/io/libav_functions.h"
-#include "engine/io/mp4_muxer.h"
 #include "engine/io/sound_packets.h"
+#include "engine/io/video_muxer.h"
 #include "engine/io/video_structure.h"
 
 extern "C" {
@@ -33,8 +33,8 @@ class Segment {
         input_(open_media_file(path)),
         stream_(find_video_stream(*input_)) {
     check_video_is_whole(path);
-    if (stream_ == nullptr || stream_->codecpar->codec_id != AV_CODEC_ID_H264) {
-      fail("holds no H.264 video");
+    if (stream_ == nullptr) {
+      fail("holds no video");
     }
     read_only(*input_, *stream_);
   }
@@ -55,7 +55,8 @@ class Segment {
       fail(result < 0 ? libav_message(result) : "is damaged");
     }
     const std::int64_t frame = av_rescale_q(packet.pts, stream_->time_base, frame_unit_);
-    if (av_compare_ts(frame, frame_unit_, packet.pts, stream_->time_base) != 0) {
+    // Matroska rounds times to milliseconds.
+    if (av_rescale_q(frame, frame_unit_, stream_->time_base) != packet.pts) {
       fail(fmt::format("has another frame rate, expected {}/{}", frame_unit_.den, frame_unit_.num));
     }
     packet.pts = frame;
@@ -74,9 +75,10 @@ class Segment {
 };
 
 bool same_coding(const AVCodecParameters& a, const AVCodecParameters& b) {
-  return a.width == b.width && a.height == b.height && a.format == b.format &&
-         a.extradata_size == b.extradata_size && a.extradata_size > 0 &&
-         std::memcmp(a.extradata, b.extradata, static_cast<std::size_t>(a.extradata_size)) == 0;
+  return a.codec_id == b.codec_id && a.width == b.width && a.height == b.height &&
+         a.format == b.format && a.extradata_size == b.extradata_size &&
+         (a.extradata_size == 0 ||
+          std::memcmp(a.extradata, b.extradata, static_cast<std::size_t>(a.extradata_size)) == 0);
 }
 
 void check_same_coding(const Segment& segment, const Segment& first, const fs::path& first_path) {
@@ -132,7 +134,7 @@ void write_joined(std::span<const fs::path> segments, const JoinPlan& plan, AVRa
   const std::unique_ptr<SoundPackets> sound_packets = open_sound_packets(sound);
   bool sound_left = sound_packets != nullptr && sound_packets->next();
 
-  Mp4Muxer muxer(output);
+  VideoMuxer muxer(output);
   const int video_stream =
       muxer.add_stream(Segment(segments.front(), frame_unit).parameters(), frame_unit);
   const int sound_stream =

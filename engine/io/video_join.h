@@ -16,10 +16,10 @@ struct SoundTrack {
 };
 
 /// Concatenates the videos `segments` (at least one, all made by VideoWriter with the same size and
-/// encoding) to the MP4 `output` without re-encoding, and adds the sound, copied if MP4 can hold it
-/// and else as AAC. Writes atomically; the bytes depend on the inputs only. Sound that cannot be
-/// decoded or written is left out: returns the reason, else "". Throws Error naming the missing
-/// file (also that of the sound), or the segment that is damaged or does not match.
+/// encoding) to `output`, of the same extension, without re-encoding, and adds the sound, copied if
+/// MP4 can hold it and else as AAC. Writes atomically; the bytes depend on the inputs only. Sound
+/// that cannot be decoded or written is left out: returns the reason, else "". Throws Error naming
+/// the missing file (also that of the sound), or the segment that is damaged or does not match.
 std::string join_videos(std::span<const std::filesystem::path> segments, FrameRate rate,
                         const SoundTrack& sound, const std::filesystem::path& output);
 

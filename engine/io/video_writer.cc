@@ -1,15 +1,16 @@
 #include <fmt/format.h>
 
+#include <functional>
 #include <new>
-#include <optional>
+#include <string>
 #include <utility>
 
 #include "engine/error.h"
 #include "engine/io/file_bytes.h"
 #include "engine/io/libav_functions.h"
-#include "engine/io/mp4_muxer.h"
-#include "engine/io/photograph_to_frame.h"
+#include "engine/io/video_encoder.h"
 #include "engine/io/video_io.h"
+#include "engine/io/video_muxer.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -20,9 +21,10 @@ namespace {
 
 void check_video_settings(const std::filesystem::path& path, int width, int height,
                           const VideoEncoding& encoding) {
-  if (lower_case_extension(path) != ".mp4") {
-    throw UsageError(
-        fmt::format("cannot write {}: expected a video name ending in .mp4", path.string()));
+  const std::string extension = fmt::format(".{}", extension_of(encoding.coding));
+  if (lower_case_extension(path) != extension) {
+    throw UsageError(fmt::format("cannot write {}: expected a video name ending in {}",
+                                 path.string(), extension));
   }
   constexpr int kMaxSide = 16384;
   if (width < 2 || height < 2 || width > kMaxSide || height > kMaxSide) {
@@ -41,27 +43,6 @@ void check_video_settings(const std::filesystem::path& path, int width, int heig
   }
 }
 
-/// Options of x264. The preset: photographs of 1226×370 pixels at factor 18 take 23 ms a frame (Zen
-/// 4, one thread) with "veryfast". "superfast" takes 14 ms and a tenth more bytes, "faster", "fast"
-/// and "medium" take 35, 48 and 63 ms with no fewer bytes. No tuning: views are of any kind.
-class EncoderOptions {
- public:
-  explicit EncoderOptions(int crf) {
-    av_dict_set(&options_, "preset", "veryfast", 0);
-    av_dict_set_int(&options_, "crf", crf, 0);
-    // One algorithm on every processor; headers that do not depend on the pictures, so that videos
-    // can be concatenated.
-    av_dict_set(&options_, "x264-params", "cpu-independent=1:stitchable=1", 0);
-  }
-  EncoderOptions(const EncoderOptions&) = delete;
-  EncoderOptions& operator=(const EncoderOptions&) = delete;
-  ~EncoderOptions() { av_dict_free(&options_); }
-  AVDictionary** get() { return &options_; }
-
- private:
-  AVDictionary* options_ = nullptr;
-};
-
 AVRational time_unit_of(FrameRate rate) {
   return {static_cast<int>(rate.denominator), static_cast<int>(rate.numerator)};
 }
@@ -72,10 +53,10 @@ struct VideoWriter::State {
   int width;
   int height;
   AVRational time_unit;
-  std::optional<PhotographToFrame> conversion;  ///< until encoding has ended
+  std::function<AVFrame&(const Photograph&)> convert;  ///< until encoding has ended
   LibavCodec encoder;
   LibavPacket packet = make_libav_packet();
-  Mp4Muxer file;
+  VideoMuxer file;
   int frames_written = 0;
 
   State(const std::filesystem::path& path, int frame_width, int frame_height,
@@ -83,7 +64,7 @@ struct VideoWriter::State {
       : width(frame_width),
         height(frame_height),
         time_unit(time_unit_of(encoding.rate)),
-        conversion(std::in_place, frame_width, frame_height),
+        convert(make_frame_conversion(encoding.coding, frame_width, frame_height)),
         file(path) {
     open_encoder(encoding);
     AVCodecParameters* parameters = libav().avcodec_parameters_alloc();
@@ -103,30 +84,16 @@ struct VideoWriter::State {
 };
 
 void VideoWriter::State::open_encoder(const VideoEncoding& encoding) {
-  const AVCodec* codec = libav().avcodec_find_encoder_by_name("libx264");
-  if (codec == nullptr) {
-    file.fail("FFmpeg was built without the H.264 encoder libx264");
+  EncoderSetup setup(encoding, width, height);
+  int result = 0;
+  encoder = setup.open(result);
+  if (result == AVERROR_ENCODER_NOT_FOUND) {
+    file.fail(fmt::format("this FFmpeg was built without the encoder {}", setup.name()));
   }
-  encoder.reset(libav().avcodec_alloc_context3(codec));
-  if (encoder == nullptr) {
-    throw std::bad_alloc();
-  }
-  encoder->width = (width + 1) / 2 * 2;
-  encoder->height = (height + 1) / 2 * 2;
-  encoder->pix_fmt = AV_PIX_FMT_YUV420P;
-  encoder->color_range = AVCOL_RANGE_MPEG;
-  encoder->colorspace = AVCOL_SPC_BT709;
-  encoder->color_primaries = AVCOL_PRI_BT709;
-  encoder->color_trc = AVCOL_TRC_BT709;
-  encoder->chroma_sample_location = AVCHROMA_LOC_LEFT;
-  encoder->time_base = time_unit;
-  encoder->framerate = {time_unit.den, time_unit.num};
-  encoder->thread_count = 1;
-  encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER | AV_CODEC_FLAG_CLOSED_GOP | AV_CODEC_FLAG_BITEXACT;
-  EncoderOptions options(encoding.crf);
-  if (const int result = libav().avcodec_open2(encoder.get(), codec, options.get()); result < 0) {
-    file.fail(fmt::format("no H.264 encoder for {}x{} pixels and {} frames per second ({})", width,
-                          height, to_string(encoding.rate), libav_message(result)));
+  if (result < 0) {
+    file.fail(fmt::format("no encoder {} for {}x{} pixels and {} frames per second ({})",
+                          setup.name(), width, height, to_string(encoding.rate),
+                          libav_message(result)));
   }
 }
 
@@ -159,7 +126,7 @@ void VideoWriter::write(const Photograph& frame) {
     state.file.fail(fmt::format("frame {} is {}x{}, expected {}x{}", state.frames_written,
                                 frame.width(), frame.height(), state.width, state.height));
   }
-  AVFrame& converted = state.conversion->convert(frame);
+  AVFrame& converted = state.convert(frame);
   converted.pts = state.frames_written;
   state.encode(&converted);
   ++state.frames_written;
@@ -173,7 +140,7 @@ void VideoWriter::end_encoding() {
   if (state.encoder) {
     state.encode(nullptr);
     state.encoder.reset();
-    state.conversion.reset();
+    state.convert = nullptr;
   }
 }
 

@@ -188,7 +188,8 @@ Agreement agreement_of(const Photograph& left, const Photograph& right, Disparit
 }  // namespace
 
 std::optional<DisparityRange> find_disparity_range(const Photograph& left, const Photograph& right,
-                                                   Execution& execution, DisparityRange vertical) {
+                                                   Execution& execution, DisparityRange vertical,
+                                                   Infinity infinity) {
   const Agreement agreement = agreement_of(left, right, vertical, execution);
   const int factor = agreement.factor;
   const std::vector<float>& values = agreement.values;
@@ -206,7 +207,10 @@ std::optional<DisparityRange> find_disparity_range(const Photograph& left, const
   DisparityRange range{
       std::clamp(static_cast<int>(std::floor(min_px - margin_px)), -farthest, farthest),
       std::clamp(static_cast<int>(std::ceil(max_px + margin_px)), -farthest, farthest)};
-  // Infinity is at 0 in rectified pairs, so negative values count only if there are many.
+  if (infinity == Infinity::kAnywhere) {
+    return range;
+  }
+  // Negative values count only if there are many.
   const auto negative = std::lower_bound(values.begin(), values.end(), -kExactnessPx);
   if (static_cast<double>(negative - values.begin()) <
       kNegativeShare * static_cast<double>(values.size())) {

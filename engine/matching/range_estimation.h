@@ -8,10 +8,16 @@
 
 namespace vantage {
 
+/// Where a rectified pair shows what is infinitely far.
+enum class Infinity {
+  kAtZero,   ///< at disparity 0, so that few negative matches are errors
+  kAnywhere  ///< films are shifted, so that things are in front of and behind the screen
+};
+
 /// Disparity range to search in a rectified pair: the disparities found in both reduced images by a
 /// search from −width/8 to width/3, without small areas far from all others, plus a margin. It
-/// starts at 0 or above unless at least 2 % of the matches are negative. Empty if the images agree
-/// on almost nothing: constant or unrelated images.
+/// starts at 0 or above unless at least 2 % of the matches are negative or `infinity` is anywhere.
+/// Empty if the images agree on almost nothing: constant or unrelated images.
 ///
 /// Images of 512 to 1280 pixels width are reduced to a quarter, larger ones to a width of 320, so
 /// that the time is a few per cent of the matching time; surfaces of fewer than about 10 reduced
@@ -23,7 +29,8 @@ namespace vantage {
 /// Thread rule: may be called concurrently.
 std::optional<DisparityRange> find_disparity_range(const Photograph& left, const Photograph& right,
                                                    Execution& execution,
-                                                   DisparityRange vertical = {0, 0});
+                                                   DisparityRange vertical = {0, 0},
+                                                   Infinity infinity = Infinity::kAtZero);
 
 /// The range found; throws Error where there is none.
 DisparityRange require_disparity_range(const std::optional<DisparityRange>& found);

@@ -9,7 +9,8 @@ std::size_t held_bytes(const FrameSlot& slot) {
                       held_bytes(slot.maps) + held_bytes(slot.posterior.mean_px()) +
                       held_bytes(slot.posterior.variance_px2()) +
                       held_bytes(slot.cyclopean.disparity_px) + held_bytes(slot.cyclopean.seen_by) +
-                      held_bytes(slot.preview) + held_bytes(slot.stereo) + held_bytes(slot.encoded);
+                      held_bytes(slot.preview) + held_bytes(slot.stereo) + held_bytes(slot.depth) +
+                      held_bytes(slot.encoded);
   for (const Photograph& photograph : slot.pair.more) {
     bytes += held_bytes(photograph);
   }

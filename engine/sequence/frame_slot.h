@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/comfort/frame_comfort.h"
 #include "engine/image/photograph.h"
 #include "engine/matching/range_check.h"
 #include "engine/matching/selection/cyclopean_map.h"
@@ -47,7 +48,9 @@ struct FrameSlot {
   std::vector<ViewPose> view_poses;  ///< of `views`, as for new_view()
   Photograph preview;
   Photograph stereo;
-  std::vector<std::uint8_t> encoded;  ///< the file being written
+  Photograph depth;                     ///< see paint_depth()
+  std::optional<FrameComfort> comfort;  ///< if it is wanted
+  std::vector<std::uint8_t> encoded;    ///< the file being written
   PendingFiles files;
   std::vector<FileRecord> file_records;  ///< of `files`
   std::vector<StageTime> times;          ///< of all steps except matching

@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -20,6 +21,7 @@
 #include "engine/io/preview.h"
 #include "engine/reprojection/ply_file.h"
 #include "engine/reprojection/point_cloud.h"
+#include "engine/sequence/depth_picture.h"
 #include "engine/sequence/preview_range.h"
 #include "engine/sequence/stored_maps.h"
 #include "scheduler/trace.h"
@@ -98,7 +100,7 @@ FrameWorker::FrameWorker(const FrameTools& tools)
       shots_(tools.shots),
       execution_(tools.execution),
       accounts_(tools.accounts),
-      matcher_(tools.options.match, tools.execution),
+      matchers_(tools.options.match, tools.shots, tools.execution),
       renderer_(tools.options.synthesis, tools.cameras, tools.execution),
       videos_show_views_(videos_show_views(tools.options)),
       maps_are_stored_(maps_are_stored(tools.options)),
@@ -148,8 +150,9 @@ void FrameWorker::compute(FrameSlot& slot) {
   }
   if (slot.stored == nullptr || !maps_are_stored_) {
     const scheduler::ProcessorCharge charge(accounts_.of(RunStep::kMatch));
-    match(slot);
-    check_range(slot);
+    const std::shared_ptr<const ShotMatcher> shot = matchers_.of(slot.frame);
+    match(slot, shot->matcher);
+    check_range(slot, shot->options);
     if (options_.saves_cyclopean()) {
       const TimedStep step(slot, "cyclopean map", accounts_.of(RunStep::kMatch));
       make_cyclopean_map(slot.maps.left, execution_, slot.cyclopean);
@@ -163,7 +166,9 @@ void FrameWorker::compute(FrameSlot& slot) {
     return;
   }
   paint_preview(slot);
+  paint_depth_picture(slot);
   pack_stereo_picture(slot);
+  measure_comfort_of(slot);
 }
 
 void FrameWorker::read_maps(FrameSlot& slot) const {
@@ -183,7 +188,7 @@ bool FrameWorker::needs_views(const FrameSlot& slot) const {
   return slot.stored == nullptr || videos_show_views_ || options_.measure_flicker;
 }
 
-void FrameWorker::match(FrameSlot& slot) {
+void FrameWorker::match(FrameSlot& slot, const StereoMatcher& matcher) {
   const bool right_is_primary = options_.match.reference == Side::kRight;
   const bool both = !options_.views.empty() || options_.saves(SequenceOutput::kStereo) ||
                     options_.saves(SequenceOutput::kRightDisparity) ||
@@ -199,7 +204,7 @@ void FrameWorker::match(FrameSlot& slot) {
     request.volumes = {&posterior, 1};
   }
   if (!computes_in_order()) {
-    match_images(slot, request);
+    match_images(slot, matcher, request);
     return;
   }
   // A chunk has no state from before it, whichever of its frames is the first good one.
@@ -207,15 +212,16 @@ void FrameWorker::match(FrameSlot& slot) {
   const bool is_first = chunk != chunk_of_past_;
   chunk_of_past_ = chunk;
   if (options_.temporal.reuse == Reuse::kFrame) {
-    match_with_reuse(slot, request, is_first);
+    match_with_reuse(slot, matcher, request, is_first);
   } else {
-    match_with_prior(slot, request, is_first);
+    match_with_prior(slot, matcher, request, is_first);
   }
 }
 
-void FrameWorker::match_images(FrameSlot& slot, const MatchRequest& request) const {
+void FrameWorker::match_images(FrameSlot& slot, const StereoMatcher& matcher,
+                               const MatchRequest& request) const {
   if (options_.baselines.empty()) {
-    matcher_.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
+    matcher.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
     return;
   }
   std::vector<const Photograph*> images = {slot.left, slot.right};
@@ -238,44 +244,46 @@ void FrameWorker::match_images(FrameSlot& slot, const MatchRequest& request) con
     }
     DisparityMaps maps;
     MatchReport report;
-    matcher_.match_several(*images[reference], others, request, maps, &report);
+    matcher.match_several(*images[reference], others, request, maps, &report);
     slot.maps.of(side) = std::move(maps.of(side));
     slot.match.add(report);
   }
 }
 
-void FrameWorker::match_with_prior(FrameSlot& slot, MatchRequest request, bool is_first) {
+void FrameWorker::match_with_prior(FrameSlot& slot, const StereoMatcher& matcher,
+                                   MatchRequest request, bool is_first) {
   if (is_first) {
     temporal_.restart();
   }
   request.left = request.right = true;  // both are stored for the next frame
   request.prior = temporal_.priors_for(*slot.left, *slot.right, execution_);
-  match_images(slot, request);
+  match_images(slot, matcher, request);
   temporal_.remember(*slot.left, *slot.right, slot.maps, execution_);
 }
 
-void FrameWorker::match_with_reuse(FrameSlot& slot, MatchRequest request, bool is_first) {
+void FrameWorker::match_with_reuse(FrameSlot& slot, const StereoMatcher& matcher,
+                                   MatchRequest request, bool is_first) {
   reuse_.start_frame(slot.frame % options_.chunk_frames, is_first);
   request.previous = &reuse_;
   try {
-    matcher_.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
+    matcher.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
   } catch (...) {
     reuse_.forget();  // its maps may be those of two frames
     throw;
   }
 }
 
-void FrameWorker::check_range(FrameSlot& slot) {
+void FrameWorker::check_range(FrameSlot& slot, const MatchOptions& options) {
   if (!options_.baselines.empty()) {
     slot.may_be_cut = false;
     return;
   }
-  const MatchesAtEnds matches = matches_at_ends(slot.maps, options_.match);
-  slot.may_be_cut = may_be_cut(matches, options_.match, false);
+  const MatchesAtEnds matches = matches_at_ends(slot.maps, options);
+  slot.may_be_cut = may_be_cut(matches, options, false);
   slot.cut.reset();
   if (slot.may_be_cut && looks_beyond_++ < kMaxLooksBeyond) {
     const TimedStep step(slot, "range check", accounts_.of(RunStep::kMatch));
-    slot.cut = look_beyond(matches, *slot.left, *slot.right, options_.match, execution_);
+    slot.cut = look_beyond(matches, *slot.left, *slot.right, options, execution_);
   }
 }
 
@@ -333,6 +341,29 @@ void FrameWorker::paint_preview(FrameSlot& slot) const {
   slot.preview.pixels = colour_preview(primary_map(slot).view(), range.min_px, range.max_px);
 }
 
+void FrameWorker::paint_depth_picture(FrameSlot& slot) const {
+  if (!wants(slot, SequenceOutput::kDepthVideo)) {
+    return;
+  }
+  const TimedStep step(slot, "depth", accounts_.of(RunStep::kPictures));
+  const DisparityMap& map = primary_map(slot);
+  auto picture = take_image<std::uint16_t>(slot.depth, {map.width(), map.height(), 1});
+  paint_depth(map.view(),
+              depth_range_of(options_.depth_scale, options_.match.disparities, shots_, slot.frame),
+              picture);
+  slot.depth.pixels = std::move(picture);
+}
+
+void FrameWorker::measure_comfort_of(FrameSlot& slot) const {
+  slot.comfort.reset();
+  if (!options_.saves(SequenceOutput::kComfort) || slot.stored != nullptr) {
+    return;
+  }
+  const TimedStep step(slot, "comfort", accounts_.of(RunStep::kComfort));
+  slot.comfort = measure_comfort(*slot.left, *slot.right, slot.maps.of(options_.match.reference),
+                                 options_.match.reference);
+}
+
 void FrameWorker::pack_stereo_picture(FrameSlot& slot) const {
   if (!wants(slot, SequenceOutput::kStereo)) {
     return;
@@ -377,6 +408,8 @@ const Photograph* FrameWorker::stored_picture(const FrameSlot& slot,
       return &slot.views[static_cast<std::size_t>(stream.view)].image;
     case SequenceOutput::kStereo:
       return &slot.stereo;
+    case SequenceOutput::kDepthVideo:
+      return &slot.depth;
     default:
       return nullptr;
   }

@@ -17,6 +17,7 @@
 #include "engine/sequence/pair_source.h"
 #include "engine/sequence/sequence_layout.h"
 #include "engine/sequence/sequence_options.h"
+#include "engine/sequence/shot_matchers.h"
 #include "engine/sequence/shots.h"
 #include "engine/sequence/step_accounts.h"
 #include "engine/sequence/temporal_state.h"
@@ -72,7 +73,7 @@ class FrameWorker {
 
   /// Memory of matching, see StereoMatcher, and "frame before": what TemporalOptions::reuse keeps.
   void add_memory_use(MemoryUse& use) const {
-    matcher_.add_memory_use(use);
+    matchers_.add_memory_use(use);
     use.add("frame before", reuse_.held_bytes());
   }
 
@@ -83,13 +84,16 @@ class FrameWorker {
   void copy_picture(const FrameSlot& slot, const OutputStream& stream, Photograph& picture) const;
 
  private:
-  void match(FrameSlot& slot);
+  void match(FrameSlot& slot, const StereoMatcher& matcher);
   /// By all images of the frame.
-  void match_images(FrameSlot& slot, const MatchRequest& request) const;
-  void match_with_prior(FrameSlot& slot, MatchRequest request, bool is_first);
-  void match_with_reuse(FrameSlot& slot, MatchRequest request, bool is_first);
+  void match_images(FrameSlot& slot, const StereoMatcher& matcher,
+                    const MatchRequest& request) const;
+  void match_with_prior(FrameSlot& slot, const StereoMatcher& matcher, MatchRequest request,
+                        bool is_first);
+  void match_with_reuse(FrameSlot& slot, const StereoMatcher& matcher, MatchRequest request,
+                        bool is_first);
   /// Looks at the first few frames for which the range may be too narrow.
-  void check_range(FrameSlot& slot);
+  void check_range(FrameSlot& slot, const MatchOptions& options);
   /// The frame is no longer stored when a file has changed.
   void read_maps(FrameSlot& slot) const;
   /// Whether any result of the frame needs new views.
@@ -97,6 +101,9 @@ class FrameWorker {
   [[nodiscard]] bool wants(const FrameSlot& slot, SequenceOutput output) const;
   void synthesize(FrameSlot& slot) const;
   void paint_preview(FrameSlot& slot) const;
+  void paint_depth_picture(FrameSlot& slot) const;
+  /// Unless the frame is stored: its record has it then.
+  void measure_comfort_of(FrameSlot& slot) const;
   void pack_stereo_picture(FrameSlot& slot) const;
   [[nodiscard]] const Photograph* photograph_at(const FrameSlot& slot, double view_x) const;
   /// Of the points of a frame.
@@ -122,7 +129,7 @@ class FrameWorker {
   const ShotTable* shots_;
   Execution& execution_;
   StepAccounts& accounts_;
-  StereoMatcher matcher_;
+  ShotMatchers matchers_;
   PoseRenderer renderer_;
   std::optional<PhotographGrid> photograph_grid_;  ///< if views_show_photographs()
   bool videos_show_views_;

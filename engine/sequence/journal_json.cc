@@ -62,6 +62,42 @@ FlickerSums flicker_of(const Json& json) {
   return sums;
 }
 
+Json comfort_json(const FrameComfort& comfort) {
+  Json json = {{"size", {comfort.width_px, comfort.height_px}},
+               {"matched", comfort.matched},
+               {"disparity", comfort.disparity},
+               {"borders", Json::array()},
+               {"order", {comfort.order_right, comfort.order_wrong}},
+               {"colour", comfort.colour}};
+  for (const FrameComfort::Border& border : comfort.borders) {
+    json["borders"].push_back({border.rows, border.disparity});
+  }
+  if (comfort.vertical) {
+    json["vertical"] = {comfort.vertical->mean, comfort.vertical->systematic};
+  }
+  return json;
+}
+
+FrameComfort comfort_of(const Json& json) {
+  FrameComfort comfort;
+  const auto number = [](const Json& list, std::size_t i) { return list.at(i).get<int>(); };
+  comfort.width_px = number(json.at("size"), 0);
+  comfort.height_px = number(json.at("size"), 1);
+  comfort.matched = json.at("matched").get<int>();
+  json.at("disparity").get_to(comfort.disparity);
+  for (std::size_t i = 0; i < comfort.borders.size(); ++i) {
+    const Json& border = json.at("borders").at(i);
+    comfort.borders[i] = {number(border, 0), number(border, 1)};
+  }
+  comfort.order_right = number(json.at("order"), 0);
+  comfort.order_wrong = number(json.at("order"), 1);
+  json.at("colour").get_to(comfort.colour);
+  if (json.contains("vertical")) {
+    comfort.vertical = {number(json.at("vertical"), 0), number(json.at("vertical"), 1)};
+  }
+  return comfort;
+}
+
 /// {"disparity/000000.pfm": [12345, "00112233"], …}
 Json files_json(const std::vector<FileRecord>& files) {
   Json json = Json::object();
@@ -106,6 +142,9 @@ struct ToJson {
     if (record.flicker.frames > 0) {
       json["flicker"] = flicker_json(record.flicker);
     }
+    if (record.comfort) {
+      json["comfort"] = comfort_json(*record.comfort);
+    }
     return json;
   }
   Json operator()(const SegmentRecord& record) const {
@@ -139,6 +178,9 @@ JournalRecord record_in(const Json& json) {
   record.remarks = json.value("remarks", record.remarks);
   if (json.contains("flicker")) {
     record.flicker = flicker_of(json.at("flicker"));
+  }
+  if (json.contains("comfort")) {
+    record.comfort = comfort_of(json.at("comfort"));
   }
   return record;
 }

@@ -81,6 +81,9 @@ std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) 
     const std::size_t of_point = options.saves(SequenceOutput::kMesh) ? 156 : 57;
     bytes += pixels * 16 + (options.saves_points() ? pixels / (step * step) * of_point : 0);
   }
+  if (options.saves(SequenceOutput::kDepthVideo)) {
+    bytes += 2 * pixels;
+  }
   // A map being written: with unknown pixels replaced, and encoded.
   bytes += 2 * pixels * sizeof(float) + photograph;
   return bytes;

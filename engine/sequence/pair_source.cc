@@ -9,6 +9,7 @@
 
 #include "engine/error.h"
 #include "engine/io/image_sequence.h"
+#include "engine/io/raw_video.h"
 #include "engine/sequence/every_nth_pair.h"
 #include "engine/sequence/moving_camera_pairs.h"
 #include "engine/sequence/packed_pairs.h"
@@ -71,6 +72,10 @@ int taken_step(const FrameStep& every, const PairSource& pairs) {
 }
 
 std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
+  if (options.stereo == "-") {
+    return std::make_unique<PackedPairs>(
+        std::make_unique<StreamedVideo>(options.raw_video, options.raw_rate), *options.packing);
+  }
   if (!options.stereo.empty()) {
     return std::make_unique<PackedPairs>(open_frame_source(options.stereo), *options.packing);
   }

@@ -9,6 +9,7 @@
 
 #include "engine/image/stereo_packing.h"
 #include "engine/io/frame_source.h"
+#include "engine/io/raw_video_shape.h"
 #include "engine/sequence/frame_range.h"
 
 namespace vantage {
@@ -60,9 +61,12 @@ struct PairSourceOptions {
   /// With left and right: sources of more cameras, whose frame i belongs to frame i of the left
   /// one.
   std::vector<std::string> more;
-  /// One source whose frames hold both images.
+  /// One source whose frames hold both images; "-" is standard input.
   std::string stereo;
   std::optional<StereoPacking> packing;
+  /// "-": y4m from standard input, or rawvideo of this shape and frame rate (see StreamedVideo).
+  std::optional<RawVideoShape> raw_video;
+  FrameRate raw_rate;
   /// A CSV file with the columns left,right: one pair of image files per line. Names are relative
   /// to the file's folder; an optional heading "left,right", empty lines and lines that start with
   /// # are skipped; quotes as in RFC 4180, blanks around unquoted fields are dropped.

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/comfort/frame_comfort.h"
 #include "engine/io/checksum.h"
 #include "engine/io/frame_rate.h"
 #include "engine/sequence/flicker.h"
@@ -48,6 +49,7 @@ struct FrameRecord {
   std::vector<std::string> remarks = {};  ///< about a frame that is done
   std::vector<FileRecord> files = {};
   FlickerSums flicker = {};  ///< all 0 if not measured
+  std::optional<FrameComfort> comfort = {};
 };
 
 /// All videos have a segment of these frames.

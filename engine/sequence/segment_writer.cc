@@ -86,7 +86,9 @@ void SegmentWriter::write(Stream& stream, const Photograph& picture, int times) 
     if (!stream.writer) {
       stream.writer = std::make_unique<VideoWriter>(
           layout_.segment(*stream.output, frames_), picture.width(), picture.height(),
-          VideoEncoding{options_.frame_rate, options_.crf});
+          VideoEncoding{options_.frame_rate, options_.crf,
+                        stream.output->output == SequenceOutput::kDepthVideo ? options_.depth_coding
+                                                                             : VideoCoding::kH264});
     }
     for (int i = 0; i < times; ++i) {
       stream.writer->write(picture);
@@ -122,6 +124,11 @@ Photograph SegmentWriter::black_picture(const OutputStream& output) const {
       is_per_view(output.output)
           ? extent_of(options_.views[static_cast<std::size_t>(output.view)], frame_size_)
           : frame_size_;
+  if (output.output == SequenceOutput::kDepthVideo) {
+    Image<std::uint16_t> unknown(size.width_px, size.height_px);
+    unknown.fill(0);
+    return at_least_two_a_side(Photograph{std::move(unknown)});
+  }
   Photograph black{Image<std::uint8_t>(size.width_px, size.height_px)};
   std::get<Image<std::uint8_t>>(black.pixels).fill(0);
   if (output.output != SequenceOutput::kStereo) {

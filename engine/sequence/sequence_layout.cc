@@ -43,13 +43,19 @@ SequenceLayout::SequenceLayout(fs::path folder, const SequenceOptions& options)
     const auto known = std::ranges::find(sequence_output_names(), output,
                                          &std::pair<std::string_view, SequenceOutput>::second);
     const std::string name(known->first);
+    if (is_of_all_frames(output)) {
+      continue;
+    }
+    const std::string extension(extension_of(
+        output == SequenceOutput::kDepthVideo ? options.depth_coding : VideoCoding::kH264));
     const bool as_video = options.saves_as_video(output);
     if (!is_per_view(output) || options.views.size() == 1) {
-      streams_.push_back({output, 0, as_video, name});
+      streams_.push_back({output, 0, as_video, extension, name});
       continue;
     }
     for (int view = 0; view < static_cast<int>(options.views.size()); ++view) {
-      streams_.push_back({output, view, as_video, name + "/" + view_name(options.views, view)});
+      streams_.push_back(
+          {output, view, as_video, extension, name + "/" + view_name(options.views, view)});
     }
   }
 }
@@ -63,7 +69,7 @@ fs::path SequenceLayout::file(const OutputStream& stream, int frame, const std::
 }
 
 fs::path SequenceLayout::video(const OutputStream& stream) const {
-  return folder_ / (stream.name + ".mp4");
+  return folder_ / (stream.name + "." + stream.extension);
 }
 
 fs::path SequenceLayout::segment_folder(const OutputStream& stream) const {
@@ -71,7 +77,8 @@ fs::path SequenceLayout::segment_folder(const OutputStream& stream) const {
 }
 
 fs::path SequenceLayout::segment(const OutputStream& stream, FrameRange frames) const {
-  return segment_folder(stream) / fmt::format("{:06}-{:06}.mp4", frames.first, frames.end - 1);
+  return segment_folder(stream) /
+         fmt::format("{:06}-{:06}.{}", frames.first, frames.end - 1, stream.extension);
 }
 
 std::vector<std::string> SequenceLayout::video_names() const {

@@ -17,14 +17,17 @@ struct OutputStream {
   SequenceOutput output = SequenceOutput::kDisparity;
   int view = 0;  ///< number of the new view, if is_per_view()
   bool as_video = false;
+  std::string extension = "mp4";  ///< of its video
   /// "disparity", or "views/0.25", "views/camera-1" and "views/path-1" if there are several views.
-  /// The folder of its files, and without .mp4 the file of its video, below the run's folder.
+  /// The folder of its files, and without extension the file of its video, below the run's folder.
   std::string name;
 };
 
 /// Where the files of a run are:
 ///   DIR/disparity/000000.pfm, DIR/views/000000.png (one view) or DIR/views/0.25/000000.png …
 ///   DIR/preview.mp4, DIR/views/0.25.mp4 …            what is written as video
+///   DIR/depth-video.mkv (.mp4, .mov), .json          the depth video, what its levels stand for
+///   DIR/comfort.json, comfort.html                   the report on comfort
 ///   DIR/.vantage/run.json, frames-*.jsonl            the journal
 ///   DIR/.vantage/shots.json                          what the frames of a shot share
 ///   DIR/.vantage/segments/NAME/000000-000049.mp4     parts of videos until they are joined
@@ -42,6 +45,13 @@ class SequenceLayout {
                                                   const std::string& extension);
   [[nodiscard]] std::filesystem::path video(const OutputStream& stream) const;
   [[nodiscard]] std::filesystem::path segment(const OutputStream& stream, FrameRange frames) const;
+  /// What the levels of the depth video stand for; the report on comfort as "json" or "html".
+  [[nodiscard]] std::filesystem::path depth_description() const {
+    return folder_ / "depth-video.json";
+  }
+  [[nodiscard]] std::filesystem::path comfort_report(const std::string& extension) const {
+    return folder_ / ("comfort." + extension);
+  }
   /// Names of all videos, or of all of their segments, relative to the folder.
   [[nodiscard]] std::vector<std::string> video_names() const;
   [[nodiscard]] std::vector<std::string> segment_names(FrameRange frames) const;

@@ -195,10 +195,10 @@ void check_formats(const SequenceOptions& options) {
                                  options.depth_format));
   }
   for (const SequenceOutput output : options.video) {
-    if (holds_floats(output)) {
+    if (holds_floats(output) || is_of_all_frames(output)) {
       throw UsageError(fmt::format(
           "video has {}, whose values a video cannot hold; expected unmatched, right-unmatched, "
-          "preview, views, holes, sources, stereo or cyclopean-occlusion",
+          "preview, views, holes, sources, stereo, cyclopean-occlusion or depth-video",
           name_of(output)));
     }
     if (!options.saves(output)) {
@@ -213,6 +213,23 @@ void check_formats(const SequenceOptions& options) {
   if (options.chunk_frames < 1 || options.chunk_frames > kMaxChunkFrames) {
     throw UsageError(fmt::format("chunk-frames is {}, expected a number from 1 to {}",
                                  options.chunk_frames, kMaxChunkFrames));
+  }
+}
+
+void check_films(const SequenceOptions& options) {
+  if (options.search_range_per_shot && options.temporal.uses_past()) {
+    throw UsageError(
+        "search-range is shot, expected film with temporal-prior or reuse, which pass disparities "
+        "on");
+  }
+  if (!is_grey(options.depth_coding)) {
+    throw UsageError("depth-codec is one of colours, expected a grey one");
+  }
+  const PreviewRange given = options.depth_scale.given;
+  if (!(std::isfinite(given.min_px) && std::isfinite(given.max_px) &&
+        given.min_px < given.max_px)) {
+    throw UsageError(fmt::format("depth-range is {}:{}, expected MIN:MAX with MIN < MAX",
+                                 given.min_px, given.max_px));
   }
 }
 
@@ -236,13 +253,15 @@ const std::vector<std::pair<std::string_view, SequenceOutput>>& sequence_output_
       {"cyclopean-occlusion", SequenceOutput::kCyclopeanOcclusion},
       {"depth", SequenceOutput::kDepth},
       {"cloud", SequenceOutput::kCloud},
-      {"mesh", SequenceOutput::kMesh}};
+      {"mesh", SequenceOutput::kMesh},
+      {"depth-video", SequenceOutput::kDepthVideo},
+      {"comfort", SequenceOutput::kComfort}};
   return names;
 }
 
 bool SequenceOptions::saves(SequenceOutput output) const { return contains(save, output); }
 bool SequenceOptions::saves_as_video(SequenceOutput output) const {
-  return contains(video, output);
+  return contains(video, output) || (is_always_video(output) && saves(output));
 }
 
 void SequenceOptions::validate() const {
@@ -268,6 +287,7 @@ void SequenceOptions::validate() const {
       }
     }
   }
+  check_films(*this);
   check_views(*this);
   check_formats(*this);
 }

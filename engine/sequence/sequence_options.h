@@ -9,6 +9,8 @@
 
 #include "engine/image/stereo_display.h"
 #include "engine/io/frame_rate.h"
+#include "engine/io/preview.h"
+#include "engine/io/video_coding.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/reprojection/point_cloud.h"
 #include "engine/sequence/temporal_options.h"
@@ -35,7 +37,9 @@ enum class SequenceOutput {
   kCyclopeanOcclusion,  ///< mask of what each camera sees of it
   kDepth,               ///< of the reference's map, in metres
   kCloud,               ///< points of the reference's map
-  kMesh                 ///< the points as triangles
+  kMesh,                ///< the points as triangles
+  kDepthVideo,          ///< the reference's map as a grey video, see DepthVideoScale
+  kComfort              ///< how comfortable the pairs are to watch: a report of all frames
 };
 
 /// Names of the outputs on the command line, which are also those of their folders.
@@ -52,6 +56,27 @@ constexpr bool is_metric(SequenceOutput output) {
   return output == SequenceOutput::kDepth || output == SequenceOutput::kCloud ||
          output == SequenceOutput::kMesh;
 }
+/// Whether the output is always a video.
+constexpr bool is_always_video(SequenceOutput output) {
+  return output == SequenceOutput::kDepthVideo;
+}
+
+/// Whether it is one for all frames instead of one per frame.
+constexpr bool is_of_all_frames(SequenceOutput output) {
+  return output == SequenceOutput::kComfort;
+}
+
+/// What the whole range of grey levels of a depth video stands for.
+struct DepthVideoScale {
+  enum class Scope {
+    kFilm,  ///< the disparities searched in all frames
+    kShot,  ///< those searched in the shot
+    kGiven  ///< `given`
+  };
+  Scope scope = Scope::kFilm;
+  PreviewRange given;  ///< min < max
+  friend bool operator==(const DepthVideoScale&, const DepthVideoScale&) = default;
+};
 
 /// Frames over which a fitted quantity is estimated.
 enum class FitScope {
@@ -81,6 +106,11 @@ struct SequenceOptions {
   StereoDisplay stereo_packing;
   FitScope intensity_fit = FitScope::kFrame;  ///< of the new views (3.9–3.11)
   bool preview_range_per_shot = false;        ///< else the range of the search
+  /// Each shot is searched in the range that is found in some of its pairs, match.disparities where
+  /// none is found; not with TemporalOptions::uses_past().
+  bool search_range_per_shot = false;
+  DepthVideoScale depth_scale;                       ///< of kDepthVideo
+  VideoCoding depth_coding = VideoCoding::kFfv1_16;  ///< of kDepthVideo, a grey one
   TemporalOptions temporal;
   bool measure_flicker = false;
   /// Extension of the disparity and confidence files without the dot, one of map_formats() that can
@@ -113,6 +143,11 @@ struct SequenceOptions {
   [[nodiscard]] bool is_metric() const { return saves(SequenceOutput::kDepth) || saves_points(); }
   /// Whether shots must be found before the run.
   [[nodiscard]] bool needs_shots() const {
+    return needs_matched_shots() || search_range_per_shot || saves(SequenceOutput::kDepthVideo) ||
+           saves(SequenceOutput::kComfort);
+  }
+  /// Whether pairs of each shot must be matched for that.
+  [[nodiscard]] bool needs_matched_shots() const {
     return intensity_fit == FitScope::kShot || preview_range_per_shot;
   }
 };

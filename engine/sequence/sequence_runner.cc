@@ -140,6 +140,7 @@ class Run {
     const Clock::time_point start = Clock::now();
     const scheduler::ProcessorCharge charge(accounts_.of(RunStep::kWrite));
     FrameRecord record{.frame = slot.frame, .files = std::move(slot.file_records)};
+    record.comfort = slot.comfort;
     measure_flicker(slot, record);
     if (slot.is_lead_in) {
       return;

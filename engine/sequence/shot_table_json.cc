@@ -20,11 +20,15 @@ Json json_of(const Shot& shot) {
     intensity.push_back({{"offset", fit.offset}, {"gain", fit.gain}});
   }
   // Floats as doubles, which are written without loss.
-  return {
+  Json json = {
       {"first_frame", shot.first_frame},
       {"end_frame", shot.end_frame},
       {"intensity", intensity},
       {"preview_range", {double{shot.preview_range.min_px}, double{shot.preview_range.max_px}}}};
+  if (shot.search) {
+    json["search"] = {shot.search->min, shot.search->max};
+  }
+  return json;
 }
 
 Shot shot_of_json(const Json& json) {
@@ -38,6 +42,9 @@ Shot shot_of_json(const Json& json) {
   }
   shot.preview_range = {json.at("preview_range").at(0).get<float>(),
                         json.at("preview_range").at(1).get<float>()};
+  if (json.contains("search")) {
+    shot.search = {json.at("search").at(0).get<int>(), json.at("search").at(1).get<int>()};
+  }
   return shot;
 }
 
@@ -61,6 +68,11 @@ void check(const ShotTable& table) {
           fmt::format("shots: shot {} has a preview range of {} to {} px, expected the "
                       "smaller first",
                       k, shot.preview_range.min_px, shot.preview_range.max_px));
+    }
+    if (shot.search && shot.search->min > shot.search->max) {
+      throw Error(
+          fmt::format("shots: shot {} is searched from {} to {} px, expected the smaller first", k,
+                      shot.search->min, shot.search->max));
     }
     for (const IntensityFit& fit : shot.intensity) {
       if (!(fit.gain > 0)) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "engine/error.h"
+#include "engine/matching/range_estimation.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/sequence/preview_range.h"
 #include "engine/sequence/shot_cuts.h"
@@ -20,6 +21,7 @@ constexpr double kOutside = 0.01;   // share of the disparities on either side o
 constexpr float kWidening = 0.05F;
 constexpr float kMinWideningPx = 0.5F;
 constexpr std::size_t kMaxSamples = 3;  // of a shot
+constexpr int kMaxRangeSamples = 5;
 
 /// The disparities of some maps, and their preview range.
 class DisparitySamples {
@@ -62,7 +64,6 @@ class Survey {
         options_(options),
         hooks_(hooks),
         execution_(execution),
-        matcher_(options.match, execution),
         synthesizer_(options.synthesis, execution) {}
 
   [[nodiscard]] std::optional<ShotTable> run(int first_frame, int end_frame) {
@@ -80,10 +81,18 @@ class Survey {
       }
     }
     for (const Shot& shot : table.shots) {
-      progress_.frames_total += static_cast<int>(samples_of(shot).size());
+      progress_.frames_total +=
+          static_cast<int>((options_.search_range_per_shot ? range_samples_of(shot).size() : 0) +
+                           (options_.needs_matched_shots() ? samples_of(shot).size() : 0));
+    }
+    // Each step in the order of the frames: videos without an index are decoded from their start.
+    for (Shot& shot : table.shots) {
+      if (options_.search_range_per_shot && !find_range(shot)) {
+        return std::nullopt;
+      }
     }
     for (Shot& shot : table.shots) {
-      if (!fit(shot)) {
+      if (options_.needs_matched_shots() && !fit(shot)) {
         return std::nullopt;
       }
     }
@@ -102,7 +111,8 @@ class Survey {
   [[nodiscard]] Shot shot_from(int first_frame, int end_frame) const {
     return {.first_frame = first_frame,
             .end_frame = end_frame,
-            .preview_range = preview_range_of(options_.match.disparities)};
+            .preview_range = preview_range_of(options_.match.disparities),
+            .search = std::nullopt};
   }
 
   /// False at the end of the sequence; a pair that cannot be fetched has no thumbnail.
@@ -173,17 +183,70 @@ class Survey {
     return {frames.begin(), frames.end()};
   }
 
+  /// Evenly spaced from the first to the last frame.
+  [[nodiscard]] static std::vector<int> range_samples_of(const Shot& shot) {
+    const int count = std::min(shot.end_frame - shot.first_frame, kMaxRangeSamples);
+    std::vector<int> frames;
+    for (int i = 0; i < count; ++i) {
+      const long long span = shot.end_frame - 1 - shot.first_frame;
+      frames.push_back(shot.first_frame +
+                       (count == 1 ? 0 : static_cast<int>(span * i / (count - 1))));
+    }
+    return frames;
+  }
+
+  /// False when stopped.
+  bool find_range(Shot& shot) {
+    for (const int frame : range_samples_of(shot)) {
+      if (is_stopped()) {
+        return false;
+      }
+      try {
+        if (const auto range = take_pair(frame)
+                                   ? find_disparity_range(pair_.left, pair_.right, execution_,
+                                                          {0, 0}, Infinity::kAnywhere)
+                                   : std::nullopt) {
+          shot.search = shot.search ? DisparityRange{std::min(shot.search->min, range->min),
+                                                     std::max(shot.search->max, range->max)}
+                                    : *range;
+        }
+      } catch (const UsageError&) {
+        throw;
+      } catch (const Error&) {
+        // The run will report the problem.
+      }
+      report(1);
+    }
+    return true;
+  }
+
+  /// False after the end of the input.
+  bool take_pair(int frame) {
+    pairs_.skip_to(frame);
+    if (!pairs_.fetch(pair_)) {
+      return false;
+    }
+    pairs_.decode(pair_);
+    if (hooks_.prepare) {
+      hooks_.prepare(pair_);
+    }
+    return true;
+  }
+
   /// False when stopped.
   bool fit(Shot& shot) {
     kernels::IntensitySums sums;
     int channels = 0;
     disparities_.clear();
+    MatchOptions options = options_.match;
+    options.disparities = shot.search.value_or(options.disparities);
+    const StereoMatcher matcher(options, execution_);
     for (const int frame : samples_of(shot)) {
       if (is_stopped()) {
         return false;
       }
       try {
-        add_sample(frame, sums);
+        add_sample(frame, matcher, sums);
         channels = pair_.left.channels();
       } catch (const UsageError&) {
         throw;
@@ -199,16 +262,11 @@ class Survey {
     return true;
   }
 
-  void add_sample(int frame, kernels::IntensitySums& sums) {
-    pairs_.skip_to(frame);
-    if (!pairs_.fetch(pair_)) {
+  void add_sample(int frame, const StereoMatcher& matcher, kernels::IntensitySums& sums) {
+    if (!take_pair(frame)) {
       return;
     }
-    pairs_.decode(pair_);
-    if (hooks_.prepare) {
-      hooks_.prepare(pair_);
-    }
-    matcher_.match(pair_.left, pair_.right, {}, maps_);
+    matcher.match(pair_.left, pair_.right, {}, maps_);
     const bool is_left = options_.match.reference == Side::kLeft;
     disparities_.add(is_left ? maps_.left.disparity_px.view() : maps_.right.disparity_px.view());
     sums.add(synthesizer_.intensity_sums(pair_.left, pair_.right, maps_.left.disparity_px.view(),
@@ -219,7 +277,6 @@ class Survey {
   const SequenceOptions& options_;
   const SurveyHooks& hooks_;
   Execution& execution_;
-  StereoMatcher matcher_;
   ViewSynthesizer synthesizer_;
   SurveyProgress progress_;
   FramePair pair_;

@@ -22,6 +22,7 @@ struct Shot {
   int end_frame = 0;                           ///< after the last one
   std::array<IntensityFit, 4> intensity = {};  ///< of the right images on the left ones (3.9)
   PreviewRange preview_range;                  ///< of the maps
+  std::optional<DisparityRange> search;        ///< found in it; empty: that of the run
 
   friend bool operator==(const Shot&, const Shot&) = default;
 };
@@ -63,12 +64,14 @@ struct SurveyHooks {
 };
 
 /// Finds the shots of frames [first_frame, end_frame) of `pairs`, 0 ≤ first < end ≤ pair_count(),
-/// by their left images (shot_cuts.h), decoding only these, and matches up to three frames of each
-/// (first, middle, last) with options.match. The sums of the regression (3.11), taken at XS = 0.5
-/// with options.synthesis, are added over them; the preview range is that of the 1st to the 99th
-/// percentile of the disparities of their primary maps, widened on both sides by 1/20 and at least
-/// ½ px. Frames that cannot be read are ignored: they are no cut, and a shot without samples has
-/// the identity and the search range.
+/// by their left images (shot_cuts.h), decoding only these. With options.search_range_per_shot, the
+/// search range of a shot is the union of find_disparity_range() over up to five of its frames,
+/// from the first to the last. If options.needs_matched_shots(), up to three frames of each (first,
+/// middle, last) are matched with options.match in that range: the sums of the regression (3.11),
+/// taken at XS = 0.5 with options.synthesis, are added over them; the preview range is that of the
+/// 1st to the 99th percentile of the disparities of their primary maps, widened on both sides by
+/// 1/20 and at least ½ px. Frames that cannot be read are ignored: they are no cut, and a shot
+/// without samples has the identity and the search range.
 ///
 /// Identical for any `execution`. Leaves `pairs` at an unspecified position: use skip_to(). Empty
 /// when `stop` was set. Throws UsageError if the options do not fit the images.

@@ -16,14 +16,16 @@ enum class RunStep : std::uint8_t {
   kRectify,
   kMatch,
   kViews,
-  kPictures,  ///< previews, stereo pictures
-  kEncode,    ///< files of the frame
-  kWrite,     ///< videos
-  kDeliver    ///< flushing, naming, journal
+  kPictures,  ///< previews, stereo pictures, depth
+  kComfort,
+  kEncode,  ///< files of the frame
+  kWrite,   ///< videos
+  kDeliver  ///< flushing, naming, journal
 };
 
-inline constexpr std::array<std::string_view, 9> kRunStepNames = {
-    "read", "decode", "rectify", "match", "views", "pictures", "encode", "write", "deliver"};
+inline constexpr std::array<std::string_view, 10> kRunStepNames = {
+    "read",     "decode",  "rectify", "match", "views",
+    "pictures", "comfort", "encode",  "write", "deliver"};
 
 /// Processor time of a run by step, in the order of kRunStepNames.
 class StepAccounts {

@@ -13,18 +13,20 @@ struct AVRational;
 
 namespace vantage {
 
-/// Writes an MP4 with its index first, so that browsers can start before they have all of it.
-/// Contains no dates or versions, so the bytes depend on the input only. The file appears under its
-/// name at finish(); without it nothing is left. Thread rule: one thread at a time.
-class Mp4Muxer {
+/// Writes a video file: MP4, Matroska (.mkv) or MOV by its extension. MP4 and MOV have their index
+/// first, so that browsers can start before they have all of it. Contains no dates or versions, so
+/// the bytes depend on the input only. The file appears under its name at finish(); without it
+/// nothing is left. Thread rule: one thread at a time.
+class VideoMuxer {
  public:
   /// Throws Error when the file cannot be written.
-  explicit Mp4Muxer(const std::filesystem::path& path);
-  Mp4Muxer(const Mp4Muxer&) = delete;
-  Mp4Muxer& operator=(const Mp4Muxer&) = delete;
-  ~Mp4Muxer();
+  explicit VideoMuxer(const std::filesystem::path& path);
+  VideoMuxer(const VideoMuxer&) = delete;
+  VideoMuxer& operator=(const VideoMuxer&) = delete;
+  ~VideoMuxer();
 
-  /// Adds a stream before begin(), the video first. Returns its index.
+  /// Adds a stream before begin(), the video first, whose time unit is that of a frame. Returns its
+  /// index.
   int add_stream(const AVCodecParameters& parameters, AVRational time_unit);
   void begin();
   /// Writes `packet`, whose times are in `time_unit`, to stream `stream`; the packet is empty
@@ -43,6 +45,7 @@ class Mp4Muxer {
   };
 
   std::filesystem::path path_;
+  bool is_matroska_;
   AtomicFile file_;
   // Declared after the file, so that it closes it before the file is removed.
   std::unique_ptr<AVFormatContext, Free> output_;

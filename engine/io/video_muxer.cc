@@ -1,10 +1,11 @@
-#include "engine/io/mp4_muxer.h"
+#include "engine/io/video_muxer.h"
 
 #include <fmt/format.h>
 
 #include <new>
 
 #include "engine/error.h"
+#include "engine/io/file_bytes.h"
 #include "engine/io/libav_functions.h"
 #include "engine/io/video_io.h"
 #include "engine/io/video_structure.h"
@@ -15,16 +16,20 @@ extern "C" {
 
 namespace vantage {
 
-void Mp4Muxer::Free::operator()(AVFormatContext* output) const noexcept {
+void VideoMuxer::Free::operator()(AVFormatContext* output) const noexcept {
   libav().avio_closep(&output->pb);
   libav().avformat_free_context(output);
 }
 
-Mp4Muxer::Mp4Muxer(const std::filesystem::path& path) : path_(path), file_(path) {
+VideoMuxer::VideoMuxer(const std::filesystem::path& path)
+    : path_(path), is_matroska_(lower_case_extension(path) == ".mkv"), file_(path) {
   silence_libav();
   const std::string address = "file:" + file_.temporary_path().string();
   AVFormatContext* output = nullptr;
-  if (libav().avformat_alloc_output_context2(&output, nullptr, "mp4", address.c_str()) < 0) {
+  const char* container = is_matroska_                           ? "matroska"
+                          : lower_case_extension(path) == ".mov" ? "mov"
+                                                                 : "mp4";
+  if (libav().avformat_alloc_output_context2(&output, nullptr, container, address.c_str()) < 0) {
     throw std::bad_alloc();
   }
   output_.reset(output);
@@ -35,25 +40,31 @@ Mp4Muxer::Mp4Muxer(const std::filesystem::path& path) : path_(path), file_(path)
   }
 }
 
-Mp4Muxer::~Mp4Muxer() = default;
+VideoMuxer::~VideoMuxer() = default;
 
-void Mp4Muxer::fail(const std::string& problem) const {
+void VideoMuxer::fail(const std::string& problem) const {
   throw Error(fmt::format("cannot write {}: {}", path_.string(), problem));
 }
 
-int Mp4Muxer::add_stream(const AVCodecParameters& parameters, AVRational time_unit) {
+int VideoMuxer::add_stream(const AVCodecParameters& parameters, AVRational time_unit) {
   AVStream* stream = libav().avformat_new_stream(output_.get(), nullptr);
   if (stream == nullptr || libav().avcodec_parameters_copy(stream->codecpar, &parameters) < 0) {
     throw std::bad_alloc();
   }
   stream->codecpar->codec_tag = 0;  // another container's tag may be meaningless here
   stream->time_base = time_unit;
+  if (is_matroska_ && output_->nb_streams == 1) {
+    // Times are rounded to milliseconds there, so the duration of a frame is stored, too.
+    stream->avg_frame_rate = {time_unit.den, time_unit.num};
+  }
   return stream->index;
 }
 
-void Mp4Muxer::begin() {
+void VideoMuxer::begin() {
   AVDictionary* options = nullptr;
-  av_dict_set(&options, "movflags", "+faststart", 0);
+  if (!is_matroska_) {
+    av_dict_set(&options, "movflags", "+faststart", 0);
+  }
   const int result = libav().avformat_write_header(output_.get(), &options);
   av_dict_free(&options);
   if (result < 0) {
@@ -61,7 +72,7 @@ void Mp4Muxer::begin() {
   }
 }
 
-void Mp4Muxer::write(AVPacket& packet, int stream, AVRational time_unit) {
+void VideoMuxer::write(AVPacket& packet, int stream, AVRational time_unit) {
   packet.stream_index = stream;
   packet.pos = -1;
   libav().av_packet_rescale_ts(&packet, time_unit, output_->streams[stream]->time_base);
@@ -74,7 +85,7 @@ void Mp4Muxer::write(AVPacket& packet, int stream, AVRational time_unit) {
   }
 }
 
-void Mp4Muxer::finish(int frames) {
+void VideoMuxer::finish(int frames) {
   int result = libav().av_write_trailer(output_.get());
   const int closed = libav().avio_closep(&output_->pb);
   if (result >= 0) {

@@ -1,0 +1,120 @@
+#include "apps/film_reports.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "apps/comfort_page.h"
+#include "apps/tell.h"
+#include "engine/error.h"
+#include "engine/io/atomic_file.h"
+#include "engine/sequence/depth_picture.h"
+#include "engine/sequence/shots.h"
+
+namespace vantage::apps {
+namespace {
+
+std::string document_of(const SettingValue& value) {
+  // File names need not be UTF-8, JSON must be.
+  return value.dump(2, ' ', false, SettingValue::error_handler_t::replace) + "\n";
+}
+
+/// The part of the shots that lies in `frames`.
+std::vector<Shot> shots_in(const ShotTable& table, FrameRange frames) {
+  std::vector<Shot> shots;
+  for (Shot shot : table.shots) {
+    shot.first_frame = std::max(shot.first_frame, frames.first);
+    shot.end_frame = std::min(shot.end_frame, frames.end);
+    if (shot.first_frame < shot.end_frame) {
+      shots.push_back(shot);
+    }
+  }
+  return shots;
+}
+
+SettingValue depth_values(const SequenceOptions& options, const ShotTable& table,
+                          FrameRange frames) {
+  SettingValue shots = SettingValue::array();
+  for (const Shot& shot : shots_in(table, frames)) {
+    const PreviewRange range =
+        depth_range_of(options.depth_scale, options.match.disparities, &table, shot.first_frame);
+    shots.push_back({{"first_frame", shot.first_frame - frames.first},
+                     {"end_frame", shot.end_frame - frames.first},
+                     {"min_px", double{range.min_px}},
+                     {"max_px", double{range.max_px}}});
+  }
+  const int bits = bits_of(options.depth_coding);
+  const int white = (1 << bits) - 1;
+  return {
+      {"bits", bits},
+      {"frames_per_second", to_string(options.frame_rate)},
+      {"unknown", 0},
+      {"disparity_px", fmt::format("min_px + (level - 1) / {} * (max_px - min_px), level 1 to {}",
+                                   white - 1, white)},
+      {"shots", shots}};
+}
+
+}  // namespace
+
+std::optional<ComfortReport> write_film_reports(const SequenceOptions& options,
+                                                const SequenceLayout& layout,
+                                                const RunIdentity& identity, FrameRange frames) {
+  const bool has_depth = options.saves(SequenceOutput::kDepthVideo);
+  const bool has_comfort = options.saves(SequenceOutput::kComfort);
+  if (frames.empty() || (!has_depth && !has_comfort)) {
+    return std::nullopt;
+  }
+  const std::filesystem::path file = layout.journal_folder() / kShotsFile;
+  const std::optional<ShotTable> table = read_shot_table(file);
+  if (!table) {
+    throw Error(
+        fmt::format("{}: is missing, expected the shots of the run; --overwrite starts the "
+                    "run again",
+                    file.string()));
+  }
+  if (has_depth) {
+    write_text_file(layout.depth_description(), document_of(depth_values(options, *table, frames)));
+  }
+  if (!has_comfort) {
+    return std::nullopt;
+  }
+  std::map<int, FrameComfort> measured;
+  const DeliveredFrames delivered(layout);
+  for (const auto& [frame, record] : delivered.records()) {
+    if (record.comfort && frames.contains(frame)) {
+      measured.emplace(frame, *record.comfort);
+    }
+  }
+  if (measured.empty()) {
+    return std::nullopt;
+  }
+  std::vector<ComfortSpan> spans;
+  for (const Shot& shot : shots_in(*table, frames)) {
+    spans.push_back({shot.first_frame, shot.end_frame});
+  }
+  ComfortReport report = summarise_comfort(measured, spans);
+  const std::string input = identity.inputs.empty() ? std::string() : identity.inputs.front();
+  const ComfortPage page{report, measured, options.frame_rate, input.substr(0, input.rfind(": "))};
+  write_text_file(layout.comfort_report("json"), document_of(comfort_values(page)));
+  write_text_file(layout.comfort_report("html"), make_comfort_page(page));
+  return report;
+}
+
+void print_comfort(const std::string& command, const ComfortReport& report,
+                   const SequenceLayout& layout) {
+  int unsafe = 0;
+  int borderline = 0;
+  for (const ComfortSummary& shot : report.shots) {
+    unsafe += shot.verdict == ComfortVerdict::kUnsafe ? 1 : 0;
+    borderline += shot.verdict == ComfortVerdict::kBorderline ? 1 : 0;
+  }
+  tell(
+      "{}: comfort: {}; {:.2f} % of the width in front of the screen, {:.2f} % behind it; of {} "
+      "shot{} {} unsafe, {} borderline -> {}\n",
+      command, name_of(report.film.verdict), report.film.crossed_percent,
+      report.film.uncrossed_percent, report.shots.size(), report.shots.size() == 1 ? "" : "s",
+      unsafe, borderline, layout.comfort_report("html").string());
+}
+
+}  // namespace vantage::apps

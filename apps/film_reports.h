@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "engine/comfort/comfort_summary.h"
+#include "engine/sequence/delivered_frames.h"
+#include "engine/sequence/run_journal.h"
+#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/sequence_options.h"
+
+namespace vantage::apps {
+
+/// Writes what belongs to all of `frames`, which are done: depth-video.json, comfort.json and
+/// comfort.html, as far as `options` save them. Identical for any division of the run. Returns the
+/// report on comfort, if it is saved and a frame was measured. Throws Error.
+std::optional<ComfortReport> write_film_reports(const SequenceOptions& options,
+                                                const SequenceLayout& layout,
+                                                const RunIdentity& identity, FrameRange frames);
+
+/// Tells what the report says of the film on stderr, in a few lines.
+void print_comfort(const std::string& command, const ComfortReport& report,
+                   const SequenceLayout& layout);
+
+}  // namespace vantage::apps

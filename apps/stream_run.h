@@ -1,0 +1,23 @@
+#pragma once
+
+#include "apps/run_report.h"
+#include "apps/run_session.h"
+#include "apps/run_settings.h"
+
+namespace vantage::apps {
+
+/// Whether the run reads standard input or writes standard output ("-").
+bool is_stream(const RunJob& job);
+
+/// Binds --raw-video.
+void add_raw_video_setting(Settings& settings, std::optional<RawVideoShape>& shape);
+
+/// Throws UsageError for settings that do not go with a stream; `job` is otherwise complete.
+void check_stream(const RunJob& job, const Settings& settings);
+
+/// Writes the only output of the run to standard output, as its frames are made. Returns the exit
+/// code.
+int run_to_stream(const RunJob& job, const RunSession& session, Execution& execution,
+                  RunReport& report);
+
+}  // namespace vantage::apps

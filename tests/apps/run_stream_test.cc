@@ -1,0 +1,192 @@
+// Runs that read standard input and write standard output.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "engine/image/stereo_packing.h"
+#include "engine/io/disparity_io.h"
+#include "engine/io/photograph_io.h"
+#include "engine/io/video_io.h"
+#include "tests/apps/run_fixture.h"
+#include "tests/test_paths.h"
+
+namespace vantage {
+namespace run_stream_test {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+using Words = std::vector<std::string>;
+
+class RunStreams : public RunTest {
+ protected:
+  /// A shell command of the program.
+  [[nodiscard]] static std::string command(const Words& arguments) {
+    std::string line = "XDG_CONFIG_HOME=/none '" + test_paths::vantage_binary() + "' run";
+    for (const std::string& word : arguments) {
+      line += " '" + word + "'";
+    }
+    return line;
+  }
+  /// Exit code of the line in a shell; what the program says is in err_.
+  [[nodiscard]] int shell(const std::string& line) const {
+    const int status = std::system(("( " + line + " ) 2>" + err_).c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+  [[nodiscard]] std::string err() const { return read_file(err_); }
+  /// Both images of `frames` frames side by side as raw rgb24.
+  [[nodiscard]] std::string raw_pairs(int frames) const {
+    std::string bytes;
+    for (int frame = 0; frame < frames; ++frame) {
+      Photograph packed;
+      pack_stereo(read_photograph(left_ + "/" + frame_file(frame)),
+                  read_photograph(right_ + "/" + frame_file(frame)), {}, packed);
+      const auto& image = std::get<Image<std::uint8_t>>(packed.pixels);
+      for (int y = 0; y < image.height(); ++y) {
+        bytes.append(reinterpret_cast<const char*>(image.row(y)),
+                     3 * static_cast<std::size_t>(image.width()));
+      }
+    }
+    return bytes;
+  }
+
+  std::string err_ = folder_ / "err";
+  Words depth_ = {"--stereo",
+                  "-",
+                  "--packing",
+                  "sbsl",
+                  "--raw-video",
+                  "128x48",
+                  "--save",
+                  "depth-video",
+                  "--depth-range",
+                  "-1:10",
+                  "--disparities=0:9",
+                  "--stream-format",
+                  "rawvideo",
+                  "-o",
+                  "-",
+                  "--quiet"};
+};
+
+TEST_F(RunStreams, RawPairsInRawDepthOut) {
+  constexpr int kFew = 5;
+  ASSERT_EQ(run(folder_ / "maps", {"--frames", "0-4"}).exit_code, 0);
+  write_file(folder_ / "pairs.rgb", raw_pairs(kFew));
+  ASSERT_EQ(shell("cat " + (folder_ / "pairs.rgb") + " | " + command(depth_) + " >" +
+                  (folder_ / "depth.raw")),
+            0)
+      << err();
+  const std::string levels = read_file(folder_ / "depth.raw");
+  ASSERT_EQ(levels.size(), 2U * kFew * kWidth * kHeight);
+  std::size_t place = 0;
+  int wrong = 0;
+  for (int frame = 0; frame < kFew; ++frame) {
+    const DisparityMap map =
+        read_disparity(folder_ / ("maps/disparity/" + frame_file(frame, "pfm")));
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x, place += 2) {
+        const int level = static_cast<unsigned char>(levels[place]) +
+                          256 * static_cast<unsigned char>(levels[place + 1]);
+        const double expected = 1 + (static_cast<double>(map.at(x, y)) + 1) / 11 * 65534;
+        wrong += std::abs(level - expected) > 0.6 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(RunStreams, Y4mThroughTwoPrograms) {
+  const std::string pairs = folder_ / "pairs.y4m";
+  const std::string through = folder_ / "through.y4m";
+  const std::string again = folder_ / "again.y4m";
+  const Words source = {"--left", left_,        "--right",
+                        right_,   "--frames",   "2-9",
+                        "--fps",  "24000/1001", "--disparities=0:9",
+                        "--save", "stereo",     "--stereo-packing",
+                        "sbsl",   "-o",         "-",
+                        "--quiet"};
+  const auto preview_of = [](const std::string& stereo) {
+    return Words{"--stereo", stereo,    "--packing", "sbsl", "--disparities=0:9",
+                 "--save",   "preview", "-o",        "-",    "--quiet"};
+  };
+  ASSERT_EQ(shell(command(source) + " | tee " + pairs + " | " + command(preview_of("-")) + " >" +
+                  through),
+            0)
+      << err();
+  ASSERT_EQ(shell(command(preview_of(pairs)) + " >" + again), 0) << err();
+  EXPECT_TRUE(read_file(through) == read_file(again));
+  VideoReader reader(through);
+  EXPECT_EQ(reader.frame_count(), 8);
+  EXPECT_EQ(reader.width(), kWidth);
+  EXPECT_EQ(reader.height(), kHeight);
+  EXPECT_EQ(reader.frame_rate(), (FrameRate{24000, 1001}));
+  // A stream of depth, of every second pair.
+  Words depth = preview_of("-");
+  depth[6] = "depth-video";
+  depth.insert(depth.end(), {"--every", "2"});
+  ASSERT_EQ(shell(command(depth) + " <" + pairs + " >" + again), 0) << err();
+  VideoReader grey(again);
+  EXPECT_EQ(grey.frame_count(), 4);
+  Photograph picture;
+  ASSERT_TRUE(grey.read(picture));
+  EXPECT_EQ(picture.channels(), 1);
+  EXPECT_TRUE(std::holds_alternative<Image<std::uint16_t>>(picture.pixels));
+}
+
+TEST_F(RunStreams, StreamsThatEndEarly) {
+  const std::string bytes = raw_pairs(3);
+  write_file(folder_ / "cut.rgb", bytes.substr(0, bytes.size() - 100));
+  EXPECT_EQ(shell(command(depth_) + " <" + (folder_ / "cut.rgb") + " >" + (folder_ / "out.raw")),
+            1);
+  EXPECT_THAT(err(), HasSubstr("standard input frame 2"));
+  EXPECT_EQ(read_file(folder_ / "out.raw").size(), 2U * 2 * kWidth * kHeight);
+  EXPECT_EQ(shell(command(depth_) + " </dev/null >" + (folder_ / "out.raw")), 1);
+  EXPECT_THAT(err(), HasSubstr("standard input"));
+  write_file(folder_ / "text.y4m", "no video\n");
+  EXPECT_EQ(shell(command({"--stereo", "-", "--packing", "sbsl", "--save", "preview", "-o", "-"}) +
+                  " <" + (folder_ / "text.y4m") + " >" + (folder_ / "out.raw")),
+            1);
+  EXPECT_THAT(err(), HasSubstr("standard input: is empty or no y4m video"));
+  // Nobody reads any longer.
+  write_file(folder_ / "pairs.rgb", raw_pairs(kFrames));
+  EXPECT_EQ(shell("{ " + command(depth_) + " <" + (folder_ / "pairs.rgb") + "; echo $? >" +
+                  (folder_ / "code") + "; } | true"),
+            0);
+  EXPECT_EQ(read_file(folder_ / "code"), "1\n");
+  EXPECT_THAT(err(), HasSubstr("cannot write to standard output"));
+}
+
+TEST_F(RunStreams, WrongOptions) {
+  const std::vector<std::pair<Words, std::string>> cases = {
+      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out"}, "expected --output -"},
+      {{"--left", left_, "--right", right_, "-o", "-"}, "--save with one output of pictures"},
+      {{"--left", left_, "--right", right_, "-o", "-", "--save", "preview,unmatched"},
+       "--save with one output of pictures"},
+      {{"--left", left_, "--right", right_, "-o", "-", "--save", "preview", "--preview-range",
+        "shot"},
+       "expected no shots"},
+      {{"--left", left_, "--right", right_, "-o", "-", "--save", "preview", "--resume"},
+       "--resume has no effect"},
+      {{"--left", left_, "--right", right_, "-o", folder_ / "out", "--stream-format", "rawvideo"},
+       "--stream-format has no effect"},
+      {{"--left", left_, "--right", right_, "-o", folder_ / "out", "--raw-video", "4x4"},
+       "--raw-video has no effect"},
+      {{"--stereo", "-", "--packing", "sbsl", "-o", "-", "--save", "preview", "--raw-video", "4"},
+       "--raw-video is '4', expected a size"}};
+  for (const auto& [options, message] : cases) {
+    Words all = options;
+    all.insert(all.begin(), "run");
+    const ProcessResult result = run_vantage(all);
+    EXPECT_EQ(result.exit_code, 2) << message << result.err;
+    EXPECT_TRUE(is_one_line(result, "run"));
+    EXPECT_THAT(result.err, HasSubstr(message));
+  }
+}
+
+}  // namespace run_stream_test
+}  // namespace vantage
