@@ -19,7 +19,8 @@ void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
        "Left frames: a folder, pattern (left/%06d.png), glob or video");
   path("right", input.right, "SOURCE", "Right frames");
   settings.integer("offset", input.offset_frames, "N", "Pair left frame i with right frame i + N");
-  path("stereo", input.stereo, "SOURCE", "Frames that hold both images; needs --packing. - is a y4m video on standard input");
+  path("stereo", input.stereo, "SOURCE",
+       "Frames that hold both images; needs --packing. - is a y4m video on standard input");
   settings.choice<StereoPacking>(
       "packing", input.packing, stereo_packing_names(),
       "Stereo layout (ffmpeg's stereo3d names): sbsl side by side, left first; abl "

@@ -5,8 +5,8 @@
 
 namespace vantage::apps {
 
-/// --left, --right, --offset, --stereo, --packing, --raw-video, --pairs, --sequence and --step, in the group
-/// that has begun.
+/// --left, --right, --offset, --stereo, --packing, --raw-video, --pairs, --sequence and --step, in
+/// the group that has begun.
 void add_pair_source_settings(Settings& settings, PairSourceOptions& input);
 
 }  // namespace vantage::apps

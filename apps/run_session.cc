@@ -140,10 +140,9 @@ std::string counted_frames(const RunJob& job, int frame_count) {
   if (job.input.stereo == "-") {
     return "a stream of pairs";
   }
-  return job.sequence.baselines.size() < 2
-             ? fmt::format("{} pairs", frame_count)
-             : fmt::format("{} frames of {} images", frame_count,
-                           job.sequence.baselines.size() + 1);
+  return job.sequence.baselines.size() < 2 ? fmt::format("{} pairs", frame_count)
+                                           : fmt::format("{} frames of {} images", frame_count,
+                                                         job.sequence.baselines.size() + 1);
 }
 
 }  // namespace

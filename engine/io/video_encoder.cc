@@ -6,6 +6,7 @@
 #include <new>
 
 #include "engine/io/grey_to_frame.h"
+#include "engine/io/libav_functions.h"
 #include "engine/io/photograph_to_frame.h"
 
 extern "C" {

@@ -4,16 +4,17 @@
 
 #include "engine/image/photograph.h"
 #include "engine/io/libav.h"
-#include "engine/io/libav_functions.h"
 #include "engine/io/video_coding.h"
 #include "engine/io/video_io.h"
+
+struct AVCodec;
+struct AVDictionary;
 
 namespace vantage {
 
 /// The encoder of a coding, not open yet, and its options.
 class EncoderSetup {
  public:
-  /// `encoder` is empty if this FFmpeg has none; `name()` tells which one was looked for.
   EncoderSetup(const VideoEncoding& encoding, int width, int height);
   EncoderSetup(const EncoderSetup&) = delete;
   EncoderSetup& operator=(const EncoderSetup&) = delete;
