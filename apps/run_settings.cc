@@ -406,6 +406,10 @@ void complete(RunJob& job, const Settings& settings) {
       !job.sequence.match.disparities_auto) {
     throw UsageError("search-range is shot, expected film with a range in --disparities");
   }
+  if (job.sequence.search_range_per_shot && job.memory_bytes) {
+    throw UsageError(
+        "search-range is shot, expected film with --memory, which plans for one range");
+  }
   if (job.tuning.ignored) {
     settings.refuse_idle({"tuning"}, "with --no-tuning");
   }

@@ -19,11 +19,6 @@ namespace {
 constexpr const char* kStream = "-";
 constexpr int kMaxSide_px = 65535;
 
-bool is_of_floats(SequenceOutput output) {
-  return output == SequenceOutput::kDisparity || output == SequenceOutput::kRightDisparity ||
-         output == SequenceOutput::kConfidence;
-}
-
 }  // namespace
 
 void add_raw_video_setting(Settings& settings, std::optional<RawVideoShape>& shape) {
@@ -77,10 +72,10 @@ void check_stream(const RunJob& job, const Settings& settings) {
   const SequenceOptions& options = job.sequence;
   const SequenceLayout layout(job.output, options);
   if (options.saves(SequenceOutput::kComfort) || layout.streams().size() != 1 ||
-      is_of_floats(layout.streams().front().output)) {
+      !is_picture(layout.streams().front().output)) {
     throw UsageError(
         "output is -, expected --save with one output of pictures: preview, views, stereo, "
-        "depth-video, unmatched, right-unmatched, holes or sources");
+        "depth-video, unmatched, right-unmatched, holes, sources or cyclopean-occlusion");
   }
   if (options.needs_matched_shots() || options.search_range_per_shot ||
       options.depth_scale.scope == DepthVideoScale::Scope::kShot) {

@@ -106,7 +106,7 @@ void judge(const ComfortLimits& limits, ComfortSummary& summary) {
   for (std::size_t side = 0; side < 2; ++side) {
     const ComfortSummary::Border& border = summary.borders[side];
     add(side == 0 ? "left border" : "right border", limits.border.of(border.rows_percent),
-        border.frames == 0
+        border.rows_percent == 0
             ? std::string("nothing in front of the screen is cut")
             : fmt::format("something {:.1f} px in front of the screen is cut in {:.0f} % of the "
                           "rows (frame {}; {} of {} frames)",

@@ -8,31 +8,28 @@ namespace {
 
 constexpr float kLevels = 65534;  // above the first one that is known
 
-DisparityRange searched_in_all(DisparityRange film, const ShotTable& shots) {
-  const bool known =
-      std::ranges::any_of(shots.shots, [](const Shot& shot) { return shot.search.has_value(); });
-  if (!known) {
+}  // namespace
+
+DisparityRange searched_in_all(DisparityRange film, const ShotTable* shots) {
+  if (shots == nullptr) {
     return film;
   }
-  DisparityRange all = shots.shots.front().search.value_or(film);
-  for (const Shot& shot : shots.shots) {
+  DisparityRange all = shots->shots.front().search.value_or(film);
+  for (const Shot& shot : shots->shots) {
     const DisparityRange one = shot.search.value_or(film);
     all = {std::min(all.min, one.min), std::max(all.max, one.max)};
   }
   return all;
 }
 
-}  // namespace
-
 PreviewRange depth_range_of(const DepthVideoScale& scale, DisparityRange film,
                             const ShotTable* shots, int frame) {
   if (scale.scope == DepthVideoScale::Scope::kGiven) {
     return scale.given;
   }
-  const DisparityRange range = shots == nullptr ? film
-                               : scale.scope == DepthVideoScale::Scope::kShot
-                                   ? shots->shot_of(frame).search.value_or(film)
-                                   : searched_in_all(film, *shots);
+  const bool of_shot = scale.scope == DepthVideoScale::Scope::kShot && shots != nullptr;
+  const DisparityRange range =
+      of_shot ? shots->shot_of(frame).search.value_or(film) : searched_in_all(film, shots);
   return {static_cast<float>(range.min),
           static_cast<float>(range.max > range.min ? range.max : range.min + 1)};
 }

@@ -8,6 +8,9 @@
 
 namespace vantage {
 
+/// The disparities searched in any shot. `film`, `shots`: as of depth_range_of().
+DisparityRange searched_in_all(DisparityRange film, const ShotTable* shots);
+
 /// The disparities of the darkest and of the brightest level in the frames of a shot. `film`: the
 /// search range of the run; `shots`: null where all are searched in it.
 PreviewRange depth_range_of(const DepthVideoScale& scale, DisparityRange film,

@@ -335,9 +335,10 @@ void FrameWorker::paint_preview(FrameSlot& slot) const {
     return;
   }
   const TimedStep step(slot, "preview", accounts_.of(RunStep::kPictures));
-  const PreviewRange range = options_.preview_range_per_shot
-                                 ? shots_->shot_of(slot.frame).preview_range
-                                 : preview_range_of(options_.match.disparities);
+  const PreviewRange range =
+      options_.preview_range_per_shot
+          ? shots_->shot_of(slot.frame).preview_range
+          : preview_range_of(searched_in_all(options_.match.disparities, shots_));
   slot.preview.pixels = colour_preview(primary_map(slot).view(), range.min_px, range.max_px);
 }
 

@@ -23,13 +23,6 @@ constexpr int kMaxChunkFrames = 100000;
 constexpr int kMaxCrf = 51;
 constexpr double kFarthestView = 16;  // baselines
 
-bool holds_floats(SequenceOutput output) {
-  return output == SequenceOutput::kDisparity || output == SequenceOutput::kRightDisparity ||
-         output == SequenceOutput::kConfidence || output == SequenceOutput::kPosteriorMean ||
-         output == SequenceOutput::kPosteriorVariance || output == SequenceOutput::kCyclopean ||
-         is_metric(output);
-}
-
 bool contains(const std::vector<SequenceOutput>& outputs, SequenceOutput output) {
   return std::ranges::find(outputs, output) != outputs.end();
 }
@@ -195,7 +188,7 @@ void check_formats(const SequenceOptions& options) {
                                  options.depth_format));
   }
   for (const SequenceOutput output : options.video) {
-    if (holds_floats(output) || is_of_all_frames(output)) {
+    if (!is_picture(output)) {
       throw UsageError(fmt::format(
           "video has {}, whose values a video cannot hold; expected unmatched, right-unmatched, "
           "preview, views, holes, sources, stereo, cyclopean-occlusion or depth-video",
@@ -257,6 +250,23 @@ const std::vector<std::pair<std::string_view, SequenceOutput>>& sequence_output_
       {"depth-video", SequenceOutput::kDepthVideo},
       {"comfort", SequenceOutput::kComfort}};
   return names;
+}
+
+bool is_picture(SequenceOutput output) {
+  switch (output) {
+    case SequenceOutput::kUnmatched:
+    case SequenceOutput::kRightUnmatched:
+    case SequenceOutput::kPreview:
+    case SequenceOutput::kViews:
+    case SequenceOutput::kHoles:
+    case SequenceOutput::kSources:
+    case SequenceOutput::kStereo:
+    case SequenceOutput::kCyclopeanOcclusion:
+    case SequenceOutput::kDepthVideo:
+      return true;
+    default:
+      return false;
+  }
 }
 
 bool SequenceOptions::saves(SequenceOutput output) const { return contains(save, output); }

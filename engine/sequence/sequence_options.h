@@ -56,6 +56,9 @@ constexpr bool is_metric(SequenceOutput output) {
   return output == SequenceOutput::kDepth || output == SequenceOutput::kCloud ||
          output == SequenceOutput::kMesh;
 }
+/// Whether a video can hold it.
+bool is_picture(SequenceOutput output);
+
 /// Whether the output is always a video.
 constexpr bool is_always_video(SequenceOutput output) {
   return output == SequenceOutput::kDepthVideo;

@@ -66,6 +66,8 @@ class RunStreams : public RunTest {
                   "--depth-range",
                   "-1:10",
                   "--disparities=0:9",
+                  "--method",
+                  "ssd",
                   "--stream-format",
                   "rawvideo",
                   "-o",
