@@ -20,7 +20,7 @@ void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
   path("right", input.right, "SOURCE", "Right frames");
   settings.integer("offset", input.offset_frames, "N", "Pair left frame i with right frame i + N");
   path("stereo", input.stereo, "SOURCE",
-       "Frames that hold both images; needs --packing. - is a y4m video on standard input");
+       "Frames with both images, see --packing; -: y4m on standard input");
   settings.choice<StereoPacking>(
       "packing", input.packing, stereo_packing_names(),
       "Stereo layout (ffmpeg's stereo3d names): sbsl side by side, left first; abl "

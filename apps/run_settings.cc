@@ -112,15 +112,14 @@ void add_stereo_views_setting(Settings& settings, std::array<double, 2>& views_x
 
 void add_output_settings(Settings& settings, RunJob& job) {
   settings.start_group("Output");
-  Setting& output = settings.path(
-      "output", job.output, "DIR",
-      "Output folder: DIR/disparity/000000.pfm, DIR/views.mp4 and so on; - writes the "
-      "only output of --save to standard output as a video");
+  Setting& output =
+      settings.path("output", job.output, "DIR",
+                    "Folder, such as DIR/disparity/000000.pfm; -: video on standard output");
   output.short_name = 'o';
   output.required = true;
   output.changes_results = false;
   Setting& save = settings.add(
-      "save", "LIST", "Outputs per frame: " + known_outputs() + "; auto: disparity and any views");
+      "save", "LIST", "Outputs per frame: " + known_outputs() + "; auto: disparity and views");
   save.list = true;
   save.set = [&job](const SettingValue& value) {
     const auto members = to_list(value);
