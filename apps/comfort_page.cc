@@ -171,10 +171,12 @@ std::string make_comfort_page(const ComfortPage& page) {
        {"style", std::string(embedded_file("comfort_page/page.css"))},
        {"verdict", std::string(name_of(film.verdict))},
        {"input", escaped_markup(page.input)},
-       {"amount", fmt::format("{} frames of {}x{} pixels in {} shots, {} frames per second; {:.0f} "
-                              "% of the pixels were matched",
-                              film.frames, film.width_px, film.height_px, page.report.shots.size(),
-                              to_string(page.rate), film.matched_percent)},
+       {"amount",
+        fmt::format("{} frames of {}x{} pixels in {} shot{}, {} frames per second; {:.0f} "
+                    "% of the pixels were matched",
+                    film.frames, film.width_px, film.height_px, page.report.shots.size(),
+                    page.report.shots.size() == 1 ? "" : "s", to_string(page.rate),
+                    film.matched_percent)},
        {"film", film_table(film)},
        {"charts", charts(page)},
        {"shots", shot_table(page)},
