@@ -1,12 +1,45 @@
 #include "apps/pair_source_settings.h"
 
+#include <fmt/format.h>
+
 #include <string>
 #include <utility>
 
 #include "apps/frame_step_setting.h"
-#include "apps/stream_run.h"
 
 namespace vantage::apps {
+namespace {
+
+constexpr int kMaxSide_px = 65535;
+
+/// Binds --raw-video.
+void add_raw_video_setting(Settings& settings, std::optional<RawVideoShape>& shape) {
+  Setting& setting =
+      settings.add("raw-video", "WxH[:FORMAT]",
+                   "Standard input is rawvideo of this size, in one of FFmpeg's pixel formats "
+                   "(default rgb24), with the frame rate of --fps; none: y4m");
+  setting.set = [&shape](const SettingValue& value) {
+    const std::string text = to_text(value);
+    if (text == "none") {
+      shape.reset();
+      return;
+    }
+    const std::size_t colon = text.find(':');
+    const auto size = two_numbers(text.substr(0, colon), 'x');
+    const std::string format = colon == std::string::npos ? "rgb24" : text.substr(colon + 1);
+    if (!size || size->first < 1 || size->second < 1 || size->first > kMaxSide_px ||
+        size->second > kMaxSide_px || format.empty()) {
+      reject_value(value, "a size such as 1920x1080, or with a format 1920x1080:yuv420p, or none");
+    }
+    shape = RawVideoShape{size->first, size->second, format};
+  };
+  setting.get = [&shape]() -> SettingValue {
+    return shape ? fmt::format("{}x{}:{}", shape->width_px, shape->height_px, shape->pixel_format)
+                 : "none";
+  };
+}
+
+}  // namespace
 
 void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
   const auto path = [&](std::string name, std::string& field, std::string value_name,

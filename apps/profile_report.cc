@@ -105,11 +105,11 @@ std::string stages(const Profile& profile, const ThreadCountProfile& count) {
 /// Those that can be seen, and the others in one row.
 void add_parts(const std::vector<PartProfile>& parts, const char* kind,
                const ThreadCountProfile& count, TextTable& table) {
-  constexpr double kMinShare = 1e-3;
+  constexpr double kMinPartShare = 1e-3;
   PartProfile others;
   int hidden = 0;
   for (const PartProfile& part : parts) {
-    if (part.seconds.median < kMinShare * pool_time_s(count)) {
+    if (part.seconds.median < kMinPartShare * pool_time_s(count)) {
       ++hidden;
       others.seconds.median += part.seconds.median;
       others.count += part.count;

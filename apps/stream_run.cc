@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "apps/commands.h"
-#include "apps/frame_step_setting.h"
 #include "apps/interrupt.h"
 #include "apps/progress.h"
 #include "apps/tell.h"
@@ -17,35 +16,8 @@ namespace vantage::apps {
 namespace {
 
 constexpr const char* kStream = "-";
-constexpr int kMaxSide_px = 65535;
 
 }  // namespace
-
-void add_raw_video_setting(Settings& settings, std::optional<RawVideoShape>& shape) {
-  Setting& setting =
-      settings.add("raw-video", "WxH[:FORMAT]",
-                   "Standard input is rawvideo of this size, in one of FFmpeg's pixel formats "
-                   "(default rgb24), with the frame rate of --fps; none: y4m");
-  setting.set = [&shape](const SettingValue& value) {
-    const std::string text = to_text(value);
-    if (text == "none") {
-      shape.reset();
-      return;
-    }
-    const std::size_t colon = text.find(':');
-    const auto size = two_numbers(text.substr(0, colon), 'x');
-    const std::string format = colon == std::string::npos ? "rgb24" : text.substr(colon + 1);
-    if (!size || size->first < 1 || size->second < 1 || size->first > kMaxSide_px ||
-        size->second > kMaxSide_px || format.empty()) {
-      reject_value(value, "a size such as 1920x1080, or with a format 1920x1080:yuv420p, or none");
-    }
-    shape = RawVideoShape{size->first, size->second, format};
-  };
-  setting.get = [&shape]() -> SettingValue {
-    return shape ? fmt::format("{}x{}:{}", shape->width_px, shape->height_px, shape->pixel_format)
-                 : "none";
-  };
-}
 
 bool is_stream(const RunJob& job) { return job.output == kStream || job.input.stereo == kStream; }
 

@@ -9,9 +9,6 @@ namespace vantage::apps {
 /// Whether the run reads standard input or writes standard output ("-").
 bool is_stream(const RunJob& job);
 
-/// Binds --raw-video.
-void add_raw_video_setting(Settings& settings, std::optional<RawVideoShape>& shape);
-
 /// Throws UsageError for settings that do not go with a stream; `job` is otherwise complete.
 void check_stream(const RunJob& job, const Settings& settings);
 

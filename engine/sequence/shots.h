@@ -22,7 +22,7 @@ struct Shot {
   int end_frame = 0;                           ///< after the last one
   std::array<IntensityFit, 4> intensity = {};  ///< of the right images on the left ones (3.9)
   PreviewRange preview_range;                  ///< of the maps
-  std::optional<DisparityRange> search;        ///< found in it; empty: that of the run
+  std::optional<DisparityRange> search = std::nullopt;  ///< found in it; empty: that of the run
 
   friend bool operator==(const Shot&, const Shot&) = default;
 };
