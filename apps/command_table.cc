@@ -20,6 +20,7 @@ constexpr std::array kCommands = {
     Command{"scene build", "Matches neighbouring images of a row or grid of cameras",
             command_scene_build},
     Command{"scene view", "New views between the images of a scene", command_scene_view},
+    Command{"scene cloud", "A point cloud of a scene with poses", command_scene_cloud},
     Command{"scene info", "Images and edges of a scene", command_scene_info},
     Command{"eval", "Error of a disparity map or a view, compared with the truth", command_eval},
     Command{"generate book", "Synthetic pairs of the book, with true disparities",

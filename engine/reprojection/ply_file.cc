@@ -21,9 +21,10 @@ void append(const T* values, std::size_t count, std::uint8_t*& end) {
 std::string header(const PointCloud& cloud, std::size_t triangles, std::string_view frame) {
   std::string text = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment {}\nelement vertex {}\n"
-      "property float x\nproperty float y\nproperty float z\n"
+      "property float x\nproperty float y\nproperty float z\n{}"
       "property uchar red\nproperty uchar green\nproperty uchar blue\n",
-      frame, cloud.size());
+      frame, cloud.size(),
+      cloud.normals.empty() ? "" : "property float nx\nproperty float ny\nproperty float nz\n");
   if (!cloud.confidence.empty()) {
     text += "property float confidence\n";
   }
@@ -38,14 +39,17 @@ std::vector<std::uint8_t> encode(const PointCloud& cloud,
                                  std::string_view frame) {
   constexpr std::size_t kFaceBytes = 1 + 3 * sizeof(std::int32_t);
   const std::string text = header(cloud, triangles.size() / 3, frame);
-  const std::size_t vertex_bytes =
-      3 * sizeof(float) + 3 + (cloud.confidence.empty() ? 0 : sizeof(float));
+  const std::size_t vertex_bytes = (cloud.normals.empty() ? 3 : 6) * sizeof(float) + 3 +
+                                   (cloud.confidence.empty() ? 0 : sizeof(float));
   std::vector<std::uint8_t> bytes(text.size() + cloud.size() * vertex_bytes +
                                   triangles.size() / 3 * kFaceBytes);
   std::uint8_t* end = bytes.data();
   append(text.data(), text.size(), end);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     append(&cloud.positions[3 * i], 3, end);
+    if (!cloud.normals.empty()) {
+      append(&cloud.normals[3 * i], 3, end);
+    }
     append(&cloud.colours[3 * i], 3, end);
     if (!cloud.confidence.empty()) {
       append(&cloud.confidence[i], 1, end);

@@ -42,6 +42,7 @@ struct CloudSource {
 
 struct PointCloud {
   std::vector<float> positions;       ///< x, y, z of each point
+  std::vector<float> normals;         ///< x, y, z of each point, unit vectors, or empty
   std::vector<std::uint8_t> colours;  ///< red, green, blue of each point
   std::vector<float> confidence;      ///< of each point, or empty
 

@@ -8,13 +8,13 @@
 #include <utility>
 #include <variant>
 
+#include "engine/scene_graph/interpolated_disparity.h"
 #include "kernels/bicubic_remap/bicubic_remap.h"
 
 namespace vantage {
 namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-constexpr float kMaxStep_px = 1;
 constexpr double kRectifiedTolerance = 1e-12;
 
 /// Whether rows of the photographs correspond as they are.
@@ -37,27 +37,6 @@ StereoCalibration with_rectified_ones_marked(StereoCalibration calibration) {
 /// Halfway between what both cameras see and what either sees: views need the outer parts, too, and
 /// photographs are not black where their own pixels are brought back.
 constexpr RectificationOptions kAnyDirection = {.kept_outline = 0.5, .any_direction = true};
-
-/// The disparity at a position within the map; NaN = unknown.
-float disparity_at(const DisparityMap& map, double x, double y) {
-  const int left = std::min(static_cast<int>(x), std::max(map.width() - 2, 0));
-  const int top = std::min(static_cast<int>(y), std::max(map.height() - 2, 0));
-  const int right = std::min(left + 1, map.width() - 1);
-  const int bottom = std::min(top + 1, map.height() - 1);
-  const std::array<float, 4> around = {map.at(left, top), map.at(right, top), map.at(left, bottom),
-                                       map.at(right, bottom)};
-  const auto [min, max] = std::minmax_element(around.begin(), around.end());
-  const bool are_finite =
-      std::all_of(around.begin(), around.end(), [](float d) { return std::isfinite(d); });
-  const auto along = static_cast<float>(x - left);
-  const auto down = static_cast<float>(y - top);
-  if (!are_finite || *max - *min > kMaxStep_px) {
-    const float nearest = map.at(along < 0.5F ? left : right, down < 0.5F ? top : bottom);
-    return std::isfinite(nearest) ? nearest : kUnknown;
-  }
-  return (1 - down) * ((1 - along) * around[0] + along * around[1]) +
-         down * ((1 - along) * around[2] + along * around[3]);
-}
 
 }  // namespace
 
@@ -110,7 +89,7 @@ MatchedMap PosedPair::on_photograph(Side side, const MatchedMap& map, double sca
               at.y() <= pair.height_px - 1)) {
           continue;
         }
-        const float d = disparity_at(map.disparity_px, at.x(), at.y());
+        const float d = interpolated_disparity(map.disparity_px.view(), at.x(), at.y());
         if (std::isfinite(d)) {
           disparity_px = static_cast<float>(std::max(double{d}, 0.0) * ray.z() * scale);
           unmatched =
