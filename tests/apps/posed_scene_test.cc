@@ -3,7 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -145,6 +149,68 @@ TEST_F(PosedScene, ViewsOfAColmapModelComeFromSeveralImages) {
   EXPECT_GT(psnr(folder_ / "same.png", cameras_[1]), 30);
   ASSERT_EQ(view({"--sweep", "0:3:3", "-o", folder_ / "s%d.png"}).exit_code, 0);
   EXPECT_TRUE(fs::exists(folder_ / "s2.png"));
+}
+
+/// Positions of a binary PLY file with normals and colours.
+std::vector<Eigen::Vector3d> points_in(const std::string& file) {
+  const std::string bytes = read_file(file);
+  const std::string end = "end_header\n";
+  constexpr std::size_t kVertexBytes = 6 * sizeof(float) + 3;
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t at = bytes.find(end) + end.size(); at < bytes.size(); at += kVertexBytes) {
+    Eigen::Vector3f point;
+    std::memcpy(point.data(), bytes.data() + at, sizeof(point));
+    points.emplace_back(point.cast<double>());
+  }
+  EXPECT_THAT(bytes, HasSubstr(fmt::format("element vertex {}\n", points.size())));
+  return points;
+}
+
+TEST_F(PosedScene, CloudOfAColmapModelLiesOnTheSurfaces) {
+  ASSERT_EQ(build({"--poses", model_}).exit_code, 0);
+  const std::string file = folder_ / "cloud.ply";
+  const ProcessResult fused = run_vantage({"scene", "cloud", place_, "-o", file, "--threads", "1"});
+  ASSERT_EQ(fused.exit_code, 0) << fused.err;
+  std::vector<DisparityMap> truths;
+  for (const PosedCamera& camera : cameras_) {
+    truths.push_back(scene_.render(camera, 0).disparity);
+  }
+  const std::vector<Eigen::Vector3d> points = points_in(file);
+  // Nearly all that the first image shows, and what only others show.
+  EXPECT_GT(points.size(), 160U * 120U * 7 / 10);
+  EXPECT_LT(points.size(), 160U * 120U * 3 / 2);
+  int near = 0;
+  for (const Eigen::Vector3d& point : points) {
+    double best = 1;  // relative error in the image that fits best
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      const PosedCamera& camera = cameras_[i];
+      const Eigen::Vector3d seen = camera.rotation * point + camera.translation;
+      const Eigen::Vector2d at = (camera.matrix * seen).hnormalized().array().round();
+      if (seen.z() > 0 && at.x() >= 0 && at.x() < 160 && at.y() >= 0 && at.y() < 120) {
+        const double truth =
+            static_cast<double>(truths[i].at(static_cast<int>(at.x()), static_cast<int>(at.y())));
+        best = std::min(best, std::abs(seen.z() * truth / camera.matrix(0, 0) - 1));
+      }
+    }
+    near += best < 0.05 ? 1 : 0;
+  }
+  EXPECT_GT(near, static_cast<int>(points.size()) * 97 / 100);
+
+  const std::string again = folder_ / "again.ply";
+  ASSERT_EQ(run_vantage({"scene", "cloud", place_, "-o", again, "--threads", "2"}).exit_code, 0);
+  EXPECT_EQ(read_file(again), read_file(file));
+  const auto problem = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"scene", "cloud", place_, "-o", folder_ / "wrong.ply"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProcessResult result = run_vantage(arguments);
+    EXPECT_NE(result.exit_code, 0);
+    EXPECT_FALSE(fs::exists(folder_ / "wrong.ply"));
+    return result.err;
+  };
+  EXPECT_THAT(problem({"--max-depth", "0.01"}), HasSubstr("no point is seen at one depth"));
+  EXPECT_THAT(problem({"--min-images", "33"}), HasSubstr("min-images is 33"));
+  EXPECT_THAT(run_vantage({"scene", "cloud", place_, "-o", place_ + "/scene.json"}).err,
+              HasSubstr("scene.json"));
 }
 
 TEST_F(PosedScene, WrongPosesAreCorrectedAndHopelessEdgesLeftOut) {
