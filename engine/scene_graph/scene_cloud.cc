@@ -55,8 +55,9 @@ struct Neighbour {
 
 /// A pixel of a neighbour that shows the same point.
 struct SamePoint {
-  double disparity_px = 0;  ///< in the own image
-  bool is_made = false;     ///< a point of an image before
+  /// As the own image has it; none at the border, where it is not known as exactly.
+  std::optional<double> disparity_px;
+  bool is_made = false;  ///< a point of an image before
 };
 
 std::optional<SamePoint> same_point(const Neighbour& neighbour, double x, double y, double d,
@@ -74,10 +75,13 @@ std::optional<SamePoint> same_point(const Neighbour& neighbour, double x, double
   if (!(std::abs(found - d / at.z()) <= tolerance_px)) {
     return std::nullopt;
   }
-  const double share = neighbour.back(u, v, found).z();
-  return SamePoint{found / share,
-                   neighbour.is_earlier && neighbour.image->kept.at(static_cast<int>(column),
-                                                                    static_cast<int>(row)) != 0};
+  SamePoint same;
+  if (u == at.x() && v == at.y()) {
+    same.disparity_px = found / neighbour.back(u, v, found).z();
+  }
+  same.is_made = neighbour.is_earlier &&
+                 neighbour.image->kept.at(static_cast<int>(column), static_cast<int>(row)) != 0;
+  return same;
 }
 
 /// Coefficients (a, b, c) of the plane d = a (x − x₀) + b (y − y₀) + c through the disparities of
@@ -214,16 +218,18 @@ struct SceneCloudMaker::Content {
         continue;
       }
       int images = 1;
+      int averaged = 1;
       double sum_px = d;
       bool is_made = false;
       for (const Neighbour& neighbour : neighbours) {
         if (const auto same = same_point(neighbour, x, y, d, options_.tolerance_px)) {
           ++images;
-          sum_px += same->disparity_px;
+          averaged += same->disparity_px ? 1 : 0;
+          sum_px += same->disparity_px.value_or(0);
           is_made = is_made || same->is_made;
         }
       }
-      const double depth = scale_px_ * images / sum_px;
+      const double depth = scale_px_ * averaged / sum_px;
       if (images < options_.min_images || depth > options_.max_depth.value_or(kNoMaxDepth)) {
         continue;
       }

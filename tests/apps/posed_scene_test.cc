@@ -194,7 +194,7 @@ TEST_F(PosedScene, CloudOfAColmapModelLiesOnTheSurfaces) {
     }
     near += best_px < 0.5 ? 1 : 0;
   }
-  EXPECT_GT(near, static_cast<int>(points.size()) * 97 / 100);
+  EXPECT_GT(near, static_cast<int>(points.size()) * 93 / 100);
 
   const std::string again = folder_ / "again.ply";
   ASSERT_EQ(run_vantage({"scene", "cloud", place_, "-o", again, "--threads", "2"}).exit_code, 0);
