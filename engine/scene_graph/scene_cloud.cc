@@ -48,7 +48,7 @@ struct Projection {
 
 struct Neighbour {
   const CloudImage* image = nullptr;
-  bool is_earlier = false;  ///< its points are made
+  bool is_made = false;  ///< its points are made
   Projection to;
   Projection back;
 };
@@ -79,7 +79,7 @@ std::optional<SamePoint> same_point(const Neighbour& neighbour, double x, double
   if (u == at.x() && v == at.y()) {
     same.disparity_px = found / neighbour.back(u, v, found).z();
   }
-  same.is_made = neighbour.is_earlier &&
+  same.is_made = neighbour.is_made &&
                  neighbour.image->kept.at(static_cast<int>(column), static_cast<int>(row)) != 0;
   return same;
 }
@@ -124,6 +124,7 @@ struct SceneCloudMaker::Content {
         unit_length_(scene.unit_length),
         scale_px_(scene.focal_length_px * scene.unit_length),
         neighbours_(cameras_.size()),
+        is_made_(cameras_.size(), false),
         load_vertex_(std::move(load_vertex)),
         options_(options),
         execution_(execution) {
@@ -131,9 +132,22 @@ struct SceneCloudMaker::Content {
       neighbours_[static_cast<std::size_t>(edge.edge.first)].push_back(edge.edge.second);
       neighbours_[static_cast<std::size_t>(edge.edge.second)].push_back(edge.edge.first);
     }
-    for (std::vector<int>& of_image : neighbours_) {
-      std::ranges::sort(of_image);
+  }
+
+  /// Of the images that are left, that with the most neighbours before it: what it shows is then
+  /// hardly made twice. -1: none is left.
+  [[nodiscard]] int next() const {
+    int best = -1;
+    std::ptrdiff_t max_made = -1;
+    for (std::size_t i = 0; i < neighbours_.size(); ++i) {
+      const auto made = std::ranges::count_if(
+          neighbours_[i], [&](int other) { return is_made_[static_cast<std::size_t>(other)]; });
+      if (!is_made_[i] && made > max_made) {
+        max_made = made;
+        best = static_cast<int>(i);
+      }
     }
+    return best;
   }
 
   void add_image(int number) {
@@ -141,7 +155,7 @@ struct SceneCloudMaker::Content {
     std::vector<Neighbour> neighbours;
     for (const int other : neighbours_[static_cast<std::size_t>(number)]) {
       neighbours.push_back({.image = &loaded(other),
-                            .is_earlier = other < number,
+                            .is_made = is_made_[static_cast<std::size_t>(other)],
                             .to = projection(number, other),
                             .back = projection(other, number)});
     }
@@ -153,7 +167,8 @@ struct SceneCloudMaker::Content {
       }
     });
     append(number, image, depths);
-    release_up_to(number);
+    is_made_[static_cast<std::size_t>(number)] = true;
+    release();
   }
 
   CloudImage& loaded(int number) {
@@ -269,11 +284,12 @@ struct SceneCloudMaker::Content {
     }
   }
 
-  /// Images that no image after `number` has an edge with.
-  void release_up_to(int number) {
+  /// Images that no image that is left has an edge with.
+  void release() {
+    const auto is_made = [&](int number) { return is_made_[static_cast<std::size_t>(number)]; };
     std::erase_if(loaded_, [&](const auto& entry) {
-      const std::vector<int>& others = neighbours_[static_cast<std::size_t>(entry.first)];
-      return std::max(entry.first, others.empty() ? 0 : others.back()) <= number;
+      return is_made(entry.first) &&
+             std::ranges::all_of(neighbours_[static_cast<std::size_t>(entry.first)], is_made);
     });
   }
 
@@ -282,13 +298,13 @@ struct SceneCloudMaker::Content {
   int height_px_;
   double unit_length_;
   double scale_px_;
-  std::vector<std::vector<int>> neighbours_;  // of each image, ascending
+  std::vector<std::vector<int>> neighbours_;  // of each image
+  std::vector<bool> is_made_;
   LoadVertex load_vertex_;
   SceneCloudOptions options_;
   Execution& execution_;
   std::map<int, CloudImage> loaded_;
   PointCloud cloud_;
-  int done_ = 0;
 };
 
 void SceneCloudOptions::validate() const {
@@ -320,10 +336,11 @@ SceneCloudMaker::SceneCloudMaker(const StoredScene& scene, LoadVertex load_verte
 SceneCloudMaker::~SceneCloudMaker() = default;
 
 bool SceneCloudMaker::add_image() {
-  if (content_->done_ == static_cast<int>(content_->cameras_.size())) {
+  const int number = content_->next();
+  if (number < 0) {
     return false;
   }
-  content_->add_image(content_->done_++);
+  content_->add_image(number);
   return true;
 }
 

@@ -30,17 +30,18 @@ struct SceneCloudOptions {
 ///
 /// Each pixel with a match, unless it is beside a jump of the disparity, is compared with the maps
 /// of the images that its image has an edge with. Depths that agree are averaged along its ray. A
-/// surface that several images see becomes points once, from the first of them. Normals come from
-/// planes fitted to the disparities around a pixel, and point towards its camera.
+/// surface that several images see becomes points once, from the first of them: the next image is
+/// always that with the most neighbours before it. Normals come from planes fitted to the
+/// disparities around a pixel, and point towards its camera.
 ///
-/// Points are in the order of the images, then of rows. Identical for any `execution`. Thread rule:
-/// one thread at a time.
+/// Points are in that order of the images, then of rows. Identical for any `execution`. Thread
+/// rule: one thread at a time.
 class SceneCloudMaker {
  public:
   using LoadVertex = std::function<SceneVertex(int vertex)>;
 
-  /// `load_vertex` gives the image and the maps of a vertex; they are in memory from the first to
-  /// the last image that has an edge with it. `execution` must outlive the maker. Throws UsageError
+  /// `load_vertex` gives the image and the maps of a vertex; they are in memory until all images
+  /// that have an edge with it are added. `execution` must outlive the maker. Throws UsageError
   /// for invalid options, and for a scene without poses.
   SceneCloudMaker(const StoredScene& scene, LoadVertex load_vertex,
                   const SceneCloudOptions& options, Execution& execution);
