@@ -23,6 +23,10 @@ readonly BROWSER_PACKAGES=(chromium)
 # shellcheck disable=SC2034
 readonly PACKAGING_PACKAGES=(dpkg-dev file)
 
+# What the documentation site is built with.
+# shellcheck disable=SC2034
+readonly SITE_PACKAGES=(mkdocs mkdocs-material python3-opencv python3-numpy)
+
 can_be_root() {
   [[ $(id -u) -eq 0 ]] || command -v sudo >/dev/null
 }
