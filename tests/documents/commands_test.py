@@ -53,6 +53,8 @@ COPIES = {
     "photograph.png": "row/view-1.png",
     "first.png": "row/view-0.png", "second.png": "row/view-1.png", "third.png": "row/view-2.png",
     "upper.png": "left.png", "lower.png": "right.png", "a.png": "left.png", "b.png": "right.png",
+    "tile-left.tif": "left.png", "tile-right.tif": "right.png",
+    "training/image_2/000000_10.png": "left.png", "training/image_3/000000_10.png": "right.png",
     "photos/0.png": "row/view-0.png", "photos/1.png": "row/view-1.png",
     "photos/2.png": "row/view-2.png",
 }
@@ -86,8 +88,10 @@ class Inputs:
         self.vantage("generate scene --width 192 --height 144 --near 14 --view 0 --view 1 --view 2 "
                      "-o row")
         for name, source in COPIES.items():
-            (folder / name).parent.mkdir(exist_ok=True)
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(folder / source, folder / name)
+        (folder / "training/disp_occ_0").mkdir()
+        self.vantage("match left.png right.png -o training/disp_occ_0/000000_10.png")
         for used in ("film", "row"):
             shutil.rmtree(folder / used)
         (folder / "rig.yml").write_text(rig_file((folder / "calib.txt").read_text()))
