@@ -63,17 +63,8 @@ libjpeg-dev, libpng-dev, libswscale-dev, libswresample-dev, libavutil-dev, pkg-c
   "C++ library of the stereo engine Vantage"
   "Static libraries, headers and the CMake package Vantage: find_package(Vantage)
 gives the target vantage::engine.")
-# What cpack puts into packages; building all would build the tests, too.
+# What cpack puts into packages; it would build all targets itself, tests among them.
 add_custom_target(vantage_packaged DEPENDS vantage vantage_reference vantage_engine)
-if(TARGET vantage_python)
-  debian_package(python python3-vantage python
-    "python3 (>= ${VANTAGE_PYTHON_VERSION}), python3 (<< ${VANTAGE_NEXT_PYTHON}), python3-numpy, \
-${late_libraries}"
-    "Python module of the stereo engine Vantage"
-    "import vantage: disparity maps, new views, rectification and points from NumPy
-arrays.")
-  add_dependencies(vantage_packaged vantage_python)
-endif()
 if(TARGET vantage_python)
   debian_package(python python3-vantage python
     "python3 (>= ${VANTAGE_PYTHON_VERSION}), \
