@@ -20,7 +20,8 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-DOCUMENTS = ["README.md", "docs/index.md", "docs/GUIDE.md", "docs/RECIPES.md", "docs/SEQUENCES.md"]
+DOCUMENTS = ["README.md", "CONTRIBUTING.md", "perf/README.md",
+             *sorted(f"docs/{file.name}" for file in (ROOT / "docs").glob("*.md"))]
 FENCE = re.compile(r"^```(\w*)\s*$")
 NOT_RUN = re.compile(r"<!-- not run: .+ -->")
 
@@ -44,6 +45,7 @@ def shell_blocks(text):
             before = line
     return blocks
 
+
 CONTINUES_A_RUN = re.compile(r"--resume|vantage (verify|merge|profile)")
 
 # Name in the documents → generated file.
@@ -52,13 +54,12 @@ COPIES = {
     "truth.pfm": "left-disparity.pfm", "visible.png": "left-occluded.png",
     "photograph.png": "row/view-1.png",
     "first.png": "row/view-0.png", "second.png": "row/view-1.png", "third.png": "row/view-2.png",
-    "upper.png": "left.png", "lower.png": "right.png", "a.png": "left.png", "b.png": "right.png",
+    "upper.png": "row/view-0.png", "lower.png": "row/view-0,1.png", "a.png": "left.png", "b.png": "right.png",
     "tile-left.tif": "left.png", "tile-right.tif": "right.png",
     "training/image_2/000000_10.png": "left.png", "training/image_3/000000_10.png": "right.png",
     "photos/0.png": "row/view-0.png", "photos/1.png": "row/view-1.png",
     "photos/2.png": "row/view-2.png",
 }
-
 
 
 def rig_file(calib):
@@ -85,7 +86,7 @@ class Inputs:
         self.vantage("generate scene --width 192 --height 144 --near 14 -o .")
         self.vantage("run --left left --right right --disparities 0:15 --save stereo "
                      "--stereo-packing sbsl --video stereo --preset fast -o film")
-        self.vantage("generate scene --width 192 --height 144 --near 14 --view 0 --view 1 --view 2 "
+        self.vantage("generate scene --width 192 --height 144 --near 14 --view 0 --view 1 --view 2 --view 0,1 "
                      "-o row")
         for name, source in COPIES.items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -94,6 +95,8 @@ class Inputs:
         self.vantage("match left.png right.png -o training/disp_occ_0/000000_10.png")
         for used in ("film", "row"):
             shutil.rmtree(folder / used)
+        (folder / "poses.txt").write_text(  # KITTI's: each frame half a metre ahead
+            "".join(f"1 0 0 0 0 1 0 0 0 0 1 {0.5 * frame}\n" for frame in range(6)))
         (folder / "rig.yml").write_text(rig_file((folder / "calib.txt").read_text()))
 
     def vantage(self, words):
@@ -129,7 +132,7 @@ def main():
     parser.add_argument("--verbose", action="store_true")
     arguments = parser.parse_args()
     documents = [document for document in DOCUMENTS
-                 if (ROOT / document).exists() and arguments.only in (None, document)]
+                 if arguments.only in (None, document)]
     with tempfile.TemporaryDirectory() as work:
         work = pathlib.Path(work)
         (work / "inputs").mkdir()
