@@ -1,4 +1,6 @@
 """Reference pages in Markdown, one per command."""
+import html
+
 from program import default_text, groups, page_name, usage
 
 
@@ -9,7 +11,7 @@ def inline(text):
 
 
 def code(text):
-    return "`" + text.replace("|", "\\|") + "`"
+    return "<code>" + html.escape(text, quote=False).replace("|", "&#124;") + "</code>"
 
 
 def option_row(option):

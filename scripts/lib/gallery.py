@@ -4,7 +4,8 @@
 usage: gallery.py VANTAGE PHOTOGRAPHS_DIR OUT [WIDTH]
 
 Writes OUT/gallery.md and its pictures. One scene is a photograph (aloeL.jpg, aloeR.jpg and the truth
-aloeGT.png of PHOTOGRAPHS_DIR; without them one scene less), the others are generated, WIDTH (640) pixels wide.
+aloeGT.png of PHOTOGRAPHS_DIR; without them one scene less). The others are generated, WIDTH (640)
+pixels wide.
 """
 import pathlib
 import subprocess
@@ -22,8 +23,8 @@ SCENES = [
     ("Noise", "The same with noise of 6 grey levels in both images.", ["--noise", "6"]),
     ("Cameras of different brightness", "The right camera has 1.3 times the gain and an offset of 10.",
      ["--right-gain", "1.3", "--right-offset", "10"]),
-    ("A wide range of disparities", "Disparities up to 96 of 640 pixels.",
-     ["--near", "96", "--seed", "3"]),
+    ("A wide range of disparities", "Disparities up to a seventh of the width.",
+     ["--near", "{seventh_of_width}", "--seed", "3"]),
 ]
 
 
@@ -134,7 +135,8 @@ def main():
         for number, (title, caption, options) in enumerate(SCENES):
             folder = pathlib.Path(work) / str(number)
             vantage(program, "generate", "scene", "-o", folder, "--width", width_px,
-                    "--height", width_px * 3 // 4, *options)
+                    "--height", width_px * 3 // 4,
+                    *(word.format(seventh_of_width=width_px // 7) for word in options))
             truth = cv2.imread(str(folder / "left-disparity.pfm"), cv2.IMREAD_UNCHANGED)
             hidden = cv2.imread(str(folder / "left-occluded.png"), cv2.IMREAD_GRAYSCALE)
             scenes.append((title, caption, folder / "left.png", folder / "right.png",
