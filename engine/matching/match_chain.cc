@@ -45,8 +45,13 @@ bool can_share_costs(const MethodParameters& parameters) {
          steps_per_px(parameters) == 1;
 }
 
-bool shares_costs(const MethodParameters& parameters, const ChainInput& input) {
-  return can_share_costs(parameters) && input.partners.size() == 1 && input.prior_px.empty() &&
+bool shares_costs(const MethodParameters& parameters, const ChainInput& input,
+                  scheduler::Extent image, int candidates) {
+  constexpr double kMaxStoredBytes = 64.0 * 1024 * 1024;
+  const scheduler::Extent level = coarser_extent(image);
+  const double stored_bytes = 0.5 * candidates * level.columns * level.rows;
+  return can_share_costs(parameters) && stored_bytes <= kMaxStoredBytes &&
+         input.partners.size() == 1 && input.prior_px.empty() &&
          input.partners.front().baseline_ratio == 1 && input.grid == nullptr;
 }
 

@@ -92,9 +92,11 @@ struct ChainLevel {
 };
 
 /// Whether the costs of both images' coarse levels can be reduced together, in the method and in
-/// the search of `input`.
+/// the search of `input` over so many candidates. Larger images make them one after the other: what
+/// is stored for the second one would take longer to get from the system than it saves.
 bool can_share_costs(const MethodParameters& parameters);
-bool shares_costs(const MethodParameters& parameters, const ChainInput& input);
+bool shares_costs(const MethodParameters& parameters, const ChainInput& input,
+                  scheduler::Extent image, int candidates);
 
 // Cells of a row are [x][candidate]: floats (energies or likelihoods), bytes (energies in steps),
 // fixed point of 16 bits (EnergyFormat), window sums of 32 bits. Stored levels hold bytes or half

@@ -144,7 +144,11 @@ void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence,
   const Photograph& searched = work.images[own].reduced(reductions);
   const auto& costs = work.costs[static_cast<std::size_t>(reductions)];
   ChainInput input{nullptr, &costs[own], {CostPartner{&costs[other]}}};
-  input.sharing = shares_costs(search.parameters, input) ? sharing : CostSharing::kNone;
+  const scheduler::Extent size_px{searched.width(), searched.height()};
+  input.sharing = shares_costs(search.parameters, input, size_px,
+                               candidate_count(search.disparities, search.parameters))
+                      ? sharing
+                      : CostSharing::kNone;
   input.edges = work.search_edges.prepare(searched, search.parameters, execution_);
   // Only the size counts.
   const ImageView<float> size(nullptr, searched.width(), searched.height(), 1, 0);

@@ -184,8 +184,10 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans_of(
   const MatchChain chain(
       parameters, geometry, task.input, {.disparity_px = task.map->disparity_px.view()},
       has_windows ? ChainLevel{.reduced = &costs,
-                               .reduced_right =
-                                   shares_costs(parameters, task.input) ? &right_costs : nullptr}
+                               .reduced_right = shares_costs(parameters, task.input,
+                                                             extents.front(), geometry.count)
+                                                    ? &right_costs
+                                                    : nullptr}
                   : ChainLevel{.coarser = extents.size() > 1 ? &coarser : nullptr,
                                .blocks = is_pruned ? &blocks : nullptr});
   std::vector<scheduler::ChainPlan> plans;
@@ -419,7 +421,9 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     choose_tiles(of_left, of_right, confidence, *request.previous, *prepared, times);
   }
   if (of_left.need.any() && of_right.need.any() && of_left.previous == nullptr && !is_symmetric &&
-      !in_force_.disparities_y && shares_costs(prepared->parameters, of_left.input)) {
+      !in_force_.disparities_y &&
+      shares_costs(prepared->parameters, of_left.input, {left.width(), left.height()},
+                   candidate_count(in_force_.disparities, prepared->parameters))) {
     of_left.input.sharing = CostSharing::kStores;
     of_right.input.sharing = CostSharing::kUses;
   }

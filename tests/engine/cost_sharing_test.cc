@@ -56,14 +56,16 @@ TEST(CostSharing, MapsAreThoseOfEachImageAlone) {
   }
 }
 
-TEST(CostSharing, IsForByteCostsOfOnePartner) {
+TEST(CostSharing, IsForByteCostsOfOnePartnerAndImagesThatAreNotLarge) {
   MethodParameters parameters = options_of({0, 20}).resolved();
   ChainInput input{nullptr, nullptr, {CostPartner{}}};
-  EXPECT_TRUE(shares_costs(parameters, input));
+  EXPECT_TRUE(shares_costs(parameters, input, {640, 480}, 64));
+  EXPECT_TRUE(shares_costs(parameters, input, {1920, 1080}, 256));
+  EXPECT_FALSE(shares_costs(parameters, input, {3840, 2160}, 256));
   input.partners.emplace_back();
-  EXPECT_FALSE(shares_costs(parameters, input));
+  EXPECT_FALSE(shares_costs(parameters, input, {640, 480}, 64));
   input.partners = {CostPartner{.baseline_ratio = 2}};
-  EXPECT_FALSE(shares_costs(parameters, input));
+  EXPECT_FALSE(shares_costs(parameters, input, {640, 480}, 64));
   parameters.cost = MatchCost::kSquared;
   EXPECT_FALSE(can_share_costs(parameters));
 }
