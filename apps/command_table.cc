@@ -22,6 +22,7 @@ constexpr std::array kCommands = {
     Command{"scene view", "New views between the images of a scene", command_scene_view},
     Command{"scene cloud", "A point cloud of a scene with poses", command_scene_cloud},
     Command{"scene info", "Images and edges of a scene", command_scene_info},
+    Command{"asp", "A disparity map for Ames Stereo Pipeline: float TIFF with gaps", command_asp},
     Command{"eval", "Error of a disparity map or a view, compared with the truth", command_eval},
     Command{"generate book", "Synthetic pairs of the book, with true disparities",
             command_generate_book},

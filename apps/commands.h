@@ -36,6 +36,7 @@ int command_rectify(const Arguments& arguments);
 int command_eval(const Arguments& arguments);
 int command_scene_build(const Arguments& arguments);
 int command_scene_view(const Arguments& arguments);
+int command_asp(const Arguments& arguments);
 int command_scene_cloud(const Arguments& arguments);
 int command_scene_info(const Arguments& arguments);
 int command_generate_book(const Arguments& arguments);

@@ -5,9 +5,11 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "apps/commands.h"
 #include "apps/input_limits.h"
@@ -142,7 +144,11 @@ int main(int argc, char** argv) {
   std::string command;
   int exit_code = vantage::apps::kExitDone;
   try {
-    exit_code = run(Arguments(argv + 1, argv + argc), command);
+    Arguments arguments(argv + 1, argv + argc);
+    if (argc > 0 && std::filesystem::path(argv[0]).filename() == "vantage-asp") {
+      arguments.insert(arguments.begin(), "asp");  // its callers name a program, not a command
+    }
+    exit_code = run(std::move(arguments), command);
   } catch (const vantage::UsageError& error) {
     return fail(command, error.what(), vantage::apps::kExitUsage);
   } catch (const std::bad_alloc& error) {

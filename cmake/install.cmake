@@ -5,6 +5,10 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Vantage)
 
 # program: the command, its manual pages and completion.
 install(TARGETS vantage RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+# The name under which Ames Stereo Pipeline starts the command `asp`.
+file(CREATE_LINK vantage ${PROJECT_BINARY_DIR}/apps/vantage-asp SYMBOLIC)
+install(FILES ${PROJECT_BINARY_DIR}/apps/vantage-asp DESTINATION ${CMAKE_INSTALL_BINDIR}
+  COMPONENT program)
 if(NOT CMAKE_CROSSCOMPILING AND NOT VANTAGE_SANITIZE)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
   set(reference_dir ${PROJECT_BINARY_DIR}/reference)

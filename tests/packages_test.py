@@ -39,7 +39,7 @@ class PackagesTest(unittest.TestCase):
 
     def test_program_comes_with_manual_completion_and_copyright(self):
         found = files(self.packages["vantage"])
-        for path in ("/usr/bin/vantage", "/usr/share/man/man1/vantage-match.1.gz",
+        for path in ("/usr/bin/vantage", "/usr/bin/vantage-asp", "/usr/share/man/man1/vantage-match.1.gz",
                      "/usr/share/bash-completion/completions/vantage",
                      "/usr/share/zsh/vendor-completions/_vantage",
                      "/usr/share/doc/vantage/copyright"):

@@ -20,6 +20,10 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path += [str(ROOT / "tests/depths"), str(ROOT / "tests/asp")]
+from plain_readers import read_png  # noqa: E402
+from plain_tiff import write_tiff  # noqa: E402
+
 DOCUMENTS = ["README.md", "CONTRIBUTING.md", "perf/README.md",
              *sorted(f"docs/{file.name}" for file in (ROOT / "docs").glob("*.md"))]
 FENCE = re.compile(r"^```(\w*)\s*$")
@@ -55,7 +59,6 @@ COPIES = {
     "photograph.png": "row/view-1.png",
     "first.png": "row/view-0.png", "second.png": "row/view-1.png", "third.png": "row/view-2.png",
     "upper.png": "row/view-0.png", "lower.png": "row/view-0,1.png", "a.png": "left.png", "b.png": "right.png",
-    "tile-left.tif": "left.png", "tile-right.tif": "right.png",
     "training/image_2/000000_10.png": "left.png", "training/image_3/000000_10.png": "right.png",
     "photos/0.png": "row/view-0.png", "photos/1.png": "row/view-1.png",
     "photos/2.png": "row/view-2.png",
@@ -95,6 +98,9 @@ class Inputs:
         self.vantage("match left.png right.png -o training/disp_occ_0/000000_10.png")
         for used in ("film", "row"):
             shutil.rmtree(folder / used)
+        for side in ("left", "right"):
+            rows = [[float(pixel[0]) for pixel in row] for row in read_png(folder / f"{side}.png")]
+            write_tiff(folder / f"tile-{side}.tif", rows)
         (folder / "poses.txt").write_text(  # KITTI's: each frame half a metre ahead
             "".join(f"1 0 0 0 0 1 0 0 0 0 1 {0.5 * frame}\n" for frame in range(6)))
         (folder / "rig.yml").write_text(rig_file((folder / "calib.txt").read_text()))
