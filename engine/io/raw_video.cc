@@ -82,10 +82,19 @@ StreamedVideo::StreamedVideo(const std::optional<RawVideoShape>& raw, FrameRate 
 }
 
 bool StreamedVideo::decode_next(VideoPicture& picture) {
+  const auto fail_cut = [this] {
+    throw Error(fmt::format("{}: the stream ends inside it or is damaged", describe(decoded_)));
+  };
   int result = libav().av_read_frame(input_.get(), packet_.get());
   if (result == AVERROR_EOF) {
+    // The reader of y4m takes a part of a frame for the end, too.
+    const AVIOContext& io = *input_->pb;
+    if (frames_end_ >= 0 && io.pos - (io.buf_end - io.buf_ptr) > frames_end_) {
+      fail_cut();
+    }
     return false;
   }
+  frames_end_ = packet_->pos >= 0 ? packet_->pos + packet_->size : -1;
   const bool is_whole = result >= 0 && (packet_->flags & AV_PKT_FLAG_CORRUPT) == 0;
   if (is_whole) {
     result = libav().avcodec_send_packet(codec_.get(), packet_.get());
@@ -95,7 +104,7 @@ bool StreamedVideo::decode_next(VideoPicture& picture) {
   }
   libav().av_packet_unref(packet_.get());
   if (!is_whole || result < 0) {
-    throw Error(fmt::format("{}: the stream ends inside it or is damaged", describe(decoded_)));
+    fail_cut();
   }
   picture = VideoPicture(*frame_, converters_, describe(decoded_));
   ++decoded_;

@@ -95,7 +95,11 @@ class StreamRun {
     } catch (const Error& bad) {
       const std::string name = run_.pairs.describe(slot.frame);
       if (!run_.keep_going) {
-        throw Error(fmt::format("frame {} ({}): {}", slot.frame, name, bad.what()));
+        const std::string text = bad.what();
+        // Problems of a stream name their frame.
+        throw Error(text.starts_with(name)
+                        ? text
+                        : fmt::format("frame {} ({}): {}", slot.frame, name, text));
       }
       report_.skipped.push_back({slot.frame, fmt::format("{}: {}", name, bad.what())});
     }

@@ -149,6 +149,23 @@ TEST_F(RunStreams, StreamsThatEndEarly) {
   EXPECT_EQ(read_file(folder_ / "out.raw").size(), 2U * 2 * kWidth * kHeight);
   EXPECT_EQ(shell(command(depth_) + " </dev/null >" + (folder_ / "out.raw")), 1);
   EXPECT_THAT(err(), HasSubstr("standard input"));
+  write_file(folder_ / "pairs.rgb", raw_pairs(3));
+  const Words search = {"--stereo", "-",   "--packing", "sbsl", "--disparities=0:9",
+                        "--method", "ssd", "-o",        "-"};
+  const std::string to_y4m = command(
+      joined(search, {"--raw-video", "128x48", "--save", "stereo", "--stereo-packing", "sbsl"}));
+  ASSERT_EQ(shell(to_y4m + " <" + (folder_ / "pairs.rgb") + " >" + (folder_ / "whole.y4m")), 0)
+      << err();
+  const std::string y4m = read_file(folder_ / "whole.y4m");
+  for (const std::size_t missing : {std::size_t{0}, std::size_t{7}, y4m.size() / 6}) {
+    write_file(folder_ / "cut.y4m", y4m.substr(0, y4m.size() - missing));
+    EXPECT_EQ(shell(command(joined(search, {"--save", "preview"})) + " <" + (folder_ / "cut.y4m") +
+                    " >" + (folder_ / "out.y4m")),
+              missing == 0 ? 0 : 1);
+    EXPECT_EQ(err().find("standard input frame 2: the stream ends inside it") != std::string::npos,
+              missing != 0)
+        << err();
+  }
   write_file(folder_ / "text.y4m", "no video\n");
   EXPECT_EQ(shell(command({"--stereo", "-", "--packing", "sbsl", "--save", "preview", "-o", "-"}) +
                   " <" + (folder_ / "text.y4m") + " >" + (folder_ / "out.raw")),
