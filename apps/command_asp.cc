@@ -141,9 +141,7 @@ int command_asp(const Arguments& arguments) {
   settings.set_short_help(
       {"left", "right", "disparity", "preset", "disp-min", "disp-max", "sign", "threads", "quiet"},
       {"vantage asp left.tif right.tif disparity.tif",
-       "parallel_stereo --alignment-method local_epipolar --stereo-algorithm \"vantage-asp "
-       "--preset "
-       "quality\" ..."});
+       "parallel_stereo --stereo-algorithm \"vantage-asp --preset quality\" ..."});
   if (!settings.read(arguments)) {
     return kExitDone;
   }
