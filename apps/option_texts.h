@@ -33,7 +33,8 @@ inline constexpr std::array kOptionTexts = {
                "With cost contaminated or combined, aggregation bayes or certainty entropy: "
                "standard deviation of the noise, above 0, in the unit of the cost (grey levels; "
                "with census costs, differing neighbours); estimated: from each pair",
-               "{}; estimated for cost combined"},
+               "{}; estimated for cost combined; with cost gradient and certainty entropy a quarter "
+               "of the gradient filter's response to a slope of one grey level per pixel"},
     OptionText{"epsilon-measurement", "E",
                "With cost contaminated or combined or aggregation bayes: share of outliers, above "
                "0 and below 1"},

@@ -184,8 +184,8 @@ constexpr KernelWork certainty_work(CertaintyMeasure measure, int loads) {
     // Minimum, second minimum and sum; then their trees, and the tree that counts ties.
     return {4, 4 * kLaneTreeOperations + 2 * kLaneMultiple + 4, 1.0 * loads, 0};
   }
-  // Minimum; exponent, weight and two sums.
-  return {1 + 3 + kExp2Operations + 3, 3 * kLaneTreeOperations + 3 + kLogOperations, 1.0 * loads,
+  // Minimum; exponent, weight, whether it is 1 and three sums.
+  return {1 + 3 + kExp2Operations + 5, 4 * kLaneTreeOperations + 10 + kLogOperations, 1.0 * loads,
           0};
 }
 /// carries: whether input and output columns store their certainty after their lanes. Columns that

@@ -69,10 +69,6 @@ int index_shift(int window_px, const kernels::CandidateGeometry& geometry) {
   return largest_cell < std::numeric_limits<std::int32_t>::max() ? shift : 0;
 }
 
-double entropy_scale(const MethodParameters& parameters) {
-  return 1 / (2 * parameters.sigma_measurement * parameters.sigma_measurement);
-}
-
 ConfidenceMeasure confidence_measure(const MethodParameters& parameters) {
   if (const auto confidence = aggregation_of(parameters).confidence) {
     return confidence(parameters);

@@ -1,14 +1,22 @@
 #pragma once
 
+#include "kernels/cells/exp_log.h"
 #include "kernels/star_row.h"
 
 namespace vantage::kernels {
 
 /// Certainty measure for the winner of a cell column.
 enum class CertaintyMeasure {
-  kMargin,   ///< (Emin2 − Emin) / Σ E, 0 when Σ E = 0 (6.13); one candidate: 0
-  kEntropy,  ///< Σ p log p ≤ 0, p ∝ exp(−scale · (E − Emin)) (6.15)
+  kMargin,  ///< (Emin2 − Emin) / Σ E, 0 when Σ E = 0 (6.13); one candidate: 0
+  /// Σ p log p ≤ 0, p ∝ exp(−min(scale · (E − Emin), kMaxCertaintyNats)) (6.15). Its *relative*
+  /// error is small, however close it is to 0: columns with a sure winner are compared, not their
+  /// rounding errors.
+  kEntropy,
 };
+
+/// Of a candidate with larger odds against it only this much counts: 2 to this power is a normal
+/// float.
+inline constexpr double kMaxCertaintyNats = -double{kMinExponent} / kLog2E;
 
 /// One row of diffusion with local stopping (6.4): a column keeps its cells if the step would lower
 /// its certainty. The step is that of DiffusionRow without a pull. Certainties are stored with the
@@ -19,7 +27,7 @@ struct LocalStoppingRow {
   float step = 0.15F;
   StarWeights weights = {};  ///< of the neighbours; absent: all are 1
   CertaintyMeasure measure = CertaintyMeasure::kMargin;
-  float scale = 1;  ///< for the entropy: 1/(2σM²)
+  float scale = 1;  ///< for the entropy
   int count = 0;    ///< candidates: lanes [0, count); other lanes do not affect certainty
   float* output = nullptr;
   int output_pitch = 0;  ///< lanes + kCertaintyFloats; or lanes: certainty is not stored

@@ -24,15 +24,16 @@ float winner_margin(const float* cells, int count) {
 }
 
 float negative_entropy(const float* cells, int count, float scale) {
-  const float best = *std::min_element(cells, cells + count);
-  double total = 0;
+  const float* const best = std::min_element(cells, cells + count);
+  double others = 0;  // without the winner, whose weight is 1
   double moment = 0;
   for (int i = 0; i < count; ++i) {
-    const double exponent = static_cast<double>(scale) * (static_cast<double>(cells[i]) - best);
-    total += std::exp(-exponent);
+    const double exponent = std::min(
+        static_cast<double>(scale) * (static_cast<double>(cells[i]) - *best), kMaxCertaintyNats);
+    others += cells + i == best ? 0 : std::exp(-exponent);
     moment += std::exp(-exponent) * exponent;
   }
-  return static_cast<float>(-moment / total - std::log(total));
+  return static_cast<float>(-moment / (1 + others) - std::log1p(others));
 }
 
 }  // namespace

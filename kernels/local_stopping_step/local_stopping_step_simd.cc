@@ -161,6 +161,16 @@ HWY_INLINE FloatVec winner_margin(const CandidateLanes& lanes, int count, const 
   return margin.value(count);
 }
 
+// log(1 + u), u ≥ 0, with a small relative error for small u, too.
+HWY_INLINE FloatVec log_of_one_plus(FloatVec u) {
+  const FloatTag df;
+  const FloatVec one = hn::Set(df, 1.0F);
+  const FloatVec sum = hn::Add(one, u);
+  const FloatVec kept = hn::Sub(sum, one);  // u as rounding has left it
+  const FloatVec logarithm = hn::Mul(log_of_normal(sum), hn::Div(u, kept));
+  return hn::IfThenElse(hn::Eq(kept, hn::Zero(df)), u, logarithm);
+}
+
 HWY_INLINE FloatVec negative_entropy(const CandidateLanes& lanes, float scale, const float* cells) {
   const FloatTag df;
   const auto load = [&](int lane) HWY_ATTR { return hn::Load(df, cells + lane); };
@@ -175,12 +185,17 @@ HWY_INLINE FloatVec negative_entropy(const CandidateLanes& lanes, float scale, c
       });
   const FloatVec best = min_lanes(min);
   const FloatVec scales = hn::Set(df, scale * kLog2E);
-  LaneBlock16 total;
+  // Sums of weights below 1 and of those that are 1: the winner's, which must not hide the others.
+  LaneBlock16 below;
+  LaneBlock16 ones;
   LaneBlock16 moment;
-  total.fill(hn::Zero(df));
-  moment.fill(hn::Zero(df));
+  below.fill(hn::Zero(df));
+  ones = moment = below;
+  const FloatVec one = hn::Set(df, 1.0F);
   const auto add = [&](int part, FloatVec exponent, FloatVec weight) HWY_ATTR {
-    total.part[part] = hn::Add(total.part[part], weight);
+    const auto is_one = hn::Eq(weight, one);
+    below.part[part] = hn::Add(below.part[part], hn::IfThenZeroElse(is_one, weight));
+    ones.part[part] = hn::Add(ones.part[part], hn::IfThenElseZero(is_one, one));
     moment.part[part] = hn::Add(moment.part[part], hn::Mul(weight, exponent));
   };
   // Beyond the minimum exponent the weight is negligible; the clamp keeps the product finite.
@@ -197,9 +212,10 @@ HWY_INLINE FloatVec negative_entropy(const CandidateLanes& lanes, float scale, c
         const FloatVec exponent = exponent_of(energy);
         add(part, exponent, hn::IfThenElseZero(mask, exp2_of_negative(hn::Neg(exponent))));
       });
-  const FloatVec z = sum_lanes(total);
-  const FloatVec mean_exponent = hn::Mul(hn::Div(sum_lanes(moment), z), hn::Set(df, kLn2));
-  return hn::Neg(hn::Add(mean_exponent, log_of_normal(z)));
+  const FloatVec others = hn::Add(hn::Sub(sum_lanes(ones), one), sum_lanes(below));
+  const FloatVec mean_exponent =
+      hn::Mul(hn::Div(sum_lanes(moment), hn::Add(one, others)), hn::Set(df, kLn2));
+  return hn::Neg(hn::Add(mean_exponent, log_of_one_plus(others)));
 }
 
 // Writes the step of one column to `output` and returns the certainty of the result.

@@ -207,7 +207,7 @@ Volume plain_pair_energies(const Volume& costs, const PlainGrid& grid,
       return plain_membrane(costs, parameters.lambda, parameters.beta, n);
     case Aggregation::kLocalStopping:
       return plain_local_stopping(costs, parameters.lambda, parameters.certainty,
-                                  test::entropy_scale(parameters), n);
+                                  test::plain_entropy_scale(parameters), n);
     case Aggregation::kBayes:
       return plain_pair_bayes(costs, grid, parameters);
   }
@@ -274,7 +274,7 @@ void expect_equals_pairs(const PhotographPair& pair, const MatchOptions& options
       const double sure = parameters.aggregation == Aggregation::kBayes ? std::exp(-plain.min())
                           : parameters.aggregation == Aggregation::kLocalStopping &&
                                   parameters.certainty == Certainty::kEntropy
-                              ? plain.entropy(test::entropy_scale(parameters))
+                              ? plain.entropy(test::plain_entropy_scale(parameters))
                           : is_evidence(parameters) ? -plain.min()
                                                     : plain.margin();
       const double unsure = std::abs(confidence.at(x, y) - sure) /

@@ -1,3 +1,4 @@
+#include "engine/matching/costs/cost_table.h"
 #include "engine/matching/options/method_rules.h"
 
 #include <gmock/gmock.h>
@@ -507,6 +508,25 @@ TEST(MatchOptions, Candidates) {
   options.disparities_y = {0, 0};
   options.refinement.edge_snapping_px = 4;
   EXPECT_THAT(complaint(options), HasSubstr("expected 0 with disparities-y"));
+}
+
+TEST(MatchOptions, NoiseOfEvidenceUnderLocalStoppingFollowsTheFilter) {
+  MatchOptions options;
+  options.method = MatchMethod::kLocalStopping;
+  EXPECT_EQ(options.resolved().sigma_measurement, 5);
+  EXPECT_DOUBLE_EQ(entropy_scale(options.resolved()), 1.0 / 50);
+  options.parameters.cost = MatchCost::kGradient;
+  options.parameters.certainty = Certainty::kEntropy;
+  EXPECT_EQ(options.resolved().sigma_measurement, 0.5);
+  options.parameters.gradient = GradientFilter::kSobel;
+  EXPECT_EQ(options.resolved().sigma_measurement, 2);
+  EXPECT_DOUBLE_EQ(entropy_scale(options.resolved()), 1.0 / 2);
+  options.parameters.sigma_measurement = 7;
+  EXPECT_DOUBLE_EQ(entropy_scale(options.resolved()), 1.0 / 7);
+  options.parameters.sigma_measurement.reset();
+  options.method = MatchMethod::kBayes;
+  options.parameters.certainty.reset();
+  EXPECT_EQ(options.resolved().sigma_measurement, 5);
 }
 
 TEST(MatchOptions, CombinationsThatMakeNoSenseAreRefusedWithTheReason) {

@@ -267,9 +267,8 @@ Tolerance tolerance_of(const MethodParameters& parameters) {
       break;
     case Aggregation::kLocalStopping:
       // A column whose certainty hardly changes may be restored by one and not by the other; from
-      // then on it differs, and a little later its neighbours. Entropies of floats are noise where
-      // a winner is quite sure.
-      tolerance.confidence_share = parameters.certainty == Certainty::kEntropy ? 0.92 : 0.99;
+      // then on it differs, and a little later its neighbours.
+      tolerance.confidence_share = 0.99;
       tolerance.strays = 2;
       break;
     case Aggregation::kBayes:

@@ -242,17 +242,15 @@ double plain_margin(const std::vector<double>& column) {
 }
 
 double plain_negative_entropy(const std::vector<double>& column, double scale) {
-  const double min = *std::min_element(column.begin(), column.end());
-  std::vector<double> exponents;
-  for (const double energy : column) {
-    exponents.push_back(-scale * (energy - min));
+  const auto best = std::min_element(column.begin(), column.end());
+  double others = 0;
+  double moment = 0;
+  for (auto energy = column.begin(); energy != column.end(); ++energy) {
+    const double odds = std::min(scale * (*energy - *best), 125 * std::log(2.0));
+    others += energy == best ? 0 : std::exp(-odds);
+    moment += odds * std::exp(-odds);
   }
-  const double log_sum = log_of_sum_of_exponentials(exponents);
-  double sum = 0;
-  for (const double exponent : exponents) {
-    sum += std::exp(exponent - log_sum) * (exponent - log_sum);
-  }
-  return sum;
+  return -moment / (1 + others) - std::log1p(others);
 }
 
 Volume plain_local_stopping(const Volume& first, double lambda, Certainty certainty, double scale,

@@ -62,9 +62,11 @@ Volume plain_bayes(const Volume& energies, const MethodParameters& parameters,
 /// The same for μ = ½ as products (EQUATIONS §3).
 Volume plain_bayes_products(const Volume& energies, const MethodParameters& parameters);
 
-/// The unit of costs in entropies (6.15): 1 ÷ (2 σM²).
-inline double entropy_scale(const MethodParameters& parameters) {
-  return 1 / (2 * parameters.sigma_measurement * parameters.sigma_measurement);
+/// The unit of costs in entropies (6.15): 1 ÷ (2 σM²), of evidence 1 ÷ σM.
+inline double plain_entropy_scale(const MethodParameters& parameters) {
+  return parameters.cost == MatchCost::kGradient
+             ? 1 / parameters.sigma_measurement
+             : 1 / (2 * parameters.sigma_measurement * parameters.sigma_measurement);
 }
 
 }  // namespace vantage::test

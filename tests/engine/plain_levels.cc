@@ -196,7 +196,7 @@ Volume plain_level(const Volume& costs, const Volume* coarser, const MethodParam
       return plain_diffusion(start, parameters.lambda, parameters.iterations, edges);
     case Aggregation::kLocalStopping:
       return plain_local_stopping(start, parameters.lambda, parameters.certainty,
-                                  entropy_scale(parameters), parameters.iterations, edges);
+                                  plain_entropy_scale(parameters), parameters.iterations, edges);
     default:
       return start;
   }

@@ -20,7 +20,7 @@ double confidence_of(const std::vector<double>& candidates, double min,
   if (parameters.aggregation == Aggregation::kLocalStopping) {
     return parameters.certainty == Certainty::kMargin
                ? plain_margin(candidates)
-               : plain_negative_entropy(candidates, entropy_scale(parameters));
+               : plain_negative_entropy(candidates, plain_entropy_scale(parameters));
   }
   return is_evidence(parameters) ? -min : plain_margin(candidates);
 }

@@ -2,6 +2,7 @@
 
 #include "engine/column_work.h"
 #include "engine/matching/aggregation/star_stage.h"
+#include "engine/matching/costs/cost_table.h"
 #include "kernels/diffusion_step/diffusion_step.h"
 #include "kernels/local_stopping_step/local_stopping_step.h"
 
@@ -54,8 +55,7 @@ class LocalStoppingStage final : public StarStage {
         step_(static_cast<float>(parameters.lambda)),
         measure_(parameters.certainty == Certainty::kMargin ? kernels::CertaintyMeasure::kMargin
                                                             : kernels::CertaintyMeasure::kEntropy),
-        scale_(static_cast<float>(
-            1 / (2 * parameters.sigma_measurement * parameters.sigma_measurement))),
+        scale_(static_cast<float>(entropy_scale(parameters))),
         edges_(edges),
         input_pitch_(place.is_first ? lanes() : lanes() + kernels::kCertaintyFloats),
         output_pitch_(place.is_last ? lanes() : lanes() + kernels::kCertaintyFloats) {}

@@ -24,6 +24,12 @@ inline bool is_evidence(const MethodParameters& parameters) {
   return cost_of(parameters).is_evidence;
 }
 
+/// s of the entropy (6.15), p ∝ exp(−s (E − Emin)): 1/(2σM²), of evidence 1/σM.
+inline double entropy_scale(const MethodParameters& parameters) {
+  const double sigma = parameters.sigma_measurement;
+  return is_evidence(parameters) ? 1 / sigma : 1 / (2 * sigma * sigma);
+}
+
 /// Bounds of the sum of the costs of `partners` images.
 CostBounds cost_bounds(const MethodParameters& parameters, int partners);
 

@@ -22,6 +22,27 @@ constexpr double kJumpPenaltyShare = 0.25;
 // Of selection symmetric.
 constexpr double kBayesOcclusionPenalty = 5;
 
+// σM of gradient evidence under local stopping, in grey levels per pixel of slope
+// (perf/log/2026-11-25-diffusions.md).
+constexpr double kEvidenceSigmaOfSlope = 0.25;
+
+/// Response of a derivative filter to a slope of one grey level per pixel (EQUATIONS §2).
+double slope_response(GradientFilter filter) {
+  switch (filter) {
+    case GradientFilter::kCentral:
+      return 2;
+    case GradientFilter::kForward:
+      return 1;
+    case GradientFilter::kSobel:
+      return 8;
+    case GradientFilter::kSimoncelli3:
+      return 0.91;
+    case GradientFilter::kSimoncelli5:
+      return 1;
+  }
+  return 1;
+}
+
 MatchCost natural_cost(Aggregation aggregation) { return aggregation_of(aggregation).natural_cost; }
 
 void require(bool holds, std::string_view field, double value, std::string_view expected) {
@@ -176,6 +197,10 @@ MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides) {
   }
   if (!overrides.sigma_measurement && !overrides.estimate_sigma_measurement) {
     result.estimate_sigma_measurement = cost_of(result).estimates_sigma;
+  }
+  if (!overrides.sigma_measurement && result.aggregation == Aggregation::kLocalStopping &&
+      is_evidence(result)) {
+    result.sigma_measurement = kEvidenceSigmaOfSlope * slope_response(result.gradient);
   }
   set_penalty_defaults(overrides, result);
   return result;
