@@ -29,12 +29,13 @@ inline constexpr std::array kOptionTexts = {
     OptionText{"match-exposure", "estimated|none",
                "Match the brightness of the right image to that of the left one before comparing, "
                "by a gain and an offset estimated from each pair"},
-    OptionText{"sigma-measurement", "S|estimated",
-               "With cost contaminated or combined, aggregation bayes or certainty entropy: "
-               "standard deviation of the noise, above 0, in the unit of the cost (grey levels; "
-               "with census costs, differing neighbours); estimated: from each pair",
-               "{}; estimated for cost combined; with cost gradient and certainty entropy a quarter "
-               "of the gradient filter's response to a slope of one grey level per pixel"},
+    OptionText{
+        "sigma-measurement", "S|estimated",
+        "With cost contaminated or combined, aggregation bayes or certainty entropy: "
+        "standard deviation of the noise, above 0, in the unit of the cost (grey levels; "
+        "with census costs, differing neighbours); estimated: from each pair",
+        "{}; estimated for cost combined; with cost gradient and certainty entropy a quarter "
+        "of the gradient filter's response to a slope of one grey level per pixel"},
     OptionText{"epsilon-measurement", "E",
                "With cost contaminated or combined or aggregation bayes: share of outliers, above "
                "0 and below 1"},
@@ -97,11 +98,20 @@ inline constexpr std::array kOptionTexts = {
                "With local-stopping: measure of certainty that must not decrease: the winner's "
                "margin or the negative entropy"},
     OptionText{"mu", "M", "With bayes: weight of the neighbours, above 0, at most 1"},
+    OptionText{
+        "prior", "",
+        "With bayes: what is expected of the disparities of neighbours: to be similar, or of "
+        "another surface (contaminated-gaussian); to be equal, or of another surface "
+        "(impulse: for surfaces that face the cameras); to be similar everywhere (quadratic: "
+        "no depth edges; slower, without --window-levels, --candidate-blocks and "
+        "--search-size)"},
     OptionText{"sigma-prior", "S",
-               "With bayes: standard deviation of the disparity difference of neighbours in "
+               "With bayes, but not prior impulse: standard deviation of the disparity difference "
+               "of neighbours in "
                "pixels, above 0"},
     OptionText{"epsilon-prior", "E",
-               "With bayes: probability that a neighbour is on another surface, above 0 and below "
+               "With bayes, but not prior quadratic: probability that a neighbour is on another "
+               "surface, above 0 and below "
                "1; larger: disparity jumps cost less"},
     OptionText{"prior-growth", "G",
                "With bayes and several levels: factor by which --sigma-prior grows with each "

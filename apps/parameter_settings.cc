@@ -63,6 +63,7 @@ EnumNames<Border> names_of(Border /*type*/) {
 EnumNames<Certainty> names_of(Certainty /*type*/) {
   return {{"margin", Certainty::kMargin}, {"entropy", Certainty::kEntropy}};
 }
+EnumNames<Prior> names_of(Prior /*type*/) { return prior_names(); }
 EnumNames<PriorSmoothing> names_of(PriorSmoothing /*type*/) {
   return {{"sum", PriorSmoothing::kSum}, {"maximum", PriorSmoothing::kMaximum}};
 }

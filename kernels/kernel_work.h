@@ -1,6 +1,7 @@
 #pragma once
 
 #include "kernels/bayes_step/bayes_step.h"
+#include "kernels/bayes_step/quadratic_step.h"
 #include "kernels/candidates.h"
 #include "kernels/cell_smoothing/cell_smoothing.h"
 #include "kernels/census/census.h"
@@ -231,6 +232,20 @@ constexpr KernelWork bayes_general_work(BayesState state, int prior_radius, bool
       KernelWork{sum + kFusedPowerOperations + 1, 0, kStarValues + 1, weighted ? 4.0 : 0.0};
   return scaled ? work + KernelWork{sum + 1 + 1 + 1, kLaneTreeOperations, kStarValues - 1, 0}
                 : work;
+}
+
+/// A logarithm of the likelihood, the sum of the star and its shift below 0; then offsets to
+/// candidates on both sides, as many as the images make worth looking at, of which eight are
+/// counted: maximum, rise and comparison, for the sum also two powers; or a power and the
+/// normalisation.
+constexpr KernelWork quadratic_work(bool smooths, bool largest_term, bool is_start, bool weighted) {
+  constexpr double kOffsets = 8;
+  const double offset = largest_term ? 4 : 4 + 6 + 2 * kExp2Operations;
+  const double result = smooths ? kOffsets * offset + (largest_term ? 0 : kLogOperations + 1) + 1
+                                : kExp2Operations + 3;
+  const double star = is_start ? 0 : weighted ? 8 : 4;
+  return {kLogOperations + 2 + star + 3 + result, kLaneTreeOperations,
+          is_start ? 2 : kStarValues + 1, weighted ? 4.0 : 0.0};
 }
 
 /// Fixed-point energies, half a value per cell. Subtracts the column's minimum. With `smooths`, for

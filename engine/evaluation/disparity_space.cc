@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/matching/parameters/prior_penalty.h"
 #include "engine/matching/stereo_matcher.h"
 
 namespace vantage {
@@ -36,10 +37,7 @@ void smooth_column(const DisparitySpace& probabilities, const MethodParameters& 
   std::vector<double> weights;  // by offset + count - 1
   double sum = 0;
   for (int offset = 1 - range.count(); offset < range.count(); ++offset) {
-    const double sigma = parameters.sigma_prior;
-    weights.push_back((1 - parameters.epsilon_prior) *
-                          std::exp(-offset * offset / (2 * sigma * sigma)) +
-                      parameters.epsilon_prior);
+    weights.push_back(std::exp(-prior_penalty(parameters, offset)));
     sum += weights.back();
   }
   smoothed.clear();

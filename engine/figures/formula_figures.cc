@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "engine/figures/figure_families.h"
+#include "engine/matching/options/method_names.h"
+#include "engine/matching/parameters/prior_penalty.h"
 #include "engine/plot/heat_map.h"
 #include "engine/plot/line_plot.h"
 
@@ -57,26 +59,38 @@ FigureContent make_evidence_levels(const FigureRun& run) {
 
 FigureContent make_prior(const FigureRun& run) {
   constexpr int kReach = 100;  // steps
-  const double epsilon = run.settings.parameters.epsilon_prior.value_or(0.01);
-  const double sigma = run.settings.parameters.sigma_prior.value_or(1);
+  MethodParameters parameters;
+  parameters.epsilon_prior = run.settings.parameters.epsilon_prior.value_or(0.01);
+  parameters.sigma_prior = run.settings.parameters.sigma_prior.value_or(1);
+  const double epsilon = parameters.epsilon_prior;
   FigureContent content;
-  FigureTable table{"", {"x", "penalty"}, {}};
-  LinePlot plot{.title = fmt::format("epsilon = {}, sigma = {}", epsilon, sigma),
+  FigureTable table{"", {"x"}, {}};
+  LinePlot plot{.title = fmt::format("epsilon = {}, sigma = {}", epsilon, parameters.sigma_prior),
                 .x_axis = {.title = "difference of neighbouring disparities, pixels"},
                 .y_axis = {.title = "penalty"},
                 .y_from_zero = true,
                 .markers = false,
-                .series = {{"rho_P (6.19)", {}, {}}}};
-  const auto penalty = [&](double x) {
-    return -std::log((1 - epsilon) * std::exp(-x * x / (2 * sigma * sigma)) + epsilon);
-  };
+                .series = {}};
+  for (const auto& [name, prior] : prior_names()) {
+    table.columns.emplace_back(name);
+    plot.series.push_back({std::string(name), {}, {}});
+  }
   for (int step = -kReach; step <= kReach; ++step) {
     const double x = step / kStepsPerUnit;
-    plot.series[0].x.push_back(x);
-    plot.series[0].y.push_back(penalty(x));
-    table.rows.push_back({fmt::format("{}", x), fmt::format("{:.6f}", penalty(x))});
+    table.rows.push_back({fmt::format("{}", x)});
+    for (std::size_t k = 0; k < prior_names().size(); ++k) {
+      parameters.prior = prior_names()[k].second;
+      const double value = prior_penalty(parameters, x);
+      plot.series[k].x.push_back(x);
+      plot.series[k].y.push_back(value);
+      table.rows.back().push_back(fmt::format("{:.6f}", value));
+    }
   }
-  content.pictures.push_back({"", draw_line_plots("Robust penalty of the prior", {plot}, 1)});
+  const auto penalty = [&](double x) {
+    parameters.prior = Prior::kContaminatedGaussian;
+    return prior_penalty(parameters, x);
+  };
+  content.pictures.push_back({"", draw_line_plots("Penalties of the priors", {plot}, 1)});
   content.tables.push_back(std::move(table));
   content.comparisons = {
       {"limit for large differences", "-log epsilon",
@@ -87,21 +101,23 @@ FigureContent make_prior(const FigureRun& run) {
 }  // namespace
 
 std::vector<BookFigure> formula_figures() {
-  return {{.key = "5.2",
-           .section = "5.3.1",
-           .title = "The evidence measure",
-           .book = "Contour lines of the evidence for a match of any vector with (1, 0); Fig. 5.1 "
-                   "has values for single pairs of vectors.",
-           .defaults = {},
-           .method = "gradient",
-           .make = make_evidence_levels},
-          {.key = "6.11",
-           .section = "6.5.1",
-           .title = "Shape of the robust penalty",
-           .book = "The penalty (6.19) for epsilon = 0.01 and sigma = 1.",
-           .defaults = {},
-           .method = "bayes",
-           .make = make_prior}};
+  return {
+      {.key = "5.2",
+       .section = "5.3.1",
+       .title = "The evidence measure",
+       .book = "Contour lines of the evidence for a match of any vector with (1, 0); Fig. 5.1 "
+               "has values for single pairs of vectors.",
+       .defaults = {},
+       .method = "gradient",
+       .make = make_evidence_levels},
+      {.key = "6.11",
+       .section = "6.5.1",
+       .title = "Shape of the robust penalty",
+       .book = "The penalty (6.19) for epsilon = 0.01 and sigma = 1; 6.5.1 names a quadratic and a "
+               "unit impulse beside it.",
+       .defaults = {},
+       .method = "bayes",
+       .make = make_prior}};
 }
 
 }  // namespace vantage

@@ -54,6 +54,10 @@ std::string method_text(const MatchOptions& match, const TunedImages& images) {
   if (uses_fixed_energies(parameters)) {
     text += ", largest term";  // cells are half as large and faster
   }
+  if (parameters.aggregation == Aggregation::kBayes &&
+      parameters.prior != Prior::kContaminatedGaussian) {
+    text += fmt::format(", {} prior", name_of(parameters.prior));
+  }
   if (parameters.levels > 1) {
     text += fmt::format(", {} levels", parameters.levels);
     if (parameters.window_levels > 0) {

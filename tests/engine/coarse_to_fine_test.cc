@@ -133,13 +133,18 @@ TEST(CoarseToFineOfEdges, EqualsTheOracle) {
     PriorSmoothing smoothing;
     double epsilon;
     int final_iterations;
+    vantage::Prior shape = vantage::Prior::kContaminatedGaussian;
   };
   constexpr Prior kPriors[] = {{PriorSmoothing::kSum, 5e-6, 2},
                                {PriorSmoothing::kMaximum, 5e-6, 2},
                                {PriorSmoothing::kMaximum, 5e-6, 0},
                                {PriorSmoothing::kMaximum, 0.4, 1},
-                               {PriorSmoothing::kMaximum, 0.7, 1}};
-  for (const test::SampleRow& row : test::sampled_rows({5, 3, 5})) {
+                               {PriorSmoothing::kMaximum, 0.7, 1},
+                               {PriorSmoothing::kSum, 5e-6, 2, vantage::Prior::kImpulse},
+                               {PriorSmoothing::kMaximum, 5e-6, 2, vantage::Prior::kImpulse},
+                               {PriorSmoothing::kSum, 0.01, 2, vantage::Prior::kQuadratic},
+                               {PriorSmoothing::kMaximum, 0.01, 0, vantage::Prior::kQuadratic}};
+  for (const test::SampleRow& row : test::sampled_rows({5, 3, 9})) {
     const Shape& shape = kShapes[row[0]];
     const int levels = kLevels[row[1]];
     const Prior& prior = kPriors[row[2]];
@@ -150,10 +155,15 @@ TEST(CoarseToFineOfEdges, EqualsTheOracle) {
     if (cost == MatchCost::kRayCensus) {
       options.parameters.census_thresholds = levels == 2 ? 3 : 1;
     }
-    options.parameters.epsilon_prior = prior.epsilon;
+    options.parameters.prior = prior.shape;
+    if (prior.shape != vantage::Prior::kQuadratic) {
+      options.parameters.epsilon_prior = prior.epsilon;
+    }
     if (levels > 1) {
       options.parameters.final_iterations = prior.final_iterations;
-      options.parameters.prior_growth = 1.2;
+      if (prior.shape != vantage::Prior::kImpulse) {
+        options.parameters.prior_growth = 1.2;
+      }
       options.parameters.level_weight = 0.6;
     }
     options.parameters.edge_weight = 0.2;
@@ -166,6 +176,7 @@ TEST(CoarseToFineOfEdges, EqualsTheOracle) {
                          std::to_string(shape.width) + "x" + std::to_string(shape.height) + ", " +
                              std::to_string(levels) + " levels, " +
                              (prior.smoothing == PriorSmoothing::kSum ? "sum" : "maximum") +
+                             " of prior " + std::to_string(static_cast<int>(prior.shape)) +
                              ", epsilon " + std::to_string(prior.epsilon) + ", " +
                              std::to_string(prior.final_iterations) + " final iterations, " +
                              test::sample_name());

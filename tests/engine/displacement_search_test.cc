@@ -18,6 +18,7 @@
 #include "engine/matching/stereo_matcher.h"
 #include "tests/engine/identical_maps.h"
 #include "tests/engine/oracle_comparison.h"
+#include "tests/engine/plain_aggregation.h"
 #include "tests/engine/plain_column.h"
 #include "tests/engine/plain_cost_cells.h"
 #include "tests/test_paths.h"
@@ -146,33 +147,26 @@ void normalise(Volume& energies) {
   }
 }
 
-/// (6.32)–(6.37) over pairs, in energies −log p: the prior is a contaminated Gaussian of the length
-/// of an offset, of whose sum all terms count, or the largest.
+/// (6.32)–(6.37) over pairs, in energies −log p: the prior is one of the length of an offset, of
+/// whose sum all terms count, or the largest.
 Volume plain_pair_bayes(const Volume& first, const PlainGrid& grid,
                         const MethodParameters& parameters) {
-  const double epsilon = parameters.epsilon_prior;
-  const bool is_maximum = parameters.prior_smoothing == PriorSmoothing::kMaximum;
   Volume energies = first;
   normalise(energies);
   for (int n = 0; n < parameters.iterations; ++n) {
     Volume smooth = energies;
     for (int y = 0; y < first.height; ++y) {
       for (int x = 0; x < first.width; ++x) {
-        double min = std::numeric_limits<double>::infinity();
+        std::vector<double> column;
         for (int i = 0; i < first.count(); ++i) {
-          min = std::min(min, energies.at(x, y, i));
+          column.push_back(energies.at(x, y, i));
         }
         for (int i = 0; i < first.count(); ++i) {
-          double sum = 0;
-          double smallest = std::log((1 - epsilon) / epsilon);
+          std::vector<double> penalties;
           for (int j = 0; j < first.count(); ++j) {
-            const double exponent =
-                grid.squared_distance(i, j) / (2 * parameters.sigma_prior * parameters.sigma_prior);
-            sum +=
-                ((1 - epsilon) * std::exp(-exponent) + epsilon) * std::exp(-energies.at(x, y, j));
-            smallest = std::min(smallest, exponent + energies.at(x, y, j) - min);
+            penalties.push_back(test::plain_penalty(parameters, grid.squared_distance(i, j)));
           }
-          smooth.at(x, y, i) = is_maximum ? smallest : -std::log(sum);
+          smooth.at(x, y, i) = test::plain_support(penalties, column, parameters.prior_smoothing);
         }
       }
     }
@@ -341,7 +335,7 @@ TEST_P(DisplacementSearch, EqualsAPlainSearchOverPairs) {
   Execution execution({.threads = 2});
   static const auto rows = test::sampled_rows({static_cast<int>(std::size(kAggregations)),
                                                static_cast<int>(std::size(kCosts)),
-                                               static_cast<int>(std::size(kRanges)), 2, 2});
+                                               static_cast<int>(std::size(kRanges)), 6, 2});
   for (const test::SampleRow& row : test::rows_of(rows, GetParam())) {
     const Ranges& ranges = kRanges[row[2]];
     const bool is_left = row[4] == 0;
@@ -351,7 +345,8 @@ TEST_P(DisplacementSearch, EqualsAPlainSearchOverPairs) {
     MatchOptions options = options_of(kCosts[row[1]], kAggregations[row[0]], ranges);
     if (kAggregations[row[0]] == Aggregation::kBayes) {
       options.parameters.prior_smoothing =
-          row[3] == 0 ? PriorSmoothing::kSum : PriorSmoothing::kMaximum;
+          row[3] % 2 == 0 ? PriorSmoothing::kSum : PriorSmoothing::kMaximum;
+      options.parameters.prior = static_cast<Prior>(row[3] / 2);
     }
     const PhotographPair pair =
         textured_pair(31, 23, ranges.across, PixelKind::kGrey8, static_cast<unsigned>(row[1]) + 1);

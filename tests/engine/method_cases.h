@@ -20,7 +20,8 @@ struct MethodCase {
 inline bool is_stepped(const MethodCase& method) {
   const MethodParameters parameters = method.options.resolved();
   return parameters.cost == MatchCost::kCombined || parameters.levels > 1 ||
-         parameters.prior_smoothing == PriorSmoothing::kMaximum;
+         (parameters.prior_smoothing == PriorSmoothing::kMaximum &&
+          parameters.prior != Prior::kQuadratic);
 }
 
 /// What test runners print of a case instead of its bytes.
@@ -72,9 +73,24 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
       [](MethodOverrides& p) { p.certainty = Certainty::kMargin; });
   add("local_stopping_entropy", MatchMethod::kLocalStopping,
       [](MethodOverrides& p) { p.certainty = Certainty::kEntropy; });
+  add("local_stopping_evidence", MatchMethod::kLocalStopping, [](MethodOverrides& p) {
+    p.cost = MatchCost::kGradient;
+    p.certainty = Certainty::kEntropy;
+  });
   add("bayes_planar", MatchMethod::kBayes, [](MethodOverrides& p) { p.sigma_prior = 0.1; });
   add("bayes", MatchMethod::kBayes, [](MethodOverrides& p) { p.sigma_prior = 0.4; });
   add("bayes_general", MatchMethod::kBayes, [](MethodOverrides& p) { p.mu = 0.3; });
+  add("bayes_impulse", MatchMethod::kBayes, [](MethodOverrides& p) { p.prior = Prior::kImpulse; });
+  add("bayes_quadratic", MatchMethod::kBayes,
+      [](MethodOverrides& p) { p.prior = Prior::kQuadratic; });
+  add("bayes_quadratic_maximum_levels", MatchMethod::kBayes, [](MethodOverrides& p) {
+    p.prior = Prior::kQuadratic;
+    p.prior_smoothing = PriorSmoothing::kMaximum;
+    p.levels = 3;
+    p.iterations = 3;
+    p.final_iterations = 2;
+    p.edge_weight = 0.2;
+  });
   add("bayes_combined", MatchMethod::kBayes, [](MethodOverrides& p) {
     p.cost = MatchCost::kCombined;
     p.sigma_gradient = 4;

@@ -1,4 +1,3 @@
-#include "engine/matching/costs/cost_table.h"
 #include "engine/matching/options/method_rules.h"
 
 #include <gmock/gmock.h>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/matching/costs/cost_table.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/options/match_presets.h"
 

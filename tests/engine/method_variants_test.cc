@@ -143,6 +143,30 @@ INSTANTIATE_TEST_SUITE_P(
                 }},
         Variant{"sure_prior", kBayes, [](MethodOverrides& p) { p.epsilon_prior = 1e-6; }},
         Variant{"surest_prior", kBayes, [](MethodOverrides& p) { p.epsilon_prior = 1e-9; }},
+        Variant{"impulse", kBayes, [](MethodOverrides& p) { p.prior = Prior::kImpulse; }},
+        Variant{"impulse_maximum", kBayes,
+                [](MethodOverrides& p) {
+                  p.prior = Prior::kImpulse;
+                  p.prior_smoothing = PriorSmoothing::kMaximum;
+                }},
+        Variant{"quadratic", kBayes, [](MethodOverrides& p) { p.prior = Prior::kQuadratic; }},
+        Variant{"quadratic_maximum", kBayes,
+                [](MethodOverrides& p) {
+                  p.prior = Prior::kQuadratic;
+                  p.prior_smoothing = PriorSmoothing::kMaximum;
+                }},
+        Variant{"quadratic_wide", kBayes,
+                [](MethodOverrides& p) {
+                  p.prior = Prior::kQuadratic;
+                  p.sigma_prior = 6;
+                  p.mu = 0.3;
+                }},
+        Variant{"quadratic_narrow", kBayes,
+                [](MethodOverrides& p) {
+                  p.prior = Prior::kQuadratic;
+                  p.sigma_prior = 0.1;
+                  p.iterations = 30;
+                }},
         Variant{"unsure", kBayes,
                 [](MethodOverrides& p) {
                   p.epsilon_prior = 0.4;

@@ -16,6 +16,7 @@
 
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/costs/cost_table.h"
+#include "engine/matching/levels/energy_format.h"
 #include "engine/matching/stereo_matcher.h"
 
 namespace vantage::test {
@@ -276,13 +277,13 @@ Tolerance tolerance_of(const MethodParameters& parameters) {
       tolerance.energy = 1e-4;
       tolerance.confidence = 1e-3;
       tolerance.subpixel_px = 1e-3;
-      if (leaves_out_taps(parameters)) {
+      if (parameters.prior == Prior::kContaminatedGaussian && leaves_out_taps(parameters)) {
         tolerance.tie = 3e-3;
         tolerance.energy = 3e-3;
         tolerance.confidence = 3e-2;
         tolerance.subpixel_px = 3e-2;
       }
-      if (parameters.prior_smoothing == PriorSmoothing::kMaximum) {
+      if (uses_fixed_energies(parameters)) {
         // Sums of numbers in steps of 1/256 nat, each rounded, in each iteration.
         tolerance.tie = 5e-2;
         tolerance.energy = 5e-2;

@@ -179,6 +179,7 @@ const std::map<std::string_view, Changes>& changes() {
       {"beta", values_of<double>(&P::beta, {1.5})},
       {"certainty", values_of<Certainty>(&P::certainty, {Certainty::kEntropy, Certainty::kMargin})},
       {"mu", values_of<double>(&P::mu, {0.2})},
+      {"prior", values_of<Prior>(&P::prior, {Prior::kImpulse, Prior::kQuadratic})},
       {"sigma-prior", values_of<double>(&P::sigma_prior, {1.1})},
       {"epsilon-prior", values_of<double>(&P::epsilon_prior, {0.2})},
       {"prior-growth", values_of<double>(&P::prior_growth, {3})},
@@ -224,6 +225,9 @@ MethodParameters parameters_of(const test::SampleRow& row) {
   overrides.levels = situation.levels;
   if (situation.candidate_blocks > 0) {
     overrides.prior_smoothing = PriorSmoothing::kMaximum;  // only that is pruned
+  }
+  if (row[2] < 2) {
+    overrides.prior = static_cast<Prior>(row[0] % 3);
   }
   overrides.edge_weight = situation.edge_weight;
   overrides.certainty = situation.certainty;

@@ -51,7 +51,7 @@ Volume probabilities_of(const Volume& energies) {
 }
 
 /// (6.33): pS = wP * p along d.
-Volume smoothed(const Volume& probabilities, const std::vector<double>& kernel) {
+Volume convolved(const Volume& probabilities, const std::vector<double>& kernel) {
   const int count = probabilities.count();
   Volume result = Volume::like(probabilities);
   for_each_cell(probabilities, [&](int x, int y, int i) {
@@ -63,21 +63,17 @@ Volume smoothed(const Volume& probabilities, const std::vector<double>& kernel) 
   return result;
 }
 
-/// −log of the largest term in place of the sum (6.33), and above the least of each column: the
-/// prior's contamination is what all offsets share.
-Volume largest_terms(const Volume& probabilities, double sigma_prior, double epsilon_prior) {
-  const double ceiling = std::max(0.0, std::log((1 - epsilon_prior) / epsilon_prior));
-  Volume result = Volume::like(probabilities);
-  for_each_cell(probabilities, [&](int x, int y, int i) {
-    const std::vector<double> column = column_of(probabilities, x, y);
-    const double max = *std::max_element(column.begin(), column.end());
-    double energy = ceiling;
-    for (int j = 0; j < probabilities.count(); ++j) {
-      const double offset = (j - i) / sigma_prior;
-      energy = std::min(energy,
-                        offset * offset / 2 - std::log(column[static_cast<std::size_t>(j)] / max));
+/// (6.33), (6.34): −log of pS, up to a number that all candidates of a column share.
+Volume smooth_energies(const Volume& energies, const MethodParameters& parameters) {
+  Volume result = Volume::like(energies);
+  for_each_cell(energies, [&](int x, int y, int i) {
+    std::vector<double> penalties;
+    for (int j = 0; j < energies.count(); ++j) {
+      const double offset_px = static_cast<double>(j - i) / energies.steps;
+      penalties.push_back(plain_penalty(parameters, offset_px * offset_px));
     }
-    result.at(x, y, i) = energy;
+    result.at(x, y, i) =
+        plain_support(penalties, column_of(energies, x, y), parameters.prior_smoothing);
   });
   return result;
 }
@@ -290,35 +286,52 @@ std::vector<double> prior_kernel(int count, double sigma_prior, double epsilon_p
   return kernel;
 }
 
+double plain_penalty(const MethodParameters& parameters, double k_squared) {
+  const double epsilon = parameters.epsilon_prior;
+  const double quadratic = k_squared / (2 * parameters.sigma_prior * parameters.sigma_prior);
+  if (parameters.prior == Prior::kQuadratic) {
+    return quadratic;
+  }
+  const double similar = parameters.prior == Prior::kContaminatedGaussian ? quadratic
+                         : k_squared == 0                                 ? 0
+                                          : std::numeric_limits<double>::infinity();
+  if (parameters.prior_smoothing == PriorSmoothing::kMaximum) {
+    return std::min(similar, std::max(0.0, std::log((1 - epsilon) / epsilon)));
+  }
+  return -std::log((1 - epsilon) * std::exp(-similar) + epsilon);
+}
+
+double plain_support(const std::vector<double>& penalties, const std::vector<double>& energies,
+                     PriorSmoothing smoothing) {
+  std::vector<double> exponents;
+  for (std::size_t j = 0; j < penalties.size(); ++j) {
+    exponents.push_back(-penalties[j] - energies[j]);
+  }
+  return smoothing == PriorSmoothing::kMaximum
+             ? -*std::max_element(exponents.begin(), exponents.end())
+             : -log_of_sum_of_exponentials(exponents);
+}
+
 Volume plain_bayes(const Volume& energies, const MethodParameters& parameters, const Volume* start,
                    const PlainEdges& edges) {
-  const std::vector<double> kernel = prior_kernel(
-      energies.count(), parameters.sigma_prior * energies.steps, parameters.epsilon_prior);
-  Volume probabilities = start != nullptr ? *start : probabilities_of(energies);
+  Volume now = energies;
+  if (start != nullptr) {
+    std::transform(start->cells.begin(), start->cells.end(), now.cells.begin(),
+                   [](double probability) { return -std::log(probability); });
+  }
   for (int n = 0; n < parameters.iterations; ++n) {
-    Volume smooth_energies;
-    if (parameters.prior_smoothing == PriorSmoothing::kMaximum) {
-      smooth_energies = largest_terms(probabilities, parameters.sigma_prior * energies.steps,
-                                      parameters.epsilon_prior);
-    } else {
-      smooth_energies = smoothed(probabilities, kernel);
-      for (double& cell : smooth_energies.cells) {
-        cell = -std::log(cell);  // (6.34)
-      }
-    }
-    Volume next = energies;  // (6.37)
-    for_each_cell(energies, [&](int x, int y, int i) {
-      double sum = smooth_energies.at(x, y, i);
+    const Volume smooth = smooth_energies(now, parameters);
+    for_each_cell(energies, [&](int x, int y, int i) {  // (6.37)
+      double sum = smooth.at(x, y, i);
       for (const auto& [dx, dy] : kNeighbours) {
         if (is_inside(energies, x + dx, y + dy)) {
-          sum += edges.weight(n + 1, x, y, x + dx, y + dy) * smooth_energies.at(x + dx, y + dy, i);
+          sum += edges.weight(n + 1, x, y, x + dx, y + dy) * smooth.at(x + dx, y + dy, i);
         }
       }
-      next.at(x, y, i) += parameters.mu * sum;
+      now.at(x, y, i) = energies.at(x, y, i) + parameters.mu * sum;
     });
-    probabilities = probabilities_of(next);
   }
-  return probabilities;
+  return probabilities_of(now);
 }
 
 Volume plain_bayes_products(const Volume& energies, const MethodParameters& parameters) {
@@ -327,7 +340,7 @@ Volume plain_bayes_products(const Volume& energies, const MethodParameters& para
   const Volume first = probabilities_of(energies);
   Volume probabilities = first;
   for (int n = 0; n < parameters.iterations; ++n) {
-    const Volume smooth = smoothed(probabilities, kernel);
+    const Volume smooth = convolved(probabilities, kernel);
     for (int y = 0; y < first.height; ++y) {
       for (int x = 0; x < first.width; ++x) {
         double sum = 0;

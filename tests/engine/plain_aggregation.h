@@ -52,8 +52,15 @@ double plain_negative_entropy(const std::vector<double>& column, double scale);
 Volume plain_local_stopping(const Volume& first, double lambda, Certainty certainty, double scale,
                             int iterations, const PlainEdges& edges = {});
 
-/// wP over the offsets −(D − 1) … D − 1, summing to 1 (6.33).
+/// wP over the offsets −(D − 1) … D − 1, summing to 1 (6.33), of the contaminated Gaussian (6.19).
 std::vector<double> prior_kernel(int count, double sigma_prior, double epsilon_prior);
+
+/// ρP (6.18) of an offset of k pixels, in a two-dimensional search the length of that. With the
+/// largest term contamination is a term of its own, and 1 − εP is left out.
+double plain_penalty(const MethodParameters& parameters, double k_squared);
+/// −log of Σ_j exp(−penalties[j] − energies[j]), or of its largest term.
+double plain_support(const std::vector<double>& penalties, const std::vector<double>& energies,
+                     PriorSmoothing smoothing);
 
 /// Probabilities after Bayesian diffusion (6.25)–(6.37), in logarithms, for any μ. `start`: what
 /// the first iteration takes for the probabilities; null: those of the energies.

@@ -125,7 +125,8 @@ Volume in_bytes_to_ceiling(Volume energies, const MethodParameters& parameters) 
 Volume expanded(const Volume& coarser, const Volume& finer, const MethodParameters& parameters,
                 StoredCells stored) {
   const bool is_maximum = parameters.aggregation == Aggregation::kBayes &&
-                          parameters.prior_smoothing == PriorSmoothing::kMaximum;
+                          parameters.prior_smoothing == PriorSmoothing::kMaximum &&
+                          parameters.prior != Prior::kQuadratic;
   const Volume stepped = is_maximum && stored == StoredCells::kCompact
                              ? in_bytes_to_ceiling(coarser, parameters)
                              : coarser;

@@ -6,6 +6,7 @@
 #include "engine/matching/aggregation/stage_box_mean.h"
 #include "engine/matching/aggregation/stage_diffusion.h"
 #include "engine/matching/aggregation/stage_max_product.h"
+#include "engine/matching/aggregation/stage_quadratic_bayes.h"
 #include "engine/matching/aggregation/stage_smoothing.h"
 #include "engine/matching/levels/energy_format.h"
 
@@ -48,6 +49,9 @@ Stages bayes_stages(const MethodParameters& parameters, const AggregationPlace& 
              ? make_max_product_stages(parameters, place.geometry, place.height,
                                        {.volume = place.coarser, .blocks = place.coarser_blocks},
                                        place.edges, place.blocks, place.plane)
+         : parameters.prior == Prior::kQuadratic
+             ? make_quadratic_bayes_stages(parameters, place.geometry, place.height, place.coarser,
+                                           place.edges, place.plane)
              : make_bayes_stages(parameters, place.geometry, place.height, place.coarser,
                                  place.edges, place.plane);
 }
@@ -129,10 +133,10 @@ std::span<const CellAggregation> aggregation_table() {
           .key = Aggregation::kBayes,
           .name = "bayes",
           .description = "neighbours support similar disparities",
-          .options = {"iterations", "final-iterations", "mu", "sigma-prior", "epsilon-prior",
-                      "prior-growth", "prior-smoothing", "level-weight", "edge-weight",
-                      "edge-contrast", "edge-diffusion", "sigma-measurement", "epsilon-measurement",
-                      "candidate-blocks", "pruned-levels"},
+          .options = {"iterations", "final-iterations", "mu", "prior", "sigma-prior",
+                      "epsilon-prior", "prior-growth", "prior-smoothing", "level-weight",
+                      "edge-weight", "edge-contrast", "edge-diffusion", "sigma-measurement",
+                      "epsilon-measurement", "candidate-blocks", "pruned-levels"},
           .natural_cost = MatchCost::kContaminated,
           .cells = CellMeaning::kLikelihood,
           .is_iterative = true,

@@ -22,13 +22,15 @@ constexpr double kMinEpsilonOfProductForm = 1e-7;
 // centre, 0.4 one on each side.
 constexpr double kNegligibleTap = 1e-3;
 
-/// Taps (1−ε) exp(−k²/2σ²) of the prior, without negligible ones.
+/// Taps (1−ε) exp(−k²/2σ²) of the prior, without negligible ones; an impulse has only the first.
 std::vector<float> prior_taps(const MethodParameters& parameters, int count) {
   std::vector<float> taps;
   for (int k = 0; k < count; ++k) {
     const double tap = (1 - parameters.epsilon_prior) *
                        std::exp(-k * k / (2 * parameters.sigma_prior * parameters.sigma_prior));
-    if (k > 0 && tap < kNegligibleTap * parameters.epsilon_prior) {
+    const bool is_left_out =
+        parameters.prior == Prior::kImpulse || tap < kNegligibleTap * parameters.epsilon_prior;
+    if (k > 0 && is_left_out) {
       break;
     }
     taps.push_back(static_cast<float>(tap));

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "engine/column_work.h"
 #include "engine/matching/aggregation/bayes_step_stage.h"
@@ -22,7 +23,9 @@ class PriorRises {
  public:
   PriorRises(const MethodParameters& parameters, int count, const kernels::CandidatePlane& plane)
       : plane_(plane),
-        rises_(EnergyFormat(parameters).prior_rises(parameters.sigma_prior, count)),
+        rises_(parameters.prior == Prior::kImpulse
+                   ? std::vector<FixedEnergy>{}
+                   : EnergyFormat(parameters).prior_rises(parameters.sigma_prior, count)),
         ceiling_(EnergyFormat(parameters).ceiling()) {}
 
   [[nodiscard]] int radius() const { return static_cast<int>(rises_.size()); }

@@ -12,10 +12,11 @@
 namespace vantage {
 
 /// Whether Bayesian diffusion uses the largest term of the prior's sum, with fixed-point energies
-/// as cells.
+/// as cells. Energies of the quadratic prior have no limit.
 inline bool uses_fixed_energies(const MethodParameters& parameters) {
   return parameters.aggregation == Aggregation::kBayes &&
-         parameters.prior_smoothing == PriorSmoothing::kMaximum;
+         parameters.prior_smoothing == PriorSmoothing::kMaximum &&
+         parameters.prior != Prior::kQuadratic;
 }
 
 /// Fixed-point format of energies on all levels of a map: the smallest steps that leave room for

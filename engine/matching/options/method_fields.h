@@ -103,10 +103,11 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
               {is_weight,
                "a number above 0 and at most 1: larger weights of the neighbours are unstable"}},
         options.mu...);
-  visit(Field{"sigma-prior", readers::kBayes, {is_positive, "a number of pixels above 0"}},
+  visit(Field{"prior", readers::kBayes}, options.prior...);
+  visit(Field{"sigma-prior", readers::kSigmaPrior, {is_positive, "a number of pixels above 0"}},
         options.sigma_prior...);
-  visit(Field{"epsilon-prior", readers::kBayes, kProbability}, options.epsilon_prior...);
-  visit(Field{"prior-growth", readers::kBayesWithLevels, {is_within<1, 4>, "a number from 1 to 4"}},
+  visit(Field{"epsilon-prior", readers::kEpsilonPrior, kProbability}, options.epsilon_prior...);
+  visit(Field{"prior-growth", readers::kPriorGrowth, {is_within<1, 4>, "a number from 1 to 4"}},
         options.prior_growth...);
   visit(Field{"prior-smoothing", readers::kBayes}, options.prior_smoothing...);
   visit(

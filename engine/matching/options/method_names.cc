@@ -52,6 +52,13 @@ const EnumNames<Selection>& selection_names() {
   return names;
 }
 
+const EnumNames<Prior>& prior_names() {
+  static const EnumNames<Prior> names = {{"contaminated-gaussian", Prior::kContaminatedGaussian},
+                                         {"impulse", Prior::kImpulse},
+                                         {"quadratic", Prior::kQuadratic}};
+  return names;
+}
+
 const EnumNames<MatchCost>& cost_names() {
   static const auto names = names_in_table<MatchCost>(cost_table());
   return names;
@@ -65,6 +72,7 @@ const EnumNames<Aggregation>& aggregation_names() {
 std::string_view name_of(MatchMethod method) { return name_among(method_names(), method); }
 std::string_view name_of(MatchPreset preset) { return name_among(preset_names(), preset); }
 std::string_view name_of(Selection selection) { return name_among(selection_names(), selection); }
+std::string_view name_of(Prior prior) { return name_among(prior_names(), prior); }
 std::string_view name_of(MatchCost cost) { return cost_of(cost).name; }
 std::string_view name_of(Aggregation aggregation) { return aggregation_of(aggregation).name; }
 

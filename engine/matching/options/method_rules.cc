@@ -9,6 +9,7 @@
 #include "engine/error.h"
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/costs/cost_table.h"
+#include "engine/matching/levels/energy_format.h"
 #include "engine/matching/options/method_fields.h"
 #include "engine/matching/options/method_names.h"
 #include "engine/word_list.h"
@@ -67,6 +68,9 @@ void validate_pruning(const MethodParameters& parameters) {
                   cost_of(parameters).name));
   require(parameters.prior_smoothing == PriorSmoothing::kMaximum, "candidate-blocks", blocks,
           "0 with prior-smoothing sum: pruning needs prior-smoothing maximum");
+  require(parameters.prior != Prior::kQuadratic, "candidate-blocks", blocks,
+          "0 with prior quadratic: nothing limits what a disparity costs that a neighbour did not "
+          "search");
   require(parameters.selection == Selection::kWinner, "candidate-blocks", blocks,
           fmt::format("0 with selection {}: a path along a row needs the costs of all candidates",
                       name_of(parameters.selection)));
@@ -82,8 +86,8 @@ void validate_search_size(const MethodParameters& parameters) {
 void validate_windows(const MethodParameters& parameters) {
   if (parameters.window_levels > 0) {
     require(can_search_windows(parameters), "window-levels", parameters.window_levels,
-            "0 but with aggregation bayes, levels above 1, prior-smoothing maximum, selection "
-            "winner, candidate-step 1 and cost census-rays of luma");
+            "0 but with aggregation bayes, levels above 1, prior-smoothing maximum, a prior other "
+            "than quadratic, selection winner, candidate-step 1 and cost census-rays of luma");
     require(parameters.final_iterations > 0, "final-iterations", parameters.final_iterations,
             "at least 1 with window-levels above 0");
     require(parameters.window_levels < 2 || parameters.iterations > 0, "iterations",
@@ -208,16 +212,13 @@ MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides) {
 
 bool can_prune(const MethodParameters& parameters) {
   return parameters.selection == Selection::kWinner && parameters.levels > 1 &&
-         has_likelihoods(parameters) && !is_evidence(parameters) &&
-         parameters.prior_smoothing == PriorSmoothing::kMaximum;
+         has_likelihoods(parameters) && !is_evidence(parameters) && uses_fixed_energies(parameters);
 }
 
 bool can_search_windows(const MethodParameters& parameters) {
   return parameters.selection == Selection::kWinner && parameters.levels > 1 &&
-         parameters.aggregation == Aggregation::kBayes &&
-         parameters.prior_smoothing == PriorSmoothing::kMaximum &&
-         parameters.cost == MatchCost::kRayCensus && parameters.colour == ColourUse::kLuma &&
-         steps_per_px(parameters) == 1;
+         uses_fixed_energies(parameters) && parameters.cost == MatchCost::kRayCensus &&
+         parameters.colour == ColourUse::kLuma && steps_per_px(parameters) == 1;
 }
 
 bool can_reduce_search(const MethodParameters& parameters) {

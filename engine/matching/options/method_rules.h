@@ -21,15 +21,15 @@ MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides);
 void validate(const MethodParameters& parameters);
 
 /// Whether candidates of fine levels can be pruned (candidate_blocks): Bayes with several levels,
-/// the maximum prior and any cost but evidence.
+/// the largest term of a prior other than the quadratic one, and any cost but evidence.
 bool can_prune(const MethodParameters& parameters);
 
 /// Whether fine levels can search windows of candidates (window_levels): Bayes with several levels,
-/// the maximum prior and ray census codes of luma.
+/// the largest term of a prior other than the quadratic one, and ray census codes of luma.
 bool can_search_windows(const MethodParameters& parameters);
 
-/// Whether candidates can be searched in reduced images (search_size): Bayes with several levels,
-/// the maximum prior, ray census codes of luma with one threshold, and candidates of whole pixels.
+/// Whether candidates can be searched in reduced images (search_size): as can_search_windows(),
+/// with one threshold.
 bool can_reduce_search(const MethodParameters& parameters);
 
 /// Whether σM is used.

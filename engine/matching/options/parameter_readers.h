@@ -59,6 +59,22 @@ inline constexpr ParameterReaders kBayes = {"the {aggregations} (method bayes, t
                                             reads};
 inline constexpr ParameterReaders kBayesWithLevels = {
     "the {aggregations} (method bayes, the presets) with levels above 1", reads_with_levels};
+inline constexpr ParameterReaders kSigmaPrior = {
+    "the {aggregations} (method bayes, the presets) with prior contaminated-gaussian or quadratic",
+    [](const MethodParameters& p, std::string_view option) {
+      return reads(p, option) && p.prior != Prior::kImpulse;
+    }};
+inline constexpr ParameterReaders kPriorGrowth = {
+    "the {aggregations} (method bayes, the presets) with levels above 1 and prior "
+    "contaminated-gaussian or quadratic",
+    [](const MethodParameters& p, std::string_view option) {
+      return reads_with_levels(p, option) && p.prior != Prior::kImpulse;
+    }};
+inline constexpr ParameterReaders kEpsilonPrior = {
+    "the {aggregations} (method bayes, the presets) with prior contaminated-gaussian or impulse",
+    [](const MethodParameters& p, std::string_view option) {
+      return reads(p, option) && p.prior != Prior::kQuadratic;
+    }};
 /// The default counts as read where only it is possible.
 inline constexpr ParameterReaders kSearchSize = {
     "the aggregation bayes with levels above 1, prior-smoothing maximum and cost census-rays with "

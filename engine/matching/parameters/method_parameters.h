@@ -51,6 +51,12 @@ enum class Certainty {
   kMargin,   ///< winner margin (6.13)
   kEntropy,  ///< negative entropy (6.15)
 };
+/// Bayes: what is expected of the disparities of neighbours (6.5.1).
+enum class Prior {
+  kContaminatedGaussian,  ///< similar, or of another surface (6.19)
+  kImpulse,               ///< equal, or of another surface: surfaces are fronto-parallel
+  kQuadratic,             ///< similar without exception: a surface without discontinuities
+};
 /// Bayes: how the prior combines a neighbour's values at adjacent disparities (6.35).
 enum class PriorSmoothing {
   kSum,      ///< weighted sum of probabilities
@@ -140,9 +146,10 @@ struct MethodParametersOf {
   Field<Certainty> certainty = by_default<Field>(Certainty::kMargin);  ///< local stopping
   /// Bayes: weight of the neighbours, 0 < μ ≤ 1.
   Field<double> mu = by_default<Field>(0.5);
-  /// Bayes: σP in pixels of disparity, > 0.
+  Field<Prior> prior = by_default<Field>(Prior::kContaminatedGaussian);  ///< Bayes
+  /// Bayes, not prior kImpulse: σP in pixels of disparity, > 0.
   Field<double> sigma_prior = by_default<Field>(0.4);
-  /// Bayes: εP, inside (0, 1).
+  /// Bayes, not prior kQuadratic: εP, inside (0, 1).
   Field<double> epsilon_prior = by_default<Field>(0.01);
   /// Bayes: ratio of a level's σP to that of the next finer level, 1..4.
   Field<double> prior_growth = by_default<Field>(1.0);

@@ -17,7 +17,7 @@ double ceiling_nats(const MethodParameters& parameters) {
 }  // namespace
 
 WindowFormat::WindowFormat(const MethodParameters& parameters)
-    : sigma_prior_(parameters.sigma_prior) {
+    : sigma_prior_(parameters.prior == Prior::kImpulse ? 0 : parameters.sigma_prior) {
   constexpr double kMaxStepsPerNat = 16;
   const double outlier_nats = -std::log(parameters.epsilon_measurement);
   const double ceiling = ceiling_nats(parameters);

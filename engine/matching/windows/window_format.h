@@ -21,7 +21,7 @@ class WindowFormat {
   [[nodiscard]] int ceiling() const { return ceiling_; }
 
  private:
-  double sigma_prior_;
+  double sigma_prior_;  ///< 0: an impulse, whose rises are infinite
   double steps_per_nat_;
   int ceiling_;
   kernels::ByteByDistance evidence_;
