@@ -79,6 +79,8 @@ TEST_F(Config, PrintedSettingsFedBackAreTheSame) {
        "--jump-penalty", "2.5", "--jump-limit", "none"},
       {"match", "a.png", "b.png", "-o", "o.pfm", "--selection", "symmetric", "--occlusion-penalty",
        "7.5"},
+      {"match", "a.png", "b.png", "-o", "o.pfm", "--prior", "quadratic", "--sigma-prior", "0.7"},
+      {"match", "a.png", "b.png", "-o", "o.pfm", "--prior", "impulse", "--epsilon-prior", "0.001"},
       {"match", "a.png", "b.png", "-o", "o.pfm", "--method", "bayes", "--cost", "combined",
        "--sigma-measurement", "estimated", "--sigma-census", "0.15", "--sigma-gradient", "4",
        "--match-exposure", "estimated"},

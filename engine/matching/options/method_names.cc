@@ -77,9 +77,12 @@ std::string_view name_of(MatchCost cost) { return cost_of(cost).name; }
 std::string_view name_of(Aggregation aggregation) { return aggregation_of(aggregation).name; }
 
 std::string summary_of(const MethodParameters& parameters) {
-  return fmt::format("cost {}, aggregation {}, {} level{}{}", name_of(parameters.cost),
+  const bool has_other_prior = parameters.aggregation == Aggregation::kBayes &&
+                               parameters.prior != Prior::kContaminatedGaussian;
+  return fmt::format("cost {}, aggregation {}, {} level{}{}{}", name_of(parameters.cost),
                      name_of(parameters.aggregation), parameters.levels,
                      parameters.levels == 1 ? "" : "s",
+                     has_other_prior ? fmt::format(", prior {}", name_of(parameters.prior)) : "",
                      parameters.selection == Selection::kWinner
                          ? ""
                          : fmt::format(", selection {}", name_of(parameters.selection)));
