@@ -148,6 +148,7 @@ INSTANTIATE_TEST_SUITE_P(
                 [](MethodOverrides& p) {
                   p.prior = Prior::kImpulse;
                   p.prior_smoothing = PriorSmoothing::kMaximum;
+                  p.iterations = 5;
                 }},
         Variant{"quadratic", kBayes, [](MethodOverrides& p) { p.prior = Prior::kQuadratic; }},
         Variant{"quadratic_maximum", kBayes,
@@ -164,8 +165,7 @@ INSTANTIATE_TEST_SUITE_P(
         Variant{"quadratic_narrow", kBayes,
                 [](MethodOverrides& p) {
                   p.prior = Prior::kQuadratic;
-                  p.sigma_prior = 0.1;
-                  p.iterations = 30;
+                  p.sigma_prior = 0.2;
                 }},
         Variant{"unsure", kBayes,
                 [](MethodOverrides& p) {

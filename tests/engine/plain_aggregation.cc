@@ -65,17 +65,37 @@ Volume convolved(const Volume& probabilities, const std::vector<double>& kernel)
 
 /// (6.33), (6.34): −log of pS, up to a number that all candidates of a column share.
 Volume smooth_energies(const Volume& energies, const MethodParameters& parameters) {
+  const int count = energies.count();
+  std::vector<double> penalties;  // of offsets −(count − 1) … count − 1
+  for (int k = 1 - count; k < count; ++k) {
+    const double offset_px = static_cast<double>(k) / energies.steps;
+    penalties.push_back(plain_penalty(parameters, offset_px * offset_px));
+  }
   Volume result = Volume::like(energies);
-  for_each_cell(energies, [&](int x, int y, int i) {
-    std::vector<double> penalties;
-    for (int j = 0; j < energies.count(); ++j) {
-      const double offset_px = static_cast<double>(j - i) / energies.steps;
-      penalties.push_back(plain_penalty(parameters, offset_px * offset_px));
+  for (int y = 0; y < energies.height; ++y) {
+    for (int x = 0; x < energies.width; ++x) {
+      const std::vector<double> column = column_of(energies, x, y);
+      for (int i = 0; i < count; ++i) {
+        const auto first = penalties.begin() + (count - 1 - i);
+        result.at(x, y, i) =
+            plain_support({first, first + count}, column, parameters.prior_smoothing);
+      }
     }
-    result.at(x, y, i) =
-        plain_support(penalties, column_of(energies, x, y), parameters.prior_smoothing);
-  });
+  }
   return result;
+}
+
+/// What a column's candidates share cancels in (6.36).
+void subtract_minima(Volume& energies) {
+  for (int y = 0; y < energies.height; ++y) {
+    for (int x = 0; x < energies.width; ++x) {
+      const std::vector<double> column = column_of(energies, x, y);
+      const double min = *std::min_element(column.begin(), column.end());
+      for (int i = 0; i < energies.count(); ++i) {
+        energies.at(x, y, i) -= min;
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -330,6 +350,7 @@ Volume plain_bayes(const Volume& energies, const MethodParameters& parameters, c
       }
       now.at(x, y, i) = energies.at(x, y, i) + parameters.mu * sum;
     });
+    subtract_minima(now);
   }
   return probabilities_of(now);
 }
