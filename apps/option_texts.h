@@ -105,14 +105,16 @@ inline constexpr std::array kOptionTexts = {
         "(impulse: for surfaces that face the cameras); to be similar everywhere (quadratic: "
         "no depth edges; slower, without --window-levels, --candidate-blocks and "
         "--search-size)"},
-    OptionText{"sigma-prior", "S",
-               "With bayes, but not prior impulse: standard deviation of the disparity difference "
-               "of neighbours in "
-               "pixels, above 0"},
-    OptionText{"epsilon-prior", "E",
-               "With bayes, but not prior quadratic: probability that a neighbour is on another "
-               "surface, above 0 and below "
-               "1; larger: disparity jumps cost less"},
+    OptionText{
+        "sigma-prior", "S",
+        "With bayes and a prior other than impulse: standard deviation of the disparity difference "
+        "of neighbours in "
+        "pixels, above 0"},
+    OptionText{
+        "epsilon-prior", "E",
+        "With bayes and a prior other than quadratic: probability that a neighbour is on another "
+        "surface, above 0 and below "
+        "1; larger: disparity jumps cost less"},
     OptionText{"prior-growth", "G",
                "With bayes and several levels: factor by which --sigma-prior grows with each "
                "coarser level, 1 to 4"},
