@@ -283,6 +283,9 @@ Tolerance tolerance_of(const MethodParameters& parameters) {
         tolerance.confidence = 3e-2;
         tolerance.subpixel_px = 3e-2;
       }
+      if (parameters.prior == Prior::kQuadratic) {
+        tolerance.confidence = 5e-3;  // from logarithms of some thousand bits, in floats
+      }
       if (uses_fixed_energies(parameters)) {
         // Sums of numbers in steps of 1/256 nat, each rounded, in each iteration.
         tolerance.tie = 5e-2;
