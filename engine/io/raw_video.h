@@ -47,7 +47,7 @@ class StreamedVideo final : public FrameSource {
   LibavFrame frame_;
   FrameRate rate_;
   std::shared_ptr<PictureConverters> converters_ = std::make_shared<PictureConverters>();
-  int decoded_ = 0;  ///< frames
+  int decoded_ = 0;               ///< frames
   std::int64_t frames_end_ = -1;  ///< in bytes of the stream; -1: not known
   int next_index_ = 0;
   VideoPicture first_;  ///< until frame 1 is fetched
