@@ -47,7 +47,7 @@ bool can_share_costs(const MethodParameters& parameters) {
 
 bool shares_costs(const MethodParameters& parameters, const ChainInput& input,
                   scheduler::Extent image, int candidates) {
-  constexpr double kMaxStoredBytes = 64.0 * 1024 * 1024;
+  constexpr double kMaxStoredBytes = 16.0 * 1024 * 1024;
   const scheduler::Extent level = coarser_extent(image);
   const double stored_bytes = 0.5 * candidates * level.columns * level.rows;
   return can_share_costs(parameters) && stored_bytes <= kMaxStoredBytes &&

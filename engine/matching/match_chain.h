@@ -93,7 +93,7 @@ struct ChainLevel {
 
 /// Whether the costs of both images' coarse levels can be reduced together, in the method and in
 /// the search of `input` over so many candidates. Larger images make them one after the other: what
-/// is stored for the second one would take longer to get from the system than it saves.
+/// is stored for the second one would be too much memory.
 bool can_share_costs(const MethodParameters& parameters);
 bool shares_costs(const MethodParameters& parameters, const ChainInput& input,
                   scheduler::Extent image, int candidates);

@@ -60,8 +60,7 @@ TEST(CostSharing, IsForByteCostsOfOnePartnerAndImagesThatAreNotLarge) {
   MethodParameters parameters = options_of({0, 20}).resolved();
   ChainInput input{nullptr, nullptr, {CostPartner{}}};
   EXPECT_TRUE(shares_costs(parameters, input, {640, 480}, 64));
-  EXPECT_TRUE(shares_costs(parameters, input, {1920, 1080}, 256));
-  EXPECT_FALSE(shares_costs(parameters, input, {3840, 2160}, 256));
+  EXPECT_FALSE(shares_costs(parameters, input, {1920, 1080}, 256));
   input.partners.emplace_back();
   EXPECT_FALSE(shares_costs(parameters, input, {640, 480}, 64));
   input.partners = {CostPartner{.baseline_ratio = 2}};
