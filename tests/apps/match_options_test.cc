@@ -60,7 +60,7 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--prior", "quadratic", "--window-levels", "1"}, "window-levels is 1, expected 0 but with"},
       {{"--prior", "quadratic", "--search-size", "half"},
        "search-size is not full, expected full but for"},
-      {{"--method", "bayes", "--prior", "gaussian"}, "contaminated-gaussian, impulse, quadratic"},
+      {{"--method", "bayes", "--prior", "gaussian"}, "contaminated-gaussian|impulse|quadratic"},
       {{"--method", "ssd", "--prior", "impulse"}, "prior is set but has no effect"},
       {{"--method", "bayes", "--epsilon-prior", "1"},
        "epsilon-prior is 1, expected a number between"},
