@@ -2,89 +2,88 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
 #include <optional>
 #include <string>
 
 namespace vantage::perf {
 
-/// Parses a program's options `--name VALUE` and flags `--name`. Anything else ends the program
-/// with `usage` and exit code 2. Values must not start with two dashes.
+/// Options of a benchmark. Add all, then parse(): `--help` prints them with their defaults; wrong
+/// usage ends the program with one line and exit code 2.
 class CommandLine {
  public:
-  CommandLine(int argc, char** argv, std::string usage) : usage_(std::move(usage)) {
-    const auto is_name = [](const std::string& text) { return text.rfind("--", 0) == 0; };
-    for (int i = 1; i < argc; ++i) {
-      const std::string name = argv[i];
-      if (!is_name(name)) {
-        refuse();
-      }
-      const bool has_value = i + 1 < argc && !is_name(argv[i + 1]);
-      values_[name] = has_value ? std::optional<std::string>(argv[++i]) : std::nullopt;
-    }
-  }
+  explicit CommandLine(const std::string& description) : app_(description) {}
 
-  [[nodiscard]] std::optional<std::string> text(const std::string& name) {
-    const auto place = values_.find(name);
-    if (place == values_.end()) {
-      return std::nullopt;
-    }
-    if (!place->second) {
-      refuse();
-    }
-    std::optional<std::string> value = place->second;
-    values_.erase(place);
-    return value;
+  template <typename T>
+  void option(const std::string& name, T& value, const std::string& text) {
+    app_.add_option(name, value, text)->capture_default_str();
   }
-  /// Whether the flag `--name` was given; flags take no value.
-  [[nodiscard]] bool flag(const std::string& name) {
-    const auto place = values_.find(name);
-    if (place == values_.end()) {
-      return false;
-    }
-    if (place->second) {
-      refuse();
-    }
-    values_.erase(place);
-    return true;
+  template <typename T>
+  void option(const std::string& name, std::optional<T>& value, const std::string& text) {
+    app_.add_option_function<T>(
+        name, [&value](const T& given) { value = given; }, text);
+  }
+  void flag(const std::string& name, bool& value, const std::string& text) {
+    app_.add_flag(name, value, text);
   }
   /// An integer ≥ 1.
-  [[nodiscard]] int number(const std::string& name, int otherwise) {
-    const std::optional<std::string> value = text(name);
-    if (!value) {
-      return otherwise;
-    }
-    char* end = nullptr;
-    const long number = std::strtol(value->c_str(), &end, 10);
-    if (value->empty() || *end != '\0' || number < 1 || number > 1'000'000) {
-      refuse();
-    }
-    return static_cast<int>(number);
+  void number(const std::string& name, int& value, const std::string& text) {
+    app_.add_option(name, value, text)
+        ->check(CLI::Range(1, 1'000'000))
+        ->type_name("N")
+        ->capture_default_str();
   }
-  /// WIDTHxHEIGHT; without the option both are unchanged.
-  void size(const std::string& name, int& width, int& height) {
-    const std::optional<std::string> value = text(name);
-    if (value && std::sscanf(value->c_str(), "%dx%d", &width, &height) != 2) {
-      refuse();
-    }
+  void number(const std::string& name, std::optional<int>& value, const std::string& text) {
+    app_.add_option_function<int>(
+            name, [&value](int given) { value = given; }, text)
+        ->check(CLI::Range(1, 1'000'000))
+        ->type_name("N");
   }
-  /// Call after all options were read: refuses the remaining ones.
-  void finish() const {
-    if (!values_.empty()) {
-      refuse();
+  void size(int& width, int& height, const std::string& text = "Size of the images") {
+    app_.add_option_function<std::string>(
+            "--size",
+            [&width, &height](const std::string& given) {
+              if (std::sscanf(given.c_str(), "%dx%d", &width, &height) != 2) {
+                throw CLI::ValidationError(
+                    fmt::format("--size is '{}', expected WIDTHxHEIGHT", given));
+              }
+            },
+            text)
+        ->type_name("WIDTHxHEIGHT");
+  }
+
+  // Options that many benchmarks have.
+  void rounds(int& value) { number("--rounds", value, "Rounds; all contenders run in each"); }
+  void threads(int& value) { number("--threads", value, "Threads"); }
+  void only(std::string& value, const std::string& text) {
+    app_.add_option("--only", value, text)->type_name("NAME");
+  }
+  void json(std::optional<std::string>& file) {
+    app_.add_option_function<std::string>(
+            "--json", [&file](const std::string& given) { file = given; },
+            "Write the tables to this file")
+        ->type_name("FILE");
+  }
+
+  void parse(int argc, char** argv) {
+    try {
+      app_.parse(argc, argv);
+    } catch (const CLI::CallForHelp& help) {
+      std::exit(app_.exit(help));
+    } catch (const CLI::ParseError& error) {
+      refuse(error.what());
     }
   }
   /// For values that only the program can check.
-  [[noreturn]] void refuse() const {
-    fmt::print(stderr, "{}\n", usage_);
+  [[noreturn]] void refuse(const std::string& reason) const {
+    fmt::print(stderr, "{}; see --help\n", reason);
     std::exit(2);
   }
 
  private:
-  std::string usage_;
-  std::map<std::string, std::optional<std::string>> values_;  ///< empty for flags
+  CLI::App app_;
 };
 
 }  // namespace vantage::perf

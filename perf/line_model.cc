@@ -188,13 +188,17 @@ nlohmann::json steps_of_report(const nlohmann::json& report) {
 }
 
 int run_model(int argc, char** argv) {
-  CommandLine line(argc, argv, "line_model --report FILE [--in-flight N] [--maps-only]");
-  std::ifstream file(line.text("--report").value_or(""));
-  const int in_flight = line.number("--in-flight", 0);
-  const bool maps_only = line.flag("--maps-only");
-  line.finish();
+  CommandLine line("The line on 1 to 64 cores, simulated: frames/s, cores busy, the limit");
+  std::string report;
+  std::optional<int> in_flight;
+  bool maps_only = false;
+  line.option("--report", report, "Report of `vantage run` or `line_speed --json`");
+  line.number("--in-flight", in_flight, "Frames in flight, instead of a run's default");
+  line.flag("--maps-only", maps_only, "Without the view");
+  line.parse(argc, argv);
+  std::ifstream file(report);
   if (!file) {
-    line.refuse();
+    line.refuse(fmt::format("--report is '{}', expected a readable file", report));
   }
   const StepSeconds seconds = seconds_of(steps_of_report(nlohmann::json::parse(file)), maps_only);
   fmt::print("processor ms per frame: read {:.1f}, side by side {:.1f}, encode the view {:.1f}\n",
@@ -202,7 +206,7 @@ int run_model(int argc, char** argv) {
   fmt::print("{:>6} {:>10} {:>10} {:>6}  limit\n", "cores", "in flight", "frames/s", "busy");
   for (const int cores : {1, 2, 4, 8, 16, 32, 64}) {
     const Machine machine{.cores = cores,
-                          .in_flight = in_flight > 0 ? in_flight : default_frames_in_flight(cores)};
+                          .in_flight = in_flight.value_or(default_frames_in_flight(cores))};
     const Prediction found = Line(seconds, machine).work();
     fmt::print("{:>6} {:>10} {:>10.1f} {:>6.2f}  {}\n", machine.cores, machine.in_flight,
                found.frames_per_second, found.cores_busy, found.limit);

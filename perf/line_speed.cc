@@ -36,7 +36,7 @@ struct Settings {
   int frames = 40;  ///< after the warm-up
   int rounds = 3;
   int threads = scheduler::detect_machine().hardware_threads;
-  int in_flight = threads + 2;
+  std::optional<int> in_flight;
   std::optional<fs::path> folder;  ///< keeps the generated video for the next run
   std::optional<std::string> json;
 };
@@ -119,8 +119,8 @@ nlohmann::json measure(const Settings& settings, MatchPreset preset, const fs::p
   std::vector<FrameTime> opencv;
   SequenceReport report;
   for (int round = 0; round < settings.rounds; ++round) {
-    RunTiming timing = time_run(inputs.video, options, frames, settings.threads, settings.in_flight,
-                                results / "run");
+    RunTiming timing = time_run(inputs.video, options, frames, settings.threads,
+                                settings.in_flight.value_or(settings.threads + 2), results / "run");
     ours.push_back(timing.frame);
     report = std::move(timing.report);
     constexpr int kOpenCvFrames = 9;
@@ -149,26 +149,25 @@ nlohmann::json measure(const Settings& settings, MatchPreset preset, const fs::p
 }
 
 int run_benchmark(int argc, char** argv) {
-  CommandLine line(argc, argv,
-                   "line_speed [--preset NAME] [--size WIDTHxHEIGHT] [--disparities N] "
-                   "[--frames N] [--rounds N] [--threads N] [--in-flight N] [--folder FOLDER] "
-                   "[--json FILE]");
+  CommandLine line(
+      "A run from a side-by-side H.264 video to both maps as 16-bit PNG and a view as H.264, "
+      "against the loop of an OpenCV user");
   Settings settings;
-  line.size("--size", settings.width, settings.height);
-  settings.preset = line.text("--preset").value_or(settings.preset);
-  settings.disparities = line.number("--disparities", settings.disparities);
-  settings.frames = line.number("--frames", settings.frames);
-  settings.rounds = line.number("--rounds", settings.rounds);
-  settings.threads = line.number("--threads", settings.threads);
-  settings.in_flight = line.number("--in-flight", settings.threads + 2);
-  settings.folder = line.text("--folder");
-  settings.json = line.text("--json");
-  line.finish();
+  line.size(settings.width, settings.height);
+  line.option("--preset", settings.preset, "Preset of the run");
+  line.number("--disparities", settings.disparities, "Candidate disparities");
+  line.number("--frames", settings.frames, "Frames that are timed, after the warm-up");
+  line.rounds(settings.rounds);
+  line.threads(settings.threads);
+  line.number("--in-flight", settings.in_flight, "Frames in flight; threads + 2 by default");
+  line.option("--folder", settings.folder, "Keep the generated video here for the next run");
+  line.json(settings.json);
+  line.parse(argc, argv);
   const auto& names = preset_names();
   const auto preset = std::ranges::find(names, settings.preset,
                                         [](const auto& named) { return std::string(named.first); });
   if (preset == names.end()) {
-    line.refuse();
+    line.refuse(fmt::format("--preset is '{}', expected a preset", settings.preset));
   }
   cv::setNumThreads(1);
   fmt::print("instruction set {}, {} threads\n", instruction_set_in_use(), settings.threads);

@@ -124,10 +124,12 @@ nlohmann::json over_windows(int rounds) {
 
 int main(int argc, char** argv) {
   using namespace vantage::perf;
-  CommandLine line(argc, argv, "match_speed [--json FILE] [--rounds N]");
-  const auto json_path = line.text("--json");
-  const int rounds = line.number("--rounds", 15);
-  line.finish();
+  CommandLine line("SSD against OpenCV's StereoBM and StereoSGBM, over threads and windows");
+  std::optional<std::string> json_path;
+  int rounds = 15;
+  line.rounds(rounds);
+  line.json(json_path);
+  line.parse(argc, argv);
   cv::setNumThreads(1);
   fmt::print("instruction set {}, {} hardware threads\n", vantage::instruction_set_in_use(),
              vantage::scheduler::detect_machine().hardware_threads);

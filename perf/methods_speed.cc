@@ -161,10 +161,12 @@ nlohmann::json over_iterations(const Pair& pair, int rounds) {
 
 int main(int argc, char** argv) {
   using namespace vantage::perf;
-  CommandLine line(argc, argv, "methods_speed [--json FILE] [--rounds N]");
-  const auto json_path = line.text("--json");
-  const int rounds = line.number("--rounds", 11);
-  line.finish();
+  CommandLine line("The iterative and evidence methods against StereoSGBM and pass by pass");
+  std::optional<std::string> json_path;
+  int rounds = 11;
+  line.rounds(rounds);
+  line.json(json_path);
+  line.parse(argc, argv);
   cv::setNumThreads(1);
   fmt::print("instruction set {}, {} hardware threads\n", vantage::instruction_set_in_use(),
              vantage::scheduler::detect_machine().hardware_threads);

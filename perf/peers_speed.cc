@@ -268,10 +268,12 @@ nlohmann::json remaps(int rounds, int channels) {
 
 int main(int argc, char** argv) {
   using namespace vantage::perf;
-  CommandLine options(argc, argv, "peers_speed [--json FILE] [--rounds N]");
-  const auto json_path = options.text("--json");
-  const int rounds = options.number("--rounds", 15);
-  options.finish();
+  CommandLine line("Kernels against OpenCV's, on equal data and one thread");
+  std::optional<std::string> json_path;
+  int rounds = 15;
+  line.rounds(rounds);
+  line.json(json_path);
+  line.parse(argc, argv);
   cv::setNumThreads(1);
   fmt::print("instruction set {}, one thread\n", vantage::instruction_set_in_use());
   nlohmann::json tables = nlohmann::json::array();

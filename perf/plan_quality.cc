@@ -277,32 +277,26 @@ class Case {
 };
 
 int run_benchmark(int argc, char** argv) {
-  CommandLine line(argc, argv,
-                   "plan_quality [--size WIDTHxHEIGHTxDISPARITIES] [--only NAME] [--rounds N] "
-                   "[--seconds S] [--threads N] [--bad-starts] [--tune-seconds S] [--json FILE]");
+  CommandLine line("The default plan against the best of a sweep over strips, bands and passes");
   Settings settings;
-  settings.bad_starts = line.flag("--bad-starts");
-  if (const auto value = line.text("--size")) {
+  std::optional<std::string> wanted_size;
+  line.option("--size", wanted_size, "WIDTHxHEIGHTxDISPARITIES instead of five sizes");
+  line.only(settings.only, "Only methods whose names contain this");
+  line.number("--rounds", settings.rounds, "Rounds of the final comparison");
+  line.option("--seconds", settings.seconds, "Approximate duration of one sweep");
+  line.number("--threads", settings.threads, "Threads; all by default");
+  line.flag("--bad-starts", settings.bad_starts, "Where the tuner's search ends from bad plans");
+  line.option("--tune-seconds", settings.tune_seconds, "Time of one search of the tuner");
+  line.json(settings.json);
+  line.parse(argc, argv);
+  if (wanted_size) {
     Size size;
-    if (std::sscanf(value->c_str(), "%dx%dx%d", &size.width, &size.height, &size.disparities) !=
-        3) {
-      line.refuse();
+    if (std::sscanf(wanted_size->c_str(), "%dx%dx%d", &size.width, &size.height,
+                    &size.disparities) != 3) {
+      line.refuse(fmt::format("--size is '{}', expected WIDTHxHEIGHTxDISPARITIES", *wanted_size));
     }
     settings.sizes = {size};
   }
-  const auto seconds = [&line](const char* name, double otherwise, double minimum) {
-    const auto value = line.text(name);
-    return value ? std::max(minimum, std::atof(value->c_str())) : otherwise;
-  };
-  settings.only = line.text("--only").value_or(settings.only);
-  settings.rounds = line.number("--rounds", settings.rounds);
-  settings.seconds = seconds("--seconds", settings.seconds, 0.1);
-  if (const auto value = line.text("--threads")) {
-    settings.threads = std::max(1, std::atoi(value->c_str()));
-  }
-  settings.tune_seconds = seconds("--tune-seconds", settings.tune_seconds, 1);
-  settings.json = line.text("--json");
-  line.finish();
   fmt::print("instruction set {}, {} threads\n", instruction_set_in_use(),
              settings.threads.value_or(scheduler::detect_machine().hardware_threads));
   nlohmann::json results = nlohmann::json::array();

@@ -126,19 +126,23 @@ nlohmann::json measure(int width, int height, int disparities, const std::string
 
 int main(int argc, char** argv) {
   using namespace vantage::perf;
-  CommandLine line(argc, argv,
-                   "preset_speed [--size WxH] [--disparities N] [--only PRESET] [--threads N] "
-                   "[--rounds N] [--json FILE]");
+  CommandLine line(
+      "Presets, both refined maps and the left one alone, against one map of StereoSGBM three-way, "
+      "block 5, grey and colour");
   int width = 0;
   int height = 0;
-  line.size("--size", width, height);
-  const int disparities = line.number("--disparities", 128);
-  const std::string only = line.text("--only").value_or("");
-  const int threads =
-      line.number("--threads", vantage::scheduler::detect_machine().hardware_threads);
-  const int rounds = line.number("--rounds", 9);
-  const auto json_path = line.text("--json");
-  line.finish();
+  int disparities = 128;
+  std::string only;
+  int threads = vantage::scheduler::detect_machine().hardware_threads;
+  int rounds = 9;
+  std::optional<std::string> json_path;
+  line.size(width, height, "Size of the images; by default 450x375 with 64 disparities, 1920x1080");
+  line.number("--disparities", disparities, "Candidate disparities");
+  line.only(only, "Only this preset");
+  line.threads(threads);
+  line.rounds(rounds);
+  line.json(json_path);
+  line.parse(argc, argv);
   fmt::print("instruction set {}\n", vantage::instruction_set_in_use());
   vantage::Execution execution({.threads = threads});
   nlohmann::json tables = nlohmann::json::array();

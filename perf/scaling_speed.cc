@@ -255,19 +255,19 @@ nlohmann::json over_threads(int width, int height, int disparities, const std::v
 
 int main(int argc, char** argv) {
   using namespace vantage::perf;
-  const std::string usage =
-      "scaling_speed [--only curves|1282x1110|1920x1080] [--rounds N] [--threads N] [--json FILE]";
-  CommandLine options(argc, argv, usage);
-  const auto json_path = options.text("--json");
-  const std::string only = options.text("--only").value_or("");
-  const int rounds = options.number("--rounds", 3);
-  const int threads =
-      options.number("--threads", vantage::scheduler::detect_machine().hardware_threads);
-  options.finish();
+  CommandLine line("Time against width, height, disparities, iterations and window; over threads");
+  std::string only;
+  int rounds = 3;
+  int threads = vantage::scheduler::detect_machine().hardware_threads;
+  std::optional<std::string> json_path;
+  line.only(only, "Only this part: curves, 1282x1110 or 1920x1080");
+  line.rounds(rounds);
+  line.threads(threads);
+  line.json(json_path);
+  line.parse(argc, argv);
   const auto wanted = [&only](const std::string& part) { return only.empty() || only == part; };
   if (!wanted("curves") && !wanted("1282x1110") && !wanted("1920x1080")) {
-    fmt::print(stderr, "{}\n", usage);
-    return 2;
+    line.refuse(fmt::format("--only is '{}', expected curves, 1282x1110 or 1920x1080", only));
   }
   fmt::print("instruction set {}, {} threads\n", vantage::instruction_set_in_use(), threads);
   const std::vector<int> counts = thread_counts(threads);

@@ -15,6 +15,7 @@
 #include "engine/matching/stereo_matcher.h"
 #include "engine/simd.h"
 #include "engine/synthesis/view_synthesizer.h"
+#include "perf/command_line.h"
 #include "perf/default_paths.h"
 #include "perf/figures.h"
 #include "perf/sequence_inputs.h"
@@ -51,6 +52,7 @@ std::vector<Method> all_methods() {
   std::vector<Method> methods(4);
   methods[0] = {.name = "ssd", .match = {}, .frames = 144, .with_video = true};
   methods[1] = {.name = "preset fast", .match = {}, .frames = 72};
+  methods[0].match.method = MatchMethod::kSsd;
   methods[1].match.preset = MatchPreset::kFast;
   methods[2] = {.name = "preset balanced", .match = {}, .frames = 60};
   methods[2].match.preset = MatchPreset::kBalanced;
@@ -168,7 +170,7 @@ nlohmann::json print_table(const std::string& title, const std::vector<Contender
 }
 
 struct Settings {
-  std::optional<fs::path> json;
+  std::optional<std::string> json;
   fs::path input = fs::path(kDefaultData) / "kitti_seq1";
   fs::path output = fs::temp_directory_path();
   int rounds = 5;
@@ -232,13 +234,6 @@ nlohmann::json time_input(const SequenceInputs& inputs, bool from_video, const S
   return tables;
 }
 
-int usage() {
-  fmt::print(stderr,
-             "sequence_speed [FOLDER with left/, right/ and a packed .mp4] [--json FILE] [--rounds "
-             "N] [--output FOLDER] [--threads N] [--in-flight N] [--only METHOD]\n");
-  return 2;
-}
-
 std::optional<SequenceInputs> find_inputs(const fs::path& folder) {
   if (!fs::is_directory(folder / "left") || !fs::is_directory(folder / "right")) {
     return std::nullopt;
@@ -253,32 +248,19 @@ std::optional<SequenceInputs> find_inputs(const fs::path& folder) {
 }
 
 int run_benchmark(int argc, char** argv) {
+  CommandLine line(
+      "Runs from files to files against their computing time and against the loop of an OpenCV "
+      "user");
   Settings settings;
-  for (int i = 1; i < argc; ++i) {
-    const std::string option = argv[i];
-    if (!option.starts_with("--")) {
-      settings.input = option;
-      continue;
-    }
-    if (++i == argc) {
-      return usage();
-    }
-    if (option == "--json") {
-      settings.json = argv[i];
-    } else if (option == "--rounds") {
-      settings.rounds = std::max(1, std::atoi(argv[i]));
-    } else if (option == "--output") {
-      settings.output = argv[i];
-    } else if (option == "--threads") {
-      settings.threads = std::max(1, std::atoi(argv[i]));
-    } else if (option == "--in-flight") {
-      settings.in_flight = std::max(1, std::atoi(argv[i]));
-    } else if (option == "--only") {
-      settings.only = argv[i];
-    } else {
-      return usage();
-    }
-  }
+  line.option("FOLDER", settings.input,
+              "Folder with left/, right/ and a packed .mp4; without it a sequence is generated");
+  line.rounds(settings.rounds);
+  line.threads(settings.threads);
+  line.number("--in-flight", settings.in_flight, "Frames in flight; threads + 2 by default");
+  line.only(settings.only, "Only this method: ssd, preset fast, preset balanced, bayes");
+  line.option("--output", settings.output, "Folder of the temporary results");
+  line.json(settings.json);
+  line.parse(argc, argv);
   cv::setNumThreads(1);
   fmt::print("instruction set {}, {} threads\n", instruction_set_in_use(), settings.threads);
   const fs::path folder = settings.output / fmt::format("sequence_speed-{}", ::getpid());

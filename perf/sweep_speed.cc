@@ -166,18 +166,16 @@ nlohmann::json time_place(const SyntheticPair& pair, const ViewPlace& place,
 }
 
 int run_benchmark(int argc, char** argv) {
-  CommandLine line(argc, argv,
-                   "sweep_speed [--size WIDTHxHEIGHT] [--frames N] [--rounds N] [--threads N] "
-                   "[--only NAME] [--json FILE] [--output FOLDER]");
+  CommandLine line("A sweep from camera to camera: rendering, encoding as H.264, and both at once");
   Settings settings;
-  line.size("--size", settings.width, settings.height);
-  settings.frames = line.number("--frames", settings.frames);
-  settings.rounds = line.number("--rounds", settings.rounds);
-  settings.threads = line.number("--threads", settings.threads);
-  settings.only = line.text("--only").value_or("");
-  settings.json = line.text("--json");
-  settings.output = line.text("--output").value_or(settings.output);
-  line.finish();
+  line.size(settings.width, settings.height);
+  line.number("--frames", settings.frames, "Views of the sweep");
+  line.rounds(settings.rounds);
+  line.threads(settings.threads);
+  line.only(settings.only, "Only positions whose names contain this");
+  line.option("--output", settings.output, "Folder of the temporary videos");
+  line.json(settings.json);
+  line.parse(argc, argv);
   fmt::print("instruction set {}, {} threads\n", instruction_set_in_use(), settings.threads);
   Execution execution({.threads = settings.threads});
   const SyntheticPair pair = make_synthetic_pair(settings.width, settings.height, false, execution);

@@ -187,17 +187,15 @@ nlohmann::json compare(const Settings& settings) {
 }
 
 int run_benchmark(int argc, char** argv) {
-  CommandLine line(argc, argv,
-                   "threads_speed [--size WIDTHxHEIGHT] [--disparities N] [--rounds N] "
-                   "[--threads N] [--only NAME] [--json FILE]");
+  CommandLine line("One thread against all on one pair, and against independent matchers");
   Settings settings;
-  line.size("--size", settings.width, settings.height);
-  settings.disparities = line.number("--disparities", settings.disparities);
-  settings.rounds = line.number("--rounds", settings.rounds);
-  settings.threads = line.number("--threads", settings.threads);
-  settings.only = line.text("--only").value_or(settings.only);
-  settings.json = line.text("--json");
-  line.finish();
+  line.size(settings.width, settings.height);
+  line.number("--disparities", settings.disparities, "Candidate disparities");
+  line.rounds(settings.rounds);
+  line.threads(settings.threads);
+  line.only(settings.only, "Only rows whose names contain this");
+  line.json(settings.json);
+  line.parse(argc, argv);
   fmt::print("instruction set {}, {} hardware threads\n", instruction_set_in_use(),
              scheduler::detect_machine().hardware_threads);
   const nlohmann::json table = compare(settings);

@@ -175,18 +175,16 @@ nlohmann::json compare(const Settings& settings) {
 }
 
 int run_benchmark(int argc, char** argv) {
-  CommandLine line(argc, argv,
-                   "view_speed [--size WIDTHxHEIGHT] [--grey] [--rounds N] [--threads N] "
-                   "[--only NAME] [--json FILE] [--pictures FOLDER]");
+  CommandLine line("New views against two bicubic cv::remap calls of the same pixels");
   Settings settings;
-  line.size("--size", settings.width, settings.height);
-  settings.is_grey = line.flag("--grey");
-  settings.rounds = line.number("--rounds", settings.rounds);
-  settings.threads = line.number("--threads", settings.threads);
-  settings.only = line.text("--only").value_or("");
-  settings.json = line.text("--json");
-  settings.pictures = line.text("--pictures");
-  line.finish();
+  line.size(settings.width, settings.height);
+  line.flag("--grey", settings.is_grey, "Grey photographs");
+  line.rounds(settings.rounds);
+  line.threads(settings.threads);
+  line.only(settings.only, "Only rows whose names contain this");
+  line.option("--pictures", settings.pictures, "Write all views to this folder");
+  line.json(settings.json);
+  line.parse(argc, argv);
   fmt::print("instruction set {}, {} hardware threads\n", instruction_set_in_use(),
              scheduler::detect_machine().hardware_threads);
   const nlohmann::json table = compare(settings);

@@ -19,6 +19,7 @@
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/io/photograph_io.h"
 #include "engine/synthesis/view_synthesizer.h"
+#include "perf/command_line.h"
 #include "perf/default_paths.h"
 #include "perf/outlines.h"
 #include "perf/peers.h"
@@ -192,7 +193,10 @@ void measure(const ViewScene& scene, const std::filesystem::path& folder, Execut
 
 int main(int argc, char** argv) {
   using namespace vantage;
-  const std::filesystem::path data = argc > 1 ? argv[1] : vantage::perf::kDefaultData;
+  perf::CommandLine line("PSNR and SSIM of new views against photographs taken there");
+  std::filesystem::path data = perf::kDefaultData;
+  line.option("FOLDER", data, "Folder of the scenes");
+  line.parse(argc, argv);
   Execution execution({});
   std::vector<perf::Line> lines;
   for (const perf::ViewScene& scene : perf::view_scenes()) {
@@ -201,6 +205,9 @@ int main(int argc, char** argv) {
     } else {
       fmt::print("{} left out: no folder {}\n", scene.name, (data / scene.name).string());
     }
+  }
+  if (lines.empty()) {
+    line.refuse("no scenes are left");
   }
   const perf::Line between = perf::mean("**mean, between the cameras**", true, lines);
   const perf::Line beside = perf::mean("**mean, beside them**", false, lines);

@@ -30,11 +30,56 @@
 namespace vantage::perf {
 namespace {
 
-constexpr const char* kUsage =
-    "quality [--data FOLDER] [--experiments FILE.toml] [--only NAME,…|none] [--peers NAME,…|none] "
-    "[--scenes NAME|GROUP,…] [--tuning] [--held-out] [--no-time] [--left-only] [--rounds N] "
-    "[--threads N] [--isa NAME] [--grey peers|all] [--csv FILE] [--sub-pixel] [--views] "
-    "[--search-peers]";
+struct Settings {
+  std::filesystem::path data = kDefaultData;
+  std::string experiments = kDefaultExperiments;
+  std::optional<std::string> only;
+  std::optional<std::string> peers;
+  std::optional<std::string> scenes;
+  bool tuning = false;
+  bool held_out = false;
+  bool no_time = false;
+  bool left_only = false;
+  int rounds = 3;
+  int threads = scheduler::detect_machine().hardware_threads;
+  std::optional<std::string> isa;
+  std::optional<std::string> grey;
+  std::optional<std::string> csv;
+  bool sub_pixel = false;
+  bool views = false;
+  bool search_peers = false;
+};
+
+Settings read_settings(int argc, char** argv) {
+  CommandLine line(
+      "Bad pixels and time of experiments and of StereoSGBM on scenes with truth, as Markdown");
+  Settings settings;
+  line.option("--data", settings.data, "Folder of the scenes; missing scenes are left out");
+  line.option("--experiments", settings.experiments, "TOML file of settings of `vantage match`");
+  line.option("--only", settings.only, "Only these experiments: NAME,... or none");
+  line.option("--peers", settings.peers, "Only these settings of StereoSGBM: NAME,... or none");
+  line.option("--scenes", settings.scenes, "Only these scenes or groups: NAME,...");
+  line.flag("--tuning", settings.tuning, "Only scenes that parameters are chosen on");
+  line.flag("--held-out", settings.held_out, "Only the other scenes");
+  line.flag("--no-time", settings.no_time, "Do not measure time");
+  line.flag(
+      "--left-only", settings.left_only,
+      "Time the left map alone, checked against as much of the right one as it takes; without "
+      "it both maps. Maps of StereoSGBM are timed without post-processing");
+  line.number("--rounds", settings.rounds, "Rounds for the medians, after one that warms up");
+  line.threads(settings.threads);
+  line.option("--isa", settings.isa, "Instruction set, as in `vantage --isa`; not for OpenCV");
+  line.option("--grey", settings.grey,
+              "peers: StereoSGBM matches grey images; all: everything does; without it colour");
+  line.option("--csv", settings.csv, "Write all figures of each contender and scene to this file");
+  line.flag("--sub-pixel", settings.sub_pixel, "Fractions of disparities and their errors, too");
+  line.flag("--views", settings.views,
+            "Instead: views between the cameras, from true maps and from all contenders' maps");
+  line.flag("--search-peers", settings.search_peers,
+            "Instead: the search for StereoSGBM's post-processing");
+  line.parse(argc, argv);
+  return settings;
+}
 
 /// Elements of `all` that a list names, in the order of `all`; all without a list. `names_of`
 /// returns the names of an element.
@@ -68,24 +113,22 @@ std::set<std::string> name_of(const T& one) {
   return {one.name};
 }
 
-std::vector<const TrueScene*> chosen_scenes(CommandLine& line, const std::filesystem::path& data) {
+std::vector<const TrueScene*> chosen_scenes(const Settings& settings) {
   std::vector<const TrueScene*> scenes;
   for (const TrueScene& scene : true_scenes()) {
     scenes.push_back(&scene);
   }
-  scenes = chosen(scenes, line.text("--scenes"), "--scenes", [](const TrueScene* scene) {
+  scenes = chosen(scenes, settings.scenes, "--scenes", [](const TrueScene* scene) {
     return std::set<std::string>{scene->name, scene->group};
   });
-  const bool only_tuning = line.flag("--tuning");
-  const bool only_held_out = line.flag("--held-out");
   std::erase_if(scenes, [&](const TrueScene* scene) {
-    if ((only_tuning && !scene->is_tuning) || (only_held_out && scene->is_tuning)) {
+    if ((settings.tuning && !scene->is_tuning) || (settings.held_out && scene->is_tuning)) {
       return true;
     }
-    const bool is_missing = !std::filesystem::exists(data / scene->folder);
+    const bool is_missing = !std::filesystem::exists(settings.data / scene->folder);
     if (is_missing) {
       fmt::print(stderr, "scene {} left out: no folder {}\n", scene->name,
-                 (data / scene->folder).string());
+                 (settings.data / scene->folder).string());
     }
     return is_missing;
   });
@@ -95,11 +138,10 @@ std::vector<const TrueScene*> chosen_scenes(CommandLine& line, const std::filesy
   return scenes;
 }
 
-std::vector<MapContender> chosen_contenders(CommandLine& line,
+std::vector<MapContender> chosen_contenders(const Settings& settings,
                                             const std::vector<SgbmSetting>& peers) {
-  const std::string file = line.text("--experiments").value_or(kDefaultExperiments);
   std::vector<MapContender> contenders =
-      chosen(experiments(file), line.text("--only"), "--only", name_of<MapContender>);
+      chosen(experiments(settings.experiments), settings.only, "--only", name_of<MapContender>);
   for (const SgbmSetting& peer : peers) {
     contenders.push_back(sgbm_contender(peer));
   }
@@ -158,52 +200,47 @@ GreyImages grey_images(const std::optional<std::string>& text) {
   return !text ? GreyImages::kNobody : *text == "all" ? GreyImages::kAll : GreyImages::kPeers;
 }
 
-void run(CommandLine& line) {
-  constexpr int kUsualRounds = 3;
-  const std::filesystem::path data = line.text("--data").value_or(kDefaultData);
+void run(const Settings& settings) {
   const std::vector<SgbmSetting> peers =
-      chosen(sgbm_settings(), line.text("--peers"), "--peers", name_of<SgbmSetting>);
-  Results results{chosen_contenders(line, peers), chosen_scenes(line, data), {}, {}};
-  const int usual_threads = scheduler::detect_machine().hardware_threads;
-  Execution execution({.threads = line.number("--threads", usual_threads)});
-  const int wanted_rounds = line.number("--rounds", kUsualRounds);
-  const int rounds = line.flag("--no-time") ? 0 : wanted_rounds;
-  const TimedMaps timed = line.flag("--left-only") ? TimedMaps::kLeft : TimedMaps::kBoth;
-  if (const auto isa = line.text("--isa")) {
-    force_instruction_set(*isa);
+      chosen(sgbm_settings(), settings.peers, "--peers", name_of<SgbmSetting>);
+  Results results{chosen_contenders(settings, peers), chosen_scenes(settings), {}, {}};
+  Execution execution({.threads = settings.threads});
+  const int rounds = settings.no_time ? 0 : settings.rounds;
+  const TimedMaps timed = settings.left_only ? TimedMaps::kLeft : TimedMaps::kBoth;
+  if (settings.isa) {
+    force_instruction_set(*settings.isa);
   }
-  const GreyImages grey = grey_images(line.text("--grey"));
-  const std::optional<std::string> csv = line.text("--csv");
-  const bool wants_sub_pixel = line.flag("--sub-pixel");
-  const bool wants_views = line.flag("--views");
-  const bool searches_peers = line.flag("--search-peers");
-  line.finish();
-  if (grey != GreyImages::kNobody && (wants_views || searches_peers)) {
-    throw UsageError("--grey does not go with --views and --search-peers");
+  const GreyImages grey = grey_images(settings.grey);
+  if (grey != GreyImages::kNobody && (settings.views || settings.search_peers)) {
+    throw UsageError("--grey cannot be combined with --views or --search-peers");
   }
-  if ((wants_views && (csv || wants_sub_pixel)) || (searches_peers && wants_sub_pixel)) {
-    throw UsageError("--csv does not go with --views, --sub-pixel with neither that nor a search");
+  if (settings.views && (settings.csv || settings.sub_pixel)) {
+    throw UsageError("--views cannot be combined with --csv or --sub-pixel");
+  }
+  if (settings.search_peers && settings.sub_pixel) {
+    throw UsageError("--search-peers cannot be combined with --sub-pixel");
   }
 
-  if (searches_peers) {
-    search_sgbm_post_processing(peers, results.scenes, data, csv.value_or(""), execution);
+  if (settings.search_peers) {
+    search_sgbm_post_processing(peers, results.scenes, settings.data, settings.csv.value_or(""),
+                                execution);
     return;
   }
-  if (wants_views) {
-    print_view_tables(results.contenders, results.scenes, data, execution);
+  if (settings.views) {
+    print_view_tables(results.contenders, results.scenes, settings.data, execution);
     return;
   }
   results.outcomes.resize(results.contenders.size());
   for (const TrueScene* scene : results.scenes) {
     fmt::print(stderr, "{}\n", scene->name);
-    judge(*scene, data, grey, rounds, timed, execution, results);
+    judge(*scene, settings.data, grey, rounds, timed, execution, results);
   }
   print_tables(results);
-  if (wants_sub_pixel) {
+  if (settings.sub_pixel) {
     print_sub_pixel_tables(results);
   }
-  if (csv) {
-    write_csv(results, *csv);
+  if (settings.csv) {
+    write_csv(results, *settings.csv);
   }
 }
 
@@ -212,8 +249,7 @@ void run(CommandLine& line) {
 
 int main(int argc, char** argv) {
   try {
-    vantage::perf::CommandLine line(argc, argv, vantage::perf::kUsage);
-    vantage::perf::run(line);
+    vantage::perf::run(vantage::perf::read_settings(argc, argv));
   } catch (const vantage::UsageError& error) {
     fmt::print(stderr, "quality: {}\n", error.what());
     return 2;
