@@ -373,8 +373,10 @@ int command_match(const Arguments& arguments) {
   const auto along_px =
       (job.vertical && job.match.disparities_y ? map.disparity_y_px : map.disparity_px).view();
   const std::optional<DepthScale> scale = camera ? std::optional(camera->scale) : std::nullopt;
-  if (!job.common.report.empty()) {
-    report_depth_resolution(along_px, scale, job.disparity_resolution_px(), report);
+  if (const auto disparities =
+          job.common.report.empty() ? std::nullopt : disparity_quantiles(along_px)) {
+    report.add_result("depth_resolution",
+                      depth_resolution_values(*disparities, scale, job.disparity_resolution_px()));
   }
   Image<float> depth_resolution;
   if (!job.depth.resolution_file.empty()) {

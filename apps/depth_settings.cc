@@ -2,11 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
-#include <vector>
 
 #include "engine/error.h"
 #include "engine/io/map_formats.h"
@@ -14,10 +11,7 @@
 namespace vantage::apps {
 
 void DepthSettings::validate(bool is_vertical) const {
-  if (step_px && !(*step_px > 0 && std::isfinite(*step_px))) {
-    throw UsageError(
-        fmt::format("disparity-resolution is {}, expected a number above 0", *step_px));
-  }
+  require_disparity_resolution(step_px);
   rig.validate(calibration);
   rectification.validate();
   if (!calibration.empty() && is_vertical) {
@@ -71,25 +65,24 @@ void add_depth_settings(Settings& settings, DepthSettings& depth) {
           "Write the distance from each pixel's depth to the next one that can be told from "
           "it, in metres, or in the calibration's unit where that is not known: {}",
           listed_map_formats(MapContent::kConfidence)));
-  settings.number("disparity-resolution", depth.step_px, "PX",
-                  "Difference of disparities that can be told apart; auto: 0.1, or 1 with "
-                  "--subpixel none");
+  add_disparity_resolution_setting(settings, depth.step_px);
 }
 
-void report_depth_resolution(ImageView<const float> disparity_px,
-                             const std::optional<DepthScale>& scale, double step_px,
-                             RunReport& report) {
-  std::vector<float> known;
-  for (int y = 0; y < disparity_px.height(); ++y) {
-    std::copy_if(disparity_px.row(y), disparity_px.row(y) + disparity_px.width(),
-                 std::back_inserter(known), [](float d) { return std::isfinite(d); });
+void add_disparity_resolution_setting(Settings& settings, std::optional<double>& step_px) {
+  settings.number("disparity-resolution", step_px, "PX",
+                  "Difference of disparities that can be told apart, for --depth-resolution; auto: "
+                  "0.1, or 1 with --subpixel none");
+}
+
+void require_disparity_resolution(const std::optional<double>& step_px) {
+  if (step_px && !(*step_px > 0 && std::isfinite(*step_px))) {
+    throw UsageError(
+        fmt::format("disparity-resolution is {}, expected a number above 0", *step_px));
   }
-  if (known.empty()) {
-    return;
-  }
-  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-  std::nth_element(known.begin(), middle, known.end());
-  const auto [smallest, largest] = std::minmax_element(known.begin(), known.end());
+}
+
+SettingValue depth_resolution_values(const DisparityQuantiles& disparities,
+                                     const std::optional<DepthScale>& scale, double step_px) {
   const DepthScale used = scale.value_or(DepthScale{});
   SettingValue values = {{"disparity_resolution_px", step_px}};
   if (scale) {
@@ -97,10 +90,10 @@ void report_depth_resolution(ImageView<const float> disparity_px,
     values["baseline"] = scale->baseline;
     values["doffs_px"] = scale->doffs_px;
   }
-  for (const auto& [name, disparity] :
-       {std::pair{"nearest", *largest}, std::pair{"median", *middle},
-        std::pair{"farthest", *smallest}}) {
-    const auto at = static_cast<double>(disparity);
+  for (const auto& [name, disparity_px] :
+       {std::pair{"nearest", disparities.nearest_px}, std::pair{"median", disparities.median_px},
+        std::pair{"farthest", disparities.farthest_px}}) {
+    const auto at = static_cast<double>(disparity_px);
     const auto depth_there = depth(used, at);
     const auto resolution = depth_resolution(used, step_px, at);
     SettingValue entry = {{"disparity_px", at}};
@@ -115,7 +108,7 @@ void report_depth_resolution(ImageView<const float> disparity_px,
     }
     values[name] = std::move(entry);
   }
-  report.add_result("depth_resolution", std::move(values));
+  return values;
 }
 
 }  // namespace vantage::apps

@@ -5,7 +5,6 @@
 
 #include "apps/depth_outputs.h"
 #include "apps/rig_scale.h"
-#include "apps/run_report.h"
 #include "apps/settings.h"
 #include "engine/image/image.h"
 #include "engine/rectification/rectifier.h"
@@ -56,10 +55,12 @@ class DepthGeometry {
 /// Binds all of it, in a group of its own.
 void add_depth_settings(Settings& settings, DepthSettings& depth);
 
-/// δZ / Z at the nearest, the median and the farthest known disparity of a map, and with `scale`
-/// depths too: for reports, under the key `depth_resolution`. Nothing if no disparity is known.
-void report_depth_resolution(ImageView<const float> disparity_px,
-                             const std::optional<DepthScale>& scale, double step_px,
-                             RunReport& report);
+/// --disparity-resolution, in the present group, and its check, which throws UsageError.
+void add_disparity_resolution_setting(Settings& settings, std::optional<double>& step_px);
+void require_disparity_resolution(const std::optional<double>& step_px);
+
+/// For reports: δZ / Z at these disparities, and with `scale` depths too.
+SettingValue depth_resolution_values(const DisparityQuantiles& disparities,
+                                     const std::optional<DepthScale>& scale, double step_px);
 
 }  // namespace vantage::apps

@@ -192,8 +192,7 @@ void add_match_job_settings(Settings& settings, MatchJob& job) {
 }
 
 double MatchJob::disparity_resolution_px() const {
-  const bool has_fractions = match.resolved().subpixel != Subpixel::kNone;
-  return depth.step_px.value_or(has_fractions ? 0.1 : 1);
+  return depth.step_px.value_or(vantage::disparity_resolution_px(match.resolved()));
 }
 
 void require_files_hold_search(const MatchJob& job) {

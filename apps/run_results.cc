@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "apps/automatic_disparities.h"
+#include "apps/depth_settings.h"
 #include "apps/tell.h"
 #include "engine/sequence/sequence_join.h"
 
@@ -59,6 +61,43 @@ void print_processor_time(const SequenceReport& sequence) {
   }
   tell("run: processor ms per frame: {:.1f}{}; processors busy {:.0f} % of the time\n", total, line,
        100 * sequence.share_busy);
+}
+
+/// Of all delivered frames: nearest and farthest disparity of any, median of their medians; then
+/// each frame. Null where no disparity is known.
+SettingValue depth_resolution_of(const RunJob& job, const RunSession& session,
+                                 const DeliveredFrames& delivered) {
+  SettingValue frames = SettingValue::array();
+  std::vector<float> medians;
+  DisparityQuantiles all;
+  const auto values_of = [&](const DisparityQuantiles& disparities) {
+    return depth_resolution_values(disparities, session.map_camera->scale,
+                                   job.sequence.used_disparity_step_px());
+  };
+  for (const auto& [frame, record] : delivered.records()) {
+    if (!record.disparities) {
+      continue;
+    }
+    const DisparityQuantiles& here = *record.disparities;
+    all.nearest_px = medians.empty() ? here.nearest_px : std::max(all.nearest_px, here.nearest_px);
+    all.farthest_px =
+        medians.empty() ? here.farthest_px : std::min(all.farthest_px, here.farthest_px);
+    medians.push_back(here.median_px);
+    const SettingValue values = values_of(here);
+    frames.push_back({{"frame", frame},
+                      {"nearest", values["nearest"]},
+                      {"median", values["median"]},
+                      {"farthest", values["farthest"]}});
+  }
+  if (medians.empty()) {
+    return nullptr;
+  }
+  const auto middle = medians.begin() + static_cast<std::ptrdiff_t>(medians.size() / 2);
+  std::nth_element(medians.begin(), middle, medians.end());
+  all.median_px = *middle;
+  SettingValue values = values_of(all);
+  values["frames"] = std::move(frames);
+  return values;
 }
 
 void warn_of_cut_range(const RunJob& job, const SequenceReport& sequence) {
@@ -124,6 +163,9 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
   }
   if (job.sequence.measure_flicker) {
     results["flicker"] = flicker_values(total_flicker(delivered));
+  }
+  if (job.sequence.saves(SequenceOutput::kDepthResolution)) {
+    results["depth_resolution"] = depth_resolution_of(job, session, delivered);
   }
   if (sequence.cut) {
     results["cut_range"] = cut_range_values(*sequence.cut);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apps/depth_outputs.h"
+#include "apps/depth_settings.h"
 #include "apps/depth_video_settings.h"
 #include "apps/frame_rate_setting.h"
 #include "apps/frame_step_setting.h"
@@ -168,6 +169,7 @@ void add_metric_settings(Settings& settings, RunJob& job) {
       fmt::format("File format of depths: {}; png in millimetres (16 bits, 0 unknown), the "
                   "others in metres",
                   listed_map_formats(MapContent::kDepth, "")));
+  add_disparity_resolution_setting(settings, job.sequence.disparity_step_px);
   add_cloud_settings(settings, job.sequence.cloud);
   settings
       .input_path("poses", job.poses, "FILE",
@@ -287,26 +289,34 @@ void refuse_idle_outputs(const Settings& settings, const SequenceOptions& sequen
     settings.refuse_idle({"depth-range", "depth-codec"}, "where --save has no depth-video");
   }
   if (!saves_any({Output::kDisparity, Output::kRightDisparity, Output::kConfidence,
-                  Output::kPosteriorMean, Output::kPosteriorVariance, Output::kCyclopean})) {
+                  Output::kPosteriorMean, Output::kPosteriorVariance, Output::kCyclopean,
+                  Output::kDepthResolution})) {
     settings.refuse_idle({"format"},
                          "where --save has no disparity, right-disparity, confidence, "
-                         "posterior-mean, posterior-variance, cyclopean");
+                         "posterior-mean, posterior-variance, cyclopean, depth-resolution");
   }
   if (!saves_any({Output::kDisparity, Output::kConfidence, Output::kUnmatched, Output::kPreview,
                   Output::kPosteriorMean, Output::kPosteriorVariance, Output::kDepth,
-                  Output::kCloud, Output::kMesh, Output::kDepthVideo, Output::kComfort})) {
+                  Output::kDepthResolution, Output::kCloud, Output::kMesh, Output::kDepthVideo,
+                  Output::kComfort})) {
     settings.refuse_idle({"reference"},
                          "where --save has no disparity, confidence, unmatched, preview, "
-                         "posterior-mean, posterior-variance, depth, cloud, mesh, depth-video, "
-                         "comfort");
+                         "posterior-mean, posterior-variance, depth, depth-resolution, cloud, "
+                         "mesh, depth-video, comfort");
   }
   if (!sequence.saves(Output::kDepth)) {
     settings.refuse_idle({"depth-format"}, "where --save has no depth");
   }
+  if (!sequence.saves(Output::kDepthResolution)) {
+    settings.refuse_idle({"disparity-resolution"}, "where --save has no depth-resolution");
+  }
   if (!sequence.is_metric()) {
     settings.refuse_idle(
-        {"max-depth", "baseline", "focal-length", "principal-point", "doffs", "calibration-unit"},
-        "where --save has no depth, cloud, mesh");
+        {"baseline", "focal-length", "principal-point", "doffs", "calibration-unit"},
+        "where --save has no depth, depth-resolution, cloud, mesh");
+  }
+  if (!sequence.saves(Output::kDepth) && !sequence.saves_points()) {
+    settings.refuse_idle({"max-depth"}, "where --save has no depth, cloud, mesh");
   }
   if (!sequence.saves_points()) {
     refuse_idle_cloud_options(settings, "where --save has no cloud, mesh");
@@ -420,9 +430,10 @@ void complete(RunJob& job, const Settings& settings) {
   apply_step_of_frames(job);
   job.input.validate();
   job.rectification.validate();
+  require_disparity_resolution(job.sequence.disparity_step_px);
   job.rig.validate(job.calibration);
   if (job.sequence.is_metric()) {
-    job.rig.require_given(job.calibration, "save depth, cloud or mesh");
+    job.rig.require_given(job.calibration, "save depth, depth-resolution, cloud or mesh");
   }
   if (job.rectification.kept_outline > 0 && job.calibration.empty()) {
     throw UsageError("--kept-outline has no effect without --calibration");

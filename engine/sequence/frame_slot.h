@@ -17,6 +17,7 @@
 #include "engine/sequence/pending_files.h"
 #include "engine/sequence/run_journal.h"
 #include "engine/synthesis/view_synthesizer.h"
+#include "engine/view_geometry/depth_resolution.h"
 #include "engine/view_geometry/view_pose.h"
 
 namespace vantage {
@@ -50,6 +51,7 @@ struct FrameSlot {
   Photograph stereo;
   Photograph depth;                     ///< see paint_depth()
   std::optional<FrameComfort> comfort;  ///< if it is wanted
+  std::optional<DisparityQuantiles> disparities;  ///< of the reference's map, with kDepthResolution
   std::vector<std::uint8_t> encoded;    ///< the file being written
   PendingFiles files;
   std::vector<FileRecord> file_records;  ///< of `files`

@@ -169,6 +169,7 @@ void FrameWorker::compute(FrameSlot& slot) {
   paint_depth_picture(slot);
   pack_stereo_picture(slot);
   measure_comfort_of(slot);
+  measure_disparities_of(slot);
 }
 
 void FrameWorker::read_maps(FrameSlot& slot) const {
@@ -365,6 +366,15 @@ void FrameWorker::measure_comfort_of(FrameSlot& slot) const {
                                  options_.match.reference);
 }
 
+void FrameWorker::measure_disparities_of(FrameSlot& slot) const {
+  slot.disparities.reset();
+  if (!options_.saves(SequenceOutput::kDepthResolution) || slot.stored != nullptr) {
+    return;
+  }
+  const TimedStep step(slot, "depth", accounts_.of(RunStep::kPictures));
+  slot.disparities = disparity_quantiles(primary_map(slot).view());
+}
+
 void FrameWorker::pack_stereo_picture(FrameSlot& slot) const {
   if (!wants(slot, SequenceOutput::kStereo)) {
     return;
@@ -433,6 +443,7 @@ std::string FrameWorker::extension_of(const FrameSlot& slot, const OutputStream&
     case SequenceOutput::kPosteriorMean:
     case SequenceOutput::kPosteriorVariance:
     case SequenceOutput::kCyclopean:
+    case SequenceOutput::kDepthResolution:
       return options_.map_format;
     case SequenceOutput::kDepth:
       return options_.depth_format;
@@ -465,6 +476,13 @@ void FrameWorker::encode_metric(FrameSlot& slot, const OutputStream& stream,
     depth_map(map.disparity_px.view(), map_camera_->scale,
               options_.cloud.max_depth.value_or(largest_depth_m(path)), execution_, depth_m);
     encode_depth(path, depth_m.view(), slot.encoded);
+    return;
+  }
+  if (stream.output == SequenceOutput::kDepthResolution) {
+    Image<float> resolution_m;
+    depth_resolution_map(map.disparity_px.view(), map_camera_->scale,
+                         options_.used_disparity_step_px(), execution_, resolution_m);
+    encode_disparity(path, resolution_m.view(), slot.encoded);
     return;
   }
   const CloudSource source{
@@ -503,6 +521,7 @@ void FrameWorker::encode_stream(FrameSlot& slot, const OutputStream& stream,
       encode_disparity(path, slot.cyclopean.disparity_px.view(), slot.encoded);
       return;
     case SequenceOutput::kDepth:
+    case SequenceOutput::kDepthResolution:
     case SequenceOutput::kCloud:
     case SequenceOutput::kMesh:
       encode_metric(slot, stream, path);

@@ -104,11 +104,13 @@ class FrameWorker {
   void paint_depth_picture(FrameSlot& slot) const;
   /// Unless the frame is stored: its record has it then.
   void measure_comfort_of(FrameSlot& slot) const;
+  /// Likewise.
+  void measure_disparities_of(FrameSlot& slot) const;
   void pack_stereo_picture(FrameSlot& slot) const;
   [[nodiscard]] const Photograph* photograph_at(const FrameSlot& slot, double view_x) const;
   /// Of the points of a frame.
   [[nodiscard]] MapCamera point_camera(const FrameSlot& slot) const;
-  /// Writes a depth map, cloud or mesh to the slot's `encoded`.
+  /// Writes a depth map, a map of depth resolutions, a cloud or mesh to the slot's `encoded`.
   void encode_metric(FrameSlot& slot, const OutputStream& stream,
                      const std::filesystem::path& path) const;
   void encode_stream(FrameSlot& slot, const OutputStream& stream,

@@ -145,6 +145,10 @@ struct ToJson {
     if (record.comfort) {
       json["comfort"] = comfort_json(*record.comfort);
     }
+    if (record.disparities) {
+      json["disparities"] = {record.disparities->nearest_px, record.disparities->median_px,
+                             record.disparities->farthest_px};
+    }
     return json;
   }
   Json operator()(const SegmentRecord& record) const {
@@ -181,6 +185,10 @@ JournalRecord record_in(const Json& json) {
   }
   if (json.contains("comfort")) {
     record.comfort = comfort_of(json.at("comfort"));
+  }
+  if (json.contains("disparities")) {
+    const Json& px = json.at("disparities");
+    record.disparities = {px.at(0).get<float>(), px.at(1).get<float>(), px.at(2).get<float>()};
   }
   return record;
 }

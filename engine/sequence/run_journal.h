@@ -14,6 +14,7 @@
 #include "engine/io/frame_rate.h"
 #include "engine/sequence/flicker.h"
 #include "engine/sequence/frame_range.h"
+#include "engine/view_geometry/depth_resolution.h"
 
 namespace vantage {
 
@@ -50,6 +51,8 @@ struct FrameRecord {
   std::vector<FileRecord> files = {};
   FlickerSums flicker = {};  ///< all 0 if not measured
   std::optional<FrameComfort> comfort = {};
+  /// Empty unless depth resolutions are written, and where no disparity is known.
+  std::optional<DisparityQuantiles> disparities = {};
 };
 
 /// All videos have a segment of these frames.

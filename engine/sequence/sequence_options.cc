@@ -166,7 +166,8 @@ void check_formats(const SequenceOptions& options) {
     require_holds_search(map_name, options.match.disparities.min, options.match.disparities.max);
   }
   for (const SequenceOutput output :
-       {SequenceOutput::kConfidence, SequenceOutput::kPosteriorVariance}) {
+       {SequenceOutput::kConfidence, SequenceOutput::kPosteriorVariance,
+        SequenceOutput::kDepthResolution}) {
     if (options.saves(output) && find_map_format(map_name, MapContent::kConfidence) == nullptr) {
       throw UsageError(fmt::format(
           "format is {}, which holds no floats, but save has {}; expected "
@@ -245,6 +246,7 @@ const std::vector<std::pair<std::string_view, SequenceOutput>>& sequence_output_
       {"cyclopean", SequenceOutput::kCyclopean},
       {"cyclopean-occlusion", SequenceOutput::kCyclopeanOcclusion},
       {"depth", SequenceOutput::kDepth},
+      {"depth-resolution", SequenceOutput::kDepthResolution},
       {"cloud", SequenceOutput::kCloud},
       {"mesh", SequenceOutput::kMesh},
       {"depth-video", SequenceOutput::kDepthVideo},

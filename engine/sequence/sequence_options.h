@@ -36,6 +36,7 @@ enum class SequenceOutput {
   kCyclopean,           ///< map of a camera in the middle of both, see CyclopeanMap
   kCyclopeanOcclusion,  ///< mask of what each camera sees of it
   kDepth,               ///< of the reference's map, in metres
+  kDepthResolution,     ///< δZ of the reference's map, in metres, see depth_resolution_map()
   kCloud,               ///< points of the reference's map
   kMesh,                ///< the points as triangles
   kDepthVideo,          ///< the reference's map as a grey video, see DepthVideoScale
@@ -53,8 +54,8 @@ constexpr bool is_per_view(SequenceOutput output) {
 
 /// Whether it is in metres: such runs need the camera of the maps.
 constexpr bool is_metric(SequenceOutput output) {
-  return output == SequenceOutput::kDepth || output == SequenceOutput::kCloud ||
-         output == SequenceOutput::kMesh;
+  return output == SequenceOutput::kDepth || output == SequenceOutput::kDepthResolution ||
+         output == SequenceOutput::kCloud || output == SequenceOutput::kMesh;
 }
 /// Whether a video can hold it.
 bool is_picture(SequenceOutput output);
@@ -116,11 +117,14 @@ struct SequenceOptions {
   VideoCoding depth_coding = VideoCoding::kFfv1_16;  ///< of kDepthVideo, a grey one
   TemporalOptions temporal;
   bool measure_flicker = false;
-  /// Extension of the disparity and confidence files without the dot, one of map_formats() that can
-  /// hold them: all except png can hold confidences.
+  /// Extension of the disparity, confidence and depth resolution files without the dot, one of
+  /// map_formats() that can hold them: all except png can hold the last two.
   std::string map_format = "pfm";
   /// Extension of the depth files without the dot, one of map_formats() that can hold them.
   std::string depth_format = "png";
+  /// Difference of disparities that can be told apart, for kDepthResolution, above 0; empty: see
+  /// disparity_resolution_px().
+  std::optional<double> disparity_step_px = std::nullopt;
   CloudOptions cloud;    ///< of kCloud and kMesh; its max_depth in metres also of kDepth
   FrameRate frame_rate;  ///< of written videos
   int crf = 18;          ///< of written videos, see VideoEncoding
@@ -143,7 +147,14 @@ struct SequenceOptions {
     return saves(SequenceOutput::kCloud) || saves(SequenceOutput::kMesh);
   }
   /// Whether the camera of the maps must be known.
-  [[nodiscard]] bool is_metric() const { return saves(SequenceOutput::kDepth) || saves_points(); }
+  [[nodiscard]] bool is_metric() const {
+    return saves(SequenceOutput::kDepth) || saves(SequenceOutput::kDepthResolution) ||
+           saves_points();
+  }
+  /// δ of kDepthResolution.
+  [[nodiscard]] double used_disparity_step_px() const {
+    return disparity_step_px.value_or(disparity_resolution_px(match.resolved()));
+  }
   /// Whether shots must be found before the run.
   [[nodiscard]] bool needs_shots() const {
     return needs_matched_shots() || search_range_per_shot || saves(SequenceOutput::kDepthVideo) ||

@@ -141,6 +141,7 @@ class Run {
     const scheduler::ProcessorCharge charge(accounts_.of(RunStep::kWrite));
     FrameRecord record{.frame = slot.frame, .files = std::move(slot.file_records)};
     record.comfort = slot.comfort;
+    record.disparities = slot.disparities;
     measure_flicker(slot, record);
     if (slot.is_lead_in) {
       return;

@@ -1,6 +1,11 @@
 #include "engine/view_geometry/depth_resolution.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <limits>
+#include <vector>
 
 namespace vantage {
 
@@ -20,6 +25,21 @@ std::optional<double> depth_resolution(const DepthScale& scale, double step_px,
     return std::nullopt;
   }
   return step_px / (scale.focal_length_px * scale.baseline) * *here * *next;
+}
+
+std::optional<DisparityQuantiles> disparity_quantiles(ImageView<const float> disparity_px) {
+  std::vector<float> known;
+  for (int y = 0; y < disparity_px.height(); ++y) {
+    std::copy_if(disparity_px.row(y), disparity_px.row(y) + disparity_px.width(),
+                 std::back_inserter(known), [](float d) { return std::isfinite(d); });
+  }
+  if (known.empty()) {
+    return std::nullopt;
+  }
+  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+  std::nth_element(known.begin(), middle, known.end());
+  const auto [smallest, largest] = std::minmax_element(known.begin(), known.end());
+  return DisparityQuantiles{*largest, *middle, *smallest};
 }
 
 void depth_resolution_map(ImageView<const float> disparity_px, const DepthScale& scale,

@@ -23,7 +23,17 @@ std::optional<double> depth(const DepthScale& scale, double disparity_px);
 std::optional<double> depth_resolution(const DepthScale& scale, double step_px,
                                        double disparity_px);
 
-/// The same for each pixel of a map, NaN = unknown or infinite. Resizes `resolution`. Identical for
+/// Known disparities of a map that stand for all of them.
+struct DisparityQuantiles {
+  float nearest_px = 0;
+  float median_px = 0;
+  float farthest_px = 0;
+};
+
+/// Empty if no disparity is known.
+std::optional<DisparityQuantiles> disparity_quantiles(ImageView<const float> disparity_px);
+
+/// depth_resolution() for each pixel of a map, NaN = unknown or infinite. Resizes `resolution`. Identical for
 /// any `execution`.
 void depth_resolution_map(ImageView<const float> disparity_px, const DepthScale& scale,
                           double step_px, Execution& execution, Image<float>& resolution);

@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "engine/io/disparity_io.h"
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {
@@ -59,6 +61,74 @@ TEST_F(RunFurtherMaps, AreThoseOfMatch) {
               read_file(folder_ / "middle.png"));
 }
 
+/// f b/(d + doffs − δ) − f b/(d + doffs), in metres (EQUATIONS §5.10).
+float resolution_of(float d, double step_px) {
+  const double from_infinity_px = static_cast<double>(d) + 3;
+  return static_cast<float>(500 * 0.2 / (from_infinity_px - step_px) -
+                            500 * 0.2 / from_infinity_px);
+}
+
+TEST_F(RunFurtherMaps, DepthResolutionsAreThoseOfTheDisparities) {
+  write_file(folder_ / "calib.txt",
+             "cam0=[500 0 32; 0 500 24; 0 0 1]\ncam1=[500 0 35; 0 500 24; 0 0 1]\ndoffs=3\n"
+             "baseline=200\nwidth=64\nheight=48\n");
+  write_file(folder_ / "run.toml",
+             "save = [\"disparity\", \"depth-resolution\"]\n"
+             "disparity-resolution = 0.25\n");
+  const std::string out = folder_ / "out";
+  const std::vector<std::string> outputs = {"--config",       folder_ / "run.toml",
+                                            "--calibration",  folder_ / "calib.txt",
+                                            "--chunk-frames", "1",
+                                            "--frames",       "0-3"};
+  ASSERT_EQ(run(out, joined(outputs, {"--shard", "2/2"})).exit_code, 0);
+  const ProcessResult result =
+      run(out, joined(outputs, {"--shard", "1/2", "--report", folder_ / "report.json"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  std::vector<float> medians;
+  std::vector<float> all;
+  const auto values = read_report(folder_ / "report.json")["results"]["depth_resolution"];
+  ASSERT_EQ(values["frames"].size(), 4U);
+  for (int frame = 0; frame < 4; ++frame) {
+    const DisparityMap map = read_disparity(out + "/disparity/" + frame_file(frame, "pfm"));
+    const DisparityMap dz = read_disparity(out + "/depth-resolution/" + frame_file(frame, "pfm"));
+    std::vector<float> disparities;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        EXPECT_FLOAT_EQ(dz.at(x, y), resolution_of(map.at(x, y), 0.25));
+        disparities.push_back(map.at(x, y));
+      }
+    }
+    std::ranges::sort(disparities);
+    medians.push_back(disparities[disparities.size() / 2]);
+    const auto& entry = values["frames"][static_cast<std::size_t>(frame)];
+    EXPECT_EQ(entry["frame"], frame);
+    EXPECT_EQ(entry["median"]["disparity_px"].get<float>(), medians.back());
+    EXPECT_FLOAT_EQ(entry["farthest"]["depth_resolution"].get<float>(),
+                    resolution_of(disparities.front(), 0.25));
+    all.insert(all.end(), disparities.begin(), disparities.end());
+  }
+  std::ranges::sort(medians);
+  const auto [farthest, nearest] = std::ranges::minmax(all);
+  EXPECT_EQ(values["nearest"]["disparity_px"].get<float>(), nearest);
+  EXPECT_EQ(values["median"]["disparity_px"].get<float>(), medians[2]);
+  EXPECT_EQ(values["farthest"]["disparity_px"].get<float>(), farthest);
+  EXPECT_FLOAT_EQ(values["nearest"]["depth"].get<float>(), 100 / (nearest + 3));
+  EXPECT_FLOAT_EQ(values["nearest"]["relative_resolution"].get<float>(),
+                  resolution_of(nearest, 0.25) * (nearest + 3) / 100);
+  EXPECT_EQ(values["disparity_resolution_px"], 0.25);
+
+  // Those of `match`, of the right map, with the default of whole disparities.
+  const std::vector<std::string> right = {"--reference",    "right", "--subpixel", "none",
+                                          "--focal-length", "500",   "--baseline", "0.2"};
+  ASSERT_EQ(run(folder_ / "right",
+                joined(right, {"--save", "depth-resolution", "--frames", "2-2", "--format", "npy"}))
+                .exit_code,
+            0);
+  match_frame(joined(right, {"--depth-resolution", folder_ / "dz.npy"}));
+  EXPECT_TRUE(results_in(folder_ / "right")["depth-resolution/000002.npy"] ==
+              read_file(folder_ / "dz.npy"));
+}
+
 TEST_F(RunFurtherMaps, AreMadeAgainForAVideo) {
   const std::vector<std::string> outputs = {
       "--save",  "disparity,cyclopean-occlusion", "--selection",    "symmetric",
@@ -79,6 +149,17 @@ TEST_F(RunFurtherMaps, AreRefusedWhereThereAreNone) {
            {{"--save", "posterior-mean", "--method", "ssd"}, "expected the aggregation bayes"},
            {{"--save", "posterior-variance", "--preset", "realtime"}, "expected search-size full"},
            {{"--save", "posterior-variance", "--format", "png"}, "save has posterior-variance"},
+           {{"--save", "depth-resolution"}, "--save depth, depth-resolution, cloud or mesh is in"},
+           {{"--save", "depth-resolution", "--focal-length", "9", "--baseline", "1", "--format",
+             "png"},
+            "save has depth-resolution"},
+           {{"--save", "depth-resolution", "--focal-length", "9", "--baseline", "1",
+             "--disparity-resolution", "0"},
+            "disparity-resolution is 0, expected a number above 0"},
+           {{"--disparity-resolution", "1"}, "where --save has no depth-resolution"},
+           {{"--save", "depth-resolution", "--focal-length", "9", "--baseline", "1", "--max-depth",
+             "5"},
+            "--max-depth has no effect"},
            {{"--save", "disparity,posterior-mean", "--video", "posterior-mean"},
             "whose values a video cannot hold"}}) {
     const ProcessResult result = run(folder_ / "out", test.arguments);

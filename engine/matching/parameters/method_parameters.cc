@@ -14,6 +14,10 @@ MethodParameters at_level(const MethodParameters& parameters, int level) {
   return result;
 }
 
+double disparity_resolution_px(const MethodParameters& parameters) {
+  return parameters.subpixel == Subpixel::kNone ? 1 : 0.1;
+}
+
 int steps_per_px(const MethodParameters& parameters) {
   return static_cast<int>(std::lround(1 / parameters.candidate_step_px));
 }

@@ -192,6 +192,9 @@ MethodParameters at_level(const MethodParameters& parameters, int level);
 
 /// Candidates per pixel of disparity.
 int steps_per_px(const MethodParameters& parameters);
+/// Difference of disparities in pixels that counts as one that can be told apart unless another is
+/// given (EQUATIONS §5.10).
+double disparity_resolution_px(const MethodParameters& parameters);
 
 /// Whether the neighbours of a pixel are weighted by the intensity edges between them.
 bool uses_edge_weights(const MethodParameters& parameters);
