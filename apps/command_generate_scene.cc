@@ -61,6 +61,9 @@ void add_scene_settings(Settings& settings, SceneJob& job) {
                    "Number of frames after which all movements repeat");
   settings.number("camera-speed", job.camera_speed, "B",
                   "Movement of both cameras to the right per frame, in baselines");
+  settings.flag("boards", scene.has_boards,
+                "Boards without texture, facing the cameras and slanted, in place of the other "
+                "objects; DIR/left-uniform.png and right-uniform.png are white there");
   settings.integer("samples", scene.samples_per_side, "N", "Average N x N samples per pixel");
   settings.number("right-gain", scene.right_gain, "G",
                   "Gain of the right camera, whose intensity is G * I + O");
@@ -114,6 +117,9 @@ void check_files(const SceneJob& job, const Settings& settings) {
     for (const char* kind : {"", "-disparity", "-occluded"}) {
       names.push_back(side + kind);
     }
+    if (job.scene.has_boards) {
+      names.push_back(side + "-uniform");
+    }
   }
   for (const BaselinePosition view : job.views) {
     names.push_back(view_name(job, view));
@@ -159,6 +165,9 @@ void make_frame(const SceneJob& job, const LayeredScene& scene, int frame,
       files.write(name, frame, rendering.image);
       files.write(name + "-disparity", frame, rendering.disparity);
       files.write(name + "-occluded", frame, occluded);
+      if (job.scene.has_boards) {
+        files.write(name + "-uniform", frame, rendering.uniform);
+      }
     });
   };
   const SceneView left{frame * job.camera_speed, 0};

@@ -224,15 +224,23 @@ SceneRendering LayeredScene::render(const PosedCamera& camera, int frame) const 
   };
 
   Image<std::uint8_t> image(camera.width_px, camera.height_px, 3);
-  SceneRendering rendering{{}, DisparityMap(camera.width_px, camera.height_px)};
+  SceneRendering rendering{
+      {}, DisparityMap(camera.width_px, camera.height_px), Mask(camera.width_px, camera.height_px)};
   execution_->for_each_band(camera.height_px, [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
       PortableRandom noise(noise_seed, static_cast<std::uint64_t>(y));
       for (int x = 0; x < camera.width_px; ++x) {
-        const Hit centre_hit = shot.first_hit(shot.camera().ray_through(x, y), x, y);
+        const Ray centre_ray = shot.camera().ray_through(x, y);
+        const Hit centre_hit = shot.first_hit(centre_ray, x, y);
         rendering.disparity.at(x, y) = centre_hit.t == kNoHit
                                            ? std::numeric_limits<float>::quiet_NaN()
                                            : static_cast<float>(focal_length_px() / centre_hit.t);
+        rendering.uniform.at(x, y) =
+            centre_hit.t != kNoHit && objects[static_cast<std::size_t>(centre_hit.object)]
+                                          .surface->detail(centre_ray.at(centre_hit.t))
+                                          .is_uniform
+                ? 255
+                : 0;
 
         Vector3d sum = Vector3d::Zero();
         for (int j = 0; j < samples; ++j) {

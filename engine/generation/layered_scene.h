@@ -25,6 +25,8 @@ struct LayeredSceneOptions {
   /// baseline interpolate linearly. 0.1..10 and ±255.
   double right_gain = 1;
   double right_offset = 0;
+  /// Boards partly or wholly without texture stand in the room in place of spheres, cards and bars.
+  bool has_boards = false;
   double noise_sigma = 0;  ///< grey levels, independent per pixel, channel, view, frame; 0..255
   std::uint64_t seed = 1;  ///< of textures and noise
 
@@ -55,11 +57,13 @@ struct ScenePoint {
 struct SceneRendering {
   Photograph image;        ///< 8-bit RGB
   DisparityMap disparity;  ///< at pixel centres, per baseline: focal length / Z; all known
+  Mask uniform;            ///< 255 at pixels whose surface has no texture at their centre
 };
 
 /// A synthetic moving scene with exact geometry: a wavy wall, a slanted floor, spheres, a column,
 /// thin bars and floating slanted cards with shaped outlines. All have colour textures attached to
-/// them, so that a surface point has one colour in every view.
+/// them, so that a surface point has one colour in every view. With boards: two of one colour, two
+/// with a textured frame, one of each facing the cameras and one slanted.
 ///
 /// A point at image position p in view A is at p − d · (B − A) in view B (3.5), d its disparity.
 /// Thread rule: all members may be called concurrently. Results do not depend on the executor.

@@ -23,15 +23,21 @@ class Composer {
         side_(std::min(options.width_px, options.height_px)),
         far_(options.far_disparity_or_default()),
         range_(options.near_disparity_or_default() - far_),
+        has_boards_(options.has_boards),
         centre_(centre),
         cycle_(2 * std::numbers::pi * (frame % options.frames_per_cycle) /
                options.frames_per_cycle) {}
 
   std::vector<SceneObject> compose() {
-    add_spheres();
-    add_column();
-    add_cards();
-    add_bars();
+    if (has_boards_) {
+      add_column();
+      add_boards();
+    } else {
+      add_spheres();
+      add_column();
+      add_cards();
+      add_bars();
+    }
     add_room();
     return std::move(objects_);
   }
@@ -81,22 +87,36 @@ class Composer {
   }
 
   void add_card(Outline outline, double u, double v, double nearness, double half_side,
-                const Matrix3d& rotation, Palette palette) {
+                const Matrix3d& rotation, Palette palette, double uniform_share = 0) {
     add(make_card({.outline = outline,
                    .centre = place(u, v, nearness),
                    .rotation = rotation,
                    .half_width = length(half_side, nearness),
                    .half_height = length(half_side, nearness),
                    .texture_scale = disparity(nearness),
-                   .texture_origin = 211.0 * static_cast<double>(objects_.size())}),
+                   .texture_origin = 211.0 * static_cast<double>(objects_.size()),
+                   .uniform_share = uniform_share}),
         std::move(palette));
   }
 
+  static Matrix3d turned(double yaw, double pitch, double roll) {
+    return Matrix3d(AngleAxisd(yaw, Vector3d::UnitY()) * AngleAxisd(pitch, Vector3d::UnitX()) *
+                    AngleAxisd(roll, Vector3d::UnitZ()));
+  }
+
+  void add_boards() {
+    add_card(Outline::kRectangle, -0.2, -0.24 + 0.02 * sway(1, 2), 0.35, 0.19, turned(0, 0, 0.1),
+             {{236, 188, 62}, {220, 146, 48}, {248, 222, 130}, {236, 196, 90}}, 1);
+    add_card(Outline::kRectangle, 0.24 + 0.02 * sway(1, 3), -0.22, 0.45, 0.23,
+             turned(-0.8 + 0.1 * sway(1, 2.5), 0, 0),
+             {{170, 82, 138}, {206, 116, 154}, {240, 190, 176}, {226, 158, 166}}, 0.8);
+    add_card(Outline::kRectangle, -0.24 + 0.02 * sway(1, 4), 0.23, 0.6, 0.2, turned(0, 0, -0.1),
+             {{70, 150, 118}, {112, 178, 120}, {190, 208, 140}, {150, 190, 132}}, 0.8);
+    add_card(Outline::kRectangle, 0.22, 0.22, 0.5, 0.22, turned(0.3, 0.8 + 0.1 * sway(1, 1), 0),
+             {{52, 112, 176}, {74, 156, 196}, {226, 232, 226}, {180, 206, 214}}, 1);
+  }
+
   void add_cards() {
-    const auto turned = [](double yaw, double pitch, double roll) {
-      return Matrix3d(AngleAxisd(yaw, Vector3d::UnitY()) * AngleAxisd(pitch, Vector3d::UnitX()) *
-                      AngleAxisd(roll, Vector3d::UnitZ()));
-    };
     add_card(Outline::kStar, -0.14, -0.24 + 0.02 * sway(1, 2), 0.5, 0.19,
              turned(0.75 + 0.2 * sway(1, 0.5), 0.15, 0.3 * sway(1, 1)),
              {{236, 188, 62}, {220, 146, 48}, {248, 222, 130}, {236, 196, 90}});
@@ -139,6 +159,7 @@ class Composer {
 
   double width_, height_, side_;
   double far_, range_;
+  bool has_boards_;
   CentreView centre_;
   double cycle_;
   std::vector<Ball> balls_;

@@ -249,7 +249,9 @@ class CardSurface final : public Surface {
     return {.normal = faces_away ? Vector3d(-normal) : normal,
             .texture = Vector3d(local.x() * card_.texture_scale, local.y() * card_.texture_scale,
                                 card_.texture_origin),
-            .pattern = soft_step(10 * std::sin(9 * radius))};
+            .pattern = soft_step(10 * std::sin(9 * radius)),
+            .is_uniform = std::abs(local.x()) < card_.uniform_share * card_.half_width &&
+                          std::abs(local.y()) < card_.uniform_share * card_.half_height};
   }
 
   [[nodiscard]] Ball bounds() const override {

@@ -30,6 +30,7 @@ struct SurfaceDetail {
   Eigen::Vector3d texture;  ///< moves with the surface; unit: about a pixel of the centre view
   double pattern = 0;       ///< 0..1, blends between two sets of colours
   double light = 1;         ///< fraction of the light that reaches the point, 0..1
+  bool is_uniform = false;  ///< without texture and pattern
 };
 
 /// One opaque surface at one time, in world coordinates. Thread rule: immutable.
@@ -92,6 +93,7 @@ struct Card {
   double half_height = 1;
   double texture_scale = 1;
   double texture_origin = 0;
+  double uniform_share = 0;  ///< of both sides, around the middle: no texture there; 1: nowhere
 };
 std::unique_ptr<Surface> make_card(const Card& card);
 

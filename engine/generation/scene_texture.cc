@@ -25,6 +25,14 @@ constexpr double kAmbientLight = 0.5;
 }  // namespace
 
 Vector3d SceneTexture::colour(const Palette& palette, const SurfaceDetail& detail) const {
+  // Light comes from above, left of and behind the cameras.
+  const Vector3d to_light = Vector3d(-0.45, -0.7, -0.55).normalized();
+  const double lambert = std::max(0.0, detail.normal.dot(to_light));
+  const double lit = detail.light * (kAmbientLight + (1 - kAmbientLight) * lambert * 1.35);
+  if (detail.is_uniform) {
+    return palette.a * lit;
+  }
+
   // The shift keeps a texture plane at 0 away from lattice points, where all noise is 0.
   const auto noise = [&](double wavelength, double shift) {
     const Vector3d q = detail.texture / wavelength;
@@ -41,11 +49,7 @@ Vector3d SceneTexture::colour(const Palette& palette, const SurfaceDetail& detai
   const double coarse = kCoarseLevels * noise(kCoarseWavelength, 13.57);
   colour += Vector3d::Constant(fine + medium + coarse);
   colour += kTint * Vector3d(fine - medium, 0, medium - fine);
-
-  // Light comes from above, left of and behind the cameras.
-  const Vector3d to_light = Vector3d(-0.45, -0.7, -0.55).normalized();
-  const double lambert = std::max(0.0, detail.normal.dot(to_light));
-  return colour * (detail.light * (kAmbientLight + (1 - kAmbientLight) * lambert * 1.35));
+  return colour * lit;
 }
 
 }  // namespace vantage

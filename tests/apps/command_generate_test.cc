@@ -71,6 +71,24 @@ TEST(GenerateCommand, ScenesAsPairsAndSequences) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
 }
 
+TEST(GenerateCommand, BoardsHaveMasks) {
+  const TemporaryFolder folder;
+  const ProcessResult result =
+      run_vantage({"generate", "scene", "--boards", "--width", "64", "--height", "48", "--samples",
+                   "1", "-o", folder / "boards"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(files_below(folder / "boards"),
+              ElementsAre("calib.txt", "left-disparity.pfm", "left-occluded.png",
+                          "left-uniform.png", "left.png", "right-disparity.pfm",
+                          "right-occluded.png", "right-uniform.png", "right.png"));
+  // `eval --mask` reads them: a map has no error where it is compared with itself.
+  EXPECT_EQ(run_vantage({"eval", folder / "boards/left-disparity.pfm",
+                         folder / "boards/left-disparity.pfm", "--mask",
+                         folder / "boards/left-uniform.png"})
+                .exit_code,
+            0);
+}
+
 // Cameras like the pair's see what views on and off its baseline see.
 TEST(GenerateCommand, AnyCameraLooksAtTheScene) {
   const TemporaryFolder folder;

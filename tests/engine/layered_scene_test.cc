@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -182,6 +183,53 @@ TEST(LayeredScene, ViewsShowTheSameColoursAtWarpedPositions) {
     EXPECT_GT(samples, 320 * 240 * 0.8);
     EXPECT_LT(sums[0] / (3.0 * samples), 2);
     EXPECT_GT(sums[1] / (3.0 * samples), 8) << "there is texture to match";
+  }
+}
+
+// Each board is a plane in disparity space; two of them face the cameras.
+TEST(LayeredScene, BoardsAreFlatAndOfOneColour) {
+  LayeredSceneOptions options = small(160, 120);
+  options.has_boards = true;
+  const LayeredScene scene(options, threads());
+  for (const SceneView view : {kLeft, kRight}) {
+    const SceneRendering rendering = scene.render(view, 5);
+    struct Board {
+      Eigen::Matrix3d normal_equations = Eigen::Matrix3d::Zero();
+      Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
+      std::vector<Eigen::Vector3d> pixels;  // x, y, disparity
+      std::array<std::uint8_t, 3> colour = {};
+    };
+    std::map<int, Board> boards;
+    for (int y = 0; y < 120; ++y) {
+      for (int x = 0; x < 160; ++x) {
+        if (rendering.uniform.at(x, y) == 0) {
+          continue;
+        }
+        Board& board = boards[scene.point_at(view, 5, x, y).surface];
+        const Eigen::Vector3d at(x, y, 1);
+        const auto disparity = static_cast<double>(rendering.disparity.at(x, y));
+        board.normal_equations += at * at.transpose();
+        board.right_side += disparity * at;
+        board.pixels.emplace_back(x, y, disparity);
+        for (int c = 0; c < 3; ++c) {
+          const std::uint8_t level = bytes_of(rendering).at(x, y, c);
+          auto& of_board = board.colour[static_cast<std::size_t>(c)];
+          of_board = board.pixels.size() == 1 ? level : of_board;
+          ASSERT_EQ(level, of_board) << x << ' ' << y;
+        }
+      }
+    }
+    ASSERT_EQ(boards.size(), 4U);
+    int slanted = 0;
+    for (const auto& [surface, board] : boards) {
+      EXPECT_GT(board.pixels.size(), 500U);
+      const Eigen::Vector3d plane = board.normal_equations.ldlt().solve(board.right_side);
+      for (const Eigen::Vector3d& pixel : board.pixels) {
+        ASSERT_NEAR(plane.dot(Eigen::Vector3d(pixel.x(), pixel.y(), 1)), pixel.z(), 1e-4);
+      }
+      slanted += plane.head<2>().norm() > 0.01 ? 1 : 0;
+    }
+    EXPECT_EQ(slanted, 2);
   }
 }
 
