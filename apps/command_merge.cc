@@ -73,11 +73,11 @@ int command_merge(const Arguments& arguments) {
     }
   }
   const DeliveredFrames delivered(layout);
-  const FrameRange all{0, identity.frame_count};
+  const FrameRange all = input_frames(identity, delivered);
   const std::vector<FrameRange> missing = delivered.missing(all);
   FrameRange frames = all;
-  if (job.partial) {
-    frames = contiguous_frames(delivered, identity.frame_count);
+  if (job.partial || identity.is_stream()) {
+    frames = contiguous_frames(delivered, all.end);
     if (frames.empty()) {
       throw Error(fmt::format("{}: frames {} are missing, expected frames without a gap",
                               job.folder, to_string(missing)));
@@ -90,7 +90,7 @@ int command_merge(const Arguments& arguments) {
     throw Error(
         fmt::format("{}: {} of {} frames are missing ({}), expected all; 'vantage run -o {} "
                     "--resume' computes them",
-                    job.folder, count, identity.frame_count, to_string(missing), job.folder));
+                    job.folder, count, all.count(), to_string(missing), job.folder));
   }
   std::string sound_problem;
   {

@@ -63,7 +63,9 @@ std::string finish_if_whole(const RunJob& job, const RunSession& session,
                             const SequenceLayout& layout, const SequenceReport& sequence,
                             RunJournal& journal, RunReport& report) {
   const bool has_report = job.sequence.saves(SequenceOutput::kComfort);
-  if (job.shard || sequence.interrupted || (!layout.has_videos() && !has_report)) {
+  // A stream is never continued.
+  const bool is_unfinished = sequence.interrupted && !reads_stream(job);
+  if (job.shard || is_unfinished || (!layout.has_videos() && !has_report)) {
     return "";
   }
   const DeliveredFrames delivered(layout);
@@ -108,7 +110,7 @@ int command_run(const Arguments& arguments) {
   report.set_execution(execution);
   report.set_tuning(session.tuning.report, session.tuning.summary);
 
-  if (is_stream(job)) {
+  if (writes_stream(job)) {
     return run_to_stream(job, session, execution, report);
   }
   const SequenceLayout layout(job.output, job.sequence);
@@ -116,7 +118,7 @@ int command_run(const Arguments& arguments) {
                      RunSession::part_name(job));
   const std::atomic<bool>& interrupted = interrupt_flag();
   std::optional<ShotTable> shots;
-  if (job.sequence.needs_shots()) {
+  if (job.sequence.needs_shots() && !reads_stream(job)) {
     shots = find_shots(job, session, layout, execution, report);
     if (!shots) {
       if (!job.common.quiet) {
@@ -135,6 +137,9 @@ int command_run(const Arguments& arguments) {
     };
     sequence = SequenceRunner(job.sequence, execution).run(run, layout, journal);
   }
+  if (sequence.shots) {
+    keep_shot_table(layout.journal_folder() / kShotsFile, *sequence.shots);
+  }
   add_scratch_use(execution, sequence.memory);
   report.set_memory(sequence.memory);
   const std::string sound_problem =
@@ -148,6 +153,11 @@ int command_run(const Arguments& arguments) {
   }
   if (sequence.interrupted) {
     return kExitInterrupted;
+  }
+  if (sequence.stream_problem) {
+    throw Error(fmt::format("{}; {} frame{} before it {} done", *sequence.stream_problem,
+                            sequence.frames, sequence.frames == 1 ? "" : "s",
+                            sequence.frames == 1 ? "is" : "are"));
   }
   if (session.pairs->unpaired_frames() > 0 && RunSession::part_name(job) == "all") {
     // All frames with a partner are done, but the user must know that others are missing.

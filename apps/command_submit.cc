@@ -16,6 +16,7 @@
 #include "apps/setting_value.h"
 #include "apps/settings.h"
 #include "apps/slurm_scripts.h"
+#include "apps/stream_run.h"
 #include "apps/tell.h"
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
@@ -66,6 +67,8 @@ void check(const SubmitJob& job) {
   };
   refuse_if(job.run.shard.has_value(), "shard",
             "each task has its own; --shards is the number of tasks");
+  refuse_if(reads_stream(job.run), "stereo -", "tasks read files, expected one");
+  refuse_if(writes_stream(job.run), "output -", "tasks write a folder, expected one");
   refuse_if(job.run.dry_run, "dry-run", "'vantage run' prints the plan, --no-submit the scripts");
   refuse_if(!job.run.common.report.empty(), "report",
             "each task writes its own: DIR/.vantage/slurm/report-1.json and so on");

@@ -77,20 +77,25 @@ int command_verify(const Arguments& arguments) {
   if (job.remove) {
     remove_damaged(verification, job.folder);
   }
-  const std::vector<FrameRange> missing =
-      DeliveredFrames(layout).missing({0, identity.frame_count});
+  const DeliveredFrames delivered(layout);
+  const std::vector<FrameRange> missing = delivered.missing(input_frames(identity, delivered));
   if (!verification.damaged.empty() || (verification.damaged_lines > 0 && !missing.empty())) {
-    throw Error(fmt::format(
-        "{}; 'vantage {}run -o {} --resume' writes it again",
-        describe_damage(verification, job.folder),
-        job.remove || verification.damaged.empty() ? "" : "verify --remove' and 'vantage ",
-        job.folder));
+    const std::string damage = describe_damage(verification, job.folder);
+    throw Error(identity.is_stream()
+                    ? damage +
+                          "; its input was standard input, so nothing but a new run writes it again"
+                    : fmt::format("{}; 'vantage {}run -o {} --resume' writes it again", damage,
+                                  job.remove || verification.damaged.empty()
+                                      ? ""
+                                      : "verify --remove' and 'vantage ",
+                                  job.folder));
   }
   if (!job.quiet) {
     tell("verify: {} files with {:.1f} MB are unchanged{}\n", verification.files,
          static_cast<double>(verification.bytes) * 1e-6,
-         missing.empty() ? std::string()
-                         : fmt::format("; frames {} are not done yet", to_string(missing)));
+         missing.empty() || identity.is_stream()
+             ? std::string()
+             : fmt::format("; frames {} are not done yet", to_string(missing)));
   }
   return kExitDone;
 }

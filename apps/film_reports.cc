@@ -66,7 +66,10 @@ std::optional<ComfortReport> write_film_reports(const SequenceOptions& options,
     return std::nullopt;
   }
   const std::filesystem::path file = layout.journal_folder() / kShotsFile;
-  const std::optional<ShotTable> table = read_shot_table(file);
+  std::optional<ShotTable> table = read_shot_table(file);
+  if (!table && identity.is_stream()) {
+    table = shots_at({}, frames, options);  // the run was killed before it knew the cuts
+  }
   if (!table) {
     throw Error(
         fmt::format("{}: is missing, expected the shots of the run; --overwrite starts the "

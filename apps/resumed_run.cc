@@ -49,7 +49,9 @@ std::string sources_of(const RunJob& job, const Settings& settings) {
   SettingValue sources = {{kKeepGoing, job.keep_going}};
   for (const char* name : kSources) {
     const auto stored = [](const SettingValue& path) {
-      return stored_name(fs::absolute(path.get<std::string>()).string());
+      return path == "-"
+                 ? path  // standard input
+                 : SettingValue(stored_name(fs::absolute(path.get<std::string>()).string()));
     };
     if (values[name].is_string()) {
       sources[name] = stored(values[name]);

@@ -136,11 +136,14 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
   report.add_compute_seconds(sequence.compute_seconds);
   report.add_cells(sequence.cells);
   report.set_plan(sequence.frames > 0 ? sequence.plan : session.memory.chain);
+  const int frames_of_part = session.pairs->is_stream()
+                                 ? sequence.frames + static_cast<int>(sequence.skipped.size())
+                                 : session.selection.own().count();
   SettingValue results = {{"frames", sequence.frames},
                           {"frames_before", sequence.frames_before},
                           {"pictures_again", sequence.pictures_again},
-                          {"frames_of_part", session.selection.own().count()},
-                          {"frames_of_input", session.selection.frame_count},
+                          {"frames_of_part", frames_of_part},
+                          {"frames_of_input", input_frames(session.identity, delivered).count()},
                           {"interrupted", sequence.interrupted},
                           {"skipped", remark_values(sequence.skipped)},
                           {"remarks", remark_values(sequence.remarks)},
@@ -202,7 +205,7 @@ void print_summary(const RunJob& job, const RunSession& session, const SequenceR
   }
   line += " -> " + job.output;
   if (sequence.interrupted) {
-    line += " (interrupted, --resume continues)";
+    line += session.pairs->is_stream() ? " (interrupted)" : " (interrupted, --resume continues)";
   }
   tell("{}\n", line);
   if (sequence.frames + sequence.pictures_again > 0) {

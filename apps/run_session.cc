@@ -10,6 +10,7 @@
 #include "apps/frame_step_setting.h"
 #include "apps/rectification_check.h"
 #include "apps/resumed_run.h"
+#include "apps/stream_run.h"
 #include "engine/error.h"
 #include "engine/io/file_identity.h"
 #include "engine/io/json_text.h"
@@ -46,6 +47,16 @@ void read_first_pair(PairSource& pairs, FramePair& pair) {
   throw Error("the sequence has no pair of frames");
 }
 
+/// The first pair that a run takes from a stream; those before it are dropped.
+void read_first_streamed_pair(PairSource& pairs, int first, FramePair& pair) {
+  pairs.skip_to(first);
+  if (!pairs.fetch(pair)) {
+    throw Error(fmt::format("{}: the stream ends before it", pairs.describe(first)));
+  }
+  pairs.decode(pair);
+  pairs.skip_to(first);
+}
+
 PairShape shape_of(const Photograph& photograph) {
   return {.source = {photograph.width(), photograph.height()},
           .channels = photograph.channels(),
@@ -77,7 +88,7 @@ RunIdentity identity_of(const RunJob& job, const Settings& settings, const RunSe
     poses.add(fs::path(job.poses).filename().string(), job.poses);
     identity.inputs.push_back("poses: " + poses.to_string());
   }
-  identity.frame_count = session.pairs->pair_count();
+  identity.frame_count = session.pairs->is_stream() ? kUnknownFrames : session.pairs->pair_count();
   const PairSource::Sound sound = session.pairs->sound();
   if (job.sequence.sound && !sound.file.empty()) {
     identity.sound_file = fs::absolute(sound.file);
@@ -137,7 +148,7 @@ AppliedTuning find_tuning(const RunJob& job, const FramePair& first, const Setti
 }
 
 std::string counted_frames(const RunJob& job, int frame_count) {
-  if (job.input.stereo == "-") {
+  if (reads_stream(job)) {
     return "a stream of pairs";
   }
   return job.sequence.baselines.size() < 2 ? fmt::format("{} pairs", frame_count)
@@ -198,16 +209,25 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   for (const fs::path& file : session.pairs->files()) {
     files.add_input(file);
   }
-  FramePair first;
-  report.timed_file_access("open", [&] { read_first_pair(*session.pairs, first); });
-  session.shape = shape_of(first.left);
-  session.shape.is_video = !session.pairs->sound().file.empty();
-  session.shape.frames_kept = session.pairs->frames_kept();
-  session.shape.pair_count = session.pairs->pair_count();
   session.selection = {.frame_count = session.pairs->pair_count(),
                        .chunk_frames = job.sequence.chunk_frames,
                        .frames = selected_pairs(job, *session.pairs),
                        .shard = job.shard};
+  FramePair first;
+  report.timed_file_access("open", [&] {
+    if (session.pairs->is_stream()) {
+      const FrameRun frames = run_of(
+          session.selection, dependence_of(job.sequence, SequenceLayout(job.output, job.sequence)),
+          session.selection.own());
+      read_first_streamed_pair(*session.pairs, frames.frames.first - frames.lead_in, first);
+    } else {
+      read_first_pair(*session.pairs, first);
+    }
+  });
+  session.shape = shape_of(first.left);
+  session.shape.is_video = !session.pairs->sound().file.empty();
+  session.shape.frames_kept = session.pairs->frames_kept();
+  session.shape.pair_count = session.pairs->pair_count();
   if (job.frames && session.selection.all().empty()) {
     throw Error(job.input.every.takes_all()
                     ? fmt::format("--frames starts at {} but the input has {} frames (0 to {})",
@@ -247,12 +267,13 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   const auto find_range = [&] {
     // Estimating the range of a video without an index decodes the whole video.
     const std::optional<DisparityRange> known = range_of_run_to_resume(job);
-    if (job.input.stereo == "-") {
-      return find_disparity_range(first.left, first.right, execution);  // others are not there yet
-    }
-    return known ? known : find_sequence_range(*session.pairs, rectify, execution);
+    return known ? known
+                 : find_sequence_range(
+                       *session.pairs, rectify, execution,
+                       job.sequence.is_film() ? Infinity::kAnywhere : Infinity::kAtZero);
   };
   choose_disparities(settings, job.common, find_range, job.sequence.match, report);
+  session.pairs->forget_start();
   job.sequence.validate();
   job.sequence.frame_rate =
       job.frame_rate.value_or(session.pairs->frame_rate().value_or(FrameRate()));

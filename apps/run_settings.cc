@@ -271,9 +271,9 @@ void add_pipeline_settings(Settings& settings, RunJob& job) {
                                  "bar on a terminal, else lines");
 }
 
-/// Refuses options of outputs that are not written.
+/// Refuses options of outputs that are not written. `reads_rate`: --fps has a use without a video.
 void refuse_idle_outputs(const Settings& settings, const SequenceOptions& sequence,
-                         bool is_stream) {
+                         bool reads_rate) {
   using Output = SequenceOutput;
   const auto saves_any = [&](std::initializer_list<Output> outputs) {
     return std::ranges::any_of(outputs, [&](Output output) { return sequence.saves(output); });
@@ -281,7 +281,7 @@ void refuse_idle_outputs(const Settings& settings, const SequenceOptions& sequen
   const bool has_depth_video = sequence.saves(Output::kDepthVideo);
   if (sequence.video.empty() && !has_depth_video) {
     settings.refuse_idle({"crf", "no-sound"}, "without --video");
-    if (!is_stream) {
+    if (!reads_rate) {
       settings.refuse_idle({"fps"}, "without --video");
     }
   }
@@ -394,12 +394,10 @@ void complete_sequence(RunJob& job) {
       sequence.save.push_back(SequenceOutput::kViews);
     }
   }
-  const bool is_film =
-      sequence.saves(SequenceOutput::kDepthVideo) || sequence.saves(SequenceOutput::kComfort);
-  if (!job.search_range_per_shot && is_film) {
+  if (!job.search_range_per_shot && sequence.is_film()) {
     // Stays as it is when the range has been found, or the run is continued.
-    job.search_range_per_shot =
-        sequence.match.disparities_auto && !sequence.temporal.uses_past() && !is_stream(job);
+    job.search_range_per_shot = sequence.match.disparities_auto && !sequence.temporal.uses_past() &&
+                                !reads_stream(job) && !writes_stream(job);
   }
   sequence.search_range_per_shot = job.search_range_per_shot.value_or(false);
   sequence.validate();
@@ -408,7 +406,7 @@ void complete_sequence(RunJob& job) {
 void complete(RunJob& job, const Settings& settings) {
   read_pose_files(job.views);
   complete_sequence(job);
-  refuse_idle_outputs(settings, job.sequence, is_stream(job));
+  refuse_idle_outputs(settings, job.sequence, writes_stream(job) || job.input.raw_video);
   check_stream(job, settings);
   job.input.raw_rate = job.frame_rate.value_or(FrameRate());
   if (job.sequence.search_range_per_shot && settings.is_set("disparities") &&
@@ -476,7 +474,7 @@ void add_run_outputs(const SequenceLayout& layout, bool has_comfort, const std::
 FileChecks check_files(const RunJob& job, const Settings& settings) {
   FileChecks files(settings);
   files.add_input(file_of(job.tuning));
-  if (is_stream(job)) {
+  if (writes_stream(job)) {
     check_common_files(job.common, files);
     return files;
   }

@@ -19,23 +19,49 @@ constexpr const char* kStream = "-";
 
 }  // namespace
 
-bool is_stream(const RunJob& job) { return job.output == kStream || job.input.stereo == kStream; }
+bool reads_stream(const RunJob& job) { return job.input.stereo == kStream; }
+
+bool writes_stream(const RunJob& job) { return job.output == kStream; }
+
+namespace {
+
+/// Frames of standard input are there once.
+void check_input_stream(const RunJob& job) {
+  if (job.resume || job.force) {
+    throw UsageError(fmt::format(
+        "{} is given, but the input is standard input, which cannot be read again; --overwrite "
+        "starts again",
+        job.resume ? "resume" : "force"));
+  }
+  if (job.shard) {
+    throw UsageError(
+        "shard is given and stereo is -, expected a file: standard input is read once");
+  }
+  const SequenceOptions& options = job.sequence;
+  const char* per_shot = options.search_range_per_shot    ? "search-range"
+                         : options.preview_range_per_shot ? "preview-range"
+                         : options.depth_scale.scope == DepthVideoScale::Scope::kShot
+                             ? "depth-range"
+                         : options.intensity_fit == FitScope::kShot ? "intensity-fit"
+                                                                    : nullptr;
+  if (per_shot != nullptr) {
+    throw UsageError(
+        fmt::format("{} is shot and stereo is -, expected another value: it needs all frames of a "
+                    "shot before the first; store the stream in a file",
+                    per_shot));
+  }
+}
+
+}  // namespace
 
 void check_stream(const RunJob& job, const Settings& settings) {
-  const bool reads = job.input.stereo == kStream;
-  const bool writes = job.output == kStream;
-  if (!reads) {
+  if (reads_stream(job)) {
+    check_input_stream(job);
+  } else {
     settings.refuse_idle({"raw-video"}, "without --stereo -");
   }
-  if (!writes) {
+  if (!writes_stream(job)) {
     settings.refuse_idle({"stream-format"}, "without --output -");
-  }
-  if (reads && !writes) {
-    throw UsageError(
-        "stereo is - and output is a folder, expected --output -: what is continued must be read "
-        "again; store the stream in a file first");
-  }
-  if (!writes) {
     return;
   }
   settings.refuse_idle({"resume", "overwrite", "force", "shard", "video", "measure-flicker", "crf",
@@ -62,9 +88,8 @@ int run_to_stream(const RunJob& job, const RunSession& session, Execution& execu
   StreamedVideoWriter writer(stdout, job.stream_format, job.sequence.frame_rate);
   SequenceReport sequence;
   {
-    // The length of a stream is not known, so there is no share to show.
     Progress progress("run", "frames",
-                      job.input.stereo == kStream ? ProgressStyle::kNone : job.shown_progress());
+                      reads_stream(job) ? ProgressStyle::kNone : job.shown_progress());
     SequenceRun run = session.run(job, nullptr);
     run.frame_size = session.shape.source;
     run.stop = &interrupt_flag();

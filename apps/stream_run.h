@@ -6,8 +6,10 @@
 
 namespace vantage::apps {
 
-/// Whether the run reads standard input or writes standard output ("-").
-bool is_stream(const RunJob& job);
+/// Whether the run reads standard input ("-").
+bool reads_stream(const RunJob& job);
+/// Whether the run writes standard output ("-").
+bool writes_stream(const RunJob& job);
 
 /// Throws UsageError for settings that do not go with a stream; `job` is otherwise complete.
 void check_stream(const RunJob& job, const Settings& settings);

@@ -7,6 +7,9 @@
 
 namespace vantage {
 
+/// Target of `path` if it is a link, else itself. Circular links are returned unchanged.
+std::filesystem::path through_links(const std::filesystem::path& path);
+
 /// A file that appears under its final name complete or not at all. The caller writes to
 /// temporary_path(), a hidden file in the same folder with the same extension; commit() flushes and
 /// renames. Without commit() nothing is left. An existing file is replaced only by commit(). Thread
@@ -22,6 +25,12 @@ class AtomicFile {
   ~AtomicFile();
 
   [[nodiscard]] const std::filesystem::path& temporary_path() const { return temporary_path_; }
+
+  /// Another final name in the same folder, before commit().
+  void rename(const std::filesystem::path& path) {
+    given_path_ = path;
+    final_path_ = through_links(path);
+  }
 
   /// Flushes the temporary file to disk and gives it its final name. Call it once, after the file
   /// has been closed. Throws Error (a full disk, say).
@@ -42,9 +51,6 @@ class AtomicFile {
   std::filesystem::path temporary_path_;
   bool committed_ = false;
 };
-
-/// Target of `path` if it is a link, else itself. Circular links are returned unchanged.
-std::filesystem::path through_links(const std::filesystem::path& path);
 
 /// Writes `bytes` to the file `path` atomically. Throws Error.
 void write_binary_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);

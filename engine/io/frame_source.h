@@ -12,6 +12,9 @@
 
 namespace vantage {
 
+/// Number of frames of a source whose end is not known before it comes: a stream.
+constexpr int kUnknownFrames = 1 << 30;
+
 /// A frame from a source: fetched in order by one thread, decoded by any.
 struct FetchedFrame {
   std::filesystem::path file;  ///< image file still to be read; empty: none

@@ -81,10 +81,15 @@ StreamedVideo::StreamedVideo(const std::optional<RawVideoShape>& raw, FrameRate 
   }
 }
 
+void StreamedVideo::fail_cut() {
+  ended_ = true;
+  throw Error(fmt::format("{}: the stream ends inside it or is damaged", describe(decoded_)));
+}
+
 bool StreamedVideo::decode_next(VideoPicture& picture) {
-  const auto fail_cut = [this] {
-    throw Error(fmt::format("{}: the stream ends inside it or is damaged", describe(decoded_)));
-  };
+  if (ended_) {
+    return false;
+  }
   int result = libav().av_read_frame(input_.get(), packet_.get());
   if (result == AVERROR_EOF) {
     // The reader of y4m takes a part of a frame for the end, too.
@@ -92,6 +97,7 @@ bool StreamedVideo::decode_next(VideoPicture& picture) {
     if (frames_end_ >= 0 && io.pos - (io.buf_end - io.buf_ptr) > frames_end_) {
       fail_cut();
     }
+    ended_ = true;
     return false;
   }
   frames_end_ = packet_->pos >= 0 ? packet_->pos + packet_->size : -1;
@@ -113,35 +119,23 @@ bool StreamedVideo::decode_next(VideoPicture& picture) {
 
 bool StreamedVideo::fetch(FetchedFrame& frame) {
   frame.file.clear();
-  frame.picture = {};
+  frame.picture = std::move(first_);
   frame.frames_missing = 0;
   frame.remarks.clear();
-  if (next_index_ == 0) {
-    frame.picture = first_.share();
-    ++next_index_;
-    return true;
-  }
-  first_ = {};
-  if (!decode_next(frame.picture)) {
-    return false;
-  }
-  ++next_index_;
-  return true;
+  return !frame.picture.is_empty() || decode_next(frame.picture);
 }
 
 void StreamedVideo::skip_to(int index) {
-  if (index == 0 && decoded_ == 1) {
-    next_index_ = 0;
-    return;
-  }
-  if (index < decoded_) {
+  const int next = decoded_ - (first_.is_empty() ? 0 : 1);
+  if (index < next) {
     throw Error(fmt::format("{}: is over, expected frames in order", describe(index)));
+  }
+  if (index > next) {
+    first_ = {};
   }
   VideoPicture dropped;
   while (decoded_ < index && decode_next(dropped)) {
   }
-  first_ = {};
-  next_index_ = index;
 }
 
 std::string StreamedVideo::describe(int index) const {

@@ -16,16 +16,14 @@
 namespace vantage {
 
 /// The frames of a video that arrives once, without index: y4m, or rawvideo of a given shape. It
-/// goes forward only; frame 0 can be fetched again until frame 1 is. Its length is not known: it
-/// counts kUnknownFrames frames, and fetch() is false after the last one.
+/// goes forward only. Its length is not known: it counts kUnknownFrames frames, and fetch() is
+/// false after the last one.
 class StreamedVideo final : public FrameSource {
  public:
-  static constexpr int kUnknownFrames = 1 << 30;
-
   /// Reads standard input. Throws Error when it is empty, or not a y4m video.
   StreamedVideo(const std::optional<RawVideoShape>& raw, FrameRate raw_rate);
 
-  /// Throws Error naming the frame when the stream ends inside it.
+  /// Throws Error naming the frame when the stream ends inside it; it has no more frames then.
   bool fetch(FetchedFrame& frame) override;
   /// Reads and drops the frames up to it. Throws Error for frames that are over.
   void skip_to(int index) override;
@@ -38,7 +36,9 @@ class StreamedVideo final : public FrameSource {
   [[nodiscard]] std::string identity() const override { return "standard input: a stream"; }
 
  private:
+  /// False after the last one.
   bool decode_next(VideoPicture& picture);
+  [[noreturn]] void fail_cut();
 
   LibavInput input_;
   AVStream* stream_ = nullptr;
@@ -49,8 +49,8 @@ class StreamedVideo final : public FrameSource {
   std::shared_ptr<PictureConverters> converters_ = std::make_shared<PictureConverters>();
   int decoded_ = 0;               ///< frames
   std::int64_t frames_end_ = -1;  ///< in bytes of the stream; -1: not known
-  int next_index_ = 0;
-  VideoPicture first_;  ///< until frame 1 is fetched
+  bool ended_ = false;
+  VideoPicture first_;  ///< until it is fetched
 };
 
 /// Writes frames to a stream as they come: y4m (4:2:0 with 8 bits, BT.709, limited range; grey

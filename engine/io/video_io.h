@@ -92,6 +92,9 @@ class VideoWriter {
   /// then only waits for the disk.
   void end_encoding();
 
+  /// The file will have another name of the same folder. Throws Error.
+  void rename(const std::filesystem::path& path);
+
   /// Ends the file, checks that it can be read as a video with all written frames, and gives it its
   /// name. Call it once, after at least one frame. Throws Error.
   void finish();

@@ -85,6 +85,11 @@ void VideoMuxer::write(AVPacket& packet, int stream, AVRational time_unit) {
   }
 }
 
+void VideoMuxer::rename(const std::filesystem::path& path) {
+  path_ = path;
+  file_.rename(path);
+}
+
 void VideoMuxer::finish(int frames) {
   int result = libav().av_write_trailer(output_.get());
   const int closed = libav().avio_closep(&output_->pb);

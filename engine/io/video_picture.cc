@@ -25,6 +25,14 @@ VideoPicture VideoPicture::share() const {
   return is_empty() ? VideoPicture() : VideoPicture(*frame_, converters_, name_);
 }
 
+std::size_t VideoPicture::bytes() const {
+  std::size_t bytes = 0;
+  for (int plane = 0; !is_empty() && plane < AV_NUM_DATA_POINTERS; ++plane) {
+    bytes += frame_->buf[plane] == nullptr ? 0 : frame_->buf[plane]->size;
+  }
+  return bytes;
+}
+
 void VideoPicture::convert(Photograph& photograph) {
   const LibavFrame frame = std::move(frame_);
   const auto converter = converters_->borrow();

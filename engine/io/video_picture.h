@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 
@@ -26,6 +27,8 @@ class VideoPicture {
   [[nodiscard]] bool is_empty() const { return frame_ == nullptr; }
   /// Another reference to the same pixels.
   [[nodiscard]] VideoPicture share() const;
+  /// Memory of its pixels.
+  [[nodiscard]] std::size_t bytes() const;
 
   /// Converts it to a photograph, whose memory is reused, and releases the decoder's memory. Thread
   /// rule: concurrently for different pictures. Throws Error, with the name, when its pixel format

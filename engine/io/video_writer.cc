@@ -144,6 +144,8 @@ void VideoWriter::end_encoding() {
   }
 }
 
+void VideoWriter::rename(const std::filesystem::path& path) { state_->file.rename(path); }
+
 void VideoWriter::finish() {
   end_encoding();
   State& state = *state_;

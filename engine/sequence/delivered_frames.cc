@@ -135,6 +135,13 @@ std::vector<FrameRange> DeliveredFrames::missing(FrameRange frames) const {
   return ranges;
 }
 
+FrameRange input_frames(const RunIdentity& identity, const DeliveredFrames& delivered) {
+  if (!identity.is_stream()) {
+    return {0, identity.frame_count};
+  }
+  return {0, delivered.records().empty() ? 0 : delivered.records().rbegin()->first + 1};
+}
+
 std::string to_string(const std::vector<FrameRange>& ranges) {
   std::string text;
   for (const FrameRange range : ranges) {

@@ -52,6 +52,9 @@ class DeliveredFrames {
   JoinRecord joined_;
 };
 
+/// The frames of the input of a run; of a stream those up to the last one that is done or skipped.
+FrameRange input_frames(const RunIdentity& identity, const DeliveredFrames& delivered);
+
 /// "0-11, 36, 40-49": for messages.
 std::string to_string(const std::vector<FrameRange>& ranges);
 

@@ -16,6 +16,7 @@
 #include "engine/sequence/pair_source.h"
 #include "engine/sequence/pending_files.h"
 #include "engine/sequence/run_journal.h"
+#include "engine/sequence/shot_cuts.h"
 #include "engine/synthesis/view_synthesizer.h"
 #include "engine/view_geometry/depth_resolution.h"
 #include "engine/view_geometry/view_pose.h"
@@ -35,6 +36,7 @@ struct FrameSlot {
   const Photograph* left = nullptr;     ///< input of matching: of `pair` or `rectified`
   const Photograph* right = nullptr;
   std::array<std::uint64_t, 2> content = {};  ///< content_hash() of the pair
+  std::optional<Thumbnail> thumbnail;         ///< of the left frame of a stream, to find shots
   DisparityMaps maps;
   /// The maps on the grids of `pair`, if views use its colours (PhotographGrid).
   std::array<Image<float>, 2> photograph_maps;

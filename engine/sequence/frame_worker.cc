@@ -120,6 +120,9 @@ void FrameWorker::prepare(FrameSlot& slot) const {
     const TimedStep step(slot, "decode", accounts_.of(RunStep::kDecode));
     pairs_.decode(slot.pair);
     slot.content = {content_hash(slot.pair.left), content_hash(slot.pair.right)};
+    if (pairs_.is_stream() && options_.needs_shots()) {
+      slot.thumbnail = make_thumbnail(slot.pair.left);
+    }
   }
   if (frame_size_) {
     require_size(slot.pair.left, "left", *frame_size_);

@@ -238,7 +238,7 @@ std::optional<JournalRecord> record_of(const std::string& line) {
 std::string text_of(const RunIdentity& identity) {
   const Json json = {{"format", kJournalFormat},
                      {"version", build_info().version},
-                     {"frame_count", identity.frame_count},
+                     {"frame_count", identity.is_stream() ? Json() : Json(identity.frame_count)},
                      {"inputs", identity.inputs},
                      {"sound",
                       {{"file", stored_name(identity.sound_file.string())},
@@ -267,7 +267,8 @@ RunIdentity identity_of(const std::string& text, const std::filesystem::path& fi
     identity.settings = Json(json.at("settings").get_ref<const Json::object_t&>()).dump();
     identity.sources = Json(json.at("sources").get_ref<const Json::object_t&>()).dump();
     identity.inputs = json.at("inputs").get<std::vector<std::string>>();
-    identity.frame_count = count_of(json.at("frame_count"));
+    const Json& frames = json.at("frame_count");
+    identity.frame_count = frames.is_null() ? kUnknownFrames : count_of(frames);
     identity.sound_file = name_of_stored(json.at("sound").at("file").get<std::string>());
     identity.sound_first_frame = json.at("sound").at("first_frame").get<double>();
     identity.sound_rate =

@@ -15,6 +15,7 @@
 #include "engine/sequence/packed_pairs.h"
 #include "engine/sequence/pair_list.h"
 #include "engine/sequence/several_cameras.h"
+#include "engine/sequence/streamed_pairs.h"
 #include "engine/sequence/two_camera_pairs.h"
 
 namespace vantage {
@@ -151,11 +152,11 @@ void PairSource::decode(FramePair& pair) const {
 std::unique_ptr<PairSource> open_pair_source(const PairSourceOptions& options) {
   options.validate();
   std::unique_ptr<PairSource> all = open_all_pairs(options);
-  if (options.every.takes_all()) {
-    return all;
+  if (!options.every.takes_all()) {
+    const int step = taken_step(options.every, *all);
+    all = std::make_unique<EveryNthPair>(std::move(all), options.every.first, step);
   }
-  const int step = taken_step(options.every, *all);
-  return std::make_unique<EveryNthPair>(std::move(all), options.every.first, step);
+  return options.stereo == "-" ? std::make_unique<StreamedPairs>(std::move(all)) : std::move(all);
 }
 
 }  // namespace vantage

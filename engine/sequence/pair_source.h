@@ -100,8 +100,16 @@ class PairSource {
 
   /// Makes pair `index` (0 ≤ index ≤ pair_count()) the result of the next fetch().
   virtual void skip_to(int index) = 0;
-  /// Total number of pairs: frames that have a partner.
+  /// Total number of pairs: frames that have a partner. Of a stream an upper bound.
   [[nodiscard]] virtual int pair_count() const = 0;
+  /// Whether pairs arrive once, and their number is known when they end. skip_to() then only goes
+  /// forward, except to repeatable_pairs().
+  [[nodiscard]] virtual bool is_stream() const { return false; }
+  /// Pairs that can be fetched again. Of a stream: known after the first pair was fetched, which is
+  /// the first of them.
+  [[nodiscard]] virtual FrameRange repeatable_pairs() const { return {0, pair_count()}; }
+  /// From here on each pair of a stream is fetched once: it holds none for longer.
+  virtual void forget_start() {}
   /// The pairs that are made of these frames of the input; the range may be empty.
   [[nodiscard]] virtual FrameRange pairs_of(FrameRange input_frames) const { return input_frames; }
   /// Number of decoded frames, no larger than photographs, that the source itself keeps in memory.

@@ -185,9 +185,9 @@ RunJournal::RunJournal(const fs::path& journal_folder, const RunIdentity& identi
   const bool is_new = create_text_file(journal_folder / kIdentityFile, text_of(identity));
   if (!is_new) {
     if (opening == JournalOpening::kNew && (part == "all" || fs::exists(state_->path))) {
-      throw Error(fmt::format(
-          "{} already holds a run, expected --resume to continue it or --overwrite to start again",
-          folder.string()));
+      throw Error(fmt::format("{} already holds a run, expected {}--overwrite to start again",
+                              folder.string(),
+                              identity.is_stream() ? "" : "--resume to continue it or "));
     }
     const std::string differs = difference(read_identity(journal_folder), identity);
     if (!differs.empty()) {

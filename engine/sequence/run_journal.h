@@ -12,6 +12,7 @@
 #include "engine/comfort/frame_comfort.h"
 #include "engine/io/checksum.h"
 #include "engine/io/frame_rate.h"
+#include "engine/io/frame_source.h"
 #include "engine/sequence/flicker.h"
 #include "engine/sequence/frame_range.h"
 #include "engine/view_geometry/depth_resolution.h"
@@ -28,10 +29,13 @@ struct RunIdentity {
   /// One line per source, see FrameSource::identity(). The text after the last ": " must be the
   /// same.
   std::vector<std::string> inputs;
-  int frame_count = 0;               ///< of the whole input
+  int frame_count = 0;               ///< of the whole input; kUnknownFrames: a stream
   std::filesystem::path sound_file;  ///< video that the sound is taken from; empty: none
   double sound_first_frame = 0;      ///< its frame that is frame 0 of the run
   FrameRate sound_rate;              ///< of the frames of that video
+
+  /// Whether the input was a stream, which cannot be read again.
+  [[nodiscard]] bool is_stream() const { return frame_count == kUnknownFrames; }
 };
 
 /// A result file.

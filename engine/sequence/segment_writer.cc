@@ -139,7 +139,7 @@ Photograph SegmentWriter::black_picture(const OutputStream& output) const {
   return at_least_two_a_side(std::move(packed));
 }
 
-std::vector<std::unique_ptr<VideoWriter>> SegmentWriter::end() {
+std::vector<std::unique_ptr<VideoWriter>> SegmentWriter::end(FrameRange frames) {
   std::vector<std::unique_ptr<VideoWriter>> videos(streams_.size());
   // The streams have the same frames: all have pictures, or none has.
   if (!streams_.front().writer && streams_.front().leading_skipped == 0) {
@@ -152,6 +152,9 @@ std::vector<std::unique_ptr<VideoWriter>> SegmentWriter::end() {
     }
     try {
       stream.writer->end_encoding();
+      if (frames != frames_) {
+        stream.writer->rename(layout_.segment(*stream.output, frames));
+      }
     } catch (const Error& error) {
       throw OutputError(error.what());
     }

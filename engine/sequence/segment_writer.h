@@ -27,9 +27,10 @@ class SegmentWriter {
   /// The next frame of the segment. Throws OutputError.
   void add(const FrameSlot& slot);
   void add_skipped();
-  /// The videos of the segment after all its frames have been added, completely encoded: finish()
-  /// then only waits for the disk. Empty if the input has none of its frames. Throws OutputError.
-  [[nodiscard]] std::vector<std::unique_ptr<VideoWriter>> end();
+  /// The videos of the segment, completely encoded: finish() then only waits for the disk.
+  /// `frames`: those that have been added, which are the first ones of the segment if the input
+  /// ended. Empty if the input has none of them. Throws OutputError.
+  [[nodiscard]] std::vector<std::unique_ptr<VideoWriter>> end(FrameRange frames);
 
  private:
   struct Stream;

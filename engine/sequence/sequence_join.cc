@@ -87,7 +87,8 @@ std::string join_segments(const SequenceOptions& options, const SequenceLayout& 
   }
   std::string sound_problem;
   const std::vector<int> skipped = delivered.skipped(frames);
-  const bool is_complete = frames == FrameRange{0, identity.frame_count} && skipped.empty();
+  const bool is_complete =
+      identity.is_stream() || (frames == FrameRange{0, identity.frame_count} && skipped.empty());
   const bool stays = delivered.joined() == frames && delivered.joined_skipped() == skipped &&
                      (!made_segments || (is_complete && segments_end < end));
   if (!stays) {

@@ -146,6 +146,10 @@ struct SequenceOptions {
   [[nodiscard]] bool saves_points() const {
     return saves(SequenceOutput::kCloud) || saves(SequenceOutput::kMesh);
   }
+  /// Whether the pairs are those of a film, whose disparities have both signs.
+  [[nodiscard]] bool is_film() const {
+    return saves(SequenceOutput::kDepthVideo) || saves(SequenceOutput::kComfort);
+  }
   /// Whether the camera of the maps must be known.
   [[nodiscard]] bool is_metric() const {
     return saves(SequenceOutput::kDepth) || saves(SequenceOutput::kDepthResolution) ||
@@ -157,8 +161,7 @@ struct SequenceOptions {
   }
   /// Whether shots must be found before the run.
   [[nodiscard]] bool needs_shots() const {
-    return needs_matched_shots() || search_range_per_shot || saves(SequenceOutput::kDepthVideo) ||
-           saves(SequenceOutput::kComfort);
+    return needs_matched_shots() || search_range_per_shot || is_film();
   }
   /// Whether pairs of each shot must be matched for that.
   [[nodiscard]] bool needs_matched_shots() const {

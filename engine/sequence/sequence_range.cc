@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "engine/error.h"
-#include "engine/matching/range_estimation.h"
 
 namespace vantage {
 namespace {
@@ -14,7 +13,7 @@ constexpr int kMaxPairs = 16;
 
 std::optional<DisparityRange> range_of_pair(PairSource& pairs, int index,
                                             const PreparePair& prepare, FramePair& pair,
-                                            Execution& execution) {
+                                            Execution& execution, Infinity infinity) {
   try {
     pairs.skip_to(index);
     if (!pairs.fetch(pair)) {
@@ -24,7 +23,7 @@ std::optional<DisparityRange> range_of_pair(PairSource& pairs, int index,
     if (prepare) {
       prepare(pair);
     }
-    return find_disparity_range(pair.left, pair.right, execution);
+    return find_disparity_range(pair.left, pair.right, execution, {0, 0}, infinity);
   } catch (const Error&) {
     return std::nullopt;  // the run itself reports bad frames
   }
@@ -33,21 +32,22 @@ std::optional<DisparityRange> range_of_pair(PairSource& pairs, int index,
 }  // namespace
 
 std::optional<DisparityRange> find_sequence_range(PairSource& pairs, const PreparePair& prepare,
-                                                  Execution& execution) {
-  const int all = pairs.pair_count();
-  const int count = std::min(all, kMaxPairs);
+                                                  Execution& execution, Infinity infinity) {
+  const FrameRange all = pairs.repeatable_pairs();
+  const int count = std::min(all.count(), kMaxPairs);
   std::optional<DisparityRange> together;
   FramePair pair;
   for (int i = 0; i < count; ++i) {
-    const auto index =
-        count == 1 ? 0 : static_cast<int>(static_cast<long long>(i) * (all - 1) / (count - 1));
-    if (const auto range = range_of_pair(pairs, index, prepare, pair, execution)) {
+    const auto index = all.first + (count == 1 ? 0
+                                               : static_cast<int>(static_cast<long long>(i) *
+                                                                  (all.count() - 1) / (count - 1)));
+    if (const auto range = range_of_pair(pairs, index, prepare, pair, execution, infinity)) {
       together = together ? DisparityRange{std::min(together->min, range->min),
                                            std::max(together->max, range->max)}
                           : *range;
     }
   }
-  pairs.skip_to(0);
+  pairs.skip_to(all.first);
   return together;
 }
 

@@ -8,7 +8,6 @@
 #include <exception>
 #include <iterator>
 #include <map>
-#include <string_view>
 #include <utility>
 
 #include "engine/error.h"
@@ -19,6 +18,7 @@
 #include "engine/sequence/frame_memory.h"
 #include "engine/sequence/frame_worker.h"
 #include "engine/sequence/leftovers.h"
+#include "engine/sequence/run_totals.h"
 #include "engine/sequence/segment_writer.h"
 #include "scheduler/frame_pipeline.h"
 
@@ -38,14 +38,6 @@ double processor_seconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-FrameDependence dependence_of(const SequenceOptions& options, const SequenceLayout& layout) {
-  using Past = FrameDependence::Past;
-  return {.past = options.temporal.uses_past() ? Past::kChunk
-                  : options.measure_flicker    ? Past::kOne
-                                               : Past::kNone,
-          .whole_chunks = layout.has_videos()};
-}
-
 /// Whether a frame was made without one that it depends on, because that one was skipped.
 bool lacks_past(const std::vector<int>& skipped, int frame, int chunk_begin,
                 FrameDependence::Past past) {
@@ -56,6 +48,12 @@ bool lacks_past(const std::vector<int>& skipped, int frame, int chunk_begin,
   const auto next = std::ranges::lower_bound(skipped, first);
   return next != skipped.end() && *next < frame;
 }
+
+/// A frame of a stream that ends the run; the frames before it are finished.
+class BadStreamFrame : public Error {
+ public:
+  using Error::Error;
+};
 
 /// One run: the ordered steps of a frame, and the totals.
 class Run {
@@ -96,10 +94,19 @@ class Run {
     const auto skip = [&](int slot, const std::exception_ptr& error) {
       return skip_frame(slot_of(slot), error);
     };
-    const scheduler::FrameOutcome outcome =
-        scheduler::run_frames(execution_.executor(), run_.in_flight, steps, skip, run_.stop);
+    try {
+      const scheduler::FrameOutcome outcome =
+          scheduler::run_frames(execution_.executor(), run_.in_flight, steps, skip, run_.stop);
+      report_.interrupted = outcome.interrupted;
+    } catch (const BadStreamFrame& bad) {
+      report_.stream_problem = bad.what();
+    }
+    if (run_.pairs.is_stream()) {
+      finish_stream();
+      // Who writes it is often stopped together with the run.
+      report_.interrupted = run_.stop != nullptr && run_.stop->load();
+    }
     queue_.finish();
-    report_.interrupted = outcome.interrupted;
     // Not counted: frames that exist only in the abandoned videos of an unfinished chunk.
     report_.frames -= frames_of_segment_;
     report_.videos_from = segment_begin_;
@@ -108,7 +115,8 @@ class Run {
       report_.memory.add("frames in flight", held_bytes(slot));
     }
     worker_.add_memory_use(report_.memory);
-    add_processor_time(processor_seconds() - processor_at_start, seconds_since(start));
+    add_processor_time(report_, accounts_, processor_seconds() - processor_at_start,
+                       seconds_since(start), execution_.executor().thread_count());
     return std::move(report_);
   }
 
@@ -128,6 +136,9 @@ class Run {
     slot.stored = known == stored_.end() ? nullptr : known->second;
     // Some containers promise a few frames more than they have; a truncated file throws.
     slot.is_absent = !run_.pairs.fetch(slot.pair);
+    if (slot.is_absent && run_.pairs.is_stream()) {
+      return false;
+    }
     slot.times.push_back({"read", seconds_since(start)});
     return true;
   }
@@ -146,13 +157,16 @@ class Run {
     if (slot.is_lead_in) {
       return;
     }
+    if (run_.pairs.is_stream()) {
+      cuts_.add(slot.thumbnail);
+    }
     note_oddities(slot, record);
     if (layout_.has_videos()) {
       segment_of(slot.frame);
       segments_.add(slot);
     }
     slot.times.push_back({"write", seconds_since(start)});
-    add_to_report(slot);
+    add_frame(report_, slot);
     if (slot.stored != nullptr) {
       deliver(slot.frame, {}, std::nullopt, slot.match.cells);
     } else {
@@ -228,15 +242,23 @@ class Run {
     } catch (const Error& bad_frame) {
       problem = bad_frame.what();
     }
+    const std::string name = run_.pairs.describe(slot.frame);
+    // Problems of a stream name their frame.
+    const std::string named =
+        problem.starts_with(name) ? problem : fmt::format("{}: {}", name, problem);
     if (!run_.keep_going) {
-      throw Error(
-          fmt::format("frame {} ({}): {}", slot.frame, run_.pairs.describe(slot.frame), problem));
+      if (run_.pairs.is_stream()) {
+        throw BadStreamFrame(named);
+      }
+      throw Error(fmt::format("frame {} ({}): {}", slot.frame, name, problem));
     }
     if (slot.is_lead_in) {
       return true;  // recorded when it is delivered
     }
-    report_.skipped.push_back(
-        {slot.frame, fmt::format("{}: {}", run_.pairs.describe(slot.frame), problem)});
+    if (run_.pairs.is_stream()) {
+      cuts_.add(std::nullopt);
+    }
+    report_.skipped.push_back({slot.frame, named});
     if (layout_.has_videos()) {
       segment_of(slot.frame);
       segments_.add_skipped();
@@ -270,79 +292,50 @@ class Run {
       frames_of_segment_ += record->skipped || record->absent ? 0 : 1;
       segment_records_.emplace_back(*std::move(record));
     }
+    last_delivered_ = frame;
     const FrameRange chunk = run_.selection.chunk_of(frame);
     if (layout_.has_videos() && frame + 1 == chunk.end) {
-      delivery.videos = segments_.end();
-      if (!delivery.videos.empty()) {
-        delivery.folder = layout_.folder();
-        delivery.segment = SegmentRecord{chunk};
-        for (std::string& name : layout_.segment_names(chunk)) {
-          delivery.segment->files.push_back({.name = std::move(name)});
-        }
-      }
-      std::ranges::move(segment_records_, std::back_inserter(delivery.records));
-      segment_records_.clear();
-      frames_of_segment_ = 0;
-      segment_begin_.reset();
+      end_segment(chunk, delivery);
     }
     queue_.push(std::move(delivery));
   }
 
+  /// Adds the videos of `frames`, the segment so far, to a delivery.
+  void end_segment(FrameRange frames, Delivery& delivery) {
+    delivery.videos = segments_.end(frames);
+    if (!delivery.videos.empty()) {
+      delivery.folder = layout_.folder();
+      delivery.segment = SegmentRecord{frames};
+      for (std::string& name : layout_.segment_names(frames)) {
+        delivery.segment->files.push_back({.name = std::move(name)});
+      }
+    }
+    std::ranges::move(segment_records_, std::back_inserter(delivery.records));
+    segment_records_.clear();
+    frames_of_segment_ = 0;
+    segment_begin_.reset();
+  }
+
+  /// A stream cannot be continued: its last segment is as long as it is.
+  void finish_stream() {
+    if (segment_begin_) {
+      Delivery delivery;
+      delivery.frame = last_delivered_;
+      end_segment({*segment_begin_, last_delivered_ + 1}, delivery);
+      queue_.push(std::move(delivery));
+    }
+    const FrameRange frames{run_.selection.own().first, last_delivered_ + 1};
+    if (options_.needs_shots() && !frames.empty()) {
+      report_.shots = shots_at(cuts_, frames, options_);
+    }
+  }
+
   void tell_progress(int frames, double cells) {
     progress_.frames_done += frames;
-    progress_.frames_total = feed_.frames_total();
+    progress_.frames_total = feed_.frames_total() < kUnknownFrames ? feed_.frames_total() : 0;
     progress_.cells += cells;
     if (run_.on_progress) {
       run_.on_progress(progress_);
-    }
-  }
-
-  void add_to_report(const FrameSlot& slot) {
-    ++(slot.stored != nullptr ? report_.pictures_again : report_.frames);
-    report_.width_px = slot.left->width();
-    report_.height_px = slot.left->height();
-    report_.cells += slot.match.cells;
-    if (slot.match.cells > 0) {
-      report_.plan = slot.match.plan;
-      if (slot.match.searched_share) {
-        report_.reuse.add(*slot.match.searched_share);
-      }
-      add_range_check(slot);
-    }
-    for (const auto& times : {slot.match.stages, slot.times}) {
-      for (const StageTime& stage : times) {
-        add_stage(stage.name, stage.seconds);
-      }
-    }
-  }
-
-  void add_processor_time(double all_seconds, double wall_seconds) {
-    double other = all_seconds;
-    for (std::size_t step = 0; step < kRunStepNames.size(); ++step) {
-      report_.processor.push_back({std::string(kRunStepNames[step]), accounts_.seconds(step)});
-      other -= accounts_.seconds(step);
-    }
-    report_.processor.push_back({"other", std::max(0.0, other)});
-    report_.share_busy = all_seconds / (wall_seconds * execution_.executor().thread_count());
-  }
-
-  void add_range_check(const FrameSlot& slot) {
-    report_.frames_maybe_cut += slot.may_be_cut ? 1 : 0;
-    const auto share = [](const CutRange& cut) {
-      return std::max(cut.below ? cut.share_below : 0, cut.above ? cut.share_above : 0);
-    };
-    if (slot.cut && slot.cut->any() && (!report_.cut || share(*slot.cut) > share(*report_.cut))) {
-      report_.cut = slot.cut;
-      report_.cut_frame = slot.frame;
-    }
-  }
-
-  void add_stage(std::string_view name, double seconds) {
-    const auto known = std::ranges::find(report_.stages, name, &SequenceStage::name);
-    if (known != report_.stages.end()) {
-      known->seconds += seconds;
-    } else {
-      report_.stages.push_back({std::string(name), seconds});
     }
   }
 
@@ -360,6 +353,8 @@ class Run {
   std::vector<JournalRecord> segment_records_;
   int frames_of_segment_ = 0;         // counted in the report although the segment is unfinished
   std::optional<int> segment_begin_;  // start of the unfinished segment
+  int last_delivered_ = -1;
+  ShotCuts cuts_;  // of a stream
   FlickerMeter flicker_;
   int next_flicker_frame_ = -1;
   int last_frame_ = -2;
@@ -372,6 +367,14 @@ class Run {
 
 }  // namespace
 
+FrameDependence dependence_of(const SequenceOptions& options, const SequenceLayout& layout) {
+  using Past = FrameDependence::Past;
+  return {.past = options.temporal.uses_past() ? Past::kChunk
+                  : options.measure_flicker    ? Past::kOne
+                                               : Past::kNone,
+          .whole_chunks = layout.has_videos()};
+}
+
 SequenceRunner::SequenceRunner(const SequenceOptions& options, Execution& execution)
     : options_(options), execution_(execution) {
   options_.validate();
@@ -382,6 +385,10 @@ SequenceReport SequenceRunner::run(const SequenceRun& run, const SequenceLayout&
   layout.make_folders();
   const FrameRange own = run.selection.own();
   remove_leftovers(layout, own);
+  if (run.pairs.is_stream()) {
+    const FrameRun all = run_of(run.selection, dependence_of(options_, layout), own);
+    return Run(options_, run, layout, journal, {all}, {}, execution_).work();
+  }
   const DeliveredFrames delivered(layout);
   const FrameDependence dependence = dependence_of(options_, layout);
   const std::vector<int> skipped = delivered.skipped({0, run.selection.frame_count});

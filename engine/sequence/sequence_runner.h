@@ -25,7 +25,7 @@ namespace vantage {
 /// Progress of a run.
 struct SequenceProgress {
   int frames_done = 0;   ///< delivered by this process
-  int frames_total = 0;  ///< to be processed by this process
+  int frames_total = 0;  ///< to be processed by this process; 0: not known
   double cells = 0;      ///< matching cells computed for the frames done
 };
 
@@ -68,7 +68,9 @@ struct SequenceReport {
   /// that are matched are checked, so it may depend on timing.
   std::optional<CutRange> cut;
   int cut_frame = 0;
-  bool interrupted = false;  ///< `stop` was set before all was done
+  bool interrupted = false;                   ///< `stop` was set before all was done
+  std::optional<std::string> stream_problem;  ///< of the frame at which a stream ended the run
+  std::optional<ShotTable> shots;             ///< of a stream, if the options need shots
   int in_flight = 0;
   int width_px = 0;  ///< of the last frame
   int height_px = 0;
@@ -94,12 +96,15 @@ struct SequenceRun {
   const RectifiedPair* cameras = nullptr;  ///< of the pairs; must be set for camera views
   const MapCamera* map_camera = nullptr;   ///< of the reference's map; must be set if is_metric()
   const FramePoses* poses = nullptr;       ///< with map_camera: points are in their world
-  const ShotTable* shots = nullptr;        ///< must be set if the options need shots
-  int in_flight = 1;                       ///< frames processed at the same time, 1..64
-  bool keep_going = false;                 ///< frames that fail are skipped and recorded
+  const ShotTable* shots = nullptr;  ///< must be set if the options need shots; not of a stream
+  int in_flight = 1;                 ///< frames processed at the same time, 1..64
+  bool keep_going = false;           ///< frames that fail are skipped and recorded
   std::function<void(const SequenceProgress&)> on_progress;  ///< never concurrently
   const std::atomic<bool>* stop = nullptr;
 };
+
+/// What the results of a frame depend on.
+FrameDependence dependence_of(const SequenceOptions& options, const SequenceLayout& layout);
 
 /// Converts a sequence of pairs to disparity maps and new views on disk, in order. The strips of
 /// several frames share the executor's threads; memory is bounded by the frames in flight, whose
@@ -115,6 +120,10 @@ class SequenceRunner {
 
   /// Creates the folders of `layout`, then processes the missing frames. Setting `stop` reads no
   /// further frame and finishes those in flight.
+  ///
+  /// A stream (PairSource::is_stream()) is processed to its end, to a bad frame, which
+  /// SequenceReport::stream_problem tells, or to `stop`; then the last segment of its videos is
+  /// complete. What needs all frames of a shot before the first is matched is not possible.
   ///
   /// Throws Error at the first bad frame, naming its number and files, after all earlier frames are
   /// delivered and with none after it, unless `keep_going`; OutputError, naming the file, when

@@ -72,14 +72,7 @@ class Survey {
     if (!cuts) {
       return std::nullopt;
     }
-    ShotTable table;
-    table.shots.push_back(shot_from(first_frame, end_frame));
-    for (const int start : cuts->shot_starts()) {
-      if (start > 0) {
-        table.shots.back().end_frame = first_frame + start;
-        table.shots.push_back(shot_from(first_frame + start, end_frame));
-      }
-    }
+    ShotTable table = shots_at(*cuts, {first_frame, end_frame}, options_);
     for (const Shot& shot : table.shots) {
       progress_.frames_total +=
           static_cast<int>((options_.search_range_per_shot ? range_samples_of(shot).size() : 0) +
@@ -106,13 +99,6 @@ class Survey {
     if (hooks_.progress) {
       hooks_.progress(progress_);
     }
-  }
-
-  [[nodiscard]] Shot shot_from(int first_frame, int end_frame) const {
-    return {.first_frame = first_frame,
-            .end_frame = end_frame,
-            .preview_range = preview_range_of(options_.match.disparities),
-            .search = std::nullopt};
   }
 
   /// False at the end of the sequence; a pair that cannot be fetched has no thumbnail.
@@ -285,6 +271,24 @@ class Survey {
 };
 
 }  // namespace
+
+ShotTable shots_at(const ShotCuts& cuts, FrameRange frames, const SequenceOptions& options) {
+  const auto shot_from = [&](int first_frame) {
+    return Shot{.first_frame = first_frame,
+                .end_frame = frames.end,
+                .preview_range = preview_range_of(options.match.disparities),
+                .search = std::nullopt};
+  };
+  ShotTable table;
+  table.shots.push_back(shot_from(frames.first));
+  for (const int start : cuts.shot_starts()) {
+    if (start > 0) {
+      table.shots.back().end_frame = frames.first + start;
+      table.shots.push_back(shot_from(frames.first + start));
+    }
+  }
+  return table;
+}
 
 const Shot& ShotTable::shot_of(int frame) const {
   const auto after =

@@ -10,8 +10,10 @@
 
 #include "engine/execution.h"
 #include "engine/io/preview.h"
+#include "engine/sequence/frame_range.h"
 #include "engine/sequence/pair_source.h"
 #include "engine/sequence/sequence_options.h"
+#include "engine/sequence/shot_cuts.h"
 #include "engine/synthesis/intensity_fit.h"
 
 namespace vantage {
@@ -35,6 +37,9 @@ struct ShotTable {
   [[nodiscard]] const Shot& shot_of(int frame) const;
   friend bool operator==(const ShotTable&, const ShotTable&) = default;
 };
+
+/// The shots of `frames`, whose cuts are known: without fits and ranges of their own.
+ShotTable shots_at(const ShotCuts& cuts, FrameRange frames, const SequenceOptions& options);
 
 /// JSON text that preserves all bits. The second throws Error with the reason.
 std::string to_json(const ShotTable& table);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/sequence/frame_feed.h"
 #include "engine/sequence/frame_memory.h"
 #include "engine/sequence/frame_worker.h"
 #include "engine/sequence/pending_files.h"
@@ -26,12 +27,11 @@ class StreamRun {
         worker_({options, layout, run.pairs, run.frame_size, run.rectifier, run.cameras, nullptr,
                  nullptr, nullptr, execution, accounts_}),
         slots_(static_cast<std::size_t>(run.in_flight)),
-        next_(run.selection.own().first) {
+        feed_({run_of(run.selection, dependence_of(options, layout), run.selection.own())}) {
     report_.in_flight = run.in_flight;
   }
 
   SequenceReport work() {
-    run_.pairs.skip_to(next_);
     const auto slot_of = [this](int slot) -> FrameSlot& {
       return slots_[static_cast<std::size_t>(slot)];
     };
@@ -59,18 +59,22 @@ class StreamRun {
  private:
   bool read(FrameSlot& slot) {
     slot.times.clear();
-    slot.is_lead_in = false;
     slot.is_absent = false;
     slot.stored = nullptr;
-    slot.frame = next_;
-    if (next_ >= run_.selection.own().end) {
+    if (!feed_.next(slot.frame, slot.is_lead_in)) {
       return false;
     }
-    ++next_;
+    if (slot.frame != next_pair_) {
+      run_.pairs.skip_to(slot.frame);
+    }
+    next_pair_ = slot.frame + 1;
     return run_.pairs.fetch(slot.pair);
   }
 
   void write(FrameSlot& slot) {
+    if (slot.is_lead_in) {
+      return;
+    }
     worker_.copy_picture(slot, layout_.streams().front(), last_);
     put_last();
     has_last_ = true;
@@ -101,6 +105,9 @@ class StreamRun {
                         ? text
                         : fmt::format("frame {} ({}): {}", slot.frame, name, text));
       }
+      if (slot.is_lead_in) {
+        return true;
+      }
       report_.skipped.push_back({slot.frame, fmt::format("{}: {}", name, bad.what())});
     }
     if (has_last_) {
@@ -120,7 +127,7 @@ class StreamRun {
 
   void tell_progress(double cells) {
     ++progress_.frames_done;
-    progress_.frames_total = run_.selection.own().count();
+    progress_.frames_total = feed_.frames_total() < kUnknownFrames ? feed_.frames_total() : 0;
     progress_.cells += cells;
     if (run_.on_progress) {
       run_.on_progress(progress_);
@@ -134,7 +141,8 @@ class StreamRun {
   StepAccounts accounts_;
   FrameWorker worker_;
   std::vector<FrameSlot> slots_;
-  int next_;
+  FrameFeed feed_;
+  int next_pair_ = -1;  ///< the source may be anywhere at first
   Photograph last_;
   bool has_last_ = false;
   SequenceReport report_;

@@ -28,18 +28,22 @@ FrameRange FrameSelection::chunk_of(int frame) const {
   return all().intersection({begin, begin + std::min(chunk_frames, frame_count - begin)});
 }
 
+FrameRun run_of(const FrameSelection& selection, FrameDependence dependence, FrameRange frames) {
+  int lead_in = 0;
+  if (dependence.past != FrameDependence::Past::kNone) {
+    lead_in = frames.first - selection.chunk_begin(frames.first);
+  }
+  if (dependence.past == FrameDependence::Past::kOne) {
+    lead_in = std::min(lead_in, 1);
+  }
+  return {frames, lead_in};
+}
+
 std::vector<FrameRun> plan_work(const FrameSelection& selection, FrameDependence dependence,
                                 const std::function<bool(int frame)>& is_done) {
   std::vector<FrameRun> runs;
   const auto add = [&](FrameRange frames) {
-    int lead_in = 0;
-    if (dependence.past != FrameDependence::Past::kNone) {
-      lead_in = frames.first - selection.chunk_begin(frames.first);
-    }
-    if (dependence.past == FrameDependence::Past::kOne) {
-      lead_in = std::min(lead_in, 1);
-    }
-    runs.push_back({frames, lead_in});
+    runs.push_back(run_of(selection, dependence, frames));
   };
   const FrameRange own = selection.own();
   for (int frame = own.first; frame < own.end;) {

@@ -50,6 +50,9 @@ struct FrameDependence {
   bool whole_chunks = false;
 };
 
+/// `frames`, of one chunk at least at their start, with the frames before them that they depend on.
+FrameRun run_of(const FrameSelection& selection, FrameDependence dependence, FrameRange frames);
+
 /// Remaining work on a shard's frames, in order. Each run lies within one chunk.
 std::vector<FrameRun> plan_work(const FrameSelection& selection, FrameDependence dependence,
                                 const std::function<bool(int frame)>& is_done);

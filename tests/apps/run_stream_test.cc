@@ -2,17 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <cmath>
 #include <cstdlib>
 
-#include "engine/image/stereo_packing.h"
 #include "engine/io/disparity_io.h"
-#include "engine/io/photograph_io.h"
 #include "engine/io/video_io.h"
-#include "tests/apps/run_fixture.h"
-#include "tests/test_paths.h"
+#include "tests/apps/stream_fixture.h"
 
 namespace vantage {
 namespace run_stream_test {
@@ -20,41 +16,8 @@ namespace run_stream_test {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-using Words = std::vector<std::string>;
-
-class RunStreams : public RunTest {
+class RunStreams : public StreamTest {
  protected:
-  /// A shell command of the program.
-  [[nodiscard]] static std::string command(const Words& arguments) {
-    std::string line = "XDG_CONFIG_HOME=/none '" + test_paths::vantage_binary() + "' run";
-    for (const std::string& word : arguments) {
-      line += " '" + word + "'";
-    }
-    return line;
-  }
-  /// Exit code of the line in a shell; what the program says is in err_.
-  [[nodiscard]] int shell(const std::string& line) const {
-    const int status = std::system(("( " + line + " ) 2>" + err_).c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  }
-  [[nodiscard]] std::string err() const { return read_file(err_); }
-  /// Both images of `frames` frames side by side as raw rgb24.
-  [[nodiscard]] std::string raw_pairs(int frames) const {
-    std::string bytes;
-    for (int frame = 0; frame < frames; ++frame) {
-      Photograph packed;
-      pack_stereo(read_photograph(left_ + "/" + frame_file(frame)),
-                  read_photograph(right_ + "/" + frame_file(frame)), {}, packed);
-      const auto& image = std::get<Image<std::uint8_t>>(packed.pixels);
-      for (int y = 0; y < image.height(); ++y) {
-        bytes.append(reinterpret_cast<const char*>(image.row(y)),
-                     3 * static_cast<std::size_t>(image.width()));
-      }
-    }
-    return bytes;
-  }
-
-  std::string err_ = folder_ / "err";
   Words depth_ = {"--stereo",
                   "-",
                   "--packing",
@@ -182,7 +145,24 @@ TEST_F(RunStreams, StreamsThatEndEarly) {
 
 TEST_F(RunStreams, WrongOptions) {
   const std::vector<std::pair<Words, std::string>> cases = {
-      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out"}, "expected --output -"},
+      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--resume"},
+       "standard input, which cannot be read again"},
+      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--force"},
+       "standard input, which cannot be read again"},
+      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--shard", "1/2"},
+       "standard input is read once"},
+      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--save", "comfort",
+        "--search-range", "shot"},
+       "search-range is shot"},
+      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--save", "depth-video",
+        "--depth-range", "shot"},
+       "depth-range is shot"},
+      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--save", "preview",
+        "--preview-range", "shot"},
+       "preview-range is shot"},
+      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--view", "0.5",
+        "--intensity-fit", "shot"},
+       "intensity-fit is shot"},
       {{"--left", left_, "--right", right_, "-o", "-"}, "--save with one output of pictures"},
       {{"--left", left_, "--right", right_, "-o", "-", "--save", "preview,unmatched"},
        "--save with one output of pictures"},

@@ -1,0 +1,62 @@
+#include "engine/sequence/run_totals.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+
+namespace vantage {
+namespace {
+
+void add_range_check(SequenceReport& report, const FrameSlot& slot) {
+  report.frames_maybe_cut += slot.may_be_cut ? 1 : 0;
+  const auto share = [](const CutRange& cut) {
+    return std::max(cut.below ? cut.share_below : 0, cut.above ? cut.share_above : 0);
+  };
+  if (slot.cut && slot.cut->any() && (!report.cut || share(*slot.cut) > share(*report.cut))) {
+    report.cut = slot.cut;
+    report.cut_frame = slot.frame;
+  }
+}
+
+void add_stage(SequenceReport& report, std::string_view name, double seconds) {
+  const auto known = std::ranges::find(report.stages, name, &SequenceStage::name);
+  if (known != report.stages.end()) {
+    known->seconds += seconds;
+  } else {
+    report.stages.push_back({std::string(name), seconds});
+  }
+}
+
+}  // namespace
+
+void add_frame(SequenceReport& report, const FrameSlot& slot) {
+  ++(slot.stored != nullptr ? report.pictures_again : report.frames);
+  report.width_px = slot.left->width();
+  report.height_px = slot.left->height();
+  report.cells += slot.match.cells;
+  if (slot.match.cells > 0) {
+    report.plan = slot.match.plan;
+    if (slot.match.searched_share) {
+      report.reuse.add(*slot.match.searched_share);
+    }
+    add_range_check(report, slot);
+  }
+  for (const auto& times : {slot.match.stages, slot.times}) {
+    for (const StageTime& stage : times) {
+      add_stage(report, stage.name, stage.seconds);
+    }
+  }
+}
+
+void add_processor_time(SequenceReport& report, const StepAccounts& accounts, double all_seconds,
+                        double wall_seconds, int threads) {
+  double other = all_seconds;
+  for (std::size_t step = 0; step < kRunStepNames.size(); ++step) {
+    report.processor.push_back({std::string(kRunStepNames[step]), accounts.seconds(step)});
+    other -= accounts.seconds(step);
+  }
+  report.processor.push_back({"other", std::max(0.0, other)});
+  report.share_busy = all_seconds / (wall_seconds * threads);
+}
+
+}  // namespace vantage
